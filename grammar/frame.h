@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The vocabulary of what can be observed: who takes part (Cast, fixed for a run) and what one look at the
+// world says (Frame). A grammar sees nothing else; simulated, recorded and hand-written episodes all enter here.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace prehend::grammar {
+
+/// One physics step. Seconds exist only in text.
+using Tick = std::int64_t;
+
+/// Half-open [begin, end) in ticks.
+struct Interval {
+  Tick begin = 0;
+  Tick end = 0;
+  friend bool operator==(const Interval&, const Interval&) = default;
+};
+
+inline constexpr int kNobody = -1;
+
+/// One entity that can be bound to a role. Its index in Cast::entities is its id.
+struct CastMember {
+  std::string name;
+  /// Most specific first, e.g. {"MilkCarton", "Movable", "Thing", "Entity"} or {"Hand", "Entity"}.
+  /// The built-in roots are Entity; Hand and Thing (everything that is not a hand); Movable and Fixed (Things).
+  std::vector<std::string> classes;
+  int part_of = kNobody;
+  /// Centre and half sizes of the oriented bounding box, in the entity's own frame, metres.
+  Eigen::Vector3d p_BC_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+  /// Hands only: names of the sensor sets; bit i of Touch::sensor_sets is set i. At most 32.
+  std::vector<std::string> sensor_sets;
+};
+
+struct Cast {
+  Tick ticks_per_second = 480;
+  std::vector<CastMember> entities;
+  std::vector<std::string> styles;  ///< names of grasp styles; HandLook::style indexes them
+};
+
+/// Pose and velocity of one entity's body frame B in the world W (z up).
+struct EntityLook {
+  Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d v_WB_m_per_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d w_WB_rad_per_s = Eigen::Vector3d::Zero();
+  bool asleep = false;
+};
+
+/// A ball that stands for a piece of a hand's surface, for distances from hand to object.
+struct Feeler {
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  double radius_m = 0;
+};
+
+/// What is only known of hands.
+struct HandLook {
+  int entity = kNobody;
+  double trigger = 0;  ///< commanded grip, 0 open .. 1 closed
+  int style = 0;       ///< index into Cast::styles
+  Eigen::Vector3d ahead_W = Eigen::Vector3d::UnitX();  ///< unit vector from the palm to where the hand reaches
+  std::span<const Feeler> feelers;                     ///< at least one
+};
+
+/// Two entities whose surfaces touch now. At most one per pair, however many points or links touch.
+struct Touch {
+  int a = kNobody;  ///< a < b
+  int b = kNobody;
+  /// Largest up (world z) component, over the touching points that carry load, of the contact normal on a
+  /// (pointing out of b into a), and the same for b. 1: held from below. 0: side by side. -1: it lies below.
+  double up_on_a = -1;
+  double up_on_b = -1;
+  double normal_force_n = 0;
+  std::uint32_t sensor_sets = 0;  ///< when one of the two is a hand: which of its sensor sets touch
+};
+
+/// One look at the world. Ticks increase from frame to frame by any amount. Spans live until the next frame.
+struct Frame {
+  Tick tick = 0;
+  std::span<const EntityLook> entities;  ///< one per Cast::entities, same order
+  std::span<const HandLook> hands;       ///< sorted by entity
+  std::span<const Touch> touches;        ///< sorted by (a, b)
+};
+
+}  // namespace prehend::grammar

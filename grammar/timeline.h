@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Events with names instead of numbers, in one canonical order: what is printed, stored and compared.
+// Tested by tests/grammar/timeline_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grammar/frame.h"
+#include "grammar/monitor.h"
+
+namespace prehend::grammar {
+
+struct Role {
+  std::string name;   ///< as in the rule's head: hand, object, a, b, support; or an attribute: style
+  std::string value;  ///< an entity's name, or the attribute's value
+  friend auto operator<=>(const Role&, const Role&) = default;
+};
+
+struct NamedEvent {
+  std::string event;
+  std::vector<Role> roles;  ///< in the order of the rule's head, attributes last
+  Interval interval;
+  Tick decided = 0;
+  bool open_end = false;  ///< closed by the end of the episode
+
+  /// "reaching(right_hand, milk)"; attributes are left out.
+  std::string Label() const;
+};
+
+struct Timeline {
+  Tick ticks_per_second = 480;
+  std::vector<NamedEvent> events;  ///< sorted by (begin, end, event, roles)
+};
+
+/// Gives monitor events their names and sorts them.
+Timeline NameEvents(const Program& program, const Cast& cast, const std::vector<Event>& events);
+
+/// Sorts into the canonical order.
+void Sort(Timeline& timeline);
+
+}  // namespace prehend::grammar

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// One scenario, simulated and watched: the main loop. The result is a value.
+// Tested by tests/harness/run_scenario_test.cc
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "grammar/monitor.h"
+#include "grammar/timeline.h"
+#include "harness/scenario.h"
+#include "physics/simulation.h"
+
+namespace prehend::harness {
+
+struct RunOptions {
+  bool record = false;   ///< keep a snapshot per sensed frame (pictures, oracle)
+  bool measure = false;  ///< clock physics, sensing and grammar apart
+};
+
+/// Where the time of a run went; all zero unless measured.
+struct RunSeconds {
+  double physics = 0, sensing = 0, grammar = 0, total = 0;
+};
+
+struct RunResult {
+  physics::RunStatus status;
+  grammar::Tick ticks = 0;
+  std::uint64_t state_hash = 0;
+  grammar::Timeline timeline;                 ///< what was recognised up to where the run ended
+  std::vector<physics::Snapshot> recording;   ///< empty unless asked for
+  RunSeconds seconds;
+};
+
+RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
+                      const RunOptions& options = {});
+
+}  // namespace prehend::harness

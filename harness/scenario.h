@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scenario format, version 1, as one struct. Its YAML face is the field table in harness/scenario_fields.cc,
+// which drives both the reader (harness/read_scenario.h) and the JSON Schema. What it means to physics and grammar
+// is what BuildScene() etc. make of it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "grammar/frame.h"
+#include "physics/scene.h"
+#include "physics/script.h"
+
+namespace prehend::harness {
+
+struct WorldEntry {
+  std::string engine = "bullet";
+  int rate_hz = 480;
+  int sensing_hz = 240;
+  std::uint64_t seed = 1;
+};
+
+struct PictureEntry {
+  std::string at;       ///< "reaching.begin", "putting_down.end", or a time: "1.25"
+  std::string camera = "three_quarter";
+};
+
+/// A whole scenario, read, checked and resolved: entities and actors are already bodies and hands.
+struct Scenario {
+  std::string name;
+  std::string file;  ///< where it was read from
+  std::string skill; ///< the folder below scenarios/, or ""
+  std::string shows;
+  std::string grammar = "pick_and_place";
+  std::vector<std::string> tags;
+  WorldEntry world;
+  physics::Scene scene;
+  std::vector<std::string> body_classes;  ///< one per scene body
+  physics::Script script;
+  std::vector<PictureEntry> pictures;
+};
+
+/// Who can be bound to roles: the scene's bodies first (same index), then its hands.
+grammar::Cast MakeCast(const Scenario& scenario);
+
+}  // namespace prehend::harness

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Scene and a Script, stepped tick by tick. A run that goes wrong ends as a value, not as an exception.
+// Tested by tests/physics/simulation_test.cc
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "physics/scene.h"
+#include "physics/script.h"
+#include "physics/snapshot.h"
+
+namespace prehend::physics {
+
+struct RunStatus {
+  enum class Kind { kRunning, kCompleted, kFailed };
+  Kind kind = Kind::kRunning;
+  std::int64_t tick = 0;  ///< at which it ended
+  std::string entity;     ///< who went wrong; empty unless failed
+  std::string reason;     ///< non-finite state, runaway speed, deep penetration, out of the world
+  std::string advice;
+};
+
+class Simulation {
+ public:
+  Simulation(Scene scene, Script script);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+
+  /// Advances one tick. False when the run is over (then status() says why and nothing was stepped).
+  bool Step();
+
+  const Scene& scene() const;
+  const Snapshot& snapshot() const;
+  const RunStatus& status() const;
+  /// FNV-1a over every pose, velocity and joint of every tick so far.
+  std::uint64_t state_hash() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace prehend::physics

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state of the world after one tick, as a value. Who: bodies and hands by their index in the Scene.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "physics/pose.h"
+
+namespace prehend::physics {
+
+struct BodyState {
+  Pose X_WB;
+  Eigen::Vector3d v_WB_m_per_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d w_WB_rad_per_s = Eigen::Vector3d::Zero();
+  bool asleep = false;
+};
+
+struct HandState {
+  BodyState palm;                ///< never asleep
+  std::vector<Pose> X_WL;        ///< centre of every link, order of HandModel::links
+  std::vector<double> joints_rad;
+  Pose X_WTarget;                ///< where the tracked target is
+  double trigger = 0;
+  int style = 0;                 ///< index into HandModel::styles
+};
+
+/// One side of a contact: a body (hand == -1) or a link of a hand (link == -1 is the palm).
+struct ContactSide {
+  int body = -1;
+  int hand = -1;
+  int link = -1;
+  friend auto operator<=>(const ContactSide&, const ContactSide&) = default;
+};
+
+/// A point where surfaces touch in the sense of docs/physics.md: nearer than 0.5 mm and pushed.
+struct ContactPoint {
+  ContactSide a, b;
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d nhat_BA_W = Eigen::Vector3d::UnitZ();  ///< from b into a
+  double distance_m = 0;                                 ///< negative: penetration
+  double normal_impulse_n_s = 0;                         ///< over this tick
+};
+
+struct Snapshot {
+  std::int64_t tick = 0;  ///< physics steps done; 0 is the scene as placed
+  std::vector<BodyState> bodies;
+  std::vector<HandState> hands;
+  std::vector<ContactPoint> contacts;  ///< sorted by (a, b, point); a < b
+};
+
+}  // namespace prehend::physics
