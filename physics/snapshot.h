@@ -18,7 +18,7 @@ struct BodyState {
 
 struct HandState {
   BodyState palm;                ///< never asleep
-  std::vector<Pose> X_WL;        ///< centre of every link, order of HandModel::links
+  std::vector<Pose> X_WL;        ///< box centre of every link, local x along it; order of HandModel::links
   std::vector<double> joints_rad;
   Pose X_WTarget;                ///< where the tracked target is
   double trigger = 0;
