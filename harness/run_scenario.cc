@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/run_scenario.h"
+
+#include <chrono>
+
+#include "harness/sensing.h"
+
+namespace prehend::harness {
+
+namespace {
+
+/// Adds the time since the last lap to one of the counters; costs nothing when not measuring.
+class LapClock {
+ public:
+  explicit LapClock(bool on) : on_(on) { Lap(ignored_); }
+  void Lap(double& counter_s) {
+    if (!on_) return;
+    const auto now = std::chrono::steady_clock::now();
+    counter_s += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  bool on_;
+  double ignored_ = 0;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
+                      const RunOptions& options) {
+  RunResult result;
+  physics::Simulation simulation(scenario.scene, scenario.script);
+  Sensing sensing(scenario.scene, scenario.world.rate_hz / scenario.world.sensing_hz);
+  const grammar::Cast cast = MakeCast(scenario);
+  grammar::Monitor monitor(program, cast);
+  std::vector<grammar::Event> events;
+  LapClock clock(options.measure);
+
+  while (simulation.Step()) {
+    clock.Lap(result.seconds.physics);
+    const physics::Snapshot& snapshot = simulation.snapshot();
+    if (!sensing.Due(snapshot.tick)) continue;
+    const grammar::Frame frame = sensing.Sense(snapshot);
+    clock.Lap(result.seconds.sensing);
+    monitor.Advance(frame, events);
+    clock.Lap(result.seconds.grammar);
+    if (options.record) result.recording.push_back(snapshot);
+  }
+
+  result.ticks = simulation.snapshot().tick;
+  monitor.Finish(result.ticks + 1, events);
+  result.status = simulation.status();
+  result.state_hash = simulation.state_hash();
+  result.timeline = grammar::NameEvents(*program, cast, events);
+  clock.Lap(result.seconds.grammar);
+  result.seconds.total = result.seconds.physics + result.seconds.sensing + result.seconds.grammar;
+  return result;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the grammar gets to see: Snapshot -> Frame. Points of contact become touches of pairs, links become feelers
+// and sensor sets. Knows geometry, knows nothing of events.
+// Tested by tests/harness/sensing_test.cc
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "grammar/frame.h"
+#include "physics/scene.h"
+#include "physics/snapshot.h"
+
+namespace prehend::harness {
+
+class Sensing {
+ public:
+  /// Entities are the scene's bodies, then its hands (as in MakeCast). `every_ticks` >= 1.
+  Sensing(const physics::Scene& scene, int every_ticks);
+
+  /// Whether the snapshot of this tick is looked at.
+  bool Due(std::int64_t tick) const { return tick % every_ticks_ == 0; }
+
+  /// The frame lives until the next call. Allocates nothing once it has seen the largest number of contacts.
+  grammar::Frame Sense(const physics::Snapshot& snapshot);
+
+ private:
+  void SenseHands(const physics::Snapshot& snapshot);
+  void SenseTouches(const physics::Snapshot& snapshot);
+  int EntityOf(const physics::ContactSide& side) const;
+  std::uint32_t SensorSetOf(const physics::ContactSide& side) const;
+
+  struct HandGeometry {
+    physics::HandModel model;
+    std::vector<grammar::Feeler> palm;      ///< in the hand's frame
+    std::vector<grammar::Feeler> links;     ///< in the links' frames, the same number for each link
+  };
+
+  /// One contact point seen from the pair (a, b) with a < b.
+  struct PairPoint {
+    std::pair<int, int> pair;
+    double up_on_a = 0;
+    double impulse_n_s = 0;
+    std::uint32_t sensor_sets = 0;
+  };
+
+  int every_ticks_ = 1;
+  double ticks_per_second_ = 480;
+  int body_count_ = 0;
+  std::vector<HandGeometry> geometry_;
+  std::vector<grammar::EntityLook> entities_;
+  std::vector<grammar::HandLook> hands_;
+  std::vector<std::vector<grammar::Feeler>> feelers_;  ///< per hand, world frame
+  std::vector<PairPoint> points_;
+  std::vector<grammar::Touch> touches_;
+};
+
+}  // namespace prehend::harness
