@@ -32,9 +32,14 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
                       const RunOptions& options) {
   RunResult result;
   physics::Simulation simulation(scenario.scene, scenario.script);
-  Sensing sensing(scenario.scene, scenario.world.rate_hz / scenario.world.sensing_hz);
+  Sensing sensing(scenario.scene, scenario.world.sensing_hz);
   const grammar::Cast cast = MakeCast(scenario);
   grammar::Monitor monitor(program, cast);
+  if (!monitor.error().empty()) {
+    result.status = {physics::RunStatus::Kind::kFailed, 0, "", "the grammar can't watch this scene: " + monitor.error(),
+                     "use fewer entities or rules with narrower role classes"};
+    return result;
+  }
   std::vector<grammar::Event> events;
   LapClock clock(options.measure);
 

@@ -47,8 +47,8 @@ grammar::EntityLook LookAt(const physics::BodyState& body) {
 
 }  // namespace
 
-Sensing::Sensing(const physics::Scene& scene, int every_ticks)
-    : every_ticks_(every_ticks), ticks_per_second_(scene.world.rate_hz), body_count_(static_cast<int>(scene.bodies.size())) {
+Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
+    : rate_hz_(scene.world.rate_hz), sensing_hz_(sensing_hz), body_count_(static_cast<int>(scene.bodies.size())) {
   for (const physics::Hand& hand : scene.hands) {
     geometry_.push_back({hand.model, PalmFeelers(hand.model), LinkFeelers(hand.model)});
     feelers_.emplace_back(geometry_.back().palm.size() + geometry_.back().links.size());
@@ -107,7 +107,7 @@ void Sensing::SenseTouches(const physics::Snapshot& snapshot) {
       touch.up_on_a = std::max(touch.up_on_a, points_[i].up_on_a);
       touch.up_on_b = std::max(touch.up_on_b, -points_[i].up_on_a);
     }
-    touch.normal_force_n = load * ticks_per_second_;
+    touch.normal_force_n = load * static_cast<double>(rate_hz_);
     touches_.push_back(touch);
     first = last;
   }

@@ -16,11 +16,12 @@ namespace prehend::harness {
 
 class Sensing {
  public:
-  /// Entities are the scene's bodies, then its hands (as in MakeCast). `every_ticks` >= 1.
-  Sensing(const physics::Scene& scene, int every_ticks);
+  /// Entities are the scene's bodies, then its hands (as in MakeCast). `sensing_hz` <= the scene's rate.
+  Sensing(const physics::Scene& scene, int sensing_hz);
 
-  /// Whether the snapshot of this tick is looked at.
-  bool Due(std::int64_t tick) const { return tick % every_ticks_ == 0; }
+  /// Whether the snapshot of this tick is looked at: the ticks at which another 1/sensing_hz is full, on integers,
+  /// so that any rate works without drift.
+  bool Due(std::int64_t tick) const { return tick * sensing_hz_ / rate_hz_ > (tick - 1) * sensing_hz_ / rate_hz_; }
 
   /// The frame lives until the next call. Allocates nothing once it has seen the largest number of contacts.
   grammar::Frame Sense(const physics::Snapshot& snapshot);
@@ -45,8 +46,8 @@ class Sensing {
     std::uint32_t sensor_sets = 0;
   };
 
-  int every_ticks_ = 1;
-  double ticks_per_second_ = 480;
+  std::int64_t rate_hz_ = 480;
+  std::int64_t sensing_hz_ = 240;
   int body_count_ = 0;
   std::vector<HandGeometry> geometry_;
   std::vector<grammar::EntityLook> entities_;

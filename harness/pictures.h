@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of a recorded run: what the scenario asks for, composed from the recording and its timeline.
+// Built with the render room (pictures_with_render.cc) or without it (pictures_without_render.cc).
+// Tested by tests/harness/pictures_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/run_scenario.h"
+#include "harness/scenario.h"
+
+namespace prehend::harness {
+
+struct WrittenPicture {
+  std::string file;     ///< path as written
+  std::string caption;  ///< "reaching.begin, 0.412 s"
+};
+
+struct PictureResult {
+  std::vector<WrittenPicture> pictures;
+  std::string error;  ///< empty, or why (some) pictures could not be drawn
+};
+
+/// Whether this build can draw at all.
+bool CanDrawPictures();
+
+/// Draws the scenario's pictures from a run made with RunOptions::record, as DIRECTORY/NAME[-2..].png.
+/// The directory must exist.
+PictureResult DrawPictures(const Scenario& scenario, const RunResult& run, const std::string& directory);
+
+/// One picture into one file.
+PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureEntry& entry, const std::string& file);
+
+}  // namespace prehend::harness
