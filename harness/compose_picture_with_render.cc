@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/compose_picture_with_render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+#include "harness/phases.h"
+
+namespace prehend::harness {
+
+namespace {
+
+// Furniture larger than this is scenery: it does not decide what the camera frames.
+constexpr double kSceneryFromM = 0.5;
+// Paths are thinned to this many points a second; more only costs triangles.
+constexpr double kPathPointsPerS = 60;
+
+render::Color ColorOf(std::uint32_t rgb) {
+  return {static_cast<float>(rgb >> 16 & 255) / 255, static_cast<float>(rgb >> 8 & 255) / 255,
+          static_cast<float>(rgb & 255) / 255};
+}
+
+/// Calm, distinguishable colours for bodies; fixed ones are wood.
+render::Color BodyColor(const physics::Body& body, int index) {
+  if (body.fixed) return ColorOf(0xC8A27C);
+  constexpr std::array<std::uint32_t, 6> palette = {0xE9EEF2, 0xE07A3F, 0x3F6E8C, 0xC0392B, 0x8FB339, 0x8C6BB1};
+  return ColorOf(palette[index % palette.size()]);
+}
+
+double Seconds(grammar::Tick tick, const RunResult& run) {
+  return static_cast<double>(tick) / static_cast<double>(run.timeline.ticks_per_second);
+}
+
+const std::string* RoleValue(const grammar::NamedEvent& event, std::string_view role) {
+  for (const grammar::Role& r : event.roles) {
+    if (r.name == role) return &r.value;
+  }
+  return nullptr;
+}
+
+bool HasRoleValue(const grammar::NamedEvent& event, std::string_view role, const std::string& value) {
+  const std::string* found = RoleValue(event, role);
+  return found && *found == value;
+}
+
+bool Covers(const grammar::NamedEvent& event, grammar::Tick tick) {
+  return event.interval.begin <= tick && tick < event.interval.end;
+}
+
+/// First recorded snapshot at or after a tick, else the last one.
+const physics::Snapshot& SnapshotAt(const RunResult& run, grammar::Tick tick) {
+  const auto at = std::ranges::lower_bound(run.recording, tick, {}, &physics::Snapshot::tick);
+  return at == run.recording.end() ? run.recording.back() : *at;
+}
+
+int BodyNamed(const physics::Scene& scene, const std::string& name) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+/// The phase a hand is in, or nullptr.
+const grammar::NamedEvent* PhaseOf(const RunResult& run, const std::string& hand, grammar::Tick tick) {
+  for (const grammar::NamedEvent& event : run.timeline.events) {
+    if (IsPhase(event.event) && Covers(event, tick) && HasRoleValue(event, "hand", hand)) return &event;
+  }
+  return nullptr;
+}
+
+/// The path of one hand, cut where its phase changes; a stretch starts where the last one ended.
+void AppendPath(const physics::Scene& scene, const RunResult& run, int hand, std::vector<render::PathStretch>& path) {
+  const std::string& name = scene.hands[hand].name;
+  const grammar::NamedEvent* phase = nullptr;
+  double next_point_s = 0;
+  bool first = true;
+  for (const physics::Snapshot& snapshot : run.recording) {
+    const grammar::NamedEvent* now = PhaseOf(run, name, snapshot.tick);
+    const bool change = first || now != phase;
+    const double t_s = Seconds(snapshot.tick, run);
+    if (!change && t_s < next_point_s) continue;
+    const Eigen::Vector3f point = snapshot.hands[hand].palm.X_WB.p_m.cast<float>();
+    if (change) {
+      if (!first) path.back().points_m.push_back(point);
+      path.push_back({.points_per_s = kPathPointsPerS});
+      if (now) path.back().label = now->event, path.back().color = ColorOf(EventColor(now->event));
+    }
+    path.back().points_m.push_back(point);
+    next_point_s = t_s + 1 / kPathPointsPerS;
+    phase = now;
+    first = false;
+  }
+}
+
+/// Bodies that a hand holds at a tick.
+std::vector<int> HeldBodies(const physics::Scene& scene, const RunResult& run, const std::string& hand, grammar::Tick tick) {
+  std::vector<int> held;
+  for (const grammar::NamedEvent& event : run.timeline.events) {
+    if (event.event != "grasping" || !Covers(event, tick) || !HasRoleValue(event, "hand", hand)) continue;
+    const std::string* object = RoleValue(event, "object");
+    const int body = object ? BodyNamed(scene, *object) : -1;
+    if (body >= 0 && !scene.bodies[body].fixed) held.push_back(body);
+  }
+  return held;
+}
+
+/// A ghost of every hand where each of its phases begins, except at the moment pictured itself.
+std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunResult& run, grammar::Tick moment) {
+  std::vector<render::Ghost> ghosts;
+  for (std::size_t h = 0; h < scene.hands.size(); ++h) {
+    for (const grammar::NamedEvent& event : run.timeline.events) {
+      if (!IsPhase(event.event) || event.event == "fixation" || !HasRoleValue(event, "hand", scene.hands[h].name)) continue;
+      const grammar::Tick tick = event.event == "putting_down" ? event.interval.end : event.interval.begin;
+      if (std::abs(Seconds(tick - moment, run)) < 0.15) continue;
+      ghosts.push_back({.hand = static_cast<int>(h),
+                        .bodies = HeldBodies(scene, run, scene.hands[h].name, tick),
+                        .snapshot = SnapshotAt(run, tick),
+                        .tint = ColorOf(EventColor(event.event))});
+    }
+  }
+  return ghosts;
+}
+
+/// Where bodies rest on each other (green) and where hands touch (yellow), at the mean of the touching points.
+std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunResult& run, const physics::Snapshot& snapshot) {
+  std::vector<render::Marker> markers;
+  std::set<std::pair<int, int>> seen;
+  for (const grammar::NamedEvent& event : run.timeline.events) {
+    if (event.event != "supported_by" || !Covers(event, snapshot.tick)) continue;
+    const int body = BodyNamed(scenario.scene, *RoleValue(event, "object"));
+    if (body < 0 || !seen.insert({body, 0}).second) continue;
+    const physics::LocalBox box = physics::BoundingBox(scenario.scene.bodies[body]);
+    const physics::Pose& X_WB = snapshot.bodies[body].X_WB;
+    const Eigen::Vector3d half = (X_WB.q.toRotationMatrix().cwiseAbs() * box.half_size_m);
+    const Eigen::Vector3d foot = X_WB * box.p_BC_m - Eigen::Vector3d(0, 0, half.z());
+    markers.push_back({render::MarkerKind::kSupport, foot.cast<float>(),
+                       Eigen::Vector3d(half.x() * 1.35, half.y() * 1.35, 0.006).cast<float>()});
+  }
+  for (const physics::ContactPoint& contact : snapshot.contacts) {
+    if (contact.a.hand < 0 && contact.b.hand < 0) continue;
+    markers.push_back({render::MarkerKind::kContact, contact.p_W_m.cast<float>(), {0.008f, 0.008f, 0.008f}});
+  }
+  return markers;
+}
+
+/// Rows per hand: its phases, its grasps; then one row of supports per movable body that has any.
+render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& run, grammar::Tick moment) {
+  render::TimelineStrip strip{.begin_s = 0, .end_s = std::max(Seconds(run.ticks, run), 0.1), .playhead_s = Seconds(moment, run), .rows = {}};
+  const auto add_row = [&](std::string label, auto&& wanted, auto&& name) {
+    render::StripRow row{std::move(label), {}};
+    for (const grammar::NamedEvent& event : run.timeline.events) {
+      if (!wanted(event)) continue;
+      row.segments.push_back({name(event), Seconds(event.interval.begin, run), Seconds(event.interval.end, run),
+                              ColorOf(EventColor(event.event))});
+    }
+    if (!row.segments.empty()) strip.rows.push_back(std::move(row));
+  };
+  const auto spoken = [](std::string text) {
+    std::ranges::replace(text, '_', ' ');
+    return text;
+  };
+  const bool one_hand = scenario.scene.hands.size() == 1;
+  for (const physics::Hand& hand : scenario.scene.hands) {
+    add_row(one_hand ? "phase" : hand.name,
+            [&](const auto& e) { return IsPhase(e.event) && HasRoleValue(e, "hand", hand.name); },
+            [&](const auto& e) { return spoken(e.event); });
+    add_row("grasp", [&](const auto& e) { return e.event == "grasping" && HasRoleValue(e, "hand", hand.name); },
+            [&](const auto& e) { return *RoleValue(e, "object"); });
+  }
+  for (const physics::Body& body : scenario.scene.bodies) {
+    if (body.fixed || strip.rows.size() >= 6) continue;
+    add_row(body.name + " on", [&](const auto& e) { return e.event == "supported_by" && HasRoleValue(e, "object", body.name); },
+            [&](const auto& e) { return *RoleValue(e, "support"); });
+  }
+  return strip;
+}
+
+/// Frames the paths and everything that is not scenery.
+render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& picture, const std::string& name) {
+  Eigen::AlignedBox3f box;
+  for (const render::PathStretch& stretch : picture.path)
+    for (const Eigen::Vector3f& point : stretch.points_m) box.extend(point);
+  for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
+    const physics::LocalBox local = physics::BoundingBox(scenario.scene.bodies[i]);
+    if (local.half_size_m.maxCoeff() * 2 > kSceneryFromM) continue;
+    for (const physics::Snapshot* snapshot : {&picture.snapshot}) {
+      const Eigen::Vector3f centre = (snapshot->bodies[i].X_WB * local.p_BC_m).cast<float>();
+      const float reach = static_cast<float>(local.half_size_m.norm());
+      box.extend(Eigen::Vector3f(centre.array() + reach));
+      box.extend(Eigen::Vector3f(centre.array() - reach));
+    }
+  }
+  if (box.isEmpty()) box.extend(Eigen::Vector3f(0, 0, 0)).extend(Eigen::Vector3f(1, 1, 1));
+  return render::NamedCamera(name, box.min(), box.max(), static_cast<double>(picture.width_px) / picture.height_px);
+}
+
+}  // namespace
+
+Moment FindMoment(const std::string& at, const RunResult& run) {
+  double seconds = 0;
+  const auto parsed = std::from_chars(at.data(), at.data() + at.size(), seconds);
+  if (parsed.ec == std::errc() && parsed.ptr == at.data() + at.size())
+    return {static_cast<grammar::Tick>(seconds * static_cast<double>(run.timeline.ticks_per_second) + 0.5), true};
+  const std::size_t dot = at.rfind('.');
+  const std::string event = at.substr(0, dot);
+  const bool end = dot != std::string::npos && at.substr(dot) == ".end";
+  for (const grammar::NamedEvent& e : run.timeline.events) {
+    if (e.event == event) return {end ? e.interval.end : e.interval.begin, true};
+  }
+  return {run.ticks, false};
+}
+
+render::Picture ComposePicture(const Scenario& scenario, const RunResult& run, const PictureEntry& entry) {
+  const Moment moment = FindMoment(entry.at, run);
+  render::Picture picture;
+  picture.scene = &scenario.scene;
+  picture.snapshot = SnapshotAt(run, moment.tick);
+  for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
+    picture.body_colors.push_back(BodyColor(scenario.scene.bodies[i], static_cast<int>(i)));
+    picture.body_labels.push_back(scenario.scene.bodies[i].name);
+  }
+  for (std::size_t h = 0; h < scenario.scene.hands.size(); ++h) AppendPath(scenario.scene, run, static_cast<int>(h), picture.path);
+  picture.ghosts = ComposeGhosts(scenario.scene, run, moment.tick);
+  picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
+  picture.strip = ComposeStrip(scenario, run, moment.tick);
+  picture.camera = ComposeCamera(scenario, picture, entry.camera);
+  picture.title = fmt::format("{}  ·  {}{}  ·  {:.3f} s", scenario.name, entry.at, moment.found ? "" : " did not happen; the end",
+                              Seconds(picture.snapshot.tick, run));
+  return picture;
+}
+
+}  // namespace prehend::harness
