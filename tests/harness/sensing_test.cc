@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Snapshots made by hand -> frames.
+#include "harness/sensing.h"
+
+#include <gtest/gtest.h>
+
+namespace prehend::harness {
+namespace {
+
+/// A table, a box on it, a hand with a palm and two one-link digits in different sensor sets.
+physics::Scene TwoBodiesAndAHand() {
+  physics::Scene scene;
+  scene.bodies.push_back({.name = "table", .shapes = {{physics::Box{{1, 1, 0.1}}, {}}}, .fixed = true});
+  scene.bodies.push_back({.name = "box", .shapes = {{physics::Box{{0.1, 0.1, 0.1}}, {}}}, .mass_kg = 1});
+  physics::HandModel model;
+  model.sensor_sets = {"fingers", "thumb", "palm"};
+  model.palm_sensor_set = 2;
+  model.links.resize(2);
+  model.links[1].sensor_set = 1;
+  scene.hands.push_back({.name = "hand", .model = model, .X_WH = {}});
+  return scene;
+}
+
+physics::Snapshot StillSnapshot(std::int64_t tick) {
+  physics::Snapshot snapshot;
+  snapshot.tick = tick;
+  snapshot.bodies.resize(2);
+  snapshot.hands.resize(1);
+  snapshot.hands[0].X_WL.resize(2);
+  return snapshot;
+}
+
+constexpr physics::ContactSide kTable{.body = 0}, kBox{.body = 1}, kPalm{.hand = 0, .link = -1};
+constexpr physics::ContactSide kFinger{.hand = 0, .link = 0}, kThumb{.hand = 0, .link = 1};
+
+physics::ContactPoint Point(physics::ContactSide a, physics::ContactSide b, double up, double impulse) {
+  return {.a = a, .b = b, .nhat_BA_W = {std::sqrt(1 - up * up), 0, up}, .normal_impulse_n_s = impulse};
+}
+
+TEST(Sensing, LooksAtEveryRateWithoutDrift) {
+  const physics::Scene scene = TwoBodiesAndAHand();
+  for (const int hz : {30, 60, 90, 240, 480, 7}) {
+    const Sensing sensing(scene, hz);
+    int looks = 0;
+    for (std::int64_t tick = 1; tick <= 480 * 10; ++tick) looks += sensing.Due(tick);
+    EXPECT_EQ(looks, hz * 10);
+  }
+}
+
+TEST(Sensing, PointsOfAPairBecomeOneTouchWithItsForce) {
+  const physics::Scene scene = TwoBodiesAndAHand();
+  Sensing sensing(scene, 240);
+  physics::Snapshot snapshot = StillSnapshot(2);
+  // The normal points from the box into the table: down on the table, up on the box.
+  snapshot.contacts = {Point(kTable, kBox, -1, 0.01), Point(kTable, kBox, -0.9, 0.01)};
+  const grammar::Frame frame = sensing.Sense(snapshot);
+  ASSERT_EQ(frame.touches.size(), 1u);
+  EXPECT_EQ(frame.touches[0].a, 0);
+  EXPECT_EQ(frame.touches[0].b, 1);
+  EXPECT_DOUBLE_EQ(frame.touches[0].up_on_b, 1);
+  EXPECT_DOUBLE_EQ(frame.touches[0].up_on_a, -0.9);
+  EXPECT_NEAR(frame.touches[0].normal_force_n, 0.02 * 480, 1e-12);
+}
+
+TEST(Sensing, AStrayPointWithoutLoadDoesNotHold) {
+  const physics::Scene scene = TwoBodiesAndAHand();
+  Sensing sensing(scene, 240);
+  physics::Snapshot snapshot = StillSnapshot(2);
+  snapshot.contacts = {Point(kTable, kBox, 0, 1.0), Point(kTable, kBox, -1, 0.001)};
+  EXPECT_NEAR(sensing.Sense(snapshot).touches[0].up_on_b, 0, 1e-12);
+}
+
+TEST(Sensing, LinksBecomeSensorSetsOfTheHandEntity) {
+  const physics::Scene scene = TwoBodiesAndAHand();
+  Sensing sensing(scene, 240);
+  physics::Snapshot snapshot = StillSnapshot(2);
+  snapshot.contacts = {Point(kBox, kFinger, 0, 0.1), Point(kBox, kThumb, 0, 0.1)};
+  const grammar::Frame frame = sensing.Sense(snapshot);
+  ASSERT_EQ(frame.touches.size(), 1u);
+  EXPECT_EQ(frame.touches[0].a, 1);
+  EXPECT_EQ(frame.touches[0].b, 2);
+  EXPECT_EQ(frame.touches[0].sensor_sets, 0b011u);
+
+  snapshot.contacts = {Point(kBox, kPalm, 0, 0.1)};
+  EXPECT_EQ(sensing.Sense(snapshot).touches[0].sensor_sets, 0b100u);
+}
+
+TEST(Sensing, FeelersFollowPalmAndLinks) {
+  const physics::Scene scene = TwoBodiesAndAHand();
+  Sensing sensing(scene, 240);
+  physics::Snapshot snapshot = StillSnapshot(2);
+  snapshot.hands[0].palm.X_WB.p_m = {0, 0, 5};
+  snapshot.hands[0].X_WL[0].p_m = {1, 0, 5};
+  snapshot.hands[0].X_WL[1].p_m = {2, 0, 5};
+  const grammar::HandLook hand = sensing.Sense(snapshot).hands[0];
+  ASSERT_EQ(hand.entity, 2);
+  double low = 1e9, high = -1e9;
+  for (const grammar::Feeler& feeler : hand.feelers) {
+    EXPECT_NEAR(feeler.p_W_m.z(), 5, 1e-12);
+    EXPECT_GT(feeler.radius_m, 0);
+    low = std::min(low, feeler.p_W_m.x() - feeler.radius_m);
+    high = std::max(high, feeler.p_W_m.x() + feeler.radius_m);
+  }
+  const physics::HandModel& model = scene.hands[0].model;
+  EXPECT_NEAR(low, -model.palm_size_m.x() / 2, 1e-9);
+  EXPECT_NEAR(high, 2 + model.links[1].length_m / 2, 1e-9);
+}
+
+}  // namespace
+}  // namespace prehend::harness
