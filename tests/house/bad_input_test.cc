@@ -78,7 +78,7 @@ TEST_P(BadInput, IsRefusedWithExitCodeTwo) {
 
 INSTANTIATE_TEST_SUITE_P(Scenario, BadInput, testing::ValuesIn(Cases()), [](const auto& i) { return i.param.name; });
 
-TEST(BadInput, TheProbeItselfIsGood) {
+TEST(BadFile, TheProbeItselfIsGood) {
   const auto folder = FreshFolder("bad-input");
   WriteFile(folder / "probe.yaml", kScenario);
   const Said said = Prehend({"validate", (folder / "probe.yaml").string()});
@@ -86,7 +86,7 @@ TEST(BadInput, TheProbeItselfIsGood) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(BadInput, FiftyMegabytesAreRefusedUnread) {
+TEST(BadFile, FiftyMegabytesAreRefusedUnread) {
   const auto folder = FreshFolder("bad-input-big");
   WriteFile(folder / "big.yaml", "scenario: big\nshows: " + std::string(50 << 20, 'x') + "\n");
   const Said said = Prehend({"run", (folder / "big.yaml").string()});
@@ -96,9 +96,9 @@ TEST(BadInput, FiftyMegabytesAreRefusedUnread) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(BadInput, DirectoryAndMissingFile) {
+TEST(BadFile, DirectoryAndMissingFile) {
   const auto folder = FreshFolder("bad-input-folder");
-  for (const std::string path : {folder.string(), (folder / "missing.yaml").string()}) {
+  for (const std::string& path : {folder.string(), (folder / "missing.yaml").string()}) {
     const Said said = Prehend({"run", path});
     EXPECT_EQ(said.exit_code, 2) << said.err;
     EXPECT_NE(said.err.find(path), std::string::npos) << said.err;
@@ -107,7 +107,7 @@ TEST(BadInput, DirectoryAndMissingFile) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(BadInput, GrammarTypoHasACaret) {
+TEST(BadFile, GrammarTypoHasACaret) {
   const auto folder = FreshFolder("bad-grammar");
   const std::string text = ReadFile(PREHEND_SOURCE_DIR "/grammar/library/pick_and_place.grammar");
   ASSERT_FALSE(text.empty());
@@ -127,7 +127,7 @@ TEST(BadInput, GrammarTypoHasACaret) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(BadInput, GrammarFilesOfEveryUglyKind) {
+TEST(BadFile, GrammarFilesOfEveryUglyKind) {
   const auto folder = FreshFolder("bad-grammar");
   WriteFile(folder / "probe.yaml", kScenario);
   const std::string deep = "grammar g\nevent e(a: Entity)\n  while " + std::string(10'000, '(') + "\n";
@@ -142,7 +142,7 @@ TEST(BadInput, GrammarFilesOfEveryUglyKind) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(BadInput, UnknownCommandAndOption) {
+TEST(BadFile, UnknownCommandAndOption) {
   EXPECT_EQ(Prehend({"runn"}).exit_code, 2);
   EXPECT_EQ(Prehend({"run", "--jsno"}).exit_code, 2);
   EXPECT_EQ(Prehend({"run"}).exit_code, 2);
