@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/field_table_test.cc
+#include "harness/format.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <regex>
+
+#include "harness/yaml_scalar.h"
+
+namespace prehend::harness {
+namespace {
+
+std::string LabelOf(const YamlNode& node) { return node.key.empty() ? "" : node.key + ": "; }
+
+/// The node's text when it is unmistakably a string, else a complaint.
+std::optional<std::string> StringOf(const YamlNode& node, Complaints& complaints, const std::string& wanted) {
+  if (node.kind == YamlNode::Kind::kScalar) {
+    ScalarMeaning meaning = MeaningOf(node);
+    if (meaning.string) return std::move(meaning.string);
+    if (meaning.number || meaning.flag) {
+      complaints.Add(node.where,
+                     fmt::format("{}expected {}, found the {} {}", LabelOf(node), wanted,
+                                 meaning.number ? "number" : "flag", node.text),
+                     fmt::format("put it in quotes if text is meant: '{}'", node.text));
+      return std::nullopt;
+    }
+  }
+  ComplainWanted(node, complaints, wanted);
+  return std::nullopt;
+}
+
+std::optional<ScalarMeaning> NumberOf(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kScalar) return std::nullopt;
+  ScalarMeaning meaning = MeaningOf(node);
+  if (!meaning.number) return std::nullopt;
+  return meaning;
+}
+
+Json ShowString(const std::string& value) { return Json(value); }
+
+}  // namespace
+
+bool ComplainWanted(const YamlNode& node, Complaints& complaints, const std::string& wanted) {
+  std::string message = fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node));
+  std::string hint;
+  if (node.kind == YamlNode::Kind::kScalar) {
+    const ScalarMeaning meaning = MeaningOf(node);
+    if (!meaning.ambiguous.empty()) message += fmt::format(" ({})", meaning.ambiguous);
+    hint = meaning.remedy;
+  }
+  complaints.Add(node.where, std::move(message), std::move(hint));
+  return false;
+}
+
+bool IsList(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
+  const bool mapping = node.kind == YamlNode::Kind::kMapping;
+  if (!mapping && node.kind != YamlNode::Kind::kSequence) {
+    return ComplainWanted(node, complaints, least == most ? fmt::format("a list of {}", least) : "a list");
+  }
+  const std::size_t size = node.children.size();
+  if (size >= least && size <= most) return true;
+  const std::string wanted = least == most    ? fmt::format("{} items", least)
+                             : size < least ? fmt::format("at least {}", least)
+                                              : fmt::format("at most {}", most);
+  complaints.Add(node.where, fmt::format("{}expected {}, found {}", LabelOf(node), wanted, size));
+  return false;
+}
+
+Format<double> Number(double lowest, double highest) {
+  const std::string wanted = fmt::format("a number from {} to {}", lowest, highest);
+  return {.schema = {{"type", "number"}, {"minimum", lowest}, {"maximum", highest}},
+          .read =
+              [=](const YamlNode& node, Complaints& complaints, double& value) {
+                const auto meaning = NumberOf(node);
+                if (!meaning || !(*meaning->number >= lowest && *meaning->number <= highest)) {
+                  return ComplainWanted(node, complaints, wanted);
+                }
+                value = *meaning->number;
+                return true;
+              },
+          .show = [](const double& value) { return Json(value); }};
+}
+
+Format<std::int64_t> Integer64(std::int64_t lowest, std::int64_t highest) {
+  const std::string wanted = fmt::format("a whole number from {} to {}", lowest, highest);
+  return {.schema = {{"type", "integer"}, {"minimum", lowest}, {"maximum", highest}},
+          .read =
+              [=](const YamlNode& node, Complaints& complaints, std::int64_t& value) {
+                const auto meaning = NumberOf(node);
+                constexpr double kExactInDouble = 9007199254740992.0;  // 2^53
+                if (!meaning || !meaning->integer || std::abs(*meaning->number) > kExactInDouble) {
+                  return ComplainWanted(node, complaints, wanted);
+                }
+                const auto whole = static_cast<std::int64_t>(*meaning->number);
+                if (whole < lowest || whole > highest) return ComplainWanted(node, complaints, wanted);
+                value = whole;
+                return true;
+              },
+          .show = [](const std::int64_t& value) { return Json(value); }};
+}
+
+Format<bool> Flag() {
+  return {.schema = {{"type", "boolean"}},
+          .read =
+              [](const YamlNode& node, Complaints& complaints, bool& value) {
+                if (node.kind != YamlNode::Kind::kScalar || !MeaningOf(node).flag) {
+                  return ComplainWanted(node, complaints, "true or false");
+                }
+                value = *MeaningOf(node).flag;
+                return true;
+              },
+          .show = [](const bool& value) { return Json(value); }};
+}
+
+Format<std::string> Text(std::size_t max_length) {
+  const std::string wanted = fmt::format("text of at most {} bytes", max_length);
+  return {.schema = {{"type", "string"}, {"minLength", 1}, {"maxLength", max_length}},
+          .read =
+              [=](const YamlNode& node, Complaints& complaints, std::string& value) {
+                auto text = StringOf(node, complaints, wanted);
+                if (!text) return false;
+                if (text->empty() || text->size() > max_length) return ComplainWanted(node, complaints, wanted);
+                value = std::move(*text);
+                return true;
+              },
+          .show = ShowString};
+}
+
+Format<std::string> Word(const std::string& pattern, const std::string& wanted, std::size_t max_length) {
+  // The length is checked first: std::regex recurses once per character.
+  const std::regex regex(pattern);
+  return {.schema = {{"type", "string"}, {"pattern", "^(" + pattern + ")$"}, {"maxLength", max_length}},
+          .read =
+              [=](const YamlNode& node, Complaints& complaints, std::string& value) {
+                auto text = StringOf(node, complaints, wanted);
+                if (!text) return false;
+                if (text->size() > max_length) {
+                  return ComplainWanted(node, complaints, fmt::format("{} of at most {} bytes", wanted, max_length));
+                }
+                if (!std::regex_match(*text, regex)) return ComplainWanted(node, complaints, wanted);
+                value = std::move(*text);
+                return true;
+              },
+          .show = ShowString};
+}
+
+Format<std::string> Identifier() { return Word("[a-z][a-z0-9_]*", "a name like 'milk_carton'"); }
+
+Format<std::string> Choice(std::vector<std::string> words) {
+  const std::string wanted = words.size() == 1 ? fmt::format("'{}'", words[0])
+                                               : fmt::format("one of {}", fmt::join(words, ", "));
+  return {.schema = {{"type", "string"}, {"enum", words}},
+          .read =
+              [=](const YamlNode& node, Complaints& complaints, std::string& value) {
+                auto text = StringOf(node, complaints, wanted);
+                if (!text) return false;
+                if (std::find(words.begin(), words.end(), *text) == words.end()) {
+                  const std::string near = grammar::NearestName(*text, words);
+                  complaints.Add(node.where,
+                                 fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
+                                 near.empty() ? "" : fmt::format("did you mean '{}'?", near));
+                  return false;
+                }
+                value = std::move(*text);
+                return true;
+              },
+          .show = ShowString};
+}
+
+}  // namespace prehend::harness

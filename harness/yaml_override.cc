@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// `--set a.b.c=value`: changes a tree before it is read, so that every check of the file holds for it, too.
+// Tested by tests/harness/located_yaml_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "harness/located_yaml.h"
+
+namespace prehend::harness {
+namespace {
+
+using grammar::Diagnostics;
+using grammar::Place;
+using Kind = YamlNode::Kind;
+
+/// Moves a parsed value to its place in the assignment's text, and names the items of lists after `node.key`.
+void Relocate(YamlNode& node, int source, int column_offset) {
+  for (Where* where : {&node.where, &node.key_where}) {
+    where->source = source;
+    if (where->place.line <= 1) where->place.column += column_offset;
+  }
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    if (node.kind == Kind::kSequence) node.children[i].key = fmt::format("{}[{}]", node.key, i);
+    Relocate(node.children[i], source, column_offset);
+  }
+}
+
+/// The child called `step` of a mapping or sequence; null when there is none.
+YamlNode* ChildOf(YamlNode& node, std::string_view step) {
+  if (node.kind == Kind::kSequence) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), index);
+    const bool whole = error == std::errc() && end == step.data() + step.size();
+    return whole && index < node.children.size() ? &node.children[index] : nullptr;
+  }
+  return const_cast<YamlNode*>(node.Find(step));
+}
+
+std::vector<std::string> NamesIn(const YamlNode& node) {
+  std::vector<std::string> names;
+  for (const YamlNode& child : node.children) names.push_back(child.key);
+  return names;
+}
+
+std::string HintFor(const YamlNode& node, const std::string& step) {
+  if (node.kind == Kind::kSequence) return fmt::format("'{}' is a list of {}", node.key, node.children.size());
+  const std::string near = grammar::NearestName(step, NamesIn(node));
+  return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
+}
+
+}  // namespace
+
+Diagnostics ApplyOverride(const std::string& assignment, YamlDocument& document) {
+  const auto complain = [&](std::size_t offset, std::string message, std::string hint) -> Diagnostics {
+    return {grammar::DiagnosticAt("--set", assignment, {1, static_cast<int>(offset) + 1}, std::move(message),
+                                  std::move(hint))};
+  };
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size()) {
+    return complain(0, "expected PATH=VALUE", "for example entities.milk.mass_kg=8");
+  }
+  auto parsed = ParseYaml("--set", assignment.substr(equals + 1));
+  if (!parsed.value) return std::move(parsed.diagnostics);
+
+  YamlNode* node = &document.root;
+  for (std::size_t begin = 0; begin <= equals;) {
+    const std::size_t end = std::min(assignment.find('.', begin), equals);
+    const std::string step = assignment.substr(begin, end - begin);
+    YamlNode* child = ChildOf(*node, step);
+    const bool last = end == equals;
+    if (!child && !(last && node->kind == Kind::kMapping)) {
+      return complain(begin, fmt::format("nothing is called '{}' here", step), HintFor(*node, step));
+    }
+    if (!child) {
+      child = &node->children.emplace_back();
+      child->key = step;
+    }
+    node = child;
+    begin = end + 1;
+  }
+
+  document.sources.push_back({"--set", assignment});
+  const int source = static_cast<int>(document.sources.size()) - 1;
+  YamlNode value = std::move(parsed.value->root);
+  value.key = node->key;
+  Relocate(value, source, static_cast<int>(equals) + 1);
+  value.key_where = {source, {1, 1}};
+  *node = std::move(value);
+  return {};
+}
+
+}  // namespace prehend::harness
