@@ -109,10 +109,6 @@ class TreeBuilder : public YAML::EventHandler {
       Complain(node.where.place, fmt::format("nested deeper than {} levels", kMaxYamlDepth), "");
       throw Stop{};
     }
-    if (ExpectsKey()) {
-      Complain(node.where.place, "a key must be a word, not a list or mapping", "");
-      throw Stop{};
-    }
     Label(node);
     open_.push_back({.node = std::move(node), .has_key = false, .key = {}, .key_where = {}, .seen = {}});
   }
@@ -149,7 +145,9 @@ class TreeBuilder : public YAML::EventHandler {
 
   void TakeKey(const YamlNode& node) {
     Opened& mapping = open_.back();
-    if (node.text == "<<" && !node.quoted) {
+    if (node.kind == Kind::kSequence || node.kind == Kind::kMapping) {
+      Complain(node.where.place, "a key must be a word, not a list or mapping", "");
+    } else if (node.text == "<<" && !node.quoted) {
       Complain(node.where.place, "merge keys ('<<') are not supported", "write the keys out");
     } else if (node.kind == Kind::kNull) {
       Complain(node.where.place, "a key is missing here", "");
@@ -201,6 +199,7 @@ ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
   } catch (const Stop&) {
     // The builder has said why.
   } catch (const YAML::Exception& error) {
+    builder.diagnostics.clear();  // they may be consequences
     const Place place = error.mark.is_null() ? Place{} : Place{error.mark.line + 1, error.mark.column + 1};
     builder.Complain(place, "not valid YAML: " + error.msg, "");
   }

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 namespace prehend::harness {
 namespace {
@@ -21,17 +22,19 @@ std::string WithoutUnit(const std::string& key) {
   return key;
 }
 
-void ComplainUnknownKey(const YamlNode& child, const std::string& title, const std::vector<std::string>& known,
-                        Complaints& complaints) {
+/// Returns the known key that was probably meant, or "".
+std::string ComplainUnknownKey(const YamlNode& child, const std::string& title, const std::vector<std::string>& known,
+                               Complaints& complaints) {
   const std::string message = fmt::format("unknown key '{}' in {}", child.key, title);
   const auto same_stem = std::find_if(known.begin(), known.end(), [&](const std::string& key) {
     return WithoutUnit(key) == WithoutUnit(child.key);
   });
   if (same_stem != known.end()) {
     complaints.Add(child.key_where, message, fmt::format("did you mean '{}'?", *same_stem));
-  } else {
-    complaints.AddUnknownName(child.key_where, message, child.key, known);
+    return *same_stem;
   }
+  complaints.AddUnknownName(child.key_where, message, child.key, known);
+  return grammar::NearestName(child.key, known);
 }
 
 /// Where a complaint about the whole of a mapping is best seen: at its name, if it has one.
@@ -86,18 +89,20 @@ bool RecordRules::CheckKeys(const YamlNode& node, Complaints& complaints) const 
   std::vector<std::string> known;
   for (const Field& field : fields) known.push_back(field.key);
   bool good = true;
+  std::set<std::string> meant;  // but misspelt: not to be called missing, too
   for (const YamlNode& child : node.children) {
     if (std::find(known.begin(), known.end(), child.key) != known.end()) continue;
-    ComplainUnknownKey(child, TitleOf(node), known, complaints);
+    meant.insert(ComplainUnknownKey(child, TitleOf(node), known, complaints));
     good = false;
   }
   for (const Field& field : fields) {
-    if (!field.required || node.Find(field.key)) continue;
+    if (!field.required || node.Find(field.key) || meant.contains(field.key)) continue;
     complaints.Add(HeadOf(node), fmt::format("{} needs the key '{}'", TitleOf(node), field.key));
     good = false;
   }
   for (const auto& keys : exactly_one) {
-    if (!KeysPresent(node, keys).empty()) continue;
+    const bool misspelt = std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return meant.contains(key); });
+    if (misspelt || !KeysPresent(node, keys).empty()) continue;
     complaints.Add(HeadOf(node), fmt::format("{} needs one of the keys {}", TitleOf(node), fmt::join(keys, ", ")));
     good = false;
   }

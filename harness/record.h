@@ -146,6 +146,20 @@ class Record {
   std::shared_ptr<State> state_;
 };
 
+/// A record read as one alternative of a variant.
+template <class V, class A>
+Format<V> AsAlternative(Format<A> format) {
+  return {.schema = format.schema,
+          .read =
+              [format](const YamlNode& node, Complaints& complaints, V& value) {
+                A alternative{};
+                if (!format.read(node, complaints, alternative)) return false;
+                value = std::move(alternative);
+                return true;
+              },
+          .show = {}};
+}
+
 /// One of several records, told apart by a key that only that one has.
 template <class T>
 Format<T> ByKey(const std::string& noun, std::vector<std::pair<std::string, Format<T>>> cases) {

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scenario as it is written, before names are resolved and places computed. harness/scenario_fields.cc says how each
+// field is called and bounded; harness/build_scene.h and build_script.h make bodies, hands and steps of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "harness/format.h"
+#include "harness/scenario.h"
+#include "physics/scene.h"
+#include "physics/script.h"
+
+namespace prehend::harness {
+
+struct EntityEntry {
+  Where where;
+  Located<std::string> class_name{"Object", {}};
+  std::optional<physics::Box> box;
+  std::optional<physics::Sphere> sphere;
+  std::optional<physics::Cylinder> cylinder;
+  std::optional<physics::Capsule> capsule;
+  bool fixed = false;
+  std::optional<Located<double>> mass_kg;
+  double friction = 0.8;
+  std::optional<double> rolling_friction;
+  double restitution = 0;
+  std::optional<Located<std::string>> on;
+  Located<std::vector<double>> at_m;
+  std::optional<Eigen::Vector3d> rpy_deg;
+  std::optional<double> yaw_deg;
+};
+
+/// What is not given keeps the value of the hand file.
+struct PidOverride {
+  std::optional<double> proportional, derivative, integral, limit;
+};
+struct GainsOverride {
+  PidOverride translation, rotation;
+};
+
+struct ActorEntry {
+  Where where;
+  Located<std::string> hand;
+  Located<Eigen::Vector3d> at_m;
+  Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
+  std::optional<Located<GainsOverride>> gains;
+};
+
+// The steps of the script. Default durations are human-like (docs/scenario-format.md).
+struct ReachEntry {
+  Located<std::string> reach;
+  Located<std::string> style{"wrap", {}};
+  physics::Approach from = physics::Approach::kAuto;
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  double over_s = 0.8;
+};
+struct CloseEntry {
+  double close_to = 1;
+  double over_s = 0.6;
+};
+struct OpenEntry {
+  double open_to = 0;
+  double over_s = 0.45;
+};
+struct LiftEntry {
+  double lift_by_m = 0;
+  double over_s = 0.6;
+};
+struct MoveEntry {
+  Eigen::Vector3d move_by_m = Eigen::Vector3d::Zero();
+  double over_s = 0.8;
+};
+struct CarryEntry {
+  Eigen::Vector2d carry_to_m = Eigen::Vector2d::Zero();
+  double over_s = 1.0;
+};
+struct PlaceEntry {
+  Located<std::string> place_on;
+  double over_s = 0.6;
+};
+struct RetreatEntry {
+  double retreat_by_m = 0;
+  double over_s = 0.6;
+};
+struct WaitEntry {
+  double wait_s = 0;
+};
+struct PoseEntry {
+  Where where;
+  double t_s = 0;
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> rpy_deg;
+  std::optional<Eigen::Vector4d> quat_wxyz;
+  std::optional<double> trigger;
+};
+struct PosesEntry {
+  std::vector<PoseEntry> poses;
+};
+using StepEntry = std::variant<WaitEntry, ReachEntry, CloseEntry, OpenEntry, LiftEntry, MoveEntry, CarryEntry,
+                               PlaceEntry, RetreatEntry, PosesEntry>;
+
+/// One item of the script: what each named actor does at the same time.
+using BeatEntry = std::vector<Named<StepEntry>>;
+
+struct ScenarioEntry {
+  Where where;
+  Located<std::string> name;
+  std::string shows;
+  Located<std::string> grammar{"pick_and_place", {}};
+  std::vector<std::string> tags;
+  WorldEntry world;
+  std::vector<Named<EntityEntry>> entities;
+  std::vector<Named<ActorEntry>> actors;
+  std::vector<BeatEntry> script;
+  double settle_s = physics::Script{}.settle_s;
+  std::vector<PictureEntry> pictures;
+};
+
+}  // namespace prehend::harness
