@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// A golden: what must be recognised in a scenario, as text that a person can check against the scenario. A run
+// never writes one; `prehend accept` does.
+//
+//   # scenario: pick_and_place/milk_carton_wrap
+//   # grammar: pick_and_place
+//   # derived: the reach starts with the hand's motion at 0.5 s; ...
+//   # accepted: 2026-01-31 "first golden, checked against the picture"
+//   # ticks_per_second: 480
+//   #
+//   # event       begin_s  end_s   roles
+//   supported_by  0.0000   2.0125  object=milk      support=table
+//   grasping      1.9021   4.3000  hand=right_hand  object=milk    style=wrap  tolerance=20ms because "..."
+//
+// Tested by tests/harness/golden_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "grammar/timeline.h"
+#include "harness/read_result.h"
+
+namespace prehend::harness {
+
+struct GoldenEvent {
+  grammar::NamedEvent event;  ///< `decided` is not part of a golden: 0
+  std::optional<int> tolerance_ms;  ///< instead of the default of two sensing frames
+  std::string because;              ///< why this line needs it; never empty beside a tolerance
+  std::vector<std::string> comments;  ///< lines above it, without "# "
+  friend bool operator==(const GoldenEvent& a, const GoldenEvent& b);
+};
+
+struct Acceptance {
+  std::string date;  ///< YYYY-MM-DD
+  std::string reason;
+  friend bool operator==(const Acceptance&, const Acceptance&) = default;
+};
+
+struct Golden {
+  std::string scenario;  ///< skill/name
+  std::string grammar;
+  std::vector<std::string> derived;  ///< how it follows from the definitions, one entry per line
+  std::vector<Acceptance> accepted;  ///< oldest first
+  grammar::Tick ticks_per_second = 480;
+  std::vector<std::string> comments;  ///< other lines of the header
+  std::vector<GoldenEvent> events;    ///< in the order of ComesBefore()
+  std::vector<std::string> closing_comments;
+  friend bool operator==(const Golden&, const Golden&) = default;
+};
+
+/// `file` is only named in the diagnostics.
+ReadResult<Golden> ReadGolden(std::string_view file, std::string_view text);
+
+/// The canonical text: ReadGolden(WriteGolden(x)) == x.
+std::string WriteGolden(const Golden& golden);
+
+/// Its events alone.
+grammar::Timeline ToTimeline(const Golden& golden);
+
+}  // namespace prehend::harness
