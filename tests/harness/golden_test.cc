@@ -22,9 +22,9 @@ constexpr const char* kCanonical =
 # event       begin_s  end_s   roles
 supported_by  0.0000   2.0125  object=milk      support=table
 # the hand starts to move after half a second
-reaching      0.5000   1.2000  hand=right_hand  object=milk                 tolerance=20ms because "soft start"
+reaching      0.5000   1.2000  hand=right_hand  object=milk                tolerance=20ms because "soft start"
 grasping      1.2021   4.3000  hand=right_hand  object=milk    style=wrap
-contact       2.0000   5.0000  a=milk           b=table                     open_end  tolerance=0ms because "exact"
+contact       2.0000   5.0000  a=milk           b=table                    open_end  tolerance=0ms because "exact"
 # the end
 )";
 
