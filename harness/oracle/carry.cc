@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/oracle/carry.h"
+
+#include <optional>
+
+#include "harness/oracle/approach.h"
+
+namespace prehend::harness::oracle {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// An upright cylinder around the place where something happened to an object.
+struct Region {
+  Vector3d anchor;
+  double radius_m = 0;
+  double height_m = 0;
+
+  bool Contains(const Vector3d& p) const {
+    return (p - anchor).head<2>().norm() <= radius_m && std::abs(p.z() - anchor.z()) <= height_m;
+  }
+};
+
+class Carrier {
+ public:
+  Carrier(const Recording& recording, const OracleSettings& settings, const Grasp& grasp,
+          const std::map<int, Spans>& supports)
+      : recording_(recording), settings_(settings), grasp_(grasp), supports_(supports) {}
+
+  Carrying Find() {
+    Spans supported;
+    for (const auto& [support, spans] : supports_) supported = Union(supported, spans);
+    for (const Span& span : Within(supported, grasp_.span)) FindSlides(span);
+    for (const Span& span : Rest(supported, grasp_.span)) DivideUnsupported(span);
+    return found_;
+  }
+
+ private:
+  const Vector3d& place(int frame) const { return recording_.place(grasp_.body, frame); }
+
+  /// Whether the object moves along something that supports it in this frame.
+  bool Slides(int frame) const {
+    for (const auto& [support, spans] : supports_) {
+      if (!Covers(spans, frame)) continue;
+      const Vector3d velocity =
+          RelativeVelocity(recording_.body(grasp_.body, frame), recording_.body(support, frame));
+      if (velocity.head<2>().norm() > settings_.slide_speed_m_per_s) return true;
+    }
+    return false;
+  }
+
+  /// How far the object got from where it was at the span's begin, as seen from what supported it
+  /// there.
+  double Displacement(Span span) const {
+    double farthest = 0;
+    for (const auto& [support, spans] : supports_) {
+      if (!Covers(spans, span.begin)) continue;
+      const auto seen = [&](int frame) {
+        return recording_.body(support, frame).X_WB.inverse() * place(frame);
+      };
+      const Vector3d start = seen(span.begin);
+      for (int frame = span.begin; frame < span.end; ++frame)
+        farthest = std::max(farthest, (seen(frame) - start).norm());
+    }
+    return farthest;
+  }
+
+  void FindSlides(Span supported) {
+    std::vector<bool> moving(recording_.size());
+    for (int frame = supported.begin; frame < supported.end; ++frame) moving[frame] = Slides(frame);
+    for (const Span& slide :
+         Bridged(WhereTrue(moving), recording_.ticks, recording_.Ticks(settings_.slide_pause_s)))
+      if (Displacement(slide) >= settings_.slide_displacement_m) found_.slides.push_back(slide);
+  }
+
+  double Highest(Span span) const {
+    double highest = place(span.begin).z();
+    for (int frame = span.begin; frame < span.end; ++frame)
+      highest = std::max(highest, place(frame).z());
+    return highest;
+  }
+
+  /// From where the support was lost to where the object leaves the region around that place.
+  std::optional<Span> PickUp(Span unsupported) const {
+    if (unsupported.begin == grasp_.span.begin)
+      return std::nullopt;  // it was caught, or taken over in the air
+    const Region region{place(unsupported.begin), settings_.pick_up_radius_m,
+                        settings_.pick_up_height_m};
+    int end = unsupported.begin;
+    while (end < unsupported.end && region.Contains(place(end))) ++end;
+    // The frame in which it is first seen outside still tells how high it rose.
+    const double highest = Highest({unsupported.begin, std::min(end + 1, recording_.size())});
+    if (highest - region.anchor.z() < settings_.pick_up_rise_m) return std::nullopt;
+    return Span{unsupported.begin, end};
+  }
+
+  /// From the begin of the last uninterrupted approach from above to the landing.
+  std::optional<Span> PutDown(Span unsupported) const {
+    const int landing = unsupported.end;
+    if (landing == grasp_.span.end) return std::nullopt;  // let go in the air, or held to the end
+    const Region region{place(landing), settings_.put_down_radius_m, settings_.put_down_height_m};
+    int near = landing;
+    while (near > unsupported.begin && region.Contains(place(near - 1)) &&
+           recording_.Seconds(near - 1, landing) <= settings_.put_down_look_back_s)
+      --near;
+    if (Highest({near, landing}) - region.anchor.z() < settings_.put_down_drop_m)
+      return std::nullopt;
+    std::vector<double> distances;
+    for (int frame = near; frame < landing; ++frame)
+      distances.push_back((place(frame) - region.anchor).norm());
+    return Span{near + ApproachBegin(distances, settings_.put_down_dead_band_m), landing};
+  }
+
+  void DivideUnsupported(Span unsupported) {
+    Span transport = unsupported;
+    if (const auto put_down = PutDown(unsupported)) {
+      found_.put_downs.push_back(*put_down);
+      transport.end = put_down->begin;
+    }
+    if (const auto pick_up = PickUp(unsupported)) {
+      const Span part = Common(*pick_up, transport);
+      if (!part.empty()) found_.pick_ups.push_back(part);
+      transport.begin = std::max(transport.begin, part.end);
+    }
+    if (!transport.empty()) found_.transports.push_back(transport);
+  }
+
+  const Recording& recording_;
+  const OracleSettings& settings_;
+  const Grasp& grasp_;
+  const std::map<int, Spans>& supports_;
+  Carrying found_;
+};
+
+}  // namespace
+
+Carrying FindCarrying(const Recording& recording, const OracleSettings& settings,
+                      const Grasp& grasp, const std::map<int, Spans>& supports) {
+  if (recording.scene.bodies[grasp.body].fixed) return {};
+  return Carrier(recording, settings, grasp, supports).Find();
+}
+
+}  // namespace prehend::harness::oracle

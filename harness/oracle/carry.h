@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a hand does with an object during one grasp. Tested by tests/harness/oracle_test.cc
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "harness/oracle/recording.h"
+
+namespace prehend::harness::oracle {
+
+struct Carrying {
+  Spans slides, pick_ups, transports, put_downs;
+};
+
+/// `supports`: when the grasped object was supported, by support. Only for movable objects: a wall
+/// that is grasped is not carried, however little supports it.
+Carrying FindCarrying(const Recording& recording, const OracleSettings& settings,
+                      const Grasp& grasp, const std::map<int, Spans>& supports);
+
+}  // namespace prehend::harness::oracle

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The physical oracle: what truly happened in a recorded run, straight from the definitions in
+// docs/events.md. It looks at the complete recording, past and future, and shares nothing with the
+// grammar engine, its language or the sensing: goldens and grammars are judged by it, so it has to
+// be able to disagree with them. Tested by tests/harness/oracle_test.cc
+#pragma once
+
+#include <span>
+
+#include "grammar/frame.h"
+#include "grammar/timeline.h"
+#include "harness/scenario.h"
+#include "physics/snapshot.h"
+
+namespace prehend::harness {
+
+/// The numbers in the definitions. A cylinder is a region around an anchor: so far sideways, so far
+/// up and down.
+struct OracleSettings {
+  double contact_bridge_s = 0.100;  ///< a gap in contact or support that is bridged
+  double grasp_bridge_s = 0.060;    ///< a loss of grip on the object that is bridged
+
+  double support_up = 0.5;              ///< upward component of the contact normal on the object
+  double support_speed_m_per_s = 0.02;  ///< vertical, relative to the support
+  double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
+  int grasp_sensor_sets = 2;            ///< of one hand on the object
+
+  double reach_radius_m = 0.30;      ///< ball that lies ahead of the palm and touches its centre
+  double reach_dead_band_m = 0.025;  ///< moving away by less is not moving away
+  double reach_idle_s = 0.5;         ///< standing still for longer ends a reach
+  double reach_idle_speed_m_per_s =
+      0.01;  ///< relative to the object; below it palm and fingers stand still
+  double reach_minimum_s = 0.1;
+
+  double slide_speed_m_per_s = 0.01;  ///< horizontal, relative to the support
+  double slide_pause_s = 0.150;       ///< a pause in the motion that is bridged
+  double slide_displacement_m = 0.02;
+
+  double pick_up_rise_m = 0.03;
+  double pick_up_radius_m = 0.09, pick_up_height_m = 0.12;
+
+  double put_down_drop_m = 0.02;
+  double put_down_radius_m = 0.09, put_down_height_m = 0.08;
+  double put_down_look_back_s = 3.3;
+  double put_down_dead_band_m = 0.01;  ///< a held object trembles by less than this
+};
+
+/// The true events of a run, sorted. `recording` has the sensed snapshots in the order of their
+/// ticks; events begin and end at ticks of snapshots, those that never end, at `end`. `decided` of
+/// each is where it ends.
+grammar::Timeline TrueTimeline(const Scenario& scenario,
+                               std::span<const physics::Snapshot> recording, grammar::Tick end,
+                               const OracleSettings& settings = {});
+
+}  // namespace prehend::harness

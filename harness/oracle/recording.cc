@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/oracle/recording.h"
+
+#include <bit>
+#include <cstdint>
+
+namespace prehend::harness::oracle {
+
+double Recording::Seconds(int from_frame, int to_frame) const {
+  return static_cast<double>(ticks[to_frame] - ticks[from_frame]) / scene.world.rate_hz;
+}
+
+const std::string& Recording::name(int entity) const {
+  return entity < body_count() ? scene.bodies[entity].name
+                               : scene.hands[entity - body_count()].name;
+}
+
+Recording MakeRecording(const physics::Scene& scene, std::span<const physics::Snapshot> frames) {
+  Recording recording{scene, frames, {}};
+  for (const physics::Snapshot& frame : frames) recording.ticks.push_back(frame.tick);
+  return recording;
+}
+
+Eigen::Vector3d RelativeVelocity(const physics::BodyState& object,
+                                 const physics::BodyState& support) {
+  const Eigen::Vector3d arm = object.X_WB.p_m - support.X_WB.p_m;
+  return object.v_WB_m_per_s - support.v_WB_m_per_s - support.w_WB_rad_per_s.cross(arm);
+}
+
+namespace {
+
+/// In which frames something holds, for every pair of which it ever holds.
+using Flags = std::map<Pair, std::vector<bool>>;
+
+struct RawTouches {
+  Flags touching, supported, gripped;  ///< gripped: (hand index, body)
+};
+
+class TouchReader {
+ public:
+  TouchReader(const Recording& recording, const OracleSettings& settings)
+      : recording_(recording), settings_(settings) {}
+
+  RawTouches Read() {
+    for (int frame = 0; frame < recording_.size(); ++frame) {
+      std::map<Pair, std::uint32_t> sensor_sets;  // of (hand, body)
+      for (const physics::ContactPoint& point : recording_.frames[frame].contacts) {
+        const int a = Entity(point.a), b = Entity(point.b);
+        if (a == b) continue;
+        Mark(raw_.touching, std::minmax(a, b), frame);
+        if (IsBody(a) && IsBody(b)) {
+          if (Holds(point, point.nhat_BA_W.z(), a, b, frame)) Mark(raw_.supported, {a, b}, frame);
+          if (Holds(point, -point.nhat_BA_W.z(), b, a, frame)) Mark(raw_.supported, {b, a}, frame);
+        } else if (IsBody(a) || IsBody(b)) {
+          const physics::ContactSide& hand = IsBody(a) ? point.b : point.a;
+          sensor_sets[{hand.hand, IsBody(a) ? a : b}] |= 1u << SensorSet(hand);
+        }
+      }
+      for (const auto& [pair, sets] : sensor_sets)
+        if (std::popcount(sets) >= settings_.grasp_sensor_sets) Mark(raw_.gripped, pair, frame);
+    }
+    return raw_;
+  }
+
+ private:
+  bool IsBody(int entity) const { return entity < recording_.body_count(); }
+
+  int Entity(const physics::ContactSide& side) const {
+    return side.hand >= 0 ? recording_.body_count() + side.hand : side.body;
+  }
+
+  int SensorSet(const physics::ContactSide& side) const {
+    const physics::HandModel& model = recording_.scene.hands[side.hand].model;
+    return side.link < 0 ? model.palm_sensor_set : model.links[side.link].sensor_set;
+  }
+
+  /// Whether this point holds the object from below. A point without a push holds nothing, unless
+  /// the object sleeps: then nobody computes the pushes.
+  bool Holds(const physics::ContactPoint& point, double up, int object, int support,
+             int frame) const {
+    const physics::BodyState& state = recording_.body(object, frame);
+    const double speed = RelativeVelocity(state, recording_.body(support, frame)).z();
+    return !recording_.scene.bodies[object].fixed && up >= settings_.support_up &&
+           (point.normal_impulse_n_s > 0 || state.asleep) &&
+           std::abs(speed) <= settings_.support_speed_m_per_s;
+  }
+
+  void Mark(Flags& flags, Pair pair, int frame) const {
+    std::vector<bool>& frames = flags[pair];
+    frames.resize(recording_.size());
+    frames[frame] = true;
+  }
+
+  const Recording& recording_;
+  const OracleSettings& settings_;
+  RawTouches raw_;
+};
+
+std::map<Pair, Spans> BridgeAll(const Recording& recording, const Flags& flags, double bridge_s) {
+  std::map<Pair, Spans> spans;
+  for (const auto& [pair, frames] : flags)
+    spans[pair] = Bridged(WhereTrue(frames), recording.ticks, recording.Ticks(bridge_s));
+  return spans;
+}
+
+Spans WhereGripIsCommanded(const Recording& recording, const OracleSettings& settings, int hand) {
+  std::vector<bool> commanded;
+  for (int frame = 0; frame < recording.size(); ++frame)
+    commanded.push_back(recording.hand(hand, frame).trigger >= settings.commanded_trigger);
+  return WhereTrue(commanded);
+}
+
+}  // namespace
+
+Touches FindTouches(const Recording& recording, const OracleSettings& settings) {
+  const RawTouches raw = TouchReader(recording, settings).Read();
+  Touches touches;
+  touches.contacts = BridgeAll(recording, raw.touching, settings.contact_bridge_s);
+  touches.supports = BridgeAll(recording, raw.supported, settings.contact_bridge_s);
+  for (const auto& [pair, frames] : raw.gripped) {
+    const auto& [hand, body] = pair;
+    // Letting go ends a grasp at once, so gaps are bridged only inside one squeeze of the trigger.
+    for (const Span& squeeze : WhereGripIsCommanded(recording, settings, hand)) {
+      const Spans gripped = Within(WhereTrue(frames), squeeze);
+      for (const Span& span :
+           Bridged(gripped, recording.ticks, recording.Ticks(settings.grasp_bridge_s)))
+        touches.grasps.push_back({hand, body, span});
+    }
+  }
+  return touches;
+}
+
+}  // namespace prehend::harness::oracle
