@@ -195,7 +195,7 @@ ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
     YAML::Parser parser(stream);
     bool any = false;
     while (parser.HandleNextDocument(builder)) any = true;
-    if (!any) builder.Complain({}, "the file holds nothing but comments", "");
+    if (!any) builder.Complain({}, "the file is empty but for comments", "");
   } catch (const Stop&) {
     // The builder has said why.
   } catch (const YAML::Exception& error) {

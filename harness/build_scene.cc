@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/read_scenario_test.cc
+#include "harness/build_scene.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "physics/geometry.h"
+
+namespace prehend::harness {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kDefaultSphereRollingFriction = 0.006;  // a ball on a table stops within a metre (docs/physics.md)
+
+physics::Shape ShapeOf(const EntityEntry& entity) {
+  if (entity.sphere) return *entity.sphere;
+  if (entity.cylinder) return *entity.cylinder;
+  if (entity.capsule) return *entity.capsule;
+  return entity.box.value_or(physics::Box{});
+}
+
+/// Everything but the place.
+physics::Body MakeBody(const Named<EntityEntry>& named) {
+  const EntityEntry& entity = named.value;
+  physics::Body body;
+  body.name = named.name;
+  body.shapes = {{ShapeOf(entity), {}}};
+  body.fixed = entity.fixed;
+  body.mass_kg = entity.mass_kg ? entity.mass_kg->value : 0;
+  body.friction = entity.friction;
+  body.rolling_friction = entity.rolling_friction.value_or(entity.sphere ? kDefaultSphereRollingFriction : 0);
+  body.restitution = entity.restitution;
+  if (entity.rpy_deg) body.X_WB.q = FromRollPitchYaw(*entity.rpy_deg);
+  if (entity.yaw_deg) body.X_WB.q = FromRollPitchYaw({0, 0, *entity.yaw_deg});
+  return body;
+}
+
+/// Is the point above the body? An upright body is asked in its own axes, a tilted one by its world box.
+bool StandsAbove(const physics::Body& support, const Eigen::Vector2d& p_W) {
+  constexpr double kUprightCosine = 0.999;
+  const Vector3d top_W(p_W.x(), p_W.y(), support.X_WB.p_m.z());
+  if (std::abs((support.X_WB.q * Vector3d::UnitZ()).z()) < kUprightCosine) {
+    const Eigen::AlignedBox3d bounds = physics::WorldBounds(support, support.X_WB);
+    return bounds.contains(Vector3d(top_W.x(), top_W.y(), bounds.center().z()));
+  }
+  const Vector3d p_B = support.X_WB.inverse() * top_W;
+  const physics::LocalBox box = physics::BoundingBox(support);
+  const Eigen::Vector2d offset = (p_B - box.p_BC_m).head<2>();
+  if (physics::IsRoundAboutVertical(support, support.X_WB)) return offset.norm() <= box.half_size_m.x();
+  return std::abs(offset.x()) <= box.half_size_m.x() && std::abs(offset.y()) <= box.half_size_m.y();
+}
+
+/// Places every body after the one it stands on.
+class Stacking {
+ public:
+  Stacking(const ScenarioEntry& entry, Complaints& complaints) : entry_(entry), complaints_(complaints) {
+    for (const auto& named : entry.entities) {
+      index_[named.name] = bodies.size();
+      names_.push_back(named.name);
+      bodies.push_back(MakeBody(named));
+    }
+    progress_.resize(bodies.size(), Progress::kWaiting);
+  }
+
+  /// Iterative, since a stack may be thousands high.
+  void Place(std::size_t i) {
+    std::vector<std::size_t> above;  // to be placed when their support is
+    std::optional<std::size_t> next = i;
+    while (next && progress_[*next] == Progress::kWaiting) {
+      progress_[*next] = Progress::kBegun;
+      above.push_back(*next);
+      next = SupportOf(*next);
+    }
+    if (next && progress_[*next] == Progress::kBegun) {
+      const EntityEntry& entity = entry_.entities[above.back()].value;
+      complaints_.Add(entity.on->where,
+                      fmt::format("on: '{}' stands, directly or not, on itself", entry_.entities[*next].name));
+    }
+    for (; !above.empty(); above.pop_back()) {
+      PlaceOnSupport(above.back());
+      progress_[above.back()] = Progress::kDone;
+    }
+  }
+
+  std::vector<physics::Body> bodies;
+
+ private:
+  enum class Progress { kWaiting, kBegun, kDone };
+
+  std::optional<std::size_t> SupportOf(std::size_t i) {
+    const auto& on = entry_.entities[i].value.on;
+    if (!on) return std::nullopt;
+    const auto found = index_.find(on->value);
+    if (found != index_.end()) return found->second;
+    complaints_.AddUnknownName(on->where, fmt::format("on: no entity is called '{}'", on->value), on->value, names_);
+    return std::nullopt;
+  }
+
+  void PlaceOnSupport(std::size_t i) {
+    const EntityEntry& entity = entry_.entities[i].value;
+    physics::Body& body = bodies[i];
+    const std::vector<double>& at = entity.at_m.value;
+    if (at.size() < 2) return;  // was complained about
+    body.X_WB.p_m = {at[0], at[1], at.size() > 2 ? at[2] : 0};
+    if (!entity.on || !index_.contains(entity.on->value)) return;
+    const physics::Body& support = bodies[index_.at(entity.on->value)];
+    const double lowest = physics::WorldBounds(body, {Vector3d::Zero(), body.X_WB.q}).min().z();
+    body.X_WB.p_m.z() = physics::WorldBounds(support, support.X_WB).max().z() - lowest;
+    if (!StandsAbove(support, {at[0], at[1]})) {
+      complaints_.Add(entity.at_m.where,
+                      fmt::format("at_m: the centre of '{}' is not above '{}'", body.name, support.name),
+                      "at_m is in world coordinates, also with 'on'");
+    }
+  }
+
+  const ScenarioEntry& entry_;
+  Complaints& complaints_;
+  std::map<std::string, std::size_t> index_;
+  std::vector<std::string> names_;
+  std::vector<Progress> progress_;
+};
+
+void Override(const PidOverride& given, physics::PidGains& gains) {
+  gains.proportional = given.proportional.value_or(gains.proportional);
+  gains.derivative = given.derivative.value_or(gains.derivative);
+  gains.integral = given.integral.value_or(gains.integral);
+  gains.limit = given.limit.value_or(gains.limit);
+}
+
+}  // namespace
+
+Eigen::Quaterniond FromRollPitchYaw(const Vector3d& rpy_deg) {
+  const Vector3d rad = rpy_deg * std::numbers::pi / 180;
+  return Eigen::AngleAxisd(rad.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(rad.y(), Vector3d::UnitY()) *
+         Eigen::AngleAxisd(rad.x(), Vector3d::UnitX());
+}
+
+std::vector<physics::Body> PlaceBodies(const ScenarioEntry& entry, Complaints& complaints) {
+  Stacking stacking(entry, complaints);
+  for (std::size_t i = 0; i < entry.entities.size(); ++i) stacking.Place(i);
+  return std::move(stacking.bodies);
+}
+
+physics::Hand PlaceHand(const Named<ActorEntry>& actor, physics::HandModel model, int rate_hz, Complaints& complaints) {
+  if (actor.value.gains) {
+    Override(actor.value.gains->value.translation, model.translation);
+    Override(actor.value.gains->value.rotation, model.rotation);
+  }
+  if (const std::string unstable = physics::CheckGains(model, rate_hz); !unstable.empty()) {
+    complaints.Add(actor.value.gains ? actor.value.gains->where : actor.value.hand.where,
+                   fmt::format("actor '{}' cannot be stable: {}", actor.name, unstable));
+  }
+  return {actor.name, std::move(model), {actor.value.at_m.value, FromRollPitchYaw(actor.value.rpy_deg)}};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/read_scenario_test.cc
+#include "harness/build_script.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/build_scene.h"
+#include "harness/scenario_fields.h"
+
+namespace prehend::harness {
+namespace {
+
+template <class T>
+std::vector<std::string> NamesOf(const std::vector<Named<T>>& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+physics::TimedPose TimedPoseOf(const PoseEntry& pose) {
+  physics::TimedPose timed;
+  timed.t_s = pose.t_s;
+  timed.X_WH.p_m = pose.at_m;
+  if (pose.rpy_deg) timed.X_WH.q = FromRollPitchYaw(*pose.rpy_deg);
+  if (const auto& q = pose.quat_wxyz) {
+    timed.X_WH.q = Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]).normalized();
+  }
+  timed.trigger = pose.trigger;
+  return timed;
+}
+
+/// Makes one step of each kind of entry; the names in it must be among those of the scenario.
+struct StepMaker {
+  const std::vector<std::string>& entities;
+  const physics::HandModel* model;  ///< null when the hand is not known
+  Complaints& complaints;
+
+  physics::Step operator()(const ReachEntry& e) const {
+    CheckEntity("reach", e.reach);
+    CheckStyle(e);
+    return {0, physics::ReachStep{e.reach.value, e.style.value, e.from, e.offset_m}, e.over_s};
+  }
+  physics::Step operator()(const CloseEntry& e) const { return {0, physics::TriggerStep{e.close_to}, e.over_s}; }
+  physics::Step operator()(const OpenEntry& e) const { return {0, physics::TriggerStep{e.open_to}, e.over_s}; }
+  physics::Step operator()(const LiftEntry& e) const {
+    return {0, physics::MoveStep{{0, 0, e.lift_by_m}}, e.over_s};
+  }
+  physics::Step operator()(const MoveEntry& e) const { return {0, physics::MoveStep{e.move_by_m}, e.over_s}; }
+  physics::Step operator()(const CarryEntry& e) const { return {0, physics::CarryStep{e.carry_to_m}, e.over_s}; }
+  physics::Step operator()(const PlaceEntry& e) const {
+    CheckEntity("place_on", e.place_on);
+    return {0, physics::PlaceStep{e.place_on.value}, e.over_s};
+  }
+  physics::Step operator()(const RetreatEntry& e) const {
+    return {0, physics::RetreatStep{e.retreat_by_m}, e.over_s};
+  }
+  physics::Step operator()(const WaitEntry& e) const { return {0, physics::WaitStep{}, e.wait_s}; }
+  physics::Step operator()(const PosesEntry& e) const {
+    physics::PosesStep step;
+    for (const PoseEntry& pose : e.poses) step.poses.push_back(TimedPoseOf(pose));
+    const double over_s = step.poses.empty() ? 0 : step.poses.back().t_s;
+    return {0, std::move(step), over_s};
+  }
+
+ private:
+  void CheckEntity(const char* key, const Located<std::string>& name) const {
+    if (std::find(entities.begin(), entities.end(), name.value) != entities.end()) return;
+    complaints.AddUnknownName(name.where, fmt::format("{}: no entity is called '{}'", key, name.value), name.value,
+                              entities);
+  }
+
+  void CheckStyle(const ReachEntry& e) const {
+    if (!model || model->styles.empty()) return;
+    const Where where = e.style.where.place.line > 0 ? e.style.where : e.reach.where;  // the default has no place
+    const int style = physics::FindStyle(*model, e.style.value);
+    if (style < 0) {
+      std::vector<std::string> known;
+      for (const auto& candidate : model->styles) known.push_back(candidate.name);
+      complaints.AddUnknownName(where, fmt::format("style: hand '{}' has no style '{}'", model->name, e.style.value),
+                                e.style.value, known);
+      return;
+    }
+    const physics::GraspStyle& chosen = model->styles[static_cast<std::size_t>(style)];
+    const bool above_missing = e.from == physics::Approach::kAbove && !chosen.above;
+    const bool side_missing = e.from == physics::Approach::kSide && !chosen.side;
+    if (above_missing || side_missing) {
+      complaints.Add(e.reach.where, fmt::format("style '{}' does not grasp from {}", chosen.name,
+                                                above_missing ? "above" : "the side"));
+    }
+  }
+};
+
+/// Limits that concern the script as a whole, at the beat where they are passed.
+void CheckLength(const ScenarioEntry& entry, const physics::Script& script, Complaints& complaints) {
+  double total_s = script.settle_s;
+  std::size_t poses = 0;
+  for (std::size_t i = 0; i < script.beats.size(); ++i) {
+    double beat_s = 0;
+    for (const physics::Step& step : script.beats[i].steps) {
+      beat_s = std::max(beat_s, step.over_s);
+      if (const auto* step_poses = std::get_if<physics::PosesStep>(&step.action)) poses += step_poses->poses.size();
+    }
+    total_s += beat_s;
+    const Where where = entry.script[i].front().name_where;
+    if (total_s > kMaxDurationS) {
+      return complaints.Add(where, fmt::format("the script takes more than {} s up to here", kMaxDurationS));
+    }
+    if (poses > kMaxPoses) return complaints.Add(where, fmt::format("more than {} poses up to here", kMaxPoses));
+  }
+}
+
+}  // namespace
+
+physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints) {
+  const std::vector<std::string> entities = NamesOf(entry.entities), actors = NamesOf(entry.actors);
+  physics::Script script;
+  script.settle_s = entry.settle_s;
+  for (const BeatEntry& beat_entry : entry.script) {
+    physics::Beat& beat = script.beats.emplace_back();
+    for (const Named<StepEntry>& named : beat_entry) {
+      const auto actor = std::find(actors.begin(), actors.end(), named.name);
+      if (actor == actors.end()) {
+        complaints.AddUnknownName(named.name_where, fmt::format("no actor is called '{}'", named.name), named.name,
+                                  actors);
+      }
+      const auto hand = static_cast<std::size_t>(actor - actors.begin());
+      const physics::HandModel* model = hand < scene.hands.size() ? &scene.hands[hand].model : nullptr;
+      physics::Step step = std::visit(StepMaker{entities, model, complaints}, named.value);
+      step.hand = static_cast<int>(hand);
+      beat.steps.push_back(std::move(step));
+    }
+  }
+  CheckLength(entry, script, complaints);
+  return script;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the written steps to physics::Script: names become indices, roll-pitch-yaw becomes quaternions.
+// Tested by tests/harness/read_scenario_test.cc
+#pragma once
+
+#include "harness/complaints.h"
+#include "harness/scenario_entries.h"
+#include "physics/scene.h"
+
+namespace prehend::harness {
+
+/// Complains about unknown actors, entities and styles, about approaches a style does not have, and about a script
+/// that is too long. `scene` has the hands of `entry.actors`, in that order; hands without styles are not checked
+/// for theirs.
+physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints);
+
+}  // namespace prehend::harness

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/read_scenario_test.cc
+#include "harness/read_scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "harness/build_scene.h"
+#include "harness/build_script.h"
+#include "harness/scenario_fields.h"
+#include "harness/text_file.h"
+
+namespace prehend::harness {
+namespace {
+
+using grammar::Diagnostics;
+using std::filesystem::path;
+
+bool Contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void CheckNames(const std::string& file, const ScenarioEntry& entry, const ScenarioLibrary& library,
+                Complaints& complaints) {
+  const std::string stem = path(file).stem().string();
+  if (entry.name.value != stem) {
+    complaints.Add(entry.name.where, fmt::format("scenario: the name is '{}', but the file is called '{}'",
+                                                 entry.name.value, path(file).filename().string()),
+                   "rename one of them");
+  }
+  if (!Contains(library.grammars, entry.grammar.value)) {
+    complaints.AddUnknownName(entry.grammar.where, fmt::format("grammar: no grammar is called '{}'", entry.grammar.value),
+                              entry.grammar.value, library.grammars);
+  }
+  for (const auto& actor : entry.actors) {
+    const bool taken = std::any_of(entry.entities.begin(), entry.entities.end(),
+                                   [&](const auto& entity) { return entity.name == actor.name; });
+    if (taken) complaints.Add(actor.name_where, fmt::format("'{}' is already the name of an entity", actor.name));
+  }
+}
+
+/// The actor's model, or an empty one after complaining; what is wrong in a hand's file goes to `in_hand_files`.
+physics::HandModel FindHand(const std::string& file, const Located<std::string>& hand, const ScenarioLibrary& library,
+                            Complaints& complaints, Diagnostics& in_hand_files) {
+  const bool is_file = hand.value.ends_with(".yaml");
+  if (!is_file && !Contains(library.hands, hand.value)) {
+    complaints.AddUnknownName(hand.where, fmt::format("hand: no hand is called '{}'", hand.value), hand.value,
+                              library.hands);
+    return {};
+  }
+  auto model = library.read_hand(is_file ? (path(file).parent_path() / hand.value).string() : hand.value);
+  if (model.value) return std::move(*model.value);
+  complaints.Add(hand.where, fmt::format("hand: '{}' cannot be used, see below", hand.value));
+  in_hand_files.insert(in_hand_files.end(), model.diagnostics.begin(), model.diagnostics.end());
+  return {};
+}
+
+std::string SkillOf(const std::string& file) {
+  const path folder = path(file).parent_path();
+  return folder.parent_path().filename() == "scenarios" ? folder.filename().string() : "";
+}
+
+ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& document, const ScenarioLibrary& library) {
+  Complaints complaints(document);
+  ScenarioEntry entry;
+  if (!ScenarioFormat().read(document.root, complaints, entry)) return {std::nullopt, complaints.Sorted()};
+
+  CheckNames(file, entry, library, complaints);
+  Diagnostics in_hand_files;
+  Scenario scenario;
+  physics::Scene& scene = scenario.scene;
+  scene.world.rate_hz = entry.world.rate_hz;
+  scene.world.seed = entry.world.seed;
+  scene.bodies = PlaceBodies(entry, complaints);
+  for (const auto& actor : entry.actors) {
+    physics::HandModel model = FindHand(file, actor.value.hand, library, complaints, in_hand_files);
+    const bool known = !model.name.empty();
+    scene.hands.push_back(known ? PlaceHand(actor, std::move(model), entry.world.rate_hz, complaints)
+                                : physics::Hand{actor.name, {}, {}});
+  }
+  scenario.script = BuildScript(entry, scene, complaints);
+  if (complaints.empty()) CheckOverlaps(entry, scene, complaints);
+  if (!complaints.empty()) {
+    Diagnostics diagnostics = complaints.Sorted();
+    diagnostics.insert(diagnostics.end(), in_hand_files.begin(), in_hand_files.end());
+    return {std::nullopt, std::move(diagnostics)};
+  }
+
+  scenario.name = entry.name.value;
+  scenario.file = file;
+  scenario.skill = SkillOf(file);
+  scenario.shows = entry.shows;
+  scenario.grammar = entry.grammar.value;
+  scenario.tags = std::move(entry.tags);
+  scenario.world = entry.world;
+  for (const auto& entity : entry.entities) scenario.body_classes.push_back(entity.value.class_name.value);
+  scenario.pictures = std::move(entry.pictures);
+  return {std::move(scenario), {}};
+}
+
+ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocument> document,
+                                    const std::vector<std::string>& overrides, const ScenarioLibrary& library) {
+  if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
+  for (const std::string& assignment : overrides) {
+    if (auto bad = ApplyOverride(assignment, *document.value); !bad.empty()) return {std::nullopt, std::move(bad)};
+  }
+  return Resolve(file, *document.value, library);
+}
+
+}  // namespace
+
+ReadResult<Scenario> ReadScenario(const std::string& file, const std::vector<std::string>& overrides,
+                                  const ScenarioLibrary& library) {
+  return ReadDocumentAs(file, ReadYamlFile(file), overrides, library);
+}
+
+ReadResult<Scenario> ReadScenarioText(const std::string& file, std::string text,
+                                      const std::vector<std::string>& overrides, const ScenarioLibrary& library) {
+  return ReadDocumentAs(file, ParseYaml(file, std::move(text)), overrides, library);
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/read_scenario_test.cc
+#include "harness/scenario.h"
+
+namespace prehend::harness {
+
+grammar::Cast MakeCast(const Scenario& scenario) {
+  grammar::Cast cast;
+  cast.ticks_per_second = scenario.scene.world.rate_hz;
+  for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
+    const physics::Body& body = scenario.scene.bodies[i];
+    const physics::LocalBox box = physics::BoundingBox(body);
+    grammar::CastMember& member = cast.entities.emplace_back();
+    member.name = body.name;
+    member.classes = {scenario.body_classes[i], body.fixed ? "Fixed" : "Movable", "Thing", "Entity"};
+    member.p_BC_m = box.p_BC_m;
+    member.half_size_m = box.half_size_m;
+  }
+  for (const physics::Hand& hand : scenario.scene.hands) {
+    grammar::CastMember& member = cast.entities.emplace_back();
+    member.name = hand.name;
+    member.classes = {"Hand", "Entity"};
+    member.half_size_m = hand.model.palm_size_m / 2;
+    member.sensor_sets = hand.model.sensor_sets;
+  }
+  // Frames carry a style as its index in the hand's own list, so the first hand's names stand for all.
+  if (!scenario.scene.hands.empty()) {
+    for (const auto& style : scenario.scene.hands.front().model.styles) cast.styles.push_back(style.name);
+  }
+  return cast;
+}
+
+}  // namespace prehend::harness
