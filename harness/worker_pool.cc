@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// One fork and one pipe per job; the parent polls the pipes and kills who is late. The end of a job is the end of its
+// pipe. Tested by tests/harness/worker_pool_test.cc
+#include "harness/worker_pool.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+
+namespace prehend::harness {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kJobThrew = 70;
+
+double SecondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+void WriteAll(int file, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = write(file, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+/// The child's life. Leaves by _exit: the parent's buffers and destructors are not the child's to run.
+[[noreturn]] void Work(const WorkerJob& job, const WorkerLimits& limits, int pipe) {
+  if (limits.memory_limit_bytes > 0) {
+    const rlimit limit{limits.memory_limit_bytes, limits.memory_limit_bytes};
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  try {
+    WriteAll(pipe, job());
+  } catch (const std::exception& problem) {
+    WriteAll(pipe, problem.what());
+    _exit(kJobThrew);
+  }
+  _exit(0);
+}
+
+struct Worker {
+  std::size_t job = 0;
+  pid_t process = 0;
+  int pipe = -1;
+  Clock::time_point start;
+  bool killed = false;
+  std::string output;
+};
+
+class Pool {
+ public:
+  Pool(const std::vector<WorkerJob>& jobs, const WorkerLimits& limits) : jobs_(jobs), limits_(limits), results_(jobs.size()) {}
+
+  std::vector<WorkerResult> Run(const std::function<void(std::size_t, const WorkerResult&)>& done) {
+    while (next_ < jobs_.size() || !workers_.empty()) {
+      while (next_ < jobs_.size() && workers_.size() < static_cast<std::size_t>(std::max(1, limits_.jobs))) {
+        Start(next_++, done);
+      }
+      WaitAndRead(done);
+    }
+    return std::move(results_);
+  }
+
+ private:
+  using Done = std::function<void(std::size_t, const WorkerResult&)>;
+
+  void Start(std::size_t job, const Done& done) {
+    int ends[2];
+    if (pipe(ends) != 0) return Report(job, {.reason = "no pipe for the worker: " + std::string(std::strerror(errno))}, done);
+    const pid_t process = fork();
+    if (process == 0) {
+      close(ends[0]);
+      Work(jobs_[job], limits_, ends[1]);
+    }
+    close(ends[1]);
+    if (process < 0) {
+      close(ends[0]);
+      return Report(job, {.reason = "no process for the worker: " + std::string(std::strerror(errno))}, done);
+    }
+    workers_.push_back({.job = job, .process = process, .pipe = ends[0], .start = Clock::now(), .killed = false, .output = {}});
+  }
+
+  void WaitAndRead(const Done& done) {
+    std::vector<pollfd> pipes;
+    double nearest_deadline_s = limits_.time_limit_s;
+    for (const Worker& worker : workers_) {
+      pipes.push_back({.fd = worker.pipe, .events = POLLIN, .revents = 0});
+      if (!worker.killed) nearest_deadline_s = std::min(nearest_deadline_s, limits_.time_limit_s - SecondsSince(worker.start));
+    }
+    poll(pipes.data(), pipes.size(), std::max(1, static_cast<int>(1000 * nearest_deadline_s) + 1));
+    for (std::size_t i = workers_.size(); i-- > 0;) {
+      Worker& worker = workers_[i];
+      if (!worker.killed && SecondsSince(worker.start) > limits_.time_limit_s) {
+        kill(worker.process, SIGKILL);
+        worker.killed = true;
+      }
+      if (pipes[i].revents != 0 && !ReadSome(worker)) {
+        Reap(worker, done);
+        workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+    }
+  }
+
+  /// False at the end of the pipe.
+  static bool ReadSome(Worker& worker) {
+    char buffer[65536];
+    const ssize_t count = read(worker.pipe, buffer, sizeof buffer);
+    if (count > 0) worker.output.append(buffer, static_cast<std::size_t>(count));
+    return count > 0 || (count < 0 && errno == EINTR);
+  }
+
+  void Reap(Worker& worker, const Done& done) {
+    close(worker.pipe);
+    int status = 0;
+    rusage usage{};
+    while (wait4(worker.process, &status, 0, &usage) < 0 && errno == EINTR) {
+    }
+    WorkerResult result{.finished = WIFEXITED(status) && WEXITSTATUS(status) == 0};
+    result.seconds = SecondsSince(worker.start);
+    result.peak_memory_kib = usage.ru_maxrss;
+    if (result.finished) {
+      result.output = std::move(worker.output);
+    } else {
+      result.reason = EndReason(worker, status);
+    }
+    Report(worker.job, std::move(result), done);
+  }
+
+  std::string EndReason(const Worker& worker, int status) const {
+    if (worker.killed) return fmt::format("no end after {:g} s", limits_.time_limit_s);
+    if (WIFSIGNALED(status)) return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    if (WEXITSTATUS(status) == kJobThrew) return "exception: " + worker.output;
+    return fmt::format("exit status {}", WEXITSTATUS(status));
+  }
+
+  void Report(std::size_t job, WorkerResult result, const Done& done) {
+    results_[job] = std::move(result);
+    if (done) done(job, results_[job]);
+  }
+
+  const std::vector<WorkerJob>& jobs_;
+  const WorkerLimits limits_;
+  std::vector<WorkerResult> results_;
+  std::vector<Worker> workers_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+std::vector<WorkerResult> RunInWorkers(const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
+                                       const std::function<void(std::size_t, const WorkerResult&)>& done) {
+  return Pool(jobs, limits).Run(done);
+}
+
+}  // namespace prehend::harness
