@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where things are: the project's root, the scenarios by name, the grammars and hands of the libraries.
+// Tested by tests/harness/library_paths_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/read_scenario.h"
+
+namespace prehend::harness {
+
+/// The folder that holds grammar/library, scenarios/, ...: $PREHEND_HOME, or the nearest such ancestor of the
+/// executable, or of the working directory.
+std::optional<std::string> FindProjectRoot();
+
+struct ScenarioFile {
+  std::string skill;  ///< its folder below scenarios/, or ""
+  std::string name;   ///< without ".yaml"
+  std::string path;
+};
+
+/// All below root/scenarios, sorted by skill and name, without the folder `invalid` (which shows errors).
+std::vector<ScenarioFile> ListScenarios(const std::string& root);
+
+/// The file for what a user typed: a path, "name" or "skill/name". Nothing when there is none, or when a bare name is
+/// that of several skills.
+std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);
+
+/// "did you mean 'milk_carton_wrap'?", or which skills share the name, or "". For when FindScenario() found nothing.
+std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);
+
+/// root/grammar/library/NAME.grammar and root/physics/library/NAME.hand.yaml.
+std::string GrammarPath(const std::string& root, const std::string& name);
+std::string HandPath(const std::string& root, const std::string& name);
+
+/// Grammars and hands of the project.
+ScenarioLibrary ProjectLibrary(const std::string& root);
+
+}  // namespace prehend::harness
