@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a hand is built and how it grasps, as data: read from physics/library/*.hand.yaml by the harness.
 // Hand frame H: origin at the palm's centre, x along the fingers, y towards the thumb of a right hand, z out of the
-// back of the hand. A left hand is the mirror image in the xz-plane.
+// back of the hand. A left hand is the mirror image in the xz-plane: Mirrored() makes one.
+// Tested by tests/physics/hand_model_test.cc
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,12 +45,25 @@ struct JointDriver {
   double max_speed_rad_per_s = 12;
 };
 
+/// How the hand comes to an object, from above or from the side. The object's centre ends on a line along `toward`.
+struct GraspApproach {
+  Eigen::Vector3d toward = -Eigen::Vector3d::UnitZ();  ///< unit, in H: where the last part of the motion goes
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();       ///< unit, in H: up in the world; only used from the side
+  double palm_gap_m = 0.02;  ///< H's origin stays at least this far from the object's nearest face
+  double pads_m = 0.07;      ///< the object's centre is wanted this far from H's origin, along `toward`
+  double floor_m = 0.05;     ///< H's origin stays at least this high above the object's lowest point
+};
+
 /// One style: frames of joint targets from open to closed, interpolated by the trigger, and the effort of each joint.
+/// One side of the hand is a stiff post, the other one is force-limited: the object's face goes to the post.
 struct GraspStyle {
   std::string name;
   std::vector<std::vector<double>> frames_rad;  ///< at least 2; one angle per link
   std::vector<double> effort;                   ///< one per link, share of strength_nm
-  Eigen::Vector3d grasp_point_m = Eigen::Vector3d::Zero();  ///< in H: where the object's grasp point shall be
+  Eigen::Vector3d grip_axis = Eigen::Vector3d::UnitX();  ///< unit, in H: from the post to the limited side
+  Eigen::Vector3d post_m = Eigen::Vector3d::Zero();      ///< in H: where the object's face meets the post
+  double opening_m = 0.085;                              ///< widest object that fits, along the grip axis
+  std::optional<GraspApproach> above, side;              ///< at least one
 };
 
 struct HandModel {
@@ -67,5 +82,21 @@ struct HandModel {
   JointDriver driver;
   std::vector<GraspStyle> styles;
 };
+
+/// Joint targets of a style at a trigger value, 0 (open) .. 1 (closed): linear between neighbouring frames.
+std::vector<double> JointTargets(const GraspStyle& style, double trigger);
+
+/// Centres of all links in H, x along the link, for the given joint angles (one per link).
+std::vector<Pose> LinkPoses(const HandModel& model, const std::vector<double>& joints_rad);
+
+/// The other hand: mirrored in the xz-plane, `left` toggled.
+HandModel Mirrored(HandModel model);
+
+/// Index of the style of that name; -1 when there is none.
+int FindStyle(const HandModel& model, const std::string& name);
+
+/// Empty when the palm's PIDs are stable at this rate: derivative * dt / inertia must stay below 1 for the mass and
+/// for the least moment of inertia of the whole hand, else the damping itself excites the hand. Otherwise the reason.
+std::string CheckGains(const HandModel& model, int rate_hz);
 
 }  // namespace prehend::physics

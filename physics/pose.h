@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace prehend::physics {
 
@@ -14,5 +15,13 @@ struct Pose {
   Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return p_m + q * p; }
   Pose inverse() const { return {q.conjugate() * -p_m, q.conjugate()}; }
 };
+
+/// The rotation as a vector: unit axis times angle in [0, pi].
+inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& q) {
+  const double sign = q.w() < 0 ? -1 : 1;
+  const double sine = q.vec().norm();
+  if (sine < 1e-9) return 2 * sign * q.vec();
+  return q.vec() * (2 * sign * std::atan2(sine, sign * q.w()) / sine);
+}
 
 }  // namespace prehend::physics

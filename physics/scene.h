@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stands in the world before the first tick: plain structs with defaults. SI units, world z up.
 // A Scene is complete: the same Scene and script give the same run, bit for bit.
+// Tested by tests/physics/scene_test.cc
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/physics/geometry_test.cc
+#include "physics/geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prehend::physics {
+namespace {
+
+/// Smallest cosine of the angle to the vertical at which a cylinder counts as upright, about 5 degrees.
+constexpr double kUprightCosine = 0.996;
+
+/// Half extents of a shape along axes in which it stands with rotation R.
+struct HalfExtentsIn {
+  const Eigen::Matrix3d& R;
+
+  Eigen::Vector3d operator()(const Box& s) const { return R.cwiseAbs() * (s.size_m / 2); }
+  Eigen::Vector3d operator()(const Sphere& s) const { return Eigen::Vector3d::Constant(s.radius_m); }
+  Eigen::Vector3d operator()(const Cylinder& s) const {
+    const Eigen::Vector3d axis = R.col(2).cwiseAbs();
+    const Eigen::Vector3d disc = (Eigen::Vector3d::Ones() - axis.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+    return axis * (s.length_m / 2) + disc * s.radius_m;
+  }
+  Eigen::Vector3d operator()(const Capsule& s) const {
+    return R.col(2).cwiseAbs() * (s.length_m / 2) + Eigen::Vector3d::Constant(s.radius_m);
+  }
+};
+
+/// Of a point whose offsets beyond the half sizes are given, one per independent direction.
+template <int N>
+double BeyondHalfSizes(const Eigen::Matrix<double, N, 1>& beyond) {
+  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
+}
+
+struct DistanceOf {
+  const Eigen::Vector3d& p;
+
+  double operator()(const Box& s) const { return BeyondHalfSizes<3>(p.cwiseAbs() - s.size_m / 2); }
+  double operator()(const Sphere& s) const { return p.norm() - s.radius_m; }
+  double operator()(const Cylinder& s) const {
+    return BeyondHalfSizes<2>({std::hypot(p.x(), p.y()) - s.radius_m, std::abs(p.z()) - s.length_m / 2});
+  }
+  double operator()(const Capsule& s) const {
+    const double along = std::clamp(p.z(), -s.length_m / 2, s.length_m / 2);
+    return (p - along * Eigen::Vector3d::UnitZ()).norm() - s.radius_m;
+  }
+};
+
+}  // namespace
+
+double HalfWidthAlong(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& direction_W) {
+  return (X_WB.q.conjugate() * direction_W).cwiseAbs().dot(box.half_size_m);
+}
+
+Eigen::AlignedBox3d WorldBounds(const Shape& shape, const Pose& X_WS) {
+  const Eigen::Vector3d half = std::visit(HalfExtentsIn{X_WS.q.toRotationMatrix()}, shape);
+  return {Eigen::Vector3d(X_WS.p_m - half), Eigen::Vector3d(X_WS.p_m + half)};
+}
+
+Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB) {
+  Eigen::AlignedBox3d bounds;
+  for (const PlacedShape& placed : body.shapes) bounds.extend(WorldBounds(placed.shape, X_WB * placed.X_BS));
+  return bounds;
+}
+
+double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S) {
+  return std::visit(DistanceOf{p_S}, shape);
+}
+
+bool IsRoundAboutVertical(const Body& body, const Pose& X_WB) {
+  if (body.shapes.size() != 1) return false;
+  const PlacedShape& placed = body.shapes.front();
+  if (std::holds_alternative<Sphere>(placed.shape)) return true;
+  if (std::holds_alternative<Box>(placed.shape)) return false;
+  return std::abs(((X_WB * placed.X_BS).q * Eigen::Vector3d::UnitZ()).z()) > kUprightCosine;
+}
+
+LocalBox BoundingBox(const Body& body) {
+  const Eigen::AlignedBox3d bounds = WorldBounds(body, Pose{});
+  if (bounds.isEmpty()) return {};
+  return {bounds.center(), bounds.sizes() / 2};
+}
+
+}  // namespace prehend::physics

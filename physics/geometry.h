@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sizes of and distances to the shapes of a scene, as needed to plan motions. No engine involved.
+// Tested by tests/physics/geometry_test.cc
+#pragma once
+
+#include <vector>
+
+#include "physics/scene.h"
+
+namespace prehend::physics {
+
+/// How far the body reaches from its bounding box' centre in a world direction (unit), metres.
+double HalfWidthAlong(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& direction_W);
+
+/// World axes-aligned box of a shape that stands at X_WS.
+Eigen::AlignedBox3d WorldBounds(const Shape& shape, const Pose& X_WS);
+
+/// World axes-aligned box of a whole body, metres.
+Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB);
+
+/// Distance of a point, in the shape's frame, from the surface: negative inside. Metres.
+double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S);
+
+/// Do all horizontal directions look the same? True for spheres and for upright cylinders and capsules.
+bool IsRoundAboutVertical(const Body& body, const Pose& X_WB);
+
+}  // namespace prehend::physics

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/physics/reach_planner_test.cc
+#include "physics/reach_planner.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "physics/geometry.h"
+#include "physics/hand_clearance.h"
+
+namespace prehend::physics {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+/// An object of at least this height, and this much taller than wide, is taken from the side by Approach::kAuto.
+constexpr double kTall_m = 0.09;
+constexpr double kSlender = 1.25;
+/// A way that keeps this distance is good enough.
+constexpr double kClearEnough_m = 0.002;
+/// The orientation has settled after this share of a reach, well before the fingers enclose the object.
+constexpr double kTurnShare = 0.75;
+/// Orientations tried around a round object.
+constexpr int kRoundDirections = 24;
+/// Cost, in radians, of a grip that the hand cannot open far enough for: only when nothing else is left.
+constexpr double kTooWide = 100;
+
+/// Bends of the way, tried in order: how far the last part follows the direction of arrival, how much it rises first.
+struct Bend {
+  double straight_m;
+  double rise_m;
+};
+constexpr Bend kBends[] = {{0.10, 0}, {0.16, 0}, {0.16, 0.10}, {0.24, 0.10}, {0.24, 0.25}, {0.35, 0.35}};
+
+struct Candidate {
+  Pose X_WH;
+  Eigen::Vector3d toward_W;
+  double cost = 0;
+};
+
+/// The rotation that takes the orthonormal pair (a_H, b_H) to (a_W, b_W).
+Eigen::Quaterniond RotationFromPairs(const Eigen::Vector3d& a_H, const Eigen::Vector3d& b_H,
+                                     const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) {
+  Eigen::Matrix3d H, W;
+  H << a_H, b_H, a_H.cross(b_H);
+  W << a_W, b_W, a_W.cross(b_W);
+  return Eigen::Quaterniond(Eigen::Matrix3d(W * H.transpose())).normalized();
+}
+
+Eigen::Vector3d Horizontal(double yaw_rad) { return {std::cos(yaw_rad), std::sin(yaw_rad), 0}; }
+
+double YawOf(const Eigen::Vector3d& v) { return std::atan2(v.y(), v.x()); }
+
+/// Horizontal directions in which the object may be gripped or approached: its faces, or all around.
+std::vector<double> YawsOf(const Body& body, const Pose& X_WB, double hand_yaw_rad) {
+  std::vector<double> yaws;
+  if (IsRoundAboutVertical(body, X_WB)) {
+    for (int i = 0; i < kRoundDirections; ++i) yaws.push_back(hand_yaw_rad + 2 * kPi * i / kRoundDirections);
+    return yaws;
+  }
+  const Eigen::Vector3d x = X_WB.q * Eigen::Vector3d::UnitX(), y = X_WB.q * Eigen::Vector3d::UnitY();
+  const double face_yaw = std::abs(x.z()) < std::abs(y.z()) ? YawOf(x) : YawOf(y);
+  for (int i = 0; i < 4; ++i) yaws.push_back(face_yaw + kPi / 2 * i);
+  return yaws;
+}
+
+class CandidateList {
+ public:
+  CandidateList(const Scene& scene, const Snapshot& now, const ReachQuery& query)
+      : query_(query),
+        body_(scene.bodies[static_cast<std::size_t>(query.object)]),
+        style_(scene.hands[static_cast<std::size_t>(query.hand)].model.styles[static_cast<std::size_t>(query.style)]),
+        X_WB_(now.bodies[static_cast<std::size_t>(query.object)].X_WB),
+        box_(BoundingBox(body_)),
+        centre_m_(X_WB_ * box_.p_BC_m),
+        lowest_m_(WorldBounds(body_, X_WB_).min().z()) {}
+
+  std::vector<Candidate> FromAbove() const;
+  std::vector<Candidate> FromSide() const;
+  bool SideIsNatural() const;
+
+ private:
+  Candidate Make(const GraspApproach& approach, const Eigen::Quaterniond& q) const;
+
+  const ReachQuery& query_;
+  const Body& body_;
+  const GraspStyle& style_;
+  const Pose X_WB_;
+  const LocalBox box_;
+  const Eigen::Vector3d centre_m_;
+  const double lowest_m_;
+};
+
+Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quaterniond& q) const {
+  const Eigen::Vector3d toward_W = q * approach.toward, grip_W = q * style_.grip_axis;
+  const double half_grip = HalfWidthAlong(box_, X_WB_, grip_W);
+  const double depth = std::max(approach.pads_m, approach.palm_gap_m + HalfWidthAlong(box_, X_WB_, toward_W));
+  // In H: from the post along the grip axis to the object's middle, at the right depth.
+  const Eigen::Vector3d on_post = style_.post_m - approach.toward * approach.toward.dot(style_.post_m);
+  const Eigen::Vector3d centre_H = on_post + style_.grip_axis * half_grip + approach.toward * depth;
+
+  Candidate candidate{.X_WH = {centre_m_ - q * centre_H, q}, .toward_W = toward_W};
+  candidate.X_WH.p_m.z() = std::max(candidate.X_WH.p_m.z(), lowest_m_ + approach.floor_m);
+  candidate.X_WH.p_m += query_.offset_m;
+  candidate.cost = RotationVector(q * query_.from.X_WH.q.conjugate()).norm();
+  if (2 * half_grip > style_.opening_m) candidate.cost += kTooWide;
+  return candidate;
+}
+
+std::vector<Candidate> CandidateList::FromAbove() const {
+  std::vector<Candidate> candidates;
+  if (!style_.above) return candidates;
+  const double hand_yaw = YawOf(query_.from.X_WH.q * style_.grip_axis);
+  for (const double yaw : YawsOf(body_, X_WB_, hand_yaw)) {
+    const Eigen::Quaterniond q = RotationFromPairs(style_.above->toward, style_.grip_axis,
+                                                   -Eigen::Vector3d::UnitZ(), Horizontal(yaw));
+    candidates.push_back(Make(*style_.above, q));
+  }
+  return candidates;
+}
+
+std::vector<Candidate> CandidateList::FromSide() const {
+  std::vector<Candidate> candidates;
+  if (!style_.side) return candidates;
+  Eigen::Vector3d way = centre_m_ - query_.from.X_WH.p_m;
+  way.z() = 0;
+  const bool above_it = way.norm() < box_.half_size_m.minCoeff();
+  for (const double yaw : YawsOf(body_, X_WB_, YawOf(way))) {
+    const Eigen::Vector3d toward_W = Horizontal(yaw);
+    const Eigen::Quaterniond q =
+        RotationFromPairs(style_.side->toward, style_.side->up, toward_W, Eigen::Vector3d::UnitZ());
+    candidates.push_back(Make(*style_.side, q));
+    // Coming from the far side means going around the object.
+    if (!above_it) candidates.back().cost += std::acos(std::clamp(toward_W.dot(way.normalized()), -1.0, 1.0));
+  }
+  return candidates;
+}
+
+bool CandidateList::SideIsNatural() const {
+  const Eigen::Vector3d size = WorldBounds(body_, X_WB_).sizes();
+  return style_.side && size.z() >= kTall_m && size.z() >= kSlender * std::min(size.x(), size.y());
+}
+
+std::vector<Candidate> Candidates(const Scene& scene, const Snapshot& now, const ReachQuery& query) {
+  const CandidateList list(scene, now, query);
+  std::vector<Candidate> above = list.FromAbove(), side = list.FromSide();
+  const auto by_cost = [](const Candidate& l, const Candidate& r) { return l.cost < r.cost; };
+  std::stable_sort(above.begin(), above.end(), by_cost);
+  std::stable_sort(side.begin(), side.end(), by_cost);
+  const bool side_first =
+      query.approach == Approach::kSide || (query.approach == Approach::kAuto && list.SideIsNatural());
+  std::vector<Candidate>& first = side_first ? side : above;
+  std::vector<Candidate>& second = side_first ? above : side;
+  // An approach that was asked for is kept, unless the style does not have it.
+  if (query.approach == Approach::kAuto || first.empty()) first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+Segment Way(const ReachQuery& query, const Candidate& to, const Bend& bend) {
+  const Eigen::Vector3d begin = query.from.X_WH.p_m, end = to.X_WH.p_m;
+  const Eigen::Vector3d before_end = end - to.toward_W * bend.straight_m;
+  const Eigen::Vector3d after_begin = (begin + before_end) / 2 + Eigen::Vector3d(0, 0, bend.rise_m);
+  return {.duration_s = query.over_s,
+          .curve_m = {begin, after_begin, before_end, end},
+          .q_begin = query.from.X_WH.q,
+          .q_end = to.X_WH.q,
+          .turn_share = kTurnShare,
+          .trigger_begin = query.from.trigger,
+          .trigger_end = query.from.trigger};
+}
+
+}  // namespace
+
+ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& query) {
+  const HandModel& model = scene.hands[static_cast<std::size_t>(query.hand)].model;
+  const GraspStyle& style = model.styles[static_cast<std::size_t>(query.style)];
+  const HandClearance clearance(model, JointTargets(style, query.from.trigger));
+  ReachPlan best;
+  bool have_one = false;
+  for (const Candidate& candidate : Candidates(scene, now, query)) {
+    for (const Bend& bend : kBends) {
+      ReachPlan plan{.segment = Way(query, candidate, bend), .toward_W = candidate.toward_W};
+      plan.clearance_m = clearance.Along(plan.segment, scene, now);
+      if (plan.clearance_m >= kClearEnough_m && candidate.cost < kTooWide) return plan;
+      if (!have_one || plan.clearance_m > best.clearance_m) best = plan;
+      have_one = true;
+    }
+  }
+  return best;
+}
+
+}  // namespace prehend::physics

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Is the world still believable? A run that goes wrong is stopped and ends as a value.
+// Tested by tests/physics/run_checks_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "physics/scene.h"
+#include "physics/snapshot.h"
+
+namespace prehend::physics {
+
+struct RunProblem {
+  std::string entity;
+  std::string reason;
+  std::string advice;
+};
+
+/// The first thing that cannot be believed, bodies before hands before contacts.
+std::optional<RunProblem> CheckSnapshot(const Scene& scene, const Snapshot& snapshot);
+
+}  // namespace prehend::physics

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/physics/script_player_test.cc
+#include "physics/script_player.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/geometry.h"
+#include "physics/reach_planner.h"
+
+namespace prehend::physics {
+namespace {
+
+/// How far below the first contact the target goes when an object is put down, so that it truly stands before the
+/// hand opens. The palm's spring makes 5 N of it; more would squash, less can leave the object hanging.
+constexpr double kPress_m = 0.002;
+/// Putting down is over after this share of its time; in the rest the object settles.
+constexpr double kLoweringShare = 0.85;
+
+double DurationOf(const Step& step) {
+  const auto* poses = std::get_if<PosesStep>(&step.action);
+  return poses && !poses->poses.empty() ? poses->poses.back().t_s : step.over_s;
+}
+
+double DurationOf(const Beat& beat) {
+  double longest = 0;
+  for (const Step& step : beat.steps) longest = std::max(longest, DurationOf(step));
+  return longest;
+}
+
+int FindBody(const Scene& scene, const std::string& name) {
+  const auto it =
+      std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const Body& body) { return body.name == name; });
+  return it == scene.bodies.end() ? -1 : static_cast<int>(it - scene.bodies.begin());
+}
+
+/// Height of what carries an object with these bounds: the highest part of `support` that is below it.
+double TopBelow(const Body& support, const Pose& X_WB, const Eigen::AlignedBox3d& object) {
+  constexpr double kOverlap_m = 0.005;  // a part that reaches this far into the object is still below it
+  double top = -HUGE_VAL;
+  for (const PlacedShape& placed : support.shapes) {
+    const Eigen::AlignedBox3d part = WorldBounds(placed.shape, X_WB * placed.X_BS);
+    const Eigen::AlignedBox3d shared = part.intersection(object);
+    const bool beneath = shared.min().x() < shared.max().x() && shared.min().y() < shared.max().y();
+    if (beneath && part.max().z() <= object.min().z() + kOverlap_m) top = std::max(top, part.max().z());
+  }
+  return std::isfinite(top) ? top : WorldBounds(support, X_WB).max().z();
+}
+
+}  // namespace
+
+/// Turns one step into a motion. An empty `problem` afterwards means that it worked.
+class ScriptPlayer::Resolver {
+ public:
+  Resolver(const Scene& scene, const Snapshot& now, const Step& step, HandState& hand)
+      : scene_(scene), now_(now), step_(step), hand_(hand) {}
+
+  std::string Resolve() {
+    std::visit(*this, step_.action);
+    return problem_;
+  }
+
+  void operator()(const WaitStep&) {}
+  void operator()(const ReachStep& reach);
+  void operator()(const TriggerStep& trigger);
+  void operator()(const MoveStep& move) { MoveBy(move.by_m, step_.over_s); }
+  void operator()(const CarryStep& carry);
+  void operator()(const PlaceStep& place);
+  void operator()(const RetreatStep& retreat);
+  void operator()(const PosesStep& poses);
+
+ private:
+  void MoveBy(const Eigen::Vector3d& by_m, double duration_s);
+  void Follow(const Segment& segment);
+  int HeldBody() const;
+
+  const Scene& scene_;
+  const Snapshot& now_;
+  const Step& step_;
+  HandState& hand_;
+  std::string problem_;
+};
+
+void ScriptPlayer::Resolver::Follow(const Segment& segment) {
+  hand_.motion = Trajectory(hand_.target);
+  hand_.motion.Append(segment);
+  hand_.target = hand_.motion.At(hand_.motion.duration_s());
+}
+
+void ScriptPlayer::Resolver::MoveBy(const Eigen::Vector3d& by_m, double duration_s) {
+  Pose to = hand_.target.X_WH;
+  to.p_m += by_m;
+  Follow(StraightSegment(hand_.target, to, duration_s));
+}
+
+void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
+  const HandModel& model = scene_.hands[static_cast<std::size_t>(step_.hand)].model;
+  const int object = FindBody(scene_, reach.object);
+  const int style = FindStyle(model, reach.style);
+  if (object < 0) {
+    problem_ = "reach: there is no entity '" + reach.object + "'";
+  } else if (style < 0) {
+    problem_ = "reach: hand '" + model.name + "' has no style '" + reach.style + "'";
+  } else {
+    const ReachPlan plan = PlanReach(scene_, now_,
+                                     {.hand = step_.hand,
+                                      .object = object,
+                                      .style = style,
+                                      .approach = reach.approach,
+                                      .offset_m = reach.offset_m,
+                                      .from = hand_.target,
+                                      .over_s = step_.over_s});
+    hand_.style = style;
+    hand_.object = object;
+    hand_.came_along_W = plan.toward_W;
+    Follow(plan.segment);
+  }
+}
+
+void ScriptPlayer::Resolver::operator()(const TriggerStep& trigger) {
+  Segment segment = StraightSegment(hand_.target, hand_.target.X_WH, step_.over_s);
+  segment.trigger_end = trigger.trigger;
+  Follow(segment);
+}
+
+/// The body last reached for; without a reach, the movable one that is pressed most. -1: none.
+int ScriptPlayer::Resolver::HeldBody() const {
+  if (hand_.object >= 0) return hand_.object;
+  std::vector<double> impulse(scene_.bodies.size(), 0);
+  for (const ContactPoint& contact : now_.contacts) {
+    const ContactSide &body = contact.a.body >= 0 ? contact.a : contact.b, &hand = contact.a.body >= 0 ? contact.b : contact.a;
+    if (body.body < 0 || hand.hand != step_.hand || scene_.bodies[static_cast<std::size_t>(body.body)].fixed) continue;
+    impulse[static_cast<std::size_t>(body.body)] += contact.normal_impulse_n_s;
+  }
+  const auto most = std::max_element(impulse.begin(), impulse.end());
+  return most == impulse.end() || *most <= 0 ? -1 : static_cast<int>(most - impulse.begin());
+}
+
+void ScriptPlayer::Resolver::operator()(const CarryStep& carry) {
+  Eigen::Vector3d centre = hand_.target.X_WH.p_m;
+  if (const int held = HeldBody(); held >= 0) {
+    const auto index = static_cast<std::size_t>(held);
+    centre = now_.bodies[index].X_WB * BoundingBox(scene_.bodies[index]).p_BC_m;
+  }
+  MoveBy({carry.to_m.x() - centre.x(), carry.to_m.y() - centre.y(), 0}, step_.over_s);
+}
+
+void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
+  const int held = HeldBody(), support = FindBody(scene_, place.support);
+  if (support < 0) {
+    problem_ = "place_on: there is no entity '" + place.support + "'";
+  } else if (held < 0) {
+    problem_ = "place_on: the hand holds nothing and has not reached for anything";
+  } else {
+    const auto h = static_cast<std::size_t>(held), s = static_cast<std::size_t>(support);
+    const Eigen::AlignedBox3d object = WorldBounds(scene_.bodies[h], now_.bodies[h].X_WB);
+    const double drop = object.min().z() - TopBelow(scene_.bodies[s], now_.bodies[s].X_WB, object);
+    MoveBy({0, 0, -drop - kPress_m}, kLoweringShare * step_.over_s);
+  }
+}
+
+void ScriptPlayer::Resolver::operator()(const RetreatStep& retreat) {
+  // A hand that never reached goes the way its back looks.
+  const bool came = !hand_.came_along_W.isZero();
+  const Eigen::Vector3d back =
+      came ? Eigen::Vector3d(-hand_.came_along_W) : hand_.target.X_WH.q * Eigen::Vector3d::UnitZ();
+  MoveBy(back * retreat.by_m, step_.over_s);
+}
+
+void ScriptPlayer::Resolver::operator()(const PosesStep& poses) {
+  if (poses.poses.empty()) return;
+  hand_.motion = WaypointTrajectory(hand_.target, poses.poses);
+  hand_.target = hand_.motion.At(hand_.motion.duration_s());
+}
+
+ScriptPlayer::ScriptPlayer(const Scene& scene, Script script) : scene_(scene), script_(std::move(script)) {
+  const std::vector<int> styles = FirstStyles(scene_, script_);
+  for (std::size_t i = 0; i < scene_.hands.size(); ++i) {
+    HandState hand{.target = {.X_WH = scene_.hands[i].X_WH}, .style = styles[i]};
+    hand.motion = Trajectory(hand.target);
+    hands_.push_back(hand);
+  }
+}
+
+std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& script) {
+  std::vector<int> styles(scene.hands.size(), -1);
+  for (const Beat& beat : script.beats) {
+    for (const Step& step : beat.steps) {
+      const auto* reach = std::get_if<ReachStep>(&step.action);
+      const auto hand = static_cast<std::size_t>(step.hand);
+      if (reach && styles[hand] < 0) styles[hand] = FindStyle(scene.hands[hand].model, reach->style);
+    }
+  }
+  for (int& style : styles) style = std::max(style, 0);
+  return styles;
+}
+
+void ScriptPlayer::StartBeat(const Snapshot& now) {
+  const double rate_hz = scene_.world.rate_hz;
+  for (HandState& hand : hands_) hand.motion = Trajectory(hand.target);
+  tick_in_beat_ = 0;
+  if (beat_ == script_.beats.size()) {
+    settling_ = true;
+    beat_ticks_ = std::llround(script_.settle_s * rate_hz);
+    return;
+  }
+  const Beat& beat = script_.beats[beat_++];
+  beat_ticks_ = std::llround(DurationOf(beat) * rate_hz);
+  for (const Step& step : beat.steps) {
+    problem_ = Resolver(scene_, now, step, hands_[static_cast<std::size_t>(step.hand)]).Resolve();
+    problem_hand_ = step.hand;
+    if (!problem_.empty()) return;
+  }
+}
+
+const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
+  commands_.clear();
+  while (tick_in_beat_ == beat_ticks_ && !settling_ && problem_.empty()) StartBeat(now);
+  if (!problem_.empty() || tick_in_beat_ == beat_ticks_) return nullptr;
+  ++tick_in_beat_;
+  const double t_s = static_cast<double>(tick_in_beat_) / scene_.world.rate_hz;
+  for (const HandState& hand : hands_) commands_.push_back({hand.motion.At(t_s), hand.style});
+  return &commands_;
+}
+
+double DurationOf(const Script& script) {
+  double sum_s = script.settle_s;
+  for (const Beat& beat : script.beats) sum_s += DurationOf(beat);
+  return sum_s;
+}
+
+}  // namespace prehend::physics
