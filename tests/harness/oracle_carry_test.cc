@@ -110,13 +110,35 @@ TEST_F(OracleCarry, ASlideNeedsTwoCentimetresAndPausesAreBridged) {
 
 TEST_F(OracleCarry, AReleasedCupDoesNotSlideAndACarriedTrayMakesNoSlide) {
   LetGo();
-  stage_.Play(0.4, {0, 0, 0}, {stage_.cup}, {0.2, 0, 0});
-  stage_.Play(0.4, {0, 0, 0}, {stage_.cup, stage_.table}, {0.2, 0, 0});
+  stage_.Play(0.4, {0, 0, 0}, {{stage_.cup, {0.2, 0, 0}}});
+  stage_.Play(0.4, {0, 0, 0}, {{stage_.cup, {0.2, 0, 0}}, {stage_.table, {0.2, 0, 0}}});
   EXPECT_TRUE(Events("sliding").empty());
   stage_.sets = 2;
   stage_.trigger = 1;
-  stage_.Play(0.4, {0.2, 0, 0}, {stage_.cup, stage_.table}, {0.2, 0, 0});
+  stage_.Play(0.4, {0.2, 0, 0}, {{stage_.cup, {0.2, 0, 0}}, {stage_.table, {0.2, 0, 0}}});
   EXPECT_TRUE(Events("sliding").empty());
+}
+
+TEST_F(OracleCarry, ASlideOnAMovingTrayIsMeasuredFromTheTray) {
+  const auto carry_tray = [&](double seconds, double cup_m_per_s) {
+    stage_.Play(seconds, {cup_m_per_s, 0, 0},
+                {{stage_.cup, {cup_m_per_s, 0, 0}}, {stage_.table, {0.3, 0, 0}}});
+  };
+  carry_tray(0.4, 0.3);
+  carry_tray(0.1, 0.4);  // by 1 cm: not a slide
+  carry_tray(0.4, 0.3);
+  const Tick begin = stage_.now();
+  carry_tray(0.3, 0.5);
+  const Tick end = stage_.now();
+  carry_tray(0.4, 0.3);
+  ExpectNear(Events("sliding"), {{begin, end}});
+}
+
+TEST_F(OracleCarry, ASnatchIsAPickUpEvenIfOneFrameSeesItAll) {
+  stage_ = Stage(16);
+  SetUp();
+  const Tick lost = Lift(0.4, 4.0);
+  EXPECT_EQ(Events("picking_up"), (Intervals{{lost, lost + 16}}));
 }
 
 TEST_F(OracleCarry, ASlideEndsWithTheGrasp) {
@@ -125,7 +147,7 @@ TEST_F(OracleCarry, ASlideEndsWithTheGrasp) {
   const Tick release = stage_.now();
   stage_.sets = 0;
   stage_.trigger = 0;
-  stage_.Play(0.4, {0.2, 0, 0}, {stage_.cup}, {0.2, 0, 0});
+  stage_.Play(0.4, {0.2, 0, 0}, {{stage_.cup, {0.2, 0, 0}}});
   ExpectNear(Events("sliding"), {{begin, release}});
 }
 
@@ -196,6 +218,7 @@ TEST_F(OracleCarry, TransportLastsToADropOrToTheEndOfTheEpisode) {
     SetUp();
     const Tick out = Lift(0.2) + 288;  // 0.12 m with 0.2 m/s
     stage_.Carry(0.5, {0, 0.5, 0});
+    stage_.Carry(0.25, {0, 0, -0.2});
     const Tick end = stage_.now();
     if (drop) {
       LetGo();

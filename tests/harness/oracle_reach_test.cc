@@ -144,6 +144,20 @@ TEST(OracleReach, ForASecondObjectBeginsNotBeforeTheFirstIsGrasped) {
   EXPECT_EQ(Of("reaching(hand, milk)", stage.Truth()), (Intervals{{first, second}}));
 }
 
+TEST(OracleReach, BeginsAnewAfterATouchThatLedToNothing) {
+  Stage stage;
+  MoveHandTo(stage, 0.45);
+  stage.sets = 1;
+  stage.Play(0.1);
+  stage.sets = 0;
+  const Tick lost = stage.now();
+  MoveHandTo(stage, 0.43);
+  stage.Play(0.1);
+  MoveHandTo(stage, 0.45);
+  const Tick touch = Grasp(stage);
+  EXPECT_EQ(Of("reaching(hand, cup)", stage.Truth()), (Intervals{{lost, touch}}));
+}
+
 TEST(OracleReach, BelongsToTheFirstGraspOfAContact) {
   Stage stage;
   MoveHandTo(stage, 0.45);

@@ -70,13 +70,16 @@ class Stage {
     return static_cast<int>(now_.hands.size()) - 1;
   }
 
-  /// Appends frames while the hand moves with `hand_m_per_s` and everything in `moved` with
-  /// `bodies_m_per_s`.
+  struct Moving {
+    int body = 0;
+    Eigen::Vector3d m_per_s;
+  };
+
+  /// Appends frames while the hand and the named bodies move steadily.
   void Play(double seconds, const Eigen::Vector3d& hand_m_per_s = Eigen::Vector3d::Zero(),
-            const std::vector<int>& moved = {},
-            const Eigen::Vector3d& bodies_m_per_s = Eigen::Vector3d::Zero()) {
+            const std::vector<Moving>& bodies = {}) {
     for (physics::BodyState& body : now_.bodies) body.v_WB_m_per_s.setZero();
-    for (int body : moved) now_.bodies[body].v_WB_m_per_s = bodies_m_per_s;
+    for (const Moving& moving : bodies) now_.bodies[moving.body].v_WB_m_per_s = moving.m_per_s;
     const double frame_s = ticks_per_frame_ / 480.0;
     for (long i = std::lround(seconds / frame_s); i > 0; --i) {
       hand().palm.X_WB.p_m += hand_m_per_s * frame_s;
@@ -88,7 +91,7 @@ class Stage {
 
   /// Hand and cup move together.
   void Carry(double seconds, const Eigen::Vector3d& m_per_s) {
-    Play(seconds, m_per_s, {cup}, m_per_s);
+    Play(seconds, m_per_s, {{cup, m_per_s}});
   }
 
   /// Brings the hand to the cup's side and grasps it, with one frame of fixation.

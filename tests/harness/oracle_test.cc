@@ -81,7 +81,7 @@ TEST(OracleSupport, TravelsOnATray) {
   const int tray = stage.AddBody("tray", {0.4, 0.3, 0.01}, {0.5, 0, 0.3}, false);
   stage.cup_on_table = false;
   stage.contacts = {{Stage::BodySide(stage.cup), Stage::BodySide(tray)}};
-  stage.Play(0.5, {0, 0, 0}, {stage.cup, tray}, {0.2, 0, 0.4});
+  stage.Play(0.5, {0, 0, 0}, {{stage.cup, {0.2, 0, 0.4}}, {tray, {0.2, 0, 0.4}}});
   EXPECT_EQ(Of("supported_by(cup, tray)", stage.Truth()), (Intervals{{0, stage.now()}}));
 }
 
@@ -91,17 +91,28 @@ TEST(OracleSupport, OnATurningTrayIsMeasuredWhereTheCupIs) {
   stage.cup_on_table = false;
   stage.contacts = {{Stage::BodySide(stage.cup), Stage::BodySide(tray)}};
   stage.body(tray).w_WB_rad_per_s = {0, -0.5, 0};  // lifts what is at its +x side: 0.2 m * 0.5 / s
-  stage.Play(0.5, {0, 0, 0}, {stage.cup}, {0, 0, 0.1});
+  stage.Play(0.5, {0, 0, 0}, {{stage.cup, {0, 0, 0.1}}});
   EXPECT_EQ(Of("supported_by(cup, tray)", stage.Truth()), (Intervals{{0, stage.now()}}));
 }
 
 TEST(OracleSupport, BeginsWhenALandingHasComeToRest) {
   Stage stage;
-  stage.Play(0.1, {0, 0, 0}, {stage.cup}, {0, 0, -0.1});
+  stage.Play(0.1, {0, 0, 0}, {{stage.cup, {0, 0, -0.1}}});
   const Tick rest = stage.now();
   stage.Play(0.5);
   EXPECT_EQ(Of("contact(cup, table)", stage.Truth()), (Intervals{{0, stage.now()}}));
   EXPECT_EQ(Of("supported_by(cup, table)", stage.Truth()), (Intervals{{rest, stage.now()}}));
+}
+
+TEST(OracleSupport, OutlastsMomentsInWhichNothingPresses) {
+  Stage stage;
+  stage.Play(0.3);
+  stage.cup_on_table = false;
+  stage.contacts = {{Stage::BodySide(stage.cup), Stage::BodySide(stage.table), {0, 0, 1}, 0.0}};
+  stage.Play(0.08);
+  stage.cup_on_table = true;
+  stage.Play(0.3);
+  EXPECT_EQ(Of("supported_by(cup, table)", stage.Truth()), (Intervals{{0, stage.now()}}));
 }
 
 TEST(OracleSupport, IsNeitherAHandNorAPointThatCarriesNothing) {
