@@ -16,9 +16,9 @@ namespace prehend::render {
 
 using Color = Eigen::Vector3f;
 
-/// A stretch of a hand's path in one phase; consecutive stretches join.
+/// A stretch of a hand's path in one phase; one that begins near the end of the one before is joined to it.
 struct PathStretch {
-  std::string label;
+  std::string label;  ///< empty: the hand is idle, drawn thin
   Color color = {0.54f, 0.56f, 0.60f};
   std::vector<Eigen::Vector3f> points_m;
   double points_per_s = 60;
@@ -60,12 +60,15 @@ struct TimelineStrip {
   std::vector<StripRow> rows;
 };
 
+inline constexpr int kMaxPictureSide_px = 8192;
+
 struct Picture {
   int width_px = 1280, height_px = 720;
   const physics::Scene* scene = nullptr;  ///< outlives the call
   physics::Snapshot snapshot;
-  std::vector<Color> body_colors;  ///< one per scene body
+  std::vector<Color> body_colors;  ///< one per scene body; shorter: colours from a palette
   std::vector<std::string> body_labels;  ///< one per scene body, empty: none
+  std::vector<std::string> hand_labels;  ///< one per scene hand, empty: none
   std::vector<PathStretch> path;
   std::vector<Ghost> ghosts;
   std::vector<Marker> markers;
@@ -79,10 +82,19 @@ struct Image {
   std::vector<std::uint8_t> rgb;  ///< rows from top, 3 bytes a pixel
 };
 
+/// Which object is seen at each pixel, exactly and without anti-aliasing: for comparing pictures.
+struct IdImage {
+  int width_px = 0, height_px = 0;
+  std::vector<std::uint32_t> ids;  ///< rows from top; indices into names
+  std::vector<std::string> names;  ///< "background", "ground", "body:milk", "hand:right_hand", "path:0:reaching", ...
+};
+
+inline constexpr const char* kDefaultFontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+
 /// Off-screen context; make one per process and draw many pictures (the first costs shader compilation).
 class Painter {
  public:
-  Painter();
+  explicit Painter(const std::string& font_file = kDefaultFontFile);
   ~Painter();
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
@@ -91,6 +103,8 @@ class Painter {
   const std::string& error() const;
   /// An empty image when something failed; then error() says why.
   Image Draw(const Picture& picture);
+  /// The same scene from the same camera as object numbers, without labels, strip and markers.
+  IdImage DrawIds(const Picture& picture);
   /// "Mesa 22.3.6 llvmpipe ... renderer 1": what the pixels depend on.
   std::string Fingerprint() const;
 
@@ -101,6 +115,8 @@ class Painter {
 
 /// False when the file could not be written.
 bool WritePng(const Image& image, const std::string& path);
+/// An empty image when the file is missing, broken or larger than a picture may be.
+Image ReadPng(const std::string& path);
 /// FNV-1a of size and pixels.
 std::uint64_t PixelHash(const Image& image);
 

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shapes by their signed distance: half a pixel on either side of the edge is the anti-aliasing.
+// Tested by tests/render/canvas_test.cc
+#include "render/canvas.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prehend::render {
+
+using Eigen::Vector2f;
+
+bool Rect::Overlaps(const Rect& other) const {
+  return x < other.right() && other.x < right() && y < other.bottom() && other.y < bottom();
+}
+
+Color Hex(unsigned rgb) {
+  return Color(static_cast<float>(rgb >> 16 & 255), static_cast<float>(rgb >> 8 & 255), static_cast<float>(rgb & 255)) /
+         255;
+}
+
+Color TextColorOn(const Color& background) {
+  const float luma = background.dot(Color(0.30f, 0.59f, 0.11f));
+  return luma > 0.62f ? Hex(0x1B1F24) : Hex(0xFFFFFF);
+}
+
+Canvas::Span Canvas::Clip(float low, float high, int limit) {
+  const auto bound = static_cast<float>(limit);
+  // The order of the arguments turns NaN into an empty span.
+  const float begin = std::max(0.0f, std::min(bound, std::floor(low)));
+  const float end = std::max(0.0f, std::min(bound, std::ceil(high)));
+  return {static_cast<int>(begin), static_cast<int>(end)};
+}
+
+void Canvas::Blend(int x, int y, const Color& color, float alpha) {
+  if (x < 0 || y < 0 || x >= image_.width_px || y >= image_.height_px) return;
+  std::uint8_t* pixel = &image_.rgb[(static_cast<std::size_t>(y) * image_.width_px + x) * 3];
+  for (int k = 0; k < 3; ++k) {
+    const float before = pixel[k];
+    pixel[k] = static_cast<std::uint8_t>(std::lround(std::clamp(before + (color[k] * 255 - before) * alpha, 0.f, 255.f)));
+  }
+}
+
+void Canvas::FillRounded(const Rect& rect, float radius, const Color& color, float alpha) {
+  if (!(rect.width > 0) || !(rect.height > 0)) return;
+  const float r = std::min({radius, rect.width / 2, rect.height / 2});
+  const Span rows = Clip(rect.y - 1, rect.bottom() + 1, image_.height_px);
+  const Span columns = Clip(rect.x - 1, rect.right() + 1, image_.width_px);
+  for (int j = rows.begin; j < rows.end; ++j) {
+    for (int i = columns.begin; i < columns.end; ++i) {
+      const float px = static_cast<float>(i) + 0.5f, py = static_cast<float>(j) + 0.5f;
+      const float dx = std::max(rect.x + r - px, px - (rect.right() - r));
+      const float dy = std::max(rect.y + r - py, py - (rect.bottom() - r));
+      const float outside = std::hypot(std::max(dx, 0.0f), std::max(dy, 0.0f)) + std::min(std::max(dx, dy), 0.0f) - r;
+      const float coverage = std::clamp(0.5f - outside, 0.0f, 1.0f);
+      if (coverage > 0) Blend(i, j, color, alpha * coverage);
+    }
+  }
+}
+
+void Canvas::DrawLine(Vector2f from, Vector2f to, float width, const Color& color, float alpha) {
+  const Vector2f along = to - from;
+  const float squared_length = along.squaredNorm();
+  if (!std::isfinite(squared_length) || squared_length < 1e-6f) return;
+  const Vector2f low = from.cwiseMin(to).array() - width - 1, high = from.cwiseMax(to).array() + width + 1;
+  const Span rows = Clip(low.y(), high.y(), image_.height_px), columns = Clip(low.x(), high.x(), image_.width_px);
+  for (int j = rows.begin; j < rows.end; ++j) {
+    for (int i = columns.begin; i < columns.end; ++i) {
+      const Vector2f q = Vector2f(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f) - from;
+      const float share = std::clamp(q.dot(along) / squared_length, 0.0f, 1.0f);
+      const float coverage = std::clamp(0.5f - ((q - share * along).norm() - width / 2), 0.0f, 1.0f);
+      if (coverage > 0) Blend(i, j, color, alpha * coverage);
+    }
+  }
+}
+
+void Canvas::DrawText(float left, float top, const std::string& text, float size_px, const Color& color) {
+  const int baseline = static_cast<int>(std::lround(top + font_.Ascent(size_px)));
+  float pen = left;
+  for (const char32_t character : CodePoints(text)) {
+    const int x = static_cast<int>(std::floor(pen));
+    const Glyph glyph = font_.Draw(character, size_px, pen - std::floor(pen));
+    for (int j = 0; j < glyph.height_px; ++j) {
+      for (int i = 0; i < glyph.width_px; ++i) {
+        const std::uint8_t coverage = glyph.coverage[static_cast<std::size_t>(j) * glyph.width_px + i];
+        if (coverage > 0) {
+          Blend(x + glyph.left_px + i, baseline + glyph.top_px + j, color, static_cast<float>(coverage) / 255);
+        }
+      }
+    }
+    pen += font_.Advance(character, size_px);
+  }
+}
+
+}  // namespace prehend::render

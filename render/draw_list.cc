@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies, hands, ghosts and markers as placed primitives.
+// Tested by tests/render/draw_list_test.cc
+#include "render/draw_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace prehend::render {
+namespace {
+
+using Eigen::Affine3f;
+using Eigen::Vector3f;
+
+constexpr float kGhostAlpha = 0.40f;
+constexpr float kForearmAlpha = 0.55f;
+constexpr float kUsualDistance_m = 2.1f;  // from eye to scene; the size of beads and tubes is meant for it
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+
+Affine3f ToAffine(const physics::Pose& pose) {
+  return Eigen::Translation3f(pose.p_m.cast<float>()) * pose.q.cast<float>();
+}
+
+// A box whose outer half sizes are given; edges are rounded inwards.
+void SetRoundedBox(const Vector3f& outer_half_m, float rounding_m, Item* item) {
+  item->primitive = Primitive::kBox;
+  item->rounding_m = std::min(rounding_m, 0.98f * outer_half_m.minCoeff());
+  item->half_size_m = outer_half_m.array() - item->rounding_m;
+}
+
+void SetShape(const physics::Shape& shape, Item* item) {
+  std::visit(Overloaded{[&](const physics::Box& box) {
+                          const Vector3f half = box.size_m.cast<float>() / 2;
+                          SetRoundedBox(half, std::min(0.008f, 0.16f * half.minCoeff()), item);
+                        },
+                        [&](const physics::Sphere& sphere) {
+                          item->primitive = Primitive::kBall;
+                          item->rounding_m = static_cast<float>(sphere.radius_m);
+                        },
+                        [&](const physics::Cylinder& cylinder) {
+                          const auto r = static_cast<float>(cylinder.radius_m);
+                          const auto h = static_cast<float>(cylinder.length_m) / 2;
+                          item->primitive = Primitive::kCylinder;
+                          item->rounding_m = std::min(0.005f, 0.2f * std::min(r, h));
+                          item->half_size_m = Vector3f(r, r, h).array() - item->rounding_m;
+                        },
+                        [&](const physics::Capsule& capsule) {
+                          item->primitive = Primitive::kBall;
+                          item->rounding_m = static_cast<float>(capsule.radius_m);
+                          item->half_size_m = {0, 0, static_cast<float>(capsule.length_m) / 2};
+                        }},
+             shape);
+}
+
+// A body or hand on its way into the list: how it looks and who it is.
+struct Look {
+  Color color = {0.5f, 0.5f, 0.5f};
+  float alpha = 1;
+  float gloss = 0.25f;
+  int object = 0;
+};
+
+Item MakeItem(const Affine3f& X_WI, const Look& look) {
+  return {.X_WI = X_WI, .color = look.color, .alpha = look.alpha, .gloss = look.gloss, .object = look.object};
+}
+
+void AddBody(const physics::Body& body, const physics::Pose& X_WB, const Look& look, std::vector<Item>* items,
+             DrawList* list) {
+  for (const physics::PlacedShape& placed : body.shapes) {
+    Item item = MakeItem(ToAffine(X_WB * placed.X_BS), look);
+    SetShape(placed.shape, &item);
+    AddItem(item, items, list);
+  }
+}
+
+void AddHand(const physics::HandModel& model, const physics::HandState& state, const Look& look,
+             std::vector<Item>* items, DrawList* list) {
+  Item palm = MakeItem(ToAffine(state.palm.X_WB), look);
+  SetRoundedBox(model.palm_size_m.cast<float>() / 2, 0.012f, &palm);
+  AddItem(palm, items, list);
+  for (std::size_t i = 0; i < std::min(model.links.size(), state.X_WL.size()); ++i) {
+    const physics::HandLink& link = model.links[i];
+    Item item = MakeItem(ToAffine(state.X_WL[i]), look);
+    const Vector3f half(link.length_m / 2, link.half_width_m, link.half_thickness_m);
+    const float rounding = 0.95f * std::min(half.y(), half.z());
+    // Round ends would leave notches at the joints; longer links grow into each other instead.
+    SetRoundedBox(half + Vector3f(0.45f * rounding, 0, 0), rounding, &item);
+    AddItem(item, items, list);
+  }
+}
+
+// Where the arm would be: there is none in the physics, so it is only hinted at.
+void AddForearm(const physics::HandModel& model, const physics::HandState& state, const Look& look,
+                std::vector<Item>* items, DrawList* list) {
+  constexpr float kLength_m = 0.17f;
+  const float wrist = static_cast<float>(model.palm_size_m.x()) / 2;
+  const float radius = 0.36f * static_cast<float>(model.palm_size_m.y());
+  const Affine3f X_HA = Eigen::Translation3f(-wrist - kLength_m / 2 - 0.6f * radius, 0, 0) *
+                        Eigen::AngleAxisf(static_cast<float>(M_PI_2), Vector3f::UnitY());
+  Item item = MakeItem(ToAffine(state.palm.X_WB) * X_HA, look);
+  item.primitive = Primitive::kBall;
+  item.half_size_m = {0, 0, kLength_m / 2};
+  item.rounding_m = radius;
+  AddItem(item, items, list);
+}
+
+int AddObject(const std::string& name, DrawList* list) {
+  list->objects.push_back({name, {}});
+  return static_cast<int>(list->objects.size()) - 1;
+}
+
+physics::Pose BodyPose(const physics::Scene& scene, const physics::Snapshot& snapshot, std::size_t body) {
+  return body < snapshot.bodies.size() ? snapshot.bodies[body].X_WB : scene.bodies[body].X_WB;
+}
+
+void AddBodiesAndHands(const Picture& picture, DrawList* list) {
+  const physics::Scene& scene = *picture.scene;
+  list->first_body = static_cast<int>(list->objects.size());
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Look look{.color = BodyColor(picture, i), .object = AddObject("body:" + scene.bodies[i].name, list)};
+    AddBody(scene.bodies[i], BodyPose(scene, picture.snapshot, i), look, &list->solids, list);
+  }
+  list->first_hand = static_cast<int>(list->objects.size());
+  for (std::size_t i = 0; i < scene.hands.size(); ++i) {
+    Look look{.color = kSkinColor, .gloss = 0.15f, .object = AddObject("hand:" + scene.hands[i].name, list)};
+    if (i >= picture.snapshot.hands.size()) continue;
+    AddHand(scene.hands[i].model, picture.snapshot.hands[i], look, &list->solids, list);
+    look.alpha = kForearmAlpha;
+    AddForearm(scene.hands[i].model, picture.snapshot.hands[i], look, &list->ghosts.emplace_back(), list);
+  }
+}
+
+void AddGhost(const Picture& picture, std::size_t number, DrawList* list) {
+  const physics::Scene& scene = *picture.scene;
+  const Ghost& ghost = picture.ghosts[number];
+  const auto hand = static_cast<std::size_t>(ghost.hand);
+  const bool has_hand = ghost.hand >= 0 && hand < scene.hands.size() && hand < ghost.snapshot.hands.size();
+  const std::string who = has_hand ? scene.hands[hand].name : "";
+  Look look{.alpha = kGhostAlpha, .gloss = 0.1f};
+  look.object = AddObject("ghost:" + std::to_string(number) + ":" + who, list);
+  std::vector<Item> items;
+  if (has_hand) {
+    look.color = 0.6f * ghost.tint + 0.4f * kSkinColor;
+    AddHand(scene.hands[hand].model, ghost.snapshot.hands[hand], look, &items, list);
+    AddForearm(scene.hands[hand].model, ghost.snapshot.hands[hand], look, &items, list);
+  }
+  for (const int body : ghost.bodies) {
+    const auto i = static_cast<std::size_t>(body);
+    if (body < 0 || i >= scene.bodies.size()) continue;
+    look.color = 0.75f * BodyColor(picture, i) + 0.25f * ghost.tint;
+    AddBody(scene.bodies[i], BodyPose(scene, ghost.snapshot, i), look, &items, list);
+  }
+  list->ghosts.push_back(std::move(items));
+}
+
+void AddMarker(const Picture& picture, std::size_t number, DrawList* list) {
+  const Marker& marker = picture.markers[number];
+  struct MarkerLook {
+    const char* name;
+    Color color;
+    float alpha;
+  };
+  static const MarkerLook kLooks[] = {{"contact", {1.0f, 0.83f, 0.0f}, 0.9f},
+                                      {"support", {0.18f, 0.80f, 0.25f}, 0.75f},
+                                      {"region", {0.42f, 0.66f, 1.0f}, 0.30f}};
+  const MarkerLook& look = kLooks[static_cast<int>(marker.kind)];
+  const std::string name = "marker:" + std::to_string(number) + ":" + look.name;
+  if (!(marker.half_size_m.minCoeff() > 0)) return;
+  const Affine3f X_WI = Eigen::Translation3f(marker.p_W_m) * Eigen::Scaling(marker.half_size_m);
+  AddItem({.primitive = Primitive::kBall,
+           .X_WI = X_WI,
+           .rounding_m = 1,
+           .color = look.color,
+           .alpha = look.alpha,
+           .gloss = 0,
+           .finish = Finish::kRegion,
+           .object = AddObject(name, list)},
+          &list->markers, list);
+}
+
+}  // namespace
+
+void AddItem(const Item& item, std::vector<Item>* items, DrawList* list) {
+  if (!item.X_WI.matrix().allFinite() || !item.half_size_m.allFinite() || !std::isfinite(item.rounding_m) ||
+      !item.color.allFinite()) {
+    return;
+  }
+  Bounds bounds;
+  if (item.primitive == Primitive::kTube) {
+    for (const Vertex& vertex : list->tubes[item.tube].vertices) bounds.Add(vertex.corner);
+  } else {
+    const Vector3f reach = item.X_WI.linear().cwiseAbs() * (item.half_size_m.array() + item.rounding_m).matrix();
+    bounds.Add(Vector3f(item.X_WI.translation() - reach));
+    bounds.Add(Vector3f(item.X_WI.translation() + reach));
+  }
+  list->objects[item.object].bounds.Add(bounds);
+  list->bounds.Add(bounds);
+  items->push_back(item);
+}
+
+Color BodyColor(const Picture& picture, std::size_t body) {
+  static const Color kPalette[] = {{0.91f, 0.93f, 0.95f}, {0.88f, 0.48f, 0.25f}, {0.25f, 0.43f, 0.55f},
+                                   {0.61f, 0.77f, 0.24f}, {0.78f, 0.16f, 0.20f}, {0.89f, 0.70f, 0.39f},
+                                   {0.42f, 0.56f, 0.68f}, {0.55f, 0.36f, 0.29f}};
+  if (body < picture.body_colors.size()) return picture.body_colors[body];
+  if (picture.scene->bodies[body].fixed) return {0.80f, 0.62f, 0.44f};
+  return kPalette[body % std::size(kPalette)];
+}
+
+DrawList MakeDrawList(const Picture& picture) {
+  DrawList list;
+  list.objects = {{"background", {}}, {"ground", {}}};
+  if (picture.scene != nullptr) AddBodiesAndHands(picture, &list);
+  const float distance = (picture.camera.eye_m - picture.camera.look_at_m).norm();
+  const float scale = std::isfinite(distance) ? std::clamp(distance / kUsualDistance_m, 0.6f, 4.0f) : 1.0f;
+  AddPath(picture.path, scale, &list);
+  if (picture.scene != nullptr) {
+    for (std::size_t i = 0; i < picture.ghosts.size(); ++i) AddGhost(picture, i, &list);
+  }
+  for (std::size_t i = 0; i < picture.markers.size(); ++i) AddMarker(picture, i, &list);
+  return list;
+}
+
+}  // namespace prehend::render

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Images as PNG files, and their hash. Level 3 with the SUB filter is the cheapest setting that stays small.
+// Tested by tests/render/image_file_test.cc
+#include <png.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "render/picture.h"
+
+namespace prehend::render {
+namespace {
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+std::uint64_t HashBytes(std::uint64_t hash, const void* bytes, std::size_t size) {
+  constexpr std::uint64_t kPrime = 0x100000001b3;
+  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<const std::uint8_t*>(bytes)[i]) * kPrime;
+  return hash;
+}
+
+// libpng reports errors by longjmp; no object with a destructor may live between here and the jump.
+bool WriteRows(png_structp png, png_infop info, const Image& image, std::FILE* file) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  png_init_io(png, file);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width_px), static_cast<png_uint_32>(image.height_px), 8,
+               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_compression_level(png, 3);
+  png_set_filter(png, 0, PNG_FILTER_SUB);
+  png_write_info(png, info);
+  const std::size_t row_bytes = static_cast<std::size_t>(image.width_px) * 3;
+  for (int row = 0; row < image.height_px; ++row) png_write_row(png, image.rgb.data() + row * row_bytes);
+  png_write_end(png, info);
+  return true;
+}
+
+}  // namespace
+
+bool WritePng(const Image& image, const std::string& path) {
+  if (image.width_px <= 0 || image.rgb.size() != 3ull * image.width_px * image.height_px) return false;
+  File file(std::fopen(path.c_str(), "wb"));
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
+  const bool written = file != nullptr && info != nullptr && WriteRows(png, info, image, file.get());
+  png_destroy_write_struct(&png, &info);
+  return written && std::fclose(file.release()) == 0;
+}
+
+Image ReadPng(const std::string& path) {
+  png_image header = {};
+  header.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_file(&header, path.c_str()) == 0) return {};
+  header.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(header.width), static_cast<int>(header.height), {}};
+  if (image.width_px > kMaxPictureSide_px || image.height_px > kMaxPictureSide_px) {
+    png_image_free(&header);
+    return {};
+  }
+  image.rgb.resize(PNG_IMAGE_SIZE(header));
+  const bool complete = png_image_finish_read(&header, nullptr, image.rgb.data(), 0, nullptr) != 0;
+  return complete ? image : Image{};
+}
+
+std::uint64_t PixelHash(const Image& image) {
+  const std::int32_t size[] = {image.width_px, image.height_px};
+  constexpr std::uint64_t kOffsetBasis = 0xcbf29ce484222325;
+  return HashBytes(HashBytes(kOffsetBasis, size, sizeof size), image.rgb.data(), image.rgb.size());
+}
+
+}  // namespace prehend::render

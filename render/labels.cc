@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Greedy placement: for every label, of all places around its anchor that break no rule, the cheapest. Cost is
+// distance plus what the label would cover; upwards and to the sides is preferred to downwards.
+// Tested by tests/render/labels_test.cc
+#include "render/labels.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace prehend::render {
+namespace {
+
+using Eigen::Vector2f;
+
+constexpr float kTextSize = 16;
+constexpr float kSmallestText = 10;
+constexpr int kDirections = 16;
+constexpr float kDistances[] = {14, 28, 46, 70, 100, 140, 190, 250};
+constexpr float kCoveredPoint = 5;      // cost of a path point under the label
+constexpr float kCoveredAnchor = 60;    // of another thing's middle
+constexpr float kCoveredLeader = 90;    // of a leader that it lies on or crosses
+constexpr float kDownwards = 12;
+
+float TextSize(float scale) { return std::max(kSmallestText, kTextSize * scale); }
+
+bool Contains(const Rect& rect, const Vector2f& p) {
+  return p.x() >= rect.x && p.x() <= rect.right() && p.y() >= rect.y && p.y() <= rect.bottom();
+}
+
+bool ContainsRect(const Rect& outer, const Rect& inner) {
+  return inner.x >= outer.x && inner.y >= outer.y && inner.right() <= outer.right() && inner.bottom() <= outer.bottom();
+}
+
+// Where the line from the anchor meets the label: the nearest point of its edge.
+Vector2f LeaderEnd(const Rect& box, const Vector2f& anchor) {
+  return {std::clamp(anchor.x(), box.x, box.right()), std::clamp(anchor.y(), box.y, box.bottom())};
+}
+
+float Side(const Vector2f& a, const Vector2f& b, const Vector2f& p) {
+  return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+}
+
+bool Cross(const Vector2f& a, const Vector2f& b, const Vector2f& c, const Vector2f& d) {
+  return Side(a, b, c) * Side(a, b, d) < 0 && Side(c, d, a) * Side(c, d, b) < 0;
+}
+
+bool Passes(const Vector2f& from, const Vector2f& to, const Rect& box) {
+  const Vector2f low(box.x, box.y), high(box.right(), box.bottom());
+  return Cross(from, to, low, high) || Cross(from, to, {low.x(), high.y()}, {high.x(), low.y()});
+}
+
+// Nothing where the label must not be.
+std::optional<float> Cost(const Rect& box, const LabelRequest& request, const std::vector<LabelRequest>& requests,
+                          const std::vector<PlacedLabel>& placed, const LabelObstacles& obstacles) {
+  if (!ContainsRect(obstacles.area, box)) return std::nullopt;
+  for (const Rect& rect : obstacles.forbidden) {
+    if (box.Overlaps(rect)) return std::nullopt;
+  }
+  const Vector2f end = LeaderEnd(box, request.anchor);
+  float cost = (end - request.anchor).norm() + (box.y > request.anchor.y() ? kDownwards : 0);
+  for (const PlacedLabel& other : placed) {
+    if (box.Grown(3).Overlaps(other.box)) return std::nullopt;
+    const Vector2f other_end = LeaderEnd(other.box, other.request.anchor);
+    if (Passes(request.anchor, end, other.box)) return std::nullopt;
+    if (Passes(other.request.anchor, other_end, box)) cost += kCoveredLeader;
+    if (Cross(request.anchor, end, other.request.anchor, other_end)) cost += kCoveredLeader;
+  }
+  for (const LabelRequest& other : requests) {
+    if (Contains(box.Grown(0.5f * other.reach_px), other.anchor)) cost += kCoveredAnchor;
+  }
+  for (const Vector2f& p : obstacles.avoid) {
+    if (Contains(box.Grown(4), p)) cost += kCoveredPoint;
+  }
+  return cost;
+}
+
+}  // namespace
+
+std::vector<PlacedLabel> PlaceLabels(const std::vector<LabelRequest>& requests, const LabelObstacles& obstacles,
+                                     const Font& font, float scale) {
+  std::vector<PlacedLabel> placed;
+  const float height = TextSize(scale) + 6 * scale;
+  for (const LabelRequest& request : requests) {
+    if (request.text.empty() || !request.anchor.allFinite() || !Contains(obstacles.area, request.anchor)) continue;
+    const float width = font.Width(request.text, TextSize(scale)) + 15 * scale;
+    float best_cost = std::numeric_limits<float>::infinity();
+    PlacedLabel best{request, {}};
+    for (const float distance : kDistances) {
+      for (int k = 0; k < kDirections; ++k) {
+        const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
+        const float away = distance * scale + 0.6f * request.reach_px;
+        const Vector2f toward(std::cos(angle), -std::sin(angle));
+        // The box's near edge, not its middle, is `away` from the anchor.
+        const Vector2f middle = request.anchor + toward * away + Vector2f(toward.x() * width, toward.y() * height) / 2;
+        const Rect box = {std::round(middle.x() - width / 2), std::round(middle.y() - height / 2), width, height};
+        const std::optional<float> cost = Cost(box, request, requests, placed, obstacles);
+        if (cost.has_value() && *cost < best_cost) {
+          best_cost = *cost;
+          best.box = box;
+        }
+      }
+    }
+    if (std::isfinite(best_cost)) placed.push_back(std::move(best));
+  }
+  return placed;
+}
+
+void DrawLabels(const std::vector<PlacedLabel>& labels, float scale, Canvas* canvas) {
+  const Color ink = Hex(0x30363D);
+  for (const PlacedLabel& label : labels) {
+    const Vector2f anchor = label.request.anchor;
+    canvas->DrawLine(anchor, LeaderEnd(label.box, anchor), std::max(1.0f, 1.4f * scale), ink, 0.8f);
+    const float dot = std::max(4.0f, 5 * scale);
+    canvas->FillRounded({anchor.x() - dot / 2, anchor.y() - dot / 2, dot, dot}, dot / 2, ink, 0.9f);
+  }
+  for (const PlacedLabel& label : labels) {
+    const Rect& box = label.box;
+    canvas->FillRounded(box, 5 * scale, Hex(0xFFFFFF), 0.88f);
+    canvas->FillRounded({box.x + scale, box.y + 3 * scale, 3 * scale, box.height - 6 * scale}, 1.5f * scale,
+                        label.request.color);
+    const float size = TextSize(scale);
+    const float top = box.y + (box.height - 1.3f * canvas->font().Ascent(size)) / 2;
+    canvas->DrawText(box.x + 8 * scale, top, label.request.text, size, Hex(0x1B1F24));
+  }
+}
+
+}  // namespace prehend::render

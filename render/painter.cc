@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts a picture together: strip layout, camera, scene, then everything flat on top of it.
+// Tested by tests/render/painter_test.cc
+#include <algorithm>
+#include <cmath>
+
+#include "render/draw_list.h"
+#include "render/gl_functions.h"
+#include "render/labels.h"
+#include "render/osmesa_context.h"
+#include "render/picture.h"
+#include "render/scene_renderer.h"
+#include "render/shaders.h"
+#include "render/timeline_strip.h"
+
+namespace prehend::render {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+constexpr float kTitleSize = 19;
+
+// The processor's class that pixels depend on.
+const char* FusedMultiplyAdd() {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("fma") ? "fma" : "no-fma";
+#else
+  return "other-cpu";
+#endif
+}
+
+std::string SizeError(const Picture& picture) {
+  const auto fits = [](int side_px) { return side_px >= 1 && side_px <= kMaxPictureSide_px; };
+  if (fits(picture.width_px) && fits(picture.height_px)) return "";
+  return "a picture of " + std::to_string(picture.width_px) + " x " + std::to_string(picture.height_px) +
+         " pixels cannot be drawn: each side must be 1 to " + std::to_string(kMaxPictureSide_px);
+}
+
+// Everything that follows from a picture before anything is drawn.
+struct Plan {
+  StripLayout strip;
+  DrawList list;
+  View view;
+};
+
+Plan MakePlan(const Picture& picture, const Font& font) {
+  Plan plan;
+  plan.strip = LayOutStrip(picture.strip, font, picture.width_px, picture.height_px);
+  plan.list = MakeDrawList(picture);
+  plan.view = MakeView(picture.camera, picture.width_px, picture.height_px, plan.strip.reserved_px(), plan.list.bounds);
+  return plan;
+}
+
+// The nearer half of the projected diagonal: how far a label should stay from the anchor.
+LabelRequest RequestLabel(const std::string& text, const Color& color, const Bounds& bounds, const View& view) {
+  LabelRequest request{text, color, Vector2f::Constant(std::nanf("")), 0};
+  const std::optional<Vector2f> middle = ToPixel(view, bounds.center_m());
+  if (bounds.empty() || !middle.has_value()) return request;
+  request.anchor = *middle;
+  const Vector3f half = (bounds.high_m - bounds.low_m) / 2;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::optional<Vector2f> side = ToPixel(view, bounds.center_m() + half[axis] * Vector3f::Unit(axis));
+    if (side.has_value()) request.reach_px = std::max(request.reach_px, (*side - *middle).norm());
+  }
+  request.reach_px = std::min(request.reach_px, 0.12f * static_cast<float>(view.height_px));
+  return request;
+}
+
+std::vector<LabelRequest> RequestLabels(const Picture& picture, const Plan& plan) {
+  std::vector<LabelRequest> requests;
+  const auto request = [&](const std::vector<std::string>& labels, int first_object, const auto& color_of) {
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const std::size_t object = first_object + i;
+      if (labels[i].empty() || object >= plan.list.objects.size()) continue;
+      requests.push_back(RequestLabel(labels[i], color_of(i), plan.list.objects[object].bounds, plan.view));
+    }
+  };
+  if (picture.scene == nullptr) return requests;
+  request(picture.body_labels, plan.list.first_body, [&](std::size_t i) { return BodyColor(picture, i); });
+  request(picture.hand_labels, plan.list.first_hand, [](std::size_t) { return kSkinColor; });
+  return requests;
+}
+
+// Points along paths, dense enough that a label cannot hide between two.
+std::vector<Vector2f> PathPixels(const Plan& plan) {
+  std::vector<Vector2f> pixels;
+  for (const Mesh& tube : plan.list.tubes) {
+    for (std::size_t i = 0; i < tube.vertices.size(); i += 13) {
+      const std::optional<Vector2f> p = ToPixel(plan.view, tube.vertices[i].corner);
+      if (p.has_value()) pixels.push_back(*p);
+    }
+  }
+  return pixels;
+}
+
+Rect DrawTitle(const std::string& title, float scale, float width, Canvas* canvas) {
+  if (title.empty()) return {};
+  const float size = std::max(11.0f, kTitleSize * scale);
+  const std::string text = canvas->font().Shortened(title, size, width - 56 * scale);
+  if (text.empty()) return {};
+  const Rect box = {12 * scale, 12 * scale, canvas->font().Width(text, size) + 24 * scale, size + 12 * scale};
+  canvas->FillRounded(box, 7 * scale, Hex(0xFFFFFF), 0.86f);
+  canvas->DrawText(box.x + 12 * scale, box.y + 6 * scale, text, size, Hex(0x1B1F24));
+  return box;
+}
+
+void DrawOverlay(const Picture& picture, const Plan& plan, Canvas* canvas) {
+  const float scale = OverlayScale(picture.height_px);
+  const auto width = static_cast<float>(picture.width_px), height = static_cast<float>(picture.height_px);
+  const Rect title = DrawTitle(picture.title, scale, width, canvas);
+  const float free_height = height - static_cast<float>(plan.strip.reserved_px());
+  const LabelObstacles obstacles{.area = Rect{0, 0, width, free_height}.Grown(-5 * scale),
+                                 .forbidden = {title.Grown(4 * scale)},
+                                 .avoid = PathPixels(plan)};
+  DrawLabels(PlaceLabels(RequestLabels(picture, plan), obstacles, canvas->font(), scale), scale, canvas);
+  DrawStrip(plan.strip, canvas);
+}
+
+}  // namespace
+
+// Members die in reverse order: the renderer before the functions and the context that it needs.
+struct Painter::State {
+  std::string error;
+  std::unique_ptr<Font> font;
+  std::unique_ptr<OffscreenContext> context;
+  GlFunctions gl;
+  std::unique_ptr<SceneRenderer> renderer;
+
+  bool ready() const { return renderer != nullptr; }
+  // Leaves in `error` why this picture cannot be drawn, or nothing.
+  bool Prepare(const Picture& picture);
+};
+
+bool Painter::State::Prepare(const Picture& picture) {
+  if (!ready()) return false;
+  error = SizeError(picture);
+  if (error.empty() && !context->MakeCurrent()) error = "the off-screen context cannot be made current";
+  return error.empty();
+}
+
+Painter::Painter(const std::string& font_file) : state_(std::make_unique<State>()) {
+  State& state = *state_;
+  state.font = Font::Read(font_file, &state.error);
+  if (state.font == nullptr) return;
+  state.context = OffscreenContext::Create(&state.error);
+  if (state.context == nullptr) return;
+  if (!LoadGlFunctions(&OffscreenContext::FunctionAddress, &state.gl, &state.error)) return;
+  state.renderer = SceneRenderer::Create(state.gl, &state.error);
+  if (state.renderer != nullptr && !state.renderer->PassesSelfTest()) {
+    state.renderer = nullptr;
+    state.error = "the OpenGL self-test drew something else than a triangle";
+  }
+}
+
+Painter::~Painter() {
+  if (state_->context != nullptr) state_->context->MakeCurrent();
+}
+
+const std::string& Painter::error() const { return state_->error; }
+
+Image Painter::Draw(const Picture& picture) {
+  if (!state_->Prepare(picture)) return {};
+  const Plan plan = MakePlan(picture, *state_->font);
+  Image image = state_->renderer->Render(plan.list, plan.view);
+  if (image.rgb.empty()) {
+    state_->error = "OpenGL has no memory for a picture of this size";
+    return {};
+  }
+  Canvas canvas(*state_->font, &image);
+  DrawOverlay(picture, plan, &canvas);
+  return image;
+}
+
+IdImage Painter::DrawIds(const Picture& picture) {
+  if (!state_->Prepare(picture)) return {};
+  const Plan plan = MakePlan(picture, *state_->font);
+  IdImage image{picture.width_px, picture.height_px, state_->renderer->RenderIds(plan.list, plan.view), {}};
+  if (image.ids.empty()) {
+    state_->error = "OpenGL has no memory for a picture of this size";
+    return {};
+  }
+  for (const DrawnObject& object : plan.list.objects) image.names.push_back(object.name);
+  return image;
+}
+
+std::string Painter::Fingerprint() const {
+  if (!state_->ready()) return "";
+  state_->context->MakeCurrent();
+  const auto text = [&](GLenum name) {
+    const GLubyte* bytes = state_->gl.GetString(name);
+    return std::string(bytes != nullptr ? reinterpret_cast<const char*>(bytes) : "unknown");
+  };
+  return text(GL_VERSION) + " | " + text(GL_RENDERER) + " | " + FusedMultiplyAdd() + " | renderer " +
+         std::to_string(kRendererVersion);
+}
+
+}  // namespace prehend::render

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shader sources (GLSL 3.30). What each computes is said beside it in shaders.cc.
+#pragma once
+
+namespace prehend::render {
+
+/// Number that changes whenever pixels change on purpose; part of the fingerprint.
+inline constexpr int kRendererVersion = 1;
+
+extern const char* const kSolidVertexShader;      ///< corner * half_size + direction * rounding, to world and clip
+extern const char* const kSurfaceFragmentShader;  ///< light, shadow, ground grid, region rim
+extern const char* const kDepthFragmentShader;    ///< nothing but depth
+extern const char* const kIdFragmentShader;       ///< the object's number
+extern const char* const kScreenVertexShader;     ///< one triangle over the whole target
+extern const char* const kBackdropFragmentShader;
+extern const char* const kOcclusionFragmentShader;
+extern const char* const kOcclusionBlurFragmentShader;
+
+}  // namespace prehend::render

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one place where stb_truetype is compiled; font.cc uses it.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+#define STB_TRUETYPE_IMPLEMENTATION
+#include <stb/stb_truetype.h>
+#pragma GCC diagnostic pop

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// Layout of the strip: rows to lanes (first free lane), names inside the bar or above it, ticks at round seconds.
+// Tested by tests/render/timeline_strip_test.cc
+#include "render/timeline_strip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace prehend::render {
+namespace {
+
+// Sizes at 720 rows, in pixels.
+constexpr float kMargin = 12;
+constexpr float kPadding = 10;
+constexpr float kBarHeight = 18;
+constexpr float kLanePitch = 23;
+constexpr float kNameHeight = 15;  // room for names above the bars of a lane
+constexpr float kAxisHeight = 20;
+constexpr float kRowText = 15, kBarText = 14, kSmallText = 12;
+constexpr float kSmallestText = 9;
+constexpr float kLargestShare = 0.42f;
+constexpr std::size_t kMostLanes = 4;
+
+struct TimeAxis {
+  double begin_s = 0, end_s = 1;
+  float left = 0, right = 1;
+  float At(double t_s) const {
+    return left + (right - left) * static_cast<float>(std::clamp((t_s - begin_s) / (end_s - begin_s), 0.0, 1.0));
+  }
+};
+
+bool IsVisible(const StripSegment& segment, const TimelineStrip& strip) {
+  return segment.begin_s <= segment.end_s && segment.end_s >= strip.begin_s && segment.begin_s <= strip.end_s;
+}
+
+// Each segment into the first lane that is free at its time; when all are taken, into the last.
+std::vector<std::vector<StripSegment>> SplitIntoLanes(const StripRow& row, const TimelineStrip& strip) {
+  std::vector<StripSegment> segments;
+  std::copy_if(row.segments.begin(), row.segments.end(), std::back_inserter(segments),
+               [&](const StripSegment& segment) { return IsVisible(segment, strip); });
+  std::stable_sort(segments.begin(), segments.end(),
+                   [](const StripSegment& a, const StripSegment& b) { return a.begin_s < b.begin_s; });
+  std::vector<std::vector<StripSegment>> lanes(1);
+  for (StripSegment& segment : segments) {
+    auto lane = std::find_if(lanes.begin(), lanes.end(), [&](const auto& taken) {
+      return taken.empty() || taken.back().end_s <= segment.begin_s + 1e-9;
+    });
+    if (lane == lanes.end() && lanes.size() < kMostLanes) lane = lanes.emplace(lanes.end());
+    if (lane == lanes.end()) lane = std::prev(lanes.end());
+    lane->push_back(std::move(segment));
+  }
+  return lanes;
+}
+
+// The name inside if it fits, perhaps smaller; else above, as near to its bar as names above it allow.
+void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& axis, float scale, float* above_taken,
+               StripBar* bar) {
+  if (segment.label.empty()) return;
+  bar->name = segment.label;
+  const float small = std::max(kSmallestText, kSmallText * scale);
+  for (const float size : {std::max(kSmallestText, kBarText * scale), small}) {
+    const float width = font.Width(segment.label, size);
+    if (width > bar->rect.width - 6 * scale) continue;
+    bar->name_place = NamePlace::kInside;
+    bar->name_size_px = size;
+    bar->name_left = bar->rect.x + (bar->rect.width - width) / 2;
+    return;
+  }
+  const float width = font.Width(segment.label, small);
+  const float middle = bar->rect.x + bar->rect.width / 2;
+  const float left = std::max(*above_taken, std::min(middle - width / 2, axis.right - width));
+  if (left <= middle && left + width <= axis.right + 1) {
+    bar->name_place = NamePlace::kAbove;
+    bar->name_size_px = small;
+    bar->name_left = left;
+    *above_taken = left + width + 6 * scale;
+    return;
+  }
+  bar->name = font.Shortened(segment.label, small, bar->rect.width - 4 * scale);
+  if (bar->name.size() < 5) return;  // an ellipsis has three bytes: a name of one letter tells nothing
+  bar->name_place = NamePlace::kInside;
+  bar->name_size_px = small;
+  bar->name_left = bar->rect.x + (bar->rect.width - font.Width(bar->name, small)) / 2;
+}
+
+StripLane MakeLane(const std::vector<StripSegment>& segments, const Font& font, const TimeAxis& axis, float scale) {
+  StripLane lane;
+  lane.track = {axis.left, 0, axis.right - axis.left, kBarHeight * scale};
+  float above_taken = axis.left;
+  for (const StripSegment& segment : segments) {
+    const float begin = axis.At(segment.begin_s), end = axis.At(segment.end_s);
+    StripBar bar{.rect = {begin, 0, std::max(2.0f, end - begin), kBarHeight * scale}, .color = segment.color};
+    if (bar.rect.width > 6) bar.rect = {begin + 0.5f, 0, bar.rect.width - 1, bar.rect.height};
+    PlaceName(segment, font, axis, scale, &above_taken, &bar);
+    lane.bars.push_back(std::move(bar));
+  }
+  return lane;
+}
+
+bool HasNameAbove(const StripLane& lane) {
+  return std::any_of(lane.bars.begin(), lane.bars.end(),
+                     [](const StripBar& bar) { return bar.name_place == NamePlace::kAbove; });
+}
+
+float LaneHeight(const StripLane& lane, float scale) {
+  return (kLanePitch + (HasNameAbove(lane) ? kNameHeight : 0)) * scale;
+}
+
+// Lanes from `top` down get their y; returns where the axis goes.
+float StackLanes(float top, float scale, const Font& font, std::vector<StripLane>* lanes) {
+  float y = top;
+  for (StripLane& lane : *lanes) {
+    const float bar_top = y + (HasNameAbove(lane) ? kNameHeight * scale : 0);
+    lane.track.y = bar_top;
+    for (StripBar& bar : lane.bars) {
+      bar.rect.y = bar_top;
+      // Letters without descenders look centred when the ascent is.
+      const float inside = bar_top + (bar.rect.height - 1.32f * font.Ascent(bar.name_size_px)) / 2;
+      bar.name_top = bar.name_place == NamePlace::kAbove ? y + scale : inside;
+    }
+    y += LaneHeight(lane, scale);
+  }
+  return y;
+}
+
+std::string Seconds(double t_s, double step_s) {
+  char text[32];
+  const int decimals = step_s >= 1 ? 0 : step_s >= 0.1 ? 1 : 2;
+  std::snprintf(text, sizeof text, "%.*f s", decimals, t_s);
+  return text;
+}
+
+// The smallest round step whose labels do not crowd.
+double TickStep(const TimeAxis& axis, float scale) {
+  const double shortest_s = 64 * scale / (axis.right - axis.left) * (axis.end_s - axis.begin_s);
+  const double decade = std::pow(10, std::floor(std::log10(shortest_s)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * decade >= shortest_s) return factor * decade;
+  }
+  return 10 * decade;
+}
+
+std::vector<StripTick> MakeTicks(const TimeAxis& axis, float scale) {
+  constexpr int kMinorPerMajor = 5;
+  const double step_s = TickStep(axis, scale), minor_s = step_s / kMinorPerMajor;
+  std::vector<StripTick> ticks;
+  const double first = std::ceil(axis.begin_s / minor_s - 1e-6), last = std::floor(axis.end_s / minor_s + 1e-6);
+  for (int i = 0; i <= last - first; ++i) {
+    const double number = first + i;
+    const bool major = std::fmod(std::abs(number), kMinorPerMajor) < 0.5;
+    ticks.push_back({axis.At(number * minor_s), major ? Seconds(number * minor_s, step_s) : ""});
+  }
+  return ticks;
+}
+
+float WidestLabel(const TimelineStrip& strip, const Font& font, float size_px) {
+  float widest = 0;
+  for (const StripRow& row : strip.rows) widest = std::max(widest, font.Width(row.label, size_px));
+  return widest;
+}
+
+}  // namespace
+
+int StripLayout::reserved_px() const {
+  return panel.height > 0 ? picture_height_px - static_cast<int>(panel.y) : 0;
+}
+
+float OverlayScale(int height_px) { return std::clamp(static_cast<float>(height_px) / 720, 0.62f, 4.0f); }
+
+StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_px, int height_px) {
+  const float scale = OverlayScale(height_px);
+  StripLayout layout{.scale = scale, .picture_height_px = height_px};
+  constexpr double kLongest_s = 1e7;
+  const double duration_s = strip.end_s - strip.begin_s;
+  if (strip.rows.empty() || !(duration_s > 1e-3 && duration_s < kLongest_s) || !(std::abs(strip.begin_s) < kLongest_s)) {
+    return layout;
+  }
+  const float text_size = std::max(kSmallestText, kRowText * scale);
+  const auto width = static_cast<float>(width_px), height = static_cast<float>(height_px);
+  const float label_width = std::min(WidestLabel(strip, font, text_size), 0.2f * width);
+  layout.label_left = (kMargin + kPadding + 2) * scale;
+  const TimeAxis axis{strip.begin_s, strip.end_s, layout.label_left + label_width + 14 * scale,
+                      width - (kMargin + 2 * kPadding) * scale};
+  if (axis.right - axis.left < 100) return layout;
+
+  const float frame_height = (kMargin + 2 * kPadding + kAxisHeight) * scale;
+  float used = frame_height;
+  for (const StripRow& row : strip.rows) {
+    std::vector<StripLane> lanes;
+    float row_height = 0;
+    for (const auto& segments : SplitIntoLanes(row, strip)) {
+      lanes.push_back(MakeLane(segments, font, axis, scale));
+      row_height += LaneHeight(lanes.back(), scale);
+    }
+    if (used + row_height > kLargestShare * height) break;
+    used += row_height;
+    lanes.front().label = font.Shortened(row.label, text_size, label_width + 1);
+    std::move(lanes.begin(), lanes.end(), std::back_inserter(layout.lanes));
+  }
+  if (layout.lanes.empty()) return layout;
+
+  layout.panel = {kMargin * scale, height - used, width - 2 * kMargin * scale, used - kMargin * scale};
+  layout.axis_top = StackLanes(layout.panel.y + kPadding * scale, scale, font, &layout.lanes);
+  layout.ticks = MakeTicks(axis, scale);
+  const bool inside = strip.playhead_s >= strip.begin_s && strip.playhead_s <= strip.end_s;
+  layout.playhead_x = inside ? axis.At(strip.playhead_s) : std::numeric_limits<float>::quiet_NaN();
+  layout.playhead_label = inside ? Seconds(strip.playhead_s, 0.01) : "";
+  return layout;
+}
+
+namespace {
+
+void DrawLane(const StripLayout& layout, const StripLane& lane, Canvas* canvas) {
+  const float s = layout.scale;
+  canvas->FillRounded(lane.track, 3 * s, Hex(0xDCE1E7), 0.85f);
+  const float text_size = std::max(kSmallestText, kRowText * s);
+  const float label_top = lane.track.y + (lane.track.height - 1.32f * canvas->font().Ascent(text_size)) / 2;
+  canvas->DrawText(layout.label_left, label_top, lane.label, text_size, Hex(0x1B1F24));
+  for (const StripBar& bar : lane.bars) {
+    canvas->FillRounded(bar.rect, 3 * s, bar.color);
+    if (bar.name_place == NamePlace::kNone) continue;
+    const Color ink = bar.name_place == NamePlace::kInside ? TextColorOn(bar.color) : Hex(0x1B1F24);
+    canvas->DrawText(bar.name_left, bar.name_top, bar.name, bar.name_size_px, ink);
+  }
+}
+
+void DrawAxis(const StripLayout& layout, const Rect& playhead_label, Canvas* canvas) {
+  const float s = layout.scale, size = std::max(kSmallestText, kSmallText * s);
+  const Color ink = Hex(0x59636E);
+  for (const StripTick& tick : layout.ticks) {
+    const float length = (tick.label.empty() ? 3.5f : 7.0f) * s;
+    canvas->DrawLine({tick.x, layout.axis_top}, {tick.x, layout.axis_top + length}, std::max(1.0f, s), ink, 0.9f);
+    if (tick.label.empty()) continue;
+    const float width = canvas->font().Width(tick.label, size);
+    const float left = std::min(tick.x - width / 2, layout.panel.right() - width - 4 * s);
+    const Rect box = {left, layout.axis_top + 8 * s, width, size};
+    if (!box.Grown(3 * s).Overlaps(playhead_label)) canvas->DrawText(left, box.y, tick.label, size, ink);
+  }
+}
+
+}  // namespace
+
+void DrawStrip(const StripLayout& layout, Canvas* canvas) {
+  if (!(layout.panel.height > 0)) return;
+  const float s = layout.scale, size = std::max(kSmallestText, kSmallText * s);
+  canvas->FillRounded(layout.panel, 8 * s, Hex(0xFFFFFF), 0.86f);
+  for (const StripLane& lane : layout.lanes) DrawLane(layout, lane, canvas);
+
+  const float width = canvas->font().Width(layout.playhead_label, size) + 10 * s;
+  const float left = std::clamp(layout.playhead_x - width / 2, layout.panel.x + 2 * s,
+                                std::max(layout.panel.x + 2 * s, layout.panel.right() - width - 2 * s));
+  const Rect tag = {left, layout.axis_top + 6 * s, width, size + 5 * s};
+  const bool has_playhead = !layout.playhead_label.empty();
+  DrawAxis(layout, has_playhead ? tag : Rect{}, canvas);
+  if (!has_playhead) return;
+  const Color ink = Hex(0x15181C);
+  canvas->DrawLine({layout.playhead_x, layout.panel.y + 2 * s}, {layout.playhead_x, tag.y + 2 * s},
+                   std::max(1.5f, 2 * s), ink);
+  canvas->FillRounded(tag, 4 * s, ink);
+  canvas->DrawText(tag.x + 5 * s, tag.y + 2 * s, layout.playhead_label, size, Hex(0xFFFFFF));
+}
+
+}  // namespace prehend::render

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The strip at the bottom of a picture: what happened when, as named bars, with a playhead. Laying out comes first
+// because the camera frames the scene in what the strip leaves free.
+// Tested by tests/render/timeline_strip_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/canvas.h"
+
+namespace prehend::render {
+
+enum class NamePlace { kNone, kInside, kAbove };
+
+struct StripBar {
+  Rect rect;
+  Color color;
+  NamePlace name_place = NamePlace::kNone;
+  std::string name;  ///< perhaps shortened
+  float name_size_px = 0;
+  float name_left = 0, name_top = 0;
+};
+
+/// One line of bars. A row whose segments overlap in time has several.
+struct StripLane {
+  Rect track;
+  std::string label;  ///< of the row, on its first lane
+  std::vector<StripBar> bars;
+};
+
+struct StripTick {
+  float x = 0;
+  std::string label;  ///< empty: a minor one
+};
+
+struct StripLayout {
+  float scale = 1;  ///< of all sizes; 1 at 720 rows
+  Rect panel;       ///< empty height: no strip
+  float label_left = 0;
+  float axis_top = 0;
+  std::vector<StripLane> lanes;
+  std::vector<StripTick> ticks;
+  float playhead_x = 0;  ///< NaN: outside
+  std::string playhead_label;
+  int reserved_px() const;  ///< rows that the scene should keep clear
+  int picture_height_px = 0;
+};
+
+/// Size of text and spacing relative to a picture of 720 rows.
+float OverlayScale(int height_px);
+
+/// Rows that do not fit into 42 % of the height are left out, last ones first.
+StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_px, int height_px);
+void DrawStrip(const StripLayout& layout, Canvas* canvas);
+
+}  // namespace prehend::render
