@@ -49,8 +49,8 @@ class TouchReader {
         if (a == b) continue;
         Mark(raw_.touching, std::minmax(a, b), frame);
         if (IsBody(a) && IsBody(b)) {
-          if (Holds(point, point.nhat_BA_W.z(), a, b, frame)) Mark(raw_.supported, {a, b}, frame);
-          if (Holds(point, -point.nhat_BA_W.z(), b, a, frame)) Mark(raw_.supported, {b, a}, frame);
+          if (Holds(point.nhat_BA_W.z(), a, b, frame)) Mark(raw_.supported, {a, b}, frame);
+          if (Holds(-point.nhat_BA_W.z(), b, a, frame)) Mark(raw_.supported, {b, a}, frame);
         } else if (IsBody(a) || IsBody(b)) {
           const physics::ContactSide& hand = IsBody(a) ? point.b : point.a;
           sensor_sets[{hand.hand, IsBody(a) ? a : b}] |= 1u << SensorSet(hand);
@@ -74,15 +74,12 @@ class TouchReader {
     return side.link < 0 ? model.palm_sensor_set : model.links[side.link].sensor_set;
   }
 
-  /// Whether this point holds the object from below. A point without a push holds nothing, unless
-  /// the object sleeps: then nobody computes the pushes.
-  bool Holds(const physics::ContactPoint& point, double up, int object, int support,
-             int frame) const {
-    const physics::BodyState& state = recording_.body(object, frame);
-    const double speed = RelativeVelocity(state, recording_.body(support, frame)).z();
+  /// Whether a point whose normal has this upward component holds the object from below.
+  bool Holds(double up, int object, int support, int frame) const {
+    const physics::BodyState &held = recording_.body(object, frame),
+                             &by = recording_.body(support, frame);
     return !recording_.scene.bodies[object].fixed && up >= settings_.support_up &&
-           (point.normal_impulse_n_s > 0 || state.asleep) &&
-           std::abs(speed) <= settings_.support_speed_m_per_s;
+           std::abs(RelativeVelocity(held, by).z()) <= settings_.support_speed_m_per_s;
   }
 
   void Mark(Flags& flags, Pair pair, int frame) const {

@@ -36,7 +36,6 @@ class Stage {
   struct Contact {
     physics::ContactSide a, b;
     Eigen::Vector3d nhat_BA_W = Eigen::Vector3d::UnitZ();
-    double impulse_n_s = 0.01;
   };
   static physics::ContactSide BodySide(int body) { return {.body = body}; }
   static physics::ContactSide HandSide(int hand, int sensor_set) {
@@ -127,10 +126,7 @@ class Stage {
     for (int set = 0; set < sets; ++set)
       all.push_back({BodySide(cup), HandSide(0, set), Eigen::Vector3d::UnitX()});
     for (const Contact& contact : all)
-      frame.contacts.push_back({.a = contact.a,
-                                .b = contact.b,
-                                .nhat_BA_W = contact.nhat_BA_W,
-                                .normal_impulse_n_s = contact.impulse_n_s});
+      frame.contacts.push_back({.a = contact.a, .b = contact.b, .nhat_BA_W = contact.nhat_BA_W});
     frames_.push_back(frame);
   }
 
