@@ -111,7 +111,9 @@ class Pairer {
     PairEqualLabels();
     PairChangedRoles();
     for (std::size_t i = 0; i < expected_.size(); ++i) {
-      if (!expected_taken_[i]) AddAlone(Agreement::kMissing, expected_[i].event);
+      if (expected_taken_[i]) continue;
+      AddAlone(Agreement::kMissing, expected_[i].event);
+      comparison_.pairings.back().golden_line = i;
     }
     for (std::size_t j = 0; j < actual_.size(); ++j) {
       if (!actual_taken_[j]) AddAlone(Agreement::kExtra, actual_[j]);
@@ -168,7 +170,7 @@ class Pairer {
   void AddPair(std::size_t i, std::size_t j) {
     const GoldenEvent& line = expected_[i];
     const NamedEvent& actual = actual_[j];
-    Pairing pairing{.agreement = Agreement::kMatched, .expected = line.event, .actual = actual};
+    Pairing pairing{.agreement = Agreement::kMatched, .expected = line.event, .actual = actual, .golden_line = i};
     pairing.begin_offset = actual.interval.begin - line.event.interval.begin;
     pairing.end_offset = actual.interval.end - line.event.interval.end;
     pairing.tolerance = line.tolerance_ms ? *line.tolerance_ms * ticks_per_second_ / 1000 : default_tolerance_;

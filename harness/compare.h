@@ -29,6 +29,7 @@ std::string_view Name(Agreement agreement);
 struct Pairing {
   Agreement agreement = Agreement::kMatched;
   std::optional<grammar::NamedEvent> expected, actual;
+  std::size_t golden_line = 0;     ///< index into Golden::events; only with `expected`
   grammar::Tick begin_offset = 0;  ///< actual - expected, ticks; 0 without a partner
   grammar::Tick end_offset = 0;
   grammar::Tick tolerance = 0;

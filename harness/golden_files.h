@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where goldens and what waits to become one are kept: golden/SKILL/NAME.timeline and build/pending/SKILL/NAME.timeline.
+// Tested by tests/harness/golden_files_test.cc
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/golden.h"
+
+namespace prehend::harness {
+
+class GoldenFiles {
+ public:
+  explicit GoldenFiles(std::filesystem::path project_root) : root_(std::move(project_root)) {}
+
+  /// `scenario` is its id, skill/name, here and below.
+  std::filesystem::path GoldenPath(const std::string& scenario) const;
+  std::filesystem::path PendingPath(const std::string& scenario) const;
+
+  /// No value and no diagnostics: there is no golden yet.
+  ReadResult<Golden> ReadGoldenOf(const std::string& scenario) const;
+
+  /// Both return "" or what went wrong. Writing a golden removes what was pending.
+  std::string WritePending(const Golden& golden) const;
+  std::string WriteAccepted(const Golden& golden) const;
+  void RemovePending(const std::string& scenario) const;
+
+  /// Ids of all goldens, sorted.
+  std::vector<std::string> List() const;
+
+ private:
+  std::filesystem::path root_;
+};
+
+/// Writes a file and the folders above it, as a whole or not at all. "" or what went wrong.
+std::string WriteTextFile(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace prehend::harness

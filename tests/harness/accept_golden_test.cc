@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a person wrote into a golden survives the next acceptance.
+#include "harness/accept_golden.h"
+
+#include <gtest/gtest.h>
+
+namespace prehend::harness {
+namespace {
+
+constexpr const char* kOld =
+    R"(# scenario: slide/x
+# grammar: pick_and_place
+# derived: from the script
+# accepted: 2026-01-31 "first"
+# ticks_per_second: 480
+# in the header
+# event    begin_s  end_s   roles
+# above the reach
+reaching   0.5000   1.0000  hand=hand  object=cup  tolerance=20ms because "soft start"
+# above the fixation
+fixation   1.0000   1.5000  hand=hand  object=cup
+# above the grasp
+grasping   1.5000   3.0000  hand=hand  object=cup
+# below
+)";
+
+Golden Old() { return ReadGolden("old", kOld).value.value(); }
+
+grammar::Timeline Recognised(std::vector<grammar::NamedEvent> events) {
+  for (auto& event : events) {
+    event.roles = {{"hand", "hand"}, {"object", "cup"}};
+    event.decided = event.interval.end + 7;
+  }
+  return {.ticks_per_second = 480, .events = std::move(events)};
+}
+
+const grammar::Timeline kShiftedWithoutFixation =
+    Recognised({{.event = "reaching", .interval = {250, 500}}, {.event = "grasping", .interval = {500, 1440}}});
+
+TEST(ProposeGolden, KeepsWhatPeopleWrote) {
+  const Golden golden = ProposeGolden(Old(), kShiftedWithoutFixation,
+                                      {.scenario = "slide/x", .grammar = "pick_and_place", .derived = {},
+                                       .acceptance = Acceptance{"2026-02-01", "no fixation any more"}});
+  EXPECT_EQ(WriteGolden(golden), R"(# scenario: slide/x
+# grammar: pick_and_place
+# derived: from the script
+# accepted: 2026-01-31 "first"
+# accepted: 2026-02-01 "no fixation any more"
+# ticks_per_second: 480
+# in the header
+# event   begin_s  end_s   roles
+# above the reach
+reaching  0.5208   1.0417  hand=hand  object=cup  tolerance=20ms because "soft start"
+# above the fixation
+# above the grasp
+grasping  1.0417   3.0000  hand=hand  object=cup
+# below
+)");
+}
+
+TEST(ProposeGolden, StartsFromNothing) {
+  const Golden golden = ProposeGolden(std::nullopt, kShiftedWithoutFixation,
+                                      {.scenario = "slide/x", .grammar = "g", .derived = {"by eye"}, .acceptance = {}});
+  EXPECT_EQ(golden.derived, std::vector<std::string>{"by eye"});
+  EXPECT_TRUE(golden.accepted.empty());
+  EXPECT_EQ(golden.events.size(), 2u);
+  EXPECT_EQ(ReadGolden("x", WriteGolden(golden)).value, golden);
+}
+
+TEST(SaysTheSame, IsExact) {
+  const auto same = Recognised({{.event = "reaching", .interval = {240, 480}},
+                                {.event = "fixation", .interval = {480, 720}},
+                                {.event = "grasping", .interval = {720, 1440}}});
+  EXPECT_TRUE(SaysTheSame(Old(), same));
+  EXPECT_FALSE(SaysTheSame(Old(), kShiftedWithoutFixation));
+  auto a_tick_later = same;
+  a_tick_later.events[0].interval.begin += 1;  // within the line's tolerance, but not the same
+  EXPECT_FALSE(SaysTheSame(Old(), a_tick_later));
+}
+
+}  // namespace
+}  // namespace prehend::harness
