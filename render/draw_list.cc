@@ -127,10 +127,13 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
   }
   list->first_hand = static_cast<int>(list->objects.size());
   for (std::size_t i = 0; i < scene.hands.size(); ++i) {
-    Look look{.color = kSkinColor, .gloss = 0.15f, .object = AddObject("hand:" + scene.hands[i].name, list)};
+    const Look look{.color = kSkinColor, .gloss = 0.15f, .object = AddObject("hand:" + scene.hands[i].name, list)};
     if (i >= picture.snapshot.hands.size()) continue;
     AddHand(scene.hands[i].model, picture.snapshot.hands[i], look, &list->solids, list);
-    look.alpha = kForearmAlpha;
+  }
+  for (std::size_t i = 0; i < std::min(scene.hands.size(), picture.snapshot.hands.size()); ++i) {
+    const Look look{.color = kSkinColor, .alpha = kForearmAlpha, .gloss = 0.15f,
+                    .object = AddObject("forearm:" + scene.hands[i].name, list)};
     AddForearm(scene.hands[i].model, picture.snapshot.hands[i], look, &list->ghosts.emplace_back(), list);
   }
 }

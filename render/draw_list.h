@@ -30,14 +30,14 @@ struct Item {
   int object = 0;
 };
 
-/// Something with a name: "body:milk", "hand:right_hand", "path:2:reaching", "ghost:0:right_hand", "marker:1:contact".
+/// Something with a name: "body:milk", "hand:right_hand", "forearm:right_hand", "path:2:reaching", "ghost:0:right_hand", "marker:1:contact".
 struct DrawnObject {
   std::string name;
   Bounds bounds;
 };
 
 struct DrawList {
-  std::vector<DrawnObject> objects;  ///< 0 is the background, 1 the ground; then bodies, hands, paths, ghosts, markers
+  std::vector<DrawnObject> objects;  ///< 0 is the background, 1 the ground; then bodies, hands, forearms, paths, ghosts, markers
   std::vector<Mesh> tubes;
   std::vector<Item> solids;                ///< bodies and hands
   std::vector<Item> paths;                 ///< seen through solids, faintly

@@ -4,6 +4,7 @@
 // Tested by tests/render/labels_test.cc
 #include "render/labels.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -18,8 +19,11 @@ constexpr float kTextSize = 16;
 constexpr float kSmallestText = 10;
 constexpr int kDirections = 16;
 constexpr float kDistances[] = {14, 28, 46, 70, 100, 140, 190, 250};
+constexpr float kPerPixel = 0.4f;       // cost of the distance from the anchor
 constexpr float kCoveredPoint = 5;      // cost of a path point under the label
-constexpr float kCoveredAnchor = 60;    // of another thing's middle
+constexpr float kCoveredThing = 110;    // of another thing, if the label lies on it as a whole
+constexpr float kCoveredSelf = 45;      // of its own thing
+constexpr float kCoveredAnchor = 40;    // of another thing's middle
 constexpr float kCoveredLeader = 90;    // of a leader that it lies on or crosses
 constexpr float kDownwards = 12;
 
@@ -51,6 +55,14 @@ bool Passes(const Vector2f& from, const Vector2f& to, const Rect& box) {
   return Cross(from, to, low, high) || Cross(from, to, {low.x(), high.y()}, {high.x(), low.y()});
 }
 
+// How much of the label lies on the thing, 0..1.
+float CoveredShare(const Rect& box, const Rect& thing) {
+  if (!box.Overlaps(thing)) return 0;
+  const float width = std::min(box.right(), thing.right()) - std::max(box.x, thing.x);
+  const float height = std::min(box.bottom(), thing.bottom()) - std::max(box.y, thing.y);
+  return width * height / (box.width * box.height);
+}
+
 // Nothing where the label must not be.
 std::optional<float> Cost(const Rect& box, const LabelRequest& request, const std::vector<LabelRequest>& requests,
                           const std::vector<PlacedLabel>& placed, const LabelObstacles& obstacles) {
@@ -59,16 +71,18 @@ std::optional<float> Cost(const Rect& box, const LabelRequest& request, const st
     if (box.Overlaps(rect)) return std::nullopt;
   }
   const Vector2f end = LeaderEnd(box, request.anchor);
-  float cost = (end - request.anchor).norm() + (box.y > request.anchor.y() ? kDownwards : 0);
+  float cost = kPerPixel * (end - request.anchor).norm() + (box.y > request.anchor.y() ? kDownwards : 0);
   for (const PlacedLabel& other : placed) {
-    if (box.Grown(3).Overlaps(other.box)) return std::nullopt;
+    if (box.Grown(5).Overlaps(other.box)) return std::nullopt;
     const Vector2f other_end = LeaderEnd(other.box, other.request.anchor);
     if (Passes(request.anchor, end, other.box)) return std::nullopt;
     if (Passes(other.request.anchor, other_end, box)) cost += kCoveredLeader;
     if (Cross(request.anchor, end, other.request.anchor, other_end)) cost += kCoveredLeader;
   }
   for (const LabelRequest& other : requests) {
-    if (Contains(box.Grown(0.5f * other.reach_px), other.anchor)) cost += kCoveredAnchor;
+    const bool self = &other == &request;
+    cost += (self ? kCoveredSelf : kCoveredThing) * CoveredShare(box, other.extent);
+    if (!self && Contains(box, other.anchor)) cost += kCoveredAnchor;
   }
   for (const Vector2f& p : obstacles.avoid) {
     if (Contains(box.Grown(4), p)) cost += kCoveredPoint;
@@ -90,7 +104,7 @@ std::vector<PlacedLabel> PlaceLabels(const std::vector<LabelRequest>& requests, 
     for (const float distance : kDistances) {
       for (int k = 0; k < kDirections; ++k) {
         const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
-        const float away = distance * scale + 0.6f * request.reach_px;
+        const float away = distance * scale;
         const Vector2f toward(std::cos(angle), -std::sin(angle));
         // The box's near edge, not its middle, is `away` from the anchor.
         const Vector2f middle = request.anchor + toward * away + Vector2f(toward.x() * width, toward.y() * height) / 2;

@@ -14,7 +14,7 @@ struct LabelRequest {
   std::string text;
   Color color;              ///< of the small bar at its side
   Eigen::Vector2f anchor;   ///< where the thing is, pixels
-  float reach_px = 0;       ///< roughly its half size on the picture
+  Rect extent;              ///< what it covers on the picture, roughly
 };
 
 struct PlacedLabel {

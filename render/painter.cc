@@ -20,6 +20,7 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr float kTitleSize = 19;
+constexpr int kSmallestWithText_px = 120;  // text on smaller pictures would hide them
 
 // The processor's class that pixels depend on.
 const char* FusedMultiplyAdd() {
@@ -52,18 +53,26 @@ Plan MakePlan(const Picture& picture, const Font& font) {
   return plan;
 }
 
-// The nearer half of the projected diagonal: how far a label should stay from the anchor.
+// Large things (tables) would leave no place that is free of them; they count as scenery for the labels.
+constexpr float kLargestExtent = 0.10f;  // of the picture's area
+
 LabelRequest RequestLabel(const std::string& text, const Color& color, const Bounds& bounds, const View& view) {
-  LabelRequest request{text, color, Vector2f::Constant(std::nanf("")), 0};
+  LabelRequest request{text, color, Vector2f::Constant(std::nanf("")), {}};
   const std::optional<Vector2f> middle = ToPixel(view, bounds.center_m());
   if (bounds.empty() || !middle.has_value()) return request;
   request.anchor = *middle;
-  const Vector3f half = (bounds.high_m - bounds.low_m) / 2;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::optional<Vector2f> side = ToPixel(view, bounds.center_m() + half[axis] * Vector3f::Unit(axis));
-    if (side.has_value()) request.reach_px = std::max(request.reach_px, (*side - *middle).norm());
+  Vector2f low = *middle, high = *middle;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Array3f far_side(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+    const Vector3f p = bounds.low_m.array() + far_side * (bounds.high_m - bounds.low_m).array();
+    const std::optional<Vector2f> pixel = ToPixel(view, p);
+    if (!pixel.has_value()) return request;
+    low = low.cwiseMin(*pixel);
+    high = high.cwiseMax(*pixel);
   }
-  request.reach_px = std::min(request.reach_px, 0.12f * static_cast<float>(view.height_px));
+  const Vector2f size = high - low;
+  const float area = static_cast<float>(view.width_px) * static_cast<float>(view.height_px);
+  if (size.x() * size.y() < kLargestExtent * area) request.extent = {low.x(), low.y(), size.x(), size.y()};
   return request;
 }
 
@@ -106,6 +115,7 @@ Rect DrawTitle(const std::string& title, float scale, float width, Canvas* canva
 }
 
 void DrawOverlay(const Picture& picture, const Plan& plan, Canvas* canvas) {
+  if (std::min(picture.width_px, picture.height_px) < kSmallestWithText_px) return;
   const float scale = OverlayScale(picture.height_px);
   const auto width = static_cast<float>(picture.width_px), height = static_cast<float>(picture.height_px);
   const Rect title = DrawTitle(picture.title, scale, width, canvas);

@@ -44,6 +44,8 @@ Focus FocusOf(const DrawList& list, const View& view) {
   return {view.eye_m + forward * 0.5f * to_center, to_center};
 }
 
+float DistanceTo(const View& view, const Item& item) { return (item.X_WI.translation() - view.eye_m).norm(); }
+
 Vector3f ToLight() { return Vector3f(0.38f, -0.42f, 0.82f).normalized(); }
 
 }  // namespace
@@ -228,19 +230,23 @@ void SceneRenderer::DrawSolids(const Frame& frame) const {
   gl_.Enable(GL_DEPTH_TEST);
 
   UseSurface(frame, kShadowReach);
+  for (const Item& item : frame.list.solids) DrawItem(*surface_, frame, item);
+  for (const Item& item : frame.list.paths) DrawItem(*surface_, frame, item);
+  DrawGround(frame);
+}
+
+// After the solids, because shading what they hide would be wasted; it fades into the backdrop far out.
+void SceneRenderer::DrawGround(const Frame& frame) const {
   const float clear_radius = std::max(1.3f, 1.1f * frame.focus.radius_m);
   const Vector3f& center = frame.focus.center_m;
-  const float z = std::min(0.0f, frame.list.bounds.empty() ? 0.0f : frame.list.bounds.low_m.z()) - kGroundDrop_m;
-  surface_->Set("ground", Vector3f(center.x(), center.y(), clear_radius));
+  const float lowest = frame.list.bounds.empty() ? 0 : std::min(0.0f, frame.list.bounds.low_m.z());
   Item ground{.color = kGroundColor, .gloss = 0, .finish = Finish::kGround, .object = 1};
-  ground.X_WI = Eigen::Translation3f(center.x(), center.y(), z);
+  ground.X_WI = Eigen::Translation3f(center.x(), center.y(), lowest - kGroundDrop_m);
   ground.half_size_m = Vector3f(1, 1, 0) * (2.8f * clear_radius);
+  surface_->Set("ground", Vector3f(center.x(), center.y(), clear_radius));
   gl_.Enable(GL_BLEND);
   DrawItem(*surface_, frame, ground);
   gl_.Disable(GL_BLEND);
-
-  for (const Item& item : frame.list.solids) DrawItem(*surface_, frame, item);
-  for (const Item& item : frame.list.paths) DrawItem(*surface_, frame, item);
 }
 
 void SceneRenderer::DarkenCorners(const Frame& frame) const {
@@ -254,6 +260,7 @@ void SceneRenderer::DarkenCorners(const Frame& frame) const {
   occlusion_->Set("depth_map", 0);
   occlusion_->Set("clip_to_view", Eigen::Matrix4f(frame.view.view_to_clip.inverse()));
   occlusion_->Set("texel", texel);
+  occlusion_->Set("depth_size", Eigen::Vector2f(frame.view.width_px, frame.view.height_px));
   occlusion_->Set("view_to_uv",
                   Eigen::Vector2f(frame.view.view_to_clip(0, 0) / 2, frame.view.view_to_clip(1, 1) / 2));
   occlusion_->Set("radius", kOcclusionRadius_m);
@@ -289,7 +296,12 @@ void SceneRenderer::DrawHiddenPaths(const Frame& frame) const {
 }
 
 void SceneRenderer::DrawGhosts(const Frame& frame) const {
-  for (const std::vector<Item>& ghost : frame.list.ghosts) {
+  std::vector<std::vector<Item>> far_first = frame.list.ghosts;
+  std::erase_if(far_first, [](const auto& ghost) { return ghost.empty(); });
+  std::stable_sort(far_first.begin(), far_first.end(), [&](const auto& a, const auto& b) {
+    return DistanceTo(frame.view, a.front()) > DistanceTo(frame.view, b.front());
+  });
+  for (const std::vector<Item>& ghost : far_first) {
     gl_.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     depth_only_->Use();
     depth_only_->Set("world_to_clip", frame.view.world_to_clip());
@@ -310,7 +322,7 @@ void SceneRenderer::DrawGhosts(const Frame& frame) const {
 void SceneRenderer::DrawMarkers(const Frame& frame) const {
   std::vector<Item> far_first = frame.list.markers;
   std::stable_sort(far_first.begin(), far_first.end(), [&](const Item& a, const Item& b) {
-    return (a.X_WI.translation() - frame.view.eye_m).norm() > (b.X_WI.translation() - frame.view.eye_m).norm();
+    return DistanceTo(frame.view, a) > DistanceTo(frame.view, b);
   });
   UseSurface(frame, kNoShadow);
   gl_.Enable(GL_BLEND);

@@ -36,6 +36,7 @@ class SceneRenderer {
 
   void DrawShadows(const Frame& frame) const;
   void DrawSolids(const Frame& frame) const;
+  void DrawGround(const Frame& frame) const;
   void DarkenCorners(const Frame& frame) const;
   void DrawHiddenPaths(const Frame& frame) const;
   void DrawGhosts(const Frame& frame) const;

@@ -126,9 +126,12 @@ out vec4 pixel;
 uniform sampler2D depth_map;
 uniform mat4 clip_to_view;
 uniform vec2 texel, view_to_uv;  // view_to_uv: size on screen of one metre at one metre
+uniform vec2 depth_size;
 uniform float radius;
 uniform int taps;
-vec3 InView(vec2 at) {
+// At the middle of a depth pixel: elsewhere its depth belongs to another place, and grazing floors shadow themselves.
+vec3 InView(vec2 wanted) {
+  vec2 at = (floor(wanted * depth_size) + .5) / depth_size;
   vec4 p = clip_to_view * vec4(vec3(at, texture(depth_map, at).r) * 2. - 1., 1);
   return p.xyz / p.w;
 }

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -14,7 +15,8 @@ namespace {
 using Eigen::Matrix4f;
 using Eigen::Vector3f;
 
-constexpr float kMargin = 0.86f;  // a named camera fills this share of the picture
+constexpr float kFilledShare = 0.90f;  // of the picture by the box that a named camera frames
+constexpr float kNearestEye_m = 0.3f;
 
 float HalfTangent(float field_of_view_deg) { return std::tan(field_of_view_deg * std::numbers::pi_v<float> / 360); }
 
@@ -39,6 +41,18 @@ bool MakesSense(const Camera& camera) {
   return camera.eye_m.allFinite() && camera.look_at_m.allFinite() &&
          (camera.eye_m - camera.look_at_m).norm() > 1e-4f && camera.vertical_field_of_view_deg > 0.1f &&
          camera.vertical_field_of_view_deg < 170;
+}
+
+// Corners of the box in the camera's axes, seen from the point it looks at.
+std::array<Vector3f, 8> CornersInView(const Eigen::Matrix3f& axes, const Vector3f& look_at, const Vector3f& low,
+                                      const Vector3f& high) {
+  std::array<Vector3f, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Vector3f p((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
+                     (i & 4) != 0 ? high.z() : low.z());
+    corners[i] = axes * (p - look_at);
+  }
+  return corners;
 }
 
 struct NamedDirection {
@@ -122,19 +136,29 @@ Camera NamedCamera(const std::string& name, const Vector3f& low_m, const Vector3
 
   Camera camera;
   if (!low_m.allFinite() || !high_m.allFinite()) return camera;
-  camera.look_at_m = (low_m + high_m) / 2;
+  const float tangent_y = kFilledShare * HalfTangent(camera.vertical_field_of_view_deg);
+  const Eigen::Array2f tangent(tangent_y * static_cast<float>(std::clamp(aspect, 0.1, 10.0)), tangent_y);
   const Eigen::Matrix3f axes = CameraAxes(-from);
-  const float tangent_y = kMargin * HalfTangent(camera.vertical_field_of_view_deg);
-  const float tangent_x = tangent_y * static_cast<float>(std::clamp(aspect, 0.1, 10.0));
-  // The nearest distance at which each of the eight corners lies inside the picture.
-  float distance = 0.3f;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vector3f p((corner & 1) != 0 ? high_m.x() : low_m.x(), (corner & 2) != 0 ? high_m.y() : low_m.y(),
-                     (corner & 4) != 0 ? high_m.z() : low_m.z());
-    const Vector3f q = axes * (p - camera.look_at_m);
-    distance = std::max({distance, q.z() + std::abs(q.x()) / tangent_x, q.z() + std::abs(q.y()) / tangent_y});
+  Vector3f look_at = (low_m + high_m) / 2;
+  float distance = 1;
+  // Perspective makes near corners reach further out than far ones: shift to their middle, then look again.
+  for (int round = 0; round < 4; ++round) {
+    const std::array<Vector3f, 8> corners = CornersInView(axes, look_at, low_m, high_m);
+    distance = kNearestEye_m;
+    for (const Vector3f& q : corners) {
+      distance = std::max(distance, q.z() + (q.head<2>().array().abs() / tangent).maxCoeff());
+    }
+    Eigen::Array2f least = Eigen::Array2f::Constant(1e9f), most = -least;
+    for (const Vector3f& q : corners) {
+      const Eigen::Array2f slope = q.head<2>().array() / (distance - q.z());
+      least = least.min(slope);
+      most = most.max(slope);
+    }
+    const Eigen::Vector2f shift = (least + most).matrix() / 2 * distance;
+    if (round < 3) look_at += axes.topRows<2>().transpose() * shift;
   }
-  camera.eye_m = camera.look_at_m + distance * from;
+  camera.look_at_m = look_at;
+  camera.eye_m = look_at + distance * from;
   return camera;
 }
 
