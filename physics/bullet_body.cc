@@ -9,20 +9,24 @@
 namespace prehend::physics {
 namespace {
 
-/// Below these speeds for two seconds a body falls asleep. Lower: resting objects keep costing time and creep.
-/// Higher: objects in a slow hand would freeze.
+/// Below these speeds for two seconds a body falls asleep. Lower: resting objects keep costing time
+/// and creep. Higher: objects in a slow hand would freeze.
 constexpr double kSleepSpeed_m_per_s = 0.01;
 constexpr double kSleepTurn_rad_per_s = 0.05;
 
 struct MakeShapeOf {
   using Result = std::unique_ptr<btCollisionShape>;
 
-  Result operator()(const Box& s) const { return WithMargin<btBoxShape>(ToBullet(Eigen::Vector3d(s.size_m / 2))); }
+  Result operator()(const Box& s) const {
+    return WithMargin<btBoxShape>(ToBullet(Eigen::Vector3d(s.size_m / 2)));
+  }
   Result operator()(const Sphere& s) const { return std::make_unique<btSphereShape>(s.radius_m); }
   Result operator()(const Cylinder& s) const {
     return WithMargin<btCylinderShapeZ>(btVector3(s.radius_m, s.radius_m, s.length_m / 2));
   }
-  Result operator()(const Capsule& s) const { return std::make_unique<btCapsuleShapeZ>(s.radius_m, s.length_m); }
+  Result operator()(const Capsule& s) const {
+    return std::make_unique<btCapsuleShapeZ>(s.radius_m, s.length_m);
+  }
 
  private:
   template <class BulletShape>
@@ -37,7 +41,9 @@ struct VolumeOf {
   static constexpr double kPi = std::numbers::pi;
 
   double operator()(const Box& s) const { return s.size_m.prod(); }
-  double operator()(const Sphere& s) const { return 4.0 / 3 * kPi * s.radius_m * s.radius_m * s.radius_m; }
+  double operator()(const Sphere& s) const {
+    return 4.0 / 3 * kPi * s.radius_m * s.radius_m * s.radius_m;
+  }
   double operator()(const Cylinder& s) const { return kPi * s.radius_m * s.radius_m * s.length_m; }
   double operator()(const Capsule& s) const {
     return (*this)(Sphere{s.radius_m}) + (*this)(Cylinder{s.radius_m, s.length_m});
@@ -64,7 +70,9 @@ bool IsSimple(const Body& body) {
 
 }  // namespace
 
-std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape) { return std::visit(MakeShapeOf{}, shape); }
+std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape) {
+  return std::visit(MakeShapeOf{}, shape);
+}
 
 BulletBody::BulletBody(const Body& body) {
   const btScalar mass = body.fixed ? 0 : body.mass_kg;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A body of the scene as a Bullet rigid body. Bullet wants the frame at the centre of mass with principal axes;
-// our frame B stays where the scene put it. Only for bullet_*.cc.
+// A body of the scene as a Bullet rigid body. Bullet wants the frame at the centre of mass with
+// principal axes; our frame B stays where the scene put it. Only for bullet_*.cc.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -13,8 +13,8 @@
 
 namespace prehend::physics {
 
-/// Collision margin of boxes and cylinders, metres: inside the shape, so that sizes stay true. The default of 40 mm
-/// would swallow fingers.
+/// Collision margin of boxes and cylinders, metres: inside the shape, so that sizes stay true. The
+/// default of 40 mm would swallow fingers.
 inline constexpr double kMargin_m = 0.001;
 
 std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape);

@@ -10,12 +10,14 @@
 namespace prehend::physics {
 namespace {
 
-/// Bullet keeps points up to 20 mm apart; larger values here would report contacts before they happen.
+/// Bullet keeps points up to 20 mm apart; larger values here would report contacts before they
+/// happen.
 constexpr double kTouchDistance_m = 0.0005;
 /// A pair that stops pushing for no longer than this still touches: 8 ms at 480 Hz.
 constexpr int kHoldTicks = 4;
 
-ContactPoint MakePoint(const btManifoldPoint& point, const ContactSide& side0, const ContactSide& side1) {
+ContactPoint MakePoint(const btManifoldPoint& point, const ContactSide& side0,
+                       const ContactSide& side1) {
   // Bullet's normal points from body 1 into body 0.
   const bool in_order = side0 < side1;
   const Eigen::Vector3d normal = FromBullet(point.m_normalWorldOnB);
@@ -28,7 +30,8 @@ ContactPoint MakePoint(const btManifoldPoint& point, const ContactSide& side0, c
 }
 
 bool PointLess(const ContactPoint& l, const ContactPoint& r) {
-  return std::tuple(l.p_W_m.x(), l.p_W_m.y(), l.p_W_m.z()) < std::tuple(r.p_W_m.x(), r.p_W_m.y(), r.p_W_m.z());
+  return std::tuple(l.p_W_m.x(), l.p_W_m.y(), l.p_W_m.z()) <
+         std::tuple(r.p_W_m.x(), r.p_W_m.y(), r.p_W_m.z());
 }
 
 }  // namespace
@@ -39,8 +42,10 @@ void BulletContacts::Read(const btDispatcher& const_dispatcher) {
   for (auto& [key, pair] : pairs_) pair.seen = false;
   for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
     const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
-    const ContactSide& side0 = sides_[static_cast<std::size_t>(manifold.getBody0()->getUserIndex())];
-    const ContactSide& side1 = sides_[static_cast<std::size_t>(manifold.getBody1()->getUserIndex())];
+    const ContactSide& side0 =
+        sides_[static_cast<std::size_t>(manifold.getBody0()->getUserIndex())];
+    const ContactSide& side1 =
+        sides_[static_cast<std::size_t>(manifold.getBody1()->getUserIndex())];
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
       const btManifoldPoint& point = manifold.getContactPoint(k);
       if (point.getDistance() >= kTouchDistance_m || point.getAppliedImpulse() <= 0) continue;
@@ -62,7 +67,8 @@ void BulletContacts::Read(const btDispatcher& const_dispatcher) {
 
 void BulletContacts::Describe(std::vector<ContactPoint>& contacts) const {
   contacts.clear();
-  for (const auto& [key, pair] : pairs_) contacts.insert(contacts.end(), pair.points.begin(), pair.points.end());
+  for (const auto& [key, pair] : pairs_)
+    contacts.insert(contacts.end(), pair.points.begin(), pair.points.end());
 }
 
 }  // namespace prehend::physics

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contact facts, read from Bullet's manifolds after a step (under 1 % of a tick). Two surfaces touch when they are
-// nearer than 0.5 mm and push each other; once they do, they touch until neither held for a few ticks, because a
-// resting contact's impulse flickers. Only for bullet_*.cc.
+// Contact facts, read from Bullet's manifolds after a step (under 1 % of a tick). Two surfaces
+// touch when they are nearer than 0.5 mm and push each other; once they do, they touch until
+// neither held for a few ticks, because a resting contact's impulse flickers. Only for bullet_*.cc.
 // Tested by tests/physics/world_test.cc
 #pragma once
 

@@ -8,7 +8,8 @@
 
 namespace prehend::physics {
 
-static_assert(sizeof(btScalar) == 8, "the float build of Bullet was found: use pkg-config bullet-float64");
+static_assert(sizeof(btScalar) == 8,
+              "the float build of Bullet was found: use pkg-config bullet-float64");
 
 inline btVector3 ToBullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 inline btQuaternion ToBullet(const Eigen::Quaterniond& q) { return {q.x(), q.y(), q.z(), q.w()}; }
@@ -18,6 +19,8 @@ inline btTransform ToBullet(const Pose& pose) {
 
 inline Eigen::Vector3d FromBullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 inline Eigen::Quaterniond FromBullet(const btQuaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
-inline Pose FromBullet(const btTransform& X) { return {FromBullet(X.getOrigin()), FromBullet(X.getRotation())}; }
+inline Pose FromBullet(const btTransform& X) {
+  return {FromBullet(X.getOrigin()), FromBullet(X.getRotation())};
+}
 
 }  // namespace prehend::physics

@@ -64,11 +64,12 @@ void BulletHand::MakeLinks() {
     const Pose& X_HL = rest[static_cast<std::size_t>(i)];
     const Pose X_HP = link.parent < 0 ? Pose{} : rest[static_cast<std::size_t>(link.parent)];
     LinkShape(link)->calculateLocalInertia(link.mass_kg, inertia);
-    multibody_->setupRevolute(i, link.mass_kg, inertia, link.parent,
-                              ToBullet(Eigen::Quaterniond(X_HL.q.conjugate() * X_HP.q)),
-                              ToBullet(Eigen::Vector3d(X_HL.q.conjugate() * link.joint_axis)),
-                              ToBullet(Eigen::Vector3d(X_HP.q.conjugate() * (link.pivot_m - X_HP.p_m))),
-                              ToBullet(Eigen::Vector3d(X_HL.q.conjugate() * (X_HL.p_m - link.pivot_m))), true);
+    multibody_->setupRevolute(
+        i, link.mass_kg, inertia, link.parent,
+        ToBullet(Eigen::Quaterniond(X_HL.q.conjugate() * X_HP.q)),
+        ToBullet(Eigen::Vector3d(X_HL.q.conjugate() * link.joint_axis)),
+        ToBullet(Eigen::Vector3d(X_HP.q.conjugate() * (link.pivot_m - X_HP.p_m))),
+        ToBullet(Eigen::Vector3d(X_HL.q.conjugate() * (X_HL.p_m - link.pivot_m))), true);
   }
   multibody_->finalizeMultiDof();
 }
@@ -94,15 +95,16 @@ void BulletHand::MakeMotors() {
     const HandLink& link = model_.links[i];
     const int index = static_cast<int>(i);
     motors_.push_back(std::make_unique<btMultiBodyJointMotor>(multibody_.get(), index, 0, 0, 0));
-    limits_.push_back(std::make_unique<btMultiBodyJointLimitConstraint>(multibody_.get(), index, link.lower_rad,
-                                                                        link.upper_rad));
+    limits_.push_back(std::make_unique<btMultiBodyJointLimitConstraint>(
+        multibody_.get(), index, link.lower_rad, link.upper_rad));
     world_.addMultiBodyConstraint(motors_.back().get());
     world_.addMultiBodyConstraint(limits_.back().get());
   }
 }
 
 void BulletHand::SetJoints(const std::vector<double>& joints_rad) {
-  for (std::size_t i = 0; i < joints_rad.size(); ++i) multibody_->setJointPos(static_cast<int>(i), joints_rad[i]);
+  for (std::size_t i = 0; i < joints_rad.size(); ++i)
+    multibody_->setJointPos(static_cast<int>(i), joints_rad[i]);
   btAlignedObjectArray<btQuaternion> rotations;
   btAlignedObjectArray<btVector3> origins;
   multibody_->forwardKinematics(rotations, origins);
@@ -122,14 +124,15 @@ void BulletHand::DrivePalm(const TargetState& target, double dt_s, double gravit
   const Eigen::Vector3d w = FromBullet(multibody_->getBaseOmega());
   const Eigen::Vector3d force =
       translation_.Output(target.X_WH.p_m - X_WH.p_m, target.v_m_per_s - v, dt_s);
-  const Eigen::Vector3d torque =
-      rotation_.Output(RotationVector(target.X_WH.q * X_WH.q.conjugate()), target.w_rad_per_s - w, dt_s);
+  const Eigen::Vector3d torque = rotation_.Output(
+      RotationVector(target.X_WH.q * X_WH.q.conjugate()), target.w_rad_per_s - w, dt_s);
   // The arm carries the hand's own weight, so that the PIDs feel only what the hand holds.
   const Eigen::Vector3d up(0, 0, gravity_m_per_s2);
   multibody_->addBaseForce(ToBullet(Eigen::Vector3d(force + up * model_.palm_mass_kg)));
   multibody_->addBaseTorque(ToBullet(torque));
   for (std::size_t i = 0; i < model_.links.size(); ++i)
-    multibody_->addLinkForce(static_cast<int>(i), ToBullet(Eigen::Vector3d(up * model_.links[i].mass_kg)));
+    multibody_->addLinkForce(static_cast<int>(i),
+                             ToBullet(Eigen::Vector3d(up * model_.links[i].mass_kg)));
 }
 
 void BulletHand::DriveJoints(const GraspStyle& style, double trigger, double dt_s) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An articulated hand in Bullet: Featherstone multi-body, two 6D PIDs on the palm, a torque-limited velocity servo
-// per joint. It holds things by friction only; nothing ever ties an object to it. Only for bullet_*.cc.
-// Tested by tests/physics/world_test.cc
+// An articulated hand in Bullet: Featherstone multi-body, two 6D PIDs on the palm, a torque-limited
+// velocity servo per joint. It holds things by friction only; nothing ever ties an object to it.
+// Only for bullet_*.cc. Tested by tests/physics/world_test.cc
 #pragma once
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -22,7 +22,8 @@ namespace prehend::physics {
 
 class BulletHand {
  public:
-  /// `group`: this hand's collision bit; the hand does not collide with itself. The hand starts open in `style`.
+  /// `group`: this hand's collision bit; the hand does not collide with itself. The hand starts
+  /// open in `style`.
   BulletHand(const Hand& hand, int style, int group, btMultiBodyDynamicsWorld& world);
   ~BulletHand();
   BulletHand(const BulletHand&) = delete;
@@ -33,7 +34,9 @@ class BulletHand {
   void Describe(HandState& state) const;
 
   /// Link index of one of this hand's colliders, -1 for the palm; in the order they were made.
-  const std::vector<std::unique_ptr<btMultiBodyLinkCollider>>& colliders() const { return colliders_; }
+  const std::vector<std::unique_ptr<btMultiBodyLinkCollider>>& colliders() const {
+    return colliders_;
+  }
 
  private:
   void MakeLinks();

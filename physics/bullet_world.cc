@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Needs: Bullet 3.24 built with double precision. Order matters for determinism: bodies first, then hands, in scene
-// order; one step of dt per tick, never Bullet's own sub-stepping, whose remainder can drop time.
-// Tested by tests/physics/world_test.cc
+// Needs: Bullet 3.24 built with double precision. Order matters for determinism: bodies first, then
+// hands, in scene order; one step of dt per tick, never Bullet's own sub-stepping, whose remainder
+// can drop time. Tested by tests/physics/world_test.cc
 #include "physics/bullet_world.h"
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
@@ -19,7 +19,8 @@ extern btScalar gDbvtMargin;
 namespace prehend::physics {
 namespace {
 
-/// Growth of boxes in the broad phase, metres. Bullet's 50 mm joins neighbours into one island: ten times slower.
+/// Growth of boxes in the broad phase, metres. Bullet's 50 mm joins neighbours into one island: ten
+/// times slower.
 constexpr double kBroadphaseMargin_m = 0.002;
 /// Fewer lose friction grasps: 20 iterations placed 28 of 40 objects.
 constexpr int kSolverIterations = 50;
@@ -28,10 +29,12 @@ constexpr double kErrorReduction = 0.2;
 constexpr double kSplitImpulseThreshold_m = -0.0005;
 /// Slower impacts do not bounce.
 constexpr double kRestitutionThreshold_m_per_s = 0.2;
-/// Islands are solved one by one, not merged into batches: a sleeping neighbour must not change a result.
+/// Islands are solved one by one, not merged into batches: a sleeping neighbour must not change a
+/// result.
 constexpr int kSolverBatch = 2;
 
-// Collision groups. Fixed bodies need no contacts with each other; every hand has its own bit from kFirstHandGroup.
+// Collision groups. Fixed bodies need no contacts with each other; every hand has its own bit from
+// kFirstHandGroup.
 constexpr int kFixedGroup = 1;
 constexpr int kMovingGroup = 2;
 constexpr int kFirstHandGroup = 4;
@@ -121,7 +124,8 @@ void BulletWorld::AddHands(const std::vector<Hand>& hands, const std::vector<int
 }
 
 void BulletWorld::Step(const std::vector<HandCommand>& commands) {
-  for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i]->Drive(commands[i], dt_s_, gravity_m_per_s2_);
+  for (std::size_t i = 0; i < hands_.size(); ++i)
+    hands_[i]->Drive(commands[i], dt_s_, gravity_m_per_s2_);
   world_.stepSimulation(dt_s_, 0);
   contacts_.Read(dispatcher_);
   ++tick_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The spatial engine: Bullet (double precision), sequential impulse, one thread. Settings: docs/physics.md.
-// Tested by tests/physics/world_test.cc
+// The spatial engine: Bullet (double precision), sequential impulse, one thread. Settings:
+// docs/physics.md. Tested by tests/physics/world_test.cc
 #pragma once
 
 #include <memory>

@@ -8,7 +8,8 @@
 namespace prehend::physics {
 namespace {
 
-/// Smallest cosine of the angle to the vertical at which a cylinder counts as upright, about 5 degrees.
+/// Smallest cosine of the angle to the vertical at which a cylinder counts as upright, about 5
+/// degrees.
 constexpr double kUprightCosine = 0.996;
 
 /// Half extents of a shape along axes in which it stands with rotation R.
@@ -16,10 +17,13 @@ struct HalfExtentsIn {
   const Eigen::Matrix3d& R;
 
   Eigen::Vector3d operator()(const Box& s) const { return R.cwiseAbs() * (s.size_m / 2); }
-  Eigen::Vector3d operator()(const Sphere& s) const { return Eigen::Vector3d::Constant(s.radius_m); }
+  Eigen::Vector3d operator()(const Sphere& s) const {
+    return Eigen::Vector3d::Constant(s.radius_m);
+  }
   Eigen::Vector3d operator()(const Cylinder& s) const {
     const Eigen::Vector3d axis = R.col(2).cwiseAbs();
-    const Eigen::Vector3d disc = (Eigen::Vector3d::Ones() - axis.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+    const Eigen::Vector3d disc =
+        (Eigen::Vector3d::Ones() - axis.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
     return axis * (s.length_m / 2) + disc * s.radius_m;
   }
   Eigen::Vector3d operator()(const Capsule& s) const {
@@ -39,7 +43,8 @@ struct DistanceOf {
   double operator()(const Box& s) const { return BeyondHalfSizes<3>(p.cwiseAbs() - s.size_m / 2); }
   double operator()(const Sphere& s) const { return p.norm() - s.radius_m; }
   double operator()(const Cylinder& s) const {
-    return BeyondHalfSizes<2>({std::hypot(p.x(), p.y()) - s.radius_m, std::abs(p.z()) - s.length_m / 2});
+    return BeyondHalfSizes<2>(
+        {std::hypot(p.x(), p.y()) - s.radius_m, std::abs(p.z()) - s.length_m / 2});
   }
   double operator()(const Capsule& s) const {
     const double along = std::clamp(p.z(), -s.length_m / 2, s.length_m / 2);
@@ -60,7 +65,8 @@ Eigen::AlignedBox3d WorldBounds(const Shape& shape, const Pose& X_WS) {
 
 Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB) {
   Eigen::AlignedBox3d bounds;
-  for (const PlacedShape& placed : body.shapes) bounds.extend(WorldBounds(placed.shape, X_WB * placed.X_BS));
+  for (const PlacedShape& placed : body.shapes)
+    bounds.extend(WorldBounds(placed.shape, X_WB * placed.X_BS));
   return bounds;
 }
 

@@ -21,7 +21,8 @@ Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB);
 /// Distance of a point, in the shape's frame, from the surface: negative inside. Metres.
 double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S);
 
-/// Do all horizontal directions look the same? True for spheres and for upright cylinders and capsules.
+/// Do all horizontal directions look the same? True for spheres and for upright cylinders and
+/// capsules.
 bool IsRoundAboutVertical(const Body& body, const Pose& X_WB);
 
 }  // namespace prehend::physics

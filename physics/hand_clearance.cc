@@ -22,8 +22,10 @@ HandClearance::HandClearance(const HandModel& model, const std::vector<double>& 
   const double palm_radius = half.z();
   for (int i = 0; i < kBallsPerPalmEdge; ++i) {
     for (int k = 0; k < kBallsPerPalmEdge; ++k) {
-      const double x = 2.0 * i / (kBallsPerPalmEdge - 1) - 1, y = 2.0 * k / (kBallsPerPalmEdge - 1) - 1;
-      balls_.push_back({{x * (half.x() - palm_radius), y * (half.y() - palm_radius), 0}, palm_radius});
+      const double x = 2.0 * i / (kBallsPerPalmEdge - 1) - 1,
+                   y = 2.0 * k / (kBallsPerPalmEdge - 1) - 1;
+      balls_.push_back(
+          {{x * (half.x() - palm_radius), y * (half.y() - palm_radius), 0}, palm_radius});
     }
   }
   const std::vector<Pose> X_HL = LinkPoses(model, joints_rad);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a hand in a given posture stays from the bodies of a scene, with the hand covered by small balls.
-// Tested by tests/physics/reach_planner_test.cc
+// How far a hand in a given posture stays from the bodies of a scene, with the hand covered by
+// small balls. Tested by tests/physics/reach_planner_test.cc
 #pragma once
 
 #include <vector>

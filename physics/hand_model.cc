@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// What follows from a hand model alone: joint targets, forward kinematics, the mirror image, stable gains.
-// Tested by tests/physics/hand_model_test.cc
+// What follows from a hand model alone: joint targets, forward kinematics, the mirror image, stable
+// gains. Tested by tests/physics/hand_model_test.cc
 #include "physics/hand_model.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstdio>
-
-#include <Eigen/Eigenvalues>
 
 namespace prehend::physics {
 namespace {
 
 Eigen::Matrix3d BoxInertia(double mass_kg, const Eigen::Vector3d& size_m) {
   const Eigen::Vector3d s2 = size_m.cwiseAbs2();
-  return (mass_kg / 12) * Eigen::Vector3d(s2.y() + s2.z(), s2.x() + s2.z(), s2.x() + s2.y()).asDiagonal();
+  return (mass_kg / 12) *
+         Eigen::Vector3d(s2.y() + s2.z(), s2.x() + s2.z(), s2.x() + s2.y()).asDiagonal();
 }
 
 /// About H's origin, all joints at zero.
 Eigen::Matrix3d WholeInertia(const HandModel& model) {
-  Eigen::Matrix3d inertia = model.palm_inertia_scale * BoxInertia(model.palm_mass_kg, model.palm_size_m);
+  Eigen::Matrix3d inertia =
+      model.palm_inertia_scale * BoxInertia(model.palm_mass_kg, model.palm_size_m);
   const auto poses = LinkPoses(model, std::vector<double>(model.links.size(), 0.0));
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const HandLink& link = model.links[i];
@@ -31,14 +32,17 @@ Eigen::Matrix3d WholeInertia(const HandModel& model) {
   return inertia;
 }
 
-std::string TooStiff(const char* which, double derivative, double inertia, const char* unit, int rate_hz) {
+std::string TooStiff(const char* which, double derivative, double inertia, const char* unit,
+                     int rate_hz) {
   const double ratio = derivative / (rate_hz * inertia);
   if (ratio < 1) return "";
   char text[256];
   std::snprintf(text, sizeof text,
-                "the %s derivative gain %g cannot be stable: gain * dt / inertia = %g * (1/%d s) / %.4g %s = %.2f, "
+                "the %s derivative gain %g cannot be stable: gain * dt / inertia = %g * (1/%d s) / "
+                "%.4g %s = %.2f, "
                 "which must stay below 1 (at most %.4g here)",
-                which, derivative, derivative, rate_hz, inertia, unit, ratio, 0.99 * rate_hz * inertia);
+                which, derivative, derivative, rate_hz, inertia, unit, ratio,
+                0.99 * rate_hz * inertia);
   return text;
 }
 
@@ -78,7 +82,8 @@ HandModel Mirrored(HandModel model) {
   for (HandLink& link : model.links) {
     MirrorVector(link.pivot_m);
     MirrorVector(link.direction);
-    // An axis of rotation is a pseudo-vector: its components in the mirror's plane flip, the normal one stays.
+    // An axis of rotation is a pseudo-vector: its components in the mirror's plane flip, the normal
+    // one stays.
     link.joint_axis = {-link.joint_axis.x(), link.joint_axis.y(), -link.joint_axis.z()};
   }
   for (GraspStyle& style : model.styles) {
@@ -102,10 +107,13 @@ int FindStyle(const HandModel& model, const std::string& name) {
 std::string CheckGains(const HandModel& model, int rate_hz) {
   double mass_kg = model.palm_mass_kg;
   for (const HandLink& link : model.links) mass_kg += link.mass_kg;
-  const std::string problem = TooStiff("translation", model.translation.derivative, mass_kg, "kg", rate_hz);
+  const std::string problem =
+      TooStiff("translation", model.translation.derivative, mass_kg, "kg", rate_hz);
   if (!problem.empty()) return problem;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(WholeInertia(model), Eigen::EigenvaluesOnly);
-  return TooStiff("rotation", model.rotation.derivative, solver.eigenvalues()[0], "kg m^2", rate_hz);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(WholeInertia(model),
+                                                              Eigen::EigenvaluesOnly);
+  return TooStiff("rotation", model.rotation.derivative, solver.eigenvalues()[0], "kg m^2",
+                  rate_hz);
 }
 
 }  // namespace prehend::physics

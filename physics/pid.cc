@@ -4,7 +4,8 @@
 
 namespace prehend::physics {
 
-Eigen::Vector3d VectorPid::Output(const Eigen::Vector3d& error, const Eigen::Vector3d& rate_error, double dt_s) {
+Eigen::Vector3d VectorPid::Output(const Eigen::Vector3d& error, const Eigen::Vector3d& rate_error,
+                                  double dt_s) {
   const Eigen::Vector3d output =
       gains_.proportional * error + gains_.derivative * rate_error + gains_.integral * integral_;
   const double size = output.norm();

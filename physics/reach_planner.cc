@@ -12,24 +12,29 @@ namespace prehend::physics {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// An object of at least this height, and this much taller than wide, is taken from the side by Approach::kAuto.
+/// An object of at least this height, and this much taller than wide, is taken from the side by
+/// Approach::kAuto.
 constexpr double kTall_m = 0.09;
 constexpr double kSlender = 1.25;
 /// A way that keeps this distance is good enough.
 constexpr double kClearEnough_m = 0.002;
-/// The orientation has settled after this share of a reach, well before the fingers enclose the object.
+/// The orientation has settled after this share of a reach, well before the fingers enclose the
+/// object.
 constexpr double kTurnShare = 0.75;
 /// Orientations tried around a round object.
 constexpr int kRoundDirections = 24;
-/// Cost, in radians, of a grip that the hand cannot open far enough for: only when nothing else is left.
+/// Cost, in radians, of a grip that the hand cannot open far enough for: only when nothing else is
+/// left.
 constexpr double kTooWide = 100;
 
-/// Bends of the way, tried in order: how far the last part follows the direction of arrival, how much it rises first.
+/// Bends of the way, tried in order: how far the last part follows the direction of arrival, how
+/// much it rises first.
 struct Bend {
   double straight_m;
   double rise_m;
 };
-constexpr Bend kBends[] = {{0.10, 0}, {0.16, 0}, {0.16, 0.10}, {0.24, 0.10}, {0.24, 0.25}, {0.35, 0.35}};
+constexpr Bend kBends[] = {{0.10, 0},    {0.16, 0},    {0.16, 0.10},
+                           {0.24, 0.10}, {0.24, 0.25}, {0.35, 0.35}};
 
 struct Candidate {
   Pose X_WH;
@@ -50,14 +55,17 @@ Eigen::Vector3d Horizontal(double yaw_rad) { return {std::cos(yaw_rad), std::sin
 
 double YawOf(const Eigen::Vector3d& v) { return std::atan2(v.y(), v.x()); }
 
-/// Horizontal directions in which the object may be gripped or approached: its faces, or all around.
+/// Horizontal directions in which the object may be gripped or approached: its faces, or all
+/// around.
 std::vector<double> YawsOf(const Body& body, const Pose& X_WB, double hand_yaw_rad) {
   std::vector<double> yaws;
   if (IsRoundAboutVertical(body, X_WB)) {
-    for (int i = 0; i < kRoundDirections; ++i) yaws.push_back(hand_yaw_rad + 2 * kPi * i / kRoundDirections);
+    for (int i = 0; i < kRoundDirections; ++i)
+      yaws.push_back(hand_yaw_rad + 2 * kPi * i / kRoundDirections);
     return yaws;
   }
-  const Eigen::Vector3d x = X_WB.q * Eigen::Vector3d::UnitX(), y = X_WB.q * Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d x = X_WB.q * Eigen::Vector3d::UnitX(),
+                        y = X_WB.q * Eigen::Vector3d::UnitY();
   const double face_yaw = std::abs(x.z()) < std::abs(y.z()) ? YawOf(x) : YawOf(y);
   for (int i = 0; i < 4; ++i) yaws.push_back(face_yaw + kPi / 2 * i);
   return yaws;
@@ -68,7 +76,8 @@ class CandidateList {
   CandidateList(const Scene& scene, const Snapshot& now, const ReachQuery& query)
       : query_(query),
         body_(scene.bodies[static_cast<std::size_t>(query.object)]),
-        style_(scene.hands[static_cast<std::size_t>(query.hand)].model.styles[static_cast<std::size_t>(query.style)]),
+        style_(scene.hands[static_cast<std::size_t>(query.hand)]
+                   .model.styles[static_cast<std::size_t>(query.style)]),
         X_WB_(now.bodies[static_cast<std::size_t>(query.object)].X_WB),
         box_(BoundingBox(body_)),
         centre_m_(X_WB_ * box_.p_BC_m),
@@ -93,9 +102,11 @@ class CandidateList {
 Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quaterniond& q) const {
   const Eigen::Vector3d toward_W = q * approach.toward, grip_W = q * style_.grip_axis;
   const double half_grip = HalfWidthAlong(box_, X_WB_, grip_W);
-  const double depth = std::max(approach.pads_m, approach.palm_gap_m + HalfWidthAlong(box_, X_WB_, toward_W));
+  const double depth =
+      std::max(approach.pads_m, approach.palm_gap_m + HalfWidthAlong(box_, X_WB_, toward_W));
   // In H: from the post along the grip axis to the object's middle, at the right depth.
-  const Eigen::Vector3d on_post = style_.post_m - approach.toward * approach.toward.dot(style_.post_m);
+  const Eigen::Vector3d on_post =
+      style_.post_m - approach.toward * approach.toward.dot(style_.post_m);
   const Eigen::Vector3d centre_H = on_post + style_.grip_axis * half_grip + approach.toward * depth;
 
   Candidate candidate{.X_WH = {centre_m_ - q * centre_H, q}, .toward_W = toward_W};
@@ -130,7 +141,8 @@ std::vector<Candidate> CandidateList::FromSide() const {
         RotationFromPairs(style_.side->toward, style_.side->up, toward_W, Eigen::Vector3d::UnitZ());
     candidates.push_back(Make(*style_.side, q));
     // Coming from the far side means going around the object.
-    if (!above_it) candidates.back().cost += std::acos(std::clamp(toward_W.dot(way.normalized()), -1.0, 1.0));
+    if (!above_it)
+      candidates.back().cost += std::acos(std::clamp(toward_W.dot(way.normalized()), -1.0, 1.0));
   }
   return candidates;
 }
@@ -140,18 +152,20 @@ bool CandidateList::SideIsNatural() const {
   return style_.side && size.z() >= kTall_m && size.z() >= kSlender * std::min(size.x(), size.y());
 }
 
-std::vector<Candidate> Candidates(const Scene& scene, const Snapshot& now, const ReachQuery& query) {
+std::vector<Candidate> Candidates(const Scene& scene, const Snapshot& now,
+                                  const ReachQuery& query) {
   const CandidateList list(scene, now, query);
   std::vector<Candidate> above = list.FromAbove(), side = list.FromSide();
   const auto by_cost = [](const Candidate& l, const Candidate& r) { return l.cost < r.cost; };
   std::stable_sort(above.begin(), above.end(), by_cost);
   std::stable_sort(side.begin(), side.end(), by_cost);
-  const bool side_first =
-      query.approach == Approach::kSide || (query.approach == Approach::kAuto && list.SideIsNatural());
+  const bool side_first = query.approach == Approach::kSide ||
+                          (query.approach == Approach::kAuto && list.SideIsNatural());
   std::vector<Candidate>& first = side_first ? side : above;
   std::vector<Candidate>& second = side_first ? above : side;
   // An approach that was asked for is kept, unless the style does not have it.
-  if (query.approach == Approach::kAuto || first.empty()) first.insert(first.end(), second.begin(), second.end());
+  if (query.approach == Approach::kAuto || first.empty())
+    first.insert(first.end(), second.begin(), second.end());
   return first;
 }
 

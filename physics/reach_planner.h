@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a hand has to be to grasp an object in a style, and a smooth way to get there without touching anything.
-// Algorithm: list the orientations that suit the object (its faces, or all around when it is round), order them by
-// how far the hand has to turn and to go around, and take the first for which one of a few Bezier curves keeps the
-// open hand clear of every body. When none does, the one that stays clearest.
-// Tested by tests/physics/reach_planner_test.cc
+// Where a hand has to be to grasp an object in a style, and a smooth way to get there without
+// touching anything. Algorithm: list the orientations that suit the object (its faces, or all
+// around when it is round), order them by how far the hand has to turn and to go around, and take
+// the first for which one of a few Bezier curves keeps the open hand clear of every body. When none
+// does, the one that stays clearest. Tested by tests/physics/reach_planner_test.cc
 #pragma once
 
 #include "physics/scene.h"
@@ -16,13 +16,14 @@ namespace prehend::physics {
 struct ReachPlan {
   Segment segment;
   Eigen::Vector3d toward_W = -Eigen::Vector3d::UnitZ();  ///< direction of arrival
-  double clearance_m = 0;  ///< least distance of the open hand to any body on the way; negative: it will touch
+  double clearance_m =
+      0;  ///< least distance of the open hand to any body on the way; negative: it will touch
 };
 
 struct ReachQuery {
-  int hand = 0;           ///< index into Scene::hands
-  int object = 0;         ///< index into Scene::bodies
-  int style = 0;          ///< index into HandModel::styles
+  int hand = 0;    ///< index into Scene::hands
+  int object = 0;  ///< index into Scene::bodies
+  int style = 0;   ///< index into HandModel::styles
   Approach approach = Approach::kAuto;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
   TargetState from;

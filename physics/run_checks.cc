@@ -24,10 +24,12 @@ std::optional<RunProblem> CheckState(const std::string& name, const BodyState& s
   const bool finite = state.X_WB.p_m.allFinite() && state.X_WB.q.coeffs().allFinite() &&
                       state.v_WB_m_per_s.allFinite() && state.w_WB_rad_per_s.allFinite();
   if (!finite)
-    return RunProblem{name, "its state is not finite", "look for zero sizes, extreme masses or gains just before this tick"};
+    return RunProblem{name, "its state is not finite",
+                      "look for zero sizes, extreme masses or gains just before this tick"};
   if (const double speed = state.v_WB_m_per_s.norm(); speed > kMaxSpeed_m_per_s)
     return RunProblem{name, Say("it moves at %.0f m/s", speed),
-                      "it was probably squeezed or started inside another body; give it room or lower the strength"};
+                      "it was probably squeezed or started inside another body; give it room or "
+                      "lower the strength"};
   if (const double distance = state.X_WB.p_m.norm(); distance > kMaxDistance_m)
     return RunProblem{name, Say("it is %.0f m from the origin", distance),
                       "it left the world; put a floor under it or end the script earlier"};
@@ -50,9 +52,10 @@ std::optional<RunProblem> CheckSnapshot(const Scene& scene, const Snapshot& snap
   }
   for (const ContactPoint& contact : snapshot.contacts) {
     if (contact.distance_m > -kMaxPenetration_m) continue;
-    return RunProblem{NameOf(scene, contact.a),
-                      Say("it is %.0f mm deep", -1000 * contact.distance_m) + " in " + NameOf(scene, contact.b),
-                      "start them apart, or let the hand come more slowly"};
+    return RunProblem{
+        NameOf(scene, contact.a),
+        Say("it is %.0f mm deep", -1000 * contact.distance_m) + " in " + NameOf(scene, contact.b),
+        "start them apart, or let the hand come more slowly"};
   }
   return std::nullopt;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands in the world before the first tick: plain structs with defaults. SI units, world z up.
-// A Scene is complete: the same Scene and script give the same run, bit for bit.
-// Tested by tests/physics/scene_test.cc
+// What stands in the world before the first tick: plain structs with defaults. SI units, world z
+// up. A Scene is complete: the same Scene and script give the same run, bit for bit. Tested by
+// tests/physics/scene_test.cc
 #pragma once
 
 #include <cstdint>
@@ -46,7 +46,8 @@ struct Body {
   Pose X_WB;
 };
 
-/// A hand that takes part: the model says how it is built, the pose where the tracked target starts.
+/// A hand that takes part: the model says how it is built, the pose where the tracked target
+/// starts.
 struct Hand {
   std::string name;
   HandModel model;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the hands are told to do: a list of beats; in one beat every named hand performs one step, the beat ends
-// with its longest step. Steps move the *tracked target* that the hand's PIDs follow (minimum jerk, Flash & Hogan
-// 1985). A step is resolved into way-points when it starts, from the poses that the world has then.
+// What the hands are told to do: a list of beats; in one beat every named hand performs one step,
+// the beat ends with its longest step. Steps move the *tracked target* that the hand's PIDs follow
+// (minimum jerk, Flash & Hogan 1985). A step is resolved into way-points when it starts, from the
+// poses that the world has then.
 #pragma once
 
 #include <optional>
@@ -30,7 +31,8 @@ struct MoveStep {  ///< lift_by_m (z only), move_by_m: relative, world axes
 struct CarryStep {  ///< carry_to_m: the held object's centre goes to these x, y, height kept
   Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
 };
-struct PlaceStep {  ///< place_on: lower until the held object's lowest point meets the support's top
+struct PlaceStep {  ///< place_on: lower until the held object's lowest point meets the support's
+                    ///< top
   std::string support;
 };
 struct RetreatStep {  ///< retreat_by_m: back along the direction the hand came from
@@ -45,8 +47,8 @@ struct TimedPose {
 struct PosesStep {  ///< raw 6D way-points
   std::vector<TimedPose> poses;
 };
-using StepAction =
-    std::variant<WaitStep, ReachStep, TriggerStep, MoveStep, CarryStep, PlaceStep, RetreatStep, PosesStep>;
+using StepAction = std::variant<WaitStep, ReachStep, TriggerStep, MoveStep, CarryStep, PlaceStep,
+                                RetreatStep, PosesStep>;
 
 struct Step {
   int hand = 0;  ///< index into Scene::hands

@@ -11,8 +11,9 @@
 namespace prehend::physics {
 namespace {
 
-/// How far below the first contact the target goes when an object is put down, so that it truly stands before the
-/// hand opens. The palm's spring makes 5 N of it; more would squash, less can leave the object hanging.
+/// How far below the first contact the target goes when an object is put down, so that it truly
+/// stands before the hand opens. The palm's spring makes 5 N of it; more would squash, less can
+/// leave the object hanging.
 constexpr double kPress_m = 0.002;
 /// Putting down is over after this share of its time; in the rest the object settles.
 constexpr double kLoweringShare = 0.85;
@@ -29,20 +30,23 @@ double DurationOf(const Beat& beat) {
 }
 
 int FindBody(const Scene& scene, const std::string& name) {
-  const auto it =
-      std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const Body& body) { return body.name == name; });
+  const auto it = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                               [&](const Body& body) { return body.name == name; });
   return it == scene.bodies.end() ? -1 : static_cast<int>(it - scene.bodies.begin());
 }
 
-/// Height of what carries an object with these bounds: the highest part of `support` that is below it.
+/// Height of what carries an object with these bounds: the highest part of `support` that is below
+/// it.
 double TopBelow(const Body& support, const Pose& X_WB, const Eigen::AlignedBox3d& object) {
-  constexpr double kOverlap_m = 0.005;  // a part that reaches this far into the object is still below it
+  constexpr double kOverlap_m =
+      0.005;  // a part that reaches this far into the object is still below it
   double top = -HUGE_VAL;
   for (const PlacedShape& placed : support.shapes) {
     const Eigen::AlignedBox3d part = WorldBounds(placed.shape, X_WB * placed.X_BS);
     const Eigen::AlignedBox3d shared = part.intersection(object);
     const bool beneath = shared.min().x() < shared.max().x() && shared.min().y() < shared.max().y();
-    if (beneath && part.max().z() <= object.min().z() + kOverlap_m) top = std::max(top, part.max().z());
+    if (beneath && part.max().z() <= object.min().z() + kOverlap_m)
+      top = std::max(top, part.max().z());
   }
   return std::isfinite(top) ? top : WorldBounds(support, X_WB).max().z();
 }
@@ -128,8 +132,11 @@ int ScriptPlayer::Resolver::HeldBody() const {
   if (hand_.object >= 0) return hand_.object;
   std::vector<double> impulse(scene_.bodies.size(), 0);
   for (const ContactPoint& contact : now_.contacts) {
-    const ContactSide &body = contact.a.body >= 0 ? contact.a : contact.b, &hand = contact.a.body >= 0 ? contact.b : contact.a;
-    if (body.body < 0 || hand.hand != step_.hand || scene_.bodies[static_cast<std::size_t>(body.body)].fixed) continue;
+    const ContactSide &body = contact.a.body >= 0 ? contact.a : contact.b,
+                      &hand = contact.a.body >= 0 ? contact.b : contact.a;
+    if (body.body < 0 || hand.hand != step_.hand ||
+        scene_.bodies[static_cast<std::size_t>(body.body)].fixed)
+      continue;
     impulse[static_cast<std::size_t>(body.body)] += contact.normal_impulse_n_s;
   }
   const auto most = std::max_element(impulse.begin(), impulse.end());
@@ -173,7 +180,8 @@ void ScriptPlayer::Resolver::operator()(const PosesStep& poses) {
   hand_.target = hand_.motion.At(hand_.motion.duration_s());
 }
 
-ScriptPlayer::ScriptPlayer(const Scene& scene, Script script) : scene_(scene), script_(std::move(script)) {
+ScriptPlayer::ScriptPlayer(const Scene& scene, Script script)
+    : scene_(scene), script_(std::move(script)) {
   const std::vector<int> styles = FirstStyles(scene_, script_);
   for (std::size_t i = 0; i < scene_.hands.size(); ++i) {
     HandState hand{.target = {.X_WH = scene_.hands[i].X_WH}, .style = styles[i]};
@@ -188,7 +196,8 @@ std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& scr
     for (const Step& step : beat.steps) {
       const auto* reach = std::get_if<ReachStep>(&step.action);
       const auto hand = static_cast<std::size_t>(step.hand);
-      if (reach && styles[hand] < 0) styles[hand] = FindStyle(scene.hands[hand].model, reach->style);
+      if (reach && styles[hand] < 0)
+        styles[hand] = FindStyle(scene.hands[hand].model, reach->style);
     }
   }
   for (int& style : styles) style = std::max(style, 0);

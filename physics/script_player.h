@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays a script: when a beat starts, each of its steps is resolved into a motion of a hand's tracked target, from
-// the world as it is then. Hands without a step keep their target.
-// Tested by tests/physics/script_player_test.cc
+// Plays a script: when a beat starts, each of its steps is resolved into a motion of a hand's
+// tracked target, from the world as it is then. Hands without a step keep their target. Tested by
+// tests/physics/script_player_test.cc
 #pragma once
 
 #include <string>
@@ -20,10 +20,12 @@ class ScriptPlayer {
   /// `scene` must outlive the player.
   ScriptPlayer(const Scene& scene, Script script);
 
-  /// Style of every hand at the first tick: the one of its first reach, so that fingers need not jump.
+  /// Style of every hand at the first tick: the one of its first reach, so that fingers need not
+  /// jump.
   static std::vector<int> FirstStyles(const Scene& scene, const Script& script);
 
-  /// The commands for the tick that follows `now`. Null when the script is over or cannot go on (see problem()).
+  /// The commands for the tick that follows `now`. Null when the script is over or cannot go on
+  /// (see problem()).
   const std::vector<HandCommand>* Advance(const Snapshot& now);
 
   /// Why the script cannot go on; empty if it can.
@@ -36,7 +38,7 @@ class ScriptPlayer {
     TargetState target;  ///< where it is, or will be at the end of the motion
     Trajectory motion{TargetState{}};
     int style = 0;
-    int object = -1;  ///< last one reached for
+    int object = -1;                                         ///< last one reached for
     Eigen::Vector3d came_along_W = Eigen::Vector3d::Zero();  ///< zero until the first reach
   };
   class Resolver;

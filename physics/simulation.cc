@@ -11,7 +11,8 @@
 namespace prehend::physics {
 namespace {
 
-/// Longer runs are a mistake in a script: half an hour of simulated time takes minutes and fills memory.
+/// Longer runs are a mistake in a script: half an hour of simulated time takes minutes and fills
+/// memory.
 constexpr double kLongestRun_s = 1800;
 
 /// FNV-1a, 64 bit.
@@ -52,11 +53,14 @@ struct Simulation::State {
         world(MakeBulletWorld(scene, ScriptPlayer::FirstStyles(scene, t))),
         player(scene, std::move(t)) {
     world->Describe(snapshot);
-    if (too_long) Fail("", "the script is longer than half an hour", "split it, or shorten over_s and settle_s");
+    if (too_long)
+      Fail("", "the script is longer than half an hour",
+           "split it, or shorten over_s and settle_s");
   }
 
   void Fail(std::string entity, std::string reason, std::string advice) {
-    status = {RunStatus::Kind::kFailed, snapshot.tick, std::move(entity), std::move(reason), std::move(advice)};
+    status = {RunStatus::Kind::kFailed, snapshot.tick, std::move(entity), std::move(reason),
+              std::move(advice)};
   }
   bool Step();
 
@@ -74,7 +78,8 @@ bool Simulation::State::Step() {
   const std::vector<HandCommand>* commands = player.Advance(snapshot);
   if (!player.problem().empty()) {
     const auto hand = static_cast<std::size_t>(player.problem_hand());
-    Fail(scene.hands[hand].name, player.problem(), "name an entity of the scenario and a style of the hand file");
+    Fail(scene.hands[hand].name, player.problem(),
+         "name an entity of the scenario and a style of the hand file");
     return false;
   }
   if (!commands) {
@@ -84,7 +89,8 @@ bool Simulation::State::Step() {
   world->Step(*commands);
   world->Describe(snapshot);
   hash.Add(snapshot);
-  if (auto problem = CheckSnapshot(scene, snapshot)) Fail(problem->entity, problem->reason, problem->advice);
+  if (auto problem = CheckSnapshot(scene, snapshot))
+    Fail(problem->entity, problem->reason, problem->advice);
   return true;
 }
 

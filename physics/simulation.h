@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Scene and a Script, stepped tick by tick. A run that goes wrong ends as a value, not as an exception.
-// Tested by tests/physics/simulation_test.cc
+// A Scene and a Script, stepped tick by tick. A run that goes wrong ends as a value, not as an
+// exception. Tested by tests/physics/simulation_test.cc
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,8 @@ class Simulation {
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 
-  /// Advances one tick. False when the run is over (then status() says why and nothing was stepped).
+  /// Advances one tick. False when the run is over (then status() says why and nothing was
+  /// stepped).
   bool Step();
 
   const Scene& scene() const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of the world after one tick, as a value. Who: bodies and hands by their index in the Scene.
+// The state of the world after one tick, as a value. Who: bodies and hands by their index in the
+// Scene.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +18,13 @@ struct BodyState {
 };
 
 struct HandState {
-  BodyState palm;                ///< never asleep
-  std::vector<Pose> X_WL;        ///< box centre of every link, local x along it; order of HandModel::links
+  BodyState palm;  ///< never asleep
+  std::vector<Pose>
+      X_WL;  ///< box centre of every link, local x along it; order of HandModel::links
   std::vector<double> joints_rad;
-  Pose X_WTarget;                ///< where the tracked target is
+  Pose X_WTarget;  ///< where the tracked target is
   double trigger = 0;
-  int style = 0;                 ///< index into HandModel::styles
+  int style = 0;  ///< index into HandModel::styles
 };
 
 /// One side of a contact: a body (hand == -1) or a link of a hand (link == -1 is the palm).

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the tracked target goes: a chain of smooth segments in position, orientation and trigger, with velocities.
-// Position follows a cubic Bezier curve, orientation a slerp, the trigger a straight line. A scripted motion runs
-// with minimum-jerk timing (Flash & Hogan 1985) from rest to rest. Way-points are passed without stopping, on the
-// monotone cubic through them (Fritsch & Butland 1984), which never overshoots a hold.
-// Tested by tests/physics/trajectory_test.cc
+// Where the tracked target goes: a chain of smooth segments in position, orientation and trigger,
+// with velocities. Position follows a cubic Bezier curve, orientation a slerp, the trigger a
+// straight line. A scripted motion runs with minimum-jerk timing (Flash & Hogan 1985) from rest to
+// rest. Way-points are passed without stopping, on the monotone cubic through them (Fritsch &
+// Butland 1984), which never overshoots a hold. Tested by tests/physics/trajectory_test.cc
 #pragma once
 
 #include <array>
@@ -51,7 +51,8 @@ class Trajectory {
 /// A straight motion from rest to rest, `trigger` unchanged.
 Segment StraightSegment(const TargetState& from, const Pose& to, double duration_s);
 
-/// Through way-points (times increasing); starts from `from` unless the first way-point is at time 0.
+/// Through way-points (times increasing); starts from `from` unless the first way-point is at time
+/// 0.
 Trajectory WaypointTrajectory(const TargetState& from, const std::vector<TimedPose>& poses);
 
 /// Point on a cubic Bezier curve, parameter 0..1.

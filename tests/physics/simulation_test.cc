@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/physics/human_hand.h"
+#include "tests/physics/library_hand.h"
 
 namespace prehend::physics {
 namespace {

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/read_hand_model_test.cc
+#include "harness/hand_fields.h"
+
+#include "harness/record.h"
+
+namespace prehend::harness {
+namespace {
+
+using Eigen::Vector3d;
+using physics::GraspApproach;
+using physics::JointDriver;
+using physics::PidGains;
+
+Format<double> PartLength() { return Number(0.001, 0.5); }
+Format<double> PartMass() { return Number(0.001, 10); }
+Format<Vector3d> InHand() { return Vector<3>(-1, 1); }
+
+/// A direction of any length but 0; what is read has length 1.
+Format<Vector3d> Direction() {
+  const auto vector = Vector<3>(-1, 1);
+  return {.schema = vector.schema,
+          .read =
+              [vector](const YamlNode& node, Complaints& complaints, Vector3d& value) {
+                if (!vector.read(node, complaints, value)) return false;
+                if (value.norm() < 1e-6)
+                  return ComplainWanted(node, complaints, "a direction other than [0, 0, 0]");
+                value.normalize();
+                return true;
+              },
+          .show = vector.show};
+}
+
+template <class T>
+Format<Located<T>> WithPlace(Format<T> format) {
+  return {.schema = format.schema,
+          .read =
+              [format](const YamlNode& node, Complaints& complaints, Located<T>& value) {
+                value.where = node.where;
+                return format.read(node, complaints, value.value);
+              },
+          .show = {}};
+}
+
+Format<PerDigit> PerDigitFormat(double lowest, double highest) {
+  return MapOf(Identifier(), WithPlace(ListOf(Number(lowest, highest), 1, 8)), 1, 16);
+}
+
+Format<PalmEntry> PalmFormat() {
+  using P = PalmEntry;
+  return Record<P>("the palm")
+      .Optional("size_m", &P::size_m, Vector<3>(0.005, 0.5),
+                "Full edge lengths of its box [x, y, z].")
+      .Optional("mass_kg", &P::mass_kg, PartMass(), "Mass.")
+      .Optional("inertia_scale", &P::inertia_scale, Number(1, 100),
+                "Stands for the forearm: times the box' inertia.")
+      .Required("sensor_set", &P::sensor_set, Identifier(),
+                "The sensor set that feels its contacts.")
+      .format();
+}
+
+Format<PidGains> TranslationFormat() {
+  return Record<PidGains>("the translation gains")
+      .Required("proportional_n_per_m", &PidGains::proportional, Number(0, 1e6), "Force per error.")
+      .Required("derivative_n_s_per_m", &PidGains::derivative, Number(0, 1e5),
+                "Force per speed of the error.")
+      .Required("integral_n_per_m_s", &PidGains::integral, Number(0, 1e6),
+                "Force per error and second.")
+      .Required("limit_n", &PidGains::limit, Number(0, 1e4), "Largest force.")
+      .Optional("integral_share", &PidGains::integral_share, Number(0, 1),
+                "Largest share of the integral's part.")
+      .format();
+}
+
+Format<PidGains> RotationFormat() {
+  return Record<PidGains>("the rotation gains")
+      .Required("proportional_nm_per_rad", &PidGains::proportional, Number(0, 1e6),
+                "Torque per error.")
+      .Required("derivative_nm_s_per_rad", &PidGains::derivative, Number(0, 1e5),
+                "Torque per speed of the error.")
+      .Required("integral_nm_per_rad_s", &PidGains::integral, Number(0, 1e6),
+                "Torque per error and second.")
+      .Required("limit_nm", &PidGains::limit, Number(0, 1e4), "Largest torque.")
+      .Optional("integral_share", &PidGains::integral_share, Number(0, 1),
+                "Largest share of the integral's part.")
+      .format();
+}
+
+Format<JointDriver> DriverFormat() {
+  using D = JointDriver;
+  return Record<D>("the joint driver")
+      .Optional("stiffness", &D::stiffness, Number(0, 1),
+                "Share of the angle error that it tries to remove per tick.")
+      .Optional("damping", &D::damping, Number(0, 1), "How firmly it holds the speed it wants.")
+      .Optional("max_speed_rad_per_s", &D::max_speed_rad_per_s, Number(0.1, 100),
+                "Fastest that a joint turns.")
+      .format();
+}
+
+Format<PhalanxEntry> PhalanxFormat() {
+  using P = PhalanxEntry;
+  return Record<P>("a phalanx")
+      .Required("name", &P::name, Identifier(), "Its name after the digit's: index_proximal.")
+      .Optional("joint_axis", &P::joint_axis, Direction(),
+                "Of the joint at its base, in H; positive angles close.")
+      .Required("length_m", &P::length_m, PartLength(), "From its joint to the next one.")
+      .Required("half_width_m", &P::half_width_m, PartLength(), "Half of its size across.")
+      .Required("half_thickness_m", &P::half_thickness_m, PartLength(),
+                "Half of its size from back to pad.")
+      .Required("mass_kg", &P::mass_kg, PartMass(), "Mass.")
+      .Required("strength_nm", &P::strength_nm, Number(0, 100),
+                "Largest torque of its joint at effort 1.")
+      .Required("range_deg", &P::range_deg, Vector<2>(-180, 180), "Joint limits [least, most].")
+      .Check([](const YamlNode&, const P& phalanx, Complaints& complaints) {
+        const Eigen::Vector2d& range = phalanx.range_deg.value;
+        if (range[0] >= range[1])
+          complaints.Add(phalanx.range_deg.where, "range_deg: expected [least, most]");
+      })
+      .format();
+}
+
+Format<DigitEntry> DigitFormat() {
+  using D = DigitEntry;
+  return Record<D>("digit")
+      .NamedByKey()
+      .Required("sensor_set", &D::sensor_set, Identifier(),
+                "The sensor set that feels its contacts.")
+      .Required("base_m", &D::base_m, InHand(), "Its first joint, in H.")
+      .Required("direction", &D::direction, Direction(),
+                "Where it points with all joints at 0, in H.")
+      .Required("phalanges", &D::phalanges, ListOf(PhalanxFormat(), 1, 8),
+                "From the palm to the tip.")
+      .format();
+}
+
+Format<GripEntry> GripFormat() {
+  using G = GripEntry;
+  return Record<G>("the grip")
+      .Required("axis", &G::axis, Direction(),
+                "In H: from the stiff side (the post) to the force-limited side.")
+      .Required("post_m", &G::post_m, InHand(),
+                "In H: where the object's face meets the post when closed.")
+      .Optional("opening_m", &G::opening_m, Number(0.001, 0.5),
+                "Widest object that fits along the axis.")
+      .format();
+}
+
+Record<GraspApproach> ApproachRecord(const std::string& noun) {
+  using A = GraspApproach;
+  return Record<A>(noun)
+      .Required("toward", &A::toward, Direction(),
+                "In H: the direction of the last part of the motion.")
+      .Required("palm_gap_m", &A::palm_gap_m, Number(-0.5, 0.5),
+                "H's origin stays this far from the nearest face.")
+      .Required("pads_m", &A::pads_m, Number(0, 0.5),
+                "Wanted distance of the object's centre from H's origin.")
+      .Required("floor_m", &A::floor_m, Number(0, 0.5),
+                "H's origin stays this high above the object's lowest point.");
+}
+
+Format<StyleEntry> StyleFormat() {
+  using S = StyleEntry;
+  return Record<S>("style")
+      .NamedByKey()
+      .Required("grip", &S::grip, GripFormat(), "Where the object is held.")
+      .Optional("above", &S::above, ApproachRecord("the approach from above").format(),
+                "How it comes from above.")
+      .Optional("side", &S::side,
+                ApproachRecord("the approach from the side")
+                    .Required("up", &GraspApproach::up, Direction(),
+                              "In H: the direction that is up in the world.")
+                    .format(),
+                "How it comes from the side.")
+      .Required(
+          "effort", &S::effort, PerDigitFormat(0, 10),
+          "For each digit the share of its strength: one number for all joints, or one for each.")
+      .Required("frames_deg", &S::frames_deg, ListOf(WithPlace(PerDigitFormat(-180, 180)), 2, 16),
+                "Joint angles from open to closed: for each digit one number for each joint.")
+      .Check([](const YamlNode& node, const S& style, Complaints& complaints) {
+        if (style.above || style.side) return;
+        complaints.Add(node.key_where, "style '" + node.key + "' has no approach",
+                       "give 'above', 'side' or both");
+      })
+      .format();
+}
+
+Format<GainsEntry> GainsFormat() {
+  return Record<GainsEntry>("the gains")
+      .Required("translation", &GainsEntry::translation, TranslationFormat(),
+                "How the palm follows a position.")
+      .Required("rotation", &GainsEntry::rotation, RotationFormat(),
+                "How the palm follows an orientation.")
+      .format();
+}
+
+}  // namespace
+
+Format<HandEntry> HandFormat() {
+  using H = HandEntry;
+  return Record<H>("the hand")
+      .Required("hand", &H::name, Identifier(), "Its name: that of the file without '.hand.yaml'.")
+      .Required("sensor_sets", &H::sensor_sets, ListOf(Identifier(), 1, 16),
+                "Groups of contact sensors.")
+      .Optional("ahead", &H::ahead, Direction(), "In H: where the region of interest lies.")
+      .Optional("friction", &H::friction, Number(0, 5),
+                "Of its skin; multiplied with the object's.")
+      .Optional("spinning_friction", &H::spinning_friction, Number(0, 1),
+                "Against turning in place.")
+      .Required("palm", &H::palm, PalmFormat(), "The palm, a box.")
+      .Required("gains", &H::gains, GainsFormat(), "How the palm follows its tracked target.")
+      .Optional("driver", &H::driver, DriverFormat(), "How the joints follow their targets.")
+      .Required("digits", &H::digits, MapOf(Identifier(), DigitFormat(), 1, 16),
+                "Fingers and thumb.")
+      .Required("styles", &H::styles, MapOf(Identifier(), StyleFormat(), 1, 64), "Grasps, by name.")
+      .format();
+}
+
+Format<MirrorEntry> MirrorFormat() {
+  return Record<MirrorEntry>("the hand")
+      .Required("hand", &MirrorEntry::name, Identifier(),
+                "Its name: that of the file without '.hand.yaml'.")
+      .Required("mirror_of", &MirrorEntry::mirror_of, Identifier(),
+                "The hand in the same folder that it mirrors.")
+      .format();
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// A hand file as it is written: digits are straight chains of phalanges, angles are in degrees.
+// Every key is declared once, in harness/hand_fields.cc; harness/read_hand_model.h makes a
+// physics::HandModel of it. Tested by tests/harness/read_hand_model_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/format.h"
+#include "physics/hand_model.h"
+
+namespace prehend::harness {
+
+struct PalmEntry {
+  Eigen::Vector3d size_m = physics::HandModel{}.palm_size_m;
+  double mass_kg = physics::HandModel{}.palm_mass_kg;
+  double inertia_scale = physics::HandModel{}.palm_inertia_scale;
+  Located<std::string> sensor_set;
+};
+
+struct PhalanxEntry {
+  std::string name;
+  Eigen::Vector3d joint_axis = Eigen::Vector3d::UnitY();
+  double length_m = 0, half_width_m = 0, half_thickness_m = 0;
+  double mass_kg = 0;
+  double strength_nm = 0;
+  Located<Eigen::Vector2d> range_deg;
+};
+
+struct DigitEntry {
+  Located<std::string> sensor_set;
+  Eigen::Vector3d base_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
+  std::vector<PhalanxEntry> phalanges;
+};
+
+/// Numbers for the joints of digits, by the digit's name.
+using PerDigit = std::vector<Named<Located<std::vector<double>>>>;
+
+struct GripEntry {
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d post_m = Eigen::Vector3d::Zero();
+  double opening_m = physics::GraspStyle{}.opening_m;
+};
+
+struct StyleEntry {
+  GripEntry grip;
+  std::optional<physics::GraspApproach> above, side;
+  Located<PerDigit> effort;
+  std::vector<Located<PerDigit>> frames_deg;
+};
+
+struct GainsEntry {
+  physics::PidGains translation, rotation;
+};
+
+struct HandEntry {
+  Located<std::string> name;
+  std::vector<std::string> sensor_sets;
+  Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();
+  double friction = physics::HandModel{}.friction;
+  double spinning_friction = physics::HandModel{}.spinning_friction;
+  PalmEntry palm;
+  GainsEntry gains;
+  physics::JointDriver driver;
+  std::vector<Named<DigitEntry>> digits;
+  std::vector<Named<StyleEntry>> styles;
+};
+
+/// The mirror image of another hand file.
+struct MirrorEntry {
+  Located<std::string> name;
+  Located<std::string> mirror_of;
+};
+
+Format<HandEntry> HandFormat();
+Format<MirrorEntry> MirrorFormat();
+
+}  // namespace prehend::harness

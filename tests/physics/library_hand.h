@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The hands of physics/library, for tests: the hand that is tested is the one that is shipped.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "harness/read_hand_model.h"
+
+namespace prehend::physics {
+
+inline HandModel LibraryHand(const std::string& name) {
+  auto read = harness::ReadHandModel(PREHEND_SOURCE_DIR "/physics/library/" + name + ".hand.yaml");
+  if (!read.value)
+    throw std::runtime_error("hand file " + name + ": " + read.diagnostics.front().message);
+  return std::move(*read.value);
+}
+
+}  // namespace prehend::physics
