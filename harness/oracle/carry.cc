@@ -39,13 +39,30 @@ class Carrier {
  private:
   const Vector3d& place(int frame) const { return recording_.place(grasp_.body, frame); }
 
-  /// Whether the object moves along something that supports it in this frame.
-  bool Slides(int frame) const {
+  /// Where the object is, as seen from one of its supports.
+  Vector3d Seen(int support, int frame) const {
+    return recording_.body(support, frame).X_WB.inverse() * place(frame);
+  }
+
+  /// Whether the object moves along something that supports it. Its velocity must say so and it
+  /// must get somewhere: a squeezed object trembles faster than it slides. `supported` is where to
+  /// look for frames before and after.
+  bool Slides(int frame, Span supported) const {
+    int before = frame, after = frame;
+    while (before > supported.begin &&
+           recording_.Seconds(before, frame) < settings_.slide_window_s / 2)
+      --before;
+    while (after + 1 < supported.end &&
+           recording_.Seconds(frame, after) < settings_.slide_window_s / 2)
+      ++after;
     for (const auto& [support, spans] : supports_) {
       if (!Covers(spans, frame)) continue;
       const Vector3d velocity =
           RelativeVelocity(recording_.body(grasp_.body, frame), recording_.body(support, frame));
-      if (velocity.head<2>().norm() > settings_.slide_speed_m_per_s) return true;
+      const double way_m = (Seen(support, after) - Seen(support, before)).norm();
+      if (velocity.head<2>().norm() > settings_.slide_speed_m_per_s &&
+          way_m > settings_.slide_speed_m_per_s * recording_.Seconds(before, after))
+        return true;
     }
     return false;
   }
@@ -56,19 +73,16 @@ class Carrier {
     double farthest = 0;
     for (const auto& [support, spans] : supports_) {
       if (!Covers(spans, span.begin)) continue;
-      const auto seen = [&](int frame) {
-        return recording_.body(support, frame).X_WB.inverse() * place(frame);
-      };
-      const Vector3d start = seen(span.begin);
       for (int frame = span.begin; frame < span.end; ++frame)
-        farthest = std::max(farthest, (seen(frame) - start).norm());
+        farthest = std::max(farthest, (Seen(support, frame) - Seen(support, span.begin)).norm());
     }
     return farthest;
   }
 
   void FindSlides(Span supported) {
     std::vector<bool> moving(recording_.size());
-    for (int frame = supported.begin; frame < supported.end; ++frame) moving[frame] = Slides(frame);
+    for (int frame = supported.begin; frame < supported.end; ++frame)
+      moving[frame] = Slides(frame, supported);
     for (const Span& slide :
          Bridged(WhereTrue(moving), recording_.ticks, recording_.Ticks(settings_.slide_pause_s)))
       if (Displacement(slide) >= settings_.slide_displacement_m) found_.slides.push_back(slide);

@@ -33,7 +33,9 @@ struct OracleSettings {
   double reach_minimum_s = 0.1;
 
   double slide_speed_m_per_s = 0.01;  ///< horizontal, relative to the support
-  double slide_pause_s = 0.150;       ///< a pause in the motion that is bridged
+  double slide_window_s =
+      0.1;  ///< over which the motion has to be faster than that on average, too
+  double slide_pause_s = 0.150;  ///< a pause in the motion that is bridged
   double slide_displacement_m = 0.02;
 
   double pick_up_rise_m = 0.03;

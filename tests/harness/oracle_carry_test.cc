@@ -108,6 +108,18 @@ TEST_F(OracleCarry, ASlideNeedsTwoCentimetresAndPausesAreBridged) {
   ExpectNear(Events("sliding"), {{begin, pause}, {again, end}});
 }
 
+TEST_F(OracleCarry, TremblingIsNotSliding) {
+  const auto tremble = [&] {
+    for (int i = 0; i < 24; ++i) stage_.Carry(0.025, {i % 2 ? -0.04 : 0.04, 0, 0});
+  };
+  tremble();
+  const Tick begin = stage_.now();
+  stage_.Carry(0.4, {0.2, 0, 0});
+  const Tick end = stage_.now();
+  tremble();
+  ExpectNear(Events("sliding"), {{begin, end}}, 24);  // a tremble next to the motion is part of it
+}
+
 TEST_F(OracleCarry, AReleasedCupDoesNotSlideAndACarriedTrayMakesNoSlide) {
   LetGo();
   stage_.Play(0.4, {0, 0, 0}, {{stage_.cup, {0.2, 0, 0}}});
