@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/builtins.h"
+
+namespace prehend::grammar {
+
+std::span<const Builtin> Builtins() {
+  using A = Argument;
+  using T = Type;
+  static const std::vector<Builtin> kBuiltins = {
+      {"touching", Op::kHolds, T::kTruth, kPlain, {A::kEntity, A::kEntity}, "their surfaces touch"},
+      {"in_sphere", Op::kInSphere, T::kTruth, kPlain, {A::kPosition, A::kPosition, A::kLength},
+       "(what, centre, radius): a position, or any part of an entity's box, is in the sphere"},
+      {"in_cylinder", Op::kInCylinder, T::kTruth, kPlain, {A::kPosition, A::kPosition, A::kLength, A::kLength},
+       "(position, centre, radius, height): in the upright cylinder, at most height above or below its centre"},
+      {"part_of", Op::kPartOf, T::kTruth, kPlain, {A::kEntity, A::kEntity}, "the first is a part of the second"},
+      {"trigger", Op::kTrigger, T::kNumber, kPlain, {A::kHand}, "commanded grip, 0 open .. 1 closed"},
+      {"sensor_sets", Op::kSensorSets, T::kNumber, kPlain, {A::kHand, A::kThing},
+       "how many sensor sets of the hand the object touches"},
+      {"up", Op::kUp, T::kNumber, kPlain, {A::kEntity, A::kEntity},
+       "cosine between up and the contact normal on the first: 1 held from below, 0 side by side, -1 not touching"},
+      {"force", Op::kForceBetween, T::kNumber, kNewtons, {A::kEntity, A::kEntity}, "normal force between them"},
+      {"gap", Op::kGap, T::kNumber, kMetres, {A::kHand, A::kThing}, "smallest distance from the hand to the object's box"},
+      {"closing_speed", Op::kClosingSpeed, T::kNumber, kMetresPerSecond, {A::kHand, A::kThing},
+       "how fast the gap shrinks, from one frame to the next"},
+      {"distance", Op::kDistance, T::kNumber, kMetres, {A::kPosition, A::kPosition}, "between two positions"},
+      {"height", Op::kHeight, T::kNumber, kMetres, {A::kPosition}, "above the world's origin"},
+      {"speed", Op::kSpeed, T::kNumber, kMetresPerSecond, {A::kEntity}, "of the entity's origin"},
+      {"vertical_speed", Op::kVerticalSpeed, T::kNumber, kMetresPerSecond, {A::kEntity}, "upwards"},
+      {"relative_vertical_speed", Op::kRelativeVerticalSpeed, T::kNumber, kMetresPerSecond, {A::kEntity, A::kEntity},
+       "upwards, of the first against the point of the second where the first is"},
+      {"speed_along", Op::kSpeedAlong, T::kNumber, kMetresPerSecond, {A::kEntity, A::kEntity},
+       "horizontal speed of the first against the point of the second where the first is"},
+      {"tilt", Op::kTilt, T::kNumber, kRadians, {A::kEntity}, "angle between the entity's own z axis and up"},
+      {"position", Op::kPosition, T::kPosition, kMetres, {A::kEntity}, "of the entity's origin"},
+      {"position_on", Op::kPositionOn, T::kPosition, kMetres, {A::kEntity, A::kEntity},
+       "of the first's origin as seen from the second, so that it stays when both move together"},
+      {"ahead", Op::kAhead, T::kPosition, kMetres, {A::kHand, A::kLength}, "the point this far in front of the palm"},
+      {"abs", Op::kAbs, T::kNumber, kPlain, {A::kNumber}, "the value without its sign"},
+  };
+  return kBuiltins;
+}
+
+const Builtin* FindBuiltin(std::string_view name) {
+  for (const Builtin& builtin : Builtins()) {
+    if (builtin.name == name) return &builtin;
+  }
+  return nullptr;
+}
+
+}  // namespace prehend::grammar

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The signals and tests that every grammar knows: names, arguments, units. Their meaning is in evaluate.cc and,
+// for users, in docs/grammar-language.md; a test compares the two lists.
+// Tested by tests/grammar/builtins_test.cc
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "grammar/program.h"
+
+namespace prehend::grammar {
+
+enum class Type : std::uint8_t { kTruth, kNumber, kPosition };
+
+/// What an argument must be. The first four are roles of that class.
+enum class Argument : std::uint8_t { kEntity, kHand, kThing, kMovable, kPosition, kLength, kNumber };
+
+struct Builtin {
+  std::string_view name;
+  Op op;
+  Type type;
+  Dimension dimension;  ///< of a number
+  std::vector<Argument> arguments;
+  std::string_view meaning;  ///< one line for listings
+};
+
+std::span<const Builtin> Builtins();
+
+/// Null when there is none.
+const Builtin* FindBuiltin(std::string_view name);
+
+}  // namespace prehend::grammar

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The online engine behind Monitor.
+//
+// Needs: the same intervals as the meaning table in docs/grammar-language.md gives for the whole episode, each as
+// soon as no future can change it.
+// Algorithm: rules are stepped in the order of Program::schedule, each awake lane frame by frame, but only up to the
+// first frame where its condition is not known yet; Lane::known says up to where a lane's own truth is final. So a
+// lane that waits (a gap that may be bridged, an approach that may end in a landing) delays only the lanes that ask
+// about just those frames.
+// Data structures: lanes.h (state per binding), history.h (the frames that some lane may still ask for).
+// Tested by tests/grammar/monitor_test.cc and the corpus in tests/grammar/corpus/
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grammar/evaluate.h"
+#include "grammar/history.h"
+#include "grammar/lanes.h"
+
+namespace prehend::grammar {
+
+class Engine {
+ public:
+  Engine(std::shared_ptr<const Program> program, Cast cast);
+  Engine(const Engine&) = delete;  // the members refer to each other
+  Engine& operator=(const Engine&) = delete;
+
+  const std::string& error() const { return error_; }
+  void Advance(const Frame& frame, std::vector<Event>& out);
+  void Finish(Tick end, std::vector<Event>& out);
+
+ private:
+  struct RuleTicks {
+    Tick bridging = 0;
+    Tick lasting = 0;
+    Tick idle = 0;
+    Tick back = 0;
+  };
+
+  // Waking and sleeping.
+  std::string WhyNotWatchable(const Frame& frame) const;
+  void WatchTouches(const Frame& frame);
+  void EndTouches(Moment end, bool all);
+  void Wake(int lane);
+  void StirDependents(const Lane& lane);
+  bool AtRest(const Lane& lane) const;
+  void StepRule(int rule);
+  void ForgetThePast();
+
+  // The forms; each looks at one frame and says whether it could decide it.
+  void StepLane(Lane& lane);
+  bool StepWhile(Lane& lane, FrameNumber frame);
+  bool StepAny(Lane& lane, FrameNumber frame);
+  bool StepRun(Lane& lane, FrameNumber frame, Kleene truth);
+  bool StepRest(Lane& lane, FrameNumber frame);
+  bool StepFromTo(Lane& lane, FrameNumber frame);
+  bool StepUntil(Lane& lane, FrameNumber frame);
+  bool StepCompose(Lane& lane, FrameNumber frame);
+  void ComposeFromParts(Lane& lane);
+
+  // Walking back from `end`: the frame where the interval begins; `end` if there is none; kNever if not known yet.
+  FrameNumber ApproachBegin(Lane& lane, FrameNumber end) const;
+
+  // From a run to an event.
+  void Open(Lane& lane, FrameNumber frame);
+  bool Close(Lane& lane, Moment end, bool open_end = false);
+  bool Conclude(Lane& lane, const Span& span);
+  void ResolvePending(Lane& lane);
+  void Emit(Lane& lane, const Span& span, int style);
+  void UpdateKnown(Lane& lane);
+  bool RunIsCertain(const Lane& lane) const;
+  void FinishLane(Lane& lane, Moment end);
+
+  const Rule& RuleOf(const Lane& lane) const { return program_->events[lane.rule]; }
+  const RuleTicks& TicksOf(const Lane& lane) const { return rule_ticks_[lane.rule]; }
+
+  std::shared_ptr<const Program> program_;
+  Cast cast_;
+  History history_;
+  Lanes lanes_;
+  Evaluator evaluator_;
+  std::vector<RuleTicks> rule_ticks_;
+  Tick longest_look_back_ = 0;
+  std::vector<std::vector<int>> awake_;  // by rule
+  FrameNumber oldest_needed_ = 0;        // of the awake lanes
+  FrameNumber oldest_look_needed_ = 0;
+  bool finishing_ = false;
+  Tick decided_ = 0;
+  std::vector<Event>* out_ = nullptr;    // only during Advance and Finish
+  std::string error_;
+};
+
+}  // namespace prehend::grammar

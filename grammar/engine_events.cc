@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a run of frames to an event: minimum duration, requirement, confirmation, and what is known of it meanwhile.
+#include <algorithm>
+
+#include "grammar/engine.h"
+
+namespace prehend::grammar {
+
+void Engine::Open(Lane& lane, FrameNumber frame) {
+  const Rule& rule = RuleOf(lane);
+  lane.open = true;
+  lane.in_gap = false;
+  lane.begin = history_.At(frame);
+  evaluator_.CaptureAnchors(lane, frame);
+  if (rule.style_role == kNone) return;
+  const HandSample* hand = history_.Hand(lane.entities[rule.style_role], frame);
+  lane.style = hand == nullptr ? kNobody : hand->look.style;
+}
+
+// False, with nothing changed, if it is not known yet whether the run is an interval.
+bool Engine::Close(Lane& lane, Moment end, bool open_end) {
+  if (!Conclude(lane, {lane.begin, end, open_end})) return false;
+  lane.open = lane.in_gap = false;
+  return true;
+}
+
+bool Engine::Conclude(Lane& lane, const Span& span) {
+  const Rule& rule = RuleOf(lane);
+  if (span.end.tick - span.begin.tick < TicksOf(lane).lasting) return true;
+  if (rule.requirement != kNone) {
+    const FrameNumber last = std::min(span.end.frame, history_.now());
+    const Kleene required = evaluator_.Truth(rule.requirement, {lane, last, last});
+    if (required == Kleene::kUnknown) return false;
+    if (required == Kleene::kFalse) return true;
+  }
+  if (rule.confirmed_by != kNone) {
+    lane.pending.push_back({.span = span, .style = lane.style, .next = span.end.frame});
+  } else {
+    Emit(lane, span, lane.style);
+  }
+  return true;
+}
+
+// An interval is confirmed when the other event begins at or after its end while the episode has held all the time.
+void Engine::ResolvePending(Lane& lane) {
+  const Rule& rule = RuleOf(lane);
+  std::erase_if(lane.pending, [&](Pending& pending) {
+    for (; pending.next <= history_.now(); ++pending.next) {
+      const Evaluator::View view{lane, pending.next};
+      const Kleene within = evaluator_.Holds(rule.confirmed_within, view);
+      if (within == Kleene::kFalse) return true;
+      const Kleene begins = evaluator_.Begins(rule.confirmed_by, view);
+      if (And(within, begins) == Kleene::kTrue) {
+        Emit(lane, pending.span, pending.style);
+        return true;
+      }
+      if (within == Kleene::kUnknown || begins == Kleene::kUnknown) return false;
+    }
+    return false;
+  });
+}
+
+void Engine::Emit(Lane& lane, const Span& span, int style) {
+  const Rule& rule = RuleOf(lane);
+  if (rule.referenced) {
+    const FrameNumber oldest = history_.first();
+    std::erase_if(lane.past, [&](const Span& past) { return past.end.frame < oldest; });
+    lane.past.push_back(span);
+  }
+  if (!rule.printed) return;
+  out_->push_back({.rule = lane.rule,
+                   .roles = lane.entities,
+                   .interval = {span.begin.tick, span.end.tick},
+                   .decided = decided_,
+                   .style = rule.style_role == kNone ? kNobody : style,
+                   .open_end = span.open_end});
+}
+
+bool Engine::RunIsCertain(const Lane& lane) const {
+  const Rule& rule = RuleOf(lane);
+  if (rule.requirement != kNone || rule.confirmed_by != kNone || rule.or_drop) return false;
+  const Tick earliest_end = lane.in_gap ? lane.gap.tick : history_.At(lane.next - 1).tick + 1;
+  return earliest_end - lane.begin.tick >= TicksOf(lane).lasting;
+}
+
+void Engine::UpdateKnown(Lane& lane) {
+  const Rule& rule = RuleOf(lane);
+  lane.known = lane.next;
+  if (lane.open) {
+    lane.certain = RunIsCertain(lane);
+    const FrameNumber certain_end = lane.in_gap ? lane.gap.frame : lane.next;
+    lane.known = lane.certain ? certain_end : lane.begin.frame;
+  }
+  if (rule.form == Form::kUntilSince && rule.referenced && lane.next > history_.first()) {
+    // A later interval ends after the last frame seen and reaches back no further than its rule says.
+    const Tick last = history_.At(lane.next - 1).tick;
+    const FrameNumber reach = history_.FirstNotBefore(last + 1 - TicksOf(lane).back);
+    lane.known = std::min(lane.next, std::max(lane.approach_from, reach));
+  }
+  for (const Pending& pending : lane.pending) lane.known = std::min(lane.known, pending.span.begin.frame);
+}
+
+// The last frames are decided, then what is open ends with the episode.
+void Engine::FinishLane(Lane& lane, Moment end) {
+  if (RuleOf(lane).form == Form::kTouching) return;
+  StepLane(lane);
+  if (lane.open && lane.in_gap) {
+    Close(lane, lane.gap);
+  } else if (lane.open && !RuleOf(lane).or_drop) {
+    Close(lane, end, true);
+  }
+  lane.open = false;
+  lane.pending.clear();
+  lane.awake = false;
+}
+
+}  // namespace prehend::grammar

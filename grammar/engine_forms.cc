@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// How each form of rule looks at one frame. The meaning of the forms is the table in docs/grammar-language.md.
+#include <algorithm>
+
+#include "grammar/engine.h"
+
+namespace prehend::grammar {
+
+void Engine::StepLane(Lane& lane) {
+  for (; lane.next <= history_.now(); ++lane.next) {
+    bool decided = false;
+    switch (RuleOf(lane).form) {
+      case Form::kTouching: return;
+      case Form::kWhile: decided = StepWhile(lane, lane.next); break;
+      case Form::kAny: decided = StepAny(lane, lane.next); break;
+      case Form::kFromTo: decided = StepFromTo(lane, lane.next); break;
+      case Form::kUntilSince: decided = StepUntil(lane, lane.next); break;
+      case Form::kRestOf: decided = StepRest(lane, lane.next); break;
+      case Form::kCompose: decided = StepCompose(lane, lane.next); break;
+    }
+    if (!decided) break;
+  }
+  ResolvePending(lane);
+  UpdateKnown(lane);
+}
+
+bool Engine::StepWhile(Lane& lane, FrameNumber frame) {
+  return StepRun(lane, frame, evaluator_.Truth(RuleOf(lane).first, {lane, frame}));
+}
+
+bool Engine::StepAny(Lane& lane, FrameNumber frame) {
+  Kleene truth = Kleene::kFalse;
+  for (const int member : lane.members) {
+    truth = Or(truth, lanes_.TruthAt(member, frame));
+    if (truth == Kleene::kTrue) break;
+  }
+  return StepRun(lane, frame, truth);
+}
+
+bool Engine::StepRun(Lane& lane, FrameNumber frame, Kleene truth) {
+  if (truth == Kleene::kUnknown) return false;
+  const Moment now = history_.At(frame);
+  const Tick bridging = TicksOf(lane).bridging;
+  if (truth == Kleene::kTrue) {
+    if (lane.open && lane.in_gap && now.tick - lane.gap.tick > bridging && !Close(lane, lane.gap)) return false;
+    if (!lane.open) Open(lane, frame);
+    lane.in_gap = false;
+  } else if (lane.open) {
+    if (!lane.in_gap) {
+      lane.in_gap = true;
+      lane.gap = now;
+    }
+    // Later frames are later by a tick at least, so a gap of this length cannot be bridged any more.
+    if (now.tick - lane.gap.tick >= bridging) return Close(lane, lane.gap);
+  }
+  return true;
+}
+
+bool Engine::StepRest(Lane& lane, FrameNumber frame) {
+  const Rule& rule = RuleOf(lane);
+  const Evaluator::View view{lane, frame};
+  const Kleene whole = evaluator_.Holds(rule.first, view);
+  Kleene others = Kleene::kFalse;
+  for (const int other : rule.outside) {
+    if (whole != Kleene::kFalse) others = Or(others, evaluator_.Holds(other, view));
+  }
+  const Kleene truth = And(whole, Not(others));
+  if (truth == Kleene::kUnknown) return false;
+  // Two wholes that abut are two, and so are their rests.
+  const bool new_whole = truth == Kleene::kTrue && evaluator_.Begins(rule.first, view) == Kleene::kTrue;
+  if (lane.open && (truth == Kleene::kFalse || new_whole) && !Close(lane, history_.At(frame))) return false;
+  if (truth == Kleene::kTrue && !lane.open) Open(lane, frame);
+  return true;
+}
+
+bool Engine::StepFromTo(Lane& lane, FrameNumber frame) {
+  const Rule& rule = RuleOf(lane);
+  const Evaluator::View view{lane, frame};
+  const auto during = [&] { return rule.during == kNone ? Kleene::kTrue : evaluator_.Truth(rule.during, view); };
+  if (lane.open) {
+    const Kleene closes = evaluator_.Truth(rule.second, view);
+    if (closes == Kleene::kTrue) return Close(lane, history_.At(frame));
+    const Kleene holds = during();
+    if (holds == Kleene::kFalse && !rule.or_drop) return Close(lane, history_.At(frame));
+    if (closes == Kleene::kUnknown || holds == Kleene::kUnknown) return false;
+    if (holds == Kleene::kFalse) lane.open = false;
+    return true;
+  }
+  Kleene opens = evaluator_.Truth(rule.first, view);
+  if (opens != Kleene::kFalse) opens = And(opens, during());
+  if (opens == Kleene::kFalse) return true;
+  if (opens == Kleene::kUnknown) return false;
+  // A begin that is an end at once is no interval. What `to` says of @begin refers to this very frame.
+  evaluator_.CaptureAnchors(lane, frame);
+  const Kleene closes = evaluator_.Truth(rule.second, view);
+  if (closes == Kleene::kUnknown) return false;
+  if (closes == Kleene::kFalse) Open(lane, frame);
+  return true;
+}
+
+bool Engine::StepUntil(Lane& lane, FrameNumber frame) {
+  const Rule& rule = RuleOf(lane);
+  const Kleene ends = evaluator_.Truth(rule.first, {lane, frame});
+  if (ends == Kleene::kUnknown) return false;
+  if (ends == Kleene::kTrue) {
+    const FrameNumber begin = ApproachBegin(lane, frame);
+    if (begin == kNever) return false;
+    if (begin < frame) {
+      evaluator_.CaptureAnchors(lane, begin);
+      if (rule.style_role != kNone) lane.style = history_.Hand(lane.entities[rule.style_role], begin)->look.style;
+      if (!Conclude(lane, {history_.At(begin), history_.At(frame)})) return false;
+    }
+    lane.last_end = lane.approach_from = frame;
+  }
+  if (rule.referenced && evaluator_.Truth(rule.second, {lane, frame}) == Kleene::kFalse) lane.approach_from = frame + 1;
+  return true;
+}
+
+FrameNumber Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
+  const Rule& rule = RuleOf(lane);
+  const Tick end_tick = history_.At(end).tick;
+  const FrameNumber earliest = std::max({history_.FirstNotBefore(end_tick - TicksOf(lane).back), lane.last_end, history_.first()});
+  FrameNumber begin = end;
+  double farthest = 0;
+  double after = 0;  // the signal one frame later
+  Tick last_progress = end_tick;
+  if (rule.approach != kNone) farthest = after = *evaluator_.Number(rule.approach, {lane, end, end});
+  for (FrameNumber frame = end - 1; frame >= earliest; --frame) {
+    const Evaluator::View view{lane, frame, end};
+    const Kleene holds = evaluator_.Truth(rule.second, view);
+    if (holds == Kleene::kUnknown) return kNever;
+    if (holds == Kleene::kFalse) break;
+    if (rule.approach == kNone) {
+      begin = frame;
+      continue;
+    }
+    // Read backwards, an approach moves away from its goal.
+    const double here = *evaluator_.Number(rule.approach, view);
+    if (here < farthest - rule.slack) break;
+    const Tick tick = history_.At(frame).tick;
+    const double speed = (here - after) / history_.Seconds(history_.At(frame + 1).tick - tick);
+    if (speed >= rule.speed) {
+      last_progress = tick;
+    } else if (rule.idle_s >= 0 && last_progress - tick > TicksOf(lane).idle) {
+      break;
+    }
+    // The slow start of a movement belongs to it, as long as it is a tenth of the speed that counts.
+    const bool starts_slowly = begin == frame + 1 && speed > rule.speed / 10;
+    if (here > farthest && (speed >= rule.speed || starts_slowly)) begin = frame;
+    farthest = std::max(farthest, here);
+    after = here;
+  }
+  return begin;
+}
+
+bool Engine::StepCompose(Lane&, FrameNumber) { return true; }
+
+void Engine::ComposeFromParts(Lane&) {}
+
+}  // namespace prehend::grammar

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/evaluate.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace prehend::grammar {
+namespace {
+
+using Eigen::Vector3d;
+
+// From a point in the world to the oriented bounding box of an entity; 0 inside.
+double DistanceToBox(const Vector3d& p_W, const CastMember& member, const EntityLook& look) {
+  const Vector3d p_B = look.q_WB.conjugate() * (p_W - look.p_WB_m);
+  const Vector3d outside = ((p_B - member.p_BC_m).cwiseAbs() - member.half_size_m).cwiseMax(0);
+  return outside.norm();
+}
+
+bool IsPosition(const Program& program, int node) {
+  switch (program.nodes[node].op) {
+    case Op::kPosition:
+    case Op::kPositionOn:
+    case Op::kAhead: return true;
+    case Op::kAtEnd: return IsPosition(program, program.nodes[node].args[0]);
+    default: return false;
+  }
+}
+
+}  // namespace
+
+Kleene Evaluator::Truth(int index, const View& view) const {
+  const Node& node = program_.nodes[index];
+  switch (node.op) {
+    case Op::kAnd: {
+      const Kleene left = Truth(node.args[0], view);
+      return left == Kleene::kFalse ? left : And(left, Truth(node.args[1], view));
+    }
+    case Op::kOr: {
+      const Kleene left = Truth(node.args[0], view);
+      return left == Kleene::kTrue ? left : Or(left, Truth(node.args[1], view));
+    }
+    case Op::kNot: return Not(Truth(node.args[0], view));
+    case Op::kHolds: return Holds(node.slot, view);
+    case Op::kBegins:
+    case Op::kEnds: return Edge(node, view);
+    case Op::kInSphere:
+    case Op::kBoxInSphere:
+    case Op::kInCylinder: return Inside(node, view);
+    case Op::kPartOf: return Known(cast_.entities[Entity(node, view, 0)].part_of == Entity(node, view, 1));
+    case Op::kIsA: return Known(lanes_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));
+    default: return Compare(node, view);
+  }
+}
+
+Kleene Evaluator::Holds(int slot, const View& view) const {
+  return lanes_.TruthAt(lanes_.Resolve(view.lane, slot), view.frame);
+}
+
+Kleene Evaluator::Begins(int slot, const View& view) const {
+  return lanes_.BeginsAt(lanes_.Resolve(view.lane, slot), view.frame);
+}
+
+// Of a reference: one of its intervals begins or ends here. Of any other condition: it changes here.
+Kleene Evaluator::Edge(const Node& node, const View& view) const {
+  const bool begins = node.op == Op::kBegins;
+  const Node& arg = program_.nodes[node.args[0]];
+  if (arg.op == Op::kHolds) {
+    const int lane = lanes_.Resolve(view.lane, arg.slot);
+    return begins ? lanes_.BeginsAt(lane, view.frame) : lanes_.EndsAt(lane, view.frame);
+  }
+  const Kleene now = Truth(node.args[0], view);
+  const Kleene wanted = begins ? now : Not(now);
+  if (wanted == Kleene::kFalse) return wanted;
+  const bool is_first = view.frame == 0;
+  Kleene before = Kleene::kFalse;
+  if (!is_first) before = Truth(node.args[0], {.lane = view.lane, .frame = view.frame - 1, .end = view.end});
+  return And(wanted, begins ? Not(before) : before);
+}
+
+Kleene Evaluator::Compare(const Node& node, const View& view) const {
+  const std::optional<double> left = Number(node.args[0], view);
+  const std::optional<double> right = Number(node.args[1], view);
+  if (!left || !right) return Kleene::kUnknown;
+  switch (node.op) {
+    case Op::kLess: return Known(*left < *right);
+    case Op::kLessEqual: return Known(*left <= *right);
+    case Op::kGreater: return Known(*left > *right);
+    case Op::kGreaterEqual: return Known(*left >= *right);
+    case Op::kEqual: return Known(*left == *right);
+    default: return Known(*left != *right);
+  }
+}
+
+Kleene Evaluator::Inside(const Node& node, const View& view) const {
+  const bool box = node.op == Op::kBoxInSphere;
+  const std::optional<Vector3d> centre = Position(node.args[box ? 0 : 1], view);
+  const std::optional<double> radius = Number(node.args[box ? 1 : 2], view);
+  if (!centre || !radius) return Kleene::kUnknown;
+  if (box) {
+    const int entity = Entity(node, view, 0);
+    return Known(DistanceToBox(*centre, cast_.entities[entity], history_.Look(entity, view.frame)) <= *radius);
+  }
+  const std::optional<Vector3d> point = Position(node.args[0], view);
+  if (!point) return Kleene::kUnknown;
+  const Vector3d offset = *point - *centre;
+  if (node.op == Op::kInSphere) return Known(offset.norm() <= *radius);
+  const std::optional<double> height = Number(node.args[3], view);
+  if (!height) return Kleene::kUnknown;
+  return Known(offset.head<2>().norm() <= *radius && std::abs(offset.z()) <= *height);
+}
+
+std::optional<double> Evaluator::Number(int index, const View& view) const {
+  const Node& node = program_.nodes[index];
+  switch (node.op) {
+    case Op::kNumber: return node.number;
+    case Op::kAtBegin: return view.lane.anchors[3 * node.slot];
+    case Op::kAtEnd:
+      if (!view.end) return std::nullopt;
+      return Number(node.args[0], {.lane = view.lane, .frame = *view.end, .end = view.end});
+    case Op::kDistance: {
+      const std::optional<Vector3d> a = Position(node.args[0], view);
+      const std::optional<Vector3d> b = Position(node.args[1], view);
+      if (!a || !b) return std::nullopt;
+      return (*a - *b).norm();
+    }
+    case Op::kHeight: {
+      const std::optional<Vector3d> position = Position(node.args[0], view);
+      if (!position) return std::nullopt;
+      return position->z();
+    }
+    case Op::kAdd: case Op::kSubtract: case Op::kMultiply: case Op::kDivide: case Op::kNegate: case Op::kAbs:
+      return Arithmetic(node, view);
+    default: return SignalOf(node, view);
+  }
+}
+
+std::optional<double> Evaluator::Arithmetic(const Node& node, const View& view) const {
+  const std::optional<double> left = Number(node.args[0], view);
+  if (!left) return std::nullopt;
+  if (node.op == Op::kNegate) return -*left;
+  if (node.op == Op::kAbs) return std::abs(*left);
+  const std::optional<double> right = Number(node.args[1], view);
+  if (!right) return std::nullopt;
+  switch (node.op) {
+    case Op::kAdd: return *left + *right;
+    case Op::kSubtract: return *left - *right;
+    case Op::kMultiply: return *left * *right;
+    default: return *left / *right;
+  }
+}
+
+double Evaluator::SignalOf(const Node& node, const View& view) const {
+  const FrameNumber frame = view.frame;
+  const int a = Entity(node, view, 0);
+  const int b = node.roles[1] == kNone ? kNobody : Entity(node, view, 1);
+  bool swapped = false;
+  switch (node.op) {
+    case Op::kTrigger: {
+      const HandSample* hand = history_.Hand(a, frame);
+      return hand == nullptr ? 0 : hand->look.trigger;
+    }
+    case Op::kSensorSets: {
+      const TouchSample* touch = Touch(node, view, swapped);
+      return touch == nullptr ? 0 : std::popcount(touch->sensor_sets);
+    }
+    case Op::kUp: {
+      const TouchSample* touch = Touch(node, view, swapped);
+      return touch == nullptr ? -1 : touch->up[swapped ? 1 : 0];
+    }
+    case Op::kForceBetween: {
+      const TouchSample* touch = Touch(node, view, swapped);
+      return touch == nullptr ? 0 : touch->force_n;
+    }
+    case Op::kGap: return Gap(a, b, frame);
+    case Op::kClosingSpeed: return ClosingSpeed(a, b, frame);
+    case Op::kSpeed: return history_.Look(a, frame).v_WB_m_per_s.norm();
+    case Op::kVerticalSpeed: return history_.Look(a, frame).v_WB_m_per_s.z();
+    case Op::kRelativeVerticalSpeed: return RelativeVelocity(a, b, frame).z();
+    case Op::kSpeedAlong: return RelativeVelocity(a, b, frame).head<2>().norm();
+    case Op::kTilt: {
+      const double up = (history_.Look(a, frame).q_WB * Vector3d::UnitZ()).z();
+      return std::acos(std::clamp(up, -1.0, 1.0));
+    }
+    default: return 0;
+  }
+}
+
+double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
+  const HandSample* sample = history_.Hand(hand, frame);
+  if (sample == nullptr) return 0;
+  const EntityLook& look = history_.Look(object, frame);
+  double gap = std::numeric_limits<double>::infinity();
+  for (const Feeler& feeler : sample->feelers) {
+    gap = std::min(gap, DistanceToBox(feeler.p_W_m, cast_.entities[object], look) - feeler.radius_m);
+  }
+  return std::max(gap, 0.0);
+}
+
+double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
+  if (frame <= history_.first()) return 0;
+  const double seconds = history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
+  return (Gap(hand, object, frame - 1) - Gap(hand, object, frame)) / seconds;
+}
+
+// Of a's origin, against the point of b that is there: turning counts, so a tray may turn under a cup.
+Vector3d Evaluator::RelativeVelocity(int a, int b, FrameNumber frame) const {
+  const EntityLook& look_a = history_.Look(a, frame);
+  const EntityLook& look_b = history_.Look(b, frame);
+  const Vector3d arm = look_a.p_WB_m - look_b.p_WB_m;
+  return look_a.v_WB_m_per_s - (look_b.v_WB_m_per_s + look_b.w_WB_rad_per_s.cross(arm));
+}
+
+const TouchSample* Evaluator::Touch(const Node& node, const View& view, bool& swapped) const {
+  const int index = lanes_.Resolve(view.lane, node.slot);
+  if (index == kNone) return nullptr;
+  const Lane& lane = lanes_[index];
+  swapped = lane.entities[0] != Entity(node, view, 0);
+  std::size_t low = 0;
+  std::size_t high = lane.touches.size();
+  while (low < high) {
+    const std::size_t middle = low + (high - low) / 2;
+    if (lane.touches[middle].frame < view.frame) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  const bool found = low < lane.touches.size() && lane.touches[low].frame == view.frame;
+  return found ? &lane.touches[low] : nullptr;
+}
+
+std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
+  const Node& node = program_.nodes[index];
+  switch (node.op) {
+    case Op::kAtBegin: return Eigen::Map<const Vector3d>(view.lane.anchors.data() + 3 * node.slot);
+    case Op::kAtEnd:
+      if (!view.end) return std::nullopt;
+      return Position(node.args[0], {.lane = view.lane, .frame = *view.end, .end = view.end});
+    case Op::kPositionOn: {
+      const EntityLook& on = history_.Look(Entity(node, view, 1), view.frame);
+      return on.q_WB.conjugate() * (history_.Look(Entity(node, view, 0), view.frame).p_WB_m - on.p_WB_m);
+    }
+    case Op::kAhead: {
+      const int entity = Entity(node, view, 0);
+      const HandSample* hand = history_.Hand(entity, view.frame);
+      const std::optional<double> distance = Number(node.args[0], view);
+      if (!distance) return std::nullopt;
+      const Vector3d ahead_W = hand == nullptr ? Vector3d(Vector3d::UnitX()) : hand->look.ahead_W;
+      return history_.Look(entity, view.frame).p_WB_m + *distance * ahead_W;
+    }
+    default: return history_.Look(Entity(node, view, 0), view.frame).p_WB_m;
+  }
+}
+
+void Evaluator::CaptureAnchors(Lane& lane, FrameNumber frame) const {
+  const std::vector<int>& anchors = program_.events[lane.rule].anchors;
+  const View view{.lane = lane, .frame = frame};
+  for (std::size_t i = 0; i < anchors.size(); ++i) {
+    if (IsPosition(program_, anchors[i])) {
+      const Vector3d value = Position(anchors[i], view).value_or(Vector3d::Zero());
+      std::copy(value.data(), value.data() + 3, lane.anchors.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    } else {
+      lane.anchors[3 * i] = Number(anchors[i], view).value_or(0);
+    }
+  }
+}
+
+}  // namespace prehend::grammar

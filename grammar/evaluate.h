@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The value of an expression for one binding at one remembered frame.
+// Tested by tests/grammar/signals_test.cc
+#pragma once
+
+#include <optional>
+
+#include "grammar/lanes.h"
+
+namespace prehend::grammar {
+
+class Evaluator {
+ public:
+  Evaluator(const Program& program, const Cast& cast, const History& history, Lanes& lanes)
+      : program_(program), cast_(cast), history_(history), lanes_(lanes) {}
+
+  /// Whose roles, at which frame, and at which frame the interval ends, if that is known.
+  struct View {
+    Lane& lane;
+    FrameNumber frame = 0;
+    std::optional<FrameNumber> end = std::nullopt;
+  };
+
+  /// kUnknown while it depends on truths that are not final, or on values at an end that is not known.
+  Kleene Truth(int node, const View& view) const;
+  /// nullopt only for values at an end that is not known.
+  std::optional<double> Number(int node, const View& view) const;
+  std::optional<Eigen::Vector3d> Position(int node, const View& view) const;
+
+  /// The truth of reference `slot` at the view's frame.
+  Kleene Holds(int slot, const View& view) const;
+  Kleene Begins(int slot, const View& view) const;
+
+  /// Keeps the values of all anchors of the lane's rule at this frame.
+  void CaptureAnchors(Lane& lane, FrameNumber frame) const;
+
+ private:
+  Kleene Edge(const Node& node, const View& view) const;
+  Kleene Compare(const Node& node, const View& view) const;
+  Kleene Inside(const Node& node, const View& view) const;
+  std::optional<double> Arithmetic(const Node& node, const View& view) const;
+  double SignalOf(const Node& node, const View& view) const;
+  double Gap(int hand, int object, FrameNumber frame) const;
+  double ClosingSpeed(int hand, int object, FrameNumber frame) const;
+  Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;
+  const TouchSample* Touch(const Node& node, const View& view, bool& swapped) const;
+  int Entity(const Node& node, const View& view, int i) const { return view.lane.entities[node.roles[i]]; }
+
+  const Program& program_;
+  const Cast& cast_;
+  const History& history_;
+  Lanes& lanes_;
+};
+
+}  // namespace prehend::grammar

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/guard.h"
+
+#include <algorithm>
+
+namespace prehend::grammar {
+namespace {
+
+// `sensor_sets(hand, object) >= 2` and `up(a, b) >= 0.5` are false unless the two touch.
+bool ImpliesTouch(const Program& program, const Node& node) {
+  const Node& left = program.nodes[node.args[0]];
+  const Node& right = program.nodes[node.args[1]];
+  if (right.op != Op::kNumber) return false;
+  const bool sets = left.op == Op::kSensorSets || left.op == Op::kForceBetween;
+  if (!sets && left.op != Op::kUp) return false;
+  const double when_apart = sets ? 0 : -1;
+  return (node.op == Op::kGreaterEqual && right.number > when_apart) ||
+         (node.op == Op::kGreater && right.number >= when_apart);
+}
+
+// References that must be true whenever the node is.
+void CollectNecessary(const Program& program, int index, std::vector<int>& references) {
+  if (index == kNone) return;
+  const Node& node = program.nodes[index];
+  switch (node.op) {
+    case Op::kHolds: references.push_back(node.slot); break;
+    case Op::kAnd:
+      CollectNecessary(program, node.args[0], references);
+      CollectNecessary(program, node.args[1], references);
+      break;
+    case Op::kBegins:
+    case Op::kEnds: CollectNecessary(program, node.args[0], references); break;
+    case Op::kGreater:
+    case Op::kGreaterEqual:
+      if (ImpliesTouch(program, node)) references.push_back(program.nodes[node.args[0]].slot);
+      break;
+    default: break;
+  }
+}
+
+int RolesNamed(const Reference& reference) {
+  return static_cast<int>(std::count_if(reference.roles.begin(), reference.roles.end(), [](int r) { return r != kNone; }));
+}
+
+// The candidate that names most roles, so that fewest bindings are watched; the first of equals.
+int MostSpecific(const Rule& rule, const std::vector<int>& candidates) {
+  int best = kNone;
+  for (const int candidate : candidates) {
+    if (best == kNone || RolesNamed(rule.references[candidate]) > RolesNamed(rule.references[best])) best = candidate;
+  }
+  return best;
+}
+
+int ChooseGuard(const Program& program, const Rule& rule) {
+  std::vector<int> candidates;
+  switch (rule.form) {
+    case Form::kTouching: return kNone;
+    case Form::kAny: return 0;
+    case Form::kWhile: CollectNecessary(program, rule.first, candidates); break;
+    case Form::kFromTo:
+      CollectNecessary(program, rule.during, candidates);
+      CollectNecessary(program, rule.first, candidates);
+      break;
+    case Form::kUntilSince:
+      // If nobody asks where it is not, it is enough to wake at its end; else its truth must be known at all times.
+      CollectNecessary(program, rule.second, candidates);
+      if (!rule.referenced) CollectNecessary(program, rule.first, candidates);
+      break;
+    case Form::kRestOf: candidates.push_back(rule.first); break;
+    case Form::kCompose: candidates = rule.composition.parts; break;
+  }
+  return MostSpecific(rule, candidates);
+}
+
+bool IsLook(Op op) {
+  switch (op) {
+    case Op::kInSphere: case Op::kBoxInSphere: case Op::kInCylinder:
+    case Op::kTrigger: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kGap: case Op::kClosingSpeed:
+    case Op::kDistance: case Op::kHeight: case Op::kSpeed: case Op::kVerticalSpeed: case Op::kRelativeVerticalSpeed:
+    case Op::kSpeedAlong: case Op::kTilt: case Op::kPosition: case Op::kPositionOn: case Op::kAhead: return true;
+    default: return false;
+  }
+}
+
+bool UsesLooks(const Program& program, int index) {
+  if (index == kNone) return false;
+  const Node& node = program.nodes[index];
+  return IsLook(node.op) ||
+         std::any_of(node.args.begin(), node.args.end(), [&](int arg) { return UsesLooks(program, arg); });
+}
+
+}  // namespace
+
+void ChooseGuards(Program& program) {
+  for (const Rule& rule : program.events) {
+    for (const Reference& reference : rule.references) program.events[reference.rule].referenced = true;
+  }
+  for (Rule& rule : program.events) {
+    rule.guard = ChooseGuard(program, rule);
+    rule.uses_looks = rule.style_role != kNone || rule.approach != kNone || !rule.anchors.empty() ||
+                      (rule.form != Form::kRestOf && UsesLooks(program, rule.first)) || UsesLooks(program, rule.second) ||
+                      UsesLooks(program, rule.during) || UsesLooks(program, rule.requirement);
+  }
+}
+
+}  // namespace prehend::grammar

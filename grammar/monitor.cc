@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/monitor.h"
+
+#include "grammar/engine.h"
+
+namespace prehend::grammar {
+
+struct Monitor::State {
+  Engine engine;
+};
+
+// The engine refers to its own members, so it lives where it was made.
+Monitor::Monitor(std::shared_ptr<const Program> program, Cast cast)
+    : state_(new State{Engine(std::move(program), std::move(cast))}) {}
+Monitor::~Monitor() = default;
+Monitor::Monitor(Monitor&&) noexcept = default;
+Monitor& Monitor::operator=(Monitor&&) noexcept = default;
+
+const std::string& Monitor::error() const { return state_->engine.error(); }
+void Monitor::Advance(const Frame& frame, std::vector<Event>& out) { state_->engine.Advance(frame, out); }
+void Monitor::Finish(Tick end, std::vector<Event>& out) { state_->engine.Finish(end, out); }
+
+}  // namespace prehend::grammar

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grammar text -> syntax tree, by recursive descent. After an error it goes on at the next definition, so that
+// one reading reports several mistakes. The syntax is the EBNF in docs/grammar-language.md.
+// Tested by tests/grammar/parser_test.cc
+#pragma once
+
+#include <string_view>
+
+#include "grammar/ast.h"
+#include "grammar/monitor.h"
+
+namespace prehend::grammar {
+
+ast::File Parse(const GrammarText& grammar, Diagnostics& diagnostics);
+
+/// A value as on the right of `param x =`: "25 cm". Errors are reported at their place in `text`.
+std::optional<Quantity> ParseQuantity(const GrammarText& text, Diagnostics& diagnostics);
+
+/// Words that cannot name a role, a parameter or a rule.
+bool IsReserved(std::string_view word);
+
+}  // namespace prehend::grammar

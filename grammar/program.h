@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// A compiled grammar: flat, immutable tables that any number of monitors share.
+// Expressions are trees of nodes in one array; a node names its arguments by index.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grammar/allen.h"
+#include "grammar/monitor.h"
+#include "grammar/quantity.h"
+
+namespace prehend::grammar {
+
+inline constexpr int kNone = -1;
+
+enum class Op : std::uint8_t {
+  // Truth values.
+  kAnd, kOr, kNot,
+  kLess, kLessEqual, kGreater, kGreaterEqual, kEqual, kNotEqual,
+  kHolds,   ///< reference `slot` is true
+  kBegins,  ///< args[0] becomes true at this frame; of a reference: one of its intervals begins
+  kEnds,    ///< likewise
+  kInSphere, kBoxInSphere, kInCylinder, kPartOf, kIsA,
+  // Numbers, SI units.
+  kNumber, kAdd, kSubtract, kMultiply, kDivide, kNegate, kAbs,
+  kTrigger, kSensorSets, kUp, kForceBetween,
+  kGap, kClosingSpeed, kDistance, kHeight, kSpeed, kVerticalSpeed, kRelativeVerticalSpeed, kSpeedAlong, kTilt,
+  // Positions in metres.
+  kPosition, kPositionOn, kAhead,
+  // Numbers or positions.
+  kAtBegin,  ///< the value that anchor `slot` had where the interval begins
+  kAtEnd,    ///< args[0] where the interval ends
+};
+
+struct Node {
+  Op op = Op::kNumber;
+  std::array<int, 4> args = {kNone, kNone, kNone, kNone};  ///< nodes
+  std::array<int, 2> roles = {kNone, kNone};               ///< roles of the rule
+  int slot = kNone;       ///< reference, anchor or class name
+  double number = 0;      ///< kNumber
+};
+
+/// Another rule, bound to roles of this one: its role i is roles[i].
+struct Reference {
+  int rule = kNone;
+  std::array<int, kMaxRoles> roles = {kNone, kNone, kNone, kNone};
+};
+
+struct RuleRole {
+  std::string name;
+  std::string class_name;
+};
+
+enum class Form : std::uint8_t {
+  kTouching,    ///< the fact itself
+  kAny,         ///< some binding of another rule holds
+  kWhile, kFromTo, kUntilSince, kRestOf, kCompose,
+};
+
+/// A part of a composition and the relation between two of them.
+struct Composition {
+  struct Clause {
+    int left = 0;
+    int right = 0;
+    AllenSet relations = 0;
+  };
+  std::vector<int> parts;  ///< references
+  std::vector<Clause> clauses;
+};
+
+struct Rule {
+  std::string name;
+  std::string file;
+  Place place;
+  std::vector<RuleRole> roles;
+  Form form = Form::kWhile;
+  bool printed = false;    ///< an event, not a condition
+  bool symmetric = false;  ///< bound once per pair, names in alphabetical order
+
+  int first = kNone;   ///< node: while, from, until; kRestOf: reference
+  int second = kNone;  ///< node: to, since
+  int during = kNone;  ///< node
+  bool or_drop = false;
+  int approach = kNone;  ///< node: the signal that must not recede
+  double slack = 0;      ///< in the signal's unit
+  double speed = 0;      ///< in the signal's unit per second
+  double idle_s = -1;    ///< negative: pausing is allowed
+  double back_s = -1;    ///< negative: any time back
+  std::vector<int> outside;  ///< references
+  Composition composition;
+
+  double bridging_s = 0;
+  double lasting_s = 0;
+  int requirement = kNone;      ///< node
+  int confirmed_by = kNone;     ///< reference
+  int confirmed_within = kNone; ///< reference
+  int style_role = kNone;
+
+  std::vector<Reference> references;
+  std::vector<int> anchors;  ///< nodes whose values are kept from where an interval begins
+
+  /// While this reference is false and known, nothing of this rule is true or open. kNone: watch every binding.
+  int guard = kNone;
+  bool referenced = false;   ///< another rule asks for its truth
+  bool uses_looks = false;   ///< asks for poses, hands or touches of the frames it looks at
+};
+
+struct ProgramParam {
+  std::string name;
+  Quantity value;
+  bool overridden = false;
+  std::string file;
+  Place place;
+};
+
+/// Rule 0 is always `touching`. Event::rule indexes `events`; only the printed ones appear in output.
+struct Program {
+  std::string name;
+  std::vector<Rule> events;
+  std::vector<int> schedule;  ///< rules so that each comes after those it refers to
+  std::vector<Node> nodes;
+  std::vector<std::string> class_names;  ///< for kIsA
+  std::vector<ProgramParam> params;
+};
+
+inline constexpr int kTouchingRule = 0;
+
+}  // namespace prehend::grammar

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// A queue in one block of memory: push at the back, drop at the front, index from the front.
+// It doubles when full and never shrinks, so that a steady load stops allocating.
+// Tested by tests/grammar/ring_test.cc
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace prehend::grammar {
+
+template <typename T>
+class Ring {
+ public:
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+
+  T& operator[](std::size_t i) { return slots_[(front_ + i) & (slots_.size() - 1)]; }
+  const T& operator[](std::size_t i) const { return slots_[(front_ + i) & (slots_.size() - 1)]; }
+  T& front() { return (*this)[0]; }
+  const T& front() const { return (*this)[0]; }
+  T& back() { return (*this)[size_ - 1]; }
+  const T& back() const { return (*this)[size_ - 1]; }
+
+  /// A new last element. It holds whatever an earlier element left there, so that its memory is used again.
+  T& PushBack() {
+    if (size_ == slots_.size()) Grow();
+    ++size_;
+    return back();
+  }
+
+  void PopFront() {
+    assert(size_ > 0);
+    front_ = (front_ + 1) & (slots_.size() - 1);
+    --size_;
+  }
+
+ private:
+  void Grow() {
+    std::vector<T> larger(slots_.empty() ? 8 : 2 * slots_.size());
+    for (std::size_t i = 0; i < size_; ++i) larger[i] = std::move((*this)[i]);
+    slots_ = std::move(larger);
+    front_ = 0;
+  }
+
+  std::vector<T> slots_;  // the number of slots is zero or a power of two
+  std::size_t front_ = 0;
+  std::size_t size_ = 0;
+};
+
+}  // namespace prehend::grammar

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/timeline.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "grammar/program.h"
+
+namespace prehend::grammar {
+
+std::string NamedEvent::Label() const {
+  std::string label = event + "(";
+  bool first = true;
+  for (const Role& role : roles) {
+    if (role.name == "style") continue;
+    if (!first) label += ", ";
+    label += role.value;
+    first = false;
+  }
+  return label + ")";
+}
+
+Timeline NameEvents(const Program& program, const Cast& cast, const std::vector<Event>& events) {
+  Timeline timeline{.ticks_per_second = cast.ticks_per_second, .events = {}};
+  timeline.events.reserve(events.size());
+  for (const Event& event : events) {
+    const Rule& rule = program.events[event.rule];
+    NamedEvent named{.event = rule.name,
+                     .roles = {},
+                     .interval = event.interval,
+                     .decided = event.decided,
+                     .open_end = event.open_end};
+    for (std::size_t i = 0; i < rule.roles.size(); ++i) {
+      named.roles.push_back({rule.roles[i].name, cast.entities[event.roles[i]].name});
+    }
+    if (event.style >= 0 && event.style < static_cast<int>(cast.styles.size())) {
+      named.roles.push_back({"style", cast.styles[event.style]});
+    }
+    timeline.events.push_back(std::move(named));
+  }
+  Sort(timeline);
+  return timeline;
+}
+
+void Sort(Timeline& timeline) {
+  const auto key = [](const NamedEvent& e) { return std::tie(e.interval.begin, e.interval.end, e.event, e.roles); };
+  std::stable_sort(timeline.events.begin(), timeline.events.end(),
+                   [&](const NamedEvent& a, const NamedEvent& b) { return key(a) < key(b); });
+}
+
+}  // namespace prehend::grammar

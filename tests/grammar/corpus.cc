@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/grammar/corpus.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "grammar/program.h"
+
+namespace prehend::grammar::testing {
+namespace {
+
+constexpr Tick kTicksPerSecond = 1000;
+constexpr Tick kColumnTicks = 50;
+constexpr Tick kFrameTicks = 10;
+
+[[noreturn]] void Abort(const std::string& message) {
+  std::fprintf(stderr, "%s\n", message.c_str());
+  std::abort();
+}
+
+std::string Trim(const std::string& text) {
+  const auto begin = text.find_first_not_of(" \t");
+  if (begin == std::string::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+CastMember Member(const std::string& name, const std::string& class_name) {
+  CastMember member{.name = name, .classes = {class_name}};
+  if (class_name == "Movable" || class_name == "Fixed") member.classes.emplace_back("Thing");
+  if (class_name == "Hand") member.sensor_sets = {"fingers", "thumb", "palm"};
+  member.classes.emplace_back("Entity");
+  return member;
+}
+
+std::vector<CastMember> ParseCast(const std::string& text) {
+  std::vector<CastMember> cast;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const auto colon = word.find(':');
+    if (colon == std::string::npos) Abort("cast wants NAME:CLASS, found " + word);
+    cast.push_back(Member(word.substr(0, colon), word.substr(colon + 1)));
+  }
+  return cast;
+}
+
+int Digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 10;
+  return 0;
+}
+
+// A row's value at a time, in the row's own unit, straight between columns.
+double Interpolate(const std::string& cells, Tick tick) {
+  const double column = static_cast<double>(tick) / kColumnTicks;
+  const auto left = std::min(static_cast<std::size_t>(column), cells.size() - 1);
+  const auto right = std::min(left + 1, cells.size() - 1);
+  const double share = std::min(column - static_cast<double>(left), 1.0);
+  return Digit(cells[left]) + share * (Digit(cells[right]) - Digit(cells[left]));
+}
+
+// Builds the frames of one case.
+class Stage {
+ public:
+  explicit Stage(const CorpusCase& c) : case_(c) {
+    for (std::size_t i = 0; i < c.cast.size(); ++i) ids_[c.cast[i].name] = static_cast<int>(i);
+  }
+
+  Frame Look(Tick tick) {
+    looks_.assign(case_.cast.size(), {});
+    touches_.clear();
+    hands_.clear();
+    feelers_.assign(case_.cast.size(), {});
+    for (std::size_t i = 0; i < case_.cast.size(); ++i) {
+      if (case_.cast[i].classes.front() == "Hand") hands_.push_back({.entity = static_cast<int>(i)});
+    }
+    for (const Row& row : case_.facts) Apply(row, tick);
+    for (HandLook& hand : hands_) {
+      feelers_[hand.entity] = {.p_W_m = looks_[hand.entity].p_WB_m, .radius_m = 0};
+      hand.feelers = {&feelers_[hand.entity], 1};
+    }
+    std::sort(touches_.begin(), touches_.end(),
+              [](const Touch& a, const Touch& b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); });
+    return {.tick = tick, .entities = looks_, .hands = hands_, .touches = touches_};
+  }
+
+ private:
+  int Id(const std::string& name) const {
+    const auto found = ids_.find(name);
+    if (found == ids_.end()) Abort("case '" + case_.title + "': nobody is called " + name);
+    return found->second;
+  }
+
+  void Apply(const Row& row, Tick tick) {
+    std::istringstream words(row.name);
+    std::string who;
+    std::string what;
+    std::string whom;
+    words >> who >> what >> whom;
+    const char cell = row.cells[std::min(static_cast<std::size_t>(tick / kColumnTicks), row.cells.size() - 1)];
+    if (what == "x" || what == "y" || what == "z") {
+      const int axis = what[0] - 'x';
+      EntityLook& look = looks_[Id(who)];
+      look.p_WB_m[axis] = Interpolate(row.cells, tick) / 100;
+      // As a simulator does, the velocity is that of the step that led here.
+      look.v_WB_m_per_s[axis] = tick == 0 ? 0 : (Interpolate(row.cells, tick) - Interpolate(row.cells, tick - 1)) / 100 * kTicksPerSecond;
+    } else if (what == "grip") {
+      for (HandLook& hand : hands_) {
+        if (hand.entity == Id(who)) hand.trigger = cell == '#' ? 1 : Digit(cell) / 10.0;
+      }
+    } else if (cell != '.') {
+      AddTouch(Id(who), Id(whom), what, cell);
+    }
+  }
+
+  void AddTouch(int a, int b, const std::string& how, char cell) {
+    Touch touch{.a = a, .b = b, .up_on_a = 0, .up_on_b = 0, .normal_force_n = 1};
+    if (how == "on") {
+      touch.up_on_a = 1;
+      touch.up_on_b = -1;
+    } else if (how == "holds") {
+      touch.sensor_sets = (1U << Digit(cell)) - 1;
+    } else if (how != "beside") {
+      Abort("case '" + case_.title + "': what is '" + how + "'?");
+    }
+    if (touch.a > touch.b) {
+      std::swap(touch.a, touch.b);
+      std::swap(touch.up_on_a, touch.up_on_b);
+    }
+    touches_.push_back(touch);
+  }
+
+  const CorpusCase& case_;
+  std::map<std::string, int> ids_;
+  std::vector<EntityLook> looks_;
+  std::vector<Feeler> feelers_;
+  std::vector<HandLook> hands_;
+  std::vector<Touch> touches_;
+};
+
+// Steps of a jittered camera, in ticks; the mean is the regular frame.
+Tick NextFrame(const CorpusCase& c, int index) {
+  static constexpr std::array<Tick, 7> kJitter = {10, 7, 13, 4, 16, 9, 11};
+  return c.jittered ? kJitter[static_cast<std::size_t>(index) % kJitter.size()] : kFrameTicks;
+}
+
+std::string EventName(const std::string& label) { return label.substr(0, label.find('(')); }
+
+}  // namespace
+
+std::string ReadFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) Abort("cannot read " + path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+Includer LibraryIncluder() {
+  return [](std::string_view name) -> std::optional<GrammarText> {
+    const std::string file = "grammar/library/" + std::string(name) + ".grammar";
+    if (!std::ifstream(std::string(PREHEND_SOURCE_DIR) + "/" + file)) return std::nullopt;
+    return GrammarText{file, ReadFile(std::string(PREHEND_SOURCE_DIR) + "/" + file)};
+  };
+}
+
+std::shared_ptr<const Program> CompileLibrary(const std::string& name, const Overrides& overrides) {
+  const std::optional<GrammarText> text = LibraryIncluder()(name);
+  if (!text) Abort("no grammar " + name);
+  CompileResult result = Compile(*text, LibraryIncluder(), overrides);
+  if (!result.program) Abort(Format(result.diagnostics));
+  return result.program;
+}
+
+std::vector<CorpusCase> ReadCorpus(const std::string& path) {
+  std::vector<CorpusCase> cases;
+  std::istringstream lines(ReadFile(path));
+  bool in_expected = false;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const auto bar = line.find('|');
+    if (line.empty() || line[0] == '#') continue;
+    if (line.starts_with("== ")) {
+      cases.push_back({.title = line.substr(3), .line = number, .cast = ParseCast("hand:Hand cup:Movable table:Fixed")});
+      in_expected = false;
+    } else if (cases.empty()) {
+      Abort(path + ": a case starts with '== TITLE'");
+    } else if (line == "--") {
+      in_expected = true;
+    } else if (line == "jittered") {
+      cases.back().jittered = true;
+    } else if (line.starts_with("grammar ")) {
+      cases.back().grammar = Trim(line.substr(8));
+    } else if (line.starts_with("cast ")) {
+      cases.back().cast = ParseCast(line.substr(5));
+    } else if (bar != std::string::npos) {
+      const std::string cells = line.substr(bar + 1, line.find('|', bar + 1) - bar - 1);
+      (in_expected ? cases.back().expected : cases.back().facts).push_back({Trim(line.substr(0, bar)), cells});
+      if (cells.size() != cases.back().facts.front().cells.size()) {
+        Abort(path + ":" + std::to_string(number) + ": this row is longer or shorter than the first");
+      }
+    } else {
+      Abort(path + ":" + std::to_string(number) + ": cannot read this line");
+    }
+  }
+  return cases;
+}
+
+CorpusRun RunCase(const CorpusCase& c) {
+  static std::map<std::string, std::shared_ptr<const Program>> programs;
+  std::shared_ptr<const Program>& program = programs[c.grammar];
+  if (!program) program = CompileLibrary(c.grammar);
+  const Cast cast{.ticks_per_second = kTicksPerSecond, .entities = c.cast, .styles = {"wrap"}};
+  Monitor monitor(program, cast);
+  Stage stage(c);
+  std::vector<Event> events;
+  const Tick end = kColumnTicks * static_cast<Tick>(c.facts.front().cells.size());
+  int index = 0;
+  for (Tick tick = 0; tick < end; tick += NextFrame(c, index++)) monitor.Advance(stage.Look(tick), events);
+  monitor.Finish(end, events);
+  return {monitor.error(), NameEvents(*program, cast, events)};
+}
+
+std::vector<Row> DrawEvents(const CorpusCase& c, const Timeline& timeline) {
+  std::vector<std::string> wanted;
+  for (const Row& row : c.expected) wanted.push_back(EventName(row.name));
+  std::vector<Row> rows;
+  for (const NamedEvent& event : timeline.events) {
+    const bool background = event.event == "contact" || event.event == "supported_by";
+    if (background && std::find(wanted.begin(), wanted.end(), event.event) == wanted.end()) continue;
+    auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name == event.Label(); });
+    if (row == rows.end()) {
+      rows.push_back({event.Label(), std::string(c.facts.front().cells.size(), '.')});
+      row = rows.end() - 1;
+    }
+    const auto column = [](Tick tick) { return static_cast<std::size_t>((tick + kColumnTicks / 2) / kColumnTicks); };
+    const std::size_t begin = column(event.interval.begin);
+    for (std::size_t i = begin; i < column(event.interval.end) && i < row->cells.size(); ++i) {
+      row->cells[i] = i == begin ? '[' : '=';
+    }
+  }
+  return rows;
+}
+
+std::string Text(const std::vector<Row>& rows) {
+  std::string text;
+  for (const Row& row : rows) {
+    text += row.name + std::string(row.name.size() < 28 ? 28 - row.name.size() : 0, ' ') + "|" + row.cells + "|\n";
+  }
+  return text;
+}
+
+}  // namespace prehend::grammar::testing
