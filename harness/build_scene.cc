@@ -107,8 +107,9 @@ class Stacking {
     const std::vector<double>& at = entity.at_m.value;
     if (at.size() < 2) return;  // was complained about
     body.X_WB.p_m = {at[0], at[1], at.size() > 2 ? at[2] : 0};
-    if (!entity.on || !index_.contains(entity.on->value)) return;
-    const physics::Body& support = bodies[index_.at(entity.on->value)];
+    const auto found = entity.on ? index_.find(entity.on->value) : index_.end();
+    if (found == index_.end() || progress_[found->second] != Progress::kDone) return;  // unknown or cyclic
+    const physics::Body& support = bodies[found->second];
     const double lowest = physics::WorldBounds(body, {Vector3d::Zero(), body.X_WB.q}).min().z();
     body.X_WB.p_m.z() = physics::WorldBounds(support, support.X_WB).max().z() - lowest;
     if (!StandsAbove(support, {at[0], at[1]})) {

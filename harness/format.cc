@@ -39,6 +39,16 @@ std::optional<ScalarMeaning> NumberOf(const YamlNode& node) {
   return meaning;
 }
 
+bool HasSize(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
+  const std::size_t size = node.children.size();
+  if (size >= least && size <= most) return true;
+  const std::string wanted = least == most  ? fmt::format("{} items", least)
+                             : size < least ? fmt::format("at least {}", least)
+                                            : fmt::format("at most {}", most);
+  complaints.Add(node.where, fmt::format("{}expected {}, found {}", LabelOf(node), wanted, size));
+  return false;
+}
+
 Json ShowString(const std::string& value) { return Json(value); }
 
 }  // namespace
@@ -55,18 +65,14 @@ bool ComplainWanted(const YamlNode& node, Complaints& complaints, const std::str
   return false;
 }
 
-bool IsList(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
-  const bool mapping = node.kind == YamlNode::Kind::kMapping;
-  if (!mapping && node.kind != YamlNode::Kind::kSequence) {
-    return ComplainWanted(node, complaints, least == most ? fmt::format("a list of {}", least) : "a list");
-  }
-  const std::size_t size = node.children.size();
-  if (size >= least && size <= most) return true;
-  const std::string wanted = least == most    ? fmt::format("{} items", least)
-                             : size < least ? fmt::format("at least {}", least)
-                                              : fmt::format("at most {}", most);
-  complaints.Add(node.where, fmt::format("{}expected {}, found {}", LabelOf(node), wanted, size));
-  return false;
+bool IsListOf(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
+  if (node.kind == YamlNode::Kind::kSequence) return HasSize(node, complaints, least, most);
+  return ComplainWanted(node, complaints, least == most ? fmt::format("a list of {}", least) : "a list");
+}
+
+bool IsMappingOf(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
+  if (node.kind == YamlNode::Kind::kMapping) return HasSize(node, complaints, least, most);
+  return ComplainWanted(node, complaints, "a mapping from names");
 }
 
 Format<double> Number(double lowest, double highest) {

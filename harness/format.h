@@ -76,8 +76,9 @@ Format<std::string> Identifier();
 /// One of a few words.
 Format<std::string> Choice(std::vector<std::string> words);
 Format<std::int64_t> Integer64(std::int64_t lowest, std::int64_t highest);
-/// Complains when the node is no list (or mapping) or has a wrong number of children.
-bool IsList(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most);
+/// Complains when the node is no list, or has a wrong number of items. The same for mappings.
+bool IsListOf(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most);
+bool IsMappingOf(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most);
 
 template <class Int>
 Format<Int> Integer(Int lowest, Int highest) {
@@ -124,7 +125,7 @@ Format<std::vector<T>> ListOf(Format<T> item, std::size_t least, std::size_t mos
           .read =
               [item, least, most](const YamlNode& node, Complaints& complaints, std::vector<T>& list) {
                 list.clear();
-                if (!IsList(node, complaints, least, most)) return false;
+                if (!IsListOf(node, complaints, least, most)) return false;
                 bool good = true;
                 for (const YamlNode& child : node.children) {
                   T value{};
@@ -171,8 +172,7 @@ Format<std::vector<Named<T>>> MapOf(Format<std::string> name, Format<T> item, st
           .read =
               [=](const YamlNode& node, Complaints& complaints, std::vector<Named<T>>& entries) {
                 entries.clear();
-                if (node.kind != YamlNode::Kind::kMapping) return ComplainWanted(node, complaints, "a mapping");
-                bool good = IsList(node, complaints, least, most);
+                bool good = IsMappingOf(node, complaints, least, most);
                 for (const YamlNode& child : node.children) {
                   YamlNode key;
                   key.kind = YamlNode::Kind::kScalar;
