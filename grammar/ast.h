@@ -79,7 +79,7 @@ struct Definition {
   std::optional<Expr> during;
   bool or_drop = false;            ///< `during G or drop`
   std::optional<Approach> approach;
-  std::optional<Expr> at_most_back;
+  Expr at_most_back;
   std::vector<Expr> outside;
   std::vector<Part> parts;
   std::vector<Relation> relations;

@@ -256,10 +256,8 @@ class Compiler {
     At(index).first = first;
     At(index).second = second;
     if (d.approach) LowerApproach(*d.approach, index, lowering);
-    if (d.at_most_back) {
-      const double back_s = lowering.Constant(*d.at_most_back, kSeconds, "'at most .. back'");
-      At(index).back_s = back_s;
-    }
+    const double back_s = lowering.Constant(d.at_most_back, kSeconds, "'at most .. back'");
+    At(index).back_s = back_s;
   }
 
   void LowerApproach(const ast::Approach& approach, int index, Lowering& lowering) {
@@ -283,14 +281,21 @@ class Compiler {
   void LowerCompose(const Definition& d, int index, Lowering& lowering) {
     At(index).form = Form::kCompose;
     std::vector<std::string> labels;
+    if (d.parts.size() > kMaxParts) {
+      return lowering.Complain(d.parts[kMaxParts].place, "more than " + std::to_string(kMaxParts) + " parts",
+                               "compose some of them into an event of its own");
+    }
     for (const ast::Part& part : d.parts) {
       if (std::find(labels.begin(), labels.end(), part.label) != labels.end()) {
         lowering.Complain(part.place, "the label '" + part.label + "' is used twice");
       }
       labels.push_back(part.label);
       const int reference = lowering.RuleCall(part.call);
+      if (reference == kNone) continue;
+      CheckPart(part, index, reference, lowering);
       At(index).composition.parts.push_back(reference);
     }
+    if (labels.size() != At(index).composition.parts.size()) return;
     const auto find = [&](const std::string& label, Place place) {
       const auto found = std::find(labels.begin(), labels.end(), label);
       if (found == labels.end()) {
@@ -314,6 +319,16 @@ class Compiler {
     }
   }
 
+  // All parts are about the same entities: those of the composition.
+  void CheckPart(const ast::Part& part, int index, int reference, Lowering& lowering) {
+    const Binding& named = At(index).references[reference].roles;
+    for (std::size_t role = 0; role < At(index).roles.size(); ++role) {
+      if (std::find(named.begin(), named.end(), static_cast<int>(role)) != named.end()) continue;
+      lowering.Complain(part.place, "the part '" + part.label + "' does not name the role '" + At(index).roles[role].name + "'",
+                        "every part of a composition names all its roles");
+    }
+  }
+
   static std::string JoinedAllenNames() {
     std::string text;
     for (const std::string_view name : kAllenNames) text += (text.empty() ? "" : ", ") + std::string(name);
@@ -331,6 +346,9 @@ class Compiler {
     if (d.lasting) {
       const double lasting_s = lowering.Constant(*d.lasting, kSeconds, "'lasting'");
       At(index).lasting_s = lasting_s;
+    }
+    if (d.form == Definition::Form::kCompose && (d.requirement || d.confirmed)) {
+      lowering.Complain(d.place, "a composition takes no 'requires' and no 'confirmed by'", "put it into one of the parts");
     }
     if (d.requirement) {
       const int requirement = lowering.Truth(*d.requirement, {.begin = true, .end = true});

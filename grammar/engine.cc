@@ -148,6 +148,7 @@ void Engine::StirDependents(const Lane& lane) {
 // Nothing is true, open or undecided, and the guard says that it stays so.
 bool Engine::AtRest(const Lane& lane) const {
   const Rule& rule = RuleOf(lane);
+  if (rule.form == Form::kCompose) return lane.next > history_.now();
   if (rule.guard == kNone || lane.stirred == history_.now() || lane.open || !lane.pending.empty()) return false;
   return lane.next > history_.now() && lane.known > history_.now();
 }

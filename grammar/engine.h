@@ -57,8 +57,6 @@ class Engine {
   bool StepRest(Lane& lane, FrameNumber frame);
   bool StepFromTo(Lane& lane, FrameNumber frame);
   bool StepUntil(Lane& lane, FrameNumber frame);
-  bool StepCompose(Lane& lane, FrameNumber frame);
-  void ComposeFromParts(Lane& lane);
 
   // Walking back from `end`: the frame where the interval begins; `end` if there is none; kNever if not known yet.
   FrameNumber ApproachBegin(Lane& lane, FrameNumber end) const;
@@ -72,6 +70,11 @@ class Engine {
   void UpdateKnown(Lane& lane);
   bool RunIsCertain(const Lane& lane) const;
   void FinishLane(Lane& lane, Moment end);
+
+  // Compositions are told of each finished interval of their parts.
+  void TellCompositions(const Lane& part, const Span& span);
+  FrameNumber Settled(const Lane& lane) const;
+  void StepCompose(Lane& lane);
 
   const Rule& RuleOf(const Lane& lane) const { return program_->events[lane.rule]; }
   const RuleTicks& TicksOf(const Lane& lane) const { return rule_ticks_[lane.rule]; }

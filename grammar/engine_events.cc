@@ -67,6 +67,7 @@ void Engine::Emit(Lane& lane, const Span& span, int style) {
     std::erase_if(lane.past, [&](const Span& past) { return past.end.frame < oldest; });
     lane.past.push_back(span);
   }
+  if (!rule.part_of.empty()) TellCompositions(lane, span);
   if (!rule.printed) return;
   out_->push_back({.rule = lane.rule,
                    .roles = lane.entities,
@@ -103,6 +104,7 @@ void Engine::UpdateKnown(Lane& lane) {
 // The last frames are decided, then what is open ends with the episode.
 void Engine::FinishLane(Lane& lane, Moment end) {
   if (RuleOf(lane).form == Form::kTouching) return;
+  if (RuleOf(lane).form == Form::kCompose) return StepCompose(lane);
   StepLane(lane);
   if (lane.open && lane.in_gap) {
     Close(lane, lane.gap);

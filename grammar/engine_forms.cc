@@ -11,12 +11,12 @@ void Engine::StepLane(Lane& lane) {
     bool decided = false;
     switch (RuleOf(lane).form) {
       case Form::kTouching: return;
+      case Form::kCompose: return StepCompose(lane);
       case Form::kWhile: decided = StepWhile(lane, lane.next); break;
       case Form::kAny: decided = StepAny(lane, lane.next); break;
       case Form::kFromTo: decided = StepFromTo(lane, lane.next); break;
       case Form::kUntilSince: decided = StepUntil(lane, lane.next); break;
       case Form::kRestOf: decided = StepRest(lane, lane.next); break;
-      case Form::kCompose: decided = StepCompose(lane, lane.next); break;
     }
     if (!decided) break;
   }
@@ -112,7 +112,11 @@ bool Engine::StepUntil(Lane& lane, FrameNumber frame) {
     }
     lane.last_end = lane.approach_from = frame;
   }
-  if (rule.referenced && evaluator_.Truth(rule.second, {lane, frame}) == Kleene::kFalse) lane.approach_from = frame + 1;
+  if (!rule.referenced) return true;
+  if (evaluator_.Truth(rule.second, {lane, frame}) == Kleene::kFalse) lane.approach_from = frame + 1;
+  while (lane.approach_from < frame && evaluator_.TooFarApart(rule.second, lane, lane.approach_from, frame)) {
+    ++lane.approach_from;
+  }
   return true;
 }
 
@@ -152,9 +156,5 @@ FrameNumber Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
   }
   return begin;
 }
-
-bool Engine::StepCompose(Lane&, FrameNumber) { return true; }
-
-void Engine::ComposeFromParts(Lane&) {}
 
 }  // namespace prehend::grammar

@@ -110,6 +110,23 @@ Kleene Evaluator::Inside(const Node& node, const View& view) const {
   return Known(offset.head<2>().norm() <= *radius && std::abs(offset.z()) <= *height);
 }
 
+bool Evaluator::TooFarApart(int index, Lane& lane, FrameNumber early, FrameNumber late) const {
+  const Node& node = program_.nodes[index];
+  if (node.op == Op::kAnd) {
+    return TooFarApart(node.args[0], lane, early, late) || TooFarApart(node.args[1], lane, early, late);
+  }
+  const bool sphere = node.op == Op::kInSphere;
+  if ((!sphere && node.op != Op::kInCylinder) || program_.nodes[node.args[1]].op != Op::kAtEnd) return false;
+  const std::optional<Vector3d> from = Position(node.args[0], {.lane = lane, .frame = early});
+  const std::optional<Vector3d> to = Position(node.args[0], {.lane = lane, .frame = late});
+  const std::optional<double> radius = Number(node.args[2], {.lane = lane, .frame = late});
+  if (!from || !to || !radius) return false;
+  const Vector3d offset = *to - *from;
+  if (sphere) return offset.norm() > 2 * *radius;
+  const std::optional<double> height = Number(node.args[3], {.lane = lane, .frame = late});
+  return height && (offset.head<2>().norm() > 2 * *radius || std::abs(offset.z()) > 2 * *height);
+}
+
 std::optional<double> Evaluator::Number(int index, const View& view) const {
   const Node& node = program_.nodes[index];
   switch (node.op) {

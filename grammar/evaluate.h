@@ -31,6 +31,10 @@ class Evaluator {
   Kleene Holds(int slot, const View& view) const;
   Kleene Begins(int slot, const View& view) const;
 
+  /// True if no interval can hold at both frames, wherever it will end: both would have to lie in one region anchored
+  /// at the end, and they are too far apart for that. False if this cannot be told.
+  bool TooFarApart(int node, Lane& lane, FrameNumber early, FrameNumber late) const;
+
   /// Keeps the values of all anchors of the lane's rule at this frame.
   void CaptureAnchors(Lane& lane, FrameNumber frame) const;
 

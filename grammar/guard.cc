@@ -67,7 +67,7 @@ int ChooseGuard(const Program& program, const Rule& rule) {
       if (!rule.referenced) CollectNecessary(program, rule.first, candidates);
       break;
     case Form::kRestOf: candidates.push_back(rule.first); break;
-    case Form::kCompose: candidates = rule.composition.parts; break;
+    case Form::kCompose: return rule.composition.parts.front();  // and woken by each interval of a part
   }
   return MostSpecific(rule, candidates);
 }
@@ -89,12 +89,23 @@ bool UsesLooks(const Program& program, int index) {
          std::any_of(node.args.begin(), node.args.end(), [&](int arg) { return UsesLooks(program, arg); });
 }
 
+// A composition is told of finished intervals; every other rule asks for the truth at a frame.
+void MarkReferenced(Program& program, int index) {
+  const Rule& rule = program.events[index];
+  if (rule.form != Form::kCompose) {
+    for (const Reference& reference : rule.references) program.events[reference.rule].referenced = true;
+    return;
+  }
+  for (std::size_t part = 0; part < rule.composition.parts.size(); ++part) {
+    const int target = rule.references[rule.composition.parts[part]].rule;
+    program.events[target].part_of.push_back({index, static_cast<int>(part)});
+  }
+}
+
 }  // namespace
 
 void ChooseGuards(Program& program) {
-  for (const Rule& rule : program.events) {
-    for (const Reference& reference : rule.references) program.events[reference.rule].referenced = true;
-  }
+  for (std::size_t i = 0; i < program.events.size(); ++i) MarkReferenced(program, static_cast<int>(i));
   for (Rule& rule : program.events) {
     rule.guard = ChooseGuard(program, rule);
     rule.uses_looks = rule.style_role != kNone || rule.approach != kNone || !rule.anchors.empty() ||

@@ -51,7 +51,7 @@ bool Lanes::IsA(int entity, const std::string& class_name) const {
 void Lanes::BindUnguarded() {
   for (const int rule : program_.schedule) {
     if (program_.events[rule].form == Form::kTouching || program_.events[rule].guard != kNone) continue;
-    Binding entities = {kNobody, kNobody, kNobody, kNobody};
+    Binding entities = kUnbound;
     BindRest(rule, entities, 0, kNone);
   }
 }
@@ -132,7 +132,7 @@ void Lanes::MakeDependents(int lane) {
     for (int order = 0; order < (both_orders ? 2 : 1); ++order) {
       Binding guard_entities = lanes_[lane].entities;
       if (order == 1) std::swap(guard_entities[0], guard_entities[1]);
-      Binding entities = {kNobody, kNobody, kNobody, kNobody};
+      Binding entities = kUnbound;
       bool fits = true;
       for (std::size_t i = 0; i < program_.events[guard_rule].roles.size(); ++i) {
         if (mapping[i] == kNone) continue;
@@ -149,7 +149,7 @@ int Lanes::Resolve(Lane& lane, int slot) {
   if (target != kNone) return target;
   const Reference& reference = program_.events[lane.rule].references[slot];
   const Rule& rule = program_.events[reference.rule];
-  Binding entities = {kNobody, kNobody, kNobody, kNobody};
+  Binding entities = kUnbound;
   for (std::size_t i = 0; i < rule.roles.size(); ++i) entities[i] = lane.entities[reference.roles[i]];
   return target = Find(reference.rule, entities);
 }

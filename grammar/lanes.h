@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -15,8 +16,6 @@
 #include "grammar/program.h"
 
 namespace prehend::grammar {
-
-using Binding = std::array<int, kMaxRoles>;
 
 /// An interval with the frames of its boundaries.
 struct Span {
@@ -42,7 +41,7 @@ struct Pending {
 
 struct Lane {
   int rule = 0;
-  Binding entities = {kNobody, kNobody, kNobody, kNobody};
+  Binding entities = kUnbound;
   std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not there yet
   std::vector<int> dependents;  ///< lanes this one guards
   std::vector<int> members;     ///< kAny only: the lanes of which one must hold
@@ -60,7 +59,7 @@ struct Lane {
   int style = kNobody;
   std::vector<double> anchors;  ///< three numbers per Rule::anchors
   FrameNumber approach_from = 0;  ///< kUntilSince: no later interval reaches back before this frame
-  FrameNumber last_end = 0;       ///< kUntilSince: frame of the previous `until`
+  FrameNumber last_end = 0;       ///< kUntilSince: frame of the previous `until`; kCompose: end of the previous one
   std::vector<Span> past;         ///< intervals, as long as somebody may ask
   std::vector<Pending> pending;
   std::vector<std::vector<Span>> parts;  ///< kCompose: finished intervals of each part
@@ -109,7 +108,7 @@ class Lanes {
 
   const Program& program_;
   const Cast& cast_;
-  std::vector<Lane> lanes_;
+  std::deque<Lane> lanes_;  // a lane stays where it is when others are made
   std::unordered_map<Key, int, KeyHash> index_;     // looked up only, never walked
   std::vector<std::vector<int>> guarded_;           // by rule: the rules it guards
   std::vector<std::vector<std::vector<bool>>> fits_;  // by rule, role, entity

@@ -324,6 +324,10 @@ std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wan
   if (role == kNone) {
     std::vector<std::string> names;
     for (const RuleRole& known : rule().roles) names.push_back(known.name);
+    if (expr.text == "any") {
+      Complain(expr.place, "'any' stands only for a role of an event or condition", "for example: contact(object, any)");
+      return std::nullopt;
+    }
     Complain(expr.place, Quoted(callee) + " takes a role here" +
                              (expr.kind == Expr::Kind::kName ? ", and there is no role " + Quoted(expr.text) : ""),
              expr.kind == Expr::Kind::kName ? Suggest(expr.text, names) : "");

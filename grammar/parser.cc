@@ -33,6 +33,7 @@ class Parser {
   ast::File ParseFile() {
     ast::File file;
     try {
+      if (AtEnd()) Fail("the file is empty", "a grammar starts with `grammar NAME`");
       Expect("grammar", "a grammar starts with `grammar NAME`");
       file.name = ExpectName("the grammar's name");
     } catch (const Stop&) {
@@ -207,11 +208,10 @@ class Parser {
       }
       definition.approach = std::move(approach);
     }
-    if (At("at")) {
-      ExpectAtMost();
-      definition.at_most_back = ParseSum();
-      Expect("back");
-    }
+    if (!At("at")) Fail("expected 'at most .. back', found " + Found(), "say how far back to look: at most 10 s back");
+    ExpectAtMost();
+    definition.at_most_back = ParseSum();
+    Expect("back");
   }
 
   void ExpectAtMost() {

@@ -44,10 +44,14 @@ struct Node {
   double number = 0;      ///< kNumber
 };
 
+/// One number per role.
+using Binding = std::array<int, kMaxRoles>;
+inline constexpr Binding kUnbound = {kNone, kNone, kNone, kNone};
+
 /// Another rule, bound to roles of this one: its role i is roles[i].
 struct Reference {
   int rule = kNone;
-  std::array<int, kMaxRoles> roles = {kNone, kNone, kNone, kNone};
+  Binding roles = kUnbound;
 };
 
 struct RuleRole {
@@ -61,7 +65,10 @@ enum class Form : std::uint8_t {
   kWhile, kFromTo, kUntilSince, kRestOf, kCompose,
 };
 
-/// A part of a composition and the relation between two of them.
+/// More parts than this are better composed in steps.
+inline constexpr int kMaxParts = 8;
+
+/// kCompose: its parts and how they must lie to each other.
 struct Composition {
   struct Clause {
     int left = 0;
@@ -70,6 +77,12 @@ struct Composition {
   };
   std::vector<int> parts;  ///< references
   std::vector<Clause> clauses;
+};
+
+/// A rule is part `part` of the composition `rule`.
+struct PartOf {
+  int rule = kNone;
+  int part = 0;
 };
 
 struct Rule {
@@ -89,7 +102,7 @@ struct Rule {
   double slack = 0;      ///< in the signal's unit
   double speed = 0;      ///< in the signal's unit per second
   double idle_s = -1;    ///< negative: pausing is allowed
-  double back_s = -1;    ///< negative: any time back
+  double back_s = 0;
   std::vector<int> outside;  ///< references
   Composition composition;
 
@@ -105,6 +118,7 @@ struct Rule {
 
   /// While this reference is false and known, nothing of this rule is true or open. kNone: watch every binding.
   int guard = kNone;
+  std::vector<PartOf> part_of;  ///< compositions that collect its intervals
   bool referenced = false;   ///< another rule asks for its truth
   bool uses_looks = false;   ///< asks for poses, hands or touches of the frames it looks at
 };

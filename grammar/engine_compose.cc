@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compositions: events made of finished events by Allen's relations.
+//
+// Needs: per composition and binding the combinations, one interval of each part, whose relations hold; each reaches
+// from the begin of the first part to the end of the last. They do not overlap: the one that ends first is taken, of
+// those that end together the one that begins last.
+// Algorithm: parts deliver their intervals; a combination is judged as soon as no interval can still come that ends
+// before it does. Only the last kRemembered intervals of a part are kept.
+// Tested by tests/grammar/compose_test.cc
+#include <algorithm>
+
+#include "grammar/allen.h"
+#include "grammar/engine.h"
+
+namespace prehend::grammar {
+namespace {
+
+constexpr std::size_t kRemembered = 64;
+
+Interval TicksOf(const Span& span) { return {span.begin.tick, span.end.tick}; }
+
+// Tries all ways to complete `chosen` and keeps the best one.
+class Combinations {
+ public:
+  Combinations(const Composition& composition, const Lane& lane, FrameNumber settled)
+      : composition_(composition), lane_(lane), settled_(settled) {
+    Choose(0);
+  }
+  const Span* best() const { return found_ ? &best_ : nullptr; }
+
+ private:
+  void Choose(std::size_t part) {
+    if (part == lane_.parts.size()) return Judge();
+    for (const Span& span : lane_.parts[part]) {
+      if (span.end.frame > settled_) continue;
+      chosen_[part] = &span;
+      if (RelationsHoldUpTo(static_cast<int>(part))) Choose(part + 1);
+    }
+  }
+
+  bool RelationsHoldUpTo(int part) const {
+    return std::all_of(composition_.clauses.begin(), composition_.clauses.end(), [&](const Composition::Clause& clause) {
+      if (std::max(clause.left, clause.right) != part) return true;
+      return (Bit(Relate(TicksOf(*chosen_[clause.left]), TicksOf(*chosen_[clause.right]))) & clause.relations) != 0;
+    });
+  }
+
+  void Judge() {
+    const Span& last = *chosen_[lane_.parts.size() - 1];
+    const Span whole{chosen_[0]->begin, last.end, last.open_end};
+    if (whole.begin.frame >= whole.end.frame || whole.begin.frame < lane_.last_end) return;
+    const bool better = !found_ || whole.end.frame < best_.end.frame ||
+                        (whole.end.frame == best_.end.frame && whole.begin.frame > best_.begin.frame);
+    if (better) best_ = whole;
+    found_ = true;
+  }
+
+  const Composition& composition_;
+  const Lane& lane_;
+  FrameNumber settled_;
+  std::array<const Span*, kMaxParts> chosen_ = {};
+  Span best_;
+  bool found_ = false;
+};
+
+}  // namespace
+
+void Engine::TellCompositions(const Lane& part, const Span& span) {
+  for (const PartOf& part_of : RuleOf(part).part_of) {
+    const Rule& whole = program_->events[part_of.rule];
+    const Reference& reference = whole.references[whole.composition.parts[part_of.part]];
+    for (int order = 0; order < (RuleOf(part).symmetric ? 2 : 1); ++order) {
+      Binding from = part.entities;
+      if (order == 1) std::swap(from[0], from[1]);
+      Binding entities = kUnbound;
+      for (std::size_t i = 0; i < RuleOf(part).roles.size(); ++i) entities[reference.roles[i]] = from[i];
+      if (order == 1 && whole.symmetric) break;  // the same lane again
+      const int index = lanes_.Ensure(part_of.rule, entities);
+      if (index == kNone) continue;
+      std::vector<Span>& spans = lanes_[index].parts[part_of.part];
+      if (spans.size() == kRemembered) spans.erase(spans.begin());
+      spans.push_back(span);
+      Wake(index);
+    }
+  }
+}
+
+// All intervals of the lane that end at or before this frame are out.
+FrameNumber Engine::Settled(const Lane& lane) const {
+  if (!lane.awake) return finishing_ ? kNever : history_.now();
+  FrameNumber settled = lane.next - 1;
+  if (lane.in_gap) settled = std::min(settled, lane.gap.frame - 1);
+  for (const Pending& pending : lane.pending) settled = std::min(settled, pending.span.end.frame - 1);
+  return settled;
+}
+
+void Engine::StepCompose(Lane& lane) {
+  const Rule& rule = RuleOf(lane);
+  FrameNumber settled = finishing_ ? kNever : history_.now();
+  for (const int part : rule.composition.parts) {
+    const int index = lanes_.Resolve(lane, part);
+    if (index != kNone) settled = std::min(settled, Settled(lanes_[index]));
+  }
+  for (;;) {
+    const Combinations combinations(rule.composition, lane, settled);
+    if (combinations.best() == nullptr) break;
+    const Span whole = *combinations.best();
+    lane.last_end = whole.end.frame;
+    for (std::vector<Span>& spans : lane.parts) {
+      std::erase_if(spans, [&](const Span& span) { return span.begin.frame < whole.begin.frame; });
+    }
+    Conclude(lane, whole);
+  }
+  lane.next = lane.known = std::min(settled, history_.now()) + 1;
+}
+
+}  // namespace prehend::grammar
