@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// See check_scenario.h. Tested by tests/harness/command_line_test.cc
+#include "harness/check_scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "harness/accept_golden.h"
+#include "harness/compare.h"
+#include "harness/golden_files.h"
+#include "harness/invariants.h"
+#include "harness/latency_bound.h"
+#include "harness/pictures.h"
+#include "harness/run_output.h"
+#include "harness/run_scenario.h"
+#include "harness/timeline_svg.h"
+
+namespace prehend::harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lowers a verdict; the first reason found is the one that is told in one line.
+void Fail(ScenarioVerdict& verdict, ExitCode code, const std::string& reason, const std::string& details = {}) {
+  verdict.details += details;
+  if (verdict.verdict == Verdict::kFailed) return;
+  verdict.verdict = Verdict::kFailed;
+  verdict.exit_code = code;
+  verdict.reason = reason;
+}
+
+void Draw(const CheckRequest& request, const Scenario& scenario, const RunResult& run, ScenarioVerdict& verdict) {
+  if (!request.pictures || !CanDrawPictures()) return;
+  const fs::path folder = fs::path(request.report_folder) / "pictures" / scenario.skill;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  const PictureResult drawn = DrawPictures(scenario, run, folder.string());
+  for (const WrittenPicture& picture : drawn.pictures) {
+    const std::string file = fs::path(picture.file).lexically_relative(request.report_folder).generic_string();
+    verdict.pictures.push_back({.file = file, .caption = picture.caption});
+  }
+  if (!drawn.error.empty()) Fail(verdict, ExitCode::kFailure, "no picture", "no picture: " + drawn.error + "\n");
+}
+
+void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, const RunResult& plain, ScenarioVerdict& verdict) {
+  const EpisodeFacts facts = {
+      .end = plain.ticks + 1,
+      .movable = MovableEntities(prepared.scenario),
+      .latency_bound = [&](const std::string& event) {
+        return LatencyBound(*prepared.program, event, plain.timeline.ticks_per_second, plain.ticks + 1);
+      }};
+  Violations violations = CheckSameTimeline(watched.timeline, watched.state_hash, plain.timeline, plain.state_hash);
+  for (Violation& violation : CheckInvariants(plain.timeline, facts)) violations.push_back(std::move(violation));
+  std::string details;
+  for (const Violation& violation : violations) {
+    details += "violated: " + Text(violation, plain.timeline.ticks_per_second) + "\n";
+  }
+  if (!violations.empty()) Fail(verdict, ExitCode::kDiffers, "invariant violated", details);
+}
+
+void LeavePending(const CheckRequest& request, const PreparedRun& prepared, const std::optional<Golden>& golden,
+                  const RunResult& run) {
+  if (!request.write_pending) return;
+  const Proposal proposal = {
+      .scenario = request.id, .grammar = prepared.scenario.grammar, .derived = {}, .acceptance = {}};
+  // Whether it could be written is only news to `accept`, which runs the scenario itself.
+  (void)GoldenFiles(request.root).WritePending(ProposeGolden(golden, run.timeline, proposal));
+}
+
+void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared, const RunResult& run,
+                        ScenarioVerdict& verdict) {
+  const ReadResult<Golden> golden = GoldenFiles(request.root).ReadGoldenOf(request.id);
+  if (!golden.diagnostics.empty()) {
+    return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read", Format(golden.diagnostics));
+  }
+  const WorldEntry& world = prepared.scenario.world;
+  const Comparison comparison =
+      Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}), run.timeline,
+              DefaultTolerance(world.rate_hz, world.sensing_hz));
+  verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1);
+  if (!golden.value) {
+    LeavePending(request, prepared, golden.value, run);
+    if (verdict.verdict != Verdict::kPassed) return;
+    verdict.verdict = Verdict::kPending;
+    verdict.exit_code = ExitCode::kPending;
+    verdict.reason = "no golden yet";
+    verdict.command = fmt::format("prehend accept {} --reason \"...\"", request.id);
+    return;
+  }
+  verdict.headroom = HeadroomText(comparison);
+  if (comparison.Agrees()) return GoldenFiles(request.root).RemovePending(request.id);
+  LeavePending(request, prepared, golden.value, run);
+  const auto differing = std::count_if(comparison.pairings.begin(), comparison.pairings.end(), [](const Pairing& pairing) {
+    return pairing.agreement != Agreement::kMatched;
+  });
+  Fail(verdict, ExitCode::kDiffers, fmt::format("{} of {} events differ from the golden", differing, comparison.pairings.size()),
+       DifferenceText(comparison, ExplainCommand(request.id)));
+}
+
+}  // namespace
+
+ScenarioVerdict CheckScenario(const CheckRequest& request) {
+  ScenarioVerdict verdict{.scenario = request.id, .shows = {}, .verdict = Verdict::kPassed};
+  verdict.command = RepeatCommand(request.id);
+  const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root);
+  if (!prepared.value) {
+    Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(prepared.diagnostics));
+    verdict.command = "prehend validate " + request.id;
+    return verdict;
+  }
+  const Scenario& scenario = prepared.value->scenario;
+  verdict.shows = scenario.shows;
+
+  const RunResult watched = RunScenario(scenario, prepared.value->program, {.record = true});
+  Draw(request, scenario, watched, verdict);
+  const RunResult plain = RunScenario(scenario, prepared.value->program, {});
+  verdict.state_hash = HashText(plain.state_hash);
+  verdict.ticks = plain.ticks;
+
+  if (plain.status.kind != physics::RunStatus::Kind::kCompleted) {
+    Fail(verdict, ExitCode::kFailure, "the simulation failed", StatusText(plain) + "\n");
+    verdict.command = ExplainCommand(request.id);
+    return verdict;
+  }
+  JudgeInvariants(*prepared.value, watched, plain, verdict);
+  JudgeAgainstGolden(request, *prepared.value, plain, verdict);
+  return verdict;
+}
+
+std::string ExplainCommand(const std::string& id) { return "prehend run " + id; }
+
+std::string RepeatCommand(const std::string& id) { return "prehend check " + id; }
+
+}  // namespace prehend::harness

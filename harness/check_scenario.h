@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// One scenario against its golden and the invariants: run it twice (watched with recording and pictures, and plain),
+// compare, judge. What differs or has no golden leaves a pending golden behind.
+// Tested by tests/harness/command_line_test.cc
+#pragma once
+
+#include <string>
+
+#include "harness/prepare_run.h"
+#include "harness/verdict.h"
+
+namespace prehend::harness {
+
+struct CheckRequest {
+  RunRequest run;
+  std::string id;               ///< skill/name
+  std::string root;             ///< the project's
+  std::string report_folder;    ///< pictures go to its folder `pictures`
+  bool pictures = true;
+  bool write_pending = true;
+};
+
+/// Never fails: what goes wrong is the verdict.
+ScenarioVerdict CheckScenario(const CheckRequest& request);
+
+/// The command that shows a scenario's run again; every difference ends with it.
+std::string ExplainCommand(const std::string& id);
+
+/// The command that repeats a verdict.
+std::string RepeatCommand(const std::string& id);
+
+}  // namespace prehend::harness

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend accept: the only thing that writes goldens. It runs the scenario itself, so that what is accepted is what this
+// build recognises now. Tested by tests/harness/command_line_test.cc
+#include <CLI/CLI.hpp>
+
+#include "harness/accept_golden.h"
+#include "harness/check_scenario.h"
+#include "harness/commands/command.h"
+#include "harness/compare.h"
+#include "harness/golden_files.h"
+#include "harness/run_output.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr const char* kDerivationMissing =
+    "nobody has written yet how this follows from the definitions; what was seen is in the acceptance";
+
+void Declare(CLI::App& options) {
+  options.add_option("scenario", "a name or skill/name")->required()->expected(1);
+  options.add_option("--reason", "why this is right; stays in the golden")->type_name("TEXT")->expected(1);
+  options.add_option("--derived", "how it follows from the definitions, one line each; replaces what the golden says")
+      ->type_name("TEXT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+/// "" or why the command line alone is enough to refuse.
+std::string Refusal(const CLI::App& options, const CommandContext& context) {
+  if (context.in_ci) return "nothing is accepted where CI is set: a golden is a person's decision";
+  if (ValueOf(options, "--reason").find_first_not_of(" \t") == std::string::npos) {
+    return "accepting needs a reason: --reason \"why this is right\"";
+  }
+  for (const char* name : {"--reason", "--derived"}) {
+    for (const std::string& text : ValuesOf(options, name)) {
+      if (text.find_first_of("\n\r") != std::string::npos) return std::string(name) + " takes a single line";
+    }
+  }
+  return "";
+}
+
+/// What will change, before it does.
+void ShowDifference(const std::optional<Golden>& old, const Scenario& scenario, const RunResult& run,
+                    const std::string& id, const CommandContext& context) {
+  if (!old) {
+    context.out << "new golden:\n" << RunTable(run);
+    return;
+  }
+  const Comparison comparison =
+      Compare(*old, run.timeline, DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz));
+  const std::string text = DifferenceText(comparison, ExplainCommand(id));
+  context.out << (text.empty() ? "differs within tolerance only\n" : text);
+}
+
+ExitCode Write(const CLI::App& options, const CommandContext& context, const std::string& id,
+               const std::optional<Golden>& old, const PreparedRun& prepared, const RunResult& run) {
+  const GoldenFiles files(context.root);
+  Proposal proposal{.scenario = id,
+                    .grammar = prepared.scenario.grammar,
+                    .derived = ValuesOf(options, "--derived"),
+                    .acceptance = Acceptance{context.today, ValueOf(options, "--reason")}};
+  const bool tells_derivation = !proposal.derived.empty() && (!old || old->derived != proposal.derived);
+  if (old && SaysTheSame(*old, run.timeline) && !tells_derivation) {
+    files.RemovePending(id);
+    context.out << "nothing to accept: " << files.GoldenPath(id).string() << " says the same already\n";
+    return ExitCode::kAgrees;
+  }
+  if (!old && proposal.derived.empty()) proposal.derived = {kDerivationMissing};
+  ShowDifference(old, prepared.scenario, run, id, context);
+  const std::string problem = files.WriteAccepted(ProposeGolden(old, run.timeline, proposal));
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  context.out << "accepted: " << files.GoldenPath(id).string() << "\n";
+  return ExitCode::kAgrees;
+}
+
+ExitCode Run(const CLI::App& options, const CommandContext& context) {
+  const std::string refusal = Refusal(options, context);
+  if (!refusal.empty()) return Complain(context, ExitCode::kBadInput, refusal);
+  const auto file = FindScenarioOrComplain(ValueOf(options, "scenario"), context);
+  if (!file) return ExitCode::kNothing;
+  const std::string id = ScenarioId(file->skill, file->name);
+  const ReadResult<PreparedRun> prepared = PrepareRun({.scenario_file = file->path}, context.root);
+  if (!prepared.value) return Complain(context, prepared.diagnostics);
+  const ReadResult<Golden> old = GoldenFiles(context.root).ReadGoldenOf(id);
+  if (!old.diagnostics.empty()) return Complain(context, old.diagnostics);
+
+  const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, {});
+  if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
+    return Complain(context, ExitCode::kFailure, "a run that did not complete is not accepted: " + StatusText(run));
+  }
+  return Write(options, context, id, old.value, *prepared.value, run);
+}
+
+}  // namespace
+
+Command AcceptCommand() {
+  return {.name = "accept",
+          .summary = "Make what a scenario yields now its golden, with a reason",
+          .examples = "prehend accept milk_carton_wrap --reason \"first golden, checked against the picture\"\n"
+                      "prehend accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the hand's first motion\"",
+          .declare = Declare,
+          .run = Run};
+}
+
+}  // namespace prehend::harness

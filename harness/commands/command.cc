@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What commands share. Tested by tests/harness/command_line_test.cc
+#include "harness/commands/command.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+namespace prehend::harness {
+
+bool IsGiven(const CLI::App& options, const std::string& name) { return options.count(name) > 0; }
+
+std::string ValueOf(const CLI::App& options, const std::string& name, const std::string& fallback) {
+  return IsGiven(options, name) ? options.get_option(name)->results().back() : fallback;
+}
+
+std::vector<std::string> ValuesOf(const CLI::App& options, const std::string& name) {
+  return options.get_option(name)->results();
+}
+
+void DeclareFlag(CLI::App& options, const std::string& name, const std::string& help) { options.add_flag(name, help); }
+
+void DeclareRunOptions(CLI::App& options) {
+  options.add_option("--grammar", "another grammar: a name of the library or a .grammar file")->type_name("NAME|FILE")->expected(1);
+  options
+      .add_option("--set", "change a parameter of the grammar (reach_radius=25cm) or a field of the scenario (entities.milk.mass_kg=8)")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+RunRequest RequestOf(const CLI::App& options, const std::string& scenario_file) {
+  return {.scenario_file = scenario_file,
+          .grammar = ValueOf(options, "--grammar"),
+          .settings = ValuesOf(options, "--set")};
+}
+
+std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed, const CommandContext& context) {
+  const std::vector<ScenarioFile> scenarios = ListScenarios(context.root);
+  const auto path = FindScenario(scenarios, typed);
+  if (!path) {
+    std::string message = "no scenario '" + typed + "'";
+    const std::string hint = HintForScenario(scenarios, typed);
+    if (!hint.empty()) message += "; " + hint;
+    Complain(context, ExitCode::kNothing, message + " ('prehend list' shows all)");
+    return std::nullopt;
+  }
+  const auto known = std::find_if(scenarios.begin(), scenarios.end(), [&](const ScenarioFile& scenario) {
+    std::error_code error;
+    return scenario.path == *path || std::filesystem::equivalent(scenario.path, *path, error);
+  });
+  if (known != scenarios.end()) return *known;
+  return ScenarioFile{.skill = "", .name = std::filesystem::path(*path).stem().string(), .path = *path};
+}
+
+ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message) {
+  context.err << "prehend: " << message << "\n  again: " << context.command_line << "\n";
+  return code;
+}
+
+ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& diagnostics) {
+  context.err << Format(diagnostics) << "  again: " << context.command_line << "\n";
+  return ExitCode::kBadInput;
+}
+
+}  // namespace prehend::harness

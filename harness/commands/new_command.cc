@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend new: a commented scenario to start from. Tested by tests/harness/command_line_test.cc
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+
+#include "harness/commands/command.h"
+#include "harness/golden_files.h"
+#include "harness/text_file.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr const char* kDefaultSkill = "pick_and_place";
+
+constexpr const char* kTemplate = R"(# yaml-language-server: $schema=../scenario.schema.json
+# Every key is explained in docs/scenario-format.md. Units are the last word of a key; z is up.
+scenario: NAME
+shows: a carton is picked up with a wrap grasp and put down further to the right   # what it proves, as a sentence
+grammar: pick_and_place            # a file of grammar/library/, without ".grammar"
+tags: []
+
+# Things. `on` puts one onto another; then at_m gives x and y only.
+entities:
+  table: {class: Table, fixed: true, box: {size_m: [1.2, 0.8, 0.04]}, at_m: [0, 0, 0.74]}
+  carton: {class: MilkCarton, box: {size_m: [0.07, 0.07, 0.20]}, mass_kg: 0.4, friction: 0.8, on: table, at_m: [0.2, 0.1]}
+
+# Hands, and where they start.
+actors:
+  right_hand: {hand: human_right, at_m: [-0.2, -0.2, 1.05]}
+
+# One step after another. Hands named in one entry act at the same time.
+script:
+  - right_hand: {reach: carton, style: wrap, over_s: 0.8}
+  - right_hand: {close_to: 1.0, over_s: 0.6}
+  - right_hand: {lift_by_m: 0.25, over_s: 0.6}
+  - right_hand: {carry_to_m: [0.2, -0.3], over_s: 1.0}
+  - right_hand: {place_on: table, over_s: 0.6}
+  - right_hand: {open_to: 0.0, over_s: 0.45}
+  - right_hand: {retreat_by_m: 0.2, over_s: 0.6}
+
+# Pictures for the report: at an event's begin or end, or at a time in seconds.
+pictures:
+  - {at: transporting.begin, camera: three_quarter}
+)";
+
+void Declare(CLI::App& options) {
+  options.add_option("name", "what the scenario claims, like carton_slides_then_is_lifted; or skill/name")->required()->expected(1);
+  options.add_option("--like", "start from this scenario instead")->type_name("SCENARIO")->expected(1);
+}
+
+/// The text with its `scenario:` line naming the new one.
+std::string Renamed(const std::string& text, const std::string& name) {
+  static const std::regex name_line("(^|\n)scenario:[^\n]*");
+  return std::regex_replace(text, name_line, "$1scenario: " + name, std::regex_constants::format_first_only);
+}
+
+ExitCode Run(const CLI::App& options, const CommandContext& context) {
+  const std::string typed = ValueOf(options, "name");
+  static const std::regex well_formed("([a-z][a-z0-9_]*/)?[a-z][a-z0-9_]*");
+  if (!std::regex_match(typed, well_formed)) {
+    return Complain(context, ExitCode::kBadInput, "'" + typed + "' is no name; one looks like slide_then_transport or slide/slide_then_transport");
+  }
+  std::string text = kTemplate;
+  std::string skill = kDefaultSkill;
+  if (IsGiven(options, "--like")) {
+    const auto model = FindScenarioOrComplain(ValueOf(options, "--like"), context);
+    if (!model) return ExitCode::kNothing;
+    ReadResult<std::string> read = ReadTextFile(model->path);
+    if (!read.value) return Complain(context, read.diagnostics);
+    text = std::move(*read.value);
+    if (!model->skill.empty()) skill = model->skill;
+  }
+  const std::size_t slash = typed.find('/');
+  if (slash != std::string::npos) skill = typed.substr(0, slash);
+  const std::string name = slash == std::string::npos ? typed : typed.substr(slash + 1);
+
+  for (const ScenarioFile& scenario : ListScenarios(context.root)) {
+    if (scenario.name == name) return Complain(context, ExitCode::kBadInput, "there is a scenario of this name: " + scenario.path);
+  }
+  const std::filesystem::path path = std::filesystem::path(context.root) / "scenarios" / skill / (name + ".yaml");
+  const std::string problem = WriteTextFile(path, Renamed(text, name));
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  const std::string id = ScenarioId(skill, name);
+  context.out << path.string() << "\n"
+              << "next: edit it, then\n"
+              << "  prehend validate " << id << "\n"
+              << "  prehend run " << id << "\n"
+              << "  prehend render " << id << "\n"
+              << "  prehend accept " << id << " --reason \"...\"\n";
+  return ExitCode::kAgrees;
+}
+
+}  // namespace
+
+Command NewCommand() {
+  return {.name = "new",
+          .summary = "Write a commented, runnable scenario to start from",
+          .examples = "prehend new carton_is_lifted\n"
+                      "prehend new slide/carton_slides_far --like carton_slides_then_is_transported",
+          .declare = Declare,
+          .run = Run};
+}
+
+}  // namespace prehend::harness

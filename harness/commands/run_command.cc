@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend run. Tested by tests/harness/command_line_test.cc
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "harness/commands/command.h"
+#include "harness/run_output.h"
+
+namespace prehend::harness {
+namespace {
+
+void Declare(CLI::App& options) {
+  options.add_option("scenario", "a name, skill/name or a file")->required()->expected(1);
+  DeclareRunOptions(options);
+  DeclareFlag(options, "--json", "one JSON object instead of a table");
+  DeclareFlag(options, "--measure", "say where the time went, and the peak memory");
+}
+
+ExitCode Run(const CLI::App& options, const CommandContext& context) {
+  const auto file = FindScenarioOrComplain(ValueOf(options, "scenario"), context);
+  if (!file) return ExitCode::kNothing;
+  const ReadResult<PreparedRun> prepared = PrepareRun(RequestOf(options, file->path), context.root);
+  if (!prepared.value) return Complain(context, prepared.diagnostics);
+
+  const bool measure = IsGiven(options, "--measure");
+  const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, {.measure = measure});
+  if (IsGiven(options, "--json")) {
+    OrderedJson json = RunJson(prepared.value->scenario, run);
+    if (measure) json["measured"] = MeasurementJson(Measure(run));
+    context.out << json.dump(2) << "\n";
+  } else {
+    context.out << RunTable(run);
+    if (measure) context.out << MeasurementText(Measure(run));
+  }
+  if (run.status.kind == physics::RunStatus::Kind::kCompleted) return ExitCode::kAgrees;
+  return Complain(context, ExitCode::kFailure, StatusText(run));
+}
+
+}  // namespace
+
+Command RunCommand() {
+  return {.name = "run",
+          .summary = "Simulate one scenario and print what its grammar recognises",
+          .examples = "prehend run milk_carton_wrap\n"
+                      "prehend run milk_carton_wrap --json\n"
+                      "prehend run milk_carton_wrap --set entities.milk.mass_kg=8\n"
+                      "prehend run milk_carton_wrap --set lift_rise=10cm --measure\n"
+                      "prehend run my/scenario.yaml --grammar my/rules.grammar",
+          .declare = Declare,
+          .run = Run};
+}
+
+}  // namespace prehend::harness

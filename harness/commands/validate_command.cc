@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend validate: reads, never runs. Tested by tests/harness/command_line_test.cc
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "harness/commands/command.h"
+#include "harness/golden.h"
+#include "harness/load_grammar.h"
+#include "harness/text_file.h"
+
+namespace prehend::harness {
+namespace {
+
+struct Validated {
+  std::string file;
+  grammar::Diagnostics diagnostics;
+};
+
+void Declare(CLI::App& options) {
+  options.add_option("files", "scenarios (names or files), .grammar or .timeline files; nothing: all scenarios")->expected(-1);
+  DeclareRunOptions(options);
+  DeclareFlag(options, "--json", "one JSON object");
+}
+
+grammar::Diagnostics ReadGoldenFile(const std::string& path) {
+  ReadResult<std::string> text = ReadTextFile(path);
+  return text.value ? ReadGolden(path, *text.value).diagnostics : std::move(text.diagnostics);
+}
+
+Validated ValidateGrammar(const std::string& name_or_path, const std::string& root) {
+  return {GrammarFile(root, name_or_path), LoadGrammar(root, name_or_path).diagnostics};
+}
+
+/// Nothing when it is the name of no scenario.
+std::optional<Validated> Validate(const std::string& typed, const CLI::App& options, const CommandContext& context) {
+  if (typed.ends_with(".grammar")) return ValidateGrammar(typed, context.root);
+  if (typed.ends_with(".timeline")) return Validated{typed, ReadGoldenFile(typed)};
+  const auto file = FindScenarioOrComplain(typed, context);
+  if (!file) return std::nullopt;
+  return Validated{file->path, PrepareRun(RequestOf(options, file->path), context.root).diagnostics};
+}
+
+nlohmann::ordered_json ToJson(const Validated& validated) {
+  nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();
+  for (const grammar::Diagnostic& diagnostic : validated.diagnostics) {
+    diagnostics.push_back({{"file", diagnostic.file},
+                           {"line", diagnostic.place.line},
+                           {"column", diagnostic.place.column},
+                           {"message", diagnostic.message},
+                           {"hint", diagnostic.hint}});
+  }
+  return {{"file", validated.file}, {"ok", validated.diagnostics.empty()}, {"diagnostics", std::move(diagnostics)}};
+}
+
+ExitCode Run(const CLI::App& options, const CommandContext& context) {
+  std::vector<std::string> typed = ValuesOf(options, "files");
+  if (typed.empty() && !IsGiven(options, "--grammar")) {
+    for (const ScenarioFile& file : ListScenarios(context.root)) typed.push_back(ScenarioId(file.skill, file.name));
+    if (typed.empty()) return Complain(context, ExitCode::kNothing, "no scenarios below " + context.root + "/scenarios");
+  }
+  std::vector<Validated> all;
+  if (typed.empty()) all.push_back(ValidateGrammar(ValueOf(options, "--grammar"), context.root));
+  for (const std::string& name : typed) {
+    auto validated = Validate(name, options, context);
+    if (!validated) return ExitCode::kNothing;
+    all.push_back(std::move(*validated));
+  }
+
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  grammar::Diagnostics diagnostics;
+  for (const Validated& validated : all) {
+    json.push_back(ToJson(validated));
+    diagnostics.insert(diagnostics.end(), validated.diagnostics.begin(), validated.diagnostics.end());
+    if (!IsGiven(options, "--json") && validated.diagnostics.empty()) context.out << "ok: " << validated.file << "\n";
+  }
+  if (IsGiven(options, "--json")) context.out << nlohmann::ordered_json{{"files", json}}.dump(2) << "\n";
+  return diagnostics.empty() ? ExitCode::kAgrees : Complain(context, diagnostics);
+}
+
+}  // namespace
+
+Command ValidateCommand() {
+  return {.name = "validate",
+          .summary = "Read scenarios, grammars and goldens without running anything",
+          .examples = "prehend validate\n"
+                      "prehend validate milk_carton_wrap my/scenario.yaml\n"
+                      "prehend validate my/rules.grammar\n"
+                      "prehend validate --grammar pick_and_place",
+          .declare = Declare,
+          .run = Run};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// A grammar from its file, with the files it uses. Tested by tests/harness/load_grammar_test.cc
+#pragma once
+
+#include <string>
+
+#include "grammar/monitor.h"
+
+namespace prehend::harness {
+
+/// The file for a name of the library, or for a path (it has a slash, or ends with ".grammar").
+std::string GrammarFile(const std::string& root, const std::string& name_or_path);
+
+/// What it uses is looked for beside it, then in the library.
+grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
+                                   const grammar::Overrides& overrides = {});
+
+}  // namespace prehend::harness

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything a run needs, from files: the scenario and its compiled grammar, with what the command line changes.
+// Tested by tests/harness/prepare_run_test.cc
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "grammar/monitor.h"
+#include "harness/read_result.h"
+#include "harness/scenario.h"
+
+namespace prehend::harness {
+
+struct RunRequest {
+  std::string scenario_file;
+  std::string grammar;                ///< name or path; empty: the scenario's own
+  std::vector<std::string> settings;  ///< "name=value": a field of the scenario when the name has a dot, else a parameter
+  std::string pictures;               ///< YAML that replaces the scenario's pictures; empty: keep them
+};
+
+struct PreparedRun {
+  Scenario scenario;  ///< its `grammar` is the one that is used
+  std::shared_ptr<const grammar::Program> program;
+};
+
+ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root);
+
+/// "skill/name": how goldens, reports and the command line call it.
+std::string ScenarioId(const std::string& skill, const std::string& name);
+
+/// Names of the bodies that can lose their support.
+std::set<std::string> MovableEntities(const Scenario& scenario);
+
+}  // namespace prehend::harness

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// See run_output.h. Tested by tests/harness/run_output_test.cc
+#include "harness/run_output.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "harness/event_text.h"
+
+namespace prehend::harness {
+namespace {
+
+using grammar::NamedEvent;
+using grammar::Tick;
+
+bool Completed(const RunResult& run) { return run.status.kind == physics::RunStatus::Kind::kCompleted; }
+
+double SecondsOf(Tick tick, Tick ticks_per_second) {
+  return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
+}
+
+OrderedJson EventJson(const NamedEvent& event, Tick ticks_per_second) {
+  OrderedJson roles = OrderedJson::object();
+  OrderedJson attributes = OrderedJson::object();
+  for (const grammar::Role& role : event.roles) (IsAttribute(role) ? attributes : roles)[role.name] = role.value;
+  return {{"event", event.event},
+          {"roles", std::move(roles)},
+          {"attributes", std::move(attributes)},
+          {"begin_tick", event.interval.begin},
+          {"end_tick", event.interval.end},
+          {"begin_s", SecondsOf(event.interval.begin, ticks_per_second)},
+          {"end_s", SecondsOf(event.interval.end, ticks_per_second)},
+          {"decided_tick", event.decided},
+          {"open_end", event.open_end}};
+}
+
+}  // namespace
+
+std::string StatusText(const RunResult& run) {
+  const physics::RunStatus& status = run.status;
+  const Tick rate = run.timeline.ticks_per_second;
+  if (Completed(run)) return fmt::format("completed: {} s, {} ticks", SecondsText(run.ticks, rate), run.ticks);
+  std::string text = fmt::format("failed at {} s (tick {}): ", SecondsText(status.tick, rate), status.tick);
+  if (!status.entity.empty()) text += status.entity + ": ";
+  text += status.reason;
+  if (!status.advice.empty()) text += "; " + status.advice;
+  return text;
+}
+
+std::string RunTable(const RunResult& run) {
+  std::size_t role_columns = 1;
+  for (const NamedEvent& event : run.timeline.events) role_columns = std::max(role_columns, event.roles.size());
+  std::vector<std::vector<std::string>> rows = {{"event", "begin_s", "end_s", "roles"}};
+  for (const NamedEvent& event : run.timeline.events) {
+    rows.push_back(EventCells(event, run.timeline.ticks_per_second, role_columns));
+  }
+  std::string table;
+  for (const std::string& line : AlignColumns(rows)) table += line + "\n";
+  return table + StatusText(run) + "\n";
+}
+
+std::string HashText(std::uint64_t hash) { return fmt::format("0x{:016x}", hash); }
+
+OrderedJson RunJson(const Scenario& scenario, const RunResult& run) {
+  OrderedJson json = {{"scenario", scenario.name},
+                      {"status", Completed(run) ? "completed" : "failed"},
+                      {"ticks_per_second", run.timeline.ticks_per_second},
+                      {"ticks", run.ticks},
+                      {"state_hash", HashText(run.state_hash)},
+                      {"grammar", scenario.grammar}};
+  if (!Completed(run)) {
+    json["failure"] = {{"tick", run.status.tick},
+                       {"entity", run.status.entity},
+                       {"reason", run.status.reason},
+                       {"advice", run.status.advice}};
+  }
+  json["events"] = OrderedJson::array();
+  for (const NamedEvent& event : run.timeline.events) {
+    json["events"].push_back(EventJson(event, run.timeline.ticks_per_second));
+  }
+  return json;
+}
+
+Measurement Measure(const RunResult& run) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {.seconds = run.seconds,
+          .simulated_s = SecondsOf(run.ticks, run.timeline.ticks_per_second),
+          .peak_memory_kib = usage.ru_maxrss};
+}
+
+std::string MeasurementText(const Measurement& measurement) {
+  const RunSeconds& seconds = measurement.seconds;
+  const auto share = [&](double part_s) { return seconds.total > 0 ? 100 * part_s / seconds.total : 0; };
+  return fmt::format(
+      "measured: {:.1f} times real time; physics {:.1f} %, sensing {:.1f} %, grammar {:.1f} % of {:.3f} s; "
+      "peak memory {:.0f} MiB\n",
+      seconds.total > 0 ? measurement.simulated_s / seconds.total : 0, share(seconds.physics), share(seconds.sensing),
+      share(seconds.grammar), seconds.total, static_cast<double>(measurement.peak_memory_kib) / 1024);
+}
+
+OrderedJson MeasurementJson(const Measurement& measurement) {
+  const RunSeconds& seconds = measurement.seconds;
+  return {{"simulated_s", measurement.simulated_s},
+          {"total_s", seconds.total},
+          {"physics_s", seconds.physics},
+          {"sensing_s", seconds.sensing},
+          {"grammar_s", seconds.grammar},
+          {"times_real_time", seconds.total > 0 ? measurement.simulated_s / seconds.total : 0},
+          {"peak_memory_kib", measurement.peak_memory_kib}};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `prehend check` found out about one scenario, as a value that travels from the worker to the report.
+// Tested by tests/harness/verdict_test.cc
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/exit_code.h"
+
+namespace prehend::harness {
+
+enum class Verdict { kPassed, kFailed, kPending };
+
+/// "passed", "failed", "pending"
+std::string_view Name(Verdict verdict);
+
+struct ReportedPicture {
+  std::string file;  ///< relative to the report
+  std::string caption;
+};
+
+struct ScenarioVerdict {
+  std::string scenario;  ///< skill/name
+  std::string shows;
+  Verdict verdict = Verdict::kFailed;
+  ExitCode exit_code = ExitCode::kAgrees;  ///< what a check of this scenario alone ends with
+  std::string reason;                      ///< one line; empty when passed
+  std::string details;                     ///< differences, violations, diagnostics; several lines or empty
+  std::string headroom;                    ///< HeadroomText()
+  std::string command;                     ///< shows it again
+  std::string state_hash;
+  std::int64_t ticks = 0;
+  double seconds = 0;                      ///< wall time in its worker
+  std::vector<ReportedPicture> pictures;
+  std::string timeline_svg;
+};
+
+/// Both directions; the JSON of a verdict from a worker has all fields.
+nlohmann::ordered_json ToJson(const ScenarioVerdict& verdict);
+ScenarioVerdict VerdictFromJson(const nlohmann::ordered_json& json);
+
+struct Tally {
+  int passed = 0, failed = 0, pending = 0;
+};
+Tally Count(const std::vector<ScenarioVerdict>& verdicts);
+
+/// How the whole check ends: the worst of its scenarios.
+ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts);
+
+}  // namespace prehend::harness
