@@ -4,6 +4,7 @@
 #include "render/mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -57,6 +58,15 @@ std::vector<ProfilePoint> RoundedProfile(int segments) {
   return profile;
 }
 
+// Of the first two points that differ.
+Vector3f FirstDirection(const std::vector<Vector3f>& points) {
+  for (const Vector3f& p : points) {
+    const Vector3f chord = p - points.front();
+    if (chord.norm() > 1e-9f) return chord.normalized();
+  }
+  return Vector3f::UnitX();
+}
+
 std::vector<Meridian> CircleMeridians(int segments) {
   std::vector<Meridian> meridians;
   for (int i = 0; i <= 4 * segments; ++i) {
@@ -94,7 +104,7 @@ Mesh ConeMesh(int segments) {
 Mesh TubeMesh(const std::vector<Vector3f>& points, int segments) {
   Mesh mesh;
   if (points.size() < 2) return mesh;
-  Vector3f tangent = (points[1] - points[0]).normalized();
+  Vector3f tangent = FirstDirection(points);
   Vector3f across = tangent.unitOrthogonal();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector3f chord = points[std::min(i + 1, points.size() - 1)] - points[i == 0 ? 0 : i - 1];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One picture as a value: what to draw, from where, with which labels and timeline. Draws immutable values and
 // knows neither grammar nor simulation. Colours are sRGB 0..1.
-// Tested by tests/render/picture_test.cc
+// Tested by tests/render/painter_test.cc
 #pragma once
 
 #include <cstdint>

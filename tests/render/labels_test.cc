@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/labels.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace prehend::render {
+namespace {
+
+class LabelsTest : public testing::Test {
+ protected:
+  LabelsTest() : font_(Font::Read(kDefaultFontFile, &error_)) {}
+  void SetUp() override { ASSERT_NE(font_, nullptr) << error_; }
+
+  std::vector<PlacedLabel> Place(const std::vector<LabelRequest>& requests) const {
+    return PlaceLabels(requests, {.area = area_, .forbidden = {title_}, .avoid = avoid_}, *font_, 1);
+  }
+
+  std::string error_;
+  std::unique_ptr<Font> font_;
+  Rect area_ = {5, 5, 800, 500};
+  Rect title_ = {10, 10, 200, 30};
+  std::vector<Eigen::Vector2f> avoid_;
+};
+
+TEST_F(LabelsTest, NeverOverlapAndStayInside) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> x(10, 795), y(10, 495);
+    std::vector<LabelRequest> requests;
+    for (int i = 0; i < 15; ++i) requests.push_back({"thing_" + std::to_string(i), Hex(0), {x(random), y(random)}, {}});
+    const std::vector<PlacedLabel> placed = Place(requests);
+    EXPECT_GE(placed.size(), 12u);
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      const Rect& box = placed[i].box;
+      EXPECT_TRUE(box.x >= area_.x && box.y >= area_.y && box.right() <= area_.right() && box.bottom() <= area_.bottom());
+      EXPECT_FALSE(box.Overlaps(title_));
+      for (std::size_t k = 0; k < i; ++k) EXPECT_FALSE(box.Overlaps(placed[k].box));
+    }
+  }
+}
+
+TEST_F(LabelsTest, ManyLabelsInOnePlaceAreLeftOutRatherThanStacked) {
+  const std::vector<LabelRequest> requests(300, {"same place", Hex(0), {400, 250}, {}});
+  const std::vector<PlacedLabel> placed = Place(requests);
+  EXPECT_GT(placed.size(), 2u);
+  EXPECT_LT(placed.size(), 300u);
+}
+
+TEST_F(LabelsTest, KeepsOffItsThingAndOffPaths) {
+  const Rect thing = {370, 220, 60, 60};
+  for (int i = 0; i < 80; ++i) avoid_.emplace_back(400 + i, 200);
+  const std::vector<PlacedLabel> placed = Place({{"thing", Hex(0), {400, 250}, thing}});
+  ASSERT_EQ(placed.size(), 1u);
+  EXPECT_FALSE(placed[0].box.Overlaps(thing.Grown(-4)));
+  for (const auto& p : avoid_) EXPECT_FALSE(placed[0].box.Overlaps({p.x(), p.y(), 1, 1}));
+}
+
+TEST_F(LabelsTest, WithoutAPlaceOnThePictureThereIsNoLabel) {
+  EXPECT_TRUE(Place({{"outside", Hex(0), {-50, 100}, {}}}).empty());
+  EXPECT_TRUE(Place({{"nowhere", Hex(0), {std::nanf(""), 100}, {}}}).empty());
+  EXPECT_TRUE(Place({{"", Hex(0), {100, 100}, {}}}).empty());
+  EXPECT_TRUE(Place({{std::string(500, 'w'), Hex(0), {100, 100}, {}}}).empty());
+}
+
+}  // namespace
+}  // namespace prehend::render
