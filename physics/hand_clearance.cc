@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kBallsPerPalmEdge = 5;
 constexpr int kBallsPerLink = 3;
-constexpr int kLooks = 40;
+/// At 1.5 m/s, the peak of a long reach, this looks every centimetre.
+constexpr int kLooks = 120;
 /// Farther than this nothing matters; distances are cut off here.
 constexpr double kFar_m = 0.1;
 
