@@ -38,15 +38,21 @@ void CollectNecessary(const Program& program, int index, std::vector<int>& refer
   }
 }
 
-int RolesNamed(const Reference& reference) {
-  return static_cast<int>(std::count_if(reference.roles.begin(), reference.roles.end(), [](int r) { return r != kNone; }));
+// How many bindings one binding of the reference wakes, roughly: a free Hand costs less than any other free role.
+int Fanout(const Rule& rule, const Reference& reference) {
+  int fanout = 0;
+  for (std::size_t role = 0; role < rule.roles.size(); ++role) {
+    const bool named = std::count(reference.roles.begin(), reference.roles.end(), static_cast<int>(role)) > 0;
+    if (!named) fanout += rule.roles[role].class_name == "Hand" ? 1 : 10;
+  }
+  return fanout;
 }
 
-// The candidate that names most roles, so that fewest bindings are watched; the first of equals.
+// The last of equals: conditions that are built on others stand later and hold more rarely.
 int MostSpecific(const Rule& rule, const std::vector<int>& candidates) {
   int best = kNone;
   for (const int candidate : candidates) {
-    if (best == kNone || RolesNamed(rule.references[candidate]) > RolesNamed(rule.references[best])) best = candidate;
+    if (best == kNone || Fanout(rule, rule.references[candidate]) <= Fanout(rule, rule.references[best])) best = candidate;
   }
   return best;
 }

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a compiled grammar recognises and what it costs: its events and parameters, how late each event can be decided,
+// and how much of the past is kept.
+// Tested by tests/grammar/describe_test.cc
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "grammar/program.h"
+
+namespace prehend::grammar {
+
+/// An upper bound for something that is waited for: this long, and until the named events have ended.
+struct Wait {
+  double seconds = 0;
+  std::set<std::string> until_end_of;
+};
+
+struct RuleDescription {
+  std::string head;  ///< "event grasping(hand: Hand, object: Thing)"
+  bool printed = false;
+  Wait latency;      ///< from an interval's end to its decision, besides one frame
+  std::string watched;  ///< which bindings cost time: "pairs that touch", "every hand and object"
+};
+
+struct GrammarDescription {
+  std::string name;
+  std::vector<RuleDescription> rules;  ///< in the order of the files; no hidden ones
+  std::vector<ProgramParam> params;
+  double history_s = 0;                ///< how long poses are kept
+  std::size_t bytes_per_pose = 0;      ///< kept per frame and entity that is awake
+  std::size_t bytes_per_feeler = 0;    ///< kept per frame and feeler of a hand
+  std::size_t bytes_per_binding = 0;   ///< about
+};
+
+GrammarDescription Describe(const Program& program);
+
+/// As `prehend validate --grammar` prints it.
+std::string Text(const GrammarDescription& description);
+
+}  // namespace prehend::grammar

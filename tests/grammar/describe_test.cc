@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/describe.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/grammar/corpus.h"
+
+namespace prehend::grammar {
+namespace {
+
+const RuleDescription& Find(const GrammarDescription& description, const std::string& name) {
+  const auto found = std::find_if(description.rules.begin(), description.rules.end(), [&](const RuleDescription& rule) {
+    return rule.head.find(" " + name + "(") != std::string::npos;
+  });
+  EXPECT_NE(found, description.rules.end()) << name;
+  return *found;
+}
+
+TEST(Describe, BoundsDecisionsAndHistory) {
+  const GrammarDescription d = Describe(*testing::CompileLibrary("pick_and_place"));
+  EXPECT_EQ(d.history_s, 10);
+  EXPECT_DOUBLE_EQ(Find(d, "grasping").latency.seconds, 0.06);
+  EXPECT_TRUE(Find(d, "grasping").latency.until_end_of.empty());
+  EXPECT_EQ(Find(d, "reaching").latency.until_end_of, std::set<std::string>{"contact"});
+  EXPECT_DOUBLE_EQ(Find(d, "picking_up").latency.seconds, 3.4);
+  EXPECT_EQ(Find(d, "contact").watched, "pairs that touch");
+}
+
+// What is promised holds on the corpus: no event is decided later than its bound and the ends it waits for.
+TEST(Describe, PromisesAreKeptOnTheCorpus) {
+  const GrammarDescription d = Describe(*testing::CompileLibrary("pick_and_place"));
+  for (const auto& c : testing::ReadCorpus(PREHEND_SOURCE_DIR "/tests/grammar/corpus/pick_and_place.txt")) {
+    for (const NamedEvent& event : testing::RunCase(c).timeline.events) {
+      const Wait& wait = Find(d, event.event).latency;
+      if (!wait.until_end_of.empty()) continue;
+      constexpr double kLongestFrame = 16;
+      EXPECT_LE(static_cast<double>(event.decided - event.interval.end), 1000 * wait.seconds + kLongestFrame)
+          << c.title << ": " << event.Label();
+    }
+  }
+}
+
+TEST(Describe, TextListsParametersWithTheirPlaces) {
+  const std::string text = Text(Describe(*testing::CompileLibrary("grasp", {{"grip_on", "0.5"}})));
+  EXPECT_NE(text.find("param grip_on = 0.5  (overridden)  # grammar/library/grasp.grammar:"), std::string::npos) << text;
+  EXPECT_NE(text.find("event grasping(hand: Hand, object: Thing)\n    decided at most 0.06 s after its end"),
+            std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace prehend::grammar
