@@ -80,7 +80,7 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
       {"~: 3\n", "1:1: a key is missing here\n"},
       {"# nothing\n", "0:0: the file is empty but for comments\n"},
       {"", "0:0: the file is empty\n"},
-      {"a: {b: 1\n", "1:4: not valid YAML: end of map flow not found\n"},
+      {"a: {b: 1\n", "2:1: not valid YAML: end of map flow not found\n"},
       {"a: 1\n b: 2\n", "2:3: not valid YAML: illegal map value\n"},
   };
   for (const Refused& refused : table) EXPECT_EQ(Complaints(refused.text), refused.complaints) << refused.text;

@@ -76,7 +76,7 @@ TEST(ScenarioFormatDocument, ItsExamplesAreReadAndValid) {
     EXPECT_TRUE(read.value) << grammar::Format(read.diagnostics) << text;
     validator.Add("example" + std::to_string(scenarios++), text);
   }
-  EXPECT_GE(scenarios, 8);
+  EXPECT_GE(scenarios, 7);
   const auto valid = validator.Validate(ScenarioSchema());
   EXPECT_EQ(valid.size(), static_cast<std::size_t>(scenarios));
   for (const auto& [name, is_valid] : valid) EXPECT_TRUE(is_valid) << name;
@@ -87,7 +87,9 @@ TEST(ScenarioFormatDocument, NamesEveryKey) {
   const std::function<void(const Json&)> check = [&](const Json& schema) {
     if (schema.contains("properties")) {
       for (const auto& [key, value] : schema["properties"].items()) {
-        EXPECT_NE(document.find("`" + key + "`"), std::string::npos) << key;
+        const bool named = document.find("`" + key + "`") != std::string::npos ||
+                           document.find("`" + key + ": ") != std::string::npos;
+        EXPECT_TRUE(named) << key;
       }
     }
     for (const Json& inner : schema) {
