@@ -87,7 +87,7 @@ bool StandsStill(const Recording& recording, const OracleSettings& settings, int
   double farthest = (now.palm.X_WB.p_m - before.palm.X_WB.p_m - body_moved).norm();
   for (std::size_t i = 0; i < now.X_WL.size(); ++i)
     farthest = std::max(farthest, (now.X_WL[i].p_m - before.X_WL[i].p_m - body_moved).norm());
-  return farthest < settings.reach_idle_speed_m_per_s * recording.Seconds(frame - 1, frame);
+  return farthest < settings.idle_speed_m_per_s * recording.Seconds(frame - 1, frame);
 }
 
 /// The frame at which the hand last stopped idling, or `earliest`.
@@ -104,13 +104,19 @@ int LastIdleEnd(const Recording& recording, const OracleSettings& settings, int 
 
 }  // namespace
 
-int ApproachBegin(std::span<const double> distances_m, double dead_band_m) {
-  int farthest = static_cast<int>(distances_m.size()) - 1;
-  for (int i = farthest; i >= 0; --i) {
-    if (distances_m[i] >= distances_m[farthest]) farthest = i;
-    if (distances_m[farthest] - distances_m[i] > dead_band_m) return farthest;
+int ApproachBegin(std::span<const DistanceAt> path, double dead_band_m, double pause_m_per_s) {
+  const auto away_m = [&](int from, int to) { return path[to].distance_m - path[from].distance_m; };
+  int turn = static_cast<int>(path.size()) - 1;
+  int retreat = turn;
+  while (retreat >= 0 && away_m(retreat, turn) <= dead_band_m) {
+    if (away_m(retreat, turn) <= 0) turn = retreat;
+    --retreat;
   }
-  return 0;
+  if (retreat < 0) return 0;
+  while (turn - 1 > retreat &&
+         away_m(turn - 1, turn) <= pause_m_per_s * (path[turn].t_s - path[turn - 1].t_s))
+    --turn;
+  return turn;
 }
 
 double SurfaceDistance(const physics::HandModel& model, const physics::HandState& hand,
@@ -141,11 +147,12 @@ int ReachBegin(const Recording& recording, const OracleSettings& settings, int h
                        recording.body(body, begin - 1), settings.reach_radius_m))
     --begin;
   begin = LastIdleEnd(recording, settings, hand, body, begin, touch);
-  std::vector<double> distances;
+  std::vector<DistanceAt> path;
   for (int frame = begin; frame < touch; ++frame)
-    distances.push_back(
-        SurfaceDistance(model, recording.hand(hand, frame), shape, recording.body(body, frame)));
-  return begin + ApproachBegin(distances, settings.reach_dead_band_m);
+    path.push_back(
+        {recording.Seconds(begin, frame),
+         SurfaceDistance(model, recording.hand(hand, frame), shape, recording.body(body, frame))});
+  return begin + ApproachBegin(path, settings.reach_dead_band_m, settings.idle_speed_m_per_s);
 }
 
 }  // namespace prehend::harness::oracle

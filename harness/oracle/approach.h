@@ -9,10 +9,16 @@
 
 namespace prehend::harness::oracle {
 
-/// Where the last uninterrupted approach to the end of `distances_m` begins: an index. Going away
-/// by up to `dead_band_m` does not interrupt; after a longer retreat the approach begins at the
-/// turning point.
-int ApproachBegin(std::span<const double> distances_m, double dead_band_m);
+struct DistanceAt {
+  double t_s = 0;
+  double distance_m = 0;
+};
+
+/// Where the last uninterrupted approach to the end of `path` begins: an index. Going away by up to
+/// `dead_band_m` does not interrupt. After a longer retreat the approach begins at the turning
+/// point; if the retreat ends in a pause (slower than `pause_m_per_s`), then with the pause: from
+/// there on nothing moves away.
+int ApproachBegin(std::span<const DistanceAt> path, double dead_band_m, double pause_m_per_s);
 
 /// Between the surfaces of the hand (palm and links) and of the body, metres; 0 when they touch or
 /// overlap.

@@ -120,10 +120,12 @@ class Carrier {
       --near;
     if (Highest({near, landing}) - region.anchor.z() < settings_.put_down_drop_m)
       return std::nullopt;
-    std::vector<double> distances;
+    std::vector<DistanceAt> path;
     for (int frame = near; frame < landing; ++frame)
-      distances.push_back((place(frame) - region.anchor).norm());
-    return Span{near + ApproachBegin(distances, settings_.put_down_dead_band_m), landing};
+      path.push_back({recording_.Seconds(near, frame), (place(frame) - region.anchor).norm()});
+    const int begin =
+        ApproachBegin(path, settings_.put_down_dead_band_m, settings_.idle_speed_m_per_s);
+    return Span{near + begin, landing};
   }
 
   void DivideUnsupported(Span unsupported) {

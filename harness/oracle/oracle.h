@@ -25,17 +25,16 @@ struct OracleSettings {
   double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
   int grasp_sensor_sets = 2;            ///< of one hand on the object
 
+  double idle_speed_m_per_s = 0.01;  ///< slower is standing still, as seen from the object
+
   double reach_radius_m = 0.30;      ///< ball that lies ahead of the palm and touches its centre
   double reach_dead_band_m = 0.025;  ///< moving away by less is not moving away
   double reach_idle_s = 0.5;         ///< standing still for longer ends a reach
-  double reach_idle_speed_m_per_s =
-      0.01;  ///< relative to the object; below it palm and fingers stand still
   double reach_minimum_s = 0.1;
 
   double slide_speed_m_per_s = 0.01;  ///< horizontal, relative to the support
-  double slide_window_s =
-      0.1;  ///< over which the motion has to be faster than that on average, too
-  double slide_pause_s = 0.150;  ///< a pause in the motion that is bridged
+  double slide_window_s = 0.1;        ///< it has to be faster than that on average over this, too
+  double slide_pause_s = 0.150;       ///< a pause in the motion that is bridged
   double slide_displacement_m = 0.02;
 
   double pick_up_rise_m = 0.03;
