@@ -15,7 +15,8 @@ bool Rect::Overlaps(const Rect& other) const {
 }
 
 Color Hex(unsigned rgb) {
-  return Color(static_cast<float>(rgb >> 16 & 255), static_cast<float>(rgb >> 8 & 255), static_cast<float>(rgb & 255)) /
+  return Color(static_cast<float>(rgb >> 16 & 255), static_cast<float>(rgb >> 8 & 255),
+               static_cast<float>(rgb & 255)) /
          255;
 }
 
@@ -37,7 +38,8 @@ void Canvas::Blend(int x, int y, const Color& color, float alpha) {
   std::uint8_t* pixel = &image_.rgb[(static_cast<std::size_t>(y) * image_.width_px + x) * 3];
   for (int k = 0; k < 3; ++k) {
     const float before = pixel[k];
-    pixel[k] = static_cast<std::uint8_t>(std::lround(std::clamp(before + (color[k] * 255 - before) * alpha, 0.f, 255.f)));
+    pixel[k] = static_cast<std::uint8_t>(
+        std::lround(std::clamp(before + (color[k] * 255 - before) * alpha, 0.f, 255.f)));
   }
 }
 
@@ -51,7 +53,8 @@ void Canvas::FillRounded(const Rect& rect, float radius, const Color& color, flo
       const float px = static_cast<float>(i) + 0.5f, py = static_cast<float>(j) + 0.5f;
       const float dx = std::max(rect.x + r - px, px - (rect.right() - r));
       const float dy = std::max(rect.y + r - py, py - (rect.bottom() - r));
-      const float outside = std::hypot(std::max(dx, 0.0f), std::max(dy, 0.0f)) + std::min(std::max(dx, dy), 0.0f) - r;
+      const float outside =
+          std::hypot(std::max(dx, 0.0f), std::max(dy, 0.0f)) + std::min(std::max(dx, dy), 0.0f) - r;
       const float coverage = std::clamp(0.5f - outside, 0.0f, 1.0f);
       if (coverage > 0) Blend(i, j, color, alpha * coverage);
     }
@@ -62,19 +65,24 @@ void Canvas::DrawLine(Vector2f from, Vector2f to, float width, const Color& colo
   const Vector2f along = to - from;
   const float squared_length = along.squaredNorm();
   if (!std::isfinite(squared_length) || squared_length < 1e-6f) return;
-  const Vector2f low = from.cwiseMin(to).array() - width - 1, high = from.cwiseMax(to).array() + width + 1;
-  const Span rows = Clip(low.y(), high.y(), image_.height_px), columns = Clip(low.x(), high.x(), image_.width_px);
+  const Vector2f low = from.cwiseMin(to).array() - width - 1,
+                 high = from.cwiseMax(to).array() + width + 1;
+  const Span rows = Clip(low.y(), high.y(), image_.height_px),
+             columns = Clip(low.x(), high.x(), image_.width_px);
   for (int j = rows.begin; j < rows.end; ++j) {
     for (int i = columns.begin; i < columns.end; ++i) {
-      const Vector2f q = Vector2f(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f) - from;
+      const Vector2f q =
+          Vector2f(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f) - from;
       const float share = std::clamp(q.dot(along) / squared_length, 0.0f, 1.0f);
-      const float coverage = std::clamp(0.5f - ((q - share * along).norm() - width / 2), 0.0f, 1.0f);
+      const float coverage =
+          std::clamp(0.5f - ((q - share * along).norm() - width / 2), 0.0f, 1.0f);
       if (coverage > 0) Blend(i, j, color, alpha * coverage);
     }
   }
 }
 
-void Canvas::DrawText(float left, float top, const std::string& text, float size_px, const Color& color) {
+void Canvas::DrawText(float left, float top, const std::string& text, float size_px,
+                      const Color& color) {
   const int baseline = static_cast<int>(std::lround(top + font_.Ascent(size_px)));
   float pen = left;
   for (const char32_t character : CodePoints(text)) {
@@ -82,9 +90,11 @@ void Canvas::DrawText(float left, float top, const std::string& text, float size
     const Glyph glyph = font_.Draw(character, size_px, pen - std::floor(pen));
     for (int j = 0; j < glyph.height_px; ++j) {
       for (int i = 0; i < glyph.width_px; ++i) {
-        const std::uint8_t coverage = glyph.coverage[static_cast<std::size_t>(j) * glyph.width_px + i];
+        const std::uint8_t coverage =
+            glyph.coverage[static_cast<std::size_t>(j) * glyph.width_px + i];
         if (coverage > 0) {
-          Blend(x + glyph.left_px + i, baseline + glyph.top_px + j, color, static_cast<float>(coverage) / 255);
+          Blend(x + glyph.left_px + i, baseline + glyph.top_px + j, color,
+                static_cast<float>(coverage) / 255);
         }
       }
     }

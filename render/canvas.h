@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Anti-aliased drawing on an image: rounded rectangles, lines, text. Coordinates are pixels, y down; whatever lies
-// outside the image is clipped.
+// Anti-aliased drawing on an image: rounded rectangles, lines, text. Coordinates are pixels, y
+// down; whatever lies outside the image is clipped.
 // Tested by tests/render/canvas_test.cc
 #pragma once
 
@@ -17,7 +17,9 @@ struct Rect {
   float right() const { return x + width; }
   float bottom() const { return y + height; }
   bool Overlaps(const Rect& other) const;
-  Rect Grown(float margin) const { return {x - margin, y - margin, width + 2 * margin, height + 2 * margin}; }
+  Rect Grown(float margin) const {
+    return {x - margin, y - margin, width + 2 * margin, height + 2 * margin};
+  }
 };
 
 /// 0xRRGGBB as a colour.
@@ -32,7 +34,8 @@ class Canvas {
 
   const Font& font() const { return font_; }
   void FillRounded(const Rect& rect, float radius, const Color& color, float alpha = 1);
-  void DrawLine(Eigen::Vector2f from, Eigen::Vector2f to, float width, const Color& color, float alpha = 1);
+  void DrawLine(Eigen::Vector2f from, Eigen::Vector2f to, float width, const Color& color,
+                float alpha = 1);
   /// `top`: y of the line's top; the baseline is rounded to a whole pixel.
   void DrawText(float left, float top, const std::string& text, float size_px, const Color& color);
 

@@ -15,7 +15,8 @@ using Eigen::Vector3f;
 
 constexpr float kGhostAlpha = 0.40f;
 constexpr float kForearmAlpha = 0.55f;
-constexpr float kUsualDistance_m = 2.1f;  // from eye to scene; the size of beads and tubes is meant for it
+constexpr float kUsualDistance_m =
+    2.1f;  // from eye to scene; the size of beads and tubes is meant for it
 
 template <class... Ts>
 struct Overloaded : Ts... {
@@ -66,11 +67,15 @@ struct Look {
 };
 
 Item MakeItem(const Affine3f& X_WI, const Look& look) {
-  return {.X_WI = X_WI, .color = look.color, .alpha = look.alpha, .gloss = look.gloss, .object = look.object};
+  return {.X_WI = X_WI,
+          .color = look.color,
+          .alpha = look.alpha,
+          .gloss = look.gloss,
+          .object = look.object};
 }
 
-void AddBody(const physics::Body& body, const physics::Pose& X_WB, const Look& look, std::vector<Item>* items,
-             DrawList* list) {
+void AddBody(const physics::Body& body, const physics::Pose& X_WB, const Look& look,
+             std::vector<Item>* items, DrawList* list) {
   for (const physics::PlacedShape& placed : body.shapes) {
     Item item = MakeItem(ToAffine(X_WB * placed.X_BS), look);
     SetShape(placed.shape, &item);
@@ -114,7 +119,8 @@ int AddObject(const std::string& name, DrawList* list) {
   return static_cast<int>(list->objects.size()) - 1;
 }
 
-physics::Pose BodyPose(const physics::Scene& scene, const physics::Snapshot& snapshot, std::size_t body) {
+physics::Pose BodyPose(const physics::Scene& scene, const physics::Snapshot& snapshot,
+                       std::size_t body) {
   return body < snapshot.bodies.size() ? snapshot.bodies[body].X_WB : scene.bodies[body].X_WB;
 }
 
@@ -122,19 +128,25 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
   const physics::Scene& scene = *picture.scene;
   list->first_body = static_cast<int>(list->objects.size());
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const Look look{.color = BodyColor(picture, i), .object = AddObject("body:" + scene.bodies[i].name, list)};
+    const Look look{.color = BodyColor(picture, i),
+                    .object = AddObject("body:" + scene.bodies[i].name, list)};
     AddBody(scene.bodies[i], BodyPose(scene, picture.snapshot, i), look, &list->solids, list);
   }
   list->first_hand = static_cast<int>(list->objects.size());
   for (std::size_t i = 0; i < scene.hands.size(); ++i) {
-    const Look look{.color = kSkinColor, .gloss = 0.15f, .object = AddObject("hand:" + scene.hands[i].name, list)};
+    const Look look{.color = kSkinColor,
+                    .gloss = 0.15f,
+                    .object = AddObject("hand:" + scene.hands[i].name, list)};
     if (i >= picture.snapshot.hands.size()) continue;
     AddHand(scene.hands[i].model, picture.snapshot.hands[i], look, &list->solids, list);
   }
   for (std::size_t i = 0; i < std::min(scene.hands.size(), picture.snapshot.hands.size()); ++i) {
-    const Look look{.color = kSkinColor, .alpha = kForearmAlpha, .gloss = 0.15f,
+    const Look look{.color = kSkinColor,
+                    .alpha = kForearmAlpha,
+                    .gloss = 0.15f,
                     .object = AddObject("forearm:" + scene.hands[i].name, list)};
-    AddForearm(scene.hands[i].model, picture.snapshot.hands[i], look, &list->ghosts.emplace_back(), list);
+    AddForearm(scene.hands[i].model, picture.snapshot.hands[i], look, &list->ghosts.emplace_back(),
+               list);
   }
 }
 
@@ -142,7 +154,8 @@ void AddGhost(const Picture& picture, std::size_t number, DrawList* list) {
   const physics::Scene& scene = *picture.scene;
   const Ghost& ghost = picture.ghosts[number];
   const auto hand = static_cast<std::size_t>(ghost.hand);
-  const bool has_hand = ghost.hand >= 0 && hand < scene.hands.size() && hand < ghost.snapshot.hands.size();
+  const bool has_hand =
+      ghost.hand >= 0 && hand < scene.hands.size() && hand < ghost.snapshot.hands.size();
   const std::string who = has_hand ? scene.hands[hand].name : "";
   Look look{.alpha = kGhostAlpha, .gloss = 0.1f};
   look.object = AddObject("ghost:" + std::to_string(number) + ":" + who, list);
@@ -189,15 +202,16 @@ void AddMarker(const Picture& picture, std::size_t number, DrawList* list) {
 }  // namespace
 
 void AddItem(const Item& item, std::vector<Item>* items, DrawList* list) {
-  if (!item.X_WI.matrix().allFinite() || !item.half_size_m.allFinite() || !std::isfinite(item.rounding_m) ||
-      !item.color.allFinite()) {
+  if (!item.X_WI.matrix().allFinite() || !item.half_size_m.allFinite() ||
+      !std::isfinite(item.rounding_m) || !item.color.allFinite()) {
     return;
   }
   Bounds bounds;
   if (item.primitive == Primitive::kTube) {
     for (const Vertex& vertex : list->tubes[item.tube].vertices) bounds.Add(vertex.corner);
   } else {
-    const Vector3f reach = item.X_WI.linear().cwiseAbs() * (item.half_size_m.array() + item.rounding_m).matrix();
+    const Vector3f reach =
+        item.X_WI.linear().cwiseAbs() * (item.half_size_m.array() + item.rounding_m).matrix();
     bounds.Add(Vector3f(item.X_WI.translation() - reach));
     bounds.Add(Vector3f(item.X_WI.translation() + reach));
   }
@@ -207,9 +221,9 @@ void AddItem(const Item& item, std::vector<Item>* items, DrawList* list) {
 }
 
 Color BodyColor(const Picture& picture, std::size_t body) {
-  static const Color kPalette[] = {{0.91f, 0.93f, 0.95f}, {0.88f, 0.48f, 0.25f}, {0.25f, 0.43f, 0.55f},
-                                   {0.61f, 0.77f, 0.24f}, {0.78f, 0.16f, 0.20f}, {0.89f, 0.70f, 0.39f},
-                                   {0.42f, 0.56f, 0.68f}, {0.55f, 0.36f, 0.29f}};
+  static const Color kPalette[] = {
+      {0.91f, 0.93f, 0.95f}, {0.88f, 0.48f, 0.25f}, {0.25f, 0.43f, 0.55f}, {0.61f, 0.77f, 0.24f},
+      {0.78f, 0.16f, 0.20f}, {0.89f, 0.70f, 0.39f}, {0.42f, 0.56f, 0.68f}, {0.55f, 0.36f, 0.29f}};
   if (body < picture.body_colors.size()) return picture.body_colors[body];
   if (picture.scene->bodies[body].fixed) return {0.80f, 0.62f, 0.44f};
   return kPalette[body % std::size(kPalette)];
@@ -220,7 +234,8 @@ DrawList MakeDrawList(const Picture& picture) {
   list.objects = {{"background", {}}, {"ground", {}}};
   if (picture.scene != nullptr) AddBodiesAndHands(picture, &list);
   const float distance = (picture.camera.eye_m - picture.camera.look_at_m).norm();
-  const float scale = std::isfinite(distance) ? std::clamp(distance / kUsualDistance_m, 0.6f, 4.0f) : 1.0f;
+  const float scale =
+      std::isfinite(distance) ? std::clamp(distance / kUsualDistance_m, 0.6f, 4.0f) : 1.0f;
   AddPath(picture.path, scale, &list);
   if (picture.scene != nullptr) {
     for (std::size_t i = 0; i < picture.ghosts.size(); ++i) AddGhost(picture, i, &list);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture is made of before a pixel is drawn: placed primitives with colours, in the order of drawing.
-// A value that can be looked at in tests and compared between runs.
+// What a picture is made of before a pixel is drawn: placed primitives with colours, in the order
+// of drawing. A value that can be looked at in tests and compared between runs.
 // Tested by tests/render/draw_list_test.cc
 #pragma once
 
@@ -15,7 +15,12 @@
 namespace prehend::render {
 
 enum class Primitive { kBox, kBall, kCylinder, kCone, kTube };
-enum class Finish { kSolid = 0, kGround = 1, kRegion = 2, kFlat = 3 };  ///< numbers of the surface shader
+enum class Finish {
+  kSolid = 0,
+  kGround = 1,
+  kRegion = 2,
+  kFlat = 3
+};  ///< numbers of the surface shader
 
 struct Item {
   Primitive primitive = Primitive::kBox;
@@ -30,20 +35,22 @@ struct Item {
   int object = 0;
 };
 
-/// Something with a name: "body:milk", "hand:right_hand", "forearm:right_hand", "path:2:reaching", "ghost:0:right_hand", "marker:1:contact".
+/// Something with a name: "body:milk", "hand:right_hand", "forearm:right_hand", "path:2:reaching",
+/// "ghost:0:right_hand", "marker:1:contact".
 struct DrawnObject {
   std::string name;
   Bounds bounds;
 };
 
 struct DrawList {
-  std::vector<DrawnObject> objects;  ///< 0 is the background, 1 the ground; then bodies, hands, forearms, paths, ghosts, markers
+  std::vector<DrawnObject> objects;  ///< 0 is the background, 1 the ground; then bodies, hands,
+                                     ///< forearms, paths, ghosts, markers
   std::vector<Mesh> tubes;
-  std::vector<Item> solids;                ///< bodies and hands
-  std::vector<Item> paths;                 ///< seen through solids, faintly
-  std::vector<std::vector<Item>> ghosts;   ///< each one translucent as a whole
-  std::vector<Item> markers;               ///< translucent
-  Bounds bounds;                           ///< of everything but the ground
+  std::vector<Item> solids;               ///< bodies and hands
+  std::vector<Item> paths;                ///< seen through solids, faintly
+  std::vector<std::vector<Item>> ghosts;  ///< each one translucent as a whole
+  std::vector<Item> markers;              ///< translucent
+  Bounds bounds;                          ///< of everything but the ground
 
   int first_body = 2, first_hand = 2;  ///< where bodies and hands start in `objects`
 };
@@ -54,10 +61,12 @@ DrawList MakeDrawList(const Picture& picture);
 /// Adds tubes, beads and arrows. `scale` widens them for pictures from far away.
 void AddPath(const std::vector<PathStretch>& path, float scale, DrawList* list);
 
-/// Adds the item to its list and to the bounds of its object and of the picture, unless it is not finite.
+/// Adds the item to its list and to the bounds of its object and of the picture, unless it is not
+/// finite.
 void AddItem(const Item& item, std::vector<Item>* items, DrawList* list);
 
-/// The picture's colour of a body of its scene; where it gives none, wood for fixed bodies, else a palette by index.
+/// The picture's colour of a body of its scene; where it gives none, wood for fixed bodies, else a
+/// palette by index.
 Color BodyColor(const Picture& picture, std::size_t body);
 
 inline const Color kSkinColor = {0.878f, 0.675f, 0.525f};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hand's path: a tube for every stretch, beads at fixed time steps (near beads mean a slow hand) and an arrow in
-// the middle. Stretches without a label (idle hands) are thin and bare.
+// A hand's path: a tube for every stretch, beads at fixed time steps (near beads mean a slow hand)
+// and an arrow in the middle. Stretches without a label (idle hands) are thin and bare.
 // Tested by tests/render/draw_list_test.cc
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,8 @@ constexpr float kBeadRadius_m = 0.0125f;
 constexpr float kArrowRadius_m = 0.022f;
 constexpr float kArrowLength_m = 0.050f;
 constexpr double kBeadEvery_s = 0.2;
-constexpr float kJoinGap_m = 0.05f;  // stretches sampled side by side end and begin one sample apart
+constexpr float kJoinGap_m =
+    0.05f;  // stretches sampled side by side end and begin one sample apart
 constexpr int kTubeSegments = 12;
 
 std::vector<Vector3f> FinitePoints(const PathStretch& stretch) {
@@ -29,7 +30,8 @@ std::vector<Vector3f> FinitePoints(const PathStretch& stretch) {
   return points;
 }
 
-// Points nearer than this to the one before only carry the jitter of a resting hand into the tube's direction.
+// Points nearer than this to the one before only carry the jitter of a resting hand into the tube's
+// direction.
 std::vector<Vector3f> Thinned(const std::vector<Vector3f>& points, float spacing_m) {
   std::vector<Vector3f> kept;
   for (const Vector3f& p : points) {
@@ -55,11 +57,12 @@ void AddTube(const std::vector<Vector3f>& points, float radius, Item item, DrawL
   AddItem(item, &list->paths, list);
 }
 
-void AddBeads(const PathStretch& stretch, const std::vector<Vector3f>& points, float radius, Item item,
-              DrawList* list) {
+void AddBeads(const PathStretch& stretch, const std::vector<Vector3f>& points, float radius,
+              Item item, DrawList* list) {
   item.primitive = Primitive::kBall;
   item.rounding_m = radius;
-  const double per_bead = std::isfinite(stretch.points_per_s) ? stretch.points_per_s * kBeadEvery_s : 0;
+  const double per_bead =
+      std::isfinite(stretch.points_per_s) ? stretch.points_per_s * kBeadEvery_s : 0;
   const auto step = static_cast<std::size_t>(std::clamp(std::round(per_bead), 1.0, 1e6));
   Vector3f last = Vector3f::Constant(1e9f);
   for (std::size_t i = 0; i < points.size(); i += step) {
@@ -80,10 +83,12 @@ void AddArrow(const std::vector<Vector3f>& points, float scale, Item item, DrawL
     left -= (points[i] - points[i - 1]).norm();
     if (left > 0) continue;
     std::size_t ahead = i;
-    while (ahead + 1 < points.size() && (points[ahead] - points[i - 1]).norm() < arrow_length) ++ahead;
+    while (ahead + 1 < points.size() && (points[ahead] - points[i - 1]).norm() < arrow_length)
+      ++ahead;
     const Vector3f direction = (points[ahead] - points[i - 1]).normalized();
     item.primitive = Primitive::kCone;
-    item.X_WI = Eigen::Translation3f(points[i - 1]) * Eigen::Quaternionf::FromTwoVectors(Vector3f::UnitZ(), direction);
+    item.X_WI = Eigen::Translation3f(points[i - 1]) *
+                Eigen::Quaternionf::FromTwoVectors(Vector3f::UnitZ(), direction);
     item.half_size_m = Vector3f(kArrowRadius_m, kArrowRadius_m, kArrowLength_m) * scale;
     AddItem(item, &list->paths, list);
     return;
@@ -103,11 +108,14 @@ void AddPath(const std::vector<PathStretch>& path, float scale, DrawList* list) 
     const bool idle = stretch.label.empty();
     const float radius = (idle ? kIdleRadius_m : kTubeRadius_m) * scale;
     std::vector<Vector3f> joined = points;
-    if ((points.front() - end_before).norm() < kJoinGap_m) joined.insert(joined.begin(), end_before);
+    if ((points.front() - end_before).norm() < kJoinGap_m)
+      joined.insert(joined.begin(), end_before);
     const std::vector<Vector3f> thinned = Thinned(joined, 0.4f * radius);
     end_before = points.back();
 
-    const Item item{.color = stretch.color, .gloss = 0.35f, .object = static_cast<int>(list->objects.size()) - 1};
+    const Item item{.color = stretch.color,
+                    .gloss = 0.35f,
+                    .object = static_cast<int>(list->objects.size()) - 1};
     AddTube(thinned, radius, item, list);
     if (idle) continue;
     AddBeads(stretch, points, kBeadRadius_m * scale, item, list);

@@ -54,9 +54,9 @@ float Font::Ascent(float size_px) const {
 Glyph Font::Draw(char32_t character, float size_px, float fraction) const {
   const float scale = stbtt_ScaleForPixelHeight(&state_->info, size_px);
   Glyph glyph;
-  std::uint8_t* bitmap =
-      stbtt_GetCodepointBitmapSubpixel(&state_->info, scale, scale, fraction, 0, static_cast<int>(character),
-                                       &glyph.width_px, &glyph.height_px, &glyph.left_px, &glyph.top_px);
+  std::uint8_t* bitmap = stbtt_GetCodepointBitmapSubpixel(
+      &state_->info, scale, scale, fraction, 0, static_cast<int>(character), &glyph.width_px,
+      &glyph.height_px, &glyph.left_px, &glyph.top_px);
   if (bitmap == nullptr) return {};
   glyph.coverage.assign(bitmap, bitmap + glyph.width_px * glyph.height_px);
   stbtt_FreeBitmap(bitmap, nullptr);
@@ -78,10 +78,15 @@ std::vector<char32_t> CodePoints(std::string_view text) {
   std::vector<char32_t> points;
   for (std::size_t i = 0; i < text.size();) {
     const auto first = static_cast<unsigned char>(text[i++]);
-    const int following = first < 0x80 ? 0 : (first >> 5) == 6 ? 1 : (first >> 4) == 14 ? 2 : (first >> 3) == 30 ? 3 : -1;
+    const int following = first < 0x80         ? 0
+                          : (first >> 5) == 6  ? 1
+                          : (first >> 4) == 14 ? 2
+                          : (first >> 3) == 30 ? 3
+                                               : -1;
     char32_t point = following <= 0 ? first : first & (0x3F >> following);
     int left = following;
-    for (; left > 0 && i < text.size() && (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; --left, ++i) {
+    for (; left > 0 && i < text.size() && (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80;
+         --left, ++i) {
       point = point << 6 | (static_cast<unsigned char>(text[i]) & 0x3F);
     }
     points.push_back(left == 0 ? point : kReplacement);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TrueType font: widths and anti-aliased glyphs. Text is UTF-8; what the font lacks shows as its empty box.
+// A TrueType font: widths and anti-aliased glyphs. Text is UTF-8; what the font lacks shows as its
+// empty box.
 // Tested by tests/render/canvas_test.cc
 #pragma once
 
@@ -28,7 +29,8 @@ class Font {
   float Ascent(float size_px) const;
   /// `fraction`: the pen's x inside its pixel, 0..1.
   Glyph Draw(char32_t character, float size_px, float fraction) const;
-  /// The text itself, or its beginning and an ellipsis, or nothing, so that it is at most this wide.
+  /// The text itself, or its beginning and an ellipsis, or nothing, so that it is at most this
+  /// wide.
   std::string Shortened(const std::string& text, float size_px, float width_px) const;
 
  private:

@@ -59,7 +59,9 @@ GLint Program::Location(const char* name) const {
 }
 
 void Program::Set(const char* name, int value) const { gl_.Uniform1i(Location(name), value); }
-void Program::SetUnsigned(const char* name, unsigned value) const { gl_.Uniform1ui(Location(name), value); }
+void Program::SetUnsigned(const char* name, unsigned value) const {
+  gl_.Uniform1ui(Location(name), value);
+}
 void Program::Set(const char* name, float value) const { gl_.Uniform1f(Location(name), value); }
 void Program::Set(const char* name, const Eigen::Vector2f& value) const {
   gl_.Uniform2fv(Location(name), 1, value.data());
@@ -87,12 +89,14 @@ GpuMesh::GpuMesh(const GlFunctions& gl, const Mesh& mesh)
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)),
                  mesh.vertices.data(), GL_STATIC_DRAW);
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[1]);
-  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
+  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
                  mesh.triangles.data(), GL_STATIC_DRAW);
   const std::size_t offsets[] = {offsetof(Vertex, corner), offsetof(Vertex, direction)};
   for (GLuint i = 0; i < 2; ++i) {
     gl_.EnableVertexAttribArray(i);
-    gl_.VertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offsets[i]));
+    gl_.VertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                            reinterpret_cast<const void*>(offsets[i]));
   }
 }
 
@@ -111,8 +115,8 @@ Framebuffer::Framebuffer(const GlFunctions& gl, int width_px, int height_px)
   gl_.GenFramebuffers(1, &name_);
 }
 
-std::unique_ptr<Framebuffer> Framebuffer::Create(const GlFunctions& gl, int width_px, int height_px, int samples,
-                                                 Color color, Depth depth) {
+std::unique_ptr<Framebuffer> Framebuffer::Create(const GlFunctions& gl, int width_px, int height_px,
+                                                 int samples, Color color, Depth depth) {
   std::unique_ptr<Framebuffer> made(new Framebuffer(gl, width_px, height_px));
   gl.BindFramebuffer(GL_FRAMEBUFFER, made->name_);
   if (color == Color::kNone) {
@@ -124,14 +128,16 @@ std::unique_ptr<Framebuffer> Framebuffer::Create(const GlFunctions& gl, int widt
     made->AttachRenderbuffer(GL_COLOR_ATTACHMENT0, GL_RGBA8, samples);
   } else {
     const bool gray = color == Color::kR8;
-    made->color_texture_ = made->AttachTexture(GL_COLOR_ATTACHMENT0, gray ? GL_R8 : GL_RGBA8,
-                                               gray ? GL_RED : GL_RGBA, GL_UNSIGNED_BYTE, GL_LINEAR);
+    made->color_texture_ =
+        made->AttachTexture(GL_COLOR_ATTACHMENT0, gray ? GL_R8 : GL_RGBA8, gray ? GL_RED : GL_RGBA,
+                            GL_UNSIGNED_BYTE, GL_LINEAR);
   }
   if (depth != Depth::kNone && (samples > 0 || color == Color::kId)) {
     made->AttachRenderbuffer(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, samples);
   } else if (depth != Depth::kNone) {
-    made->depth_texture_ = made->AttachTexture(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT,
-                                               GL_UNSIGNED_INT, depth == Depth::kCompare ? GL_LINEAR : GL_NEAREST);
+    made->depth_texture_ =
+        made->AttachTexture(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT,
+                            GL_UNSIGNED_INT, depth == Depth::kCompare ? GL_LINEAR : GL_NEAREST);
     if (depth == Depth::kCompare) {
       gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
       gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
@@ -157,7 +163,8 @@ void Framebuffer::AttachRenderbuffer(GLenum attachment, GLenum format, int sampl
   gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
 }
 
-GLuint Framebuffer::AttachTexture(GLenum attachment, GLint internal, GLenum format, GLenum type, GLint filter) {
+GLuint Framebuffer::AttachTexture(GLenum attachment, GLint internal, GLenum format, GLenum type,
+                                  GLint filter) {
   GLuint texture = 0;
   gl_.GenTextures(1, &texture);
   gl_.BindTexture(GL_TEXTURE_2D, texture);

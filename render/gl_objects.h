@@ -66,9 +66,10 @@ class Framebuffer {
  public:
   enum class Color { kNone, kRgba8, kR8, kId };
   enum class Depth { kNone, kRead, kCompare };  ///< to be sampled as numbers, or as a shadow map
-  /// samples > 0: multisampled buffers that can only be blitted. Null when the driver refuses (size, memory).
-  static std::unique_ptr<Framebuffer> Create(const GlFunctions& gl, int width_px, int height_px, int samples,
-                                             Color color, Depth depth);
+  /// samples > 0: multisampled buffers that can only be blitted. Null when the driver refuses
+  /// (size, memory).
+  static std::unique_ptr<Framebuffer> Create(const GlFunctions& gl, int width_px, int height_px,
+                                             int samples, Color color, Depth depth);
   ~Framebuffer();
   Framebuffer(const Framebuffer&) = delete;
   Framebuffer& operator=(const Framebuffer&) = delete;

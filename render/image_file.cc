@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images as PNG files, and their hash. Level 3 with the SUB filter is the cheapest setting that stays small.
+// Images as PNG files, and their hash. Level 3 with the SUB filter is the cheapest setting that
+// stays small.
 // Tested by tests/render/image_file_test.cc
 #include <png.h>
 
@@ -18,7 +19,8 @@ using File = std::unique_ptr<std::FILE, CloseFile>;
 
 std::uint64_t HashBytes(std::uint64_t hash, const void* bytes, std::size_t size) {
   constexpr std::uint64_t kPrime = 0x100000001b3;
-  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<const std::uint8_t*>(bytes)[i]) * kPrime;
+  for (std::size_t i = 0; i < size; ++i)
+    hash = (hash ^ static_cast<const std::uint8_t*>(bytes)[i]) * kPrime;
   return hash;
 }
 
@@ -26,13 +28,15 @@ std::uint64_t HashBytes(std::uint64_t hash, const void* bytes, std::size_t size)
 bool WriteRows(png_structp png, png_infop info, const Image& image, std::FILE* file) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_init_io(png, file);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width_px), static_cast<png_uint_32>(image.height_px), 8,
-               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width_px),
+               static_cast<png_uint_32>(image.height_px), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_compression_level(png, 3);
   png_set_filter(png, 0, PNG_FILTER_SUB);
   png_write_info(png, info);
   const std::size_t row_bytes = static_cast<std::size_t>(image.width_px) * 3;
-  for (int row = 0; row < image.height_px; ++row) png_write_row(png, image.rgb.data() + row * row_bytes);
+  for (int row = 0; row < image.height_px; ++row)
+    png_write_row(png, image.rgb.data() + row * row_bytes);
   png_write_end(png, info);
   return true;
 }
@@ -40,11 +44,13 @@ bool WriteRows(png_structp png, png_infop info, const Image& image, std::FILE* f
 }  // namespace
 
 bool WritePng(const Image& image, const std::string& path) {
-  if (image.width_px <= 0 || image.rgb.size() != 3ull * image.width_px * image.height_px) return false;
+  if (image.width_px <= 0 || image.rgb.size() != 3ull * image.width_px * image.height_px)
+    return false;
   File file(std::fopen(path.c_str(), "wb"));
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
-  const bool written = file != nullptr && info != nullptr && WriteRows(png, info, image, file.get());
+  const bool written =
+      file != nullptr && info != nullptr && WriteRows(png, info, image, file.get());
   png_destroy_write_struct(&png, &info);
   return written && std::fclose(file.release()) == 0;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Greedy placement: for every label, of all places around its anchor that break no rule, the cheapest. Cost is
-// distance plus what the label would cover; upwards and to the sides is preferred to downwards.
+// Greedy placement: for every label, of all places around its anchor that break no rule, the
+// cheapest. Cost is distance plus what the label would cover; upwards and to the sides is preferred
+// to downwards.
 // Tested by tests/render/labels_test.cc
 #include "render/labels.h"
 
@@ -19,12 +20,12 @@ constexpr float kTextSize = 16;
 constexpr float kSmallestText = 10;
 constexpr int kDirections = 16;
 constexpr float kDistances[] = {14, 28, 46, 70, 100, 140, 190, 250};
-constexpr float kPerPixel = 0.4f;       // cost of the distance from the anchor
-constexpr float kCoveredPoint = 5;      // cost of a path point under the label
-constexpr float kCoveredThing = 110;    // of another thing, if the label lies on it as a whole
-constexpr float kCoveredSelf = 45;      // of its own thing
-constexpr float kCoveredAnchor = 40;    // of another thing's middle
-constexpr float kCoveredLeader = 90;    // of a leader that it lies on or crosses
+constexpr float kPerPixel = 0.4f;     // cost of the distance from the anchor
+constexpr float kCoveredPoint = 5;    // cost of a path point under the label
+constexpr float kCoveredThing = 110;  // of another thing, if the label lies on it as a whole
+constexpr float kCoveredSelf = 45;    // of its own thing
+constexpr float kCoveredAnchor = 40;  // of another thing's middle
+constexpr float kCoveredLeader = 90;  // of a leader that it lies on or crosses
 constexpr float kDownwards = 12;
 
 float TextSize(float scale) { return std::max(kSmallestText, kTextSize * scale); }
@@ -34,7 +35,8 @@ bool Contains(const Rect& rect, const Vector2f& p) {
 }
 
 bool ContainsRect(const Rect& outer, const Rect& inner) {
-  return inner.x >= outer.x && inner.y >= outer.y && inner.right() <= outer.right() && inner.bottom() <= outer.bottom();
+  return inner.x >= outer.x && inner.y >= outer.y && inner.right() <= outer.right() &&
+         inner.bottom() <= outer.bottom();
 }
 
 // Where the line from the anchor meets the label: the nearest point of its edge.
@@ -64,14 +66,16 @@ float CoveredShare(const Rect& box, const Rect& thing) {
 }
 
 // Nothing where the label must not be.
-std::optional<float> Cost(const Rect& box, const LabelRequest& request, const std::vector<LabelRequest>& requests,
+std::optional<float> Cost(const Rect& box, const LabelRequest& request,
+                          const std::vector<LabelRequest>& requests,
                           const std::vector<PlacedLabel>& placed, const LabelObstacles& obstacles) {
   if (!ContainsRect(obstacles.area, box)) return std::nullopt;
   for (const Rect& rect : obstacles.forbidden) {
     if (box.Overlaps(rect)) return std::nullopt;
   }
   const Vector2f end = LeaderEnd(box, request.anchor);
-  float cost = kPerPixel * (end - request.anchor).norm() + (box.y > request.anchor.y() ? kDownwards : 0);
+  float cost =
+      kPerPixel * (end - request.anchor).norm() + (box.y > request.anchor.y() ? kDownwards : 0);
   for (const PlacedLabel& other : placed) {
     if (box.Grown(5).Overlaps(other.box)) return std::nullopt;
     const Vector2f other_end = LeaderEnd(other.box, other.request.anchor);
@@ -92,12 +96,15 @@ std::optional<float> Cost(const Rect& box, const LabelRequest& request, const st
 
 }  // namespace
 
-std::vector<PlacedLabel> PlaceLabels(const std::vector<LabelRequest>& requests, const LabelObstacles& obstacles,
-                                     const Font& font, float scale) {
+std::vector<PlacedLabel> PlaceLabels(const std::vector<LabelRequest>& requests,
+                                     const LabelObstacles& obstacles, const Font& font,
+                                     float scale) {
   std::vector<PlacedLabel> placed;
   const float height = TextSize(scale) + 6 * scale;
   for (const LabelRequest& request : requests) {
-    if (request.text.empty() || !request.anchor.allFinite() || !Contains(obstacles.area, request.anchor)) continue;
+    if (request.text.empty() || !request.anchor.allFinite() ||
+        !Contains(obstacles.area, request.anchor))
+      continue;
     const float width = font.Width(request.text, TextSize(scale)) + 15 * scale;
     float best_cost = std::numeric_limits<float>::infinity();
     PlacedLabel best{request, {}};
@@ -107,8 +114,10 @@ std::vector<PlacedLabel> PlaceLabels(const std::vector<LabelRequest>& requests, 
         const float away = distance * scale;
         const Vector2f toward(std::cos(angle), -std::sin(angle));
         // The box's near edge, not its middle, is `away` from the anchor.
-        const Vector2f middle = request.anchor + toward * away + Vector2f(toward.x() * width, toward.y() * height) / 2;
-        const Rect box = {std::round(middle.x() - width / 2), std::round(middle.y() - height / 2), width, height};
+        const Vector2f middle =
+            request.anchor + toward * away + Vector2f(toward.x() * width, toward.y() * height) / 2;
+        const Rect box = {std::round(middle.x() - width / 2), std::round(middle.y() - height / 2),
+                          width, height};
         const std::optional<float> cost = Cost(box, request, requests, placed, obstacles);
         if (cost.has_value() && *cost < best_cost) {
           best_cost = *cost;
@@ -132,8 +141,8 @@ void DrawLabels(const std::vector<PlacedLabel>& labels, float scale, Canvas* can
   for (const PlacedLabel& label : labels) {
     const Rect& box = label.box;
     canvas->FillRounded(box, 5 * scale, Hex(0xFFFFFF), 0.88f);
-    canvas->FillRounded({box.x + scale, box.y + 3 * scale, 3 * scale, box.height - 6 * scale}, 1.5f * scale,
-                        label.request.color);
+    canvas->FillRounded({box.x + scale, box.y + 3 * scale, 3 * scale, box.height - 6 * scale},
+                        1.5f * scale, label.request.color);
     const float size = TextSize(scale);
     const float top = box.y + (box.height - 1.3f * canvas->font().Ascent(size)) / 2;
     canvas->DrawText(box.x + 8 * scale, top, label.request.text, size, Hex(0x1B1F24));

@@ -39,7 +39,8 @@ Mesh Revolve(const std::vector<ProfilePoint>& profile, const std::vector<Meridia
   for (std::uint32_t ring = 0; ring + 1 < profile.size(); ++ring) {
     for (std::uint32_t i = 0; i + 1 < around; ++i) {
       const std::uint32_t upper = ring * around + i, lower = upper + around;
-      mesh.triangles.insert(mesh.triangles.end(), {upper, lower, upper + 1, upper + 1, lower, lower + 1});
+      mesh.triangles.insert(mesh.triangles.end(),
+                            {upper, lower, upper + 1, upper + 1, lower, lower + 1});
     }
   }
   return mesh;
@@ -85,14 +86,17 @@ Mesh RoundedBoxMesh(int segments) {
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     for (int i = 0; i <= segments; ++i) {
       const float angle = kPi / 2 * (quadrant + static_cast<float>(i) / segments);
-      meridians.push_back({std::cos(angle), std::sin(angle), kCornerX[quadrant], kCornerY[quadrant]});
+      meridians.push_back(
+          {std::cos(angle), std::sin(angle), kCornerX[quadrant], kCornerY[quadrant]});
     }
   }
   meridians.push_back(meridians.front());
   return Revolve(RoundedProfile(segments), meridians);
 }
 
-Mesh RoundedCylinderMesh(int segments) { return Revolve(RoundedProfile(segments), CircleMeridians(2 * segments)); }
+Mesh RoundedCylinderMesh(int segments) {
+  return Revolve(RoundedProfile(segments), CircleMeridians(2 * segments));
+}
 
 Mesh ConeMesh(int segments) {
   constexpr float kSlope = 0.4f;  // the normal's z for the flattest cone that is drawn
@@ -122,7 +126,8 @@ Mesh TubeMesh(const std::vector<Vector3f>& points, int segments) {
   for (std::uint32_t ring = 0; ring + 1 < points.size(); ++ring) {
     for (std::uint32_t k = 0; k + 1 < around; ++k) {
       const std::uint32_t here = ring * around + k, ahead = here + around;
-      mesh.triangles.insert(mesh.triangles.end(), {here, here + 1, ahead, here + 1, ahead + 1, ahead});
+      mesh.triangles.insert(mesh.triangles.end(),
+                            {here, here + 1, ahead, here + 1, ahead + 1, ahead});
     }
   }
   return mesh;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangle meshes. A vertex is a corner and an outward direction; a mesh is drawn as
 //   position = corner * half_size + direction * rounding
-// (the Minkowski sum of a solid and a ball), so one unit mesh gives every rounded box, ball, capsule or cylinder
-// without its bevels ever being stretched.
+// (the Minkowski sum of a solid and a ball), so one unit mesh gives every rounded box, ball,
+// capsule or cylinder without its bevels ever being stretched.
 // Tested by tests/render/mesh_test.cc
 #pragma once
 
@@ -22,13 +22,15 @@ struct Mesh {
   std::vector<std::uint32_t> triangles;  ///< three indices each, counter-clockwise from outside
 };
 
-/// Corners at +-1; `segments` per quarter turn of an edge. Half size 0: a ball, (0, 0, h): a capsule.
+/// Corners at +-1; `segments` per quarter turn of an edge. Half size 0: a ball, (0, 0, h): a
+/// capsule.
 Mesh RoundedBoxMesh(int segments);
 /// Unit radius and half length around z, with rounded rims.
 Mesh RoundedCylinderMesh(int segments);
 /// Base of unit radius at z = 0, tip at z = 1.
 Mesh ConeMesh(int segments);
-/// A tube along the points; corners are the points themselves, so draw it with half size 1. Empty below two points.
+/// A tube along the points; corners are the points themselves, so draw it with half size 1. Empty
+/// below two points.
 Mesh TubeMesh(const std::vector<Eigen::Vector3f>& points, int segments);
 
 }  // namespace prehend::render

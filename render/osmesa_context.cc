@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OSMesa behind the off-screen context. osmesa.h wants the system's gl.h, which clashes with the core profile
-// header; claiming that gl.h was included already leaves exactly what is needed.
+// OSMesa behind the off-screen context. osmesa.h wants the system's gl.h, which clashes with the
+// core profile header; claiming that gl.h was included already leaves exactly what is needed.
 // Tested by tests/render/painter_test.cc
 #include "render/osmesa_context.h"
 
@@ -28,18 +28,24 @@ constexpr int kDummySize = 16;
 
 struct OffscreenContext::State {
   OSMesaContext context = nullptr;
-  std::array<std::uint8_t, kDummySize * kDummySize * 4> dummy = {};
+  std::array<std::uint8_t, kDummySize* kDummySize* 4> dummy = {};
 };
 
 OffscreenContext::OffscreenContext(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 std::unique_ptr<OffscreenContext> OffscreenContext::Create(std::string* error) {
-  const int attributes[] = {OSMESA_FORMAT,        OSMESA_RGBA,
-                            OSMESA_DEPTH_BITS,    0,
-                            OSMESA_STENCIL_BITS,  0,
-                            OSMESA_PROFILE,       OSMESA_CORE_PROFILE,
-                            OSMESA_CONTEXT_MAJOR_VERSION, 3,
-                            OSMESA_CONTEXT_MINOR_VERSION, 3,
+  const int attributes[] = {OSMESA_FORMAT,
+                            OSMESA_RGBA,
+                            OSMESA_DEPTH_BITS,
+                            0,
+                            OSMESA_STENCIL_BITS,
+                            0,
+                            OSMESA_PROFILE,
+                            OSMESA_CORE_PROFILE,
+                            OSMESA_CONTEXT_MAJOR_VERSION,
+                            3,
+                            OSMESA_CONTEXT_MINOR_VERSION,
+                            3,
                             0};
   auto state = std::make_unique<State>();
   state->context = OSMesaCreateContextAttribs(attributes, nullptr);

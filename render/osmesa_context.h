@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An OpenGL context without a window or a graphics card, behind three functions so that another off-screen
-// library can replace OSMesa without touching the rest of the room.
+// An OpenGL context without a window or a graphics card, behind three functions so that another
+// off-screen library can replace OSMesa without touching the rest of the room.
 // Tested by tests/render/painter_test.cc
 #pragma once
 

@@ -34,8 +34,9 @@ const char* FusedMultiplyAdd() {
 std::string SizeError(const Picture& picture) {
   const auto fits = [](int side_px) { return side_px >= 1 && side_px <= kMaxPictureSide_px; };
   if (fits(picture.width_px) && fits(picture.height_px)) return "";
-  return "a picture of " + std::to_string(picture.width_px) + " x " + std::to_string(picture.height_px) +
-         " pixels cannot be drawn: each side must be 1 to " + std::to_string(kMaxPictureSide_px);
+  return "a picture of " + std::to_string(picture.width_px) + " x " +
+         std::to_string(picture.height_px) + " pixels cannot be drawn: each side must be 1 to " +
+         std::to_string(kMaxPictureSide_px);
 }
 
 // Everything that follows from a picture before anything is drawn.
@@ -49,14 +50,17 @@ Plan MakePlan(const Picture& picture, const Font& font) {
   Plan plan;
   plan.strip = LayOutStrip(picture.strip, font, picture.width_px, picture.height_px);
   plan.list = MakeDrawList(picture);
-  plan.view = MakeView(picture.camera, picture.width_px, picture.height_px, plan.strip.reserved_px(), plan.list.bounds);
+  plan.view = MakeView(picture.camera, picture.width_px, picture.height_px,
+                       plan.strip.reserved_px(), plan.list.bounds);
   return plan;
 }
 
-// Large things (tables) would leave no place that is free of them; they count as scenery for the labels.
+// Large things (tables) would leave no place that is free of them; they count as scenery for the
+// labels.
 constexpr float kLargestExtent = 0.10f;  // of the picture's area
 
-LabelRequest RequestLabel(const std::string& text, const Color& color, const Bounds& bounds, const View& view) {
+LabelRequest RequestLabel(const std::string& text, const Color& color, const Bounds& bounds,
+                          const View& view) {
   LabelRequest request{text, color, Vector2f::Constant(std::nanf("")), {}};
   const std::optional<Vector2f> middle = ToPixel(view, bounds.center_m());
   if (bounds.empty() || !middle.has_value()) return request;
@@ -72,21 +76,25 @@ LabelRequest RequestLabel(const std::string& text, const Color& color, const Bou
   }
   const Vector2f size = high - low;
   const float area = static_cast<float>(view.width_px) * static_cast<float>(view.height_px);
-  if (size.x() * size.y() < kLargestExtent * area) request.extent = {low.x(), low.y(), size.x(), size.y()};
+  if (size.x() * size.y() < kLargestExtent * area)
+    request.extent = {low.x(), low.y(), size.x(), size.y()};
   return request;
 }
 
 std::vector<LabelRequest> RequestLabels(const Picture& picture, const Plan& plan) {
   std::vector<LabelRequest> requests;
-  const auto request = [&](const std::vector<std::string>& labels, int first_object, const auto& color_of) {
+  const auto request = [&](const std::vector<std::string>& labels, int first_object,
+                           const auto& color_of) {
     for (std::size_t i = 0; i < labels.size(); ++i) {
       const std::size_t object = first_object + i;
       if (labels[i].empty() || object >= plan.list.objects.size()) continue;
-      requests.push_back(RequestLabel(labels[i], color_of(i), plan.list.objects[object].bounds, plan.view));
+      requests.push_back(
+          RequestLabel(labels[i], color_of(i), plan.list.objects[object].bounds, plan.view));
     }
   };
   if (picture.scene == nullptr) return requests;
-  request(picture.body_labels, plan.list.first_body, [&](std::size_t i) { return BodyColor(picture, i); });
+  request(picture.body_labels, plan.list.first_body,
+          [&](std::size_t i) { return BodyColor(picture, i); });
   request(picture.hand_labels, plan.list.first_hand, [](std::size_t) { return kSkinColor; });
   return requests;
 }
@@ -108,7 +116,8 @@ Rect DrawTitle(const std::string& title, float scale, float width, Canvas* canva
   const float size = std::max(11.0f, kTitleSize * scale);
   const std::string text = canvas->font().Shortened(title, size, width - 56 * scale);
   if (text.empty()) return {};
-  const Rect box = {12 * scale, 12 * scale, canvas->font().Width(text, size) + 24 * scale, size + 12 * scale};
+  const Rect box = {12 * scale, 12 * scale, canvas->font().Width(text, size) + 24 * scale,
+                    size + 12 * scale};
   canvas->FillRounded(box, 7 * scale, Hex(0xFFFFFF), 0.86f);
   canvas->DrawText(box.x + 12 * scale, box.y + 6 * scale, text, size, Hex(0x1B1F24));
   return box;
@@ -117,13 +126,15 @@ Rect DrawTitle(const std::string& title, float scale, float width, Canvas* canva
 void DrawOverlay(const Picture& picture, const Plan& plan, Canvas* canvas) {
   if (std::min(picture.width_px, picture.height_px) < kSmallestWithText_px) return;
   const float scale = OverlayScale(picture.height_px);
-  const auto width = static_cast<float>(picture.width_px), height = static_cast<float>(picture.height_px);
+  const auto width = static_cast<float>(picture.width_px),
+             height = static_cast<float>(picture.height_px);
   const Rect title = DrawTitle(picture.title, scale, width, canvas);
   const float free_height = height - static_cast<float>(plan.strip.reserved_px());
   const LabelObstacles obstacles{.area = Rect{0, 0, width, free_height}.Grown(-5 * scale),
                                  .forbidden = {title.Grown(4 * scale)},
                                  .avoid = PathPixels(plan)};
-  DrawLabels(PlaceLabels(RequestLabels(picture, plan), obstacles, canvas->font(), scale), scale, canvas);
+  DrawLabels(PlaceLabels(RequestLabels(picture, plan), obstacles, canvas->font(), scale), scale,
+             canvas);
   DrawStrip(plan.strip, canvas);
 }
 
@@ -145,7 +156,8 @@ struct Painter::State {
 bool Painter::State::Prepare(const Picture& picture) {
   if (!ready()) return false;
   error = SizeError(picture);
-  if (error.empty() && !context->MakeCurrent()) error = "the off-screen context cannot be made current";
+  if (error.empty() && !context->MakeCurrent())
+    error = "the off-screen context cannot be made current";
   return error.empty();
 }
 
@@ -185,7 +197,8 @@ Image Painter::Draw(const Picture& picture) {
 IdImage Painter::DrawIds(const Picture& picture) {
   if (!state_->Prepare(picture)) return {};
   const Plan plan = MakePlan(picture, *state_->font);
-  IdImage image{picture.width_px, picture.height_px, state_->renderer->RenderIds(plan.list, plan.view), {}};
+  IdImage image{
+      picture.width_px, picture.height_px, state_->renderer->RenderIds(plan.list, plan.view), {}};
   if (image.ids.empty()) {
     state_->error = "OpenGL has no memory for a picture of this size";
     return {};
@@ -201,8 +214,8 @@ std::string Painter::Fingerprint() const {
     const GLubyte* bytes = state_->gl.GetString(name);
     return std::string(bytes != nullptr ? reinterpret_cast<const char*>(bytes) : "unknown");
   };
-  return text(GL_VERSION) + " | " + text(GL_RENDERER) + " | " + FusedMultiplyAdd() + " | renderer " +
-         std::to_string(kRendererVersion);
+  return text(GL_VERSION) + " | " + text(GL_RENDERER) + " | " + FusedMultiplyAdd() +
+         " | renderer " + std::to_string(kRendererVersion);
 }
 
 }  // namespace prehend::render

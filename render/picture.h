@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture as a value: what to draw, from where, with which labels and timeline. Draws immutable values and
-// knows neither grammar nor simulation. Colours are sRGB 0..1.
+// One picture as a value: what to draw, from where, with which labels and timeline. Draws immutable
+// values and knows neither grammar nor simulation. Colours are sRGB 0..1.
 // Tested by tests/render/painter_test.cc
 #pragma once
 
@@ -16,7 +16,8 @@ namespace prehend::render {
 
 using Color = Eigen::Vector3f;
 
-/// A stretch of a hand's path in one phase; one that begins near the end of the one before is joined to it.
+/// A stretch of a hand's path in one phase; one that begins near the end of the one before is
+/// joined to it.
 struct PathStretch {
   std::string label;  ///< empty: the hand is idle, drawn thin
   Color color = {0.54f, 0.56f, 0.60f};
@@ -66,7 +67,7 @@ struct Picture {
   int width_px = 1280, height_px = 720;
   const physics::Scene* scene = nullptr;  ///< outlives the call
   physics::Snapshot snapshot;
-  std::vector<Color> body_colors;  ///< one per scene body; shorter: colours from a palette
+  std::vector<Color> body_colors;        ///< one per scene body; shorter: colours from a palette
   std::vector<std::string> body_labels;  ///< one per scene body, empty: none
   std::vector<std::string> hand_labels;  ///< one per scene hand, empty: none
   std::vector<PathStretch> path;
@@ -86,12 +87,14 @@ struct Image {
 struct IdImage {
   int width_px = 0, height_px = 0;
   std::vector<std::uint32_t> ids;  ///< rows from top; indices into names
-  std::vector<std::string> names;  ///< "background", "ground", "body:milk", "hand:right_hand", "path:0:reaching", ...
+  std::vector<std::string>
+      names;  ///< "background", "ground", "body:milk", "hand:right_hand", "path:0:reaching", ...
 };
 
 inline constexpr const char* kDefaultFontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 
-/// Off-screen context; make one per process and draw many pictures (the first costs shader compilation).
+/// Off-screen context; make one per process and draw many pictures (the first costs shader
+/// compilation).
 class Painter {
  public:
   explicit Painter(const std::string& font_file = kDefaultFontFile);
@@ -120,9 +123,11 @@ Image ReadPng(const std::string& path);
 /// FNV-1a of size and pixels.
 std::uint64_t PixelHash(const Image& image);
 
-/// A camera that frames the box [low, high] from a named side: "front", "left", "right", "top", "three_quarter".
-/// An unknown name gives nullopt-like default "front"; names are listed by CameraNames().
-Camera NamedCamera(const std::string& name, const Eigen::Vector3f& low_m, const Eigen::Vector3f& high_m, double aspect);
+/// A camera that frames the box [low, high] from a named side: "front", "left", "right", "top",
+/// "three_quarter". An unknown name gives nullopt-like default "front"; names are listed by
+/// CameraNames().
+Camera NamedCamera(const std::string& name, const Eigen::Vector3f& low_m,
+                   const Eigen::Vector3f& high_m, double aspect);
 const std::vector<std::string>& CameraNames();
 
 }  // namespace prehend::render

@@ -3,7 +3,8 @@
 //   1. depth from the light (solids and paths throw shadows);
 //   2. backdrop, ground, solids, paths into a multisampled buffer;
 //   3. ambient occlusion at half size from its depth, multiplied in;
-//   4. hidden parts of paths, faintly; ghosts, each after its own depth so that inner joints do not show; markers;
+//   4. hidden parts of paths, faintly; ghosts, each after its own depth so that inner joints do not
+//   show; markers;
 //   5. resolve and read back.
 // Every pass leaves depth test on, depth writes on, blending off and back faces culled.
 // Tested by tests/render/painter_test.cc
@@ -21,16 +22,18 @@ using Eigen::Vector3f;
 
 constexpr int kSamples = 4;  // the most that llvmpipe has
 constexpr int kShadowSize_px = 2048;
-constexpr int kShadowReach = 1;       // PCF 3x3
+constexpr int kShadowReach = 1;  // PCF 3x3
 constexpr int kNoShadow = -1;
 constexpr float kHiddenAlpha = 0.16f;
 constexpr float kOcclusionRadius_m = 0.09f;
 constexpr int kOcclusionTaps = 8;
-constexpr float kGroundDrop_m = 0.002f;  // keeps a floor body at z = 0 from flickering with the ground
+constexpr float kGroundDrop_m =
+    0.002f;  // keeps a floor body at z = 0 from flickering with the ground
 
 const Color kGroundColor = {0.90f, 0.91f, 0.925f};
 
-// The ball in which shadows and the ground matter: all there is, or what the camera looks at if that is much less.
+// The ball in which shadows and the ground matter: all there is, or what the camera looks at if
+// that is much less.
 struct Focus {
   Vector3f center_m;
   float radius_m;
@@ -44,7 +47,9 @@ Focus FocusOf(const DrawList& list, const View& view) {
   return {view.eye_m + forward * 0.5f * to_center, to_center};
 }
 
-float DistanceTo(const View& view, const Item& item) { return (item.X_WI.translation() - view.eye_m).norm(); }
+float DistanceTo(const View& view, const Item& item) {
+  return (item.X_WI.translation() - view.eye_m).norm();
+}
 
 Vector3f ToLight() { return Vector3f(0.38f, -0.42f, 0.82f).normalized(); }
 
@@ -73,8 +78,8 @@ std::unique_ptr<SceneRenderer> SceneRenderer::Create(const GlFunctions& gl, std:
   made->ball_ = std::make_unique<GpuMesh>(gl, RoundedBoxMesh(10));
   made->cylinder_ = std::make_unique<GpuMesh>(gl, RoundedCylinderMesh(5));
   made->cone_ = std::make_unique<GpuMesh>(gl, ConeMesh(6));
-  made->shadow_map_ = Framebuffer::Create(gl, kShadowSize_px, kShadowSize_px, 0, Framebuffer::Color::kNone,
-                                          Framebuffer::Depth::kCompare);
+  made->shadow_map_ = Framebuffer::Create(gl, kShadowSize_px, kShadowSize_px, 0,
+                                          Framebuffer::Color::kNone, Framebuffer::Depth::kCompare);
   if (made->shadow_map_ == nullptr) {
     *error = "OpenGL refuses the shadow map";
     return nullptr;
@@ -101,9 +106,11 @@ bool SceneRenderer::CompilePrograms(std::string* error) {
 bool SceneRenderer::PassesSelfTest() const {
   constexpr int kSize_px = 16;
   constexpr GLuint kInk = 41;
-  const auto target = Framebuffer::Create(gl_, kSize_px, kSize_px, 0, Framebuffer::Color::kId, Framebuffer::Depth::kRead);
+  const auto target = Framebuffer::Create(gl_, kSize_px, kSize_px, 0, Framebuffer::Color::kId,
+                                          Framebuffer::Depth::kRead);
   if (target == nullptr) return false;
-  const Mesh lower_left{{{{-1, -1, 0}, {0, 0, 1}}, {{1, -1, 0}, {0, 0, 1}}, {{-1, 1, 0}, {0, 0, 1}}}, {0, 1, 2}};
+  const Mesh lower_left{
+      {{{-1, -1, 0}, {0, 0, 1}}, {{1, -1, 0}, {0, 0, 1}}, {{-1, 1, 0}, {0, 0, 1}}}, {0, 1, 2}};
   const GpuMesh triangle(gl_, lower_left);
   target->Bind();
   const GLuint background[4] = {};
@@ -133,10 +140,13 @@ bool SceneRenderer::PrepareTargets(int width_px, int height_px) {
   using Plane = Framebuffer::Color;
   using Depth = Framebuffer::Depth;
   auto made = std::make_unique<Targets>();
-  made->sampled = Framebuffer::Create(gl_, width_px, height_px, kSamples, Plane::kRgba8, Depth::kRead);
+  made->sampled =
+      Framebuffer::Create(gl_, width_px, height_px, kSamples, Plane::kRgba8, Depth::kRead);
   made->resolved = Framebuffer::Create(gl_, width_px, height_px, 0, Plane::kRgba8, Depth::kRead);
-  made->occlusion = Framebuffer::Create(gl_, (width_px + 1) / 2, (height_px + 1) / 2, 0, Plane::kR8, Depth::kNone);
-  if (!made->sampled || !made->resolved || !made->occlusion || gl_.GetError() != GL_NO_ERROR) return false;
+  made->occlusion = Framebuffer::Create(gl_, (width_px + 1) / 2, (height_px + 1) / 2, 0, Plane::kR8,
+                                        Depth::kNone);
+  if (!made->sampled || !made->resolved || !made->occlusion || gl_.GetError() != GL_NO_ERROR)
+    return false;
   targets_ = std::move(made);
   return true;
 }
@@ -172,18 +182,20 @@ Image SceneRenderer::Render(const DrawList& list, const View& view) {
   std::vector<std::uint8_t> from_bottom(row * image.height_px);
   targets_->resolved->Bind();
   gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
-  gl_.ReadPixels(0, 0, image.width_px, image.height_px, GL_RGB, GL_UNSIGNED_BYTE, from_bottom.data());
+  gl_.ReadPixels(0, 0, image.width_px, image.height_px, GL_RGB, GL_UNSIGNED_BYTE,
+                 from_bottom.data());
   if (gl_.GetError() != GL_NO_ERROR) return {};
   image.rgb.reserve(from_bottom.size());
-  for (auto end = from_bottom.end(); end != from_bottom.begin(); end -= static_cast<std::ptrdiff_t>(row)) {
+  for (auto end = from_bottom.end(); end != from_bottom.begin();
+       end -= static_cast<std::ptrdiff_t>(row)) {
     image.rgb.insert(image.rgb.end(), end - static_cast<std::ptrdiff_t>(row), end);
   }
   return image;
 }
 
 std::vector<std::uint32_t> SceneRenderer::RenderIds(const DrawList& list, const View& view) {
-  const auto target = Framebuffer::Create(gl_, view.width_px, view.height_px, 0, Framebuffer::Color::kId,
-                                          Framebuffer::Depth::kRead);
+  const auto target = Framebuffer::Create(gl_, view.width_px, view.height_px, 0,
+                                          Framebuffer::Color::kId, Framebuffer::Depth::kRead);
   if (target == nullptr) return {};
   const Frame frame = MakeFrame(list, view);
   target->Bind();
@@ -204,7 +216,8 @@ std::vector<std::uint32_t> SceneRenderer::RenderIds(const DrawList& list, const 
   gl_.ReadPixels(0, 0, view.width_px, view.height_px, GL_RED_INTEGER, GL_UNSIGNED_INT, ids.data());
   if (gl_.GetError() != GL_NO_ERROR) return {};
   for (int top = 0, bottom = view.height_px - 1; top < bottom; ++top, --bottom) {
-    std::swap_ranges(ids.begin() + top * row, ids.begin() + (top + 1) * row, ids.begin() + bottom * row);
+    std::swap_ranges(ids.begin() + top * row, ids.begin() + (top + 1) * row,
+                     ids.begin() + bottom * row);
   }
   return ids;
 }
@@ -235,7 +248,8 @@ void SceneRenderer::DrawSolids(const Frame& frame) const {
   DrawGround(frame);
 }
 
-// After the solids, because shading what they hide would be wasted; it fades into the backdrop far out.
+// After the solids, because shading what they hide would be wasted; it fades into the backdrop far
+// out.
 void SceneRenderer::DrawGround(const Frame& frame) const {
   const float clear_radius = std::max(1.3f, 1.1f * frame.focus.radius_m);
   const Vector3f& center = frame.focus.center_m;
@@ -261,8 +275,8 @@ void SceneRenderer::DarkenCorners(const Frame& frame) const {
   occlusion_->Set("clip_to_view", Eigen::Matrix4f(frame.view.view_to_clip.inverse()));
   occlusion_->Set("texel", texel);
   occlusion_->Set("depth_size", Eigen::Vector2f(frame.view.width_px, frame.view.height_px));
-  occlusion_->Set("view_to_uv",
-                  Eigen::Vector2f(frame.view.view_to_clip(0, 0) / 2, frame.view.view_to_clip(1, 1) / 2));
+  occlusion_->Set("view_to_uv", Eigen::Vector2f(frame.view.view_to_clip(0, 0) / 2,
+                                                frame.view.view_to_clip(1, 1) / 2));
   occlusion_->Set("radius", kOcclusionRadius_m);
   occlusion_->Set("taps", kOcclusionTaps);
   DrawScreen();
@@ -361,11 +375,16 @@ void SceneRenderer::DrawItem(const Program& program, const Frame& frame, const I
   program.Set("finish", static_cast<int>(item.finish));
   program.SetUnsigned("object", static_cast<unsigned>(item.object));
   switch (item.primitive) {
-    case Primitive::kBox: return box_->Draw();
-    case Primitive::kBall: return ball_->Draw();
-    case Primitive::kCylinder: return cylinder_->Draw();
-    case Primitive::kCone: return cone_->Draw();
-    case Primitive::kTube: return frame.tubes[item.tube]->Draw();
+    case Primitive::kBox:
+      return box_->Draw();
+    case Primitive::kBall:
+      return ball_->Draw();
+    case Primitive::kCylinder:
+      return cylinder_->Draw();
+    case Primitive::kCone:
+      return cone_->Draw();
+    case Primitive::kTube:
+      return frame.tubes[item.tube]->Draw();
   }
 }
 

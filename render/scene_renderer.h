@@ -23,7 +23,8 @@ class SceneRenderer {
   bool PassesSelfTest() const;
   /// Without labels and strip. Empty when the driver refuses buffers of that size.
   Image Render(const DrawList& list, const View& view);
-  /// For every pixel, rows from the top, the index into DrawList::objects of what is drawn there (regions excepted).
+  /// For every pixel, rows from the top, the index into DrawList::objects of what is drawn there
+  /// (regions excepted).
   std::vector<std::uint32_t> RenderIds(const DrawList& list, const View& view);
 
  private:

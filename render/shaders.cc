@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shader sources. Colours enter as sRGB, light is computed linearly, and a soft tone map leads back to sRGB.
+// Shader sources. Colours enter as sRGB, light is computed linearly, and a soft tone map leads back
+// to sRGB.
 // Tested by tests/render/painter_test.cc
 #include "render/shaders.h"
 
@@ -118,8 +119,9 @@ void main() {
 }
 )";
 
-// Ambient occlusion from the depth buffer: how much of the surroundings within `radius` metres rises above the
-// tangent plane, sampled on a spiral that is turned from pixel to pixel (interleaved gradient noise, Jimenez 2014).
+// Ambient occlusion from the depth buffer: how much of the surroundings within `radius` metres
+// rises above the tangent plane, sampled on a spiral that is turned from pixel to pixel
+// (interleaved gradient noise, Jimenez 2014).
 const char* const kOcclusionFragmentShader = R"(#version 330 core
 in vec2 uv;
 out vec4 pixel;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shader sources (GLSL 3.30). What each computes is said beside it in shaders.cc.
+// Tested by tests/render/painter_test.cc
 #pragma once
 
 namespace prehend::render {
@@ -7,7 +8,8 @@ namespace prehend::render {
 /// Number that changes whenever pixels change on purpose; part of the fingerprint.
 inline constexpr int kRendererVersion = 1;
 
-extern const char* const kSolidVertexShader;      ///< corner * half_size + direction * rounding, to world and clip
+extern const char* const
+    kSolidVertexShader;  ///< corner * half_size + direction * rounding, to world and clip
 extern const char* const kSurfaceFragmentShader;  ///< light, shadow, ground grid, region rim
 extern const char* const kDepthFragmentShader;    ///< nothing but depth
 extern const char* const kIdFragmentShader;       ///< the object's number

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layout of the strip: rows to lanes (first free lane), names inside the bar or above it, ticks at round seconds.
+// Layout of the strip: rows to lanes (first free lane), names inside the bar or above it, ticks at
+// round seconds.
 // Tested by tests/render/timeline_strip_test.cc
 #include "render/timeline_strip.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 
 namespace prehend::render {
@@ -27,21 +29,25 @@ struct TimeAxis {
   double begin_s = 0, end_s = 1;
   float left = 0, right = 1;
   float At(double t_s) const {
-    return left + (right - left) * static_cast<float>(std::clamp((t_s - begin_s) / (end_s - begin_s), 0.0, 1.0));
+    return left + (right - left) *
+                      static_cast<float>(std::clamp((t_s - begin_s) / (end_s - begin_s), 0.0, 1.0));
   }
 };
 
 bool IsVisible(const StripSegment& segment, const TimelineStrip& strip) {
-  return segment.begin_s <= segment.end_s && segment.end_s >= strip.begin_s && segment.begin_s <= strip.end_s;
+  return segment.begin_s <= segment.end_s && segment.end_s >= strip.begin_s &&
+         segment.begin_s <= strip.end_s;
 }
 
 // Each segment into the first lane that is free at its time; when all are taken, into the last.
-std::vector<std::vector<StripSegment>> SplitIntoLanes(const StripRow& row, const TimelineStrip& strip) {
+std::vector<std::vector<StripSegment>> SplitIntoLanes(const StripRow& row,
+                                                      const TimelineStrip& strip) {
   std::vector<StripSegment> segments;
   std::copy_if(row.segments.begin(), row.segments.end(), std::back_inserter(segments),
                [&](const StripSegment& segment) { return IsVisible(segment, strip); });
-  std::stable_sort(segments.begin(), segments.end(),
-                   [](const StripSegment& a, const StripSegment& b) { return a.begin_s < b.begin_s; });
+  std::stable_sort(
+      segments.begin(), segments.end(),
+      [](const StripSegment& a, const StripSegment& b) { return a.begin_s < b.begin_s; });
   std::vector<std::vector<StripSegment>> lanes(1);
   for (StripSegment& segment : segments) {
     auto lane = std::find_if(lanes.begin(), lanes.end(), [&](const auto& taken) {
@@ -54,9 +60,10 @@ std::vector<std::vector<StripSegment>> SplitIntoLanes(const StripRow& row, const
   return lanes;
 }
 
-// The name inside if it fits, perhaps smaller; else above, as near to its bar as names above it allow.
-void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& axis, float scale, float* above_taken,
-               StripBar* bar) {
+// The name inside if it fits, perhaps smaller; else above, as near to its bar as names above it
+// allow.
+void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& axis, float scale,
+               float* above_taken, StripBar* bar) {
   if (segment.label.empty()) return;
   bar->name = segment.label;
   const float small = std::max(kSmallestText, kSmallText * scale);
@@ -79,19 +86,22 @@ void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& ax
     return;
   }
   bar->name = font.Shortened(segment.label, small, bar->rect.width - 4 * scale);
-  if (bar->name.size() < 5) return;  // an ellipsis has three bytes: a name of one letter tells nothing
+  if (bar->name.size() < 5)
+    return;  // an ellipsis has three bytes: a name of one letter tells nothing
   bar->name_place = NamePlace::kInside;
   bar->name_size_px = small;
   bar->name_left = bar->rect.x + (bar->rect.width - font.Width(bar->name, small)) / 2;
 }
 
-StripLane MakeLane(const std::vector<StripSegment>& segments, const Font& font, const TimeAxis& axis, float scale) {
+StripLane MakeLane(const std::vector<StripSegment>& segments, const Font& font,
+                   const TimeAxis& axis, float scale) {
   StripLane lane;
   lane.track = {axis.left, 0, axis.right - axis.left, kBarHeight * scale};
   float above_taken = axis.left;
   for (const StripSegment& segment : segments) {
     const float begin = axis.At(segment.begin_s), end = axis.At(segment.end_s);
-    StripBar bar{.rect = {begin, 0, std::max(2.0f, end - begin), kBarHeight * scale}, .color = segment.color};
+    StripBar bar{.rect = {begin, 0, std::max(2.0f, end - begin), kBarHeight * scale},
+                 .color = segment.color};
     if (bar.rect.width > 6) bar.rect = {begin + 0.5f, 0, bar.rect.width - 1, bar.rect.height};
     PlaceName(segment, font, axis, scale, &above_taken, &bar);
     lane.bars.push_back(std::move(bar));
@@ -146,7 +156,8 @@ std::vector<StripTick> MakeTicks(const TimeAxis& axis, float scale) {
   constexpr int kMinorPerMajor = 5;
   const double step_s = TickStep(axis, scale), minor_s = step_s / kMinorPerMajor;
   std::vector<StripTick> ticks;
-  const double first = std::ceil(axis.begin_s / minor_s - 1e-6), last = std::floor(axis.end_s / minor_s + 1e-6);
+  const double first = std::ceil(axis.begin_s / minor_s - 1e-6),
+               last = std::floor(axis.end_s / minor_s + 1e-6);
   for (int i = 0; i <= last - first; ++i) {
     const double number = first + i;
     const bool major = std::fmod(std::abs(number), kMinorPerMajor) < 0.5;
@@ -167,14 +178,17 @@ int StripLayout::reserved_px() const {
   return panel.height > 0 ? picture_height_px - static_cast<int>(panel.y) : 0;
 }
 
-float OverlayScale(int height_px) { return std::clamp(static_cast<float>(height_px) / 720, 0.62f, 4.0f); }
+float OverlayScale(int height_px) {
+  return std::clamp(static_cast<float>(height_px) / 720, 0.62f, 4.0f);
+}
 
 StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_px, int height_px) {
   const float scale = OverlayScale(height_px);
   StripLayout layout{.scale = scale, .picture_height_px = height_px};
   constexpr double kLongest_s = 1e7;
   const double duration_s = strip.end_s - strip.begin_s;
-  if (strip.rows.empty() || !(duration_s > 1e-3 && duration_s < kLongest_s) || !(std::abs(strip.begin_s) < kLongest_s)) {
+  if (strip.rows.empty() || !(duration_s > 1e-3 && duration_s < kLongest_s) ||
+      !(std::abs(strip.begin_s) < kLongest_s)) {
     return layout;
   }
   const float text_size = std::max(kSmallestText, kRowText * scale);
@@ -201,7 +215,8 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
   }
   if (layout.lanes.empty()) return layout;
 
-  layout.panel = {kMargin * scale, height - used, width - 2 * kMargin * scale, used - kMargin * scale};
+  layout.panel = {kMargin * scale, height - used, width - 2 * kMargin * scale,
+                  used - kMargin * scale};
   layout.axis_top = StackLanes(layout.panel.y + kPadding * scale, scale, font, &layout.lanes);
   layout.ticks = MakeTicks(axis, scale);
   const bool inside = strip.playhead_s >= strip.begin_s && strip.playhead_s <= strip.end_s;
@@ -216,7 +231,8 @@ void DrawLane(const StripLayout& layout, const StripLane& lane, Canvas* canvas) 
   const float s = layout.scale;
   canvas->FillRounded(lane.track, 3 * s, Hex(0xDCE1E7), 0.85f);
   const float text_size = std::max(kSmallestText, kRowText * s);
-  const float label_top = lane.track.y + (lane.track.height - 1.32f * canvas->font().Ascent(text_size)) / 2;
+  const float label_top =
+      lane.track.y + (lane.track.height - 1.32f * canvas->font().Ascent(text_size)) / 2;
   canvas->DrawText(layout.label_left, label_top, lane.label, text_size, Hex(0x1B1F24));
   for (const StripBar& bar : lane.bars) {
     canvas->FillRounded(bar.rect, 3 * s, bar.color);
@@ -231,12 +247,14 @@ void DrawAxis(const StripLayout& layout, const Rect& playhead_label, Canvas* can
   const Color ink = Hex(0x59636E);
   for (const StripTick& tick : layout.ticks) {
     const float length = (tick.label.empty() ? 3.5f : 7.0f) * s;
-    canvas->DrawLine({tick.x, layout.axis_top}, {tick.x, layout.axis_top + length}, std::max(1.0f, s), ink, 0.9f);
+    canvas->DrawLine({tick.x, layout.axis_top}, {tick.x, layout.axis_top + length},
+                     std::max(1.0f, s), ink, 0.9f);
     if (tick.label.empty()) continue;
     const float width = canvas->font().Width(tick.label, size);
     const float left = std::min(tick.x - width / 2, layout.panel.right() - width - 4 * s);
     const Rect box = {left, layout.axis_top + 8 * s, width, size};
-    if (!box.Grown(3 * s).Overlaps(playhead_label)) canvas->DrawText(left, box.y, tick.label, size, ink);
+    if (!box.Grown(3 * s).Overlaps(playhead_label))
+      canvas->DrawText(left, box.y, tick.label, size, ink);
   }
 }
 
@@ -249,8 +267,9 @@ void DrawStrip(const StripLayout& layout, Canvas* canvas) {
   for (const StripLane& lane : layout.lanes) DrawLane(layout, lane, canvas);
 
   const float width = canvas->font().Width(layout.playhead_label, size) + 10 * s;
-  const float left = std::clamp(layout.playhead_x - width / 2, layout.panel.x + 2 * s,
-                                std::max(layout.panel.x + 2 * s, layout.panel.right() - width - 2 * s));
+  const float left =
+      std::clamp(layout.playhead_x - width / 2, layout.panel.x + 2 * s,
+                 std::max(layout.panel.x + 2 * s, layout.panel.right() - width - 2 * s));
   const Rect tag = {left, layout.axis_top + 6 * s, width, size + 5 * s};
   const bool has_playhead = !layout.playhead_label.empty();
   DrawAxis(layout, has_playhead ? tag : Rect{}, canvas);

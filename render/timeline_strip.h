@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strip at the bottom of a picture: what happened when, as named bars, with a playhead. Laying out comes first
-// because the camera frames the scene in what the strip leaves free.
+// The strip at the bottom of a picture: what happened when, as named bars, with a playhead. Laying
+// out comes first because the camera frames the scene in what the strip leaves free.
 // Tested by tests/render/timeline_strip_test.cc
 #pragma once
 

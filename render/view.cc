@@ -18,7 +18,9 @@ using Eigen::Vector3f;
 constexpr float kFilledShare = 0.90f;  // of the picture by the box that a named camera frames
 constexpr float kNearestEye_m = 0.3f;
 
-float HalfTangent(float field_of_view_deg) { return std::tan(field_of_view_deg * std::numbers::pi_v<float> / 360); }
+float HalfTangent(float field_of_view_deg) {
+  return std::tan(field_of_view_deg * std::numbers::pi_v<float> / 360);
+}
 
 // Rows: right, up, towards the eye. Straight down, north is up.
 Eigen::Matrix3f CameraAxes(const Vector3f& forward) {
@@ -39,13 +41,13 @@ Matrix4f LookAlong(const Vector3f& eye, const Vector3f& forward) {
 
 bool MakesSense(const Camera& camera) {
   return camera.eye_m.allFinite() && camera.look_at_m.allFinite() &&
-         (camera.eye_m - camera.look_at_m).norm() > 1e-4f && camera.vertical_field_of_view_deg > 0.1f &&
-         camera.vertical_field_of_view_deg < 170;
+         (camera.eye_m - camera.look_at_m).norm() > 1e-4f &&
+         camera.vertical_field_of_view_deg > 0.1f && camera.vertical_field_of_view_deg < 170;
 }
 
 // Corners of the box in the camera's axes, seen from the point it looks at.
-std::array<Vector3f, 8> CornersInView(const Eigen::Matrix3f& axes, const Vector3f& look_at, const Vector3f& low,
-                                      const Vector3f& high) {
+std::array<Vector3f, 8> CornersInView(const Eigen::Matrix3f& axes, const Vector3f& look_at,
+                                      const Vector3f& low, const Vector3f& high) {
   std::array<Vector3f, 8> corners;
   for (int i = 0; i < 8; ++i) {
     const Vector3f p((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
@@ -62,8 +64,11 @@ struct NamedDirection {
 
 const std::vector<NamedDirection>& NamedDirections() {
   static const std::vector<NamedDirection> directions = {
-      {"front", {0, -1, 0.42f}},  {"left", {-1, -0.12f, 0.42f}},        {"right", {1, -0.12f, 0.42f}},
-      {"top", {0, -0.05f, 1}},    {"three_quarter", {-0.62f, -1, 0.58f}},
+      {"front", {0, -1, 0.42f}},
+      {"left", {-1, -0.12f, 0.42f}},
+      {"right", {1, -0.12f, 0.42f}},
+      {"top", {0, -0.05f, 1}},
+      {"three_quarter", {-0.62f, -1, 0.58f}},
   };
   return directions;
 }
@@ -82,7 +87,8 @@ void Bounds::Add(const Bounds& other) {
   Add(other.high_m);
 }
 
-View MakeView(const Camera& wanted, int width_px, int height_px, int reserved_px, const Bounds& bounds) {
+View MakeView(const Camera& wanted, int width_px, int height_px, int reserved_px,
+              const Bounds& bounds) {
   const Camera camera = MakesSense(wanted) ? wanted : Camera{};
   const float distance = (camera.eye_m - camera.look_at_m).norm();
   const float near = 0.05f * distance;
@@ -113,7 +119,8 @@ std::optional<Eigen::Vector2f> ToPixel(const View& view, const Vector3f& p_W_m) 
 Matrix4f WorldToLight(const Vector3f& to_light, const Vector3f& center_m, float radius_m) {
   Matrix4f ortho = Matrix4f::Identity();
   ortho.diagonal().head<2>().setConstant(1 / radius_m);
-  // Things between the light and the ball may throw shadows into it, so the depth range starts early.
+  // Things between the light and the ball may throw shadows into it, so the depth range starts
+  // early.
   const float near = 0.1f, far = near + 6 * radius_m;
   ortho(2, 2) = -2 / (far - near);
   ortho(2, 3) = -(far + near) / (far - near);
@@ -129,19 +136,23 @@ const std::vector<std::string>& CameraNames() {
   return names;
 }
 
-Camera NamedCamera(const std::string& name, const Vector3f& low_m, const Vector3f& high_m, double aspect) {
+Camera NamedCamera(const std::string& name, const Vector3f& low_m, const Vector3f& high_m,
+                   double aspect) {
   const auto& directions = NamedDirections();
-  const auto found = std::find_if(directions.begin(), directions.end(), [&](const auto& d) { return d.name == name; });
+  const auto found = std::find_if(directions.begin(), directions.end(),
+                                  [&](const auto& d) { return d.name == name; });
   const Vector3f from = (found == directions.end() ? directions.front() : *found).from.normalized();
 
   Camera camera;
   if (!low_m.allFinite() || !high_m.allFinite()) return camera;
   const float tangent_y = kFilledShare * HalfTangent(camera.vertical_field_of_view_deg);
-  const Eigen::Array2f tangent(tangent_y * static_cast<float>(std::clamp(aspect, 0.1, 10.0)), tangent_y);
+  const Eigen::Array2f tangent(tangent_y * static_cast<float>(std::clamp(aspect, 0.1, 10.0)),
+                               tangent_y);
   const Eigen::Matrix3f axes = CameraAxes(-from);
   Vector3f look_at = (low_m + high_m) / 2;
   float distance = 1;
-  // Perspective makes near corners reach further out than far ones: shift to their middle, then look again.
+  // Perspective makes near corners reach further out than far ones: shift to their middle, then
+  // look again.
   for (int round = 0; round < 4; ++round) {
     const std::array<Vector3f, 8> corners = CornersInView(axes, look_at, low_m, high_m);
     distance = kNearestEye_m;

@@ -18,7 +18,9 @@ struct Bounds {
   bool empty() const { return low_m.x() > high_m.x(); }
   void Add(const Eigen::Vector3f& p_W_m);
   void Add(const Bounds& other);
-  Eigen::Vector3f center_m() const { return empty() ? Eigen::Vector3f::Zero() : Eigen::Vector3f((low_m + high_m) / 2); }
+  Eigen::Vector3f center_m() const {
+    return empty() ? Eigen::Vector3f::Zero() : Eigen::Vector3f((low_m + high_m) / 2);
+  }
   float radius_m() const { return empty() ? 0.5f : (high_m - low_m).norm() / 2; }
 };
 
@@ -30,14 +32,17 @@ struct View {
   Eigen::Matrix4f world_to_clip() const { return view_to_clip * world_to_view; }
 };
 
-/// The camera's view. The field of view spans the part above `reserved_px` rows at the bottom (the strip), so that
-/// what the camera looks at stays in the middle of what can be seen. A camera without sense is replaced by the default.
-View MakeView(const Camera& camera, int width_px, int height_px, int reserved_px, const Bounds& bounds);
+/// The camera's view. The field of view spans the part above `reserved_px` rows at the bottom (the
+/// strip), so that what the camera looks at stays in the middle of what can be seen. A camera
+/// without sense is replaced by the default.
+View MakeView(const Camera& camera, int width_px, int height_px, int reserved_px,
+              const Bounds& bounds);
 
 /// Pixel of a point, y down; nothing when it is not in front of the camera.
 std::optional<Eigen::Vector2f> ToPixel(const View& view, const Eigen::Vector3f& p_W_m);
 
 /// A parallel light from `to_light` whose map covers the ball.
-Eigen::Matrix4f WorldToLight(const Eigen::Vector3f& to_light, const Eigen::Vector3f& center_m, float radius_m);
+Eigen::Matrix4f WorldToLight(const Eigen::Vector3f& to_light, const Eigen::Vector3f& center_m,
+                             float radius_m);
 
 }  // namespace prehend::render

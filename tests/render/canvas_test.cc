@@ -10,7 +10,9 @@ namespace {
 
 class CanvasTest : public testing::Test {
  protected:
-  CanvasTest() : font_(Font::Read(kDefaultFontFile, &error_)), image_{60, 40, std::vector<std::uint8_t>(60 * 40 * 3, 255)} {}
+  CanvasTest()
+      : font_(Font::Read(kDefaultFontFile, &error_)),
+        image_{60, 40, std::vector<std::uint8_t>(60 * 40 * 3, 255)} {}
   void SetUp() override { ASSERT_NE(font_, nullptr) << error_; }
 
   int DarkPixels() const {

@@ -21,25 +21,47 @@ std::vector<std::string> Names(const DrawList& list) {
 }
 
 int Count(const std::vector<Item>& items, Primitive primitive) {
-  return static_cast<int>(std::count_if(items.begin(), items.end(), [&](const Item& i) { return i.primitive == primitive; }));
+  return static_cast<int>(std::count_if(items.begin(), items.end(),
+                                        [&](const Item& i) { return i.primitive == primitive; }));
 }
 
 TEST(DrawListTest, EverythingHasItsName) {
   const physics::Scene scene = DemoScene();
   const std::vector<std::string> names = Names(MakeDrawList(DemoPicture(scene)));
-  const std::vector<std::string> expected = {
-      "background", "ground", "body:table", "body:milk", "body:cereal", "body:mug", "body:apple", "body:plate",
-      "body:can", "hand:right_hand", "forearm:right_hand", "path:0:reaching", "path:1:fixation", "path:2:picking_up",
-      "path:3:transporting", "path:4:putting_down", "path:5:sliding", "path:6:", "ghost:0:right_hand",
-      "ghost:1:right_hand", "ghost:2:right_hand", "ghost:3:right_hand", "marker:0:contact", "marker:1:support",
-      "marker:2:region"};
+  const std::vector<std::string> expected = {"background",
+                                             "ground",
+                                             "body:table",
+                                             "body:milk",
+                                             "body:cereal",
+                                             "body:mug",
+                                             "body:apple",
+                                             "body:plate",
+                                             "body:can",
+                                             "hand:right_hand",
+                                             "forearm:right_hand",
+                                             "path:0:reaching",
+                                             "path:1:fixation",
+                                             "path:2:picking_up",
+                                             "path:3:transporting",
+                                             "path:4:putting_down",
+                                             "path:5:sliding",
+                                             "path:6:",
+                                             "ghost:0:right_hand",
+                                             "ghost:1:right_hand",
+                                             "ghost:2:right_hand",
+                                             "ghost:3:right_hand",
+                                             "marker:0:contact",
+                                             "marker:1:support",
+                                             "marker:2:region"};
   EXPECT_EQ(names, expected);
 }
 
 TEST(DrawListTest, BoundsAreThoseOfTheShapes) {
   physics::Scene scene;
   const double s = std::sqrt(0.5);
-  scene.bodies = {{.name = "turned", .shapes = {{physics::Box{{0.2, 0.4, 0.6}}, {}}}, .X_WB = {{1, 2, 3}, {s, 0, 0, s}}},
+  scene.bodies = {{.name = "turned",
+                   .shapes = {{physics::Box{{0.2, 0.4, 0.6}}, {}}},
+                   .X_WB = {{1, 2, 3}, {s, 0, 0, s}}},
                   {.name = "ball", .shapes = {{physics::Sphere{0.5}, {{0, 0, 1}, {1, 0, 0, 0}}}}},
                   {.name = "cylinder", .shapes = {{physics::Cylinder{0.1, 0.6}, {}}}},
                   {.name = "capsule", .shapes = {{physics::Capsule{0.1, 0.6}, {}}}}};
@@ -63,8 +85,11 @@ TEST(DrawListTest, SnapshotMovesBodiesAndHandsAreDrawnLinkByLink) {
   Picture picture{.scene = &scene, .snapshot = DemoPicture(scene).snapshot};
   picture.snapshot.bodies[1].X_WB.p_m = {5, 6, 7};
   const DrawList list = MakeDrawList(picture);
-  EXPECT_LT((list.objects[list.first_body + 1].bounds.center_m() - Vector3f(5, 6, 7)).norm(), 1e-5f);
-  const auto of_hand = std::count_if(list.solids.begin(), list.solids.end(), [&](const Item& item) { return item.object == list.first_hand; });
+  EXPECT_LT((list.objects[list.first_body + 1].bounds.center_m() - Vector3f(5, 6, 7)).norm(),
+            1e-5f);
+  const auto of_hand = std::count_if(list.solids.begin(), list.solids.end(), [&](const Item& item) {
+    return item.object == list.first_hand;
+  });
   EXPECT_EQ(of_hand, 1 + 15) << "palm and links";
 }
 
@@ -75,8 +100,10 @@ TEST(DrawListTest, PathHasBeadsInTimeAndAnArrow) {
   EXPECT_EQ(Count(list.paths, Primitive::kTube), 1);
   EXPECT_EQ(Count(list.paths, Primitive::kBall), 6) << "one second, a bead every 0.2 s";
   EXPECT_EQ(Count(list.paths, Primitive::kCone), 1);
-  const auto arrow = std::find_if(list.paths.begin(), list.paths.end(), [](const Item& i) { return i.primitive == Primitive::kCone; });
-  EXPECT_LT((arrow->X_WI.linear() * Vector3f::UnitZ() - Vector3f::UnitX()).norm(), 1e-4f) << "points along the path";
+  const auto arrow = std::find_if(list.paths.begin(), list.paths.end(),
+                                  [](const Item& i) { return i.primitive == Primitive::kCone; });
+  EXPECT_LT((arrow->X_WI.linear() * Vector3f::UnitZ() - Vector3f::UnitX()).norm(), 1e-4f)
+      << "points along the path";
 
   stretch.label = "";
   list = MakeDrawList({.path = {stretch}});
@@ -84,7 +111,8 @@ TEST(DrawListTest, PathHasBeadsInTimeAndAnArrow) {
 }
 
 TEST(DrawListTest, NeighbouringStretchesAreJoined) {
-  const PathStretch first{.label = "a", .points_m = {{0, 0, 0}, {0.1f, 0, 0}}}, second{.label = "b", .points_m = {{0.13f, 0, 0}, {0.2f, 0, 0}}},
+  const PathStretch first{.label = "a", .points_m = {{0, 0, 0}, {0.1f, 0, 0}}},
+      second{.label = "b", .points_m = {{0.13f, 0, 0}, {0.2f, 0, 0}}},
       far{.label = "c", .points_m = {{1, 0, 0}, {1.1f, 0, 0}}};
   const DrawList list = MakeDrawList({.path = {first, second, far}});
   ASSERT_EQ(list.tubes.size(), 3u);
@@ -99,10 +127,15 @@ TEST(DrawListTest, WhatIsNotFiniteIsSkipped) {
   Picture picture = DemoPicture(scene);
   scene.bodies[2].shapes[0].shape = physics::Sphere{nan};
   picture.snapshot.bodies[1].X_WB.p_m.x() = nan;
-  picture.path = {{"nan", {1, 0, 0}, {{nanf, 0, 0}, {infinity, 0, 0}}, nan}, {"one", {1, 0, 0}, {{0, 0, 1}}}, {"none"}};
-  picture.markers = {{.half_size_m = {nanf, 1, 1}}, {.half_size_m = {0, 0, 0}}, {.p_W_m = {nanf, 0, 0}}};
+  picture.path = {{"nan", {1, 0, 0}, {{nanf, 0, 0}, {infinity, 0, 0}}, nan},
+                  {"one", {1, 0, 0}, {{0, 0, 1}}},
+                  {"none"}};
+  picture.markers = {
+      {.half_size_m = {nanf, 1, 1}}, {.half_size_m = {0, 0, 0}}, {.p_W_m = {nanf, 0, 0}}};
   const DrawList list = MakeDrawList(picture);
-  const auto finite = [](const Item& item) { return item.X_WI.matrix().allFinite() && std::isfinite(item.rounding_m); };
+  const auto finite = [](const Item& item) {
+    return item.X_WI.matrix().allFinite() && std::isfinite(item.rounding_m);
+  };
   EXPECT_TRUE(std::all_of(list.solids.begin(), list.solids.end(), finite));
   EXPECT_TRUE(list.objects[list.first_body + 1].bounds.empty());
   EXPECT_TRUE(list.objects[list.first_body + 2].bounds.empty());
@@ -121,7 +154,8 @@ TEST(DrawListTest, IndicesThatTheSceneDoesNotHaveAreSkipped) {
 }
 
 TEST(DrawListTest, WithoutASceneThereAreStillPaths) {
-  const DrawList list = MakeDrawList({.path = {{"a", {1, 0, 0}, {{0, 0, 0}, {1, 0, 0}}}}, .ghosts = {{.hand = 0, .bodies = {0}}}});
+  const DrawList list = MakeDrawList(
+      {.path = {{"a", {1, 0, 0}, {{0, 0, 0}, {1, 0, 0}}}}, .ghosts = {{.hand = 0, .bodies = {0}}}});
   EXPECT_EQ(list.tubes.size(), 1u);
   EXPECT_TRUE(list.ghosts.empty());
 }

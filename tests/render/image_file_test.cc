@@ -9,11 +9,14 @@
 namespace prehend::render {
 namespace {
 
-std::string TempFile(const std::string& name) { return testing::TempDir() + "prehend_image_file_test_" + name; }
+std::string TempFile(const std::string& name) {
+  return testing::TempDir() + "prehend_image_file_test_" + name;
+}
 
 Image Gradient(int width_px, int height_px) {
   Image image{width_px, height_px, {}};
-  for (int i = 0; i < width_px * height_px * 3; ++i) image.rgb.push_back(static_cast<std::uint8_t>(i * 7 + i / 50));
+  for (int i = 0; i < width_px * height_px * 3; ++i)
+    image.rgb.push_back(static_cast<std::uint8_t>(i * 7 + i / 50));
   return image;
 }
 

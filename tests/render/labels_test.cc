@@ -15,7 +15,8 @@ class LabelsTest : public testing::Test {
   void SetUp() override { ASSERT_NE(font_, nullptr) << error_; }
 
   std::vector<PlacedLabel> Place(const std::vector<LabelRequest>& requests) const {
-    return PlaceLabels(requests, {.area = area_, .forbidden = {title_}, .avoid = avoid_}, *font_, 1);
+    return PlaceLabels(requests, {.area = area_, .forbidden = {title_}, .avoid = avoid_}, *font_,
+                       1);
   }
 
   std::string error_;
@@ -30,12 +31,14 @@ TEST_F(LabelsTest, NeverOverlapAndStayInside) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> x(10, 795), y(10, 495);
     std::vector<LabelRequest> requests;
-    for (int i = 0; i < 15; ++i) requests.push_back({"thing_" + std::to_string(i), Hex(0), {x(random), y(random)}, {}});
+    for (int i = 0; i < 15; ++i)
+      requests.push_back({"thing_" + std::to_string(i), Hex(0), {x(random), y(random)}, {}});
     const std::vector<PlacedLabel> placed = Place(requests);
     EXPECT_GE(placed.size(), 12u);
     for (std::size_t i = 0; i < placed.size(); ++i) {
       const Rect& box = placed[i].box;
-      EXPECT_TRUE(box.x >= area_.x && box.y >= area_.y && box.right() <= area_.right() && box.bottom() <= area_.bottom());
+      EXPECT_TRUE(box.x >= area_.x && box.y >= area_.y && box.right() <= area_.right() &&
+                  box.bottom() <= area_.bottom());
       EXPECT_FALSE(box.Overlaps(title_));
       for (std::size_t k = 0; k < i; ++k) EXPECT_FALSE(box.Overlaps(placed[k].box));
     }

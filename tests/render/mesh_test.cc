@@ -16,11 +16,14 @@ Vector3f PositionOf(const Vertex& vertex, const Vector3f& half, float rounding) 
   return vertex.corner.cwiseProduct(half) + vertex.direction * rounding;
 }
 
-// Volume by the divergence theorem: right only if the mesh is closed and every triangle faces outwards.
+// Volume by the divergence theorem: right only if the mesh is closed and every triangle faces
+// outwards.
 float Volume(const Mesh& mesh, const Vector3f& half, float rounding) {
   double volume = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
-    const auto at = [&](std::size_t k) { return PositionOf(mesh.vertices[mesh.triangles[i + k]], half, rounding); };
+    const auto at = [&](std::size_t k) {
+      return PositionOf(mesh.vertices[mesh.triangles[i + k]], half, rounding);
+    };
     volume += at(0).dot(at(1).cross(at(2))) / 6;
   }
   return static_cast<float>(volume);
@@ -42,7 +45,8 @@ TEST(MeshTest, VolumesAreThoseOfTheSolids) {
       {"cylinder", RoundedCylinderMesh(16), {1, 1, 2}, 0, 4 * kPi},
       {"cone", ConeMesh(32), {1, 1, 3}, 0, kPi},
   };
-  for (const auto& c : kCases) EXPECT_NEAR(Volume(c.mesh, c.half, c.rounding), c.volume, 0.01f * c.volume) << c.what;
+  for (const auto& c : kCases)
+    EXPECT_NEAR(Volume(c.mesh, c.half, c.rounding), c.volume, 0.01f * c.volume) << c.what;
 }
 
 TEST(MeshTest, DirectionsAreUnitVectors) {
@@ -61,7 +65,9 @@ TEST(MeshTest, TubeKeepsItsRadiusAroundBends) {
 TEST(MeshTest, TubeFacesOutwards) {
   const Mesh mesh = TubeMesh({{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, 64);
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
-    const auto at = [&](std::size_t k) { return PositionOf(mesh.vertices[mesh.triangles[i + k]], {1, 1, 1}, 0.1f); };
+    const auto at = [&](std::size_t k) {
+      return PositionOf(mesh.vertices[mesh.triangles[i + k]], {1, 1, 1}, 0.1f);
+    };
     const Vector3f normal = (at(1) - at(0)).cross(at(2) - at(0));
     EXPECT_GT(normal.dot(mesh.vertices[mesh.triangles[i]].direction), 0);
   }

@@ -49,7 +49,8 @@ Vector3f Hue(const Vector3f& color) { return (color.array() - color.mean()).matr
 
 int PixelsExactly(const Image& image, const Color& color) {
   int count = 0;
-  for (std::size_t i = 0; i < image.rgb.size() / 3; ++i) count += (Pixel(image, i) - color).cwiseAbs().maxCoeff() < 0.003f ? 1 : 0;
+  for (std::size_t i = 0; i < image.rgb.size() / 3; ++i)
+    count += (Pixel(image, i) - color).cwiseAbs().maxCoeff() < 0.003f ? 1 : 0;
   return count;
 }
 
@@ -115,7 +116,8 @@ TEST_F(PainterTest, ChangingOnePhaseColourIsSeen) {
 TEST_F(PainterTest, IdsTellWhoIsWhere) {
   const IdImage ids = painter_->DrawIds(picture_);
   const std::map<std::string, int> counts = PixelsByName(ids);
-  for (const char* name : {"background", "body:table", "body:milk", "body:mug", "hand:right_hand", "path:0:reaching", "ghost:2:right_hand"}) {
+  for (const char* name : {"background", "body:table", "body:milk", "body:mug", "hand:right_hand",
+                           "path:0:reaching", "ghost:2:right_hand"}) {
     EXPECT_GT(counts.contains(name) ? counts.at(name) : 0, 20) << name;
   }
   EXPECT_EQ(ids.names.at(ids.ids.front()), "background") << "rows start at the top";
@@ -147,7 +149,10 @@ TEST_F(PainterTest, LabelsTitleAndMarkersAreDrawn) {
 
 TEST_F(PainterTest, HiddenPathsShineThrough) {
   scene_.bodies = {{.name = "wall", .shapes = {{physics::Box{{2, 0.02, 2}}, {}}}, .fixed = true}};
-  const Picture without{.width_px = 200, .height_px = 200, .scene = &scene_, .camera = {.eye_m = {0, -3, 0}, .look_at_m = {0, 0, 0}}};
+  const Picture without{.width_px = 200,
+                        .height_px = 200,
+                        .scene = &scene_,
+                        .camera = {.eye_m = {0, -3, 0}, .look_at_m = {0, 0, 0}}};
   Picture with = without;
   with.path = {{"reaching", {1, 0, 0}, {{-0.4f, 0.5f, 0}, {0.4f, 0.5f, 0}}}};
   const Image before = Draw(without), after = Draw(with);
@@ -190,21 +195,32 @@ TEST_F(PainterTest, NonsenseIsDrawnWithoutHarm) {
 TEST_F(PainterTest, AThousandBodiesAreDrawn) {
   physics::Scene many;
   for (int i = 0; i < 1000; ++i) {
-    const physics::Shape shapes[] = {physics::Box{}, physics::Sphere{}, physics::Cylinder{}, physics::Capsule{0.03, 0.1}};
-    many.bodies.push_back({.name = "b", .shapes = {{shapes[i % 4], {}}}, .X_WB = {{0.3 * (i % 32), 0.3 * (i / 32), 0.1}, {1, 0, 0, 0}}});
+    const physics::Shape shapes[] = {physics::Box{}, physics::Sphere{}, physics::Cylinder{},
+                                     physics::Capsule{0.03, 0.1}};
+    many.bodies.push_back({.name = "b",
+                           .shapes = {{shapes[i % 4], {}}},
+                           .X_WB = {{0.3 * (i % 32), 0.3 * (i / 32), 0.1}, {1, 0, 0, 0}}});
   }
   const Camera camera = NamedCamera("three_quarter", {0, 0, 0}, {9.6f, 9.6f, 0.2f}, 1.5);
-  const Picture picture{.width_px = 480, .height_px = 320, .scene = &many, .body_labels = std::vector<std::string>(1000, "body"), .camera = camera};
+  const Picture picture{.width_px = 480,
+                        .height_px = 320,
+                        .scene = &many,
+                        .body_labels = std::vector<std::string>(1000, "body"),
+                        .camera = camera};
   Draw(picture);
-  EXPECT_GT(PixelsByName(painter_->DrawIds(picture))["b"] + PixelsByName(painter_->DrawIds(picture))["body:b"], 5000);
+  EXPECT_GT(PixelsByName(painter_->DrawIds(picture))["b"] +
+                PixelsByName(painter_->DrawIds(picture))["body:b"],
+            5000);
 }
 
 TEST_F(PainterTest, ImpossibleSizesAreErrorsAndDoNotStick) {
-  for (const auto& [width, height] : {std::pair{0, 100}, {100, -1}, {kMaxPictureSide_px + 1, 100}, {100, 1 << 30}}) {
+  for (const auto& [width, height] :
+       {std::pair{0, 100}, {100, -1}, {kMaxPictureSide_px + 1, 100}, {100, 1 << 30}}) {
     picture_.width_px = width;
     picture_.height_px = height;
     EXPECT_TRUE(painter_->Draw(picture_).rgb.empty());
-    EXPECT_NE(painter_->error().find(std::to_string(height)), std::string::npos) << painter_->error();
+    EXPECT_NE(painter_->error().find(std::to_string(height)), std::string::npos)
+        << painter_->error();
     EXPECT_TRUE(painter_->DrawIds(picture_).ids.empty());
   }
   Draw({.width_px = kMaxPictureSide_px, .height_px = 8});

@@ -22,7 +22,10 @@ class TimelineStripTest : public testing::Test {
 };
 
 TEST_F(TimelineStripTest, BarsStandAtTheirTimes) {
-  const StripLayout layout = Layout({.begin_s = 0, .end_s = 4, .playhead_s = 2, .rows = {{"row", {{"first", 0, 1}, {"second", 1, 3}}}}});
+  const StripLayout layout = Layout({.begin_s = 0,
+                                     .end_s = 4,
+                                     .playhead_s = 2,
+                                     .rows = {{"row", {{"first", 0, 1}, {"second", 1, 3}}}}});
   ASSERT_EQ(layout.lanes.size(), 1u);
   const StripLane& lane = layout.lanes[0];
   ASSERT_EQ(lane.bars.size(), 2u);
@@ -35,19 +38,25 @@ TEST_F(TimelineStripTest, BarsStandAtTheirTimes) {
 }
 
 TEST_F(TimelineStripTest, NarrowBarsHaveTheirNamesAbove) {
-  const StripLayout layout = Layout({.begin_s = 0, .end_s = 10, .rows = {{"row", {{"reaching", 0, 2}, {"fixation", 2, 2.1}, {"picking_up", 2.1, 2.2}}}}});
+  const StripLayout layout = Layout(
+      {.begin_s = 0,
+       .end_s = 10,
+       .rows = {{"row", {{"reaching", 0, 2}, {"fixation", 2, 2.1}, {"picking_up", 2.1, 2.2}}}}});
   const auto& bars = layout.lanes.at(0).bars;
   EXPECT_EQ(bars[0].name_place, NamePlace::kInside);
   EXPECT_EQ(bars[1].name_place, NamePlace::kAbove);
   EXPECT_LT(bars[1].name_top + bars[1].name_size_px, bars[1].rect.y + 2);
   EXPECT_GE(bars[1].name_top, layout.panel.y);
   if (bars[2].name_place == NamePlace::kAbove) {
-    EXPECT_GE(bars[2].name_left, bars[1].name_left + font_->Width("fixation", bars[1].name_size_px));
+    EXPECT_GE(bars[2].name_left,
+              bars[1].name_left + font_->Width("fixation", bars[1].name_size_px));
   }
 }
 
 TEST_F(TimelineStripTest, SegmentsThatOverlapInTimeGetLanes) {
-  const StripLayout layout = Layout({.end_s = 4, .rows = {{"contact", {{"a", 0, 2}, {"b", 1, 3}, {"c", 2, 4}}}, {"next", {{"d", 0, 4}}}}});
+  const StripLayout layout = Layout(
+      {.end_s = 4,
+       .rows = {{"contact", {{"a", 0, 2}, {"b", 1, 3}, {"c", 2, 4}}}, {"next", {{"d", 0, 4}}}}});
   ASSERT_EQ(layout.lanes.size(), 3u);
   EXPECT_EQ(layout.lanes[0].bars.size(), 2u) << "c follows a";
   EXPECT_EQ(layout.lanes[0].label, "contact");
@@ -61,7 +70,8 @@ TEST_F(TimelineStripTest, SegmentsThatOverlapInTimeGetLanes) {
 TEST_F(TimelineStripTest, PanelHoldsEverythingAndTheSceneKeepsItsShare) {
   for (const auto& [width, height] : {std::pair{1280, 720}, {960, 540}, {480, 360}, {3840, 2160}}) {
     TimelineStrip strip{.end_s = 5};
-    for (int i = 0; i < 30; ++i) strip.rows.push_back({"row " + std::to_string(i), {{"name", 1, 3}}});
+    for (int i = 0; i < 30; ++i)
+      strip.rows.push_back({"row " + std::to_string(i), {{"name", 1, 3}}});
     const StripLayout layout = Layout(strip, width, height);
     EXPECT_GE(layout.lanes.size(), 3u);
     EXPECT_LT(layout.reserved_px(), height * 0.45);
@@ -106,7 +116,13 @@ TEST_F(TimelineStripTest, NothingToShowIsNoStrip) {
 
 TEST_F(TimelineStripTest, SegmentsOutsideOrWithoutSenseAreLeftOut) {
   const double nan = std::nan("");
-  const StripLayout layout = Layout({.begin_s = 1, .end_s = 2, .playhead_s = 5, .rows = {{"row", {{"before", 0, 0.5}, {"backwards", 1.8, 1.2}, {"nan", nan, 1.5}, {"here", 1.2, 9}}}}});
+  const StripLayout layout = Layout(
+      {.begin_s = 1,
+       .end_s = 2,
+       .playhead_s = 5,
+       .rows = {
+           {"row",
+            {{"before", 0, 0.5}, {"backwards", 1.8, 1.2}, {"nan", nan, 1.5}, {"here", 1.2, 9}}}}});
   ASSERT_EQ(layout.lanes.at(0).bars.size(), 1u);
   EXPECT_LE(layout.lanes[0].bars[0].rect.right(), layout.lanes[0].track.right() + 1);
   EXPECT_TRUE(layout.playhead_label.empty()) << "the playhead is outside";

@@ -29,10 +29,12 @@ struct Extent {
 Extent ProjectedExtent(const View& view) {
   Extent extent;
   for (int i = 0; i < 8; ++i) {
-    const Vector3f p((i & 1) ? kLow.x() : kHigh.x(), (i & 2) ? kLow.y() : kHigh.y(), (i & 4) ? kLow.z() : kHigh.z());
+    const Vector3f p((i & 1) ? kLow.x() : kHigh.x(), (i & 2) ? kLow.y() : kHigh.y(),
+                     (i & 4) ? kLow.z() : kHigh.z());
     const auto pixel = ToPixel(view, p);
     if (!pixel.has_value()) return {{-9, -9}, {9, 9}};
-    const Vector2f share(pixel->x() / static_cast<float>(view.width_px), pixel->y() / static_cast<float>(view.height_px));
+    const Vector2f share(pixel->x() / static_cast<float>(view.width_px),
+                         pixel->y() / static_cast<float>(view.height_px));
     extent.low = extent.low.cwiseMin(share);
     extent.high = extent.high.cwiseMax(share);
   }
@@ -48,7 +50,8 @@ TEST(ViewTest, NamedCamerasFrameTheBoxTightlyAndCentred) {
       EXPECT_GT(extent.low.minCoeff(), 0.02f) << name << " " << width;
       EXPECT_LT(extent.high.maxCoeff(), 0.98f) << name << " " << width;
       EXPECT_GT((extent.high - extent.low).maxCoeff(), 0.8f) << name << " " << width;
-      EXPECT_NEAR(((extent.high + extent.low) / 2 - Vector2f(0.5f, 0.5f)).norm(), 0, 0.05f) << name << " " << width;
+      EXPECT_NEAR(((extent.high + extent.low) / 2 - Vector2f(0.5f, 0.5f)).norm(), 0, 0.05f)
+          << name << " " << width;
     }
   }
 }
@@ -58,16 +61,21 @@ TEST(ViewTest, CamerasLookFromWhereTheirNamesSay) {
   EXPECT_LT(NamedCamera("left", kLow, kHigh, 1.5).eye_m.x(), kLow.x());
   EXPECT_GT(NamedCamera("right", kLow, kHigh, 1.5).eye_m.x(), kHigh.x());
   EXPECT_GT(NamedCamera("top", kLow, kHigh, 1.5).eye_m.z(), 2);
-  EXPECT_EQ(NamedCamera("no such name", kLow, kHigh, 1.5).eye_m, NamedCamera("front", kLow, kHigh, 1.5).eye_m);
+  EXPECT_EQ(NamedCamera("no such name", kLow, kHigh, 1.5).eye_m,
+            NamedCamera("front", kLow, kHigh, 1.5).eye_m);
 }
 
 TEST(ViewTest, StripMovesTheMiddleUpAndKeepsProportions) {
   const Camera camera{.eye_m = {0, -2, 1}, .look_at_m = {0, 0, 1}};
-  const View whole = MakeView(camera, 800, 600, 0, SceneBounds()), part = MakeView(camera, 800, 600, 200, SceneBounds());
+  const View whole = MakeView(camera, 800, 600, 0, SceneBounds()),
+             part = MakeView(camera, 800, 600, 200, SceneBounds());
   EXPECT_NEAR((*ToPixel(whole, camera.look_at_m) - Vector2f(400, 300)).norm(), 0, 0.01f);
   EXPECT_NEAR((*ToPixel(part, camera.look_at_m) - Vector2f(400, 200)).norm(), 0, 0.01f);
-  const auto length = [](const View& view, const Vector3f& p) { return (*ToPixel(view, p) - *ToPixel(view, {0, 0, 1})).norm(); };
-  for (const View* view : {&whole, &part}) EXPECT_NEAR(length(*view, {0.1f, 0, 1}), length(*view, {0, 0, 1.1f}), 0.01f);
+  const auto length = [](const View& view, const Vector3f& p) {
+    return (*ToPixel(view, p) - *ToPixel(view, {0, 0, 1})).norm();
+  };
+  for (const View* view : {&whole, &part})
+    EXPECT_NEAR(length(*view, {0.1f, 0, 1}), length(*view, {0, 0, 1.1f}), 0.01f);
 }
 
 TEST(ViewTest, PointsBehindTheCameraHaveNoPixel) {
@@ -84,7 +92,8 @@ TEST(ViewTest, SenselessCamerasAreReplaced) {
                           {.vertical_field_of_view_deg = 180},
                           {.vertical_field_of_view_deg = nan}};
   for (const Camera& camera : cases) {
-    EXPECT_EQ(MakeView(camera, 100, 100, 0, {}).world_to_clip(), MakeView({}, 100, 100, 0, {}).world_to_clip());
+    EXPECT_EQ(MakeView(camera, 100, 100, 0, {}).world_to_clip(),
+              MakeView({}, 100, 100, 0, {}).world_to_clip());
   }
   EXPECT_TRUE(NamedCamera("front", {nan, 0, 0}, {1, 1, 1}, 1).eye_m.allFinite());
   EXPECT_TRUE(NamedCamera("top", {1, 1, 1}, {1, 1, 1}, 0).eye_m.allFinite());
