@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See check_scenario.h. Tested by tests/harness/command_line_test.cc
+// See check_scenario.h. Tested by tests/house/command_line_test.cc
 #include "harness/check_scenario.h"
 
 #include <fmt/format.h>
@@ -11,7 +11,6 @@
 #include "harness/compare.h"
 #include "harness/golden_files.h"
 #include "harness/invariants.h"
-#include "harness/latency_bound.h"
 #include "harness/pictures.h"
 #include "harness/run_output.h"
 #include "harness/run_scenario.h"
@@ -44,13 +43,21 @@ void Draw(const CheckRequest& request, const Scenario& scenario, const RunResult
   if (!drawn.error.empty()) Fail(verdict, ExitCode::kFailure, "no picture", "no picture: " + drawn.error + "\n");
 }
 
+/// A rule's head is "event NAME(...)".
+std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& program) {
+  std::map<std::string, grammar::Wait> latency;
+  for (const grammar::RuleDescription& rule : Describe(program).rules) {
+    const std::size_t name = rule.head.find(' ') + 1;
+    latency[rule.head.substr(name, rule.head.find('(') - name)] = rule.latency;
+  }
+  return latency;
+}
+
 void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, const RunResult& plain, ScenarioVerdict& verdict) {
-  const EpisodeFacts facts = {
-      .end = plain.ticks + 1,
-      .movable = MovableEntities(prepared.scenario),
-      .latency_bound = [&](const std::string& event) {
-        return LatencyBound(*prepared.program, event, plain.timeline.ticks_per_second, plain.ticks + 1);
-      }};
+  const WorldEntry& world = prepared.scenario.world;
+  EpisodeFacts facts{.end = plain.ticks + 1, .movable = MovableEntities(prepared.scenario)};
+  facts.ticks_per_frame = DefaultTolerance(world.rate_hz, world.sensing_hz) / 2;
+  facts.latency = LatencyByEvent(*prepared.program);
   Violations violations = CheckSameTimeline(watched.timeline, watched.state_hash, plain.timeline, plain.state_hash);
   for (Violation& violation : CheckInvariants(plain.timeline, facts)) violations.push_back(std::move(violation));
   std::string details;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One scenario against its golden and the invariants: run it twice (watched with recording and pictures, and plain),
 // compare, judge. What differs or has no golden leaves a pending golden behind.
-// Tested by tests/harness/command_line_test.cc
+// Tested by tests/house/command_line_test.cc
 #pragma once
 
 #include <string>

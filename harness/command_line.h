@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command line: chooses the command, explains itself, turns slips of the pen into suggestions.
-// Tested by tests/harness/command_line_test.cc
+// Tested by tests/house/command_line_test.cc
 #pragma once
 
 #include "harness/exit_code.h"

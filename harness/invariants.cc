@@ -155,15 +155,37 @@ void CheckSupportInsideContact(const Timeline& timeline, const EpisodeFacts&, st
   }
 }
 
+/// Whether the two are about a common entity at a common time (ends included).
+bool Concern(const NamedEvent& a, const NamedEvent& b) {
+  if (a.interval.begin > b.interval.end || b.interval.begin > a.interval.end) return false;
+  return std::any_of(a.roles.begin(), a.roles.end(), [&](const grammar::Role& role) {
+    return !IsAttribute(role) && std::any_of(b.roles.begin(), b.roles.end(), [&](const grammar::Role& other) {
+      return !IsAttribute(other) && other.value == role.value;
+    });
+  });
+}
+
+/// The last tick at which the event may be decided.
+Tick LatestDecision(const NamedEvent& event, const Timeline& timeline, const EpisodeFacts& facts) {
+  const auto found = facts.latency.find(event.event);
+  const grammar::Wait wait = found == facts.latency.end() ? grammar::Wait{} : found->second;
+  Tick from = event.interval.end;
+  for (const NamedEvent& other : timeline.events) {
+    if (wait.until_end_of.contains(other.event) && Concern(event, other)) from = std::max(from, other.interval.end);
+  }
+  return from + TickAt(wait.seconds, timeline.ticks_per_second) + 2 * facts.ticks_per_frame;
+}
+
 void CheckLatency(const Timeline& timeline, const EpisodeFacts& facts, std::string_view name, Violations& out) {
   for (const NamedEvent& event : timeline.events) {
-    const Tick latency = event.decided - event.interval.end;
-    const Tick bound = facts.latency_bound(event.event);
-    if (latency < 0) {
+    const Tick latest = LatestDecision(event, timeline, facts);
+    if (event.decided < event.interval.end) {
       out.push_back({name, event.decided, event.Label() + " was decided before it ended"});
-    } else if (latency > bound) {
+    } else if (event.decided > latest) {
       out.push_back({name, event.decided,
-                     fmt::format("{} was decided {} ticks after its end, the bound is {}", event.Label(), latency, bound)});
+                     fmt::format("{} was decided at {} s, by its rule it is certain at {} s", event.Label(),
+                                 SecondsText(event.decided, timeline.ticks_per_second),
+                                 SecondsText(latest, timeline.ticks_per_second))});
     }
   }
 }

@@ -4,13 +4,15 @@
 // A violation is a mistake in a grammar or in the engine. Tested by tests/harness/invariants_test.cc
 #pragma once
 
-#include <functional>
+#include <cstdint>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "grammar/describe.h"
 #include "grammar/timeline.h"
 
 namespace prehend::harness {
@@ -19,8 +21,8 @@ namespace prehend::harness {
 struct EpisodeFacts {
   grammar::Tick end = 0;           ///< first tick that no longer belongs to the episode
   std::set<std::string> movable;   ///< entities that can lose their support
-  /// Upper bound of decided - end for an event's name, ticks.
-  std::function<grammar::Tick(const std::string& event)> latency_bound;
+  grammar::Tick ticks_per_frame = 2;  ///< of sensing
+  std::map<std::string, grammar::Wait> latency;  ///< per event: what its decision may wait for after its end
 };
 
 struct Violation {

@@ -2,6 +2,7 @@
 // See prepare_run.h. Tested by tests/harness/prepare_run_test.cc
 #include "harness/prepare_run.h"
 
+#include "grammar/program.h"
 #include "harness/library_paths.h"
 #include "harness/load_grammar.h"
 
@@ -42,6 +43,7 @@ ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string&
   if (!request.grammar.empty()) scenario.value->grammar = request.grammar;
   grammar::CompileResult compiled = LoadGrammar(root, scenario.value->grammar, settings.of_grammar);
   if (!compiled.program) return {std::nullopt, std::move(compiled.diagnostics)};
+  scenario.value->grammar = compiled.program->name;
   return {PreparedRun{std::move(*scenario.value), std::move(compiled.program)}, {}};
 }
 

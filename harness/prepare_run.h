@@ -22,7 +22,7 @@ struct RunRequest {
 };
 
 struct PreparedRun {
-  Scenario scenario;  ///< its `grammar` is the one that is used
+  Scenario scenario;  ///< its `grammar` is what the one that is used calls itself
   std::shared_ptr<const grammar::Program> program;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend accept: the only thing that writes goldens. It runs the scenario itself, so that what is accepted is what this
-// build recognises now. Tested by tests/harness/command_line_test.cc
+// build recognises now. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
 
 #include "harness/accept_golden.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend check: the regression suite. Tested by tests/harness/command_line_test.cc
+// prehend check: the regression suite. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What commands share. Tested by tests/harness/command_line_test.cc
+// What commands share. Tested by tests/house/command_line_test.cc
 #include "harness/commands/command.h"
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend list. Tested by tests/harness/command_line_test.cc
+// prehend list. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend new: a commented scenario to start from. Tested by tests/harness/command_line_test.cc
+// prehend new: a commented scenario to start from. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>

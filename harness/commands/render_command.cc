@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend render. Tested by tests/harness/command_line_test.cc
+// prehend render. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "harness/commands/command.h"
 #include "harness/pictures.h"
@@ -19,6 +20,7 @@ void Declare(CLI::App& options) {
   options.add_option("--at", "the moment: EVENT.begin, EVENT.end, or seconds")->type_name("MOMENT")->expected(1);
   options.add_option("--camera", "front, left, right, top or three_quarter")->type_name("NAME")->expected(1);
   DeclareRunOptions(options);
+  DeclareFlag(options, "--json", "the run as one JSON object, with the pictures' files");
 }
 
 /// What the command line asks for instead of the scenario's own pictures, as YAML; empty when it asks for nothing.
@@ -56,7 +58,16 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 
   const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, {.record = true});
   const PictureResult drawn = Draw(options, *file, *prepared.value, run, context.root);
-  for (const WrittenPicture& picture : drawn.pictures) context.out << picture.file << "\n";
+  if (IsGiven(options, "--json")) {
+    OrderedJson json = RunJson(prepared.value->scenario, run);
+    json["pictures"] = OrderedJson::array();
+    for (const WrittenPicture& picture : drawn.pictures) {
+      json["pictures"].push_back({{"file", picture.file}, {"caption", picture.caption}});
+    }
+    context.out << json.dump(2) << "\n";
+  } else {
+    for (const WrittenPicture& picture : drawn.pictures) context.out << picture.file << "\n";
+  }
   if (!drawn.error.empty()) return Complain(context, ExitCode::kFailure, "no picture: " + drawn.error);
   if (run.status.kind == physics::RunStatus::Kind::kCompleted) return ExitCode::kAgrees;
   return Complain(context, ExitCode::kFailure, StatusText(run));

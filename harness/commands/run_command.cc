@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend run. Tested by tests/harness/command_line_test.cc
+// prehend run. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 

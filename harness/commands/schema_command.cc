@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend schema. Tested by tests/harness/command_line_test.cc
+// prehend schema. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
 
 #include "harness/commands/command.h"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend validate: reads, never runs. Tested by tests/harness/command_line_test.cc
+// prehend validate: reads, never runs. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "grammar/describe.h"
 #include "harness/commands/command.h"
 #include "harness/golden.h"
 #include "harness/load_grammar.h"
@@ -14,6 +15,7 @@ namespace {
 struct Validated {
   std::string file;
   grammar::Diagnostics diagnostics;
+  std::string description;  ///< of a grammar without errors
 };
 
 void Declare(CLI::App& options) {
@@ -28,16 +30,18 @@ grammar::Diagnostics ReadGoldenFile(const std::string& path) {
 }
 
 Validated ValidateGrammar(const std::string& name_or_path, const std::string& root) {
-  return {GrammarFile(root, name_or_path), LoadGrammar(root, name_or_path).diagnostics};
+  grammar::CompileResult compiled = LoadGrammar(root, name_or_path);
+  return {GrammarFile(root, name_or_path), std::move(compiled.diagnostics),
+          compiled.program ? Text(Describe(*compiled.program)) : ""};
 }
 
 /// Nothing when it is the name of no scenario.
 std::optional<Validated> Validate(const std::string& typed, const CLI::App& options, const CommandContext& context) {
   if (typed.ends_with(".grammar")) return ValidateGrammar(typed, context.root);
-  if (typed.ends_with(".timeline")) return Validated{typed, ReadGoldenFile(typed)};
+  if (typed.ends_with(".timeline")) return Validated{typed, ReadGoldenFile(typed), {}};
   const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return std::nullopt;
-  return Validated{file->path, PrepareRun(RequestOf(options, file->path), context.root).diagnostics};
+  return Validated{file->path, PrepareRun(RequestOf(options, file->path), context.root).diagnostics, {}};
 }
 
 nlohmann::ordered_json ToJson(const Validated& validated) {
@@ -71,7 +75,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   for (const Validated& validated : all) {
     json.push_back(ToJson(validated));
     diagnostics.insert(diagnostics.end(), validated.diagnostics.begin(), validated.diagnostics.end());
-    if (!IsGiven(options, "--json") && validated.diagnostics.empty()) context.out << "ok: " << validated.file << "\n";
+    if (!IsGiven(options, "--json") && validated.diagnostics.empty()) context.out << "ok: " << validated.file << "\n" << validated.description;
   }
   if (IsGiven(options, "--json")) context.out << nlohmann::ordered_json{{"files", json}}.dump(2) << "\n";
   return diagnostics.empty() ? ExitCode::kAgrees : Complain(context, diagnostics);

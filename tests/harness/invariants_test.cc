@@ -15,7 +15,7 @@ using grammar::Tick;
 using grammar::Timeline;
 
 NamedEvent Event(const std::string& event, std::vector<grammar::Role> roles, Tick begin, Tick end) {
-  return {.event = event, .roles = std::move(roles), .interval = {begin, end}, .decided = end + 10};
+  return {.event = event, .roles = std::move(roles), .interval = {begin, end}, .decided = end + 4};
 }
 
 NamedEvent OfHand(const std::string& event, Tick begin, Tick end) {
@@ -41,7 +41,7 @@ Timeline PickAndPlace() {
 }
 
 EpisodeFacts Facts() {
-  return {.end = 1000, .movable = {"cup"}, .latency_bound = [](const std::string&) { return Tick{60}; }};
+  return {.end = 1000, .movable = {"cup"}, .ticks_per_frame = 2, .latency = {{"grasping", {.seconds = 0.1}}, {"fixation", {.seconds = 0, .until_end_of = {"contact"}}}}};
 }
 
 NamedEvent& Find(Timeline& timeline, const std::string& event) {
@@ -98,8 +98,10 @@ const Break kBreaks[] = {
           [](Timeline& t) { Find(t, "fixation").interval.end = 199; }},
     Break{"supports_lie_inside_contacts", "supported_by(cup, table) does not lie inside a contact of the two", 0,
           [](Timeline& t) { Find(t, "contact").interval.begin = 1; }},
-    Break{"decisions_come_in_time", "grasping(hand, cup) was decided 61 ticks after its end, the bound is 60", 761,
-          [](Timeline& t) { Find(t, "grasping").decided = 761; }},
+    Break{"decisions_come_in_time", "grasping(hand, cup) was decided at 1.5688 s, by its rule it is certain at 1.5667 s", 753,
+          [](Timeline& t) { Find(t, "grasping").decided = 753; }},
+    Break{"decisions_come_in_time", "fixation(hand, cup) was decided at 0.6354 s, by its rule it is certain at 0.6333 s", 305,
+          [](Timeline& t) { Find(t, "fixation").decided = 305; }},  // its contact ends at 300
     Break{"decisions_come_in_time", "grasping(hand, cup) was decided before it ended", 699,
           [](Timeline& t) { Find(t, "grasping").decided = 699; }}};
 

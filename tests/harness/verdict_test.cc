@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// A verdict survives its way from the worker, and the worst one decides how a check ends.
+#include "harness/verdict.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace prehend::harness {
+namespace {
+
+TEST(Verdict, TravelsAsJson) {
+  const ScenarioVerdict verdict{.scenario = "slide/x", .shows = "a \"slide\"", .verdict = Verdict::kPending, .exit_code = ExitCode::kPending,
+                                .reason = "no golden yet", .details = "a\nb\n", .headroom = "h", .command = "prehend accept slide/x",
+                                .state_hash = "0x1", .ticks = 5, .seconds = 0.25, .pictures = {{"p.png", "caption"}}, .timeline_svg = "<svg/>"};
+  const auto json = ToJson(verdict);
+  EXPECT_EQ(json["verdict"], "pending");
+  EXPECT_EQ(ToJson(VerdictFromJson(nlohmann::ordered_json::parse(json.dump()))), json);
+}
+
+struct Case {
+  std::vector<ExitCode> codes;
+  ExitCode worst;
+};
+
+TEST(Verdict, TheWorstDecides) {
+  const std::vector<Case> cases = {
+      {{}, ExitCode::kNothing},
+      {{ExitCode::kAgrees, ExitCode::kAgrees}, ExitCode::kAgrees},
+      {{ExitCode::kAgrees, ExitCode::kPending}, ExitCode::kPending},
+      {{ExitCode::kPending, ExitCode::kDiffers}, ExitCode::kDiffers},
+      {{ExitCode::kBadInput, ExitCode::kDiffers}, ExitCode::kBadInput},
+      {{ExitCode::kDiffers, ExitCode::kFailure, ExitCode::kBadInput}, ExitCode::kFailure},
+  };
+  for (const Case& row : cases) {
+    std::vector<ScenarioVerdict> verdicts;
+    for (const ExitCode code : row.codes) verdicts.push_back({.exit_code = code});
+    EXPECT_EQ(WorstOf(verdicts), row.worst);
+  }
+}
+
+TEST(Verdict, AreCounted) {
+  const Tally tally = Count({{.verdict = Verdict::kPassed}, {.verdict = Verdict::kFailed}, {.verdict = Verdict::kPassed}});
+  EXPECT_EQ(tally.passed, 2);
+  EXPECT_EQ(tally.failed, 1);
+  EXPECT_EQ(tally.pending, 0);
+}
+
+}  // namespace
+}  // namespace prehend::harness
