@@ -51,6 +51,14 @@ bool Lanes::IsA(int entity, const std::string& class_name) const {
 void Lanes::BindUnguarded() {
   for (const int rule : program_.schedule) {
     if (program_.events[rule].form == Form::kTouching || program_.events[rule].guard != kNone) continue;
+    double bindings = 1;
+    for (const std::vector<bool>& role : fits_[rule]) {
+      bindings *= static_cast<double>(std::count(role.begin(), role.end(), true));
+    }
+    if (bindings > kMaxLanes) {
+      too_many_ = true;
+      return;
+    }
     Binding entities = kUnbound;
     BindRest(rule, entities, 0, kNone);
   }

@@ -110,7 +110,8 @@ class Parser {
       file.params.push_back({std::move(name), name_place, ParseSignedQuantity()});
     } else if (At("event") || At("condition") || At("symmetric")) {
       if (file.definitions.size() == kMaxDefinitions) {
-        Fail("more than " + std::to_string(kMaxDefinitions) + " definitions in one file");
+        at_ = tokens_.size() - 1;
+        FailAt(place, "more than " + std::to_string(kMaxDefinitions) + " definitions in one file");
       }
       file.definitions.push_back(ParseDefinition());
     } else if (At("grammar")) {
