@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// The monitor as its users meet it: order of events, decision ticks, wrong frames, and no allocation once it is warm.
+#include "grammar/monitor.h"
+
+#include <cstdlib>
+#include <new>
+
+#include "tests/grammar/corpus.h"
+#include "tests/grammar/scene.h"
+
+namespace {
+std::size_t allocations = 0;  // by this test binary, from its start
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const auto align = static_cast<std::size_t>(alignment);
+  if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace prehend::grammar {
+namespace {
+
+using testing::Scene;
+
+// One round of two seconds at 100 Hz: touch, grasp, lift, carry, put down, release.
+void PlayRound(Scene& scene, Monitor& monitor, Tick start, std::vector<Event>& events) {
+  for (Tick t = 0; t < 2000; t += 10) {
+    const double lift = t < 600 ? 0 : t < 1000 ? (t - 600) * 0.0004 : t < 1400 ? 0.16 : t < 1800 ? (1800 - t) * 0.0004 : 0;
+    const double speed = t >= 600 && t < 1000 ? 0.4 : t >= 1400 && t < 1800 ? -0.4 : 0;
+    scene.looks[Scene::kCup].p_WB_m.z() = lift;
+    scene.looks[Scene::kCup].v_WB_m_per_s.z() = speed;
+    scene.looks[Scene::kHand].p_WB_m = {t < 300 ? 0.3 - static_cast<double>(t) * 0.001 : 0, 0, lift};
+    scene.feeler.p_W_m = scene.looks[Scene::kHand].p_WB_m;
+    scene.hand.ahead_W = {-1, 0, 0};
+    scene.hand.trigger = t >= 300 && t < 1900 ? 1 : 0;
+    scene.touches.clear();
+    if (t >= 300 && t < 1900) scene.touches.push_back({.a = 0, .b = 1, .up_on_a = 0, .up_on_b = 0, .sensor_sets = 3});
+    if (lift == 0) scene.touches.push_back({.a = 1, .b = 2, .up_on_a = 1, .up_on_b = -1});
+    monitor.Advance(scene.At(start + t), events);
+  }
+}
+
+TEST(Monitor, AllocatesNothingOnceItIsWarm) {
+  Scene scene;
+  Monitor monitor(testing::CompileLibrary("pick_and_place"), scene.cast);
+  std::vector<Event> events;
+  events.reserve(10000);
+  scene.touches.reserve(8);
+  Tick start = 0;
+  for (; start < 40'000; start += 2000) PlayRound(scene, monitor, start, events);
+  const std::size_t warm = allocations;
+  const std::size_t seen = events.size();
+  for (; start < 80'000; start += 2000) PlayRound(scene, monitor, start, events);
+  EXPECT_EQ(allocations, warm);
+  EXPECT_GE(events.size(), seen + 20 * 6);
+  EXPECT_EQ(monitor.error(), "");
+}
+
+TEST(Monitor, GivesEventsInOrderAndNeverBeforeTheyAreCertain) {
+  Scene scene;
+  Monitor monitor(testing::CompileLibrary("pick_and_place"), scene.cast);
+  std::vector<Event> events;
+  PlayRound(scene, monitor, 0, events);
+  for (std::size_t i = 1; i < events.size(); ++i) EXPECT_LE(events[i - 1].decided, events[i].decided);
+  for (const Event& event : events) {
+    EXPECT_LT(event.interval.begin, event.interval.end);
+    EXPECT_LE(event.interval.end, event.decided);
+    EXPECT_FALSE(event.open_end);
+  }
+  const std::size_t before = events.size();
+  monitor.Finish(2000, events);
+  ASSERT_GT(events.size(), before);
+  for (std::size_t i = before; i < events.size(); ++i) EXPECT_EQ(events[i].decided, 2000);
+  EXPECT_TRUE(std::any_of(events.begin() + static_cast<std::ptrdiff_t>(before), events.end(),
+                          [](const Event& e) { return e.open_end && e.interval.end == 2000; }));
+}
+
+TEST(Monitor, TellsTheStyleOfAGrasp) {
+  Scene scene;
+  const auto program = testing::CompileLibrary("grasp");
+  Monitor monitor(program, scene.cast);
+  std::vector<Event> events;
+  scene.hand.style = 1;
+  PlayRound(scene, monitor, 0, events);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].style, 1);
+  EXPECT_EQ(events[0].interval, (Interval{300, 1900}));
+  EXPECT_EQ(NameEvents(*program, scene.cast, events).events[0].roles.back(), (Role{"style", "pinch"}));
+}
+
+TEST(Monitor, RefusesFramesThatCannotBe) {
+  const auto program = testing::CompileLibrary("contact");
+  const auto error_after = [&](auto&& spoil) {
+    Scene scene;
+    Monitor monitor(program, scene.cast);
+    std::vector<Event> events;
+    monitor.Advance(scene.At(10), events);
+    Frame frame = scene.At(20);
+    spoil(scene, frame);
+    monitor.Advance(frame, events);
+    monitor.Finish(30, events);
+    return monitor.error();
+  };
+  EXPECT_EQ(error_after([](Scene&, Frame&) {}), "");
+  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = 10; }), "the frames are not in order of time");
+  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.entities = f.entities.first(2); }),
+            "a frame shows another number of entities than the cast");
+  EXPECT_EQ(error_after([](Scene& s, Frame& f) {
+              s.touches = {{.a = 1, .b = 7}};
+              f.touches = s.touches;
+            }),
+            "a frame shows a touch of somebody not in the cast");
+}
+
+TEST(Monitor, RefusesTooManyBindings) {
+  const auto program = testing::CompileText("grammar t\nevent far(a: Thing, b: Thing, c: Thing)\n"
+                                            "  while distance(a, b) > 1 m and distance(b, c) > 1 m\n");
+  Cast cast;
+  for (int i = 0; i < 200; ++i) cast.entities.push_back({.name = std::to_string(i), .classes = {"Thing", "Entity"}});
+  const Monitor monitor(program, cast);
+  EXPECT_EQ(monitor.error(), "more bindings than this monitor can watch; give the roles narrower classes");
+}
+
+TEST(Monitor, WithoutFramesThereIsNothing) {
+  Monitor monitor(testing::CompileLibrary("pick_and_place"), Scene().cast);
+  std::vector<Event> events;
+  monitor.Finish(100, events);
+  EXPECT_TRUE(events.empty());
+}
+
+}  // namespace
+}  // namespace prehend::grammar
