@@ -49,7 +49,8 @@ class HandBuilder {
   void AddDigit(const Named<DigitEntry>& digit, std::vector<physics::HandLink>& links);
   physics::GraspStyle BuildStyle(const Named<StyleEntry>& style);
   std::vector<double> JointNumbers(const Located<PerDigit>& numbers, bool one_is_enough);
-  void CheckDigitNames(const Located<PerDigit>& numbers);
+  /// False after complaining about a digit that the hand does not have.
+  bool CheckDigitNames(const Located<PerDigit>& numbers);
 
   const HandEntry& entry_;
   Complaints& complaints_;
@@ -88,20 +89,23 @@ void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::
   }
 }
 
-void HandBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
+bool HandBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
   std::vector<std::string> names;
   for (const auto& digit : entry_.digits) names.push_back(digit.name);
+  bool good = true;
   for (const auto& given : numbers.value) {
     if (std::find(names.begin(), names.end(), given.name) != names.end()) continue;
+    good = false;
     complaints_.AddUnknownName(
         given.name_where, fmt::format("the hand has no digit '{}'", given.name), given.name, names);
   }
+  return good;
 }
 
 /// One number per joint of the hand, in the order of its links.
 std::vector<double> HandBuilder::JointNumbers(const Located<PerDigit>& numbers,
                                               bool one_is_enough) {
-  CheckDigitNames(numbers);
+  const bool names_are_right = CheckDigitNames(numbers);
   std::vector<double> all;
   for (const auto& digit : entry_.digits) {
     const std::size_t joints = digit.value.phalanges.size();
@@ -109,7 +113,8 @@ std::vector<double> HandBuilder::JointNumbers(const Located<PerDigit>& numbers,
         std::find_if(numbers.value.begin(), numbers.value.end(),
                      [&](const auto& candidate) { return candidate.name == digit.name; });
     if (given == numbers.value.end()) {
-      complaints_.Add(numbers.where, fmt::format("there is nothing for digit '{}'", digit.name));
+      if (names_are_right)
+        complaints_.Add(numbers.where, fmt::format("there is nothing for digit '{}'", digit.name));
       continue;
     }
     std::vector<double> values = given->value.value;

@@ -188,15 +188,19 @@ ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& q
   const HandModel& model = scene.hands[static_cast<std::size_t>(query.hand)].model;
   const GraspStyle& style = model.styles[static_cast<std::size_t>(query.style)];
   const HandClearance clearance(model, JointTargets(style, query.from.trigger));
-  // An offset is wanted, even into the object: it may bring the hand nearer by its length.
-  const double clear_enough_m = kClearEnough_m - query.offset_m.norm();
   ReachPlan best;
   bool have_one = false;
   for (const Candidate& candidate : Candidates(scene, now, query)) {
+    // An offset is wanted, even into the object: at the end it may bring the hand nearer by its
+    // length.
+    const double at_end_m = clearance.At(candidate.X_WH, scene, now);
+    const bool fits =
+        at_end_m >= kClearEnough_m - query.offset_m.norm() && candidate.cost < kTooWide;
+    const double clear_enough_m = std::min(kClearEnough_m, at_end_m);
     for (const Bend& bend : kBends) {
       ReachPlan plan{.segment = Way(query, candidate, bend), .toward_W = candidate.toward_W};
       plan.clearance_m = clearance.Along(plan.segment, scene, now);
-      if (plan.clearance_m >= clear_enough_m && candidate.cost < kTooWide) return plan;
+      if (fits && plan.clearance_m >= clear_enough_m) return plan;
       if (!have_one || plan.clearance_m > best.clearance_m) best = plan;
       have_one = true;
     }

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "physics/reach_planner.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/physics/tabletop.h"
+
+namespace prehend::physics {
+namespace {
+
+using Eigen::Vector3d;
+
+ReachPlan Plan(const Scene& scene, const std::string& style, Approach approach,
+               Vector3d offset_m = Vector3d::Zero()) {
+  Simulation simulation(scene, {});
+  return PlanReach(scene, simulation.snapshot(),
+                   {.object = kObject,
+                    .style = FindStyle(scene.hands[0].model, style),
+                    .approach = approach,
+                    .offset_m = offset_m,
+                    .from = {.X_WH = scene.hands[0].X_WH}});
+}
+
+TEST(ReachPlannerTest, ArrivesAlongTheApproachWithThePalmTowardsTheObject) {
+  const Scene scene = MakeScene({});
+  const ReachPlan above = Plan(scene, "wrap", Approach::kAbove);
+  EXPECT_LT((above.toward_W + Vector3d::UnitZ()).norm(), 1e-9);
+  EXPECT_GT(above.segment.curve_m[3].z(), kTop_m + 0.2);
+
+  const ReachPlan side = Plan(scene, "wrap", Approach::kSide);
+  EXPECT_NEAR(side.toward_W.z(), 0, 1e-9);
+  EXPECT_LT((side.segment.q_end * -Vector3d::UnitZ() - side.toward_W).norm(), 1e-9);
+  EXPECT_NEAR(side.segment.curve_m[3].z(), kTop_m + 0.1, 0.01);
+  // From where the hand starts, not around the object.
+  EXPECT_GT(side.toward_W.dot(Vector3d(0.4, 0.3, 0)), 0);
+}
+
+TEST(ReachPlannerTest, AutoTakesTallThingsFromTheSideAndLowOnesFromAbove) {
+  EXPECT_NEAR(Plan(MakeScene({}), "wrap", Approach::kAuto).toward_W.z(), 0, 1e-9);
+  const Scene low = MakeScene({.shape = Box{{0.06, 0.06, 0.06}}});
+  EXPECT_NEAR(Plan(low, "wrap", Approach::kAuto).toward_W.z(), -1, 1e-9);
+}
+
+TEST(ReachPlannerTest, TheGripIsSquareToATurnedBox) {
+  for (const double yaw : {0.3, 1.0, -0.6}) {
+    const Scene scene = MakeScene({.yaw_rad = yaw});
+    const ReachPlan plan = Plan(scene, "wrap", Approach::kAbove);
+    const Vector3d grip = plan.segment.q_end * Vector3d::UnitX();
+    const double relative =
+        std::remainder(std::atan2(grip.y(), grip.x()) - yaw, std::numbers::pi / 2);
+    EXPECT_NEAR(relative, 0, 1e-9) << yaw;
+  }
+}
+
+TEST(ReachPlannerTest, ALongBoxIsGrippedAcross) {
+  const Scene scene = MakeScene({.shape = Box{{0.15, 0.06, 0.06}}});
+  const ReachPlan plan = Plan(scene, "wrap", Approach::kAbove);
+  EXPECT_NEAR(std::abs((plan.segment.q_end * Vector3d::UnitX()).y()), 1, 1e-9);
+}
+
+TEST(ReachPlannerTest, TheWayIsClearFromManySidesAndEndsWithTheHandOverTheTable) {
+  for (double angle = 0; angle < 6.2; angle += 0.7) {
+    const Vector3d start(0.2 + 0.45 * std::cos(angle), 0.1 + 0.45 * std::sin(angle), 1.05);
+    for (const Approach approach : {Approach::kAbove, Approach::kSide}) {
+      const ReachPlan plan = Plan(MakeScene({.hand_at_m = start}), "wrap", approach);
+      EXPECT_GE(plan.clearance_m, 0.002) << angle;
+    }
+  }
+}
+
+TEST(ReachPlannerTest, AnOffsetMovesTheEnd) {
+  const Scene scene = MakeScene({});
+  const Vector3d offset(0, -0.15, 0);
+  const Vector3d difference = Plan(scene, "wrap", Approach::kAbove, offset).segment.curve_m[3] -
+                              Plan(scene, "wrap", Approach::kAbove).segment.curve_m[3];
+  EXPECT_LT((difference - offset).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace prehend::physics

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "physics/script_player.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/physics/tabletop.h"
+
+namespace prehend::physics {
+namespace {
+
+Beat One(StepAction action, double over_s) { return {{{0, std::move(action), over_s}}}; }
+
+/// The target at the end of a script, in a world that does not move.
+TargetState EndOf(const Scene& scene, Script script, int* ticks = nullptr) {
+  Simulation still(scene, {});
+  ScriptPlayer player(scene, std::move(script));
+  TargetState last;
+  int count = 0;
+  while (const auto* commands = player.Advance(still.snapshot())) {
+    last = commands->front().target;
+    ++count;
+  }
+  EXPECT_EQ(player.problem(), "");
+  if (ticks) *ticks = count;
+  return last;
+}
+
+TEST(ScriptPlayerTest, MovesAreRelativeAndTriggersLast) {
+  const Scene scene = MakeScene({});
+  int ticks = 0;
+  const TargetState end =
+      EndOf(scene,
+            {.beats = {One(MoveStep{{0.1, 0, 0}}, 0.5), One(TriggerStep{0.7}, 0.25),
+                       One(MoveStep{{0, 0, 0.2}}, 0.5)},
+             .settle_s = 0.25},
+            &ticks);
+  EXPECT_EQ(ticks, 720);
+  EXPECT_LT((end.X_WH.p_m - (scene.hands[0].X_WH.p_m + Eigen::Vector3d(0.1, 0, 0.2))).norm(),
+            1e-12);
+  EXPECT_NEAR(end.trigger, 0.7, 1e-12);
+  EXPECT_EQ(end.v_m_per_s, Eigen::Vector3d::Zero());
+}
+
+TEST(ScriptPlayerTest, CarryBringsTheObjectsCentreThere) {
+  const Scene scene = MakeScene({});
+  const Beat reach = One(ReachStep{"object"}, 0.5);
+  const TargetState reached = EndOf(scene, {.beats = {reach}});
+  const TargetState carried = EndOf(scene, {.beats = {reach, One(CarryStep{{0.2, -0.4}}, 0.5)}});
+  // The object stands at (0.2, 0.1).
+  EXPECT_LT((carried.X_WH.p_m - reached.X_WH.p_m - Eigen::Vector3d(0, -0.5, 0)).norm(), 1e-9);
+}
+
+TEST(ScriptPlayerTest, RetreatGoesBackTheWayItCame) {
+  const Scene scene = MakeScene({});
+  const Beat reach = One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5);
+  const TargetState reached = EndOf(scene, {.beats = {reach}});
+  const TargetState retreated = EndOf(scene, {.beats = {reach, One(RetreatStep{0.2}, 0.5)}});
+  EXPECT_LT((retreated.X_WH.p_m - reached.X_WH.p_m - Eigen::Vector3d(0, 0, 0.2)).norm(), 1e-9);
+}
+
+TEST(ScriptPlayerTest, ABeatLastsAsLongAsItsLongestStep) {
+  Scene scene = MakeScene({});
+  scene.hands.push_back({"other", LibraryHand("human_left"), {{-0.3, 0.3, 1.1}}});
+  int ticks = 0;
+  EndOf(scene, {.beats = {{{{0, WaitStep{}, 0.1}, {1, WaitStep{}, 0.3}}}}, .settle_s = 0}, &ticks);
+  EXPECT_EQ(ticks, 144);
+}
+
+TEST(ScriptPlayerTest, SayWhatIsUnknown) {
+  const Scene scene = MakeScene({});
+  Simulation still(scene, {});
+  const std::pair<StepAction, const char*> cases[] = {{ReachStep{"ghost"}, "'ghost'"},
+                                                      {ReachStep{"object", "claw"}, "'claw'"},
+                                                      {PlaceStep{"shelf"}, "'shelf'"},
+                                                      {PlaceStep{"table"}, "holds nothing"}};
+  for (const auto& [action, said] : cases) {
+    ScriptPlayer player(scene, {.beats = {One(action, 0.5)}});
+    EXPECT_EQ(player.Advance(still.snapshot()), nullptr);
+    EXPECT_NE(player.problem().find(said), std::string::npos) << player.problem();
+    EXPECT_EQ(player.problem_hand(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace prehend::physics
