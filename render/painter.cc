@@ -83,19 +83,20 @@ LabelRequest RequestLabel(const std::string& text, const Color& color, const Bou
 
 std::vector<LabelRequest> RequestLabels(const Picture& picture, const Plan& plan) {
   std::vector<LabelRequest> requests;
-  const auto request = [&](const std::vector<std::string>& labels, int first_object,
-                           const auto& color_of) {
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      const std::size_t object = first_object + i;
-      if (labels[i].empty() || object >= plan.list.objects.size()) continue;
-      requests.push_back(
-          RequestLabel(labels[i], color_of(i), plan.list.objects[object].bounds, plan.view));
+  // Labels beyond `count` name things that the scene does not have.
+  const auto request = [&](const std::vector<std::string>& labels, std::size_t count,
+                           int first_object, const auto& color_of) {
+    for (std::size_t i = 0; i < std::min(labels.size(), count); ++i) {
+      if (labels[i].empty()) continue;
+      const Bounds& bounds = plan.list.objects[first_object + i].bounds;
+      requests.push_back(RequestLabel(labels[i], color_of(i), bounds, plan.view));
     }
   };
   if (picture.scene == nullptr) return requests;
-  request(picture.body_labels, plan.list.first_body,
+  request(picture.body_labels, picture.scene->bodies.size(), plan.list.first_body,
           [&](std::size_t i) { return BodyColor(picture, i); });
-  request(picture.hand_labels, plan.list.first_hand, [](std::size_t) { return kSkinColor; });
+  request(picture.hand_labels, picture.scene->hands.size(), plan.list.first_hand,
+          [](std::size_t) { return kSkinColor; });
   return requests;
 }
 

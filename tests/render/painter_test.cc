@@ -133,6 +133,13 @@ TEST_F(PainterTest, StripIsDrawnInItsExactColours) {
   EXPECT_EQ(PixelsExactly(Draw(picture_), blue), 0);
 }
 
+TEST_F(PainterTest, LabelsOfThingsThatTheSceneLacksAreIgnored) {
+  const Image plain = Draw(picture_);
+  picture_.body_labels.resize(scene_.bodies.size() + 1, "nobody");
+  picture_.hand_labels.resize(scene_.hands.size() + 1, "nobody");
+  EXPECT_EQ(PixelsThatDiffer(plain, Draw(picture_)), 0);
+}
+
 TEST_F(PainterTest, LabelsTitleAndMarkersAreDrawn) {
   const Image plain = Draw(picture_);
   const auto changed = [&](const auto& change) {
