@@ -23,7 +23,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -69,7 +68,8 @@ Format<double> Number(double lowest, double highest);
 Format<bool> Flag();
 /// One or more lines for people, not empty.
 Format<std::string> Text(std::size_t max_length = 500);
-/// A string that matches the ECMAScript `pattern` as a whole; `wanted` describes it: "a name like 'milk_carton'".
+/// A string that matches `pattern` as a whole; `wanted` describes it: "a name like 'milk_carton'". The pattern must mean
+/// the same to POSIX (the reader) and to ECMAScript (the schema).
 Format<std::string> Word(const std::string& pattern, const std::string& wanted, std::size_t max_length = 64);
 /// snake_case, as entities, actors and files are called.
 Format<std::string> Identifier();

@@ -6,7 +6,6 @@
 
 #include <concepts>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,11 +44,11 @@ template <class T>
 class Record {
  public:
   /// `noun` is how complaints call it: "a box".
-  explicit Record(std::string noun) : state_(std::make_shared<State>()) { state_->rules.noun = std::move(noun); }
+  explicit Record(std::string noun) { state_.rules.noun = std::move(noun); }
 
   /// Complaints call it by its key: "entity 'milk'" for noun "entity".
   Record& NamedByKey() {
-    state_->rules.named_by_key = true;
+    state_.rules.named_by_key = true;
     return *this;
   }
   template <class M, class F>
@@ -62,23 +61,23 @@ class Record {
     return Add(key, false, member, std::move(format), doc);
   }
   Record& ExactlyOneOf(std::vector<std::string> keys) {
-    state_->rules.exactly_one.push_back(std::move(keys));
+    state_.rules.exactly_one.push_back(std::move(keys));
     return *this;
   }
   Record& AtMostOneOf(std::vector<std::string> keys) {
-    state_->rules.at_most_one.push_back(std::move(keys));
+    state_.rules.at_most_one.push_back(std::move(keys));
     return *this;
   }
   /// A rule across fields, checked when all of them are well-formed. The node is the mapping.
   Record& Check(std::function<void(const YamlNode&, const T&, Complaints&)> rule) {
-    state_->checks.push_back(std::move(rule));
+    state_.checks.push_back(std::move(rule));
     return *this;
   }
 
   Format<T> format() const {
-    return {.schema = state_->rules.Schema(),
+    return {.schema = state_.rules.Schema(),
             .read = [state = state_](const YamlNode& node, Complaints& complaints,
-                                     T& value) { return Read(*state, node, complaints, value); },
+                                     T& value) { return Read(state, node, complaints, value); },
             .show = {}};
   }
 
@@ -118,8 +117,8 @@ class Record {
     Json schema = {{"description", doc}};
     schema.update(format.schema);
     if (!required) ShowDefault(T{}.*member, format, schema);
-    state_->rules.fields.push_back({key, required, std::move(schema)});
-    state_->readers.push_back([member, format](const YamlNode& node, Complaints& complaints, T& value) {
+    state_.rules.fields.push_back({key, required, std::move(schema)});
+    state_.readers.push_back([member, format](const YamlNode& node, Complaints& complaints, T& value) {
       F read{};
       if constexpr (std::same_as<M, F>) read = value.*member;  // keeps what an inner record does not mention
       if (!format.read(node, complaints, read)) return false;
@@ -143,7 +142,7 @@ class Record {
     return good;
   }
 
-  std::shared_ptr<State> state_;
+  State state_;
 };
 
 /// A record read as one alternative of a variant.
