@@ -104,19 +104,22 @@ int LastIdleEnd(const Recording& recording, const OracleSettings& settings, int 
 
 }  // namespace
 
-int ApproachBegin(std::span<const DistanceAt> path, double dead_band_m, double pause_m_per_s) {
+int ApproachBegin(std::span<const DistanceAt> path, double dead_band_m,
+                  const OracleSettings& settings) {
   const auto away_m = [&](int from, int to) { return path[to].distance_m - path[from].distance_m; };
-  int turn = static_cast<int>(path.size()) - 1;
-  int retreat = turn;
+  const auto duration_s = [&](int from, int to) { return path[to].t_s - path[from].t_s; };
+  const int last = static_cast<int>(path.size()) - 1;
+  int turn = last, retreat = last;
   while (retreat >= 0 && away_m(retreat, turn) <= dead_band_m) {
-    if (away_m(retreat, turn) <= 0) turn = retreat;
+    if (away_m(retreat, turn) < 0) turn = retreat;
     --retreat;
   }
   if (retreat < 0) return 0;
-  while (turn - 1 > retreat &&
-         away_m(turn - 1, turn) <= pause_m_per_s * (path[turn].t_s - path[turn - 1].t_s))
-    --turn;
-  return turn;
+  int back = turn;
+  while (back < last &&
+         away_m(back + 1, back) <= settings.idle_speed_m_per_s * duration_s(back, back + 1))
+    ++back;
+  return duration_s(turn, back) > settings.turn_pause_s ? back : turn;
 }
 
 double SurfaceDistance(const physics::HandModel& model, const physics::HandState& hand,
@@ -152,7 +155,7 @@ int ReachBegin(const Recording& recording, const OracleSettings& settings, int h
     path.push_back(
         {recording.Seconds(begin, frame),
          SurfaceDistance(model, recording.hand(hand, frame), shape, recording.body(body, frame))});
-  return begin + ApproachBegin(path, settings.reach_dead_band_m, settings.idle_speed_m_per_s);
+  return begin + ApproachBegin(path, settings.reach_dead_band_m, settings);
 }
 
 }  // namespace prehend::harness::oracle

@@ -16,9 +16,9 @@ struct DistanceAt {
 
 /// Where the last uninterrupted approach to the end of `path` begins: an index. Going away by up to
 /// `dead_band_m` does not interrupt. After a longer retreat the approach begins at the turning
-/// point; if the retreat ends in a pause (slower than `pause_m_per_s`), then with the pause: from
-/// there on nothing moves away.
-int ApproachBegin(std::span<const DistanceAt> path, double dead_band_m, double pause_m_per_s);
+/// point; if the hand pauses there, when it returns.
+int ApproachBegin(std::span<const DistanceAt> path, double dead_band_m,
+                  const OracleSettings& settings);
 
 /// Between the surfaces of the hand (palm and links) and of the body, metres; 0 when they touch or
 /// overlap.

@@ -123,8 +123,7 @@ class Carrier {
     std::vector<DistanceAt> path;
     for (int frame = near; frame < landing; ++frame)
       path.push_back({recording_.Seconds(near, frame), (place(frame) - region.anchor).norm()});
-    const int begin =
-        ApproachBegin(path, settings_.put_down_dead_band_m, settings_.idle_speed_m_per_s);
+    const int begin = ApproachBegin(path, settings_.put_down_dead_band_m, settings_);
     return Span{near + begin, landing};
   }
 

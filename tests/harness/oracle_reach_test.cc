@@ -67,16 +67,16 @@ TEST(OracleReach, BeginsAnewAtTheTurningPointOfARetreat) {
   }
 }
 
-TEST(OracleReach, BeginsWithThePauseThatEndsARetreatEvenIfTheHandCreeps) {
+TEST(OracleReach, BeginsAtTheReturnWhenARetreatEndsInAPauseEvenIfTheHandCreeps) {
   for (const double creep_m_per_s : {-0.005, 0.005}) {
     Stage stage;
     MoveHandTo(stage, 0.2);
     MoveHandTo(stage, 0.1);
-    const Tick pause = stage.now();
     stage.Play(0.4, {creep_m_per_s, 0, 0});
+    const Tick back = stage.now();
     MoveHandTo(stage, 0.45);
     const Tick touch = Grasp(stage);
-    ExpectNear(Of("reaching(hand, cup)", stage.Truth()), {{pause, touch}});
+    ExpectNear(Of("reaching(hand, cup)", stage.Truth()), {{back, touch}});
   }
 }
 
