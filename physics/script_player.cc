@@ -12,9 +12,11 @@ namespace prehend::physics {
 namespace {
 
 /// How far below the first contact the target goes when an object is put down, so that it truly
-/// stands before the hand opens. The palm's spring makes 5 N of it; more would squash, less can
-/// leave the object hanging.
+/// stands before the hand opens. The palm's spring makes 5 N of it; more would squash.
 constexpr double kPress_m = 0.002;
+/// The palm's integral carries the object's weight and takes a second to forget it: the target goes
+/// lower by what the weight stretches the palm's spring, at most this much.
+constexpr double kMostSpring_m = 0.01;
 /// Putting down is over after this share of its time; in the rest the object settles.
 constexpr double kLoweringShare = 0.85;
 
@@ -162,7 +164,12 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
     const auto h = static_cast<std::size_t>(held), s = static_cast<std::size_t>(support);
     const Eigen::AlignedBox3d object = WorldBounds(scene_.bodies[h], now_.bodies[h].X_WB);
     const double drop = object.min().z() - TopBelow(scene_.bodies[s], now_.bodies[s].X_WB, object);
-    MoveBy({0, 0, -drop - kPress_m}, kLoweringShare * step_.over_s);
+    const double stiffness =
+        scene_.hands[static_cast<std::size_t>(step_.hand)].model.translation.proportional;
+    const double spring = std::min(
+        scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / std::max(stiffness, 1.0),
+        kMostSpring_m);
+    MoveBy({0, 0, -drop - kPress_m - spring}, kLoweringShare * step_.over_s);
   }
 }
 
