@@ -461,7 +461,7 @@ bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Builtin& bu
                              int& next_role, Typed& result) {
   switch (wanted) {
     case Argument::kPosition: {
-      if (builtin.op == Op::kInSphere && next_node == 0 && arg.kind == Expr::Kind::kName && FindRole(arg.text) != kNone) {
+      if (node.op == Op::kInSphere && next_node == 0 && arg.kind == Expr::Kind::kName && FindRole(arg.text) != kNone) {
         node.op = Op::kBoxInSphere;
         node.roles[next_role++] = FindRole(arg.text);
         role_used_[node.roles[0]] = true;
