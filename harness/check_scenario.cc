@@ -43,12 +43,12 @@ void Draw(const CheckRequest& request, const Scenario& scenario, const RunResult
   if (!drawn.error.empty()) Fail(verdict, ExitCode::kFailure, "no picture", "no picture: " + drawn.error + "\n");
 }
 
-/// A rule's head is "event NAME(...)".
+/// A rule's head is "event NAME(...)", or "symmetric event NAME(...)".
 std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& program) {
   std::map<std::string, grammar::Wait> latency;
   for (const grammar::RuleDescription& rule : Describe(program).rules) {
-    const std::size_t name = rule.head.find(' ') + 1;
-    latency[rule.head.substr(name, rule.head.find('(') - name)] = rule.latency;
+    const std::string before_roles = rule.head.substr(0, rule.head.find('('));
+    latency[before_roles.substr(before_roles.rfind(' ') + 1)] = rule.latency;
   }
   return latency;
 }
