@@ -14,12 +14,21 @@
 #include "harness/pictures.h"
 #include "harness/run_output.h"
 #include "harness/run_scenario.h"
+#include "harness/shell_word.h"
 #include "harness/timeline_svg.h"
 
 namespace prehend::harness {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// The options of the command line that ask for these changes.
+std::string ChangesText(const RunRequest& changes) {
+  std::string text;
+  if (!changes.grammar.empty()) text += " --grammar " + ShellWord(changes.grammar);
+  for (const std::string& setting : changes.settings) text += " --set " + ShellWord(setting);
+  return text;
+}
 
 /// Lowers a verdict; the first reason found is the one that is told in one line.
 void Fail(ScenarioVerdict& verdict, ExitCode code, const std::string& reason, const std::string& details = {}) {
@@ -103,18 +112,18 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
     return pairing.agreement != Agreement::kMatched;
   });
   Fail(verdict, ExitCode::kDiffers, fmt::format("{} of {} events differ from the golden", differing, comparison.pairings.size()),
-       DifferenceText(comparison, ExplainCommand(request.id)));
+       DifferenceText(comparison, ExplainCommand(request.id, request.run)));
 }
 
 }  // namespace
 
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
   ScenarioVerdict verdict{.scenario = request.id, .shows = {}, .verdict = Verdict::kPassed};
-  verdict.command = RepeatCommand(request.id);
+  verdict.command = RepeatCommand(request.id, request.run);
   const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root);
   if (!prepared.value) {
     Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(prepared.diagnostics));
-    verdict.command = "prehend validate " + request.id;
+    verdict.command = "prehend validate " + request.id + ChangesText(request.run);
     return verdict;
   }
   const Scenario& scenario = prepared.value->scenario;
@@ -128,7 +137,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
 
   if (plain.status.kind != physics::RunStatus::Kind::kCompleted) {
     Fail(verdict, ExitCode::kFailure, "the simulation failed", StatusText(plain) + "\n");
-    verdict.command = ExplainCommand(request.id);
+    verdict.command = ExplainCommand(request.id, request.run);
     return verdict;
   }
   JudgeInvariants(*prepared.value, watched, plain, verdict);
@@ -136,8 +145,12 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   return verdict;
 }
 
-std::string ExplainCommand(const std::string& id) { return "prehend run " + id; }
+std::string ExplainCommand(const std::string& id, const RunRequest& changes) {
+  return "prehend run " + id + ChangesText(changes);
+}
 
-std::string RepeatCommand(const std::string& id) { return "prehend check " + id; }
+std::string RepeatCommand(const std::string& id, const RunRequest& changes) {
+  return "prehend check " + id + ChangesText(changes);
+}
 
 }  // namespace prehend::harness

@@ -23,10 +23,11 @@ struct CheckRequest {
 /// Never fails: what goes wrong is the verdict.
 ScenarioVerdict CheckScenario(const CheckRequest& request);
 
-/// The command that shows a scenario's run again; every difference ends with it.
-std::string ExplainCommand(const std::string& id);
+/// The command that shows a scenario's run again, with the grammar and settings of `changes`; every difference ends
+/// with it.
+std::string ExplainCommand(const std::string& id, const RunRequest& changes);
 
 /// The command that repeats a verdict.
-std::string RepeatCommand(const std::string& id);
+std::string RepeatCommand(const std::string& id, const RunRequest& changes);
 
 }  // namespace prehend::harness

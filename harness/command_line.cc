@@ -12,6 +12,7 @@
 #include <iostream>
 
 #include "harness/commands/command.h"
+#include "harness/shell_word.h"
 
 namespace prehend::harness {
 namespace {
@@ -33,19 +34,9 @@ std::string Today() {
   return fmt::format("{:04}-{:02}-{:02}", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday);
 }
 
-/// As it could be pasted into a shell.
-std::string Quoted(std::string_view argument) {
-  constexpr std::string_view kHarmless =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,@%+";
-  if (!argument.empty() && argument.find_first_not_of(kHarmless) == argument.npos) return std::string(argument);
-  std::string quoted = "'";
-  for (const char c : argument) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string CommandLineText(int argc, const char* const* argv) {
   std::string text = "prehend";
-  for (int i = 1; i < argc; ++i) text += " " + Quoted(argv[i]);
+  for (int i = 1; i < argc; ++i) text += " " + ShellWord(argv[i]);
   return text;
 }
 

@@ -48,7 +48,7 @@ void ShowDifference(const std::optional<Golden>& old, const Scenario& scenario, 
   }
   const Comparison comparison =
       Compare(*old, run.timeline, DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz));
-  const std::string text = DifferenceText(comparison, ExplainCommand(id));
+  const std::string text = DifferenceText(comparison, ExplainCommand(id, {}));
   context.out << (text.empty() ? "differs within tolerance only\n" : text);
 }
 

@@ -29,7 +29,7 @@ constexpr double kDefaultTimeLimit_s = 120;
 constexpr int kMaxJobs = 256;
 
 void Declare(CLI::App& options) {
-  options.add_option("names", "names, skill/name or globs; nothing: all")->expected(-1);
+  options.add_option("names", "names, skill/name or globs; nothing: all")->expected(-1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   options.add_option("--filter", "only those that match this glob, or have tag:NAME")->type_name("GLOB|tag:NAME")->expected(1);
   options.add_option("--jobs,-j", "processes at a time; otherwise one per core")->type_name("N")->expected(1)->check(CLI::Range(1, kMaxJobs));
   options.add_option("--time-limit", "seconds that one scenario may take; otherwise 120")->type_name("S")->expected(1)->check(CLI::Range(0.1, 86400.0));
@@ -50,7 +50,7 @@ ScenarioVerdict OrphanVerdict(const std::string& id, const GoldenFiles& files) {
           .command = "prehend check"};
 }
 
-ScenarioVerdict VerdictOf(const std::string& id, const WorkerResult& result) {
+ScenarioVerdict VerdictOf(const CLI::App& options, const std::string& id, const WorkerResult& result) {
   if (result.finished) {
     ScenarioVerdict verdict = VerdictFromJson(nlohmann::ordered_json::parse(result.output));
     verdict.seconds = result.seconds;
@@ -63,7 +63,7 @@ ScenarioVerdict VerdictOf(const std::string& id, const WorkerResult& result) {
           .reason = "its process ended: " + result.reason,
           .details = {},
           .headroom = {},
-          .command = ExplainCommand(id),
+          .command = ExplainCommand(id, RequestOf(options, {})),
           .seconds = result.seconds};
 }
 
@@ -93,7 +93,7 @@ std::vector<ScenarioVerdict> CheckAll(const CLI::App& options, const CommandCont
   if (context.progress) context.err << "\r\033[K" << std::flush;
 
   std::vector<ScenarioVerdict> verdicts;
-  for (std::size_t i = 0; i < results.size(); ++i) verdicts.push_back(VerdictOf(ids[i], results[i]));
+  for (std::size_t i = 0; i < results.size(); ++i) verdicts.push_back(VerdictOf(options, ids[i], results[i]));
   for (const std::string& orphan : selection.orphans) verdicts.push_back(OrphanVerdict(orphan, GoldenFiles(context.root)));
   return verdicts;
 }

@@ -19,7 +19,9 @@ struct Validated {
 };
 
 void Declare(CLI::App& options) {
-  options.add_option("files", "scenarios (names or files), .grammar or .timeline files; nothing: all scenarios")->expected(-1);
+  options.add_option("files", "scenarios (names or files), .grammar or .timeline files; nothing: all scenarios")
+      ->expected(-1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   DeclareRunOptions(options);
   DeclareFlag(options, "--json", "one JSON object");
 }
