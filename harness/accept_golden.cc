@@ -17,7 +17,8 @@ void MoveTo(Lines& to, Lines& from) {
   from.clear();
 }
 
-/// The events of the comparison's actual side, in order of time; each takes its partner's comments and tolerance.
+/// The events of the comparison's actual side, in order of time; each takes its partner's comments
+/// and tolerance.
 void TakeOver(Golden& golden, const Golden& old, const grammar::Timeline& recognised) {
   Lines homeless;
   for (const Pairing& pairing : Compare(old, recognised, 0).pairings) {
@@ -33,12 +34,14 @@ void TakeOver(Golden& golden, const Golden& old, const grammar::Timeline& recogn
     golden.events.push_back(std::move(line));
   }
   golden.closing_comments = std::move(homeless);
-  golden.closing_comments.insert(golden.closing_comments.end(), old.closing_comments.begin(), old.closing_comments.end());
+  golden.closing_comments.insert(golden.closing_comments.end(), old.closing_comments.begin(),
+                                 old.closing_comments.end());
 }
 
 }  // namespace
 
-Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised, const Proposal& proposal) {
+Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
+                     const Proposal& proposal) {
   Golden golden{.scenario = proposal.scenario, .grammar = proposal.grammar};
   golden.ticks_per_second = recognised.ticks_per_second;
   if (old) {
@@ -48,19 +51,23 @@ Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& 
   }
   if (!proposal.derived.empty()) golden.derived = proposal.derived;
   if (proposal.acceptance) golden.accepted.push_back(*proposal.acceptance);
-  TakeOver(golden, old.value_or(Golden{.ticks_per_second = recognised.ticks_per_second}), recognised);
+  TakeOver(golden, old.value_or(Golden{.ticks_per_second = recognised.ticks_per_second}),
+           recognised);
   for (GoldenEvent& line : golden.events) line.event.decided = 0;
-  std::stable_sort(golden.events.begin(), golden.events.end(),
-                   [](const GoldenEvent& a, const GoldenEvent& b) { return ComesBefore(a.event, b.event); });
+  std::stable_sort(
+      golden.events.begin(), golden.events.end(),
+      [](const GoldenEvent& a, const GoldenEvent& b) { return ComesBefore(a.event, b.event); });
   return golden;
 }
 
 bool SaysTheSame(const Golden& golden, const grammar::Timeline& recognised) {
   if (golden.ticks_per_second != recognised.ticks_per_second) return false;
   const Comparison comparison = Compare(golden, recognised, 0);
-  return std::all_of(comparison.pairings.begin(), comparison.pairings.end(), [](const Pairing& pairing) {
-    return pairing.agreement == Agreement::kMatched && pairing.begin_offset == 0 && pairing.end_offset == 0;
-  });
+  return std::all_of(comparison.pairings.begin(), comparison.pairings.end(),
+                     [](const Pairing& pairing) {
+                       return pairing.agreement == Agreement::kMatched &&
+                              pairing.begin_offset == 0 && pairing.end_offset == 0;
+                     });
 }
 
 }  // namespace prehend::harness

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The golden that a run proposes: the recognised events, with everything that people wrote into the old one kept.
-// Tested by tests/harness/accept_golden_test.cc
+// The golden that a run proposes: the recognised events, with everything that people wrote into the
+// old one kept. Tested by tests/harness/accept_golden_test.cc
 #pragma once
 
 #include <optional>
@@ -20,9 +20,10 @@ struct Proposal {
   std::optional<Acceptance> acceptance;  ///< empty for a pending file
 };
 
-/// Comments and tolerances stay with the event they belong to; comments above events that are gone move down to the
-/// next one.
-Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised, const Proposal& proposal);
+/// Comments and tolerances stay with the event they belong to; comments above events that are gone
+/// move down to the next one.
+Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
+                     const Proposal& proposal);
 
 /// Whether the golden's events are exactly these, tolerances aside.
 bool SaysTheSame(const Golden& golden, const grammar::Timeline& recognised);

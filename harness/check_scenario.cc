@@ -31,7 +31,8 @@ std::string ChangesText(const RunRequest& changes) {
 }
 
 /// Lowers a verdict; the first reason found is the one that is told in one line.
-void Fail(ScenarioVerdict& verdict, ExitCode code, const std::string& reason, const std::string& details = {}) {
+void Fail(ScenarioVerdict& verdict, ExitCode code, const std::string& reason,
+          const std::string& details = {}) {
   verdict.details += details;
   if (verdict.verdict == Verdict::kFailed) return;
   verdict.verdict = Verdict::kFailed;
@@ -39,17 +40,20 @@ void Fail(ScenarioVerdict& verdict, ExitCode code, const std::string& reason, co
   verdict.reason = reason;
 }
 
-void Draw(const CheckRequest& request, const Scenario& scenario, const RunResult& run, ScenarioVerdict& verdict) {
+void Draw(const CheckRequest& request, const Scenario& scenario, const RunResult& run,
+          ScenarioVerdict& verdict) {
   if (!request.pictures || !CanDrawPictures()) return;
   const fs::path folder = fs::path(request.report_folder) / "pictures" / scenario.skill;
   std::error_code error;
   fs::create_directories(folder, error);
   const PictureResult drawn = DrawPictures(scenario, run, folder.string());
   for (const WrittenPicture& picture : drawn.pictures) {
-    const std::string file = fs::path(picture.file).lexically_relative(request.report_folder).generic_string();
+    const std::string file =
+        fs::path(picture.file).lexically_relative(request.report_folder).generic_string();
     verdict.pictures.push_back({.file = file, .caption = picture.caption});
   }
-  if (!drawn.error.empty()) Fail(verdict, ExitCode::kFailure, "no picture", "no picture: " + drawn.error + "\n");
+  if (!drawn.error.empty())
+    Fail(verdict, ExitCode::kFailure, "no picture", "no picture: " + drawn.error + "\n");
 }
 
 /// A rule's head is "event NAME(...)", or "symmetric event NAME(...)".
@@ -62,13 +66,16 @@ std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& prog
   return latency;
 }
 
-void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, const RunResult& plain, ScenarioVerdict& verdict) {
+void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, const RunResult& plain,
+                     ScenarioVerdict& verdict) {
   const WorldEntry& world = prepared.scenario.world;
   EpisodeFacts facts{.end = plain.ticks + 1, .movable = MovableEntities(prepared.scenario)};
   facts.ticks_per_frame = DefaultTolerance(world.rate_hz, world.sensing_hz) / 2;
   facts.latency = LatencyByEvent(*prepared.program);
-  Violations violations = CheckSameTimeline(watched.timeline, watched.state_hash, plain.timeline, plain.state_hash);
-  for (Violation& violation : CheckInvariants(plain.timeline, facts)) violations.push_back(std::move(violation));
+  Violations violations =
+      CheckSameTimeline(watched.timeline, watched.state_hash, plain.timeline, plain.state_hash);
+  for (Violation& violation : CheckInvariants(plain.timeline, facts))
+    violations.push_back(std::move(violation));
   std::string details;
   for (const Violation& violation : violations) {
     details += "violated: " + Text(violation, plain.timeline.ticks_per_second) + "\n";
@@ -76,25 +83,28 @@ void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, cons
   if (!violations.empty()) Fail(verdict, ExitCode::kDiffers, "invariant violated", details);
 }
 
-void LeavePending(const CheckRequest& request, const PreparedRun& prepared, const std::optional<Golden>& golden,
-                  const RunResult& run) {
+void LeavePending(const CheckRequest& request, const PreparedRun& prepared,
+                  const std::optional<Golden>& golden, const RunResult& run) {
   if (!request.write_pending) return;
-  const Proposal proposal = {
-      .scenario = request.id, .grammar = prepared.scenario.grammar, .derived = {}, .acceptance = {}};
+  const Proposal proposal = {.scenario = request.id,
+                             .grammar = prepared.scenario.grammar,
+                             .derived = {},
+                             .acceptance = {}};
   // Whether it could be written is only news to `accept`, which runs the scenario itself.
   (void)GoldenFiles(request.root).WritePending(ProposeGolden(golden, run.timeline, proposal));
 }
 
-void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared, const RunResult& run,
-                        ScenarioVerdict& verdict) {
+void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared,
+                        const RunResult& run, ScenarioVerdict& verdict) {
   const ReadResult<Golden> golden = GoldenFiles(request.root).ReadGoldenOf(request.id);
   if (!golden.diagnostics.empty()) {
-    return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read", Format(golden.diagnostics));
+    return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read",
+                Format(golden.diagnostics));
   }
   const WorldEntry& world = prepared.scenario.world;
   const Comparison comparison =
-      Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}), run.timeline,
-              DefaultTolerance(world.rate_hz, world.sensing_hz));
+      Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
+              run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
   verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1);
   if (!golden.value) {
     LeavePending(request, prepared, golden.value, run);
@@ -108,10 +118,11 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
   verdict.headroom = HeadroomText(comparison);
   if (comparison.Agrees()) return GoldenFiles(request.root).RemovePending(request.id);
   LeavePending(request, prepared, golden.value, run);
-  const auto differing = std::count_if(comparison.pairings.begin(), comparison.pairings.end(), [](const Pairing& pairing) {
-    return pairing.agreement != Agreement::kMatched;
-  });
-  Fail(verdict, ExitCode::kDiffers, fmt::format("{} of {} events differ from the golden", differing, comparison.pairings.size()),
+  const auto differing = std::count_if(
+      comparison.pairings.begin(), comparison.pairings.end(),
+      [](const Pairing& pairing) { return pairing.agreement != Agreement::kMatched; });
+  Fail(verdict, ExitCode::kDiffers,
+       fmt::format("{} of {} events differ from the golden", differing, comparison.pairings.size()),
        DifferenceText(comparison, ExplainCommand(request.id, request.run)));
 }
 

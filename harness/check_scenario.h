@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One scenario against its golden and the invariants: run it twice (watched with recording and pictures, and plain),
-// compare, judge. What differs or has no golden leaves a pending golden behind.
-// Tested by tests/house/command_line_test.cc
+// One scenario against its golden and the invariants: run it twice (watched with recording and
+// pictures, and plain), compare, judge. What differs or has no golden leaves a pending golden
+// behind. Tested by tests/house/command_line_test.cc
 #pragma once
 
 #include <string>
@@ -13,9 +13,9 @@ namespace prehend::harness {
 
 struct CheckRequest {
   RunRequest run;
-  std::string id;               ///< skill/name
-  std::string root;             ///< the project's
-  std::string report_folder;    ///< pictures go to its folder `pictures`
+  std::string id;             ///< skill/name
+  std::string root;           ///< the project's
+  std::string report_folder;  ///< pictures go to its folder `pictures`
   bool pictures = true;
   bool write_pending = true;
 };
@@ -23,8 +23,8 @@ struct CheckRequest {
 /// Never fails: what goes wrong is the verdict.
 ScenarioVerdict CheckScenario(const CheckRequest& request);
 
-/// The command that shows a scenario's run again, with the grammar and settings of `changes`; every difference ends
-/// with it.
+/// The command that shows a scenario's run again, with the grammar and settings of `changes`; every
+/// difference ends with it.
 std::string ExplainCommand(const std::string& id, const RunRequest& changes);
 
 /// The command that repeats a verdict.

@@ -18,8 +18,8 @@ namespace prehend::harness {
 namespace {
 
 std::vector<Command> Commands() {
-  return {ListCommand(),  ValidateCommand(), RunCommand(), CheckCommand(),
-          AcceptCommand(), RenderCommand(),  NewCommand(), SchemaCommand()};
+  return {ListCommand(),   ValidateCommand(), RunCommand(), CheckCommand(),
+          AcceptCommand(), RenderCommand(),   NewCommand(), SchemaCommand()};
 }
 
 bool IsSet(const char* variable) {
@@ -46,7 +46,8 @@ std::string Suggestion(const std::string& typed, const std::vector<std::string>&
 }
 
 ExitCode UsageError(const std::string& message, const std::string& command) {
-  std::cerr << fmt::format("prehend: {}\n  see: prehend {}--help\n", message, command.empty() ? "" : command + " ");
+  std::cerr << fmt::format("prehend: {}\n  see: prehend {}--help\n", message,
+                           command.empty() ? "" : command + " ");
   return ExitCode::kBadInput;
 }
 
@@ -59,7 +60,8 @@ std::vector<std::string> LongOptions(const CLI::App& app) {
 }
 
 void Declare(CLI::App& app, const std::vector<Command>& commands) {
-  app.description("Simulated manipulation, segmented by activity grammars, compared with goldens, pictured.");
+  app.description(
+      "Simulated manipulation, segmented by activity grammars, compared with goldens, pictured.");
   app.footer(
       "Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 simulation or internal failure,\n"
       "4 nothing selected or found, 5 goldens wait for acceptance.");
@@ -79,13 +81,17 @@ void Declare(CLI::App& app, const std::vector<Command>& commands) {
 }
 
 /// What nobody declared, as a suggestion.
-ExitCode ComplainAboutExtra(const CLI::App& app, const std::string& extra, const std::string& command) {
-  if (!extra.starts_with('-')) return UsageError(fmt::format("unexpected argument '{}'", extra), command);
+ExitCode ComplainAboutExtra(const CLI::App& app, const std::string& extra,
+                            const std::string& command) {
+  if (!extra.starts_with('-'))
+    return UsageError(fmt::format("unexpected argument '{}'", extra), command);
   const std::string name = extra.substr(0, extra.find('='));
-  return UsageError(fmt::format("unknown option '{}'{}", name, Suggestion(name, LongOptions(app))), command);
+  return UsageError(fmt::format("unknown option '{}'{}", name, Suggestion(name, LongOptions(app))),
+                    command);
 }
 
-ExitCode Dispatch(const CLI::App& app, const std::vector<Command>& commands, const std::string& command_line) {
+ExitCode Dispatch(const CLI::App& app, const std::vector<Command>& commands,
+                  const std::string& command_line) {
   const auto chosen = app.get_subcommands();
   const std::vector<std::string> extras = app.remaining(/*recurse=*/true);
   if (chosen.empty()) {
@@ -93,19 +99,26 @@ ExitCode Dispatch(const CLI::App& app, const std::vector<Command>& commands, con
     if (extras.front().starts_with('-')) return ComplainAboutExtra(app, extras.front(), "");
     std::vector<std::string> names;
     for (const Command& command : commands) names.push_back(command.name);
-    return UsageError(fmt::format("unknown command '{}'{}", extras.front(), Suggestion(extras.front(), names)), "");
+    return UsageError(
+        fmt::format("unknown command '{}'{}", extras.front(), Suggestion(extras.front(), names)),
+        "");
   }
   const CLI::App& options = *chosen.front();
   if (!extras.empty()) return ComplainAboutExtra(options, extras.front(), options.get_name());
 
-  CommandContext context{.out = std::cout, .err = std::cerr, .root = {}, .today = Today(), .command_line = command_line};
+  CommandContext context{.out = std::cout,
+                         .err = std::cerr,
+                         .root = {},
+                         .today = Today(),
+                         .command_line = command_line};
   context.in_ci = IsSet("CI");
   context.colored = isatty(STDOUT_FILENO) && !IsSet("NO_COLOR");
   context.progress = isatty(STDERR_FILENO);
   const auto root = FindProjectRoot();
   if (!root) {
     return Complain(context, ExitCode::kBadInput,
-                    "the project's folder was not found (it has grammar/library); go there or set PREHEND_HOME");
+                    "the project's folder was not found (it has grammar/library); go there or set "
+                    "PREHEND_HOME");
   }
   context.root = *root;
   for (const Command& command : commands) {
@@ -125,7 +138,8 @@ ExitCode RunCommandLine(int argc, const char* const* argv) {
     app.parse(argc, argv);
     const ExitCode code = Dispatch(app, commands, command_line);
     std::cout.flush();
-    if (!std::cout) return std::cerr << "prehend: the output could not be written\n", ExitCode::kFailure;
+    if (!std::cout)
+      return std::cerr << "prehend: the output could not be written\n", ExitCode::kFailure;
     return code;
   } catch (const CLI::Success& help) {
     app.exit(help, std::cout, std::cerr);
@@ -134,7 +148,8 @@ ExitCode RunCommandLine(int argc, const char* const* argv) {
     const auto chosen = app.get_subcommands();
     return UsageError(error.what(), chosen.empty() ? "" : chosen.front()->get_name());
   } catch (const std::exception& problem) {
-    std::cerr << "prehend: internal error: " << problem.what() << "\n  again: " << command_line << "\n";
+    std::cerr << "prehend: internal error: " << problem.what() << "\n  again: " << command_line
+              << "\n";
     return ExitCode::kFailure;
   }
 }

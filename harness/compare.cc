@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs events. Within one label, maximal intervals don't overlap, so an order-preserving alignment (Needleman and
-// Wunsch 1970) finds the largest and then closest set of partners. Tested by tests/harness/compare_test.cc
+// Pairs events. Within one label, maximal intervals don't overlap, so an order-preserving alignment
+// (Needleman and Wunsch 1970) finds the largest and then closest set of partners. Tested by
+// tests/harness/compare_test.cc
 #include "harness/compare.h"
 
 #include <algorithm>
@@ -19,12 +20,15 @@ using grammar::Tick;
 
 /// Events this far apart in time may still be the same one, shifted.
 constexpr double kMaxGapBetweenPartners_s = 0.25;
-/// Two events that differ in a role are one changed event when they share this much of their common span.
+/// Two events that differ in a role are one changed event when they share this much of their common
+/// span.
 constexpr double kMinSharedSpan = 0.5;
 
 Tick Overlap(Interval a, Interval b) { return std::min(a.end, b.end) - std::max(a.begin, b.begin); }
 
-Tick Distance(Interval a, Interval b) { return std::abs(a.begin - b.begin) + std::abs(a.end - b.end); }
+Tick Distance(Interval a, Interval b) {
+  return std::abs(a.begin - b.begin) + std::abs(a.end - b.end);
+}
 
 /// Quality of a set of pairs: first how many, then how close.
 struct Quality {
@@ -38,11 +42,13 @@ struct Quality {
 using IndexPair = std::pair<std::size_t, std::size_t>;
 
 /// The best order-preserving pairs of two lists sorted by time.
-std::vector<IndexPair> Align(const std::vector<Interval>& expected, const std::vector<Interval>& actual,
-                             Tick max_gap) {
+std::vector<IndexPair> Align(const std::vector<Interval>& expected,
+                             const std::vector<Interval>& actual, Tick max_gap) {
   const std::size_t rows = expected.size();
   const std::size_t columns = actual.size();
-  const auto may_pair = [&](std::size_t i, std::size_t j) { return Overlap(expected[i], actual[j]) > -max_gap; };
+  const auto may_pair = [&](std::size_t i, std::size_t j) {
+    return Overlap(expected[i], actual[j]) > -max_gap;
+  };
   const auto extended = [&](Quality quality, std::size_t i, std::size_t j) {
     return Quality{quality.pairs + 1, quality.distance + Distance(expected[i], actual[j])};
   };
@@ -72,13 +78,17 @@ std::vector<IndexPair> Align(const std::vector<Interval>& expected, const std::v
 std::vector<std::string> Changes(const NamedEvent& expected, const NamedEvent& actual) {
   std::vector<std::string> changes;
   const auto add = [&](const std::string& name, const std::string& was, const std::string& is) {
-    if (was != is) changes.push_back(name + ": " + (was.empty() ? "none" : was) + " -> " + (is.empty() ? "none" : is));
+    if (was != is)
+      changes.push_back(name + ": " + (was.empty() ? "none" : was) + " -> " +
+                        (is.empty() ? "none" : is));
   };
   for (const auto& role : expected.roles) add(role.name, role.value, RoleValue(actual, role.name));
   for (const auto& role : actual.roles) {
     if (RoleValue(expected, role.name).empty()) add(role.name, "", role.value);
   }
-  const auto ending = [](const NamedEvent& event) { return event.open_end ? "of the episode" : "of its own"; };
+  const auto ending = [](const NamedEvent& event) {
+    return event.open_end ? "of the episode" : "of its own";
+  };
   add("end", ending(expected), ending(actual));
   return changes;
 }
@@ -97,11 +107,14 @@ std::pair<int, bool> RoleDifference(const NamedEvent& expected, const NamedEvent
 class Pairer {
  public:
   Pairer(const Golden& golden, const grammar::Timeline& actual, Tick default_tolerance)
-      : actual_(actual.events), default_tolerance_(default_tolerance), ticks_per_second_(actual.ticks_per_second) {
+      : actual_(actual.events),
+        default_tolerance_(default_tolerance),
+        ticks_per_second_(actual.ticks_per_second) {
     for (const GoldenEvent& line : golden.events) {
       expected_.push_back(line);
       Interval& interval = expected_.back().event.interval;
-      interval = {Converted(interval.begin, golden.ticks_per_second), Converted(interval.end, golden.ticks_per_second)};
+      interval = {Converted(interval.begin, golden.ticks_per_second),
+                  Converted(interval.end, golden.ticks_per_second)};
     }
     expected_taken_.resize(expected_.size());
     actual_taken_.resize(actual_.size());
@@ -118,15 +131,17 @@ class Pairer {
     for (std::size_t j = 0; j < actual_.size(); ++j) {
       if (!actual_taken_[j]) AddAlone(Agreement::kExtra, actual_[j]);
     }
-    std::stable_sort(comparison_.pairings.begin(), comparison_.pairings.end(),
-                     [](const Pairing& a, const Pairing& b) { return ComesBefore(a.event(), b.event()); });
+    std::stable_sort(
+        comparison_.pairings.begin(), comparison_.pairings.end(),
+        [](const Pairing& a, const Pairing& b) { return ComesBefore(a.event(), b.event()); });
     comparison_.ticks_per_second = ticks_per_second_;
     return std::move(comparison_);
   }
 
  private:
   Tick Converted(Tick tick, Tick from_ticks_per_second) const {
-    return TickAt(static_cast<double>(tick) / static_cast<double>(from_ticks_per_second), ticks_per_second_);
+    return TickAt(static_cast<double>(tick) / static_cast<double>(from_ticks_per_second),
+                  ticks_per_second_);
   }
 
   void PairEqualLabels() {
@@ -134,14 +149,16 @@ class Pairer {
       std::vector<std::size_t> expected, actual;
     };
     std::map<std::string, Group> groups;
-    for (std::size_t i = 0; i < expected_.size(); ++i) groups[expected_[i].event.Label()].expected.push_back(i);
+    for (std::size_t i = 0; i < expected_.size(); ++i)
+      groups[expected_[i].event.Label()].expected.push_back(i);
     for (std::size_t j = 0; j < actual_.size(); ++j) groups[actual_[j].Label()].actual.push_back(j);
     for (const auto& [label, group] : groups) {
       std::vector<Interval> expected, actual;
       for (const std::size_t i : group.expected) expected.push_back(expected_[i].event.interval);
       for (const std::size_t j : group.actual) actual.push_back(actual_[j].interval);
       const Tick max_gap = TickAt(kMaxGapBetweenPartners_s, ticks_per_second_);
-      for (const auto& [i, j] : Align(expected, actual, max_gap)) AddPair(group.expected[i], group.actual[j]);
+      for (const auto& [i, j] : Align(expected, actual, max_gap))
+        AddPair(group.expected[i], group.actual[j]);
     }
   }
 
@@ -155,8 +172,9 @@ class Pairer {
         const auto [different, some_equal] = RoleDifference(expected, actual_[j]);
         const Tick span = std::max(expected.interval.end, actual_[j].interval.end) -
                           std::min(expected.interval.begin, actual_[j].interval.begin);
-        const bool same_time = static_cast<double>(Overlap(expected.interval, actual_[j].interval)) >=
-                               kMinSharedSpan * static_cast<double>(span);
+        const bool same_time =
+            static_cast<double>(Overlap(expected.interval, actual_[j].interval)) >=
+            kMinSharedSpan * static_cast<double>(span);
         if (!some_equal || !same_time) continue;
         candidates.emplace_back(different, Distance(expected.interval, actual_[j].interval), i, j);
       }
@@ -170,14 +188,19 @@ class Pairer {
   void AddPair(std::size_t i, std::size_t j) {
     const GoldenEvent& line = expected_[i];
     const NamedEvent& actual = actual_[j];
-    Pairing pairing{.agreement = Agreement::kMatched, .expected = line.event, .actual = actual, .golden_line = i};
+    Pairing pairing{.agreement = Agreement::kMatched,
+                    .expected = line.event,
+                    .actual = actual,
+                    .golden_line = i};
     pairing.begin_offset = actual.interval.begin - line.event.interval.begin;
     pairing.end_offset = actual.interval.end - line.event.interval.end;
-    pairing.tolerance = line.tolerance_ms ? *line.tolerance_ms * ticks_per_second_ / 1000 : default_tolerance_;
+    pairing.tolerance =
+        line.tolerance_ms ? *line.tolerance_ms * ticks_per_second_ / 1000 : default_tolerance_;
     pairing.changes = Changes(line.event, actual);
     if (!pairing.changes.empty()) {
       pairing.agreement = Agreement::kChanged;
-    } else if (std::max(std::abs(pairing.begin_offset), std::abs(pairing.end_offset)) > pairing.tolerance) {
+    } else if (std::max(std::abs(pairing.begin_offset), std::abs(pairing.end_offset)) >
+               pairing.tolerance) {
       pairing.agreement = Agreement::kShifted;
     } else {
       NoteHeadroom("begin of ", pairing, pairing.begin_offset);
@@ -190,7 +213,8 @@ class Pairer {
   void NoteHeadroom(const char* boundary, const Pairing& pairing, Tick offset) {
     const auto left = [](Tick tolerance, Tick used) { return tolerance - std::abs(used); };
     std::optional<Headroom>& tightest = comparison_.tightest;
-    if (tightest && left(tightest->tolerance, tightest->offset) <= left(pairing.tolerance, offset)) return;
+    if (tightest && left(tightest->tolerance, tightest->offset) <= left(pairing.tolerance, offset))
+      return;
     tightest = Headroom{boundary + pairing.event().Label(), offset, pairing.tolerance};
   }
 
@@ -210,14 +234,18 @@ class Pairer {
 
 }  // namespace
 
-bool Comparison::Agrees() const { return Count(Agreement::kMatched) == static_cast<int>(pairings.size()); }
-
-int Comparison::Count(Agreement agreement) const {
-  return static_cast<int>(std::count_if(pairings.begin(), pairings.end(),
-                                        [&](const Pairing& pairing) { return pairing.agreement == agreement; }));
+bool Comparison::Agrees() const {
+  return Count(Agreement::kMatched) == static_cast<int>(pairings.size());
 }
 
-Comparison Compare(const Golden& expected, const grammar::Timeline& actual, Tick default_tolerance) {
+int Comparison::Count(Agreement agreement) const {
+  return static_cast<int>(
+      std::count_if(pairings.begin(), pairings.end(),
+                    [&](const Pairing& pairing) { return pairing.agreement == agreement; }));
+}
+
+Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
+                   Tick default_tolerance) {
   return Pairer(expected, actual, default_tolerance).Pair();
 }
 

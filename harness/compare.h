@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What was recognised against what must be recognised, as a value.
-// Events are paired per label (name and roles) so that as many as possible find a partner and the partners are as
-// close as possible; what is left over is paired across labels when only a role changed; the rest is missing or extra.
-// Tested by tests/harness/compare_test.cc
+// Events are paired per label (name and roles) so that as many as possible find a partner and the
+// partners are as close as possible; what is left over is paired across labels when only a role
+// changed; the rest is missing or extra. Tested by tests/harness/compare_test.cc
 #pragma once
 
 #include <optional>
@@ -54,14 +54,17 @@ struct Comparison {
   int Count(Agreement agreement) const;
 };
 
-/// Compares in the ticks of `actual`; `default_tolerance` (ticks) is for golden lines without their own.
-Comparison Compare(const Golden& expected, const grammar::Timeline& actual, grammar::Tick default_tolerance);
+/// Compares in the ticks of `actual`; `default_tolerance` (ticks) is for golden lines without their
+/// own.
+Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
+                   grammar::Tick default_tolerance);
 
-/// Two frames of sensing, in ticks: a boundary can't be known better than to the frame that shows it.
+/// Two frames of sensing, in ticks: a boundary can't be known better than to the frame that shows
+/// it.
 grammar::Tick DefaultTolerance(int rate_hz, int sensing_hz);
 
-/// The differences as text, first divergence first, each with both intervals, the signed offsets in milliseconds and
-/// `command`, which shows it again. Empty when all agree.
+/// The differences as text, first divergence first, each with both intervals, the signed offsets in
+/// milliseconds and `command`, which shows it again. Empty when all agree.
 std::string DifferenceText(const Comparison& comparison, std::string_view command);
 
 /// One line: "headroom: 4.2 of 8.3 ms are left at begin of reaching(right_hand, milk)", or "".

@@ -28,8 +28,10 @@ std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::stri
     return event ? IntervalText(event->interval, ticks_per_second) : std::string("nothing");
   };
   std::string text = fmt::format("{} {}\n", Name(pairing.agreement), pairing.event().Label());
-  text += fmt::format("  expected {}, recognised {}\n", side(pairing.expected), side(pairing.actual));
-  if (pairing.expected && pairing.actual) text += fmt::format("  {}\n", OffsetText(pairing, ticks_per_second));
+  text +=
+      fmt::format("  expected {}, recognised {}\n", side(pairing.expected), side(pairing.actual));
+  if (pairing.expected && pairing.actual)
+    text += fmt::format("  {}\n", OffsetText(pairing, ticks_per_second));
   if (!pairing.changes.empty()) text += fmt::format("  {}\n", fmt::join(pairing.changes, ", "));
   return text + fmt::format("  see: {}\n", command);
 }
@@ -38,11 +40,16 @@ std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::stri
 
 std::string_view Name(Agreement agreement) {
   switch (agreement) {
-    case Agreement::kMatched: return "matched";
-    case Agreement::kShifted: return "shifted";
-    case Agreement::kChanged: return "changed";
-    case Agreement::kMissing: return "missing";
-    case Agreement::kExtra: return "extra";
+    case Agreement::kMatched:
+      return "matched";
+    case Agreement::kShifted:
+      return "shifted";
+    case Agreement::kChanged:
+      return "changed";
+    case Agreement::kMissing:
+      return "missing";
+    case Agreement::kExtra:
+      return "extra";
   }
   return "";
 }
@@ -60,8 +67,10 @@ std::string HeadroomText(const Comparison& comparison) {
   if (!comparison.tightest) return "";
   const Headroom& tightest = *comparison.tightest;
   const Tick left = tightest.tolerance - std::abs(tightest.offset);
-  return fmt::format("headroom: {:.1f} of {:.1f} ms are left at {}", Milliseconds(left, comparison.ticks_per_second),
-                     Milliseconds(tightest.tolerance, comparison.ticks_per_second), tightest.boundary);
+  return fmt::format("headroom: {:.1f} of {:.1f} ms are left at {}",
+                     Milliseconds(left, comparison.ticks_per_second),
+                     Milliseconds(tightest.tolerance, comparison.ticks_per_second),
+                     tightest.boundary);
 }
 
 }  // namespace prehend::harness

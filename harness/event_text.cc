@@ -17,7 +17,8 @@ using grammar::Tick;
 std::string SecondsText(Tick tick, Tick ticks_per_second) {
   // Half a unit of the last decimal must stay below half a tick: 10^decimals > ticks_per_second.
   const int decimals = std::max<int>(4, static_cast<int>(std::to_string(ticks_per_second).size()));
-  return fmt::format("{:.{}f}", static_cast<double>(tick) / static_cast<double>(ticks_per_second), decimals);
+  return fmt::format("{:.{}f}", static_cast<double>(tick) / static_cast<double>(ticks_per_second),
+                     decimals);
 }
 
 Tick TickAt(double seconds, Tick ticks_per_second) {
@@ -70,7 +71,8 @@ std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>
 
 std::vector<std::string> EventCells(const NamedEvent& event, Tick ticks_per_second,
                                     std::size_t role_columns) {
-  std::vector<std::string> cells = {event.event, SecondsText(event.interval.begin, ticks_per_second),
+  std::vector<std::string> cells = {event.event,
+                                    SecondsText(event.interval.begin, ticks_per_second),
                                     SecondsText(event.interval.end, ticks_per_second)};
   for (std::size_t column = 0; column < role_columns; ++column) {
     cells.push_back(RoleText(event, column));

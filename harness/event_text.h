@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How events are written for people: seconds, intervals, roles. Goldens, tables, differences and reports share it.
-// Tested by tests/harness/golden_test.cc
+// How events are written for people: seconds, intervals, roles. Goldens, tables, differences and
+// reports share it. Tested by tests/harness/golden_test.cc
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@
 
 namespace prehend::harness {
 
-/// Seconds with at least 4 decimals, and as many as it takes for TickAt() to find the same tick again.
+/// Seconds with at least 4 decimals, and as many as it takes for TickAt() to find the same tick
+/// again.
 std::string SecondsText(grammar::Tick tick, grammar::Tick ticks_per_second);
 
 /// The tick nearest to a time.
@@ -35,7 +36,7 @@ bool ComesBefore(const grammar::NamedEvent& a, const grammar::NamedEvent& b);
 std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>>& rows);
 
 /// Event, begin, end, roles, and "open_end" as cells of a table row.
-std::vector<std::string> EventCells(const grammar::NamedEvent& event, grammar::Tick ticks_per_second,
-                                    std::size_t role_columns);
+std::vector<std::string> EventCells(const grammar::NamedEvent& event,
+                                    grammar::Tick ticks_per_second, std::size_t role_columns);
 
 }  // namespace prehend::harness

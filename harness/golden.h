@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A golden: what must be recognised in a scenario, as text that a person can check against the scenario. A run
-// never writes one; `prehend accept` does.
+// A golden: what must be recognised in a scenario, as text that a person can check against the
+// scenario. A run never writes one; `prehend accept` does.
 //
 //   # scenario: pick_and_place/milk_carton_wrap
 //   # grammar: pick_and_place
@@ -10,7 +10,8 @@
 //   #
 //   # event       begin_s  end_s   roles
 //   supported_by  0.0000   2.0125  object=milk      support=table
-//   grasping      1.9021   4.3000  hand=right_hand  object=milk    style=wrap  tolerance=20ms because "..."
+//   grasping      1.9021   4.3000  hand=right_hand  object=milk    style=wrap  tolerance=20ms
+//   because "..."
 //
 // Tested by tests/harness/golden_test.cc
 #pragma once
@@ -26,9 +27,9 @@
 namespace prehend::harness {
 
 struct GoldenEvent {
-  grammar::NamedEvent event;  ///< `decided` is not part of a golden: 0
-  std::optional<int> tolerance_ms;  ///< instead of the default of two sensing frames
-  std::string because;              ///< why this line needs it; never empty beside a tolerance
+  grammar::NamedEvent event;          ///< `decided` is not part of a golden: 0
+  std::optional<int> tolerance_ms;    ///< instead of the default of two sensing frames
+  std::string because;                ///< why this line needs it; never empty beside a tolerance
   std::vector<std::string> comments;  ///< lines above it, without "# "
   friend bool operator==(const GoldenEvent& a, const GoldenEvent& b);
 };

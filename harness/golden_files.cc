@@ -31,7 +31,8 @@ ReadResult<Golden> GoldenFiles::ReadGoldenOf(const std::string& scenario) const 
   if (!text.value) return {std::nullopt, std::move(text.diagnostics)};
   ReadResult<Golden> golden = ReadGolden(path.string(), *text.value);
   if (golden.value && golden.value->scenario != scenario) {
-    const std::string message = "this golden says it is of '" + golden.value->scenario + "', not of '" + scenario + "'";
+    const std::string message =
+        "this golden says it is of '" + golden.value->scenario + "', not of '" + scenario + "'";
     return {std::nullopt, {grammar::DiagnosticAt(path.string(), *text.value, {1, 1}, message)}};
   }
   return golden;
@@ -57,7 +58,8 @@ std::vector<std::string> GoldenFiles::List() const {
   std::error_code ignored;
   for (const auto& entry : fs::recursive_directory_iterator(root_ / "golden", ignored)) {
     if (entry.path().extension() != kExtension) continue;
-    scenarios.push_back(fs::relative(entry.path(), root_ / "golden").replace_extension().generic_string());
+    scenarios.push_back(
+        fs::relative(entry.path(), root_ / "golden").replace_extension().generic_string());
   }
   std::sort(scenarios.begin(), scenarios.end());
   return scenarios;

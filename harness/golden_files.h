@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where goldens and what waits to become one are kept: golden/SKILL/NAME.timeline and build/pending/SKILL/NAME.timeline.
-// Tested by tests/harness/golden_files_test.cc
+// Where goldens and what waits to become one are kept: golden/SKILL/NAME.timeline and
+// build/pending/SKILL/NAME.timeline. Tested by tests/harness/golden_files_test.cc
 #pragma once
 
 #include <filesystem>

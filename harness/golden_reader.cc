@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The strict reader of golden files: every line is understood or is an error with its place.
-// A small cursor walks each line; header comments with a known key are provenance, all others are kept as they are.
-// Tested by tests/harness/golden_test.cc
+// A small cursor walks each line; header comments with a known key are provenance, all others are
+// kept as they are. Tested by tests/harness/golden_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,8 +60,9 @@ class GoldenReader {
     golden_.closing_comments = std::move(pending_comments_);
     CheckWhole();
     if (!diagnostics_.empty()) return {std::nullopt, std::move(diagnostics_)};
-    std::sort(golden_.events.begin(), golden_.events.end(),
-              [](const GoldenEvent& a, const GoldenEvent& b) { return ComesBefore(a.event, b.event); });
+    std::sort(
+        golden_.events.begin(), golden_.events.end(),
+        [](const GoldenEvent& a, const GoldenEvent& b) { return ComesBefore(a.event, b.event); });
     return {std::move(golden_), {}};
   }
 
@@ -90,7 +91,8 @@ class GoldenReader {
     }
     const std::size_t colon = comment.find(": ");
     const std::string key = comment.substr(0, colon);
-    if (colon == std::string::npos || !ReadProvenance(key, colon + 2)) golden_.comments.push_back(comment);
+    if (colon == std::string::npos || !ReadProvenance(key, colon + 2))
+      golden_.comments.push_back(comment);
   }
 
   /// False when the key is none of ours, so that the line is an ordinary comment.
@@ -136,7 +138,8 @@ class GoldenReader {
     if (has_ticks_per_second_) return Complain("second 'ticks_per_second' line");
     const auto ticks = ParseNumber<Tick>(value);
     if (!ticks || *ticks < 1 || *ticks > kMaxTicksPerSecond) {
-      return Complain(fmt::format("ticks_per_second must be a whole number from 1 to {}", kMaxTicksPerSecond));
+      return Complain(
+          fmt::format("ticks_per_second must be a whole number from 1 to {}", kMaxTicksPerSecond));
     }
     golden_.ticks_per_second = *ticks;
     has_ticks_per_second_ = true;
@@ -153,7 +156,8 @@ class GoldenReader {
     const std::size_t event_column = column_;
     line.comments = std::move(pending_comments_);
     pending_comments_.clear();
-    if (!ReadName(line.event.event, "an event's name") || !ReadTime(line.event.interval.begin, "begin_s") ||
+    if (!ReadName(line.event.event, "an event's name") ||
+        !ReadTime(line.event.interval.begin, "begin_s") ||
         !ReadTime(line.event.interval.end, "end_s")) {
       return;
     }
@@ -162,7 +166,8 @@ class GoldenReader {
       return Complain("the event must end after it begins");
     }
     if (!ReadRolesAndFlags(line)) return;
-    if (!seen_.insert({line.event.Label(), {line.event.interval.begin, line.event.interval.end}}).second) {
+    if (!seen_.insert({line.event.Label(), {line.event.interval.begin, line.event.interval.end}})
+             .second) {
       column_ = event_column;
       return Complain("this event is listed twice");
     }
@@ -197,7 +202,8 @@ class GoldenReader {
   bool ReadRole(GoldenEvent& line, const std::string& key, std::size_t word_column) {
     const std::string value(Word());
     if (value.empty()) return Fail(fmt::format("expected a value for '{}'", key));
-    if (!RoleValue(line.event, key).empty()) return FailAt(word_column, fmt::format("second '{}'", key));
+    if (!RoleValue(line.event, key).empty())
+      return FailAt(word_column, fmt::format("second '{}'", key));
     if (line.event.roles.size() == kMaxRolesInText) return FailAt(word_column, "too many roles");
     line.event.roles.push_back({key, value});
     return true;
@@ -216,7 +222,8 @@ class GoldenReader {
   }
 
   bool ReadReason(GoldenEvent& line, std::size_t word_column) {
-    if (!line.tolerance_ms) return FailAt(word_column, "'because' gives the reason of a tolerance, but there is none");
+    if (!line.tolerance_ms)
+      return FailAt(word_column, "'because' gives the reason of a tolerance, but there is none");
     SkipBlanks();
     const std::size_t reason_column = column_;
     if (!ReadQuoted(line.because)) return false;
@@ -242,7 +249,8 @@ class GoldenReader {
     const std::string nearest = SecondsText(tick, golden_.ticks_per_second);
     if (std::abs(*seconds - *ParseNumber<double>(nearest)) > 1e-9 &&
         std::abs(*seconds * golden_.ticks_per_second - static_cast<double>(tick)) > 1e-6) {
-      return FailAt(value_column, fmt::format("{} is not on a tick of 1/{} s", what, golden_.ticks_per_second),
+      return FailAt(value_column,
+                    fmt::format("{} is not on a tick of 1/{} s", what, golden_.ticks_per_second),
                     fmt::format("the nearest tick is at {}", nearest));
     }
     return true;

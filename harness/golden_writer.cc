@@ -20,7 +20,8 @@ std::string Quoted(std::string_view text) {
 }
 
 void AppendComments(const std::vector<std::string>& comments, std::string& out) {
-  for (const std::string& comment : comments) out += comment.empty() ? "#\n" : "# " + comment + "\n";
+  for (const std::string& comment : comments)
+    out += comment.empty() ? "#\n" : "# " + comment + "\n";
 }
 
 /// The lines of the table: the title first, then one per event.
@@ -34,7 +35,8 @@ std::vector<std::string> TableLines(const Golden& golden) {
     auto cells = EventCells(line.event, golden.ticks_per_second, role_columns);
     if (line.tolerance_ms) {
       if (!cells.back().empty()) cells.back() += "  ";
-      cells.back() += fmt::format("tolerance={}ms because {}", *line.tolerance_ms, Quoted(line.because));
+      cells.back() +=
+          fmt::format("tolerance={}ms because {}", *line.tolerance_ms, Quoted(line.because));
     }
     rows.push_back(std::move(cells));
   }

@@ -9,7 +9,8 @@ namespace prehend::harness {
 using grammar::Interval;
 
 IntervalSet Union(std::vector<Interval> intervals) {
-  std::sort(intervals.begin(), intervals.end(), [](Interval a, Interval b) { return a.begin < b.begin; });
+  std::sort(intervals.begin(), intervals.end(),
+            [](Interval a, Interval b) { return a.begin < b.begin; });
   IntervalSet set;
   for (const Interval interval : intervals) {
     if (interval.begin >= interval.end) continue;

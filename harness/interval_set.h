@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sets of ticks as sorted lists of disjoint half-open intervals. Tested by tests/harness/invariants_test.cc
+// Sets of ticks as sorted lists of disjoint half-open intervals. Tested by
+// tests/harness/invariants_test.cc
 #pragma once
 
 #include <vector>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must hold of every timeline, whatever happened: begin < end, phases that lie inside a grasp and cover its
-// unsupported time exactly once, reaches that meet what follows, supports inside contacts, bounded latency.
-// A violation is a mistake in a grammar or in the engine. Tested by tests/harness/invariants_test.cc
+// What must hold of every timeline, whatever happened: begin < end, phases that lie inside a grasp
+// and cover its unsupported time exactly once, reaches that meet what follows, supports inside
+// contacts, bounded latency. A violation is a mistake in a grammar or in the engine. Tested by
+// tests/harness/invariants_test.cc
 #pragma once
 
 #include <cstdint>
@@ -19,10 +20,11 @@ namespace prehend::harness {
 
 /// What the checkers must know besides the timeline.
 struct EpisodeFacts {
-  grammar::Tick end = 0;           ///< first tick that no longer belongs to the episode
-  std::set<std::string> movable;   ///< entities that can lose their support
+  grammar::Tick end = 0;              ///< first tick that no longer belongs to the episode
+  std::set<std::string> movable;      ///< entities that can lose their support
   grammar::Tick ticks_per_frame = 2;  ///< of sensing
-  std::map<std::string, grammar::Wait> latency;  ///< per event: what its decision may wait for after its end
+  std::map<std::string, grammar::Wait>
+      latency;  ///< per event: what its decision may wait for after its end
 };
 
 struct Violation {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See load_grammar.h. Tested by tests/harness/load_grammar_test.cc
+// See load_grammar.h. Tested by tests/house/command_line_test.cc
 #include "harness/load_grammar.h"
 
 #include <filesystem>
@@ -12,7 +12,8 @@ namespace prehend::harness {
 namespace fs = std::filesystem;
 
 std::string GrammarFile(const std::string& root, const std::string& name_or_path) {
-  const bool is_path = name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".grammar");
+  const bool is_path =
+      name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".grammar");
   return is_path ? name_or_path : GrammarPath(root, name_or_path);
 }
 
@@ -22,7 +23,8 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
   ReadResult<std::string> text = ReadTextFile(file);
   if (!text.value) return {nullptr, std::move(text.diagnostics)};
   const auto include = [&](std::string_view name) -> std::optional<grammar::GrammarText> {
-    const std::string beside = (fs::path(file).parent_path() / (std::string(name) + ".grammar")).string();
+    const std::string beside =
+        (fs::path(file).parent_path() / (std::string(name) + ".grammar")).string();
     for (const std::string& candidate : {beside, GrammarPath(root, std::string(name))}) {
       ReadResult<std::string> used = ReadTextFile(candidate);
       if (used.value) return grammar::GrammarText{candidate, std::move(*used.value)};

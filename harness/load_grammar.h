@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A grammar from its file, with the files it uses. Tested by tests/harness/load_grammar_test.cc
+// A grammar from its file, with the files it uses. Tested by tests/house/command_line_test.cc
 #pragma once
 
 #include <string>

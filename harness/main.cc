@@ -2,4 +2,6 @@
 // prehend: see harness/command_line.h.
 #include "harness/command_line.h"
 
-int main(int argc, char** argv) { return static_cast<int>(prehend::harness::RunCommandLine(argc, argv)); }
+int main(int argc, char** argv) {
+  return static_cast<int>(prehend::harness::RunCommandLine(argc, argv));
+}

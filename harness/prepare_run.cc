@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See prepare_run.h. Tested by tests/harness/prepare_run_test.cc
+// See prepare_run.h. Tested by tests/house/command_line_test.cc
 #include "harness/prepare_run.h"
 
 #include "grammar/program.h"
@@ -21,8 +21,9 @@ Settings Split(const std::vector<std::string>& settings) {
     const std::size_t equals = setting.find('=');
     const std::string name = setting.substr(0, equals);
     if (equals == std::string::npos || name.empty()) {
-      split.diagnostics.push_back(grammar::DiagnosticAt("--set", setting, {1, 1}, "expected name=value",
-                                                        "--set reach_radius=25cm, --set entities.milk.mass_kg=8"));
+      split.diagnostics.push_back(
+          grammar::DiagnosticAt("--set", setting, {1, 1}, "expected name=value",
+                                "--set reach_radius=25cm, --set entities.milk.mass_kg=8"));
     } else if (name.find('.') != std::string::npos) {
       split.of_scenario.push_back(setting);
     } else {
@@ -38,7 +39,8 @@ ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string&
   Settings settings = Split(request.settings);
   if (!settings.diagnostics.empty()) return {std::nullopt, std::move(settings.diagnostics)};
   if (!request.pictures.empty()) settings.of_scenario.push_back("pictures=" + request.pictures);
-  ReadResult<Scenario> scenario = ReadScenario(request.scenario_file, settings.of_scenario, ProjectLibrary(root));
+  ReadResult<Scenario> scenario =
+      ReadScenario(request.scenario_file, settings.of_scenario, ProjectLibrary(root));
   if (!scenario.value) return {std::nullopt, std::move(scenario.diagnostics)};
   if (!request.grammar.empty()) scenario.value->grammar = request.grammar;
   grammar::CompileResult compiled = LoadGrammar(root, scenario.value->grammar, settings.of_grammar);

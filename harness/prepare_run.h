@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything a run needs, from files: the scenario and its compiled grammar, with what the command line changes.
-// Tested by tests/harness/prepare_run_test.cc
+// Everything a run needs, from files: the scenario and its compiled grammar, with what the command
+// line changes. Tested by tests/house/command_line_test.cc
 #pragma once
 
 #include <memory>
@@ -17,8 +17,9 @@ namespace prehend::harness {
 struct RunRequest {
   std::string scenario_file;
   std::string grammar;                ///< name or path; empty: the scenario's own
-  std::vector<std::string> settings;  ///< "name=value": a field of the scenario when the name has a dot, else a parameter
-  std::string pictures;               ///< YAML that replaces the scenario's pictures; empty: keep them
+  std::vector<std::string> settings;  ///< "name=value": a field of the scenario when the name has a
+                                      ///< dot, else a parameter
+  std::string pictures;  ///< YAML that replaces the scenario's pictures; empty: keep them
 };
 
 struct PreparedRun {

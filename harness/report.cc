@@ -37,23 +37,27 @@ figure { margin: .8rem 0 0; } figure img { max-width: 100%; border-radius: 6px; 
 )";
 
 std::string SummaryText(const Tally& tally) {
-  std::string text = fmt::format("<span class=\"passed\">{} passed</span>, <span class=\"{}\">{} failed</span>", tally.passed,
-                                 tally.failed > 0 ? "failed" : "soft", tally.failed);
-  if (tally.pending > 0) text += fmt::format(", <span class=\"pending\">{} pending</span>", tally.pending);
+  std::string text =
+      fmt::format("<span class=\"passed\">{} passed</span>, <span class=\"{}\">{} failed</span>",
+                  tally.passed, tally.failed > 0 ? "failed" : "soft", tally.failed);
+  if (tally.pending > 0)
+    text += fmt::format(", <span class=\"pending\">{} pending</span>", tally.pending);
   return text;
 }
 
 std::string Legend() {
   std::string legend = "<p class=\"legend soft\">";
   for (const Phase& phase : kPhases) {
-    legend += fmt::format("<span><i style=\"background:#{:06x}\"></i>{}</span>", phase.color, phase.event);
+    legend += fmt::format("<span><i style=\"background:#{:06x}\"></i>{}</span>", phase.color,
+                          phase.event);
   }
   return legend + "<br>In every row the golden is above (pale), what was recognised below.</p>\n";
 }
 
 std::string TableRow(const ScenarioVerdict& verdict) {
   return fmt::format(
-      "<tr><td class=\"verdict {0}\">{0}</td><td><a href=\"#{1}\">{1}</a><br><span class=\"soft\">{2}</span></td>"
+      "<tr><td class=\"verdict {0}\">{0}</td><td><a href=\"#{1}\">{1}</a><br><span "
+      "class=\"soft\">{2}</span></td>"
       "<td>{3}</td><td class=\"number\">{4:.2f} s</td></tr>\n",
       Name(verdict.verdict), EscapeHtml(verdict.scenario), EscapeHtml(verdict.shows),
       EscapeHtml(verdict.reason.empty() ? verdict.headroom : verdict.reason), verdict.seconds);
@@ -61,15 +65,21 @@ std::string TableRow(const ScenarioVerdict& verdict) {
 
 std::string Section(const ScenarioVerdict& verdict) {
   std::string html = fmt::format(
-      "<section id=\"{0}\">\n<h2><span class=\"{1}\">{1}</span> {0}</h2>\n<div class=\"soft\">{2}</div>\n",
+      "<section id=\"{0}\">\n<h2><span class=\"{1}\">{1}</span> {0}</h2>\n<div "
+      "class=\"soft\">{2}</div>\n",
       EscapeHtml(verdict.scenario), Name(verdict.verdict), EscapeHtml(verdict.shows));
-  if (!verdict.reason.empty()) html += fmt::format("<p class=\"{}\">{}</p>\n", Name(verdict.verdict), EscapeHtml(verdict.reason));
+  if (!verdict.reason.empty())
+    html +=
+        fmt::format("<p class=\"{}\">{}</p>\n", Name(verdict.verdict), EscapeHtml(verdict.reason));
   if (!verdict.details.empty()) html += fmt::format("<pre>{}</pre>\n", EscapeHtml(verdict.details));
   html += verdict.timeline_svg;
-  if (!verdict.headroom.empty()) html += fmt::format("<div class=\"soft\">{}</div>\n", EscapeHtml(verdict.headroom));
+  if (!verdict.headroom.empty())
+    html += fmt::format("<div class=\"soft\">{}</div>\n", EscapeHtml(verdict.headroom));
   for (const ReportedPicture& picture : verdict.pictures) {
-    html += fmt::format("<figure><img loading=\"lazy\" src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
-                        EscapeHtml(picture.file), EscapeHtml(picture.caption), EscapeHtml(picture.caption));
+    html += fmt::format(
+        "<figure><img loading=\"lazy\" src=\"{}\" "
+        "alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
+        EscapeHtml(picture.file), EscapeHtml(picture.caption), EscapeHtml(picture.caption));
   }
   return html + fmt::format("<pre>{}</pre>\n</section>\n", EscapeHtml(verdict.command));
 }
@@ -79,10 +89,14 @@ std::string Section(const ScenarioVerdict& verdict) {
 std::string ReportHtml(const std::vector<ScenarioVerdict>& verdicts) {
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>prehend: regression suite</title>\n"
-      "<style>{}</style>\n</head>\n<body>\n<h1>Regression suite</h1>\n<p class=\"verdict\">{}</p>\n{}",
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>prehend: "
+      "regression suite</title>\n"
+      "<style>{}</style>\n</head>\n<body>\n<h1>Regression suite</h1>\n<p "
+      "class=\"verdict\">{}</p>\n{}",
       kStyle, SummaryText(Count(verdicts)), Legend());
-  html += "<table>\n<tr><th>verdict</th><th>scenario</th><th></th><th class=\"number\">time</th></tr>\n";
+  html +=
+      "<table>\n<tr><th>verdict</th><th>scenario</th><th></th><th "
+      "class=\"number\">time</th></tr>\n";
   for (const ScenarioVerdict& verdict : verdicts) html += TableRow(verdict);
   html += "</table>\n";
   for (const ScenarioVerdict& verdict : verdicts) html += Section(verdict);

@@ -16,7 +16,9 @@ namespace {
 using grammar::NamedEvent;
 using grammar::Tick;
 
-bool Completed(const RunResult& run) { return run.status.kind == physics::RunStatus::Kind::kCompleted; }
+bool Completed(const RunResult& run) {
+  return run.status.kind == physics::RunStatus::Kind::kCompleted;
+}
 
 double SecondsOf(Tick tick, Tick ticks_per_second) {
   return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
@@ -25,7 +27,8 @@ double SecondsOf(Tick tick, Tick ticks_per_second) {
 OrderedJson EventJson(const NamedEvent& event, Tick ticks_per_second) {
   OrderedJson roles = OrderedJson::object();
   OrderedJson attributes = OrderedJson::object();
-  for (const grammar::Role& role : event.roles) (IsAttribute(role) ? attributes : roles)[role.name] = role.value;
+  for (const grammar::Role& role : event.roles)
+    (IsAttribute(role) ? attributes : roles)[role.name] = role.value;
   return {{"event", event.event},
           {"roles", std::move(roles)},
           {"attributes", std::move(attributes)},
@@ -42,8 +45,10 @@ OrderedJson EventJson(const NamedEvent& event, Tick ticks_per_second) {
 std::string StatusText(const RunResult& run) {
   const physics::RunStatus& status = run.status;
   const Tick rate = run.timeline.ticks_per_second;
-  if (Completed(run)) return fmt::format("completed: {} s, {} ticks", SecondsText(run.ticks, rate), run.ticks);
-  std::string text = fmt::format("failed at {} s (tick {}): ", SecondsText(status.tick, rate), status.tick);
+  if (Completed(run))
+    return fmt::format("completed: {} s, {} ticks", SecondsText(run.ticks, rate), run.ticks);
+  std::string text =
+      fmt::format("failed at {} s (tick {}): ", SecondsText(status.tick, rate), status.tick);
   if (!status.entity.empty()) text += status.entity + ": ";
   text += status.reason;
   if (!status.advice.empty()) text += "; " + status.advice;
@@ -52,7 +57,8 @@ std::string StatusText(const RunResult& run) {
 
 std::string RunTable(const RunResult& run) {
   std::size_t role_columns = 1;
-  for (const NamedEvent& event : run.timeline.events) role_columns = std::max(role_columns, event.roles.size());
+  for (const NamedEvent& event : run.timeline.events)
+    role_columns = std::max(role_columns, event.roles.size());
   std::vector<std::vector<std::string>> rows = {{"event", "begin_s", "end_s", "roles"}};
   for (const NamedEvent& event : run.timeline.events) {
     rows.push_back(EventCells(event, run.timeline.ticks_per_second, role_columns));
@@ -94,12 +100,16 @@ Measurement Measure(const RunResult& run) {
 
 std::string MeasurementText(const Measurement& measurement) {
   const RunSeconds& seconds = measurement.seconds;
-  const auto share = [&](double part_s) { return seconds.total > 0 ? 100 * part_s / seconds.total : 0; };
+  const auto share = [&](double part_s) {
+    return seconds.total > 0 ? 100 * part_s / seconds.total : 0;
+  };
   return fmt::format(
-      "measured: {:.1f} times real time; physics {:.1f} %, sensing {:.1f} %, grammar {:.1f} % of {:.3f} s; "
+      "measured: {:.1f} times real time; physics {:.1f} %, sensing {:.1f} %, grammar {:.1f} % of "
+      "{:.3f} s; "
       "peak memory {:.0f} MiB\n",
-      seconds.total > 0 ? measurement.simulated_s / seconds.total : 0, share(seconds.physics), share(seconds.sensing),
-      share(seconds.grammar), seconds.total, static_cast<double>(measurement.peak_memory_kib) / 1024);
+      seconds.total > 0 ? measurement.simulated_s / seconds.total : 0, share(seconds.physics),
+      share(seconds.sensing), share(seconds.grammar), seconds.total,
+      static_cast<double>(measurement.peak_memory_kib) / 1024);
 }
 
 OrderedJson MeasurementJson(const Measurement& measurement) {

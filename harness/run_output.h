@@ -18,8 +18,8 @@ std::string StatusText(const RunResult& run);
 /// The events as an aligned table with a title, then the status line.
 std::string RunTable(const RunResult& run);
 
-/// {"scenario", "status", "ticks_per_second", "ticks", "state_hash", "grammar", "events": [...]}; a failed run has
-/// "failure": {"tick", "entity", "reason", "advice"}.
+/// {"scenario", "status", "ticks_per_second", "ticks", "state_hash", "grammar", "events": [...]}; a
+/// failed run has "failure": {"tick", "entity", "reason", "advice"}.
 OrderedJson RunJson(const Scenario& scenario, const RunResult& run);
 
 /// "0x" and 16 digits: 64 bits don't fit into a JSON number.

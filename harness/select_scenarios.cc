@@ -17,13 +17,15 @@ namespace {
 std::string IdOf(const ScenarioFile& file) { return ScenarioId(file.skill, file.name); }
 
 bool Matches(const std::string& pattern, const ScenarioFile& file) {
-  return fnmatch(pattern.c_str(), file.name.c_str(), 0) == 0 || fnmatch(pattern.c_str(), IdOf(file).c_str(), 0) == 0;
+  return fnmatch(pattern.c_str(), file.name.c_str(), 0) == 0 ||
+         fnmatch(pattern.c_str(), IdOf(file).c_str(), 0) == 0;
 }
 
 /// A file that cannot be read has no tags, but is checked when it is named.
 bool HasTag(const ScenarioFile& file, const std::string& tag, const std::string& root) {
   const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
-  return scenario.value && std::count(scenario.value->tags.begin(), scenario.value->tags.end(), tag) > 0;
+  return scenario.value &&
+         std::count(scenario.value->tags.begin(), scenario.value->tags.end(), tag) > 0;
 }
 
 bool PassesFilter(const ScenarioFile& file, const std::string& filter, const std::string& root) {
@@ -32,31 +34,38 @@ bool PassesFilter(const ScenarioFile& file, const std::string& filter, const std
   return Matches(filter, file);
 }
 
-std::vector<std::string> OrphanGoldens(const std::vector<ScenarioFile>& all, const std::string& root) {
+std::vector<std::string> OrphanGoldens(const std::vector<ScenarioFile>& all,
+                                       const std::string& root) {
   std::set<std::string> known;
   for (const ScenarioFile& file : all) known.insert(IdOf(file));
   const std::vector<std::string> goldens = GoldenFiles(root).List();
   std::vector<std::string> orphans;
-  std::set_difference(goldens.begin(), goldens.end(), known.begin(), known.end(), std::back_inserter(orphans));
+  std::set_difference(goldens.begin(), goldens.end(), known.begin(), known.end(),
+                      std::back_inserter(orphans));
   return orphans;
 }
 
 }  // namespace
 
-std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns, const std::string& filter,
-                                                 const std::string& root, std::string& problem) {
+std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
+                                                 const std::string& filter, const std::string& root,
+                                                 std::string& problem) {
   const std::vector<ScenarioFile> all = ListScenarios(root);
   for (const std::string& pattern : patterns) {
-    if (std::any_of(all.begin(), all.end(), [&](const ScenarioFile& file) { return Matches(pattern, file); })) continue;
+    if (std::any_of(all.begin(), all.end(),
+                    [&](const ScenarioFile& file) { return Matches(pattern, file); }))
+      continue;
     const std::string hint = HintForScenario(all, pattern);
-    problem = "no scenario matches '" + pattern + "'" + (hint.empty() ? "" : "; " + hint) + " ('prehend list' shows all)";
+    problem = "no scenario matches '" + pattern + "'" + (hint.empty() ? "" : "; " + hint) +
+              " ('prehend list' shows all)";
     return std::nullopt;
   }
   ScenarioSelection selection;
   for (const ScenarioFile& file : all) {
-    const bool named = patterns.empty() || std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
-                         return Matches(pattern, file);
-                       });
+    const bool named = patterns.empty() || std::any_of(patterns.begin(), patterns.end(),
+                                                       [&](const std::string& pattern) {
+                                                         return Matches(pattern, file);
+                                                       });
     if (named && PassesFilter(file, filter, root)) selection.scenarios.push_back(file);
   }
   if (patterns.empty() && filter.empty()) selection.orphans = OrphanGoldens(all, root);

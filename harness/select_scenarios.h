@@ -12,12 +12,14 @@ namespace prehend::harness {
 
 struct ScenarioSelection {
   std::vector<ScenarioFile> scenarios;
-  std::vector<std::string> orphans;  ///< goldens without scenario; looked for when nothing narrows the selection
+  std::vector<std::string>
+      orphans;  ///< goldens without scenario; looked for when nothing narrows the selection
 };
 
-/// `patterns` are globs over names and skill/name; none means all. `filter` is a glob, too, or tag:NAME. When a
-/// pattern matches nothing, or nothing is left, `problem` says so.
-std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns, const std::string& filter,
-                                                 const std::string& root, std::string& problem);
+/// `patterns` are globs over names and skill/name; none means all. `filter` is a glob, too, or
+/// tag:NAME. When a pattern matches nothing, or nothing is left, `problem` says so.
+std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
+                                                 const std::string& filter, const std::string& root,
+                                                 std::string& problem);
 
 }  // namespace prehend::harness

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See timeline_svg.h. Colours are those of the pictures (harness/phases.h). Tested by tests/harness/report_test.cc
+// See timeline_svg.h. Colours are those of the pictures (harness/phases.h). Tested by
+// tests/harness/report_test.cc
 #include "harness/timeline_svg.h"
 
 #include <fmt/format.h>
@@ -47,25 +48,29 @@ std::vector<Row> RowsOf(const Comparison& comparison) {
 
 class Drawing {
  public:
-  Drawing(const Comparison& comparison, Tick end) : comparison_(comparison), end_(std::max<Tick>(1, end)), rows_(RowsOf(comparison)) {}
+  Drawing(const Comparison& comparison, Tick end)
+      : comparison_(comparison), end_(std::max<Tick>(1, end)), rows_(RowsOf(comparison)) {}
 
   std::string Draw() {
     const double height = kAxisHeight + kRowHeight * static_cast<double>(rows_.size()) + kMargin;
     svg_ = fmt::format("<svg class=\"timeline\" viewBox=\"0 0 {:g} {:g}\" role=\"img\">\n",
                        kLabelWidth + kChartWidth + 2 * kMargin, height);
     DrawAxis(height);
-    for (std::size_t i = 0; i < rows_.size(); ++i) DrawRow(rows_[i], kAxisHeight + kRowHeight * static_cast<double>(i));
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      DrawRow(rows_[i], kAxisHeight + kRowHeight * static_cast<double>(i));
     return svg_ + "</svg>\n";
   }
 
  private:
   double X(Tick tick) const {
-    return kLabelWidth + kChartWidth * static_cast<double>(std::clamp<Tick>(tick, 0, end_)) / static_cast<double>(end_);
+    return kLabelWidth + kChartWidth * static_cast<double>(std::clamp<Tick>(tick, 0, end_)) /
+                             static_cast<double>(end_);
   }
 
   /// A line per second, or per 1, 2, 5, 10, .. seconds so that there are at most 12.
   void DrawAxis(double height) {
-    const double end_s = static_cast<double>(end_) / static_cast<double>(comparison_.ticks_per_second);
+    const double end_s =
+        static_cast<double>(end_) / static_cast<double>(comparison_.ticks_per_second);
     double step_s = std::pow(10, std::floor(std::log10(std::max(end_s, 1e-3) / 12)));
     for (const double factor : {2.0, 5.0, 10.0}) {
       if (end_s / step_s <= 12) break;
@@ -84,11 +89,12 @@ class Drawing {
   }
 
   void DrawRow(const Row& row, double y) {
-    const bool agrees = std::all_of(row.pairings.begin(), row.pairings.end(), [](const Pairing* pairing) {
-      return pairing->agreement == Agreement::kMatched;
-    });
-    svg_ += fmt::format("<text class=\"{}\" x=\"{:g}\" y=\"{:g}\" text-anchor=\"end\">{}</text>\n", agrees ? "row" : "row differs",
-                        kLabelWidth - 8, y + 17, EscapeHtml(row.label));
+    const bool agrees = std::all_of(
+        row.pairings.begin(), row.pairings.end(),
+        [](const Pairing* pairing) { return pairing->agreement == Agreement::kMatched; });
+    svg_ +=
+        fmt::format("<text class=\"{}\" x=\"{:g}\" y=\"{:g}\" text-anchor=\"end\">{}</text>\n",
+                    agrees ? "row" : "row differs", kLabelWidth - 8, y + 17, EscapeHtml(row.label));
     for (const Pairing* pairing : row.pairings) {
       if (pairing->expected) DrawBar("golden", *pairing->expected, y + 4, *pairing);
       if (pairing->actual) DrawBar("actual", *pairing->actual, y + 5 + kBarHeight, *pairing);
@@ -100,9 +106,11 @@ class Drawing {
     const double width = std::max(kNarrowestBar, X(event.interval.end) - x);
     const bool agrees = pairing.agreement == Agreement::kMatched;
     svg_ += fmt::format(
-        "<rect class=\"{}{}\" x=\"{:.2f}\" y=\"{:g}\" width=\"{:.2f}\" height=\"{:g}\" fill=\"#{:06x}\"><title>{}</title></rect>\n", side,
-        agrees ? "" : " differs", x, y, width, kBarHeight, EventColor(event.event),
-        EscapeHtml(fmt::format("{} {}, {}: {}", side, event.Label(), IntervalText(event.interval, comparison_.ticks_per_second),
+        "<rect class=\"{}{}\" x=\"{:.2f}\" y=\"{:g}\" width=\"{:.2f}\" height=\"{:g}\" "
+        "fill=\"#{:06x}\"><title>{}</title></rect>\n",
+        side, agrees ? "" : " differs", x, y, width, kBarHeight, EventColor(event.event),
+        EscapeHtml(fmt::format("{} {}, {}: {}", side, event.Label(),
+                               IntervalText(event.interval, comparison_.ticks_per_second),
                                Name(pairing.agreement))));
   }
 
@@ -114,17 +122,28 @@ class Drawing {
 
 }  // namespace
 
-std::string TimelineSvg(const Comparison& comparison, Tick end) { return Drawing(comparison, end).Draw(); }
+std::string TimelineSvg(const Comparison& comparison, Tick end) {
+  return Drawing(comparison, end).Draw();
+}
 
 std::string EscapeHtml(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
     switch (c) {
-      case '&': escaped += "&amp;"; break;
-      case '<': escaped += "&lt;"; break;
-      case '>': escaped += "&gt;"; break;
-      case '"': escaped += "&quot;"; break;
-      default: escaped += c;
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
     }
   }
   return escaped;

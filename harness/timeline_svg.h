@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A comparison as a picture for web pages: one row per event and roles, the golden's interval above the recognised one.
-// Tested by tests/harness/report_test.cc
+// A comparison as a picture for web pages: one row per event and roles, the golden's interval above
+// the recognised one. Tested by tests/harness/report_test.cc
 #pragma once
 
 #include <string>

@@ -11,9 +11,12 @@ using Json = nlohmann::ordered_json;
 
 std::string_view Name(Verdict verdict) {
   switch (verdict) {
-    case Verdict::kPassed: return "passed";
-    case Verdict::kFailed: return "failed";
-    case Verdict::kPending: return "pending";
+    case Verdict::kPassed:
+      return "passed";
+    case Verdict::kFailed:
+      return "failed";
+    case Verdict::kPending:
+      return "pending";
   }
   return "";
 }
@@ -60,17 +63,22 @@ ScenarioVerdict VerdictFromJson(const Json& json) {
 
 Tally Count(const std::vector<ScenarioVerdict>& verdicts) {
   const auto count = [&](Verdict wanted) {
-    return static_cast<int>(std::count_if(verdicts.begin(), verdicts.end(),
-                                          [&](const ScenarioVerdict& verdict) { return verdict.verdict == wanted; }));
+    return static_cast<int>(
+        std::count_if(verdicts.begin(), verdicts.end(),
+                      [&](const ScenarioVerdict& verdict) { return verdict.verdict == wanted; }));
   };
-  return {.passed = count(Verdict::kPassed), .failed = count(Verdict::kFailed), .pending = count(Verdict::kPending)};
+  return {.passed = count(Verdict::kPassed),
+          .failed = count(Verdict::kFailed),
+          .pending = count(Verdict::kPending)};
 }
 
 ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts) {
   if (verdicts.empty()) return ExitCode::kNothing;
-  for (const ExitCode code : {ExitCode::kFailure, ExitCode::kBadInput, ExitCode::kDiffers, ExitCode::kPending}) {
-    const bool found = std::any_of(verdicts.begin(), verdicts.end(),
-                                   [&](const ScenarioVerdict& verdict) { return verdict.exit_code == code; });
+  for (const ExitCode code :
+       {ExitCode::kFailure, ExitCode::kBadInput, ExitCode::kDiffers, ExitCode::kPending}) {
+    const bool found =
+        std::any_of(verdicts.begin(), verdicts.end(),
+                    [&](const ScenarioVerdict& verdict) { return verdict.exit_code == code; });
     if (found) return code;
   }
   return ExitCode::kAgrees;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `prehend check` found out about one scenario, as a value that travels from the worker to the report.
-// Tested by tests/harness/verdict_test.cc
+// What `prehend check` found out about one scenario, as a value that travels from the worker to the
+// report. Tested by tests/harness/verdict_test.cc
 #pragma once
 
 #include <cstdint>
@@ -28,12 +28,12 @@ struct ScenarioVerdict {
   Verdict verdict = Verdict::kFailed;
   ExitCode exit_code = ExitCode::kAgrees;  ///< what a check of this scenario alone ends with
   std::string reason;                      ///< one line; empty when passed
-  std::string details;                     ///< differences, violations, diagnostics; several lines or empty
-  std::string headroom;                    ///< HeadroomText()
-  std::string command;                     ///< shows it again
+  std::string details;   ///< differences, violations, diagnostics; several lines or empty
+  std::string headroom;  ///< HeadroomText()
+  std::string command;   ///< shows it again
   std::string state_hash;
   std::int64_t ticks = 0;
-  double seconds = 0;                      ///< wall time in its worker
+  double seconds = 0;  ///< wall time in its worker
   std::vector<ReportedPicture> pictures;
   std::string timeline_svg;
 };

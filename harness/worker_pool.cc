@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One fork and one pipe per job; the parent polls the pipes and kills who is late. The end of a job is the end of its
-// pipe. Tested by tests/harness/worker_pool_test.cc
+// One fork and one pipe per job; the parent polls the pipes and kills who is late. The end of a job
+// is the end of its pipe. Tested by tests/harness/worker_pool_test.cc
 #include "harness/worker_pool.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kJobThrew = 70;
 
-double SecondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 void WriteAll(int file, std::string_view text) {
   while (!text.empty()) {
@@ -33,7 +35,8 @@ void WriteAll(int file, std::string_view text) {
   }
 }
 
-/// The child's life. Leaves by _exit: the parent's buffers and destructors are not the child's to run.
+/// The child's life. Leaves by _exit: the parent's buffers and destructors are not the child's to
+/// run.
 [[noreturn]] void Work(const WorkerJob& job, const WorkerLimits& limits, int pipe) {
   if (limits.memory_limit_bytes > 0) {
     const rlimit limit{limits.memory_limit_bytes, limits.memory_limit_bytes};
@@ -61,11 +64,13 @@ struct Worker {
 
 class Pool {
  public:
-  Pool(const std::vector<WorkerJob>& jobs, const WorkerLimits& limits) : jobs_(jobs), limits_(limits), results_(jobs.size()) {}
+  Pool(const std::vector<WorkerJob>& jobs, const WorkerLimits& limits)
+      : jobs_(jobs), limits_(limits), results_(jobs.size()) {}
 
   std::vector<WorkerResult> Run(const std::function<void(std::size_t, const WorkerResult&)>& done) {
     while (next_ < jobs_.size() || !workers_.empty()) {
-      while (next_ < jobs_.size() && workers_.size() < static_cast<std::size_t>(std::max(1, limits_.jobs))) {
+      while (next_ < jobs_.size() &&
+             workers_.size() < static_cast<std::size_t>(std::max(1, limits_.jobs))) {
         Start(next_++, done);
       }
       WaitAndRead(done);
@@ -78,7 +83,9 @@ class Pool {
 
   void Start(std::size_t job, const Done& done) {
     int ends[2];
-    if (pipe(ends) != 0) return Report(job, {.reason = "no pipe for the worker: " + std::string(std::strerror(errno))}, done);
+    if (pipe(ends) != 0)
+      return Report(job, {.reason = "no pipe for the worker: " + std::string(std::strerror(errno))},
+                    done);
     const pid_t process = fork();
     if (process == 0) {
       close(ends[0]);
@@ -87,9 +94,15 @@ class Pool {
     close(ends[1]);
     if (process < 0) {
       close(ends[0]);
-      return Report(job, {.reason = "no process for the worker: " + std::string(std::strerror(errno))}, done);
+      return Report(
+          job, {.reason = "no process for the worker: " + std::string(std::strerror(errno))}, done);
     }
-    workers_.push_back({.job = job, .process = process, .pipe = ends[0], .start = Clock::now(), .killed = false, .output = {}});
+    workers_.push_back({.job = job,
+                        .process = process,
+                        .pipe = ends[0],
+                        .start = Clock::now(),
+                        .killed = false,
+                        .output = {}});
   }
 
   void WaitAndRead(const Done& done) {
@@ -97,7 +110,9 @@ class Pool {
     double nearest_deadline_s = limits_.time_limit_s;
     for (const Worker& worker : workers_) {
       pipes.push_back({.fd = worker.pipe, .events = POLLIN, .revents = 0});
-      if (!worker.killed) nearest_deadline_s = std::min(nearest_deadline_s, limits_.time_limit_s - SecondsSince(worker.start));
+      if (!worker.killed)
+        nearest_deadline_s =
+            std::min(nearest_deadline_s, limits_.time_limit_s - SecondsSince(worker.start));
     }
     poll(pipes.data(), pipes.size(), std::max(1, static_cast<int>(1000 * nearest_deadline_s) + 1));
     for (std::size_t i = workers_.size(); i-- > 0;) {
@@ -140,7 +155,8 @@ class Pool {
 
   std::string EndReason(const Worker& worker, int status) const {
     if (worker.killed) return fmt::format("no end after {:g} s", limits_.time_limit_s);
-    if (WIFSIGNALED(status)) return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    if (WIFSIGNALED(status))
+      return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
     if (WEXITSTATUS(status) == kJobThrew) return "exception: " + worker.output;
     return fmt::format("exit status {}", WEXITSTATUS(status));
   }
@@ -159,8 +175,9 @@ class Pool {
 
 }  // namespace
 
-std::vector<WorkerResult> RunInWorkers(const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
-                                       const std::function<void(std::size_t, const WorkerResult&)>& done) {
+std::vector<WorkerResult> RunInWorkers(
+    const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
+    const std::function<void(std::size_t, const WorkerResult&)>& done) {
   return Pool(jobs, limits).Run(done);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs jobs in processes of their own, several at a time: a crash, a hang or a memory blow-up of one is its result and
-// leaves the others alone. Needs a caller without threads. Tested by tests/harness/worker_pool_test.cc
+// Runs jobs in processes of their own, several at a time: a crash, a hang or a memory blow-up of
+// one is its result and leaves the others alone. Needs a caller without threads. Tested by
+// tests/harness/worker_pool_test.cc
 #pragma once
 
 #include <cstdint>
@@ -11,15 +12,16 @@
 namespace prehend::harness {
 
 struct WorkerLimits {
-  int jobs = 1;            ///< processes at a time
+  int jobs = 1;  ///< processes at a time
   double time_limit_s = 60;
   std::uint64_t memory_limit_bytes = 0;  ///< of address space; 0: none
 };
 
 struct WorkerResult {
-  bool finished = false;   ///< false: crashed, killed, out of time or memory
-  std::string output;      ///< what the job returned; empty unless finished
-  std::string reason;      ///< "signal 11 (Segmentation fault)", "no end after 60 s"; empty when finished
+  bool finished = false;  ///< false: crashed, killed, out of time or memory
+  std::string output;     ///< what the job returned; empty unless finished
+  std::string
+      reason;  ///< "signal 11 (Segmentation fault)", "no end after 60 s"; empty when finished
   double seconds = 0;
   std::int64_t peak_memory_kib = 0;
 };
@@ -27,8 +29,10 @@ struct WorkerResult {
 /// Runs in the child; what it returns travels to the parent.
 using WorkerJob = std::function<std::string()>;
 
-/// Results in the order of the jobs, which also start in this order. `done` is told each one as it comes, in the parent.
-std::vector<WorkerResult> RunInWorkers(const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
-                                       const std::function<void(std::size_t job, const WorkerResult&)>& done = {});
+/// Results in the order of the jobs, which also start in this order. `done` is told each one as it
+/// comes, in the parent.
+std::vector<WorkerResult> RunInWorkers(
+    const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
+    const std::function<void(std::size_t job, const WorkerResult&)>& done = {});
 
 }  // namespace prehend::harness

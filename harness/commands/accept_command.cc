@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend accept: the only thing that writes goldens. It runs the scenario itself, so that what is accepted is what this
-// build recognises now. Tested by tests/house/command_line_test.cc
+// prehend accept: the only thing that writes goldens. It runs the scenario itself, so that what is
+// accepted is what this build recognises now. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
 
 #include "harness/accept_golden.h"
@@ -14,12 +14,18 @@ namespace prehend::harness {
 namespace {
 
 constexpr const char* kDerivationMissing =
-    "nobody has written yet how this follows from the definitions; what was seen is in the acceptance";
+    "nobody has written yet how this follows from the definitions; what was seen is in the "
+    "acceptance";
 
 void Declare(CLI::App& options) {
   options.add_option("scenario", "a name or skill/name")->required()->expected(1);
-  options.add_option("--reason", "why this is right; stays in the golden")->type_name("TEXT")->expected(1);
-  options.add_option("--derived", "how it follows from the definitions, one line each; replaces what the golden says")
+  options.add_option("--reason", "why this is right; stays in the golden")
+      ->type_name("TEXT")
+      ->expected(1);
+  options
+      .add_option(
+          "--derived",
+          "how it follows from the definitions, one line each; replaces what the golden says")
       ->type_name("TEXT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -33,36 +39,40 @@ std::string Refusal(const CLI::App& options, const CommandContext& context) {
   }
   for (const char* name : {"--reason", "--derived"}) {
     for (const std::string& text : ValuesOf(options, name)) {
-      if (text.find_first_of("\n\r") != std::string::npos) return std::string(name) + " takes a single line";
+      if (text.find_first_of("\n\r") != std::string::npos)
+        return std::string(name) + " takes a single line";
     }
   }
   return "";
 }
 
 /// What will change, before it does.
-void ShowDifference(const std::optional<Golden>& old, const Scenario& scenario, const RunResult& run,
-                    const std::string& id, const CommandContext& context) {
+void ShowDifference(const std::optional<Golden>& old, const Scenario& scenario,
+                    const RunResult& run, const std::string& id, const CommandContext& context) {
   if (!old) {
     context.out << "new golden:\n" << RunTable(run);
     return;
   }
-  const Comparison comparison =
-      Compare(*old, run.timeline, DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz));
+  const Comparison comparison = Compare(
+      *old, run.timeline, DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz));
   const std::string text = DifferenceText(comparison, ExplainCommand(id, {}));
   context.out << (text.empty() ? "differs within tolerance only\n" : text);
 }
 
 ExitCode Write(const CLI::App& options, const CommandContext& context, const std::string& id,
-               const std::optional<Golden>& old, const PreparedRun& prepared, const RunResult& run) {
+               const std::optional<Golden>& old, const PreparedRun& prepared,
+               const RunResult& run) {
   const GoldenFiles files(context.root);
   Proposal proposal{.scenario = id,
                     .grammar = prepared.scenario.grammar,
                     .derived = ValuesOf(options, "--derived"),
                     .acceptance = Acceptance{context.today, ValueOf(options, "--reason")}};
-  const bool tells_derivation = !proposal.derived.empty() && (!old || old->derived != proposal.derived);
+  const bool tells_derivation =
+      !proposal.derived.empty() && (!old || old->derived != proposal.derived);
   if (old && SaysTheSame(*old, run.timeline) && !tells_derivation) {
     files.RemovePending(id);
-    context.out << "nothing to accept: " << files.GoldenPath(id).string() << " says the same already\n";
+    context.out << "nothing to accept: " << files.GoldenPath(id).string()
+                << " says the same already\n";
     return ExitCode::kAgrees;
   }
   if (!old && proposal.derived.empty()) proposal.derived = {kDerivationMissing};
@@ -86,7 +96,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 
   const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, {});
   if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
-    return Complain(context, ExitCode::kFailure, "a run that did not complete is not accepted: " + StatusText(run));
+    return Complain(context, ExitCode::kFailure,
+                    "a run that did not complete is not accepted: " + StatusText(run));
   }
   return Write(options, context, id, old.value, *prepared.value, run);
 }
@@ -94,12 +105,15 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 }  // namespace
 
 Command AcceptCommand() {
-  return {.name = "accept",
-          .summary = "Make what a scenario yields now its golden, with a reason",
-          .examples = "prehend accept milk_carton_wrap --reason \"first golden, checked against the picture\"\n"
-                      "prehend accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the hand's first motion\"",
-          .declare = Declare,
-          .run = Run};
+  return {
+      .name = "accept",
+      .summary = "Make what a scenario yields now its golden, with a reason",
+      .examples =
+          "prehend accept milk_carton_wrap --reason \"first golden, checked against the picture\"\n"
+          "prehend accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the "
+          "hand's first motion\"",
+      .declare = Declare,
+      .run = Run};
 }
 
 }  // namespace prehend::harness

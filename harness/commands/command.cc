@@ -18,12 +18,18 @@ std::vector<std::string> ValuesOf(const CLI::App& options, const std::string& na
   return options.get_option(name)->results();
 }
 
-void DeclareFlag(CLI::App& options, const std::string& name, const std::string& help) { options.add_flag(name, help); }
+void DeclareFlag(CLI::App& options, const std::string& name, const std::string& help) {
+  options.add_flag(name, help);
+}
 
 void DeclareRunOptions(CLI::App& options) {
-  options.add_option("--grammar", "another grammar: a name of the library or a .grammar file")->type_name("NAME|FILE")->expected(1);
+  options.add_option("--grammar", "another grammar: a name of the library or a .grammar file")
+      ->type_name("NAME|FILE")
+      ->expected(1);
   options
-      .add_option("--set", "change a parameter of the grammar (reach_radius=25cm) or a field of the scenario (entities.milk.mass_kg=8)")
+      .add_option("--set",
+                  "change a parameter of the grammar (reach_radius=25cm) or a field of the "
+                  "scenario (entities.milk.mass_kg=8)")
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -35,7 +41,8 @@ RunRequest RequestOf(const CLI::App& options, const std::string& scenario_file) 
           .settings = ValuesOf(options, "--set")};
 }
 
-std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed, const CommandContext& context) {
+std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
+                                                   const CommandContext& context) {
   const std::vector<ScenarioFile> scenarios = ListScenarios(context.root);
   const auto path = FindScenario(scenarios, typed);
   if (!path) {
@@ -45,12 +52,14 @@ std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed, con
     Complain(context, ExitCode::kNothing, message + " ('prehend list' shows all)");
     return std::nullopt;
   }
-  const auto known = std::find_if(scenarios.begin(), scenarios.end(), [&](const ScenarioFile& scenario) {
-    std::error_code error;
-    return scenario.path == *path || std::filesystem::equivalent(scenario.path, *path, error);
-  });
+  const auto known =
+      std::find_if(scenarios.begin(), scenarios.end(), [&](const ScenarioFile& scenario) {
+        std::error_code error;
+        return scenario.path == *path || std::filesystem::equivalent(scenario.path, *path, error);
+      });
   if (known != scenarios.end()) return *known;
-  return ScenarioFile{.skill = "", .name = std::filesystem::path(*path).stem().string(), .path = *path};
+  return ScenarioFile{
+      .skill = "", .name = std::filesystem::path(*path).stem().string(), .path = *path};
 }
 
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A command of `prehend`: what it is called, what it accepts, what it does. Each stands in a file of its own and is
-// listed in command_line.cc. Results go to `out`, diagnostics to `err`.
-// Tested by tests/house/command_line_test.cc
+// A command of `prehend`: what it is called, what it accepts, what it does. Each stands in a file
+// of its own and is listed in command_line.cc. Results go to `out`, diagnostics to `err`. Tested by
+// tests/house/command_line_test.cc
 #pragma once
 
 #include <optional>
@@ -52,7 +52,8 @@ Command SchemaCommand();
 
 // What was typed for an option; `name` is "--json", or "scenario" for a positional.
 bool IsGiven(const CLI::App& options, const std::string& name);
-std::string ValueOf(const CLI::App& options, const std::string& name, const std::string& fallback = {});
+std::string ValueOf(const CLI::App& options, const std::string& name,
+                    const std::string& fallback = {});
 std::vector<std::string> ValuesOf(const CLI::App& options, const std::string& name);
 
 void DeclareFlag(CLI::App& options, const std::string& name, const std::string& help);
@@ -62,7 +63,8 @@ void DeclareRunOptions(CLI::App& options);
 RunRequest RequestOf(const CLI::App& options, const std::string& scenario_file);
 
 /// The scenario that was typed, by name or path; otherwise says so, with the nearest name.
-std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed, const CommandContext& context);
+std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
+                                                   const CommandContext& context);
 
 /// Prints to `err`, followed by the command line, and returns `code`.
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend list. Tested by tests/house/command_line_test.cc
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "harness/commands/command.h"
@@ -11,7 +12,9 @@
 namespace prehend::harness {
 namespace {
 
-void Declare(CLI::App& options) { DeclareFlag(options, "--json", "one JSON object instead of a table"); }
+void Declare(CLI::App& options) {
+  DeclareFlag(options, "--json", "one JSON object instead of a table");
+}
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   std::vector<std::vector<std::string>> rows = {{"scenario", "shows", "tags"}};
@@ -23,9 +26,14 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     const Scenario scenario = std::move(read.value).value_or(Scenario{.shows = "(cannot be read)"});
     const std::string id = ScenarioId(file.skill, file.name);
     rows.push_back({id, scenario.shows, fmt::format("{}", fmt::join(scenario.tags, " "))});
-    list.push_back({{"scenario", id}, {"shows", scenario.shows}, {"tags", scenario.tags}, {"grammar", scenario.grammar}});
+    list.push_back({{"scenario", id},
+                    {"shows", scenario.shows},
+                    {"tags", scenario.tags},
+                    {"grammar", scenario.grammar}});
   }
-  if (list.empty()) return Complain(context, ExitCode::kNothing, "no scenarios below " + context.root + "/scenarios");
+  if (list.empty())
+    return Complain(context, ExitCode::kNothing,
+                    "no scenarios below " + context.root + "/scenarios");
   if (IsGiven(options, "--json")) {
     context.out << nlohmann::ordered_json{{"scenarios", list}}.dump(2) << "\n";
   } else {

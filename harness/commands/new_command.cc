@@ -46,21 +46,31 @@ pictures:
 )";
 
 void Declare(CLI::App& options) {
-  options.add_option("name", "what the scenario claims, like carton_slides_then_is_lifted; or skill/name")->required()->expected(1);
-  options.add_option("--like", "start from this scenario instead")->type_name("SCENARIO")->expected(1);
+  options
+      .add_option("name",
+                  "what the scenario claims, like carton_slides_then_is_lifted; or skill/name")
+      ->required()
+      ->expected(1);
+  options.add_option("--like", "start from this scenario instead")
+      ->type_name("SCENARIO")
+      ->expected(1);
 }
 
 /// The text with its `scenario:` line naming the new one.
 std::string Renamed(const std::string& text, const std::string& name) {
   static const std::regex name_line("(^|\n)scenario:[^\n]*");
-  return std::regex_replace(text, name_line, "$1scenario: " + name, std::regex_constants::format_first_only);
+  return std::regex_replace(text, name_line, "$1scenario: " + name,
+                            std::regex_constants::format_first_only);
 }
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const std::string typed = ValueOf(options, "name");
   static const std::regex well_formed("([a-z][a-z0-9_]*/)?[a-z][a-z0-9_]*");
   if (!std::regex_match(typed, well_formed)) {
-    return Complain(context, ExitCode::kBadInput, "'" + typed + "' is no name; one looks like slide_then_transport or slide/slide_then_transport");
+    return Complain(
+        context, ExitCode::kBadInput,
+        "'" + typed +
+            "' is no name; one looks like slide_then_transport or slide/slide_then_transport");
   }
   std::string text = kTemplate;
   std::string skill = kDefaultSkill;
@@ -77,9 +87,12 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const std::string name = slash == std::string::npos ? typed : typed.substr(slash + 1);
 
   for (const ScenarioFile& scenario : ListScenarios(context.root)) {
-    if (scenario.name == name) return Complain(context, ExitCode::kBadInput, "there is a scenario of this name: " + scenario.path);
+    if (scenario.name == name)
+      return Complain(context, ExitCode::kBadInput,
+                      "there is a scenario of this name: " + scenario.path);
   }
-  const std::filesystem::path path = std::filesystem::path(context.root) / "scenarios" / skill / (name + ".yaml");
+  const std::filesystem::path path =
+      std::filesystem::path(context.root) / "scenarios" / skill / (name + ".yaml");
   const std::string problem = WriteTextFile(path, Renamed(text, name));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   const std::string id = ScenarioId(skill, name);
@@ -97,8 +110,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 Command NewCommand() {
   return {.name = "new",
           .summary = "Write a commented, runnable scenario to start from",
-          .examples = "prehend new carton_is_lifted\n"
-                      "prehend new slide/carton_slides_far --like carton_slides_then_is_transported",
+          .examples =
+              "prehend new carton_is_lifted\n"
+              "prehend new slide/carton_slides_far --like carton_slides_then_is_transported",
           .declare = Declare,
           .run = Run};
 }

@@ -23,7 +23,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!prepared.value) return Complain(context, prepared.diagnostics);
 
   const bool measure = IsGiven(options, "--measure");
-  const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, {.measure = measure});
+  const RunResult run =
+      RunScenario(prepared.value->scenario, prepared.value->program, {.measure = measure});
   if (IsGiven(options, "--json")) {
     OrderedJson json = RunJson(prepared.value->scenario, run);
     if (measure) json["measured"] = MeasurementJson(Measure(run));
@@ -41,11 +42,12 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 Command RunCommand() {
   return {.name = "run",
           .summary = "Simulate one scenario and print what its grammar recognises",
-          .examples = "prehend run milk_carton_wrap\n"
-                      "prehend run milk_carton_wrap --json\n"
-                      "prehend run milk_carton_wrap --set entities.milk.mass_kg=8\n"
-                      "prehend run milk_carton_wrap --set lift_rise=10cm --measure\n"
-                      "prehend run my/scenario.yaml --grammar my/rules.grammar",
+          .examples =
+              "prehend run milk_carton_wrap\n"
+              "prehend run milk_carton_wrap --json\n"
+              "prehend run milk_carton_wrap --set entities.milk.mass_kg=8\n"
+              "prehend run milk_carton_wrap --set lift_rise=10cm --measure\n"
+              "prehend run my/scenario.yaml --grammar my/rules.grammar",
           .declare = Declare,
           .run = Run};
 }

@@ -19,7 +19,9 @@ struct Validated {
 };
 
 void Declare(CLI::App& options) {
-  options.add_option("files", "scenarios (names or files), .grammar or .timeline files; nothing: all scenarios")
+  options
+      .add_option("files",
+                  "scenarios (names or files), .grammar or .timeline files; nothing: all scenarios")
       ->expected(-1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   DeclareRunOptions(options);
@@ -38,12 +40,14 @@ Validated ValidateGrammar(const std::string& name_or_path, const std::string& ro
 }
 
 /// Nothing when it is the name of no scenario.
-std::optional<Validated> Validate(const std::string& typed, const CLI::App& options, const CommandContext& context) {
+std::optional<Validated> Validate(const std::string& typed, const CLI::App& options,
+                                  const CommandContext& context) {
   if (typed.ends_with(".grammar")) return ValidateGrammar(typed, context.root);
   if (typed.ends_with(".timeline")) return Validated{typed, ReadGoldenFile(typed), {}};
   const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return std::nullopt;
-  return Validated{file->path, PrepareRun(RequestOf(options, file->path), context.root).diagnostics, {}};
+  return Validated{
+      file->path, PrepareRun(RequestOf(options, file->path), context.root).diagnostics, {}};
 }
 
 nlohmann::ordered_json ToJson(const Validated& validated) {
@@ -55,14 +59,19 @@ nlohmann::ordered_json ToJson(const Validated& validated) {
                            {"message", diagnostic.message},
                            {"hint", diagnostic.hint}});
   }
-  return {{"file", validated.file}, {"ok", validated.diagnostics.empty()}, {"diagnostics", std::move(diagnostics)}};
+  return {{"file", validated.file},
+          {"ok", validated.diagnostics.empty()},
+          {"diagnostics", std::move(diagnostics)}};
 }
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   std::vector<std::string> typed = ValuesOf(options, "files");
   if (typed.empty() && !IsGiven(options, "--grammar")) {
-    for (const ScenarioFile& file : ListScenarios(context.root)) typed.push_back(ScenarioId(file.skill, file.name));
-    if (typed.empty()) return Complain(context, ExitCode::kNothing, "no scenarios below " + context.root + "/scenarios");
+    for (const ScenarioFile& file : ListScenarios(context.root))
+      typed.push_back(ScenarioId(file.skill, file.name));
+    if (typed.empty())
+      return Complain(context, ExitCode::kNothing,
+                      "no scenarios below " + context.root + "/scenarios");
   }
   std::vector<Validated> all;
   if (typed.empty()) all.push_back(ValidateGrammar(ValueOf(options, "--grammar"), context.root));
@@ -76,10 +85,13 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   grammar::Diagnostics diagnostics;
   for (const Validated& validated : all) {
     json.push_back(ToJson(validated));
-    diagnostics.insert(diagnostics.end(), validated.diagnostics.begin(), validated.diagnostics.end());
-    if (!IsGiven(options, "--json") && validated.diagnostics.empty()) context.out << "ok: " << validated.file << "\n" << validated.description;
+    diagnostics.insert(diagnostics.end(), validated.diagnostics.begin(),
+                       validated.diagnostics.end());
+    if (!IsGiven(options, "--json") && validated.diagnostics.empty())
+      context.out << "ok: " << validated.file << "\n" << validated.description;
   }
-  if (IsGiven(options, "--json")) context.out << nlohmann::ordered_json{{"files", json}}.dump(2) << "\n";
+  if (IsGiven(options, "--json"))
+    context.out << nlohmann::ordered_json{{"files", json}}.dump(2) << "\n";
   return diagnostics.empty() ? ExitCode::kAgrees : Complain(context, diagnostics);
 }
 
@@ -88,10 +100,11 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 Command ValidateCommand() {
   return {.name = "validate",
           .summary = "Read scenarios, grammars and goldens without running anything",
-          .examples = "prehend validate\n"
-                      "prehend validate milk_carton_wrap my/scenario.yaml\n"
-                      "prehend validate my/rules.grammar\n"
-                      "prehend validate --grammar pick_and_place",
+          .examples =
+              "prehend validate\n"
+              "prehend validate milk_carton_wrap my/scenario.yaml\n"
+              "prehend validate my/rules.grammar\n"
+              "prehend validate --grammar pick_and_place",
           .declare = Declare,
           .run = Run};
 }

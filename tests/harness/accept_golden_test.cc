@@ -35,12 +35,16 @@ grammar::Timeline Recognised(std::vector<grammar::NamedEvent> events) {
 }
 
 const grammar::Timeline kShiftedWithoutFixation =
-    Recognised({{.event = "reaching", .interval = {250, 500}}, {.event = "grasping", .interval = {500, 1440}}});
+    Recognised({{.event = "reaching", .interval = {250, 500}},
+                {.event = "grasping", .interval = {500, 1440}}});
 
 TEST(ProposeGolden, KeepsWhatPeopleWrote) {
-  const Golden golden = ProposeGolden(Old(), kShiftedWithoutFixation,
-                                      {.scenario = "slide/x", .grammar = "pick_and_place", .derived = {},
-                                       .acceptance = Acceptance{"2026-02-01", "no fixation any more"}});
+  const Golden golden =
+      ProposeGolden(Old(), kShiftedWithoutFixation,
+                    {.scenario = "slide/x",
+                     .grammar = "pick_and_place",
+                     .derived = {},
+                     .acceptance = Acceptance{"2026-02-01", "no fixation any more"}});
   EXPECT_EQ(WriteGolden(golden), R"(# scenario: slide/x
 # grammar: pick_and_place
 # derived: from the script
@@ -59,8 +63,9 @@ grasping  1.0417   3.0000  hand=hand  object=cup
 }
 
 TEST(ProposeGolden, StartsFromNothing) {
-  const Golden golden = ProposeGolden(std::nullopt, kShiftedWithoutFixation,
-                                      {.scenario = "slide/x", .grammar = "g", .derived = {"by eye"}, .acceptance = {}});
+  const Golden golden = ProposeGolden(
+      std::nullopt, kShiftedWithoutFixation,
+      {.scenario = "slide/x", .grammar = "g", .derived = {"by eye"}, .acceptance = {}});
   EXPECT_EQ(golden.derived, std::vector<std::string>{"by eye"});
   EXPECT_TRUE(golden.accepted.empty());
   EXPECT_EQ(golden.events.size(), 2u);

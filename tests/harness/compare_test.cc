@@ -9,19 +9,22 @@ namespace {
 
 constexpr grammar::Tick kRate = 1000;  // one tick is a millisecond
 
-grammar::NamedEvent Event(const std::string& event, const std::string& object, grammar::Tick begin, grammar::Tick end,
-                          const std::string& style = "") {
-  grammar::NamedEvent named{.event = event, .roles = {{"hand", "hand"}, {"object", object}}, .interval = {begin, end}};
+grammar::NamedEvent Event(const std::string& event, const std::string& object, grammar::Tick begin,
+                          grammar::Tick end, const std::string& style = "") {
+  grammar::NamedEvent named{
+      .event = event, .roles = {{"hand", "hand"}, {"object", object}}, .interval = {begin, end}};
   if (!style.empty()) named.roles.push_back({"style", style});
   return named;
 }
 
 using Events = std::vector<grammar::NamedEvent>;
 
-Comparison CompareEvents(const Events& expected, const Events& actual, std::optional<int> tolerance_ms = {}) {
+Comparison CompareEvents(const Events& expected, const Events& actual,
+                         std::optional<int> tolerance_ms = {}) {
   Golden golden{.scenario = "s/x", .grammar = "g", .ticks_per_second = kRate};
   for (const auto& event : expected) {
-    golden.events.push_back({.event = event, .tolerance_ms = tolerance_ms, .because = "test", .comments = {}});
+    golden.events.push_back(
+        {.event = event, .tolerance_ms = tolerance_ms, .because = "test", .comments = {}});
   }
   return Compare(golden, {.ticks_per_second = kRate, .events = actual}, /*default_tolerance=*/8);
 }
@@ -30,8 +33,11 @@ Comparison CompareEvents(const Events& expected, const Events& actual, std::opti
 std::string Outline(const Comparison& comparison) {
   std::string text;
   for (const Pairing& pairing : comparison.pairings) {
-    const auto begin = [](const auto& event) { return event ? std::to_string(event->interval.begin) : "-"; };
-    text += std::string(Name(pairing.agreement)) + " " + begin(pairing.expected) + ":" + begin(pairing.actual) + " ";
+    const auto begin = [](const auto& event) {
+      return event ? std::to_string(event->interval.begin) : "-";
+    };
+    text += std::string(Name(pairing.agreement)) + " " + begin(pairing.expected) + ":" +
+            begin(pairing.actual) + " ";
   }
   return text;
 }
@@ -52,41 +58,53 @@ std::string NameOf(const testing::TestParamInfo<Case>& row) { return row.param.n
 
 INSTANTIATE_TEST_SUITE_P(
     Table, CompareTable,
-    testing::Values(
-        Case{"equal", {Event("grasping", "cup", 100, 200)}, {Event("grasping", "cup", 100, 200)}, "matched 100:100 "},
-        Case{"within", {Event("grasping", "cup", 100, 200)}, {Event("grasping", "cup", 108, 192)}, "matched 100:108 "},
-        Case{"late", {Event("grasping", "cup", 100, 200)}, {Event("grasping", "cup", 109, 200)}, "shifted 100:109 "},
-        Case{"missing", {Event("grasping", "cup", 100, 200)}, {}, "missing 100:- "},
-        Case{"extra", {}, {Event("grasping", "cup", 100, 200)}, "extra -:100 "},
-        Case{"far_apart_is_no_shift",
-             {Event("grasping", "cup", 100, 200)},
-             {Event("grasping", "cup", 600, 700)},
-             "missing 100:- extra -:600 "},
-        Case{"near_without_overlap_is_a_shift",
-             {Event("grasping", "cup", 100, 200)},
-             {Event("grasping", "cup", 210, 310)},
-             "shifted 100:210 "},
-        Case{"as_many_as_possible",  // greedy by closeness would pair 300 with 290 and leave 100 alone
-             {Event("grasping", "cup", 100, 200), Event("grasping", "cup", 300, 400)},
-             {Event("grasping", "cup", 290, 400), Event("grasping", "cup", 420, 500)},
-             "shifted 100:290 shifted 300:420 "},
-        Case{"fragmented",
-             {Event("grasping", "cup", 100, 400)},
-             {Event("grasping", "cup", 100, 140), Event("grasping", "cup", 150, 400)},
-             "extra -:100 shifted 100:150 "},
-        Case{"changed_role", {Event("grasping", "cup", 100, 200)}, {Event("grasping", "mug", 104, 210)}, "changed 100:104 "},
-        Case{"role_at_another_time",
-             {Event("grasping", "cup", 100, 200)},
-             {Event("grasping", "mug", 180, 400)},
-             "missing 100:- extra -:180 "},
-        Case{"changed_attribute",
-             {Event("grasping", "cup", 100, 200, "wrap")},
-             {Event("grasping", "cup", 100, 200, "pinch")},
-             "changed 100:100 "},
-        Case{"another_event",
-             {Event("sliding", "cup", 100, 200)},
-             {Event("transporting", "cup", 100, 200)},
-             "missing 100:- extra -:100 "}),
+    testing::Values(Case{"equal",
+                         {Event("grasping", "cup", 100, 200)},
+                         {Event("grasping", "cup", 100, 200)},
+                         "matched 100:100 "},
+                    Case{"within",
+                         {Event("grasping", "cup", 100, 200)},
+                         {Event("grasping", "cup", 108, 192)},
+                         "matched 100:108 "},
+                    Case{"late",
+                         {Event("grasping", "cup", 100, 200)},
+                         {Event("grasping", "cup", 109, 200)},
+                         "shifted 100:109 "},
+                    Case{"missing", {Event("grasping", "cup", 100, 200)}, {}, "missing 100:- "},
+                    Case{"extra", {}, {Event("grasping", "cup", 100, 200)}, "extra -:100 "},
+                    Case{"far_apart_is_no_shift",
+                         {Event("grasping", "cup", 100, 200)},
+                         {Event("grasping", "cup", 600, 700)},
+                         "missing 100:- extra -:600 "},
+                    Case{"near_without_overlap_is_a_shift",
+                         {Event("grasping", "cup", 100, 200)},
+                         {Event("grasping", "cup", 210, 310)},
+                         "shifted 100:210 "},
+                    Case{"as_many_as_possible",  // greedy by closeness would pair 300 with 290 and
+                                                 // leave 100 alone
+                         {Event("grasping", "cup", 100, 200), Event("grasping", "cup", 300, 400)},
+                         {Event("grasping", "cup", 290, 400), Event("grasping", "cup", 420, 500)},
+                         "shifted 100:290 shifted 300:420 "},
+                    Case{"fragmented",
+                         {Event("grasping", "cup", 100, 400)},
+                         {Event("grasping", "cup", 100, 140), Event("grasping", "cup", 150, 400)},
+                         "extra -:100 shifted 100:150 "},
+                    Case{"changed_role",
+                         {Event("grasping", "cup", 100, 200)},
+                         {Event("grasping", "mug", 104, 210)},
+                         "changed 100:104 "},
+                    Case{"role_at_another_time",
+                         {Event("grasping", "cup", 100, 200)},
+                         {Event("grasping", "mug", 180, 400)},
+                         "missing 100:- extra -:180 "},
+                    Case{"changed_attribute",
+                         {Event("grasping", "cup", 100, 200, "wrap")},
+                         {Event("grasping", "cup", 100, 200, "pinch")},
+                         "changed 100:100 "},
+                    Case{"another_event",
+                         {Event("sliding", "cup", 100, 200)},
+                         {Event("transporting", "cup", 100, 200)},
+                         "missing 100:- extra -:100 "}),
     NameOf);
 
 TEST(Compare, ALineMayStateItsOwnTolerance) {
@@ -98,8 +116,12 @@ TEST(Compare, ALineMayStateItsOwnTolerance) {
 
 TEST(Compare, TicksOfAnotherRateAreConverted) {
   Golden golden{.scenario = "s/x", .grammar = "g", .ticks_per_second = 500};
-  golden.events.push_back({.event = Event("grasping", "cup", 50, 100), .tolerance_ms = {}, .because = {}, .comments = {}});
-  const Comparison comparison = Compare(golden, {.ticks_per_second = kRate, .events = {Event("grasping", "cup", 100, 200)}}, 0);
+  golden.events.push_back({.event = Event("grasping", "cup", 50, 100),
+                           .tolerance_ms = {},
+                           .because = {},
+                           .comments = {}});
+  const Comparison comparison = Compare(
+      golden, {.ticks_per_second = kRate, .events = {Event("grasping", "cup", 100, 200)}}, 0);
   EXPECT_TRUE(comparison.Agrees());
 }
 
@@ -108,14 +130,16 @@ TEST(Compare, AnEndByTheEpisodeIsNotAnEndOfItsOwn) {
   actual[0].open_end = true;
   const Comparison comparison = CompareEvents({Event("grasping", "cup", 100, 200)}, actual);
   ASSERT_EQ(comparison.Count(Agreement::kChanged), 1);
-  EXPECT_EQ(comparison.pairings[0].changes, std::vector<std::string>{"end: of its own -> of the episode"});
+  EXPECT_EQ(comparison.pairings[0].changes,
+            std::vector<std::string>{"end: of its own -> of the episode"});
 }
 
 TEST(Compare, HeadroomIsThatOfTheTightestBoundary) {
   const Comparison comparison =
       CompareEvents({Event("grasping", "cup", 100, 200), Event("sliding", "cup", 150, 180)},
                     {Event("grasping", "cup", 101, 200), Event("sliding", "cup", 150, 175)});
-  EXPECT_EQ(HeadroomText(comparison), "headroom: 3.0 of 8.0 ms are left at end of sliding(hand, cup)");
+  EXPECT_EQ(HeadroomText(comparison),
+            "headroom: 3.0 of 8.0 ms are left at end of sliding(hand, cup)");
 }
 
 TEST(Compare, TheTextSaysWhatWhenHowMuchAndHowToSeeIt) {
@@ -133,7 +157,8 @@ TEST(Compare, TheTextSaysWhatWhenHowMuchAndHowToSeeIt) {
             "extra transporting(hand, cup)\n"
             "  expected nothing, recognised 0.1600..0.1800 s\n"
             "  see: prehend run x\n");
-  const Comparison agrees = CompareEvents({Event("grasping", "cup", 100, 200)}, {Event("grasping", "cup", 100, 200)});
+  const Comparison agrees =
+      CompareEvents({Event("grasping", "cup", 100, 200)}, {Event("grasping", "cup", 100, 200)});
   EXPECT_EQ(DifferenceText(agrees, "prehend run x"), "");
 }
 

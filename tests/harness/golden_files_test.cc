@@ -16,8 +16,10 @@ class GoldenFilesTest : public testing::Test {
   GoldenFilesTest() { fs::remove_all(root_); }
   ~GoldenFilesTest() override { fs::remove_all(root_); }
 
-  const fs::path root_ = fs::path(testing::TempDir()) /
-                         ("golden_files_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const fs::path root_ =
+      fs::path(testing::TempDir()) /
+      ("golden_files_" +
+       std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
   const GoldenFiles files_{root_};
   const Golden golden_{.scenario = "slide/x", .grammar = "g"};
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goldens as text: what is written is read back the same, and every mistake in a file is found where it is.
+// Goldens as text: what is written is read back the same, and every mistake in a file is found
+// where it is.
 #include "harness/golden.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +47,8 @@ TEST(Golden, IsReadAsWritten) {
   EXPECT_EQ(golden.events[1].event.interval, (grammar::Interval{240, 576}));
   EXPECT_EQ(golden.events[1].tolerance_ms, 20);
   EXPECT_EQ(golden.events[1].because, "soft start");
-  EXPECT_EQ(golden.events[1].comments, std::vector<std::string>{"the hand starts to move after half a second"});
+  EXPECT_EQ(golden.events[1].comments,
+            std::vector<std::string>{"the hand starts to move after half a second"});
   EXPECT_EQ(RoleValue(golden.events[2].event, "style"), "wrap");
   EXPECT_TRUE(golden.events[3].event.open_end);
   EXPECT_EQ(golden.closing_comments, std::vector<std::string>{"the end"});
@@ -84,14 +86,15 @@ struct Mistake {
 class GoldenMistake : public testing::TestWithParam<Mistake> {};
 
 TEST_P(GoldenMistake, IsFoundWhereItIs) {
-  const std::string text = std::string("# scenario: s/x\n# grammar: g\n# ticks_per_second: 480\n") + GetParam().line + "\n";
+  const std::string text = std::string("# scenario: s/x\n# grammar: g\n# ticks_per_second: 480\n") +
+                           GetParam().line + "\n";
   const auto result = ReadGolden("x.timeline", text);
   EXPECT_FALSE(result.value);
   ASSERT_EQ(result.diagnostics.size(), 1u) << Format(result.diagnostics);
   const auto& diagnostic = result.diagnostics[0];
   const std::string hint = diagnostic.hint.empty() ? "" : " | " + diagnostic.hint;
-  EXPECT_EQ(std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column) + ": " +
-                diagnostic.message + hint,
+  EXPECT_EQ(std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column) +
+                ": " + diagnostic.message + hint,
             GetParam().complaint);
   EXPECT_EQ(diagnostic.source_line, GetParam().line);
 }
@@ -113,23 +116,32 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"no_equals", "contact 1 2 cup", "4:16: expected '=' after 'cup'"},
         Mistake{"no_value", "contact 1 2 a= b=cup", "4:15: expected a value for 'a'"},
         Mistake{"role_twice", "contact 1 2 a=cup a=cup", "4:19: second 'a'"},
-        Mistake{"comment_behind", "contact 1 2 a=cup # why", "4:19: comments stand on lines of their own"},
-        Mistake{"tolerance_unit", "contact 1 2 a=cup tolerance=20", "4:29: a tolerance is whole milliseconds up to 10000, like 20ms"},
+        Mistake{"comment_behind", "contact 1 2 a=cup # why",
+                "4:19: comments stand on lines of their own"},
+        Mistake{"tolerance_unit", "contact 1 2 a=cup tolerance=20",
+                "4:29: a tolerance is whole milliseconds up to 10000, like 20ms"},
         Mistake{"tolerance_unexplained", "contact 1 2 a=cup tolerance=20ms",
                 "4:33: a tolerance needs a reason | tolerance=20ms because \"the reason\""},
-        Mistake{"reason_empty", "contact 1 2 a=cup tolerance=20ms because \"\"", "4:42: the reason is empty"},
-        Mistake{"reason_unquoted", "contact 1 2 a=cup tolerance=20ms because soft", "4:42: expected a reason in double quotes"},
-        Mistake{"quote_open", "contact 1 2 a=cup tolerance=20ms because \"so", "4:42: the closing quote is missing"},
+        Mistake{"reason_empty", "contact 1 2 a=cup tolerance=20ms because \"\"",
+                "4:42: the reason is empty"},
+        Mistake{"reason_unquoted", "contact 1 2 a=cup tolerance=20ms because soft",
+                "4:42: expected a reason in double quotes"},
+        Mistake{"quote_open", "contact 1 2 a=cup tolerance=20ms because \"so",
+                "4:42: the closing quote is missing"},
         Mistake{"reason_alone", "contact 1 2 a=cup because \"soft\"",
                 "4:19: 'because' gives the reason of a tolerance, but there is none"},
         Mistake{"rate_twice", "# ticks_per_second: 240", "4:21: second 'ticks_per_second' line"},
         Mistake{"scenario_twice", "# scenario: s/y", "4:13: second 'scenario' line"},
-        Mistake{"bad_date", "# accepted: today \"ok\"", "4:13: expected the date of the acceptance, YYYY-MM-DD"},
-        Mistake{"accepted_tail", "# accepted: 2026-01-31 \"ok\" yes", "4:29: unexpected text at the end of the line"}),
+        Mistake{"bad_date", "# accepted: today \"ok\"",
+                "4:13: expected the date of the acceptance, YYYY-MM-DD"},
+        Mistake{"accepted_tail", "# accepted: 2026-01-31 \"ok\" yes",
+                "4:29: unexpected text at the end of the line"}),
     NameOf);
 
 TEST(Golden, AnEventListedTwiceIsAMistake) {
-  const auto result = ReadGolden("x", "# scenario: s/x\n# grammar: g\n# ticks_per_second: 480\ncontact 1 2 a=b\ncontact 1 2 a=b\n");
+  const auto result = ReadGolden(
+      "x",
+      "# scenario: s/x\n# grammar: g\n# ticks_per_second: 480\ncontact 1 2 a=b\ncontact 1 2 a=b\n");
   ASSERT_EQ(result.diagnostics.size(), 1u);
   EXPECT_EQ(result.diagnostics[0].place.line, 5);
   EXPECT_EQ(result.diagnostics[0].message, "this event is listed twice");

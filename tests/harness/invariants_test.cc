@@ -41,7 +41,11 @@ Timeline PickAndPlace() {
 }
 
 EpisodeFacts Facts() {
-  return {.end = 1000, .movable = {"cup"}, .ticks_per_frame = 2, .latency = {{"grasping", {.seconds = 0.1}}, {"fixation", {.seconds = 0, .until_end_of = {"contact"}}}}};
+  return {.end = 1000,
+          .movable = {"cup"},
+          .ticks_per_frame = 2,
+          .latency = {{"grasping", {.seconds = 0.1}},
+                      {"fixation", {.seconds = 0, .until_end_of = {"contact"}}}}};
 }
 
 NamedEvent& Find(Timeline& timeline, const std::string& event) {
@@ -50,7 +54,8 @@ NamedEvent& Find(Timeline& timeline, const std::string& event) {
 }
 
 TEST(Invariants, HoldOfAnOrdinaryTimeline) {
-  for (const Violation& violation : CheckInvariants(PickAndPlace(), Facts())) ADD_FAILURE() << Text(violation, 480);
+  for (const Violation& violation : CheckInvariants(PickAndPlace(), Facts()))
+    ADD_FAILURE() << Text(violation, 480);
 }
 
 struct Break {
@@ -66,10 +71,11 @@ TEST_P(BrokenInvariant, IsReported) {
   Timeline timeline = PickAndPlace();
   GetParam().change(timeline);
   const Violations violations = CheckInvariants(timeline, Facts());
-  const bool found = std::any_of(violations.begin(), violations.end(), [](const Violation& violation) {
-    return violation.invariant == GetParam().invariant && violation.what == GetParam().what &&
-           violation.tick == GetParam().tick;
-  });
+  const bool found =
+      std::any_of(violations.begin(), violations.end(), [](const Violation& violation) {
+        return violation.invariant == GetParam().invariant && violation.what == GetParam().what &&
+               violation.tick == GetParam().tick;
+      });
   std::string all;
   for (const Violation& violation : violations) all += Text(violation, 480) + "\n";
   EXPECT_TRUE(found) << all;
@@ -77,7 +83,9 @@ TEST_P(BrokenInvariant, IsReported) {
 
 const Break kBreaks[] = {
     Break{"events_lie_inside_the_episode", "reaching(hand, cup) does not end after it begins", 150,
-          [](Timeline& t) { Find(t, "reaching").interval = {150, 150}; }},
+          [](Timeline& t) {
+            Find(t, "reaching").interval = {150, 150};
+          }},
     Break{"events_lie_inside_the_episode", "contact(cup, table) reaches out of the episode", 600,
           [](Timeline& t) { t.events[9].interval.end = 1001; }},
     Break{"phases_lie_inside_a_grasp", "putting_down(hand, cup) does not lie inside a grasp", 500,
@@ -86,21 +94,25 @@ const Break kBreaks[] = {
           [](Timeline& t) { Find(t, "sliding").roles[0].value = "other_hand"; }},
     Break{"phases_do_not_overlap", "transporting(hand, cup) overlaps picking_up", 390,
           [](Timeline& t) { Find(t, "transporting").interval.begin = 390; }},
-    Break{"phases_cover_the_grasp", "cup is held unsupported by hand for 0.8333..0.8542 s and belongs to no phase", 400,
+    Break{"phases_cover_the_grasp",
+          "cup is held unsupported by hand for 0.8333..0.8542 s and belongs to no phase", 400,
           [](Timeline& t) { Find(t, "transporting").interval.begin = 410; }},
     Break{"phases_fit_the_support", "sliding(hand, cup) goes on without support", 300,
           [](Timeline& t) { Find(t, "sliding").interval.end = 310; }},
     Break{"phases_fit_the_support", "picking_up(hand, cup) goes on while supported", 290,
           [](Timeline& t) { Find(t, "picking_up").interval.begin = 290; }},
-    Break{"reaches_meet_what_follows", "reaching(hand, cup) meets neither a fixation nor a grasp", 149,
-          [](Timeline& t) { Find(t, "reaching").interval.end = 149; }},
+    Break{"reaches_meet_what_follows", "reaching(hand, cup) meets neither a fixation nor a grasp",
+          149, [](Timeline& t) { Find(t, "reaching").interval.end = 149; }},
     Break{"reaches_meet_what_follows", "fixation(hand, cup) does not meet a grasp", 199,
           [](Timeline& t) { Find(t, "fixation").interval.end = 199; }},
-    Break{"supports_lie_inside_contacts", "supported_by(cup, table) does not lie inside a contact of the two", 0,
+    Break{"supports_lie_inside_contacts",
+          "supported_by(cup, table) does not lie inside a contact of the two", 0,
           [](Timeline& t) { Find(t, "contact").interval.begin = 1; }},
-    Break{"decisions_come_in_time", "grasping(hand, cup) was decided at 1.5688 s, by its rule it is certain at 1.5667 s", 753,
+    Break{"decisions_come_in_time",
+          "grasping(hand, cup) was decided at 1.5688 s, by its rule it is certain at 1.5667 s", 753,
           [](Timeline& t) { Find(t, "grasping").decided = 753; }},
-    Break{"decisions_come_in_time", "fixation(hand, cup) was decided at 0.6354 s, by its rule it is certain at 0.6333 s", 305,
+    Break{"decisions_come_in_time",
+          "fixation(hand, cup) was decided at 0.6354 s, by its rule it is certain at 0.6333 s", 305,
           [](Timeline& t) { Find(t, "fixation").decided = 305; }},  // its contact ends at 300
     Break{"decisions_come_in_time", "grasping(hand, cup) was decided before it ended", 699,
           [](Timeline& t) { Find(t, "grasping").decided = 699; }}};

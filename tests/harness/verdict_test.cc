@@ -10,9 +10,19 @@ namespace prehend::harness {
 namespace {
 
 TEST(Verdict, TravelsAsJson) {
-  const ScenarioVerdict verdict{.scenario = "slide/x", .shows = "a \"slide\"", .verdict = Verdict::kPending, .exit_code = ExitCode::kPending,
-                                .reason = "no golden yet", .details = "a\nb\n", .headroom = "h", .command = "prehend accept slide/x",
-                                .state_hash = "0x1", .ticks = 5, .seconds = 0.25, .pictures = {{"p.png", "caption"}}, .timeline_svg = "<svg/>"};
+  const ScenarioVerdict verdict{.scenario = "slide/x",
+                                .shows = "a \"slide\"",
+                                .verdict = Verdict::kPending,
+                                .exit_code = ExitCode::kPending,
+                                .reason = "no golden yet",
+                                .details = "a\nb\n",
+                                .headroom = "h",
+                                .command = "prehend accept slide/x",
+                                .state_hash = "0x1",
+                                .ticks = 5,
+                                .seconds = 0.25,
+                                .pictures = {{"p.png", "caption"}},
+                                .timeline_svg = "<svg/>"};
   const auto json = ToJson(verdict);
   EXPECT_EQ(json["verdict"], "pending");
   EXPECT_EQ(ToJson(VerdictFromJson(nlohmann::ordered_json::parse(json.dump()))), json);
@@ -40,7 +50,9 @@ TEST(Verdict, TheWorstDecides) {
 }
 
 TEST(Verdict, AreCounted) {
-  const Tally tally = Count({{.verdict = Verdict::kPassed}, {.verdict = Verdict::kFailed}, {.verdict = Verdict::kPassed}});
+  const Tally tally = Count({{.verdict = Verdict::kPassed},
+                             {.verdict = Verdict::kFailed},
+                             {.verdict = Verdict::kPassed}});
   EXPECT_EQ(tally.passed, 2);
   EXPECT_EQ(tally.failed, 1);
   EXPECT_EQ(tally.pending, 0);

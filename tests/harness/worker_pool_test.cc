@@ -43,8 +43,9 @@ class WorkerPoolMisbehaviour : public testing::TestWithParam<Misbehaviour> {};
 
 TEST_P(WorkerPoolMisbehaviour, IsAResult) {
   std::vector<std::size_t> told;
-  const auto results = RunInWorkers({Good, GetParam().job, Good}, {.jobs = 2, .time_limit_s = 0.5, .memory_limit_bytes = 0},
-                                    [&](std::size_t job, const WorkerResult&) { told.push_back(job); });
+  const auto results = RunInWorkers(
+      {Good, GetParam().job, Good}, {.jobs = 2, .time_limit_s = 0.5, .memory_limit_bytes = 0},
+      [&](std::size_t job, const WorkerResult&) { told.push_back(job); });
   EXPECT_EQ(told.size(), 3u);
   EXPECT_EQ(results[0].output, "good");
   EXPECT_EQ(results[2].output, "good");
@@ -55,18 +56,21 @@ TEST_P(WorkerPoolMisbehaviour, IsAResult) {
 
 std::string NameOf(const testing::TestParamInfo<Misbehaviour>& row) { return row.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(Table, WorkerPoolMisbehaviour,
-                         testing::Values(Misbehaviour{"killed", [] { return raise(SIGKILL), Good(); }, "signal 9 (Killed)"},
-                                         Misbehaviour{"hangs", [] { return pause(), Good(); }, "no end after 0.5 s"},
-                                         Misbehaviour{"exits", []() -> std::string { _exit(9); }, "exit status 9"},
-                                         Misbehaviour{"throws", []() -> std::string { throw std::runtime_error("no"); },
-                                                      "exception: no"}),
-                         NameOf);
+INSTANTIATE_TEST_SUITE_P(
+    Table, WorkerPoolMisbehaviour,
+    testing::Values(Misbehaviour{"killed", [] { return raise(SIGKILL), Good(); },
+                                 "signal 9 (Killed)"},
+                    Misbehaviour{"hangs", [] { return pause(), Good(); }, "no end after 0.5 s"},
+                    Misbehaviour{"exits", []() -> std::string { _exit(9); }, "exit status 9"},
+                    Misbehaviour{"throws", []() -> std::string { throw std::runtime_error("no"); },
+                                 "exception: no"}),
+    NameOf);
 
 #ifndef __SANITIZE_ADDRESS__  // its shadow memory alone is above any limit
 TEST(WorkerPool, MemoryHasALimit) {
   const WorkerJob greedy = [] { return std::string(1'000'000'000, 'x'); };
-  const auto results = RunInWorkers({greedy, Good}, {.jobs = 1, .time_limit_s = 10, .memory_limit_bytes = 500'000'000});
+  const auto results = RunInWorkers(
+      {greedy, Good}, {.jobs = 1, .time_limit_s = 10, .memory_limit_bytes = 500'000'000});
   EXPECT_EQ(results[0].reason, "exception: std::bad_alloc");
   EXPECT_TRUE(results[1].finished);
 }

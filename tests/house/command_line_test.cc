@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The built program as a person or a script uses it: what it prints where, and how it ends. Every test has a project
-// folder of its own, with the libraries of grammars and hands, and one scenario that nothing moves in.
+// The built program as a person or a script uses it: what it prints where, and how it ends. Every
+// test has a project folder of its own, with the libraries of grammars and hands, and one scenario
+// that nothing moves in.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +35,8 @@ class CommandLine : public testing::Test {
   CommandLine() {
     for (const char* library : {"grammar/library", "physics/library"}) {
       fs::create_directories(root_ / library);
-      fs::copy(fs::path(PREHEND_SOURCE_DIR) / library, root_ / library, fs::copy_options::recursive);
+      fs::copy(fs::path(PREHEND_SOURCE_DIR) / library, root_ / library,
+               fs::copy_options::recursive);
     }
     WriteFile(Scenario(), kScenario);
   }
@@ -62,7 +64,8 @@ class CommandLine : public testing::Test {
 TEST_F(CommandLine, HelpIsEverywhere) {
   const Said all = Do("--help");
   EXPECT_EQ(all.exit_code, 0);
-  for (const std::string command : {"list", "validate", "run", "check", "accept", "render", "new", "schema"}) {
+  for (const std::string command :
+       {"list", "validate", "run", "check", "accept", "render", "new", "schema"}) {
     EXPECT_NE(all.out.find("  " + command), std::string::npos) << command;
     const Said ended = Do(command + " --help");
     EXPECT_EQ(ended.exit_code, 0);
@@ -79,20 +82,26 @@ struct Slip {
 
 TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
   const std::vector<Slip> slips = {
-      {"chekc", 2, "prehend: unknown command 'chekc'; did you mean 'check'\\?\n  see: prehend --help\n"},
-      {"run carton_rests --jsn", 2, "prehend: unknown option '--jsn'; did you mean '--json'\\?\n  see: prehend run --help\n"},
+      {"chekc", 2,
+       "prehend: unknown command 'chekc'; did you mean 'check'\\?\n  see: prehend --help\n"},
+      {"run carton_rests --jsn", 2,
+       "prehend: unknown option '--jsn'; did you mean '--json'\\?\n  see: prehend run --help\n"},
       {"run", 2, "prehend: scenario is required\n  see: prehend run --help\n"},
       {"list more", 2, "prehend: unexpected argument 'more'\n  see: prehend list --help\n"},
       {"check --jobs none", 2, "prehend: .*\n  see: prehend check --help\n"},
-      {"run carton_rest", 4, "prehend: no scenario 'carton_rest'; did you mean 'carton_rests'\\?.*\n  again: prehend run carton_rest\n"},
-      {"check slide/*", 4, "prehend: no scenario matches 'slide/\\*'.*\n  again: prehend check 'slide/\\*'\n"},
+      {"run carton_rest", 4,
+       "prehend: no scenario 'carton_rest'; did you mean 'carton_rests'\\?.*\n  again: prehend run "
+       "carton_rest\n"},
+      {"check slide/*", 4,
+       "prehend: no scenario matches 'slide/\\*'.*\n  again: prehend check 'slide/\\*'\n"},
       {"check --filter tag:none", 4, "prehend: no scenario is selected.*\n  again: .*\n"},
       {"run missing.yaml", 2, "missing.yaml: error: [^]*\n  again: prehend run missing.yaml\n"},
       {"run carton_rests --set lift_ris=3cm", 2, "[^]*error: [^]*lift_rise[^]*\n  again: [^]*\n"},
       {"run carton_rests --set lift_rise", 2, "--set:1:1: error: expected name=value\n[^]*"},
       {"run carton_rests --set entities.carton.mass=1", 2, "--set[^]*error: [^]*mass_kg[^]*"},
       {"run carton_rests --grammar none.grammar", 2, "none.grammar: error: [^]*"},
-      {"accept carton_rests", 2, "prehend: accepting needs a reason: [^]*\n  again: prehend accept carton_rests\n"},
+      {"accept carton_rests", 2,
+       "prehend: accepting needs a reason: [^]*\n  again: prehend accept carton_rests\n"},
       {"new Wrong-Name", 2, "prehend: 'Wrong-Name' is no name; [^]*"},
       {"new carton_rests", 2, "prehend: there is a scenario of this name: [^]*"},
   };
@@ -100,7 +109,8 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
     const Said ended = Do(slip.arguments);
     EXPECT_EQ(ended.exit_code, slip.code) << slip.arguments;
     EXPECT_EQ(ended.out, "") << slip.arguments;
-    EXPECT_TRUE(std::regex_match(ended.err, std::regex(slip.err))) << slip.arguments << "\n" << ended.err;
+    EXPECT_TRUE(std::regex_match(ended.err, std::regex(slip.err))) << slip.arguments << "\n"
+                                                                   << ended.err;
   }
 }
 
@@ -108,21 +118,27 @@ TEST_F(CommandLine, ListAndSchema) {
   EXPECT_EQ(Do("list").out,
             "scenario           shows                                             tags\n"
             "rest/carton_rests  a carton stands on a table and nobody touches it  quiet\n");
-  EXPECT_EQ(nlohmann::json::parse(Do("list --json").out)["scenarios"][0]["scenario"], "rest/carton_rests");
+  EXPECT_EQ(nlohmann::json::parse(Do("list --json").out)["scenarios"][0]["scenario"],
+            "rest/carton_rests");
   EXPECT_TRUE(nlohmann::json::parse(Do("schema").out).contains("$schema"));
 }
 
 TEST_F(CommandLine, ValidateReadsScenariosGrammarsAndGoldens) {
   Accept();
-  const Said good = Do("validate carton_rests " + (root_ / "grammar/library/pick_and_place.grammar").string() + " " + Golden().string());
+  const Said good =
+      Do("validate carton_rests " + (root_ / "grammar/library/pick_and_place.grammar").string() +
+         " " + Golden().string());
   EXPECT_EQ(good.exit_code, 0) << good.err;
   const std::regex ok("(^|\n)ok: ");
-  EXPECT_EQ(std::distance(std::sregex_iterator(good.out.begin(), good.out.end(), ok), {}), 3) << good.out;
+  EXPECT_EQ(std::distance(std::sregex_iterator(good.out.begin(), good.out.end(), ok), {}), 3)
+      << good.out;
   const Said described = Do("validate --grammar pick_and_place");
-  EXPECT_NE(described.out.find("putting_down"), std::string::npos) << "a grammar is described: " << described.out;
+  EXPECT_NE(described.out.find("putting_down"), std::string::npos)
+      << "a grammar is described: " << described.out;
 
   WriteFile(root_ / "bad.grammar", "grammar bad\nevent x(a: Thing\n");
-  WriteFile(Scenario(), std::regex_replace(std::string(kScenario), std::regex("mass_kg: 0.3"), "mass_kg: no"));
+  WriteFile(Scenario(),
+            std::regex_replace(std::string(kScenario), std::regex("mass_kg: 0.3"), "mass_kg: no"));
   const Said bad = Do("validate --json carton_rests " + (root_ / "bad.grammar").string());
   EXPECT_EQ(bad.exit_code, 2);
   const auto files = nlohmann::json::parse(bad.out)["files"];
@@ -134,21 +150,28 @@ TEST_F(CommandLine, ValidateReadsScenariosGrammarsAndGoldens) {
 TEST_F(CommandLine, RunPrintsATableOrAnObject) {
   const Said table = Do("run carton_rests");
   EXPECT_EQ(table.exit_code, 0) << table.err;
-  EXPECT_TRUE(std::regex_search(table.out, std::regex("supported_by +0\\.0\\d+ +0\\.\\d+ +object=carton +support=table +open_end\n")))
+  EXPECT_TRUE(std::regex_search(
+      table.out,
+      std::regex("supported_by +0\\.0\\d+ +0\\.\\d+ +object=carton +support=table +open_end\n")))
       << table.out;
   EXPECT_TRUE(std::regex_search(table.out, std::regex("\ncompleted: .* s, .* ticks\n$")));
 
   const auto json = nlohmann::json::parse(Do("run carton_rests --json --measure").out);
   EXPECT_EQ(json["status"], "completed");
   EXPECT_GT(json["measured"]["times_real_time"], 0);
-  EXPECT_EQ(json["state_hash"], nlohmann::json::parse(Do("run carton_rests --json").out)["state_hash"]);
-  EXPECT_NE(json["state_hash"], nlohmann::json::parse(Do("run carton_rests --json --set entities.carton.mass_kg=0.5").out)["state_hash"]);
+  EXPECT_EQ(json["state_hash"],
+            nlohmann::json::parse(Do("run carton_rests --json").out)["state_hash"]);
+  EXPECT_NE(json["state_hash"],
+            nlohmann::json::parse(
+                Do("run carton_rests --json --set entities.carton.mass_kg=0.5").out)["state_hash"]);
 }
 
 TEST_F(CommandLine, AGoldenIsPendingThenAcceptedThenKept) {
   const Said pending = Do("check --no-pictures");
   EXPECT_EQ(pending.exit_code, 5) << pending.err;
-  EXPECT_TRUE(pending.out.ends_with("\n1 pending: accept with a reason, or mend\n0 passed, 0 failed\n")) << pending.out;
+  EXPECT_TRUE(
+      pending.out.ends_with("\n1 pending: accept with a reason, or mend\n0 passed, 0 failed\n"))
+      << pending.out;
   EXPECT_TRUE(fs::exists(Pending()));
   EXPECT_FALSE(fs::exists(Golden())) << "a run must never write a golden";
 
@@ -159,7 +182,9 @@ TEST_F(CommandLine, AGoldenIsPendingThenAcceptedThenKept) {
   Accept();
   EXPECT_FALSE(fs::exists(Pending()));
   const std::string golden = ReadFile(Golden());
-  EXPECT_TRUE(std::regex_search(golden, std::regex("# accepted: \\d{4}-\\d\\d-\\d\\d \"nothing_happens\"\n"))) << golden;
+  EXPECT_TRUE(std::regex_search(
+      golden, std::regex("# accepted: \\d{4}-\\d\\d-\\d\\d \"nothing_happens\"\n")))
+      << golden;
   const Said again = Do("accept carton_rests --reason other");
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_TRUE(again.out.starts_with("nothing to accept")) << again.out;
@@ -177,8 +202,10 @@ TEST_F(CommandLine, ADifferenceNamesTheEventTheIntervalsAndTheCommand) {
   WriteFile(Golden(), golden + "sliding 0.1 0.2 hand=right_hand object=carton\n");
   const Said ended = Do("check carton_rests --no-pictures");
   EXPECT_EQ(ended.exit_code, 1);
-  for (const char* part : {"missing sliding(right_hand, carton)", "expected 0.1000..0.2000 s, recognised nothing",
-                           "see: prehend run rest/carton_rests", "again: prehend check rest/carton_rests", "0 passed, 1 failed"}) {
+  for (const char* part :
+       {"missing sliding(right_hand, carton)", "expected 0.1000..0.2000 s, recognised nothing",
+        "see: prehend run rest/carton_rests", "again: prehend check rest/carton_rests",
+        "0 passed, 1 failed"}) {
     EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\n" << ended.out;
   }
   const auto json = nlohmann::json::parse(Do("check --no-pictures --json").out);
@@ -195,8 +222,10 @@ TEST_F(CommandLine, OrphansUnreadableGoldensAndScenariosFail) {
   fs::rename(Scenario(), root_ / "scenarios/rest/other.yaml");
   const Said orphan = Do("check --no-pictures");
   EXPECT_EQ(orphan.exit_code, 2) << orphan.out;
-  EXPECT_NE(orphan.out.find("rest/carton_rests  a golden without scenario"), std::string::npos) << orphan.out;
-  EXPECT_NE(orphan.out.find("rest/other  cannot be read"), std::string::npos) << "its name is not that of its file";
+  EXPECT_NE(orphan.out.find("rest/carton_rests  a golden without scenario"), std::string::npos)
+      << orphan.out;
+  EXPECT_NE(orphan.out.find("rest/other  cannot be read"), std::string::npos)
+      << "its name is not that of its file";
   fs::rename(root_ / "scenarios/rest/other.yaml", Scenario());
 
   WriteFile(Golden(), "not a golden\n");
@@ -207,18 +236,25 @@ TEST_F(CommandLine, OrphansUnreadableGoldensAndScenariosFail) {
 
 TEST_F(CommandLine, AScenarioThatNeverEndsIsAVerdict) {
   Accept();
-  const Said ended = Do("check --no-pictures --time-limit 0.2 --set script.0.right_hand.wait_s=600");
+  const Said ended =
+      Do("check --no-pictures --time-limit 0.2 --set script.0.right_hand.wait_s=600");
   EXPECT_EQ(ended.exit_code, 3) << ended.out;
-  EXPECT_NE(ended.out.find("its process ended: no end after 0.2 s"), std::string::npos) << ended.out;
-  EXPECT_NE(ended.out.find("again: prehend run rest/carton_rests --set script.0.right_hand.wait_s=600"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("its process ended: no end after 0.2 s"), std::string::npos)
+      << ended.out;
+  EXPECT_NE(
+      ended.out.find("again: prehend run rest/carton_rests --set script.0.right_hand.wait_s=600"),
+      std::string::npos)
+      << ended.out;
 }
 
 TEST_F(CommandLine, NewWritesAScenarioThatRuns) {
   const Said made = Do("new lift/carton_is_lifted");
   EXPECT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_EQ(Do("validate lift/carton_is_lifted").exit_code, 0) << Do("validate lift/carton_is_lifted").err;
+  EXPECT_EQ(Do("validate lift/carton_is_lifted").exit_code, 0)
+      << Do("validate lift/carton_is_lifted").err;
   EXPECT_EQ(Do("new carton_still_rests --like carton_rests").exit_code, 0);
-  EXPECT_TRUE(ReadFile(root_ / "scenarios/rest/carton_still_rests.yaml").starts_with("scenario: carton_still_rests\nshows: a carton stands"));
+  EXPECT_TRUE(ReadFile(root_ / "scenarios/rest/carton_still_rests.yaml")
+                  .starts_with("scenario: carton_still_rests\nshows: a carton stands"));
   EXPECT_EQ(Do("run carton_still_rests").exit_code, 0);
 }
 
