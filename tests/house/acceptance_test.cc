@@ -70,7 +70,7 @@ TEST(Acceptance, EightKilogramsAreNotLifted) {
 
 TEST(Acceptance, ANumberInTheGrammarChangesTheOutcomeWithoutRebuilding) {
   const Json before = RunJson({"milk_carton_wrap"});
-  const Json overridden = RunJson({"milk_carton_wrap", "--set", "rise_min=40 cm"});
+  const Json overridden = RunJson({"milk_carton_wrap", "--set", "lift_rise=40 cm"});
   EXPECT_EQ(Count(before, "picking_up"), 1);
   EXPECT_EQ(Count(overridden, "picking_up"), 0) << "it rises by less than 40 cm";
   EXPECT_EQ(before["state_hash"], overridden["state_hash"]) << "the grammar must not reach the physics";
