@@ -7,15 +7,12 @@
 #include "harness/check_scenario.h"
 #include "harness/commands/command.h"
 #include "harness/compare.h"
+#include "harness/derivation.h"
 #include "harness/golden_files.h"
 #include "harness/run_output.h"
 
 namespace prehend::harness {
 namespace {
-
-constexpr const char* kDerivationMissing =
-    "nobody has written yet how this follows from the definitions; what was seen is in the "
-    "acceptance";
 
 void Declare(CLI::App& options) {
   options.add_option("scenario", "a name or skill/name")->required()->expected(1);
@@ -25,7 +22,7 @@ void Declare(CLI::App& options) {
   options
       .add_option(
           "--derived",
-          "how it follows from the definitions, one line each; replaces what the golden says")
+          "how it follows from the definitions, one line each; what the physical oracle says is added")
       ->type_name("TEXT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -67,16 +64,19 @@ ExitCode Write(const CLI::App& options, const CommandContext& context, const std
                     .grammar = prepared.scenario.grammar,
                     .derived = ValuesOf(options, "--derived"),
                     .acceptance = Acceptance{context.today, ValueOf(options, "--reason")}};
-  const bool tells_derivation =
-      !proposal.derived.empty() && (!old || old->derived != proposal.derived);
+  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  const bool from_people = !proposal.derived.empty();
+  if (!from_people && old) proposal.derived = old->derived;
+  proposal.derived = RenewedDerivation(proposal.derived, derivation);
+  const bool tells_derivation = from_people && (!old || old->derived != proposal.derived);
   if (old && SaysTheSame(*old, run.timeline) && !tells_derivation) {
     files.RemovePending(id);
     context.out << "nothing to accept: " << files.GoldenPath(id).string()
                 << " says the same already\n";
     return ExitCode::kAgrees;
   }
-  if (!old && proposal.derived.empty()) proposal.derived = {kDerivationMissing};
   ShowDifference(old, prepared.scenario, run, id, context);
+  for (const std::string& line : derivation.lines) context.out << line << "\n";
   const std::string problem = files.WriteAccepted(ProposeGolden(old, run.timeline, proposal));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   context.out << "accepted: " << files.GoldenPath(id).string() << "\n";
@@ -94,7 +94,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const ReadResult<Golden> old = GoldenFiles(context.root).ReadGoldenOf(id);
   if (!old.diagnostics.empty()) return Complain(context, old.diagnostics);
 
-  const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, {});
+  const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, {.record = true});
   if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
     return Complain(context, ExitCode::kFailure,
                     "a run that did not complete is not accepted: " + StatusText(run));

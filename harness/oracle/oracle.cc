@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/oracle/oracle.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "harness/oracle/approach.h"
@@ -120,6 +122,12 @@ class TimelineBuilder {
 
 }  // namespace
 }  // namespace oracle
+
+bool OracleDefines(std::string_view event) {
+  constexpr std::array kDefined = {"contact",      "supported_by", "grasping",     "reaching",     "fixation",
+                                   "sliding",      "picking_up",   "transporting", "putting_down", "pick_and_place"};
+  return std::ranges::find(kDefined, event) != kDefined.end();
+}
 
 grammar::Timeline TrueTimeline(const Scenario& scenario,
                                std::span<const physics::Snapshot> recording, grammar::Tick end,

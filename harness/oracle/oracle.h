@@ -6,6 +6,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "grammar/frame.h"
 #include "grammar/timeline.h"
@@ -46,6 +47,9 @@ struct OracleSettings {
   double put_down_look_back_s = 3.3;
   double put_down_dead_band_m = 0.01;  ///< a held object trembles by less than this
 };
+
+/// Whether docs/events.md defines this event, so that the oracle can judge it.
+bool OracleDefines(std::string_view event);
 
 /// The true events of a run, sorted. `recording` has the sensed snapshots in the order of their
 /// ticks; events begin and end at ticks of snapshots, those that never end, at `end`. `decided` of

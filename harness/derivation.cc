@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/derivation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "grammar/program.h"
+#include "harness/compare.h"
+#include "harness/oracle/agreement.h"
+#include "harness/oracle/oracle.h"
+
+namespace prehend::harness {
+
+Derivation Derive(const Scenario& scenario, const grammar::Program& program, const RunResult& run) {
+  grammar::Timeline judged = run.timeline;
+  const auto others =
+      std::erase_if(judged.events, [](const auto& event) { return !OracleDefines(event.event); });
+  grammar::Timeline truth = TrueTimeline(scenario, run.recording, run.ticks + 1);
+  // A grammar is not blamed for events that it does not speak of.
+  std::erase_if(truth.events, [&](const auto& event) {
+    return std::ranges::none_of(
+        program.events, [&](const auto& rule) { return rule.printed && rule.name == event.event; });
+  });
+  const grammar::Tick tolerance =
+      DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz);
+  const Agreement agreement = Agree(truth, judged, tolerance);
+
+  Derivation derivation{.agrees = agreement.Within(tolerance), .lines = {}};
+  const std::string unjudged =
+      others == 0 ? "" : fmt::format(" ({} events of other kinds not judged)", others);
+  derivation.lines.push_back(
+      fmt::format("{}{} of {} events follow from the definitions of docs/events.md, boundaries at "
+                  "most {} ticks off{}",
+                  kOracleLine, agreement.matched(), judged.events.size(),
+                  agreement.largest_offset(), unjudged));
+  std::istringstream differences(DescribeDisagreement(agreement, tolerance));
+  for (std::string line; std::getline(differences, line);)
+    derivation.lines.push_back(fmt::format("{}disagrees: {}", kOracleLine, line));
+  return derivation;
+}
+
+std::vector<std::string> RenewedDerivation(const std::vector<std::string>& lines,
+                                           const Derivation& derivation) {
+  std::vector<std::string> renewed;
+  std::ranges::copy_if(lines, std::back_inserter(renewed),
+                       [](const auto& line) { return !line.starts_with(kOracleLine); });
+  renewed.insert(renewed.end(), derivation.lines.begin(), derivation.lines.end());
+  return renewed;
+}
+
+}  // namespace prehend::harness

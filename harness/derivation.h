@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a timeline follows from the definitions: what the physical oracle says about the same run.
+// Goes into the provenance of a golden. Tested by tests/harness/derivation_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/run_scenario.h"
+
+namespace prehend::harness {
+
+/// Lines that begin so are written by the program and renewed with every acceptance; others are
+/// people's.
+inline constexpr const char* kOracleLine = "oracle: ";
+
+struct Derivation {
+  bool agrees = false;  ///< no event missing or extra, every boundary within two sensing frames
+  std::vector<std::string> lines;  ///< each begins with kOracleLine
+};
+
+/// The run must have been recorded. Events that the oracle has no definition for are not judged,
+/// and counted.
+Derivation Derive(const Scenario& scenario, const grammar::Program& program, const RunResult& run);
+
+/// People's lines, then the oracle's.
+std::vector<std::string> RenewedDerivation(const std::vector<std::string>& lines,
+                                           const Derivation& derivation);
+
+}  // namespace prehend::harness

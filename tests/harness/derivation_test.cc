@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a golden says about where it comes from, on a real run that is then falsified.
+#include "harness/derivation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "harness/prepare_run.h"
+
+namespace prehend::harness {
+namespace {
+
+class DerivationTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const RunRequest request{.scenario_file = PREHEND_SOURCE_DIR
+                             "/scenarios/pick_and_place/milk_carton_wrap.yaml"};
+    auto read = PrepareRun(request, PREHEND_SOURCE_DIR);
+    ASSERT_TRUE(read.value) << grammar::Format(read.diagnostics);
+    prepared = std::move(*read.value);
+    run = RunScenario(prepared.scenario, prepared.program, {.record = true});
+  }
+  grammar::NamedEvent& Find(const std::string& event) {
+    return *std::ranges::find(run.timeline.events, event, &grammar::NamedEvent::event);
+  }
+
+  PreparedRun prepared;
+  RunResult run;
+};
+
+TEST_F(DerivationTest, TheRunAsItWasFollows) {
+  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  EXPECT_TRUE(derivation.agrees) << derivation.lines.back();
+  ASSERT_EQ(derivation.lines.size(), 1u);
+  const std::string all = std::to_string(run.timeline.events.size());
+  EXPECT_TRUE(derivation.lines[0].starts_with("oracle: " + all + " of " + all + " events follow"))
+      << derivation.lines[0];
+}
+
+TEST_F(DerivationTest, AShiftedBoundaryDoesNot) {
+  Find("picking_up").interval.begin += 20;
+  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  EXPECT_FALSE(derivation.agrees);
+  ASSERT_EQ(derivation.lines.size(), 2u);
+  EXPECT_TRUE(derivation.lines[1].starts_with("oracle: disagrees: off")) << derivation.lines[1];
+  EXPECT_NE(derivation.lines[1].find("picking_up(right_hand, milk)"), std::string::npos)
+      << derivation.lines[1];
+}
+
+TEST_F(DerivationTest, AMissingAndAnInventedEventDoNot) {
+  Find("transporting").event = "sliding";
+  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  EXPECT_FALSE(derivation.agrees);
+  EXPECT_EQ(derivation.lines.size(), 3u);
+}
+
+TEST_F(DerivationTest, EventsWithoutADefinitionAreCountedNotJudged) {
+  run.timeline.events.push_back({.event = "stirring", .roles = {}, .interval = {10, 20}});
+  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  EXPECT_TRUE(derivation.agrees);
+  EXPECT_NE(derivation.lines[0].find("(1 events of other kinds not judged)"), std::string::npos)
+      << derivation.lines[0];
+}
+
+TEST(RenewedDerivation, KeepsWhatPeopleWrote) {
+  EXPECT_EQ(RenewedDerivation({"seen in the picture", "oracle: old"},
+                              {.agrees = true, .lines = {"oracle: new"}}),
+            (std::vector<std::string>{"seen in the picture", "oracle: new"}));
+}
+
+}  // namespace
+}  // namespace prehend::harness
