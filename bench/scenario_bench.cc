@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One scenario from start to end: physics alone, then with sensing and grammar. Figures to look at are ratios within
-// one run: times_real_time, and the watched run against the bare one.
+// One scenario from start to end: physics alone, then with sensing and grammar. Figures to look at
+// are ratios within one run: times_real_time, and the watched run against the bare one.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -14,11 +14,14 @@ namespace {
 
 PreparedRun Carton() {
   const std::string root = FindProjectRoot().value_or(".");
-  return *PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root).value;
+  return *PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"},
+                     root)
+              .value;
 }
 
 void CountRealTime(benchmark::State& state, double simulated_s) {
-  state.counters["times_real_time"] = benchmark::Counter(simulated_s, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["times_real_time"] =
+      benchmark::Counter(simulated_s, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void CartonPhysicsAlone(benchmark::State& state) {

@@ -26,7 +26,8 @@ render::Color ColorOf(std::uint32_t rgb) {
 /// Calm, distinguishable colours for bodies; fixed ones are wood.
 render::Color BodyColor(const physics::Body& body, int index) {
   if (body.fixed) return ColorOf(0xC8A27C);
-  constexpr std::array<std::uint32_t, 6> palette = {0xE9EEF2, 0xE07A3F, 0x3F6E8C, 0xC0392B, 0x8FB339, 0x8C6BB1};
+  constexpr std::array<std::uint32_t, 6> palette = {0xE9EEF2, 0xE07A3F, 0x3F6E8C,
+                                                    0xC0392B, 0x8FB339, 0x8C6BB1};
   return ColorOf(palette[index % palette.size()]);
 }
 
@@ -41,7 +42,8 @@ const std::string* RoleValue(const grammar::NamedEvent& event, std::string_view 
   return nullptr;
 }
 
-bool HasRoleValue(const grammar::NamedEvent& event, std::string_view role, const std::string& value) {
+bool HasRoleValue(const grammar::NamedEvent& event, std::string_view role,
+                  const std::string& value) {
   const std::string* found = RoleValue(event, role);
   return found && *found == value;
 }
@@ -64,15 +66,18 @@ int BodyNamed(const physics::Scene& scene, const std::string& name) {
 }
 
 /// The phase a hand is in, or nullptr.
-const grammar::NamedEvent* PhaseOf(const RunResult& run, const std::string& hand, grammar::Tick tick) {
+const grammar::NamedEvent* PhaseOf(const RunResult& run, const std::string& hand,
+                                   grammar::Tick tick) {
   for (const grammar::NamedEvent& event : run.timeline.events) {
-    if (IsPhase(event.event) && Covers(event, tick) && HasRoleValue(event, "hand", hand)) return &event;
+    if (IsPhase(event.event) && Covers(event, tick) && HasRoleValue(event, "hand", hand))
+      return &event;
   }
   return nullptr;
 }
 
 /// The path of one hand, cut where its phase changes; a stretch starts where the last one ended.
-void AppendPath(const physics::Scene& scene, const RunResult& run, int hand, std::vector<render::PathStretch>& path) {
+void AppendPath(const physics::Scene& scene, const RunResult& run, int hand,
+                std::vector<render::PathStretch>& path) {
   const std::string& name = scene.hands[hand].name;
   const grammar::NamedEvent* phase = nullptr;
   double next_point_s = 0;
@@ -96,10 +101,12 @@ void AppendPath(const physics::Scene& scene, const RunResult& run, int hand, std
 }
 
 /// Bodies that a hand holds at a tick.
-std::vector<int> HeldBodies(const physics::Scene& scene, const RunResult& run, const std::string& hand, grammar::Tick tick) {
+std::vector<int> HeldBodies(const physics::Scene& scene, const RunResult& run,
+                            const std::string& hand, grammar::Tick tick) {
   std::vector<int> held;
   for (const grammar::NamedEvent& event : run.timeline.events) {
-    if (event.event != "grasping" || !Covers(event, tick) || !HasRoleValue(event, "hand", hand)) continue;
+    if (event.event != "grasping" || !Covers(event, tick) || !HasRoleValue(event, "hand", hand))
+      continue;
     const std::string* object = RoleValue(event, "object");
     const int body = object ? BodyNamed(scene, *object) : -1;
     if (body >= 0 && !scene.bodies[body].fixed) held.push_back(body);
@@ -108,12 +115,16 @@ std::vector<int> HeldBodies(const physics::Scene& scene, const RunResult& run, c
 }
 
 /// A ghost of every hand where each of its phases begins, except at the moment pictured itself.
-std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunResult& run, grammar::Tick moment) {
+std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunResult& run,
+                                         grammar::Tick moment) {
   std::vector<render::Ghost> ghosts;
   for (std::size_t h = 0; h < scene.hands.size(); ++h) {
     for (const grammar::NamedEvent& event : run.timeline.events) {
-      if (!IsPhase(event.event) || event.event == "fixation" || !HasRoleValue(event, "hand", scene.hands[h].name)) continue;
-      const grammar::Tick tick = event.event == "putting_down" ? event.interval.end : event.interval.begin;
+      if (!IsPhase(event.event) || event.event == "fixation" ||
+          !HasRoleValue(event, "hand", scene.hands[h].name))
+        continue;
+      const grammar::Tick tick =
+          event.event == "putting_down" ? event.interval.end : event.interval.begin;
       if (std::abs(Seconds(tick - moment, run)) < 0.15) continue;
       ghosts.push_back({.hand = static_cast<int>(h),
                         .bodies = HeldBodies(scene, run, scene.hands[h].name, tick),
@@ -124,8 +135,10 @@ std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunR
   return ghosts;
 }
 
-/// Where bodies rest on each other (green) and where hands touch (yellow), at the mean of the touching points.
-std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunResult& run, const physics::Snapshot& snapshot) {
+/// Where bodies rest on each other (green) and where hands touch (yellow), at the mean of the
+/// touching points.
+std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunResult& run,
+                                           const physics::Snapshot& snapshot) {
   std::vector<render::Marker> markers;
   std::set<std::pair<int, int>> seen;
   for (const grammar::NamedEvent& event : run.timeline.events) {
@@ -141,20 +154,25 @@ std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunRe
   }
   for (const physics::ContactPoint& contact : snapshot.contacts) {
     if (contact.a.hand < 0 && contact.b.hand < 0) continue;
-    markers.push_back({render::MarkerKind::kContact, contact.p_W_m.cast<float>(), {0.008f, 0.008f, 0.008f}});
+    markers.push_back(
+        {render::MarkerKind::kContact, contact.p_W_m.cast<float>(), {0.008f, 0.008f, 0.008f}});
   }
   return markers;
 }
 
 /// Rows per hand: its phases, its grasps; then one row of supports per movable body that has any.
-render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& run, grammar::Tick moment) {
-  render::TimelineStrip strip{.begin_s = 0, .end_s = std::max(Seconds(run.ticks, run), 0.1), .playhead_s = Seconds(moment, run), .rows = {}};
+render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& run,
+                                   grammar::Tick moment) {
+  render::TimelineStrip strip{.begin_s = 0,
+                              .end_s = std::max(Seconds(run.ticks, run), 0.1),
+                              .playhead_s = Seconds(moment, run),
+                              .rows = {}};
   const auto add_row = [&](std::string label, auto&& wanted, auto&& name) {
     render::StripRow row{std::move(label), {}};
     for (const grammar::NamedEvent& event : run.timeline.events) {
       if (!wanted(event)) continue;
-      row.segments.push_back({name(event), Seconds(event.interval.begin, run), Seconds(event.interval.end, run),
-                              ColorOf(EventColor(event.event))});
+      row.segments.push_back({name(event), Seconds(event.interval.begin, run),
+                              Seconds(event.interval.end, run), ColorOf(EventColor(event.event))});
     }
     if (!row.segments.empty()) strip.rows.push_back(std::move(row));
   };
@@ -164,22 +182,30 @@ render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& ru
   };
   const bool one_hand = scenario.scene.hands.size() == 1;
   for (const physics::Hand& hand : scenario.scene.hands) {
-    add_row(one_hand ? "phase" : hand.name,
-            [&](const auto& e) { return IsPhase(e.event) && HasRoleValue(e, "hand", hand.name); },
-            [&](const auto& e) { return spoken(e.event); });
-    add_row("grasp", [&](const auto& e) { return e.event == "grasping" && HasRoleValue(e, "hand", hand.name); },
-            [&](const auto& e) { return *RoleValue(e, "object"); });
+    add_row(
+        one_hand ? "phase" : hand.name,
+        [&](const auto& e) { return IsPhase(e.event) && HasRoleValue(e, "hand", hand.name); },
+        [&](const auto& e) { return spoken(e.event); });
+    add_row(
+        "grasp",
+        [&](const auto& e) { return e.event == "grasping" && HasRoleValue(e, "hand", hand.name); },
+        [&](const auto& e) { return *RoleValue(e, "object"); });
   }
   for (const physics::Body& body : scenario.scene.bodies) {
     if (body.fixed || strip.rows.size() >= 6) continue;
-    add_row(body.name + " on", [&](const auto& e) { return e.event == "supported_by" && HasRoleValue(e, "object", body.name); },
-            [&](const auto& e) { return *RoleValue(e, "support"); });
+    add_row(
+        body.name + " on",
+        [&](const auto& e) {
+          return e.event == "supported_by" && HasRoleValue(e, "object", body.name);
+        },
+        [&](const auto& e) { return *RoleValue(e, "support"); });
   }
   return strip;
 }
 
 /// Frames the paths and everything that is not scenery.
-render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& picture, const std::string& name) {
+render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& picture,
+                             const std::string& name) {
   Eigen::AlignedBox3f box;
   for (const render::PathStretch& stretch : picture.path)
     for (const Eigen::Vector3f& point : stretch.points_m) box.extend(point);
@@ -194,7 +220,8 @@ render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& pi
     }
   }
   if (box.isEmpty()) box.extend(Eigen::Vector3f(0, 0, 0)).extend(Eigen::Vector3f(1, 1, 1));
-  return render::NamedCamera(name, box.min(), box.max(), static_cast<double>(picture.width_px) / picture.height_px);
+  return render::NamedCamera(name, box.min(), box.max(),
+                             static_cast<double>(picture.width_px) / picture.height_px);
 }
 
 }  // namespace
@@ -203,7 +230,9 @@ Moment FindMoment(const std::string& at, const RunResult& run) {
   double seconds = 0;
   const auto parsed = std::from_chars(at.data(), at.data() + at.size(), seconds);
   if (parsed.ec == std::errc() && parsed.ptr == at.data() + at.size())
-    return {static_cast<grammar::Tick>(seconds * static_cast<double>(run.timeline.ticks_per_second) + 0.5), true};
+    return {static_cast<grammar::Tick>(
+                seconds * static_cast<double>(run.timeline.ticks_per_second) + 0.5),
+            true};
   const std::size_t dot = at.rfind('.');
   const std::string event = at.substr(0, dot);
   const bool end = dot != std::string::npos && at.substr(dot) == ".end";
@@ -213,7 +242,8 @@ Moment FindMoment(const std::string& at, const RunResult& run) {
   return {run.ticks, false};
 }
 
-render::Picture ComposePicture(const Scenario& scenario, const RunResult& run, const PictureEntry& entry) {
+render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
+                               const PictureEntry& entry) {
   const Moment moment = FindMoment(entry.at, run);
   render::Picture picture;
   picture.scene = &scenario.scene;
@@ -222,12 +252,14 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run, c
     picture.body_colors.push_back(BodyColor(scenario.scene.bodies[i], static_cast<int>(i)));
     picture.body_labels.push_back(scenario.scene.bodies[i].name);
   }
-  for (std::size_t h = 0; h < scenario.scene.hands.size(); ++h) AppendPath(scenario.scene, run, static_cast<int>(h), picture.path);
+  for (std::size_t h = 0; h < scenario.scene.hands.size(); ++h)
+    AppendPath(scenario.scene, run, static_cast<int>(h), picture.path);
   picture.ghosts = ComposeGhosts(scenario.scene, run, moment.tick);
   picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
   picture.strip = ComposeStrip(scenario, run, moment.tick);
   picture.camera = ComposeCamera(scenario, picture, entry.camera);
-  picture.title = fmt::format("{}  ·  {}{}  ·  {:.3f} s", scenario.name, entry.at, moment.found ? "" : " did not happen; the end",
+  picture.title = fmt::format("{}  ·  {}{}  ·  {:.3f} s", scenario.name, entry.at,
+                              moment.found ? "" : " did not happen; the end",
                               Seconds(picture.snapshot.tick, run));
   return picture;
 }

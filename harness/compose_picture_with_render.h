@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded run becomes a render::Picture: which moment, which ghosts, which colours, which rows in the strip.
-// Tested by tests/harness/pictures_test.cc
+// A recorded run becomes a render::Picture: which moment, which ghosts, which colours, which rows
+// in the strip. Tested by tests/harness/pictures_test.cc
 #pragma once
 
 #include "harness/pictures.h"
@@ -8,8 +8,8 @@
 
 namespace prehend::harness {
 
-/// The tick that `at` names ("reaching.begin", "grasping.end", "1.25"), or the end of the run when the event
-/// named did not happen; `found` tells which.
+/// The tick that `at` names ("reaching.begin", "grasping.end", "1.25"), or the end of the run when
+/// the event named did not happen; `found` tells which.
 struct Moment {
   grammar::Tick tick = 0;
   bool found = true;
@@ -17,6 +17,7 @@ struct Moment {
 Moment FindMoment(const std::string& at, const RunResult& run);
 
 /// The recording must not be empty. The scenario must outlive the picture.
-render::Picture ComposePicture(const Scenario& scenario, const RunResult& run, const PictureEntry& entry);
+render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
+                               const PictureEntry& entry);
 
 }  // namespace prehend::harness

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of a recorded run: what the scenario asks for, composed from the recording and its timeline.
-// Built with the render room (pictures_with_render.cc) or without it (pictures_without_render.cc).
-// Tested by tests/harness/pictures_test.cc
+// Pictures of a recorded run: what the scenario asks for, composed from the recording and its
+// timeline. Built with the render room (pictures_with_render.cc) or without it
+// (pictures_without_render.cc). Tested by tests/harness/pictures_test.cc
 #pragma once
 
 #include <string>
@@ -25,11 +25,13 @@ struct PictureResult {
 /// Whether this build can draw at all.
 bool CanDrawPictures();
 
-/// Draws the scenario's pictures from a run made with RunOptions::record, as DIRECTORY/NAME[-2..].png.
-/// The directory must exist.
-PictureResult DrawPictures(const Scenario& scenario, const RunResult& run, const std::string& directory);
+/// Draws the scenario's pictures from a run made with RunOptions::record, as
+/// DIRECTORY/NAME[-2..].png. The directory must exist.
+PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
+                           const std::string& directory);
 
 /// One picture into one file.
-PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureEntry& entry, const std::string& file);
+PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureEntry& entry,
+                          const std::string& file);
 
 }  // namespace prehend::harness

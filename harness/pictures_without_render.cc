@@ -9,8 +9,13 @@ PictureResult NoRenderRoom() { return {{}, "this build has no render room (PREHE
 
 bool CanDrawPictures() { return false; }
 
-PictureResult DrawPictures(const Scenario&, const RunResult&, const std::string&) { return NoRenderRoom(); }
+PictureResult DrawPictures(const Scenario&, const RunResult&, const std::string&) {
+  return NoRenderRoom();
+}
 
-PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureEntry&, const std::string&) { return NoRenderRoom(); }
+PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureEntry&,
+                          const std::string&) {
+  return NoRenderRoom();
+}
 
 }  // namespace prehend::harness

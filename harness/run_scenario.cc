@@ -36,7 +36,8 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
   const grammar::Cast cast = MakeCast(scenario);
   grammar::Monitor monitor(program, cast);
   if (!monitor.error().empty()) {
-    result.status = {physics::RunStatus::Kind::kFailed, 0, "", "the grammar can't watch this scene: " + monitor.error(),
+    result.status = {physics::RunStatus::Kind::kFailed, 0, "",
+                     "the grammar can't watch this scene: " + monitor.error(),
                      "use fewer entities or rules with narrower role classes"};
     return result;
   }

@@ -27,8 +27,8 @@ struct RunResult {
   physics::RunStatus status;
   grammar::Tick ticks = 0;
   std::uint64_t state_hash = 0;
-  grammar::Timeline timeline;                 ///< what was recognised up to where the run ended
-  std::vector<physics::Snapshot> recording;   ///< empty unless asked for
+  grammar::Timeline timeline;                ///< what was recognised up to where the run ended
+  std::vector<physics::Snapshot> recording;  ///< empty unless asked for
   RunSeconds seconds;
 };
 

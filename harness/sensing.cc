@@ -10,9 +10,9 @@ namespace {
 constexpr int kFeelersPerLink = 3;
 constexpr int kPalmFeelersPerSide = 3;
 
-// A point counts for "what holds the object" only if it carries a share of the pair's load; otherwise an idle
-// corner point with a skewed normal would decide. Larger: support of rocking objects is lost. Smaller: side contact
-// with one stray point becomes support.
+// A point counts for "what holds the object" only if it carries a share of the pair's load;
+// otherwise an idle corner point with a skewed normal would decide. Larger: support of rocking
+// objects is lost. Smaller: side contact with one stray point becomes support.
 constexpr double kLoadBearingShare = 0.05;
 
 /// Balls inscribed in the palm's box, in the hand's frame.
@@ -22,7 +22,8 @@ std::vector<grammar::Feeler> PalmFeelers(const physics::HandModel& model) {
   std::vector<grammar::Feeler> feelers;
   for (int i = 0; i < kPalmFeelersPerSide; ++i) {
     for (int j = 0; j < kPalmFeelersPerSide; ++j) {
-      const double u = 2.0 * i / (kPalmFeelersPerSide - 1) - 1, v = 2.0 * j / (kPalmFeelersPerSide - 1) - 1;
+      const double u = 2.0 * i / (kPalmFeelersPerSide - 1) - 1,
+                   v = 2.0 * j / (kPalmFeelersPerSide - 1) - 1;
       feelers.push_back({{u * reach.x(), v * reach.y(), 0}, radius});
     }
   }
@@ -48,7 +49,9 @@ grammar::EntityLook LookAt(const physics::BodyState& body) {
 }  // namespace
 
 Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
-    : rate_hz_(scene.world.rate_hz), sensing_hz_(sensing_hz), body_count_(static_cast<int>(scene.bodies.size())) {
+    : rate_hz_(scene.world.rate_hz),
+      sensing_hz_(sensing_hz),
+      body_count_(static_cast<int>(scene.bodies.size())) {
   for (const physics::Hand& hand : scene.hands) {
     geometry_.push_back({hand.model, PalmFeelers(hand.model), LinkFeelers(hand.model)});
     feelers_.emplace_back(geometry_.back().palm.size() + geometry_.back().links.size());
@@ -58,7 +61,8 @@ Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
 }
 
 grammar::Frame Sensing::Sense(const physics::Snapshot& snapshot) {
-  for (std::size_t i = 0; i < snapshot.bodies.size(); ++i) entities_[i] = LookAt(snapshot.bodies[i]);
+  for (std::size_t i = 0; i < snapshot.bodies.size(); ++i)
+    entities_[i] = LookAt(snapshot.bodies[i]);
   SenseHands(snapshot);
   SenseTouches(snapshot);
   return {snapshot.tick, entities_, hands_, touches_};
@@ -78,7 +82,8 @@ void Sensing::SenseHands(const physics::Snapshot& snapshot) {
     }
     const int entity = body_count_ + static_cast<int>(h);
     entities_[entity] = LookAt(hand.palm);
-    hands_[h] = {entity, hand.trigger, hand.style, hand.palm.X_WB.q * geometry.model.ahead, feelers};
+    hands_[h] = {entity, hand.trigger, hand.style, hand.palm.X_WB.q * geometry.model.ahead,
+                 feelers};
   }
 }
 

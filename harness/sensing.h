@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the grammar gets to see: Snapshot -> Frame. Points of contact become touches of pairs, links become feelers
-// and sensor sets. Knows geometry, knows nothing of events.
-// Tested by tests/harness/sensing_test.cc
+// What the grammar gets to see: Snapshot -> Frame. Points of contact become touches of pairs, links
+// become feelers and sensor sets. Knows geometry, knows nothing of events. Tested by
+// tests/harness/sensing_test.cc
 #pragma once
 
 #include <span>
@@ -16,14 +16,18 @@ namespace prehend::harness {
 
 class Sensing {
  public:
-  /// Entities are the scene's bodies, then its hands (as in MakeCast). `sensing_hz` <= the scene's rate.
+  /// Entities are the scene's bodies, then its hands (as in MakeCast). `sensing_hz` <= the scene's
+  /// rate.
   Sensing(const physics::Scene& scene, int sensing_hz);
 
-  /// Whether the snapshot of this tick is looked at: the ticks at which another 1/sensing_hz is full, on integers,
-  /// so that any rate works without drift.
-  bool Due(std::int64_t tick) const { return tick * sensing_hz_ / rate_hz_ > (tick - 1) * sensing_hz_ / rate_hz_; }
+  /// Whether the snapshot of this tick is looked at: the ticks at which another 1/sensing_hz is
+  /// full, on integers, so that any rate works without drift.
+  bool Due(std::int64_t tick) const {
+    return tick * sensing_hz_ / rate_hz_ > (tick - 1) * sensing_hz_ / rate_hz_;
+  }
 
-  /// The frame lives until the next call. Allocates nothing once it has seen the largest number of contacts.
+  /// The frame lives until the next call. Allocates nothing once it has seen the largest number of
+  /// contacts.
   grammar::Frame Sense(const physics::Snapshot& snapshot);
 
  private:
@@ -34,8 +38,8 @@ class Sensing {
 
   struct HandGeometry {
     physics::HandModel model;
-    std::vector<grammar::Feeler> palm;      ///< in the hand's frame
-    std::vector<grammar::Feeler> links;     ///< in the links' frames, the same number for each link
+    std::vector<grammar::Feeler> palm;   ///< in the hand's frame
+    std::vector<grammar::Feeler> links;  ///< in the links' frames, the same number for each link
   };
 
   /// One contact point seen from the pair (a, b) with a < b.

@@ -10,8 +10,10 @@ namespace {
 /// A table, a box on it, a hand with a palm and two one-link digits in different sensor sets.
 physics::Scene TwoBodiesAndAHand() {
   physics::Scene scene;
-  scene.bodies.push_back({.name = "table", .shapes = {{physics::Box{{1, 1, 0.1}}, {}}}, .fixed = true});
-  scene.bodies.push_back({.name = "box", .shapes = {{physics::Box{{0.1, 0.1, 0.1}}, {}}}, .mass_kg = 1});
+  scene.bodies.push_back(
+      {.name = "table", .shapes = {{physics::Box{{1, 1, 0.1}}, {}}}, .fixed = true});
+  scene.bodies.push_back(
+      {.name = "box", .shapes = {{physics::Box{{0.1, 0.1, 0.1}}, {}}}, .mass_kg = 1});
   physics::HandModel model;
   model.sensor_sets = {"fingers", "thumb", "palm"};
   model.palm_sensor_set = 2;
@@ -33,8 +35,10 @@ physics::Snapshot StillSnapshot(std::int64_t tick) {
 constexpr physics::ContactSide kTable{.body = 0}, kBox{.body = 1}, kPalm{.hand = 0, .link = -1};
 constexpr physics::ContactSide kFinger{.hand = 0, .link = 0}, kThumb{.hand = 0, .link = 1};
 
-physics::ContactPoint Point(physics::ContactSide a, physics::ContactSide b, double up, double impulse) {
-  return {.a = a, .b = b, .nhat_BA_W = {std::sqrt(1 - up * up), 0, up}, .normal_impulse_n_s = impulse};
+physics::ContactPoint Point(physics::ContactSide a, physics::ContactSide b, double up,
+                            double impulse) {
+  return {
+      .a = a, .b = b, .nhat_BA_W = {std::sqrt(1 - up * up), 0, up}, .normal_impulse_n_s = impulse};
 }
 
 TEST(Sensing, LooksAtEveryRateWithoutDrift) {

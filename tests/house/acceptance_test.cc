@@ -29,7 +29,8 @@ int Count(const Json& run, const std::string& event) {
 
 std::vector<std::string> ScenarioNames() {
   std::vector<std::string> names;
-  for (const Json& entry : Json::parse(Prehend({"list", "--json"}).out).at("scenarios")) names.push_back(entry.at("scenario"));
+  for (const Json& entry : Json::parse(Prehend({"list", "--json"}).out).at("scenarios"))
+    names.push_back(entry.at("scenario"));
   return names;
 }
 
@@ -73,7 +74,8 @@ TEST(Acceptance, ANumberInTheGrammarChangesTheOutcomeWithoutRebuilding) {
   const Json overridden = RunJson({"milk_carton_wrap", "--set", "lift_rise=40 cm"});
   EXPECT_EQ(Count(before, "picking_up"), 1);
   EXPECT_EQ(Count(overridden, "picking_up"), 0) << "it rises by less than 40 cm";
-  EXPECT_EQ(before["state_hash"], overridden["state_hash"]) << "the grammar must not reach the physics";
+  EXPECT_EQ(before["state_hash"], overridden["state_hash"])
+      << "the grammar must not reach the physics";
 }
 
 TEST(Acceptance, ARuleInTheGrammarFileChangesTheOutcome) {

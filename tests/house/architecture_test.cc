@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The house rules of ARCHITECTURE.md that a machine can check: which room may include which, where each library may
-// appear, and how long a file may grow. The checker itself is tested on made-up files, so that it can't rot.
+// The house rules of ARCHITECTURE.md that a machine can check: which room may include which, where
+// each library may appear, and how long a file may grow. The checker itself is tested on made-up
+// files, so that it can't rot.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxLines = 600;
 
-const std::vector<std::string> kRooms = {"grammar", "physics", "render", "harness", "tests", "bench"};
+const std::vector<std::string> kRooms = {"grammar", "physics", "render",
+                                         "harness", "tests",   "bench"};
 
 /// Rooms (or single headers) that a room may include besides itself.
 const std::map<std::string, std::vector<std::string>> kArrows = {
@@ -76,9 +78,11 @@ std::vector<std::string> Violations(const std::string& path, const std::string& 
     const std::string header = match[1];
     const std::string where = path + ":" + std::to_string(count) + ": ";
     const std::string other = RoomOf(header);
-    if (header.find('/') != std::string::npos && std::ranges::count(kRooms, other) && other != room) {
+    if (header.find('/') != std::string::npos && std::ranges::count(kRooms, other) &&
+        other != room) {
       const auto& allowed = kArrows.at(room);
-      const bool drawn = std::ranges::any_of(allowed, [&](const auto& a) { return header.starts_with(a); });
+      const bool drawn =
+          std::ranges::any_of(allowed, [&](const auto& a) { return header.starts_with(a); });
       if (!drawn) found.push_back(where + room + " must not include " + header);
     }
     for (const LibraryRule& rule : LibraryRules()) {
@@ -86,12 +90,14 @@ std::vector<std::string> Violations(const std::string& path, const std::string& 
         found.push_back(where + rule.library + " does not belong here (" + header + ")");
     }
     if (room == "grammar" && kForbiddenInGrammar.contains(header))
-      found.push_back(where + "the grammar room has no files, clocks or logging (<" + header + ">)");
+      found.push_back(where + "the grammar room has no files, clocks or logging (<" + header +
+                      ">)");
   }
   if (count > kMaxLines)
     found.push_back(path + ": " + std::to_string(count) + " lines; split it by stage (limit " +
                     std::to_string(kMaxLines) + ")");
-  if (!text.starts_with("// SPDX-License-Identifier: Apache-2.0")) found.push_back(path + ": first line is not the SPDX line");
+  if (!text.starts_with("// SPDX-License-Identifier: Apache-2.0"))
+    found.push_back(path + ": first line is not the SPDX line");
   return found;
 }
 
@@ -103,7 +109,8 @@ std::string Slurp(const fs::path& path) {
 std::vector<fs::path> SourceFiles() {
   std::vector<fs::path> files;
   for (const std::string& room : kRooms) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(PREHEND_SOURCE_DIR) / room)) {
+    for (const auto& entry :
+         fs::recursive_directory_iterator(fs::path(PREHEND_SOURCE_DIR) / room)) {
       const auto extension = entry.path().extension();
       if (extension == ".cc" || extension == ".h") files.push_back(entry.path());
     }
@@ -133,9 +140,12 @@ TEST(Architecture, MedianFileIsShort) {
 
 TEST(Architecture, DataRoomsHoldNoCode) {
   for (const char* room : {"scenarios", "golden"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(PREHEND_SOURCE_DIR) / room)) {
+    for (const auto& entry :
+         fs::recursive_directory_iterator(fs::path(PREHEND_SOURCE_DIR) / room)) {
       const auto extension = entry.path().extension();
-      EXPECT_TRUE(extension != ".cc" && extension != ".h" && extension != ".sh" && extension != ".py") << entry.path();
+      EXPECT_TRUE(extension != ".cc" && extension != ".h" && extension != ".sh" &&
+                  extension != ".py")
+          << entry.path();
     }
   }
 }
@@ -150,7 +160,8 @@ class ArchitectureRule : public testing::TestWithParam<Case> {};
 
 TEST_P(ArchitectureRule, Holds) {
   const Case& c = GetParam();
-  const std::string text = "// SPDX-License-Identifier: Apache-2.0\n#include " + std::string(c.include) + "\n";
+  const std::string text =
+      "// SPDX-License-Identifier: Apache-2.0\n#include " + std::string(c.include) + "\n";
   const auto violations = Violations(c.path, text);
   if (std::string(c.complaint).empty()) {
     EXPECT_TRUE(violations.empty()) << violations.front();
@@ -162,17 +173,20 @@ TEST_P(ArchitectureRule, Holds) {
 
 INSTANTIATE_TEST_SUITE_P(
     Borders, ArchitectureRule,
-    testing::Values(Case{"grammar/a.cc", "\"physics/scene.h\"", "grammar must not include physics/scene.h"},
-                    Case{"physics/a.cc", "\"grammar/frame.h\"", "physics must not include grammar/frame.h"},
-                    Case{"render/a.cc", "\"physics/simulation.h\"", "render must not include physics/simulation.h"},
-                    Case{"render/a.cc", "\"physics/snapshot.h\"", ""}, Case{"harness/a.cc", "\"render/picture.h\"", ""},
-                    Case{"harness/a.cc", "\"tests/helper.h\"", "harness must not include tests/helper.h"},
-                    Case{"grammar/a.cc", "<yaml-cpp/yaml.h>", "yaml-cpp does not belong here"},
-                    Case{"physics/world.cc", "<btBulletDynamicsCommon.h>", "Bullet does not belong here"},
-                    Case{"physics/bullet_world.cc", "<btBulletDynamicsCommon.h>", ""},
-                    Case{"harness/a.cc", "<GL/osmesa.h>", "OpenGL and OSMesa does not belong here"},
-                    Case{"grammar/a.cc", "<fstream>", "the grammar room has no files"},
-                    Case{"bench/a.cc", "<gtest/gtest.h>", "GoogleTest does not belong here"}));
+    testing::Values(
+        Case{"grammar/a.cc", "\"physics/scene.h\"", "grammar must not include physics/scene.h"},
+        Case{"physics/a.cc", "\"grammar/frame.h\"", "physics must not include grammar/frame.h"},
+        Case{"render/a.cc", "\"physics/simulation.h\"",
+             "render must not include physics/simulation.h"},
+        Case{"render/a.cc", "\"physics/snapshot.h\"", ""},
+        Case{"harness/a.cc", "\"render/picture.h\"", ""},
+        Case{"harness/a.cc", "\"tests/helper.h\"", "harness must not include tests/helper.h"},
+        Case{"grammar/a.cc", "<yaml-cpp/yaml.h>", "yaml-cpp does not belong here"},
+        Case{"physics/world.cc", "<btBulletDynamicsCommon.h>", "Bullet does not belong here"},
+        Case{"physics/bullet_world.cc", "<btBulletDynamicsCommon.h>", ""},
+        Case{"harness/a.cc", "<GL/osmesa.h>", "OpenGL and OSMesa does not belong here"},
+        Case{"grammar/a.cc", "<fstream>", "the grammar room has no files"},
+        Case{"bench/a.cc", "<gtest/gtest.h>", "GoogleTest does not belong here"}));
 
 TEST(ArchitectureRuleOfLength, ComplainsAboveTheLimit) {
   std::string text = "// SPDX-License-Identifier: Apache-2.0\n";

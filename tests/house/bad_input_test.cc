@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bad input ends with exit code 2 and a clear message on stderr, prints nothing on stdout and writes nothing.
+// Bad input ends with exit code 2 and a clear message on stderr, prints nothing on stdout and
+// writes nothing.
 // ./test runs this suite a second time against the program built with sanitizers.
 #include <gtest/gtest.h>
 
@@ -28,8 +29,12 @@ struct Case {
 };
 
 std::vector<Case> Cases() {
-  const auto edited = [](const char* from, const char* to) { return Replaced(kScenario, from, to); };
-  std::string binary = "\x7f""ELF\x02\x01\x01";
+  const auto edited = [](const char* from, const char* to) {
+    return Replaced(kScenario, from, to);
+  };
+  std::string binary =
+      "\x7f"
+      "ELF\x02\x01\x01";
   binary.append(64, '\0');
   return {
       {"empty", "", "empty"},
@@ -42,7 +47,8 @@ std::vector<Case> Cases() {
       {"unclosed", "scenario: [1, 2\n", "probe.yaml:"},
       {"unknown_key", edited("shows:", "show:"), "probe.yaml:2:1: error: unknown key 'show'"},
       {"unknown_key_deep", edited("mass_kg:", "mass:"), "probe.yaml:7:"},
-      {"duplicate_key", std::string(kScenario) + "shows: again\n", "probe.yaml:12:1: error: duplicate key 'shows'"},
+      {"duplicate_key", std::string(kScenario) + "shows: again\n",
+       "probe.yaml:12:1: error: duplicate key 'shows'"},
       {"mass_no", edited("mass_kg: 0.4", "mass_kg: no"), "probe.yaml:7:72: error"},
       {"mass_negative", edited("mass_kg: 0.4", "mass_kg: -0.4"), "probe.yaml:7:72: error"},
       {"mass_text", edited("mass_kg: 0.4", "mass_kg: heavy"), "probe.yaml:7:72: error"},
@@ -50,10 +56,12 @@ std::vector<Case> Cases() {
       {"mass_sexagesimal", edited("mass_kg: 0.4", "mass_kg: 1:30"), "probe.yaml:7:72: error"},
       {"unknown_support", edited("on: table", "on: tabel"), "probe.yaml:7:"},
       {"beside_its_support", edited("at_m: [0.2, 0.1]", "at_m: [2.2, 0.1]"), "probe.yaml:7:"},
-      {"inside_the_table", edited("on: table, at_m: [0.2, 0.1]", "at_m: [0.2, 0.1, 0.8]"), "probe.yaml:7:"},
+      {"inside_the_table", edited("on: table, at_m: [0.2, 0.1]", "at_m: [0.2, 0.1, 0.8]"),
+       "probe.yaml:7:"},
       {"unknown_actor", edited("- right_hand:", "- left_hand:"), "probe.yaml:11:"},
       {"unknown_object", edited("reach: milk", "reach: mlik"), "probe.yaml:11:"},
-      {"unknown_grammar", edited("grammar: pick_and_place", "grammar: pick_and_plaice"), "probe.yaml:3:10: error"},
+      {"unknown_grammar", edited("grammar: pick_and_place", "grammar: pick_and_plaice"),
+       "probe.yaml:3:10: error"},
       {"unknown_hand", edited("hand: human_right", "hand: human_write"), "probe.yaml:9:"},
       {"alias", edited("shows: a carton on a table", "shows: *anchor"), "probe.yaml:2:8: error"},
   };
@@ -72,11 +80,13 @@ TEST_P(BadInput, IsRefusedWithExitCodeTwo) {
     EXPECT_NE(said.err.find(GetParam().complaint), std::string::npos) << said.err;
     EXPECT_LT(said.err.size(), 10'000u) << "a message for people";
   }
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "something was written";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1)
+      << "something was written";
   std::filesystem::remove_all(folder);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenario, BadInput, testing::ValuesIn(Cases()), [](const auto& i) { return i.param.name; });
+INSTANTIATE_TEST_SUITE_P(Scenario, BadInput, testing::ValuesIn(Cases()),
+                         [](const auto& i) { return i.param.name; });
 
 TEST(BadFile, TheProbeItselfIsGood) {
   const auto folder = FreshFolder("bad-input");
@@ -130,11 +140,14 @@ TEST(BadFile, GrammarTypoHasACaret) {
 TEST(BadFile, GrammarFilesOfEveryUglyKind) {
   const auto folder = FreshFolder("bad-grammar");
   WriteFile(folder / "probe.yaml", kScenario);
-  const std::string deep = "grammar g\nevent e(a: Entity)\n  while " + std::string(10'000, '(') + "\n";
-  for (const std::string& text : {std::string(), std::string("\0\1\2", 3), std::string("\xff\xfe"), deep,
-                                  std::string(2 << 20, 'x'), std::string("grammar g\nuse g\n")}) {
+  const std::string deep =
+      "grammar g\nevent e(a: Entity)\n  while " + std::string(10'000, '(') + "\n";
+  for (const std::string& text :
+       {std::string(), std::string("\0\1\2", 3), std::string("\xff\xfe"), deep,
+        std::string(2 << 20, 'x'), std::string("grammar g\nuse g\n")}) {
     WriteFile(folder / "ugly.grammar", text);
-    const Said said = Prehend({"run", (folder / "probe.yaml").string(), "--grammar", (folder / "ugly.grammar").string()});
+    const Said said = Prehend(
+        {"run", (folder / "probe.yaml").string(), "--grammar", (folder / "ugly.grammar").string()});
     EXPECT_EQ(said.exit_code, 2) << said.err.substr(0, 500);
     EXPECT_NE(said.err.find("ugly.grammar"), std::string::npos) << said.err.substr(0, 500);
     EXPECT_EQ(said.out, "");

@@ -20,7 +20,8 @@ std::string Quoted(const std::string& word) {
 
 }  // namespace
 
-Said Prehend(const std::vector<std::string>& arguments, const std::vector<std::string>& environment) {
+Said Prehend(const std::vector<std::string>& arguments,
+             const std::vector<std::string>& environment) {
   const char* other = std::getenv("PREHEND_BINARY");
   const std::string binary = other ? other : PREHEND_BINARY_DIR "/prehend";
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
@@ -28,21 +29,24 @@ Said Prehend(const std::vector<std::string>& arguments, const std::vector<std::s
   for (char& c : stem) c = c == '/' ? '-' : c;
   const auto folder = std::filesystem::temp_directory_path() / "prehend-said";
   std::filesystem::create_directories(folder);
-  const auto out = folder / (stem + std::to_string(getpid()) + ".out"), err = folder / (stem + std::to_string(getpid()) + ".err");
+  const auto out = folder / (stem + std::to_string(getpid()) + ".out"),
+             err = folder / (stem + std::to_string(getpid()) + ".err");
   std::string command = "cd " + Quoted(PREHEND_SOURCE_DIR) + " && env NO_COLOR=1";
   for (const std::string& pair : environment) command += " " + Quoted(pair);
   command += " " + Quoted(binary);
   for (const std::string& argument : arguments) command += " " + Quoted(argument);
   command += " >" + Quoted(out) + " 2>" + Quoted(err) + " </dev/null";
   const int status = std::system(command.c_str());
-  Said said{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), ReadFile(out), ReadFile(err)};
+  Said said{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), ReadFile(out),
+            ReadFile(err)};
   std::filesystem::remove(out);
   std::filesystem::remove(err);
   return said;
 }
 
 std::filesystem::path FreshFolder(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / ("prehend-" + name + "-" + std::to_string(getpid()));
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("prehend-" + name + "-" + std::to_string(getpid()));
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

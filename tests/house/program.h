@@ -14,9 +14,10 @@ struct Said {
   std::string err;
 };
 
-/// `prehend ARGS` in the source tree. The binary is this build's, or the one PREHEND_BINARY names (sanitizers).
-/// `environment` holds NAME=value pairs on top of the present ones.
-Said Prehend(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {});
+/// `prehend ARGS` in the source tree. The binary is this build's, or the one PREHEND_BINARY names
+/// (sanitizers). `environment` holds NAME=value pairs on top of the present ones.
+Said Prehend(const std::vector<std::string>& arguments,
+             const std::vector<std::string>& environment = {});
 
 /// A folder of its own for one test, emptied first.
 std::filesystem::path FreshFolder(const std::string& name);
