@@ -230,9 +230,9 @@ Moment FindMoment(const std::string& at, const RunResult& run) {
   double seconds = 0;
   const auto parsed = std::from_chars(at.data(), at.data() + at.size(), seconds);
   if (parsed.ec == std::errc() && parsed.ptr == at.data() + at.size())
-    return {static_cast<grammar::Tick>(
+    return {.tick = static_cast<grammar::Tick>(
                 seconds * static_cast<double>(run.timeline.ticks_per_second) + 0.5),
-            true};
+            .is_time = true};
   const std::size_t dot = at.rfind('.');
   const std::string event = at.substr(0, dot);
   const bool end = dot != std::string::npos && at.substr(dot) == ".end";
@@ -258,9 +258,12 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
   picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
   picture.strip = ComposeStrip(scenario, run, moment.tick);
   picture.camera = ComposeCamera(scenario, picture, entry.camera);
-  picture.title = fmt::format("{}  ·  {}{}  ·  {:.3f} s", scenario.name, entry.at,
-                              moment.found ? "" : " did not happen; the end",
-                              Seconds(picture.snapshot.tick, run));
+  const std::string at =
+      moment.is_time
+          ? ""
+          : fmt::format("  ·  {}{}", entry.at, moment.found ? "" : " did not happen; the end");
+  picture.title =
+      fmt::format("{}{}  ·  {:.3f} s", scenario.name, at, Seconds(picture.snapshot.tick, run));
   return picture;
 }
 

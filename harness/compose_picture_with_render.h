@@ -13,6 +13,7 @@ namespace prehend::harness {
 struct Moment {
   grammar::Tick tick = 0;
   bool found = true;
+  bool is_time = false;  ///< `at` is a number of seconds
 };
 Moment FindMoment(const std::string& at, const RunResult& run);
 

@@ -21,7 +21,7 @@ h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin:
 a { color: inherit; } .soft { color: var(--soft); }
 table { border-collapse: collapse; width: 100%; margin: 1rem 0 2rem; }
 td, th { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
-td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
+td.number, th.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 .passed { color: var(--passed); } .failed { color: var(--failed); } .pending { color: var(--pending); }
 .verdict { font-weight: 600; }
 section { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: 1rem 1.2rem; margin: 1rem 0; }
