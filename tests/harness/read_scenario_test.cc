@@ -72,7 +72,7 @@ TEST(ReadScenario, EveryStep) {
   EXPECT_EQ(std::get<physics::PlaceStep>(step(7).action).support, "table");
   EXPECT_EQ(std::get<physics::RetreatStep>(step(8).action).by_m, 0.2);
   EXPECT_TRUE(std::holds_alternative<physics::WaitStep>(step(9).action));
-  const auto& poses = std::get<physics::PosesStep>(step(10).action).poses;
+  const auto poses = std::get<physics::PosesStep>(step(10).action).poses;
   ASSERT_EQ(poses.size(), 2u);
   EXPECT_TRUE((poses[1].X_WH.q * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-12));
   EXPECT_EQ(poses[1].trigger, 1);
