@@ -65,7 +65,7 @@ bool SaysTheSame(const Golden& golden, const grammar::Timeline& recognised) {
   const Comparison comparison = Compare(golden, recognised, 0);
   return std::all_of(comparison.pairings.begin(), comparison.pairings.end(),
                      [](const Pairing& pairing) {
-                       return pairing.agreement == Agreement::kMatched &&
+                       return pairing.agreement == LineVerdict::kMatched &&
                               pairing.begin_offset == 0 && pairing.end_offset == 0;
                      });
 }

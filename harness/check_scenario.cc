@@ -120,7 +120,7 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
   LeavePending(request, prepared, golden.value, run);
   const auto differing = std::count_if(
       comparison.pairings.begin(), comparison.pairings.end(),
-      [](const Pairing& pairing) { return pairing.agreement != Agreement::kMatched; });
+      [](const Pairing& pairing) { return pairing.agreement != LineVerdict::kMatched; });
   Fail(verdict, ExitCode::kDiffers,
        fmt::format("{} of {} events differ from the golden", differing, comparison.pairings.size()),
        DifferenceText(comparison, ExplainCommand(request.id, request.run)));

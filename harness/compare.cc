@@ -125,11 +125,11 @@ class Pairer {
     PairChangedRoles();
     for (std::size_t i = 0; i < expected_.size(); ++i) {
       if (expected_taken_[i]) continue;
-      AddAlone(Agreement::kMissing, expected_[i].event);
+      AddAlone(LineVerdict::kMissing, expected_[i].event);
       comparison_.pairings.back().golden_line = i;
     }
     for (std::size_t j = 0; j < actual_.size(); ++j) {
-      if (!actual_taken_[j]) AddAlone(Agreement::kExtra, actual_[j]);
+      if (!actual_taken_[j]) AddAlone(LineVerdict::kExtra, actual_[j]);
     }
     std::stable_sort(
         comparison_.pairings.begin(), comparison_.pairings.end(),
@@ -188,7 +188,7 @@ class Pairer {
   void AddPair(std::size_t i, std::size_t j) {
     const GoldenEvent& line = expected_[i];
     const NamedEvent& actual = actual_[j];
-    Pairing pairing{.agreement = Agreement::kMatched,
+    Pairing pairing{.agreement = LineVerdict::kMatched,
                     .expected = line.event,
                     .actual = actual,
                     .golden_line = i};
@@ -198,10 +198,10 @@ class Pairer {
         line.tolerance_ms ? *line.tolerance_ms * ticks_per_second_ / 1000 : default_tolerance_;
     pairing.changes = Changes(line.event, actual);
     if (!pairing.changes.empty()) {
-      pairing.agreement = Agreement::kChanged;
+      pairing.agreement = LineVerdict::kChanged;
     } else if (std::max(std::abs(pairing.begin_offset), std::abs(pairing.end_offset)) >
                pairing.tolerance) {
-      pairing.agreement = Agreement::kShifted;
+      pairing.agreement = LineVerdict::kShifted;
     } else {
       NoteHeadroom("begin of ", pairing, pairing.begin_offset);
       NoteHeadroom("end of ", pairing, pairing.end_offset);
@@ -218,9 +218,9 @@ class Pairer {
     tightest = Headroom{boundary + pairing.event().Label(), offset, pairing.tolerance};
   }
 
-  void AddAlone(Agreement agreement, const NamedEvent& event) {
+  void AddAlone(LineVerdict agreement, const NamedEvent& event) {
     Pairing pairing{.agreement = agreement, .expected = {}, .actual = {}};
-    (agreement == Agreement::kMissing ? pairing.expected : pairing.actual) = event;
+    (agreement == LineVerdict::kMissing ? pairing.expected : pairing.actual) = event;
     comparison_.pairings.push_back(std::move(pairing));
   }
 
@@ -235,10 +235,10 @@ class Pairer {
 }  // namespace
 
 bool Comparison::Agrees() const {
-  return Count(Agreement::kMatched) == static_cast<int>(pairings.size());
+  return Count(LineVerdict::kMatched) == static_cast<int>(pairings.size());
 }
 
-int Comparison::Count(Agreement agreement) const {
+int Comparison::Count(LineVerdict agreement) const {
   return static_cast<int>(
       std::count_if(pairings.begin(), pairings.end(),
                     [&](const Pairing& pairing) { return pairing.agreement == agreement; }));

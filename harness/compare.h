@@ -14,7 +14,7 @@
 
 namespace prehend::harness {
 
-enum class Agreement {
+enum class LineVerdict {
   kMatched,  ///< both boundaries within tolerance
   kShifted,  ///< a boundary is out of tolerance
   kChanged,  ///< another role, attribute, or way to end
@@ -23,11 +23,11 @@ enum class Agreement {
 };
 
 /// "matched", "shifted", ...
-std::string_view Name(Agreement agreement);
+std::string_view Name(LineVerdict agreement);
 
 /// An expected event and its partner; one of the two is empty when missing or extra.
 struct Pairing {
-  Agreement agreement = Agreement::kMatched;
+  LineVerdict agreement = LineVerdict::kMatched;
   std::optional<grammar::NamedEvent> expected, actual;
   std::size_t golden_line = 0;     ///< index into Golden::events; only with `expected`
   grammar::Tick begin_offset = 0;  ///< actual - expected, ticks; 0 without a partner
@@ -51,7 +51,7 @@ struct Comparison {
   std::optional<Headroom> tightest;  ///< among the matched events; empty without one
 
   bool Agrees() const;
-  int Count(Agreement agreement) const;
+  int Count(LineVerdict agreement) const;
 };
 
 /// Compares in the ticks of `actual`; `default_tolerance` (ticks) is for golden lines without their

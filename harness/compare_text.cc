@@ -38,17 +38,17 @@ std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::stri
 
 }  // namespace
 
-std::string_view Name(Agreement agreement) {
+std::string_view Name(LineVerdict agreement) {
   switch (agreement) {
-    case Agreement::kMatched:
+    case LineVerdict::kMatched:
       return "matched";
-    case Agreement::kShifted:
+    case LineVerdict::kShifted:
       return "shifted";
-    case Agreement::kChanged:
+    case LineVerdict::kChanged:
       return "changed";
-    case Agreement::kMissing:
+    case LineVerdict::kMissing:
       return "missing";
-    case Agreement::kExtra:
+    case LineVerdict::kExtra:
       return "extra";
   }
   return "";
@@ -57,7 +57,7 @@ std::string_view Name(Agreement agreement) {
 std::string DifferenceText(const Comparison& comparison, std::string_view command) {
   std::string text;
   for (const Pairing& pairing : comparison.pairings) {
-    if (pairing.agreement == Agreement::kMatched) continue;
+    if (pairing.agreement == LineVerdict::kMatched) continue;
     text += PairingText(pairing, comparison.ticks_per_second, command);
   }
   return text;

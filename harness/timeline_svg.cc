@@ -91,7 +91,7 @@ class Drawing {
   void DrawRow(const Row& row, double y) {
     const bool agrees = std::all_of(
         row.pairings.begin(), row.pairings.end(),
-        [](const Pairing* pairing) { return pairing->agreement == Agreement::kMatched; });
+        [](const Pairing* pairing) { return pairing->agreement == LineVerdict::kMatched; });
     svg_ +=
         fmt::format("<text class=\"{}\" x=\"{:g}\" y=\"{:g}\" text-anchor=\"end\">{}</text>\n",
                     agrees ? "row" : "row differs", kLabelWidth - 8, y + 17, EscapeHtml(row.label));
@@ -104,7 +104,7 @@ class Drawing {
   void DrawBar(const char* side, const NamedEvent& event, double y, const Pairing& pairing) {
     const double x = X(event.interval.begin);
     const double width = std::max(kNarrowestBar, X(event.interval.end) - x);
-    const bool agrees = pairing.agreement == Agreement::kMatched;
+    const bool agrees = pairing.agreement == LineVerdict::kMatched;
     svg_ += fmt::format(
         "<rect class=\"{}{}\" x=\"{:.2f}\" y=\"{:g}\" width=\"{:.2f}\" height=\"{:g}\" "
         "fill=\"#{:06x}\"><title>{}</title></rect>\n",

@@ -129,7 +129,7 @@ TEST(Compare, AnEndByTheEpisodeIsNotAnEndOfItsOwn) {
   Events actual = {Event("grasping", "cup", 100, 200)};
   actual[0].open_end = true;
   const Comparison comparison = CompareEvents({Event("grasping", "cup", 100, 200)}, actual);
-  ASSERT_EQ(comparison.Count(Agreement::kChanged), 1);
+  ASSERT_EQ(comparison.Count(LineVerdict::kChanged), 1);
   EXPECT_EQ(comparison.pairings[0].changes,
             std::vector<std::string>{"end: of its own -> of the episode"});
 }
