@@ -121,7 +121,7 @@ ScalarMeaning MeaningOf(const YamlNode& node) {
   static constexpr std::string_view kTrue[] = {"yes", "on", "y", "true"};
   static constexpr std::string_view kFalse[] = {"no", "off", "n", "false"};
   if (OneOf(lower, kTrue) || OneOf(lower, kFalse)) {
-    return Ambiguous("true or false to some YAML readers", "write true or false, or put text in quotes");
+    return Ambiguous("true or false to some YAML readers", "write a number, true or false, or text in quotes");
   }
   if (auto number = AmbiguousNumber(text)) return *number;
   meaning.string = text;

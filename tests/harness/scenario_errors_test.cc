@@ -76,7 +76,7 @@ const Case kCases[] = {
       {"class_builtin", "class: Table", "class: Thing", kAccepts,
        "6:18: class: 'Thing' is built in and given anyway | name what the thing is, for example Cup\n"},
       {"fixed_word", "fixed: true", "fixed: yes", kRefuses,
-       "6:32: fixed: expected true or false, found 'yes' (true or false to some YAML readers) | write true or false, or put text in quotes\n"},
+       "6:32: fixed: expected true or false, found 'yes' (true or false to some YAML readers) | write a number, true or false, or text in quotes\n"},
       {"fixed_with_mass", "fixed: true", "fixed: true, mass_kg: 3", kAccepts,
        "6:47: entity 'table' is fixed: it cannot have a mass | remove fixed or mass_kg\n"},
       {"movable_without_mass", "mass_kg: 0.4, ", "", kAccepts,
@@ -84,7 +84,7 @@ const Case kCases[] = {
       {"mass_negative", "mass_kg: 0.4", "mass_kg: -0.4", kRefuses,
        "7:54: mass_kg: expected a number from 0.001 to 1000, found '-0.4'\n"},
       {"mass_no", "mass_kg: 0.4", "mass_kg: no", kRefuses,
-       "7:54: mass_kg: expected a number from 0.001 to 1000, found 'no' (true or false to some YAML readers) | write true or false, or put text in quotes\n"},
+       "7:54: mass_kg: expected a number from 0.001 to 1000, found 'no' (true or false to some YAML readers) | write a number, true or false, or text in quotes\n"},
       {"mass_null", "mass_kg: 0.4", "mass_kg: ~", kRefuses,
        "7:54: mass_kg: expected a number from 0.001 to 1000, found '~'\n"},
       {"mass_missing_value", "mass_kg: 0.4", "mass_kg: ", kRefuses,
@@ -114,7 +114,7 @@ const Case kCases[] = {
       {"entity_name_upper", "milk: {", "Milk: {", kRefuses,
        "7:3: expected a name like 'milk_carton', found 'Milk'\n"},
       {"entity_name_bool", "milk: {", "no: {", kAccepts,
-       "7:3: expected a name like 'milk_carton', found 'no' (true or false to some YAML readers) | write true or false, or put text in quotes\n"},
+       "7:3: expected a name like 'milk_carton', found 'no' (true or false to some YAML readers) | write a number, true or false, or text in quotes\n"},
       {"actor_named_like_entity", "right_hand: {hand", "milk: {hand", kAccepts,
        "9:3: 'milk' is already the name of an entity\n"
        "11:5: no actor is called 'right_hand' | known: milk\n"

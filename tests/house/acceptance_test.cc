@@ -28,9 +28,9 @@ int Count(const Json& run, const std::string& event) {
 }
 
 std::vector<std::string> ScenarioNames() {
+  const Json list = Json::parse(Prehend({"list", "--json"}).out);
   std::vector<std::string> names;
-  for (const Json& entry : Json::parse(Prehend({"list", "--json"}).out).at("scenarios"))
-    names.push_back(entry.at("scenario"));
+  for (const Json& entry : list.at("scenarios")) names.push_back(entry.at("scenario"));
   return names;
 }
 
