@@ -30,6 +30,9 @@ std::span<const Builtin> Builtins() {
        "upwards, of the first against the point of the second where the first is"},
       {"speed_along", Op::kSpeedAlong, T::kNumber, kMetresPerSecond, {A::kEntity, A::kEntity},
        "horizontal speed of the first against the point of the second where the first is"},
+      {"drift_along", Op::kDriftAlong, T::kNumber, kMetresPerSecond, {A::kEntity, A::kEntity, A::kWindow},
+       "(a, b, window): how far a gets horizontally, as seen from b, from half the window before to half of it after, "
+       "per time"},
       {"tilt", Op::kTilt, T::kNumber, kRadians, {A::kEntity}, "angle between the entity's own z axis and up"},
       {"position", Op::kPosition, T::kPosition, kMetres, {A::kEntity}, "of the entity's origin"},
       {"position_on", Op::kPositionOn, T::kPosition, kMetres, {A::kEntity, A::kEntity},

@@ -16,7 +16,8 @@ namespace prehend::grammar {
 enum class Type : std::uint8_t { kTruth, kNumber, kPosition };
 
 /// What an argument must be. The first four are roles of that class.
-enum class Argument : std::uint8_t { kEntity, kHand, kThing, kMovable, kPosition, kLength, kNumber };
+/// A window is a constant span of time.
+enum class Argument : std::uint8_t { kEntity, kHand, kThing, kMovable, kPosition, kLength, kNumber, kWindow };
 
 struct Builtin {
   std::string_view name;

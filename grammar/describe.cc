@@ -33,7 +33,7 @@ class Waits {
       Include(end, composes ? end_[target] : truth_[target]);
       if (composes) end.until_end_of.insert(program_.events[target].name);
     }
-    end.seconds += rule.bridging_s;
+    end.seconds += rule.bridging_s + rule.looks_around_s;
     if (rule.confirmed_within != kNone) {
       end.until_end_of.insert(program_.events[rule.references[rule.confirmed_within].rule].name);
     }
@@ -86,7 +86,7 @@ GrammarDescription Describe(const Program& program) {
   const Waits waits(program);
   for (std::size_t i = 0; i < program.events.size(); ++i) {
     const Rule& rule = program.events[i];
-    description.history_s = std::max(description.history_s, rule.back_s);
+    description.history_s = std::max(description.history_s, rule.back_s + rule.looks_around_s);
     if (rule.form == Form::kTouching || rule.form == Form::kAny) continue;
     description.rules.push_back({.head = Head(rule),
                                  .printed = rule.printed,

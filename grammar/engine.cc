@@ -8,14 +8,8 @@
 namespace prehend::grammar {
 namespace {
 
-// A time span in whole ticks such that comparing tick differences gives the same as comparing seconds.
-constexpr double kRounding = 1e-6;
-Tick AtMostTicks(double seconds, Tick per_second) {
-  return static_cast<Tick>(std::floor(std::min(seconds, 1e9) * static_cast<double>(per_second) + kRounding));
-}
-Tick AtLeastTicks(double seconds, Tick per_second) {
-  return static_cast<Tick>(std::ceil(std::min(seconds, 1e9) * static_cast<double>(per_second) - kRounding));
-}
+// Far enough from the limits of a Tick that times can be added and subtracted.
+constexpr Tick kLatestTick = 1'000'000'000'000'000;
 
 void SortEvents(std::vector<Event>::iterator begin, std::vector<Event>::iterator end) {
   std::sort(begin, end, [](const Event& a, const Event& b) {
@@ -33,12 +27,11 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
       evaluator_(*program_, cast_, history_, lanes_),
       awake_(program_->events.size()) {
   for (const Rule& rule : program_->events) {
-    const Tick hz = cast_.ticks_per_second;
-    rule_ticks_.push_back({.bridging = AtMostTicks(rule.bridging_s, hz),
-                           .lasting = AtLeastTicks(rule.lasting_s, hz),
-                           .idle = AtMostTicks(rule.idle_s, hz),
-                           .back = AtMostTicks(rule.back_s, hz)});
-    longest_look_back_ = std::max(longest_look_back_, rule_ticks_.back().back);
+    rule_ticks_.push_back({.bridging = history_.AtMostTicks(rule.bridging_s),
+                           .lasting = history_.AtLeastTicks(rule.lasting_s),
+                           .idle = history_.AtMostTicks(rule.idle_s),
+                           .back = history_.AtMostTicks(rule.back_s)});
+    longest_look_back_ = std::max(longest_look_back_, history_.AtLeastTicks(rule.back_s + rule.looks_around_s));
   }
   lanes_.BindUnguarded();
   for (int i = 0; i < lanes_.size(); ++i) {
@@ -49,10 +42,14 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
 
 std::string Engine::WhyNotWatchable(const Frame& frame) const {
   if (frame.entities.size() != cast_.entities.size()) return "a frame shows another number of entities than the cast";
+  if (frame.tick > kLatestTick || frame.tick < -kLatestTick) return "a frame's tick is too large";
   if (history_.now() >= 0 && frame.tick <= history_.At(history_.now()).tick) return "the frames are not in order of time";
   const int count = static_cast<int>(cast_.entities.size());
+  int last_hand = kNobody;
   for (const HandLook& hand : frame.hands) {
     if (hand.entity < 0 || hand.entity >= count) return "a frame shows a hand that is not in the cast";
+    if (hand.entity <= last_hand) return "a frame shows a hand twice, or its hands are not in the order of the cast";
+    last_hand = hand.entity;
   }
   for (const Touch& touch : frame.touches) {
     if (touch.a < 0 || touch.a >= touch.b || touch.b >= count) return "a frame shows a touch of somebody not in the cast";
@@ -79,10 +76,11 @@ void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
 void Engine::Finish(Tick end, std::vector<Event>& out) {
   if (!error_.empty() || finishing_ || history_.now() < 0) return;
   finishing_ = true;
+  history_.Complete();
   out_ = &out;
   const auto first_new = static_cast<std::ptrdiff_t>(out.size());
   // The episode's last frame belongs to it, so its end is later.
-  const Moment last{history_.now() + 1, std::max(end, history_.At(history_.now()).tick + 1)};
+  const Moment last{history_.now() + 1, std::clamp(end, history_.At(history_.now()).tick + 1, kLatestTick + 1)};
   decided_ = last.tick;
   EndTouches(last, true);
   for (const int rule : program_->schedule) {

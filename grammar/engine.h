@@ -62,7 +62,8 @@ class Engine {
   FrameNumber ApproachBegin(Lane& lane, FrameNumber end) const;
 
   // From a run to an event.
-  void Open(Lane& lane, FrameNumber frame);
+  [[nodiscard]] bool Open(Lane& lane, FrameNumber frame);
+  int StyleAt(const Lane& lane, FrameNumber frame) const;
   bool Close(Lane& lane, Moment end, bool open_end = false);
   bool Conclude(Lane& lane, const Span& span);
   void ResolvePending(Lane& lane);

@@ -6,15 +6,22 @@
 
 namespace prehend::grammar {
 
-void Engine::Open(Lane& lane, FrameNumber frame) {
-  const Rule& rule = RuleOf(lane);
+// False while a value is not known that must be kept from here.
+bool Engine::Open(Lane& lane, FrameNumber frame) {
+  if (!evaluator_.CaptureAnchors(lane, frame)) return false;
   lane.open = true;
   lane.in_gap = false;
   lane.begin = history_.At(frame);
-  evaluator_.CaptureAnchors(lane, frame);
-  if (rule.style_role == kNone) return;
+  lane.style = StyleAt(lane, frame);
+  return true;
+}
+
+// A hand that no frame has shown yet has no style.
+int Engine::StyleAt(const Lane& lane, FrameNumber frame) const {
+  const Rule& rule = RuleOf(lane);
+  if (rule.style_role == kNone) return kNobody;
   const HandSample* hand = history_.Hand(lane.entities[rule.style_role], frame);
-  lane.style = hand == nullptr ? kNobody : hand->look.style;
+  return hand == nullptr ? kNobody : hand->look.style;
 }
 
 // False, with nothing changed, if it is not known yet whether the run is an interval.
@@ -73,7 +80,7 @@ void Engine::Emit(Lane& lane, const Span& span, int style) {
                    .roles = lane.entities,
                    .interval = {span.begin.tick, span.end.tick},
                    .decided = decided_,
-                   .style = rule.style_role == kNone ? kNobody : style,
+                   .style = style,
                    .open_end = span.open_end});
 }
 

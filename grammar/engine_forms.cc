@@ -43,7 +43,7 @@ bool Engine::StepRun(Lane& lane, FrameNumber frame, Kleene truth) {
   const Tick bridging = TicksOf(lane).bridging;
   if (truth == Kleene::kTrue) {
     if (lane.open && lane.in_gap && now.tick - lane.gap.tick > bridging && !Close(lane, lane.gap)) return false;
-    if (!lane.open) Open(lane, frame);
+    if (!lane.open && !Open(lane, frame)) return false;
     lane.in_gap = false;
   } else if (lane.open) {
     if (!lane.in_gap) {
@@ -69,8 +69,7 @@ bool Engine::StepRest(Lane& lane, FrameNumber frame) {
   // Two wholes that abut are two, and so are their rests.
   const bool new_whole = truth == Kleene::kTrue && evaluator_.Begins(rule.first, view) == Kleene::kTrue;
   if (lane.open && (truth == Kleene::kFalse || new_whole) && !Close(lane, history_.At(frame))) return false;
-  if (truth == Kleene::kTrue && !lane.open) Open(lane, frame);
-  return true;
+  return truth != Kleene::kTrue || lane.open || Open(lane, frame);
 }
 
 bool Engine::StepFromTo(Lane& lane, FrameNumber frame) {
@@ -91,11 +90,10 @@ bool Engine::StepFromTo(Lane& lane, FrameNumber frame) {
   if (opens == Kleene::kFalse) return true;
   if (opens == Kleene::kUnknown) return false;
   // A begin that is an end at once is no interval. What `to` says of @begin refers to this very frame.
-  evaluator_.CaptureAnchors(lane, frame);
+  if (!evaluator_.CaptureAnchors(lane, frame)) return false;
   const Kleene closes = evaluator_.Truth(rule.second, view);
   if (closes == Kleene::kUnknown) return false;
-  if (closes == Kleene::kFalse) Open(lane, frame);
-  return true;
+  return closes == Kleene::kTrue || Open(lane, frame);
 }
 
 bool Engine::StepUntil(Lane& lane, FrameNumber frame) {
@@ -106,8 +104,8 @@ bool Engine::StepUntil(Lane& lane, FrameNumber frame) {
     const FrameNumber begin = ApproachBegin(lane, frame);
     if (begin == kNever) return false;
     if (begin < frame) {
-      evaluator_.CaptureAnchors(lane, begin);
-      if (rule.style_role != kNone) lane.style = history_.Hand(lane.entities[rule.style_role], begin)->look.style;
+      if (!evaluator_.CaptureAnchors(lane, begin)) return false;
+      lane.style = StyleAt(lane, begin);
       if (!Conclude(lane, {history_.At(begin), history_.At(frame)})) return false;
     }
     lane.last_end = lane.approach_from = frame;
@@ -128,7 +126,11 @@ FrameNumber Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
   double farthest = 0;
   double after = 0;  // the signal one frame later
   Tick last_progress = end_tick;
-  if (rule.approach != kNone) farthest = after = *evaluator_.Number(rule.approach, {lane, end, end});
+  if (rule.approach != kNone) {
+    const std::optional<double> goal = evaluator_.Number(rule.approach, {lane, end, end});
+    if (!goal) return kNever;
+    farthest = after = *goal;
+  }
   for (FrameNumber frame = end - 1; frame >= earliest; --frame) {
     const Evaluator::View view{lane, frame, end};
     const Kleene holds = evaluator_.Truth(rule.second, view);
@@ -139,7 +141,9 @@ FrameNumber Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
       continue;
     }
     // Read backwards, an approach moves away from its goal.
-    const double here = *evaluator_.Number(rule.approach, view);
+    const std::optional<double> signal = evaluator_.Number(rule.approach, view);
+    if (!signal) return kNever;
+    const double here = *signal;
     if (here < farthest - rule.slack) break;
     const Tick tick = history_.At(frame).tick;
     const double speed = (here - after) / history_.Seconds(history_.At(frame + 1).tick - tick);

@@ -148,6 +148,7 @@ std::optional<double> Evaluator::Number(int index, const View& view) const {
     }
     case Op::kAdd: case Op::kSubtract: case Op::kMultiply: case Op::kDivide: case Op::kNegate: case Op::kAbs:
       return Arithmetic(node, view);
+    case Op::kDriftAlong: return DriftAlong(node, view);
     default: return SignalOf(node, view);
   }
 }
@@ -220,6 +221,26 @@ double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
   return (Gap(hand, object, frame - 1) - Gap(hand, object, frame)) / seconds;
 }
 
+// The way of a as seen from b, turned to where b is now, from the last frame that is half the window earlier to the
+// first one that is half the window later; at the episode's begin and end the window is cut off.
+std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) const {
+  const Tick now = history_.At(view.frame).tick;
+  const Tick half = history_.AtLeastTicks(node.number / 2);
+  const FrameNumber early = history_.LastNotAfter(now - half);
+  const FrameNumber late = std::min(history_.FirstNotBefore(now + half), history_.now());
+  if (history_.At(late).tick < now + half && !history_.complete()) return std::nullopt;
+  if (early == late) return 0;
+  const int a = Entity(node, view, 0);
+  const int b = Entity(node, view, 1);
+  const Vector3d way_W = history_.Look(b, view.frame).q_WB * (PositionOn(a, b, late) - PositionOn(a, b, early));
+  return way_W.head<2>().norm() / history_.Seconds(history_.At(late).tick - history_.At(early).tick);
+}
+
+Vector3d Evaluator::PositionOn(int a, int b, FrameNumber frame) const {
+  const EntityLook& on = history_.Look(b, frame);
+  return on.q_WB.conjugate() * (history_.Look(a, frame).p_WB_m - on.p_WB_m);
+}
+
 // Of a's origin, against the point of b that is there: turning counts, so a tray may turn under a cup.
 Vector3d Evaluator::RelativeVelocity(int a, int b, FrameNumber frame) const {
   const EntityLook& look_a = history_.Look(a, frame);
@@ -254,10 +275,7 @@ std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
     case Op::kAtEnd:
       if (!view.end) return std::nullopt;
       return Position(node.args[0], {.lane = view.lane, .frame = *view.end, .end = view.end});
-    case Op::kPositionOn: {
-      const EntityLook& on = history_.Look(Entity(node, view, 1), view.frame);
-      return on.q_WB.conjugate() * (history_.Look(Entity(node, view, 0), view.frame).p_WB_m - on.p_WB_m);
-    }
+    case Op::kPositionOn: return PositionOn(Entity(node, view, 0), Entity(node, view, 1), view.frame);
     case Op::kAhead: {
       const int entity = Entity(node, view, 0);
       const HandSample* hand = history_.Hand(entity, view.frame);
@@ -270,17 +288,21 @@ std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
   }
 }
 
-void Evaluator::CaptureAnchors(Lane& lane, FrameNumber frame) const {
+bool Evaluator::CaptureAnchors(Lane& lane, FrameNumber frame) const {
   const std::vector<int>& anchors = program_.events[lane.rule].anchors;
   const View view{.lane = lane, .frame = frame};
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     if (IsPosition(program_, anchors[i])) {
-      const Vector3d value = Position(anchors[i], view).value_or(Vector3d::Zero());
-      std::copy(value.data(), value.data() + 3, lane.anchors.begin() + static_cast<std::ptrdiff_t>(3 * i));
+      const std::optional<Vector3d> value = Position(anchors[i], view);
+      if (!value) return false;
+      std::copy(value->data(), value->data() + 3, lane.anchors.begin() + static_cast<std::ptrdiff_t>(3 * i));
     } else {
-      lane.anchors[3 * i] = Number(anchors[i], view).value_or(0);
+      const std::optional<double> value = Number(anchors[i], view);
+      if (!value) return false;
+      lane.anchors[3 * i] = *value;
     }
   }
+  return true;
 }
 
 }  // namespace prehend::grammar

@@ -21,9 +21,9 @@ class Evaluator {
     std::optional<FrameNumber> end = std::nullopt;
   };
 
-  /// kUnknown while it depends on truths that are not final, or on values at an end that is not known.
+  /// kUnknown while it depends on truths that are not final, on an end that is not known, or on frames to come.
   Kleene Truth(int node, const View& view) const;
-  /// nullopt only for values at an end that is not known.
+  /// nullopt only for values at an end that is not known, or that depend on frames to come.
   std::optional<double> Number(int node, const View& view) const;
   std::optional<Eigen::Vector3d> Position(int node, const View& view) const;
 
@@ -35,8 +35,8 @@ class Evaluator {
   /// at the end, and they are too far apart for that. False if this cannot be told.
   bool TooFarApart(int node, Lane& lane, FrameNumber early, FrameNumber late) const;
 
-  /// Keeps the values of all anchors of the lane's rule at this frame.
-  void CaptureAnchors(Lane& lane, FrameNumber frame) const;
+  /// Keeps the values of all anchors of the lane's rule at this frame. False while one is not known.
+  [[nodiscard]] bool CaptureAnchors(Lane& lane, FrameNumber frame) const;
 
  private:
   Kleene Edge(const Node& node, const View& view) const;
@@ -46,6 +46,8 @@ class Evaluator {
   double SignalOf(const Node& node, const View& view) const;
   double Gap(int hand, int object, FrameNumber frame) const;
   double ClosingSpeed(int hand, int object, FrameNumber frame) const;
+  std::optional<double> DriftAlong(const Node& node, const View& view) const;
+  Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;
   Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;
   const TouchSample* Touch(const Node& node, const View& view, bool& swapped) const;
   int Entity(const Node& node, const View& view, int i) const { return view.lane.entities[node.roles[i]]; }

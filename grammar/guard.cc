@@ -83,7 +83,7 @@ bool IsLook(Op op) {
     case Op::kInSphere: case Op::kBoxInSphere: case Op::kInCylinder:
     case Op::kTrigger: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kGap: case Op::kClosingSpeed:
     case Op::kDistance: case Op::kHeight: case Op::kSpeed: case Op::kVerticalSpeed: case Op::kRelativeVerticalSpeed:
-    case Op::kSpeedAlong: case Op::kTilt: case Op::kPosition: case Op::kPositionOn: case Op::kAhead: return true;
+    case Op::kSpeedAlong: case Op::kDriftAlong: case Op::kTilt: case Op::kPosition: case Op::kPositionOn: case Op::kAhead: return true;
     default: return false;
   }
 }
@@ -93,6 +93,14 @@ bool UsesLooks(const Program& program, int index) {
   const Node& node = program.nodes[index];
   return IsLook(node.op) ||
          std::any_of(node.args.begin(), node.args.end(), [&](int arg) { return UsesLooks(program, arg); });
+}
+
+double LooksAround(const Program& program, int index) {
+  if (index == kNone) return 0;
+  const Node& node = program.nodes[index];
+  double seconds = node.op == Op::kDriftAlong ? node.number / 2 : 0;
+  for (const int arg : node.args) seconds = std::max(seconds, LooksAround(program, arg));
+  return seconds;
 }
 
 // A composition is told of finished intervals; every other rule asks for the truth at a frame.
@@ -117,6 +125,10 @@ void ChooseGuards(Program& program) {
     rule.uses_looks = rule.style_role != kNone || rule.approach != kNone || !rule.anchors.empty() ||
                       (rule.form != Form::kRestOf && UsesLooks(program, rule.first)) || UsesLooks(program, rule.second) ||
                       UsesLooks(program, rule.during) || UsesLooks(program, rule.requirement);
+    std::vector<int> nodes = rule.anchors;
+    nodes.insert(nodes.end(), {rule.second, rule.during, rule.approach, rule.requirement});
+    if (rule.form != Form::kRestOf) nodes.push_back(rule.first);
+    for (const int node : nodes) rule.looks_around_s = std::max(rule.looks_around_s, LooksAround(program, node));
   }
 }
 

@@ -8,7 +8,7 @@
 
 namespace prehend::grammar {
 
-/// Fills in Rule::guard, Rule::referenced and Rule::uses_looks.
+/// Fills in Rule::guard, Rule::part_of, Rule::referenced, Rule::uses_looks and Rule::looks_around_s.
 void ChooseGuards(Program& program);
 
 }  // namespace prehend::grammar

@@ -2,13 +2,17 @@
 #include "grammar/history.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace prehend::grammar {
 namespace {
 
+constexpr double kRounding = 1e-6;  // of a product of seconds and ticks per second
+constexpr double kMostTicks = 1e15;
+
 // The last sample at or before `frame`; the newest is asked for most. Samples are sorted by frame.
 template <typename Sample>
-const Sample& LastNotAfter(const Ring<Sample>& samples, FrameNumber frame) {
+const Sample& SampleAt(const Ring<Sample>& samples, FrameNumber frame) {
   if (samples.back().frame <= frame) return samples.back();
   std::size_t low = 0;
   std::size_t high = samples.size();
@@ -77,13 +81,27 @@ FrameNumber History::FirstNotBefore(Tick tick) const {
   return first() + static_cast<FrameNumber>(low);
 }
 
+FrameNumber History::LastNotAfter(Tick tick) const {
+  const FrameNumber next = FirstNotBefore(tick);
+  const bool here = next <= now() && At(next).tick == tick;
+  return here ? next : std::max(first(), next - 1);
+}
+
+Tick History::AtMostTicks(double seconds) const {
+  return static_cast<Tick>(std::floor(std::min(seconds * ticks_per_second_, kMostTicks) + kRounding));
+}
+
+Tick History::AtLeastTicks(double seconds) const {
+  return static_cast<Tick>(std::ceil(std::min(seconds * ticks_per_second_, kMostTicks) - kRounding));
+}
+
 const EntityLook& History::Look(int entity, FrameNumber frame) const {
-  return LastNotAfter(looks_[entity], frame).look;
+  return SampleAt(looks_[entity], frame).look;
 }
 
 const HandSample* History::Hand(int entity, FrameNumber frame) const {
   const int index = hand_of_entity_[entity];
-  return index < 0 ? nullptr : &LastNotAfter(hand_samples_[index], frame);
+  return index < 0 ? nullptr : &SampleAt(hand_samples_[index], frame);
 }
 
 }  // namespace prehend::grammar

@@ -97,8 +97,12 @@ int Lowering::Signal(const Expr& expr, Anchors anchors, Dimension& dimension) {
 
 double Lowering::Constant(const Expr& expr, const Dimension& dimension, std::string_view what) {
   anchors_ = {};
+  return ConstantOf(expr, dimension, what).value_or(0);
+}
+
+std::optional<double> Lowering::ConstantOf(const Expr& expr, const Dimension& dimension, std::string_view what) {
   const Typed typed = Number(expr);
-  if (typed.bad) return 0;
+  if (typed.bad) return std::nullopt;
   const Node& node = symbols_.program.nodes[typed.node];
   if (node.op != Op::kNumber) {
     Complain(expr.place, std::string(what) + " must be a number or a parameter");
@@ -110,7 +114,7 @@ double Lowering::Constant(const Expr& expr, const Dimension& dimension, std::str
   } else {
     return node.number;
   }
-  return 0;
+  return std::nullopt;
 }
 
 int Lowering::HandRole(const Expr& expr) { return RoleArgument(expr, "Hand", "style").value_or(kNone); }
@@ -482,6 +486,14 @@ bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Builtin& bu
       if (wanted == Argument::kNumber) result.dimension = number.dimension;
       node.args[next_node++] = number.node;
       return true;
+    }
+    case Argument::kWindow: {
+      const std::optional<double> window_s = ConstantOf(arg, kSeconds, "the window of " + Quoted(builtin.name));
+      if (!window_s) return false;
+      node.number = *window_s;
+      if (node.number > 0) return true;
+      Complain(arg.place, "the window of " + Quoted(builtin.name) + " must be longer than 0 s", "for example: 100 ms");
+      return false;
     }
     default: {
       const std::optional<int> role = RoleArgument(arg, ClassOf(wanted), builtin.name);

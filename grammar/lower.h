@@ -77,6 +77,7 @@ class Lowering {
   bool LowerArgument(const ast::Expr& arg, Argument wanted, const Builtin& builtin, Node& node, int& next_node,
                      int& next_role, Typed& result);
 
+  std::optional<double> ConstantOf(const ast::Expr& expr, const Dimension& dimension, std::string_view what);
   Typed Bad(Place place, std::string message, std::string hint = {});
   Typed Number(const ast::Expr& expr);
   Typed Position(const ast::Expr& expr);

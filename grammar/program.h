@@ -28,7 +28,9 @@ enum class Op : std::uint8_t {
   // Numbers, SI units.
   kNumber, kAdd, kSubtract, kMultiply, kDivide, kNegate, kAbs,
   kTrigger, kSensorSets, kUp, kForceBetween,
-  kGap, kClosingSpeed, kDistance, kHeight, kSpeed, kVerticalSpeed, kRelativeVerticalSpeed, kSpeedAlong, kTilt,
+  kGap, kClosingSpeed, kDistance, kHeight, kSpeed, kVerticalSpeed, kRelativeVerticalSpeed, kSpeedAlong,
+  kDriftAlong,  ///< over `number` seconds around the frame
+  kTilt,
   // Positions in metres.
   kPosition, kPositionOn, kAhead,
   // Numbers or positions.
@@ -41,7 +43,7 @@ struct Node {
   std::array<int, 4> args = {kNone, kNone, kNone, kNone};  ///< nodes
   std::array<int, 2> roles = {kNone, kNone};               ///< roles of the rule
   int slot = kNone;       ///< reference, anchor or class name
-  double number = 0;      ///< kNumber
+  double number = 0;      ///< kNumber, kDriftAlong
 };
 
 /// One number per role.
@@ -121,6 +123,7 @@ struct Rule {
   std::vector<PartOf> part_of;  ///< compositions that collect its intervals
   bool referenced = false;   ///< another rule asks for its truth
   bool uses_looks = false;   ///< asks for poses, hands or touches of the frames it looks at
+  double looks_around_s = 0; ///< its signals ask for poses so long before and after the frames it looks at
 };
 
 struct ProgramParam {

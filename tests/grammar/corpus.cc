@@ -108,6 +108,8 @@ class Stage {
       look.p_WB_m[axis] = Interpolate(row.cells, tick) / 100;
       // As a simulator does, the velocity is that of the step that led here.
       look.v_WB_m_per_s[axis] = tick == 0 ? 0 : (Interpolate(row.cells, tick) - Interpolate(row.cells, tick - 1)) / 100 * kTicksPerSecond;
+    } else if (what == "shakes") {
+      if (cell == '#') Shake(looks_[Id(who)], static_cast<double>(tick) / kTicksPerSecond);
     } else if (what == "grip") {
       for (HandLook& hand : hands_) {
         if (hand.entity == Id(who)) hand.trigger = cell == '#' ? 1 : Digit(cell) / 10.0;
@@ -115,6 +117,13 @@ class Stage {
     } else if (cell != '.') {
       AddTouch(Id(who), Id(whom), what, cell);
     }
+  }
+
+  static void Shake(EntityLook& look, double seconds) {
+    constexpr double kAmplitude_m = 0.0002;
+    constexpr double kRadPerSecond = 300;
+    look.p_WB_m.x() += kAmplitude_m * std::sin(kRadPerSecond * seconds);
+    look.v_WB_m_per_s.x() += kAmplitude_m * kRadPerSecond * std::cos(kRadPerSecond * seconds);
   }
 
   void AddTouch(int a, int b, const std::string& how, char cell) {

@@ -3,6 +3,8 @@
 #include "grammar/monitor.h"
 
 #include <cstdlib>
+#include <functional>
+#include <limits>
 #include <new>
 
 #include "tests/grammar/corpus.h"
@@ -13,22 +15,23 @@ std::size_t allocations = 0;  // by this test binary, from its start
 }
 
 // Sanitizers bring an allocator of their own, so there nothing is counted.
+// Inlined, these make the compiler warn of memory from `new` that is given to free().
 #if !defined(__SANITIZE_ADDRESS__)
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
   throw std::bad_alloc();
 }
-void* operator new(std::size_t size, std::align_val_t alignment) {
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
   ++allocations;
   const auto align = static_cast<std::size_t>(alignment);
   if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 #endif
 
 namespace prehend::grammar {
@@ -119,11 +122,79 @@ TEST(Monitor, RefusesFramesThatCannotBe) {
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = 10; }), "the frames are not in order of time");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.entities = f.entities.first(2); }),
             "a frame shows another number of entities than the cast");
+  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.entities = {}; }),
+            "a frame shows another number of entities than the cast");
+  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::max(); }), "a frame's tick is too large");
+  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::min(); }), "a frame's tick is too large");
+  static const std::vector<HandLook> kTwice(2, HandLook{.entity = Scene::kHand});
+  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.hands = kTwice; }),
+            "a frame shows a hand twice, or its hands are not in the order of the cast");
   EXPECT_EQ(error_after([](Scene& s, Frame& f) {
               s.touches = {{.a = 1, .b = 7}};
               f.touches = s.touches;
             }),
             "a frame shows a touch of somebody not in the cast");
+}
+
+// Whatever a frame says of the hand, the monitor goes on: nothing of it is needed to be there.
+TEST(Monitor, SurvivesStrangeFrames) {
+  const auto program = testing::CompileText(R"(
+grammar strange
+event styled(hand: Hand, object: Movable) until touching(hand, object) begins since distance(hand, object) < 100 m
+  approaching gap(hand, object) receding at most 1 cm, slower than 1 cm/s at most 1 s at most 1 s back
+  with style = style(hand)
+event held(hand: Hand, object: Movable) while sensor_sets(hand, object) >= 1 bridging 20 ms with style = style(hand)
+event carried(hand: Hand, object: Movable) from held(hand, object) begins
+  to in_sphere(object, ahead(hand, 1 m), tilt(object) / 1 rad * 1 m) begins during drift_along(object, hand, 1 s) < 1 m/s
+  requires displacement(object, hand) >= 0 m
+)");
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::pair<const char*, std::function<void(Scene&, Frame&)>> spoilers[] = {
+      {"hand not shown", [](Scene&, Frame& f) { f.hands = {}; }},
+      {"no feelers", [](Scene& s, Frame&) { s.hand.feelers = {}; }},
+      {"style unknown", [](Scene& s, Frame&) { s.hand.style = 99; }},
+      {"not a number", [](Scene& s, Frame&) {
+         s.looks[Scene::kCup].p_WB_m.setConstant(kNan);
+         s.looks[Scene::kHand].v_WB_m_per_s.setConstant(kNan);
+         s.hand.ahead_W.setConstant(kNan);
+         s.feeler.p_W_m.setConstant(kNan);
+       }},
+      {"infinite", [](Scene& s, Frame&) { s.looks[Scene::kCup].p_WB_m.setConstant(1 / 0.0); }},
+      {"touch twice", [](Scene& s, Frame& f) {
+         s.touches.insert(s.touches.end(), s.touches.begin(), s.touches.end());
+         f.touches = s.touches;
+       }},
+      {"a cup as a hand", [](Scene& s, Frame&) { s.hand.entity = Scene::kCup; }}};
+  for (const auto& [what, spoil] : spoilers) {
+    for (const bool always : {true, false}) {
+      SCOPED_TRACE(what);
+      Scene scene;
+      Monitor monitor(program, scene.cast);
+      std::vector<Event> events;
+      for (int i = 0; i < 100; ++i) {
+        const Scene sound = scene;
+        scene.touches.clear();
+        if (i / 10 % 2 == 1) scene.touches = {{.a = 0, .b = 1, .sensor_sets = 1}};
+        Frame frame = scene.At(10 * i);
+        if (always || i % 7 == 0) spoil(scene, frame);
+        monitor.Advance(frame, events);
+        scene = sound;
+      }
+      monitor.Finish(1000, events);
+      EXPECT_EQ(monitor.error(), "");
+      EXPECT_FALSE(events.empty());
+      NameEvents(*program, scene.cast, events);
+    }
+  }
+}
+
+TEST(Monitor, SurvivesEmptyFramesOfAnEmptyCast) {
+  Monitor monitor(testing::CompileLibrary("pick_and_place"), {});
+  std::vector<Event> events;
+  for (Tick t = 0; t < 100; ++t) monitor.Advance({.tick = t}, events);
+  monitor.Finish(100, events);
+  EXPECT_EQ(monitor.error(), "");
+  EXPECT_TRUE(events.empty());
 }
 
 TEST(Monitor, RefusesTooManyBindings) {

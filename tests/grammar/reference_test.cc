@@ -7,7 +7,7 @@
 
 #include "grammar/monitor.h"
 #include "grammar/program.h"
-#include "tests/grammar/reference/reference.h"
+#include "tests/grammar/reference.h"
 
 namespace prehend::grammar {
 namespace {

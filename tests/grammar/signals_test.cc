@@ -91,6 +91,61 @@ TEST(Signals, HaveTheirDocumentedValues) {
   }
 }
 
+// Where `drift_along` of the cup on the tray is above 1 cm/s, when the cup is at x_m(t) and a frame comes every step ms.
+template <typename Where>
+std::vector<Interval> Drifting(Where&& x_m, Tick step, Tick end, double tray_m_per_s = 0) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 1 cm/s");
+  Scene scene;
+  Monitor monitor(program, scene.cast);
+  std::vector<Event> events;
+  std::vector<Interval> drifting;
+  for (Tick t = 0; t < end; t += step) {
+    const double tray_m = tray_m_per_s * static_cast<double>(t) / 1000;
+    scene.looks[Scene::kTray].p_WB_m.x() = tray_m;
+    scene.looks[Scene::kCup].p_WB_m.x() = tray_m + x_m(t);
+    monitor.Advance(scene.At(t), events);
+  }
+  monitor.Finish(end, events);
+  for (const Event& event : events) drifting.push_back(event.interval);
+  return drifting;
+}
+
+TEST(Signals, DriftIsTheWayOverAWindow) {
+  using Intervals = std::vector<Interval>;
+  // A jump by 2 mm is 2 cm/s over every window that contains it, whoever carries the tray.
+  const auto jump = [](Tick t) { return t < 500 ? 0.0 : 0.002; };
+  EXPECT_EQ(Drifting(jump, 10, 1000), (Intervals{{450, 550}}));
+  EXPECT_EQ(Drifting(jump, 10, 1000, 0.3), (Intervals{{450, 550}}));
+  // The window reaches to the next frames that are far enough away: 60 ms here.
+  EXPECT_EQ(Drifting([](Tick t) { return t < 510 ? 0.0 : 0.002; }, 30, 990), (Intervals{{450, 570}}));
+  // Trembling gets nowhere: 0.4 mm to and fro is 4 cm/s.
+  EXPECT_EQ(Drifting([](Tick t) { return 0.0004 * static_cast<double>(t / 10 % 2); }, 10, 1000, 0.3), (Intervals{}));
+  // At the episode's begin and end the window is cut off and the time with it.
+  EXPECT_EQ(Drifting([](Tick t) { return t < 10 ? 0.0 : 0.0009; }, 10, 1000), (Intervals{{0, 40}}));
+  EXPECT_EQ(Drifting([](Tick t) { return t < 990 ? 0.0 : 0.0009; }, 10, 1000), (Intervals{{960, 1000}}));
+  EXPECT_EQ(Drifting(jump, 10, 10), (Intervals{}));
+}
+
+TEST(Signals, DriftIsKnownWhenItsWindowIsComplete) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 1 cm/s\n"
+      "event jumped(cup: Cup, tray: Movable) from drift_along(cup, tray, 100 ms) > 1 cm/s begins\n"
+      "  to drift_along(cup, tray, 100 ms) < drift_along(cup, tray, 100 ms)@begin / 2 begins");
+  Scene scene;
+  Monitor monitor(program, scene.cast);
+  std::vector<Event> events;
+  for (Tick t = 0; t < 1000; t += 10) {
+    scene.looks[Scene::kCup].p_WB_m.x() = t < 500 ? 0 : 0.002;
+    monitor.Advance(scene.At(t), events);
+  }
+  ASSERT_EQ(events.size(), 2u);
+  for (const Event& event : events) {
+    EXPECT_EQ(event.interval, (Interval{450, 550}));
+    EXPECT_EQ(event.decided, 600);
+  }
+}
+
 TEST(Signals, TestsHoldAsDocumented) {
   const std::pair<const char*, bool> cases[] = {
       {"touching(hand, cup)", true},

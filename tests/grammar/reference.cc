@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/grammar/reference/reference.h"
+#include "tests/grammar/reference.h"
 
 #include <algorithm>
 
