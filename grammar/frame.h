@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vocabulary of what can be observed: who takes part (Cast, fixed for a run) and what one look at the
-// world says (Frame). A grammar sees nothing else; simulated, recorded and hand-written episodes all enter here.
+// The vocabulary of what can be observed: who takes part (Cast, fixed for a run) and what one look
+// at the world says (Frame). A grammar sees nothing else; simulated, recorded and hand-written
+// episodes all enter here.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -27,7 +28,8 @@ inline constexpr int kNobody = -1;
 struct CastMember {
   std::string name;
   /// Most specific first, e.g. {"MilkCarton", "Movable", "Thing", "Entity"} or {"Hand", "Entity"}.
-  /// The built-in roots are Entity; Hand and Thing (everything that is not a hand); Movable and Fixed (Things).
+  /// The built-in roots are Entity; Hand and Thing (everything that is not a hand); Movable and
+  /// Fixed (Things).
   std::vector<std::string> classes;
   int part_of = kNobody;
   /// Centre and half sizes of the oriented bounding box, in the entity's own frame, metres.
@@ -63,23 +65,26 @@ struct HandLook {
   int entity = kNobody;
   double trigger = 0;  ///< commanded grip, 0 open .. 1 closed
   int style = 0;       ///< index into Cast::styles
-  Eigen::Vector3d ahead_W = Eigen::Vector3d::UnitX();  ///< unit vector from the palm to where the hand reaches
-  std::span<const Feeler> feelers;                     ///< at least one
+  Eigen::Vector3d ahead_W =
+      Eigen::Vector3d::UnitX();     ///< unit vector from the palm to where the hand reaches
+  std::span<const Feeler> feelers;  ///< at least one
 };
 
 /// Two entities whose surfaces touch now. At most one per pair, however many points or links touch.
 struct Touch {
   int a = kNobody;  ///< a < b
   int b = kNobody;
-  /// Largest up (world z) component, over the touching points that carry load, of the contact normal on a
-  /// (pointing out of b into a), and the same for b. 1: held from below. 0: side by side. -1: it lies below.
+  /// Largest up (world z) component, over the touching points that carry load, of the contact
+  /// normal on a (pointing out of b into a), and the same for b. 1: held from below. 0: side by
+  /// side. -1: it lies below.
   double up_on_a = -1;
   double up_on_b = -1;
   double normal_force_n = 0;
   std::uint32_t sensor_sets = 0;  ///< when one of the two is a hand: which of its sensor sets touch
 };
 
-/// One look at the world. Ticks increase from frame to frame by any amount. Spans live until the next frame.
+/// One look at the world. Ticks increase from frame to frame by any amount. Spans live until the
+/// next frame.
 struct Frame {
   Tick tick = 0;
   std::span<const EntityLook> entities;  ///< one per Cast::entities, same order

@@ -19,14 +19,16 @@ namespace prehend::grammar {
 
 struct Program;  // grammar/program.h
 
-/// Text of the file that `use NAME` asks for, with the file name to report in diagnostics; nullopt: no such file.
+/// Text of the file that `use NAME` asks for, with the file name to report in diagnostics; nullopt:
+/// no such file.
 struct GrammarText {
   std::string file;
   std::string text;
 };
 using Includer = std::function<std::optional<GrammarText>(std::string_view name)>;
 
-/// Parameter overrides, `name` -> `value with unit` as it would stand in the grammar ("25 cm", "0.3").
+/// Parameter overrides, `name` -> `value with unit` as it would stand in the grammar ("25 cm",
+/// "0.3").
 using Overrides = std::map<std::string, std::string>;
 
 struct CompileResult {
@@ -34,7 +36,8 @@ struct CompileResult {
   Diagnostics diagnostics;
 };
 
-CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides = {});
+CompileResult Compile(const GrammarText& grammar, const Includer& includer,
+                      const Overrides& overrides = {});
 
 inline constexpr int kMaxRoles = 4;
 
@@ -60,7 +63,8 @@ class Monitor {
   /// Empty, or why this program can't watch this cast.
   const std::string& error() const;
 
-  /// Looks at one frame and appends the events that became certain, ordered by (decided, begin, rule, roles).
+  /// Looks at one frame and appends the events that became certain, ordered by (decided, begin,
+  /// rule, roles).
   void Advance(const Frame& frame, std::vector<Event>& out);
 
   /// The episode ends at `end`, the first tick that no longer belongs to it: closes what is open.

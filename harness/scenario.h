@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scenario format, version 1, as one struct. Its YAML face is the field table in harness/scenario_fields.cc,
-// which drives both the reader (harness/read_scenario.h) and the JSON Schema. What it means to physics and grammar
-// is what BuildScene() etc. make of it.
+// The scenario format, version 1, as one struct. Its YAML face is the field table in
+// harness/scenario_fields.cc, which drives both the reader (harness/read_scenario.h) and the JSON
+// Schema. What it means to physics and grammar is what BuildScene() etc. make of it.
 #pragma once
 
 #include <map>
@@ -22,15 +22,15 @@ struct WorldEntry {
 };
 
 struct PictureEntry {
-  std::string at;       ///< "reaching.begin", "putting_down.end", or a time: "1.25"
+  std::string at;  ///< "reaching.begin", "putting_down.end", or a time: "1.25"
   std::string camera = "three_quarter";
 };
 
 /// A whole scenario, read, checked and resolved: entities and actors are already bodies and hands.
 struct Scenario {
   std::string name;
-  std::string file;  ///< where it was read from
-  std::string skill; ///< the folder below scenarios/, or ""
+  std::string file;   ///< where it was read from
+  std::string skill;  ///< the folder below scenarios/, or ""
   std::string shows;
   std::string grammar = "pick_and_place";
   std::vector<std::string> tags;
