@@ -15,7 +15,8 @@ std::string DumpUntil(const Definition& d) {
   if (d.approach) {
     text += " approaching " + Dump(d.approach->signal) + " receding at most " + Dump(d.approach->slack);
     if (d.approach->speed) {
-      text += ", slower than " + Dump(*d.approach->speed) + " at most " + Dump(*d.approach->idle);
+      const std::string motion = d.approach->motion ? "with " + Dump(*d.approach->motion) + " " : "";
+      text += ", " + motion + "slower than " + Dump(*d.approach->speed) + " at most " + Dump(*d.approach->idle);
     }
   }
   return text + " at most " + Dump(d.at_most_back) + " back";

@@ -37,10 +37,11 @@ struct Role {
   Place place;
 };
 
-/// `approaching signal receding at most slack [slower than speed at most idle]`
+/// `approaching signal receding at most slack [, [with motion] slower than speed at most idle]`
 struct Approach {
   Expr signal;
   Expr slack;
+  std::optional<Expr> motion;
   std::optional<Expr> speed;
   std::optional<Expr> idle;
 };

@@ -22,6 +22,8 @@ std::span<const Builtin> Builtins() {
       {"gap", Op::kGap, T::kNumber, kMetres, {A::kHand, A::kThing}, "smallest distance from the hand to the object's box"},
       {"closing_speed", Op::kClosingSpeed, T::kNumber, kMetresPerSecond, {A::kHand, A::kThing},
        "how fast the gap shrinks, from one frame to the next"},
+      {"surface_speed", Op::kSurfaceSpeed, T::kNumber, kMetresPerSecond, {A::kHand, A::kThing},
+       "of the fastest piece of the hand's surface, against the object's origin, from one frame to the next"},
       {"distance", Op::kDistance, T::kNumber, kMetres, {A::kPosition, A::kPosition}, "between two positions"},
       {"height", Op::kHeight, T::kNumber, kMetres, {A::kPosition}, "above the world's origin"},
       {"speed", Op::kSpeed, T::kNumber, kMetresPerSecond, {A::kEntity}, "of the entity's origin"},

@@ -265,15 +265,19 @@ class Compiler {
     const int signal = lowering.Signal(approach.signal, {.end = true}, dimension);
     if (signal == kNone) return;
     const double slack = lowering.Constant(approach.slack, dimension, "'receding at most'");
+    int motion = kNone;
+    Dimension motion_dimension = Quotient(dimension, kSeconds);
     double speed = 0;
     double idle_s = -1;
+    if (approach.motion) motion = lowering.Signal(*approach.motion, {.end = true}, motion_dimension);
     if (approach.speed) {
-      speed = lowering.Constant(*approach.speed, Quotient(dimension, kSeconds), "'slower than'");
+      speed = lowering.Constant(*approach.speed, motion_dimension, "'slower than'");
       idle_s = lowering.Constant(*approach.idle, kSeconds, "'slower than .. at most'");
     }
     Rule& rule = At(index);
     rule.approach = signal;
     rule.slack = slack;
+    rule.motion = motion;
     rule.speed = speed;
     rule.idle_s = idle_s;
   }

@@ -60,6 +60,7 @@ class Engine {
 
   // Walking back from `end`: the frame where the interval begins; `end` if there is none; kNever if not known yet.
   FrameNumber ApproachBegin(Lane& lane, FrameNumber end) const;
+  std::optional<double> ApproachSpeed(Lane& lane, FrameNumber frame, FrameNumber end, double way) const;
 
   // From a run to an event.
   [[nodiscard]] bool Open(Lane& lane, FrameNumber frame);

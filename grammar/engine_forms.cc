@@ -118,19 +118,24 @@ bool Engine::StepUntil(Lane& lane, FrameNumber frame) {
   return true;
 }
 
+// How fast it moves from this frame to the next, on which the signal falls by `way`.
+std::optional<double> Engine::ApproachSpeed(Lane& lane, FrameNumber frame, FrameNumber end, double way) const {
+  const Rule& rule = RuleOf(lane);
+  if (rule.motion != kNone) return evaluator_.Number(rule.motion, {lane, frame + 1, end});
+  return way / history_.Seconds(history_.At(frame + 1).tick - history_.At(frame).tick);
+}
+
 FrameNumber Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
   const Rule& rule = RuleOf(lane);
   const Tick end_tick = history_.At(end).tick;
   const FrameNumber earliest = std::max({history_.FirstNotBefore(end_tick - TicksOf(lane).back), lane.last_end, history_.first()});
-  FrameNumber begin = end;
-  double farthest = 0;
-  double after = 0;  // the signal one frame later
+  FrameNumber begin = end;  // the earliest frame of movement; if pauses do not count, the earliest frame
+  FrameNumber turn = end;   // the movement that began from the farthest point
+  std::optional<double> after = 0;  // the signal one frame later
+  if (rule.approach != kNone) after = evaluator_.Number(rule.approach, {lane, end, end});
+  if (!after) return kNever;
+  double farthest = *after;
   Tick last_progress = end_tick;
-  if (rule.approach != kNone) {
-    const std::optional<double> goal = evaluator_.Number(rule.approach, {lane, end, end});
-    if (!goal) return kNever;
-    farthest = after = *goal;
-  }
   for (FrameNumber frame = end - 1; frame >= earliest; --frame) {
     const Evaluator::View view{lane, frame, end};
     const Kleene holds = evaluator_.Truth(rule.second, view);
@@ -141,21 +146,24 @@ FrameNumber Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
       continue;
     }
     // Read backwards, an approach moves away from its goal.
-    const std::optional<double> signal = evaluator_.Number(rule.approach, view);
-    if (!signal) return kNever;
-    const double here = *signal;
-    if (here < farthest - rule.slack) break;
+    const std::optional<double> here = evaluator_.Number(rule.approach, view);
+    if (!here) return kNever;
+    if (*here < farthest - rule.slack) return turn;
+    const std::optional<double> speed = ApproachSpeed(lane, frame, end, *here - *after);
+    if (!speed) return kNever;
     const Tick tick = history_.At(frame).tick;
-    const double speed = (here - after) / history_.Seconds(history_.At(frame + 1).tick - tick);
-    if (speed >= rule.speed) {
+    if (*speed >= rule.speed) {
       last_progress = tick;
     } else if (rule.idle_s >= 0 && last_progress - tick > TicksOf(lane).idle) {
       break;
     }
     // The slow start of a movement belongs to it, as long as it is a tenth of the speed that counts.
-    const bool starts_slowly = begin == frame + 1 && speed > rule.speed / 10;
-    if (here > farthest && (speed >= rule.speed || starts_slowly)) begin = frame;
-    farthest = std::max(farthest, here);
+    const auto moves = [&](FrameNumber since) {
+      return *speed >= rule.speed || (since == frame + 1 && *speed > rule.speed / 10);
+    };
+    if (*here > farthest && moves(turn)) turn = frame;
+    if (rule.idle_s < 0 || moves(begin)) begin = frame;
+    farthest = std::max(farthest, *here);
     after = here;
   }
   return begin;

@@ -192,6 +192,7 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
     }
     case Op::kGap: return Gap(a, b, frame);
     case Op::kClosingSpeed: return ClosingSpeed(a, b, frame);
+    case Op::kSurfaceSpeed: return SurfaceSpeed(a, b, frame);
     case Op::kSpeed: return history_.Look(a, frame).v_WB_m_per_s.norm();
     case Op::kVerticalSpeed: return history_.Look(a, frame).v_WB_m_per_s.z();
     case Op::kRelativeVerticalSpeed: return RelativeVelocity(a, b, frame).z();
@@ -219,6 +220,19 @@ double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
   if (frame <= history_.first()) return 0;
   const double seconds = history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
   return (Gap(hand, object, frame - 1) - Gap(hand, object, frame)) / seconds;
+}
+
+double Evaluator::SurfaceSpeed(int hand, int object, FrameNumber frame) const {
+  if (frame <= history_.first()) return 0;
+  const HandSample* now = history_.Hand(hand, frame);
+  const HandSample* before = history_.Hand(hand, frame - 1);
+  if (now == nullptr || before == nullptr) return 0;
+  const Vector3d object_moved = history_.Look(object, frame).p_WB_m - history_.Look(object, frame - 1).p_WB_m;
+  double farthest = 0;
+  for (std::size_t i = 0; i < std::min(now->feelers.size(), before->feelers.size()); ++i) {
+    farthest = std::max(farthest, (now->feelers[i].p_W_m - before->feelers[i].p_W_m - object_moved).norm());
+  }
+  return farthest / history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
 }
 
 // The way of a as seen from b, turned to where b is now, from the last frame that is half the window earlier to the

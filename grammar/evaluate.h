@@ -46,6 +46,7 @@ class Evaluator {
   double SignalOf(const Node& node, const View& view) const;
   double Gap(int hand, int object, FrameNumber frame) const;
   double ClosingSpeed(int hand, int object, FrameNumber frame) const;
+  double SurfaceSpeed(int hand, int object, FrameNumber frame) const;
   std::optional<double> DriftAlong(const Node& node, const View& view) const;
   Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;
   Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;

@@ -81,7 +81,7 @@ int ChooseGuard(const Program& program, const Rule& rule) {
 bool IsLook(Op op) {
   switch (op) {
     case Op::kInSphere: case Op::kBoxInSphere: case Op::kInCylinder:
-    case Op::kTrigger: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kGap: case Op::kClosingSpeed:
+    case Op::kTrigger: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kGap: case Op::kClosingSpeed: case Op::kSurfaceSpeed:
     case Op::kDistance: case Op::kHeight: case Op::kSpeed: case Op::kVerticalSpeed: case Op::kRelativeVerticalSpeed:
     case Op::kSpeedAlong: case Op::kDriftAlong: case Op::kTilt: case Op::kPosition: case Op::kPositionOn: case Op::kAhead: return true;
     default: return false;
@@ -126,7 +126,7 @@ void ChooseGuards(Program& program) {
                       (rule.form != Form::kRestOf && UsesLooks(program, rule.first)) || UsesLooks(program, rule.second) ||
                       UsesLooks(program, rule.during) || UsesLooks(program, rule.requirement);
     std::vector<int> nodes = rule.anchors;
-    nodes.insert(nodes.end(), {rule.second, rule.during, rule.approach, rule.requirement});
+    nodes.insert(nodes.end(), {rule.second, rule.during, rule.approach, rule.motion, rule.requirement});
     if (rule.form != Form::kRestOf) nodes.push_back(rule.first);
     for (const int node : nodes) rule.looks_around_s = std::max(rule.looks_around_s, LooksAround(program, node));
   }

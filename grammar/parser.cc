@@ -201,6 +201,10 @@ class Parser {
       ExpectAtMost();
       approach.slack = ParseSum();
       Accept(",");
+      if (Accept("with")) {
+        approach.motion = ParseSum();
+        if (!At("slower")) Fail("expected 'slower', found " + Found(), "with surface_speed(hand, object) slower than 1 cm/s");
+      }
       if (Accept("slower")) {
         Expect("than");
         approach.speed = ParseSum();

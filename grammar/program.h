@@ -28,7 +28,7 @@ enum class Op : std::uint8_t {
   // Numbers, SI units.
   kNumber, kAdd, kSubtract, kMultiply, kDivide, kNegate, kAbs,
   kTrigger, kSensorSets, kUp, kForceBetween,
-  kGap, kClosingSpeed, kDistance, kHeight, kSpeed, kVerticalSpeed, kRelativeVerticalSpeed, kSpeedAlong,
+  kGap, kClosingSpeed, kSurfaceSpeed, kDistance, kHeight, kSpeed, kVerticalSpeed, kRelativeVerticalSpeed, kSpeedAlong,
   kDriftAlong,  ///< over `number` seconds around the frame
   kTilt,
   // Positions in metres.
@@ -102,7 +102,8 @@ struct Rule {
   bool or_drop = false;
   int approach = kNone;  ///< node: the signal that must not recede
   double slack = 0;      ///< in the signal's unit
-  double speed = 0;      ///< in the signal's unit per second
+  int motion = kNone;    ///< node: how fast it moves; kNone: as fast as the signal falls
+  double speed = 0;      ///< in the unit of the motion
   double idle_s = -1;    ///< negative: pausing is allowed
   double back_s = 0;
   std::vector<int> outside;  ///< references

@@ -77,28 +77,32 @@ std::vector<Solid> PartsOf(const physics::HandModel& model, const physics::HandS
   return parts;
 }
 
-/// Whether neither palm nor fingers moved, as seen from the body, since the frame before. A hand
-/// that only closes its fingers around the object is not idle.
-bool StandsStill(const Recording& recording, const OracleSettings& settings, int hand, int body,
-                 int frame) {
+/// How fast palm and fingers moved, as seen from the body, since the frame before: the fastest of
+/// them. A hand that only closes its fingers around the object is not idle.
+double Motion_m_per_s(const Recording& recording, int hand, int body, int frame) {
   const physics::HandState &now = recording.hand(hand, frame),
                            &before = recording.hand(hand, frame - 1);
   const Vector3d body_moved = recording.place(body, frame) - recording.place(body, frame - 1);
   double farthest = (now.palm.X_WB.p_m - before.palm.X_WB.p_m - body_moved).norm();
   for (std::size_t i = 0; i < now.X_WL.size(); ++i)
     farthest = std::max(farthest, (now.X_WL[i].p_m - before.X_WL[i].p_m - body_moved).norm());
-  return farthest < settings.idle_speed_m_per_s * recording.Seconds(frame - 1, frame);
+  return farthest / recording.Seconds(frame - 1, frame);
 }
 
-/// The frame at which the hand last stopped idling, or `earliest`.
+/// The frame at which the hand last stopped idling, or `earliest`: where it began to move, slowly
+/// at first.
 int LastIdleEnd(const Recording& recording, const OracleSettings& settings, int hand, int body,
                 int earliest, int touch) {
   int idle_end = earliest;
   int still_since = earliest;
   for (int frame = earliest + 1; frame < touch; ++frame) {
-    if (!StandsStill(recording, settings, hand, body, frame)) still_since = frame;
+    if (Motion_m_per_s(recording, hand, body, frame) >= settings.idle_speed_m_per_s)
+      still_since = frame;
     if (recording.Seconds(still_since, frame) > settings.reach_idle_s) idle_end = frame;
   }
+  while (idle_end > earliest &&
+         Motion_m_per_s(recording, hand, body, idle_end) > settings.onset_speed_m_per_s)
+    --idle_end;
   return idle_end;
 }
 
@@ -119,7 +123,11 @@ int ApproachBegin(std::span<const DistanceAt> path, double dead_band_m,
   while (back < last &&
          away_m(back + 1, back) <= settings.idle_speed_m_per_s * duration_s(back, back + 1))
     ++back;
-  return duration_s(turn, back) > settings.turn_pause_s ? back : turn;
+  if (duration_s(turn, back) <= settings.turn_pause_s) return turn;
+  while (back > turn &&
+         away_m(back, back - 1) > settings.onset_speed_m_per_s * duration_s(back - 1, back))
+    --back;
+  return back;
 }
 
 double SurfaceDistance(const physics::HandModel& model, const physics::HandState& hand,
@@ -155,7 +163,12 @@ int ReachBegin(const Recording& recording, const OracleSettings& settings, int h
     path.push_back(
         {recording.Seconds(begin, frame),
          SurfaceDistance(model, recording.hand(hand, frame), shape, recording.body(body, frame))});
-  return begin + ApproachBegin(path, settings.reach_dead_band_m, settings);
+  begin += ApproachBegin(path, settings.reach_dead_band_m, settings);
+  // Standing still is no reach yet.
+  while (begin < touch && Motion_m_per_s(recording, hand, body, begin + 1) <=
+                              settings.onset_speed_m_per_s)
+    ++begin;
+  return begin;
 }
 
 }  // namespace prehend::harness::oracle

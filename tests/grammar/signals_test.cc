@@ -65,6 +65,7 @@ TEST(Signals, HaveTheirDocumentedValues) {
       {"force(tray, cup)", 4, "N"},
       {"gap(hand, cup)", 0.48, "m"},
       {"closing_speed(hand, cup)", 1, "m/s"},
+      {"surface_speed(hand, cup)", 1, "m/s"},
       {"distance(hand, position(tray))", std::sqrt(1.04), "m"},
       {"height(cup)", 0.2, "m"},
       {"height(ahead(hand, 0.3 m))", 0.2, "m"},

@@ -67,17 +67,40 @@ TEST(OracleReach, BeginsAnewAtTheTurningPointOfARetreat) {
   }
 }
 
-TEST(OracleReach, BeginsAtTheReturnWhenARetreatEndsInAPauseEvenIfTheHandCreeps) {
-  for (const double creep_m_per_s : {-0.005, 0.005}) {
+TEST(OracleReach, BeginsWithTheFirstMotionBackWhenARetreatEndsInAPause) {
+  for (const double creep_m_per_s : {-0.005, 0.0005, 0.005}) {  // the last one is motion back
     Stage stage;
     MoveHandTo(stage, 0.2);
     MoveHandTo(stage, 0.1);
+    const Tick pause = stage.now();
     stage.Play(0.4, {creep_m_per_s, 0, 0});
-    const Tick back = stage.now();
+    const Tick back = creep_m_per_s > 0.001 ? pause : stage.now();
     MoveHandTo(stage, 0.45);
     const Tick touch = Grasp(stage);
+    SCOPED_TRACE(creep_m_per_s);
     ExpectNear(Of("reaching(hand, cup)", stage.Truth()), {{back, touch}});
   }
+}
+
+TEST(OracleReach, BeginsNotWhileTheHandStandsStill) {
+  Stage stage;
+  stage.hand().palm.X_WB.p_m.x() = 0.2;
+  stage.Play(0.3);
+  const Tick start = stage.now();
+  MoveHandTo(stage, 0.45);
+  const Tick touch = Grasp(stage);
+  ExpectNear(Of("reaching(hand, cup)", stage.Truth()), {{start, touch}});
+}
+
+TEST(OracleReach, BeginsWithASlowStart) {
+  Stage stage;
+  MoveHandTo(stage, 0.2);
+  stage.Play(1.0);
+  const Tick start = stage.now();
+  for (int i = 1; i <= 20; ++i) stage.Play(0.02, {0.002 * i, 0, 0});
+  MoveHandTo(stage, 0.45);
+  const Tick touch = Grasp(stage);
+  ExpectNear(Of("reaching(hand, cup)", stage.Truth()), {{start, touch}});
 }
 
 TEST(OracleReach, BeginsAnewAfterLeavingTheRegion) {
@@ -148,13 +171,15 @@ TEST(OracleReach, ForASecondObjectBeginsNotBeforeTheFirstIsGrasped) {
   Stage stage;
   const int milk = stage.AddBody("milk", {0.06, 0.06, 0.2}, {0.6, 0, 0.1}, false);
   MoveHandTo(stage, 0.40);
-  const Tick first = Grasp(stage);
+  const Tick first = stage.now();
+  stage.trigger = 1;
+  stage.sets = 2;
   MoveHandTo(stage, 0.50);
   const Tick second = stage.now();
   stage.contacts = {{Stage::BodySide(milk), Stage::HandSide(0, 0)},
                     {Stage::BodySide(milk), Stage::HandSide(0, 2)}};
   stage.Play(0.2);
-  EXPECT_EQ(Of("reaching(hand, milk)", stage.Truth()), (Intervals{{first, second}}));
+  ExpectNear(Of("reaching(hand, milk)", stage.Truth()), {{first, second}});
 }
 
 TEST(OracleReach, BeginsAnewAfterATouchThatLedToNothing) {
