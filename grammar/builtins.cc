@@ -45,6 +45,15 @@ std::span<const Builtin> Builtins() {
   return kBuiltins;
 }
 
+std::optional<Range> RangeOf(Op op) {
+  switch (op) {
+    case Op::kTrigger: return Range{0, 1};
+    case Op::kSensorSets: return Range{0, 32};
+    case Op::kUp: return Range{-1, 1};
+    default: return std::nullopt;
+  }
+}
+
 const Builtin* FindBuiltin(std::string_view name) {
   for (const Builtin& builtin : Builtins()) {
     if (builtin.name == name) return &builtin;

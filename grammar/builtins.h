@@ -4,6 +4,7 @@
 // Tested by tests/grammar/signals_test.cc
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,6 +28,13 @@ struct Builtin {
   std::vector<Argument> arguments;
   std::string_view meaning;  ///< one line for listings
 };
+
+/// What a signal can be at all; nothing for most.
+struct Range {
+  double low = 0;
+  double high = 0;
+};
+std::optional<Range> RangeOf(Op op);
 
 std::span<const Builtin> Builtins();
 

@@ -2,6 +2,7 @@
 #include "grammar/describe.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "grammar/lanes.h"
 
@@ -67,11 +68,30 @@ std::string Head(const Rule& rule) {
   return text + ")";
 }
 
+// "at most 0.1 s after it and contact have ended"
 std::string Text(const Wait& wait) {
-  std::string text = wait.seconds > 0 ? "at most " + QuantityText({wait.seconds, kSeconds}) + " after its end" : "at its end";
-  std::string names;
-  for (const std::string& name : wait.until_end_of) names += (names.empty() ? "" : ", ") + name;
-  if (!names.empty()) text += ", and not before these end: " + names;
+  const double seconds = std::round(wait.seconds * 1e6) / 1e6;  // a sum's last digits are of no use
+  const std::string when = seconds > 0 ? "at most " + QuantityText({seconds, kSeconds}) + " after " : "when ";
+  std::string who = "it";
+  for (const std::string& name : wait.until_end_of) {
+    who += (name == *wait.until_end_of.rbegin() ? " and " : ", ") + name;
+  }
+  return when + who + (wait.until_end_of.empty() ? " has ended" : " have ended");
+}
+
+std::string ParamsText(const std::vector<ProgramParam>& params) {
+  std::size_t name_width = 0;
+  std::size_t value_width = 0;
+  for (const ProgramParam& param : params) {
+    name_width = std::max(name_width, param.name.size());
+    value_width = std::max(value_width, QuantityText(param.value).size());
+  }
+  const auto padded = [](std::string text, std::size_t width) { return text.append(width - text.size(), ' '); };
+  std::string text;
+  for (const ProgramParam& param : params) {
+    text += "param " + padded(param.name, name_width) + " = " + padded(QuantityText(param.value), value_width) + "  # " +
+            param.file + ":" + std::to_string(param.place.line) + (param.overridden ? ", overridden" : "") + "\n";
+  }
   return text;
 }
 
@@ -99,13 +119,10 @@ GrammarDescription Describe(const Program& program) {
 std::string Text(const GrammarDescription& description) {
   std::string text = "grammar " + description.name + "\n\n";
   for (const RuleDescription& rule : description.rules) {
-    text += rule.head + "\n    decided " + Text(rule.latency) + "; watched: " + rule.watched + "\n";
+    text += rule.head + "\n    decided: " + Text(rule.latency) + "; watched: " + rule.watched + "\n";
   }
   text += "\n";
-  for (const ProgramParam& param : description.params) {
-    text += "param " + param.name + " = " + QuantityText(param.value) + (param.overridden ? "  (overridden)" : "") +
-            "  # " + param.file + ":" + std::to_string(param.place.line) + "\n";
-  }
+  text += ParamsText(description.params);
   text += "\nmemory: poses of the last " + QuantityText({description.history_s, kSeconds}) + ", " +
           std::to_string(description.bytes_per_pose) + " bytes per frame and moving entity, " +
           std::to_string(description.bytes_per_feeler) + " per frame and feeler of a hand; about " +

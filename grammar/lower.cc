@@ -28,6 +28,18 @@ std::string_view ClassOf(Argument argument) {
   }
 }
 
+// `signal op value` for no signal within the range.
+bool NeverHolds(Op op, const Range& range, double value) {
+  switch (op) {
+    case Op::kLess: return range.low >= value;
+    case Op::kLessEqual: return range.low > value;
+    case Op::kGreater: return range.high <= value;
+    case Op::kGreaterEqual: return range.high < value;
+    case Op::kEqual: return value < range.low || value > range.high;
+    default: return false;
+  }
+}
+
 std::string_view TypeText(Type type) {
   switch (type) {
     case Type::kTruth: return "true or false";
@@ -267,8 +279,15 @@ Lowering::Typed Lowering::LowerBinary(const Expr& expr) {
                                " with " + DimensionText(right.dimension),
                right.dimension == kPlain ? "the right side needs a unit" : "both sides must have the same unit");
   }
-  if (result.node != kNone && op >= Op::kLess && op <= Op::kNotEqual) result = {.node = result.node, .type = Type::kTruth};
-  return result;
+  if (op < Op::kLess || op > Op::kNotEqual) return result;
+  const Node& value = symbols_.program.nodes[right.node];
+  const std::optional<Range> range = RangeOf(symbols_.program.nodes[left.node].op);
+  if (range && value.op == Op::kNumber && NeverHolds(op, *range, value.number)) {
+    return Bad(expr.place, "this is never true: " + Quoted(expr.args[0].text) + " goes from " +
+                               QuantityText({range->low, left.dimension}) + " to " +
+                               QuantityText({range->high, left.dimension}));
+  }
+  return {.node = result.node, .type = Type::kTruth};
 }
 
 // Long chains become balanced trees, so that walking them never goes deep.

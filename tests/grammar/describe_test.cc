@@ -45,8 +45,8 @@ TEST(Describe, PromisesAreKeptOnTheCorpus) {
 
 TEST(Describe, TextListsParametersWithTheirPlaces) {
   const std::string text = Text(Describe(*testing::CompileLibrary("grasp", {{"grip_on", "0.5"}})));
-  EXPECT_NE(text.find("param grip_on = 0.5  (overridden)  # grammar/library/grasp.grammar:"), std::string::npos) << text;
-  EXPECT_NE(text.find("event grasping(hand: Hand, object: Thing)\n    decided at most 0.06 s after its end"),
+  EXPECT_NE(text.find("param grip_on      = 0.5     # grammar/library/grasp.grammar:4, overridden\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("event grasping(hand: Hand, object: Thing)\n    decided: at most 0.06 s after it has ended; watched"),
             std::string::npos) << text;
 }
 
