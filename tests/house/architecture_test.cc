@@ -35,7 +35,7 @@ const std::map<std::string, std::vector<std::string>> kArrows = {
 
 /// Where a third-party header may be included: a pattern of the header, a pattern of the files.
 struct LibraryRule {
-  std::string library;
+  std::string name;
   std::regex header;
   std::regex files;
 };
@@ -87,7 +87,7 @@ std::vector<std::string> Violations(const std::string& path, const std::string& 
     }
     for (const LibraryRule& rule : LibraryRules()) {
       if (std::regex_match(header, rule.header) && !std::regex_match(path, rule.files))
-        found.push_back(where + rule.library + " does not belong here (" + header + ")");
+        found.push_back(where + rule.name + " does not belong here (" + header + ")");
     }
     if (room == "grammar" && kForbiddenInGrammar.contains(header))
       found.push_back(where + "the grammar room has no files, clocks or logging (<" + header +
