@@ -2,20 +2,11 @@
 #include "grammar/engine.h"
 
 #include <algorithm>
-#include <cmath>
-#include <tuple>
 
 namespace prehend::grammar {
 namespace {
 
-// Far enough from the limits of a Tick that times can be added and subtracted.
-constexpr Tick kLatestTick = 1'000'000'000'000'000;
-
-void SortEvents(std::vector<Event>::iterator begin, std::vector<Event>::iterator end) {
-  std::sort(begin, end, [](const Event& a, const Event& b) {
-    return std::tie(a.decided, a.interval.begin, a.rule, a.roles) < std::tie(b.decided, b.interval.begin, b.rule, b.roles);
-  });
-}
+bool Later(const auto& a, const auto& b) { return a.tick > b.tick; }
 
 }  // namespace
 
@@ -31,135 +22,111 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
                            .lasting = history_.AtLeastTicks(rule.lasting_s),
                            .idle = history_.AtMostTicks(rule.idle_s),
                            .back = history_.AtMostTicks(rule.back_s)});
-    longest_look_back_ = std::max(longest_look_back_, history_.AtLeastTicks(rule.back_s + rule.looks_around_s));
+    // A requirement is asked for where the run ended, when its gap is too long.
+    const double waits_s = rule.requirement == kNone ? 0 : rule.bridging_s;
+    longest_look_back_ =
+        std::max(longest_look_back_, history_.AtLeastTicks(rule.back_s + rule.looks_around_s + waits_s));
   }
   lanes_.BindUnguarded();
-  for (int i = 0; i < lanes_.size(); ++i) {
-    if (RuleOf(lanes_[i]).guard == kNone && RuleOf(lanes_[i]).form != Form::kTouching) Wake(i);
-  }
+  for (int i = 0; i < lanes_.size(); ++i) Wake(i);
   if (lanes_.TooMany()) error_ = "more bindings than this monitor can watch; give the roles narrower classes";
-}
-
-std::string Engine::WhyNotWatchable(const Frame& frame) const {
-  if (frame.entities.size() != cast_.entities.size()) return "a frame shows another number of entities than the cast";
-  if (frame.tick > kLatestTick || frame.tick < -kLatestTick) return "a frame's tick is too large";
-  if (history_.now() >= 0 && frame.tick <= history_.At(history_.now()).tick) return "the frames are not in order of time";
-  const int count = static_cast<int>(cast_.entities.size());
-  int last_hand = kNobody;
-  for (const HandLook& hand : frame.hands) {
-    if (hand.entity < 0 || hand.entity >= count) return "a frame shows a hand that is not in the cast";
-    if (hand.entity <= last_hand) return "a frame shows a hand twice, or its hands are not in the order of the cast";
-    last_hand = hand.entity;
-  }
-  for (const Touch& touch : frame.touches) {
-    if (touch.a < 0 || touch.a >= touch.b || touch.b >= count) return "a frame shows a touch of somebody not in the cast";
-  }
-  return {};
-}
-
-void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
-  if (!error_.empty() || finishing_) return;
-  error_ = WhyNotWatchable(frame);
-  if (!error_.empty()) return;
-  out_ = &out;
-  const auto first_new = static_cast<std::ptrdiff_t>(out.size());
-  history_.Push(frame);
-  decided_ = frame.tick;
-  oldest_needed_ = oldest_look_needed_ = history_.now();
-  WatchTouches(frame);
-  for (const int rule : program_->schedule) StepRule(rule);
-  ForgetThePast();
-  SortEvents(out.begin() + first_new, out.end());
-  out_ = nullptr;
-}
-
-void Engine::Finish(Tick end, std::vector<Event>& out) {
-  if (!error_.empty() || finishing_ || history_.now() < 0) return;
-  finishing_ = true;
-  history_.Complete();
-  out_ = &out;
-  const auto first_new = static_cast<std::ptrdiff_t>(out.size());
-  // The episode's last frame belongs to it, so its end is later.
-  const Moment last{history_.now() + 1, std::clamp(end, history_.At(history_.now()).tick + 1, kLatestTick + 1)};
-  decided_ = last.tick;
-  EndTouches(last, true);
-  for (const int rule : program_->schedule) {
-    for (const int lane : awake_[rule]) FinishLane(lanes_[lane], last);
-    awake_[rule].clear();
-  }
-  SortEvents(out.begin() + first_new, out.end());
-  out_ = nullptr;
-}
-
-void Engine::WatchTouches(const Frame& frame) {
-  for (const Touch& touch : frame.touches) {
-    const Binding pair = {touch.a, touch.b, kNobody, kNobody};
-    int index = lanes_.Find(kTouchingRule, pair);
-    if (index == kNone) index = lanes_.Ensure(kTouchingRule, pair);
-    if (index == kNone) continue;
-    Lane& lane = lanes_[index];
-    const bool swapped = lane.entities[0] != touch.a;
-    lane.touches.PushBack() = {.frame = history_.now(),
-                               .up = {swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b},
-                               .force_n = touch.normal_force_n,
-                               .sensor_sets = touch.sensor_sets};
-    if (!lane.awake) {
-      lane.awake = lane.open = lane.certain = true;
-      lane.known = kNever;
-      lane.begin = history_.At(history_.now());
-      awake_[kTouchingRule].push_back(index);
-    }
-    lane.next = history_.now() + 1;
-    StirDependents(lane);
-  }
-  if (lanes_.TooMany()) error_ = "more bindings than this monitor can watch; give the roles narrower classes";
-  EndTouches(history_.At(history_.now()), false);
-}
-
-// A touch that this frame does not show has ended.
-void Engine::EndTouches(Moment end, bool all) {
-  std::erase_if(awake_[kTouchingRule], [&](int index) {
-    Lane& lane = lanes_[index];
-    if (!all && lane.next == end.frame + 1) return false;
-    std::erase_if(lane.past, [&](const Span& past) { return past.end.frame < history_.first(); });
-    lane.past.push_back({lane.begin, end});
-    lane.awake = lane.open = false;
-    return true;
-  });
 }
 
 void Engine::Wake(int index) {
   Lane& lane = lanes_[index];
-  if (lane.awake) return;
+  if (lane.awake || lane.rule == kNone) return;
   lane.awake = true;
-  lane.next = lane.known = lane.approach_from = std::max<FrameNumber>(history_.now(), 0);
+  lane.next = lane.approach_from = std::max<FrameNumber>(history_.now(), 0);
+  if (!lane.open || (lane.certain && !lane.in_gap)) lane.known = lane.next;
   awake_[lane.rule].push_back(index);
 }
 
-void Engine::StirDependents(const Lane& lane) {
-  for (const int dependent : lane.dependents) {
-    Wake(dependent);
-    lanes_[dependent].stirred = history_.now();
+void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
+  for (const Watch& watch : watchers) {
+    if (!lanes_.GuardRests(lanes_[watch.lane])) Wake(watch.lane);
   }
 }
 
-// Nothing is true, open or undecided, and the guard says that it stays so.
-bool Engine::AtRest(const Lane& lane) const {
+// The truth of this lane is another one than in the frame before.
+void Engine::Tell(Lane& lane) {
+  if (!lane.dependents_made) {
+    scratch_.clear();
+    lanes_.MakeDependents(lane.index, scratch_);
+    for (const int dependent : scratch_) Wake(dependent);
+  }
+  for (const int watcher : lane.watchers) Wake(watcher);
+}
+
+void Engine::TellIfChanged(Lane& lane) {
+  if (!RuleOf(lane).referenced) return;
+  const FrameNumber now = history_.now();
+  const Kleene truth = lanes_.TruthAt(lane.index, now);
+  const bool at_an_edge = (lane.open && lane.begin.frame == now) ||
+                          (!lane.past.empty() && (lane.past.back().end.frame == now || lane.past.back().begin.frame == now));
+  if (truth == lane.told && !at_an_edge) return;
+  lane.told = truth;
+  Tell(lane);
+}
+
+void Engine::WakeAt(Tick tick, int lane) {
+  alarms_.push_back({tick, lane});
+  std::push_heap(alarms_.begin(), alarms_.end(), Later<Alarm, Alarm>);
+}
+
+void Engine::RingAlarms() {
+  while (!alarms_.empty() && alarms_.front().tick <= decided_) {
+    Wake(alarms_.front().lane);
+    std::pop_heap(alarms_.begin(), alarms_.end(), Later<Alarm, Alarm>);
+    alarms_.pop_back();
+  }
+}
+
+// Every frame is decided, and the next one says the same unless something changes or an alarm rings.
+// A form that is not listed here never rests while it is open.
+bool Engine::MayRest(const Lane& lane) {
   const Rule& rule = RuleOf(lane);
-  if (rule.form == Form::kCompose) return lane.next > history_.now();
-  if (rule.guard == kNone || lane.stirred == history_.now() || lane.open || !lane.pending.empty()) return false;
-  return lane.next > history_.now() && lane.known > history_.now();
+  if (lane.next <= history_.now() || !lane.pending.empty() || evaluator_.restless()) return false;
+  switch (rule.form) {
+    case Form::kCompose: return true;
+    case Form::kFromTo:
+    case Form::kRestOf: return true;
+    case Form::kUntilSince: return !rule.referenced || lane.approach_from > history_.now();
+    case Form::kWhile:
+    case Form::kAny: break;
+    default: return !lane.open && lanes_.GuardRests(lane);
+  }
+  const bool time_makes_certain = rule.referenced && rule.requirement == kNone && rule.confirmed_by == kNone;
+  if (lane.in_gap) {
+    WakeAt(lane.gap.tick + TicksOf(lane).bridging, lane.index);
+  } else if (lane.open && !lane.certain && time_makes_certain) {
+    WakeAt(lane.begin.tick + TicksOf(lane).lasting - 1, lane.index);
+  }
+  return true;
+}
+
+void Engine::Rest(Lane& lane) {
+  lane.awake = false;
+  lane.resting_since = history_.now();
+  if (!lane.open || (lane.certain && !lane.in_gap)) lane.known = kNever;
+  if (!lane.open) Retire(lane);
+}
+
+void Engine::Retire(Lane& lane) {
+  if (lane.retiring) return;
+  lane.retiring = true;
+  retirees_.PushBack() = {lane.resting_since, lane.index};
 }
 
 void Engine::StepRule(int rule) {
+  if (awake_[rule].empty()) return;
   std::erase_if(awake_[rule], [&](int index) {
     Lane& lane = lanes_[index];
     if (lane.next <= history_.now() || !lane.pending.empty()) StepLane(lane);
-    if (rule != kTouchingRule && AtRest(lane)) {
-      lane.awake = false;
+    TellIfChanged(lane);
+    if (MayRest(lane)) {
+      Rest(lane);
       return true;
     }
-    if (rule != kTouchingRule) StirDependents(lane);
     oldest_needed_ = std::min(oldest_needed_, lane.next);
     for (const Pending& pending : lane.pending) oldest_needed_ = std::min(oldest_needed_, pending.next);
     if (RuleOf(lane).uses_looks) oldest_look_needed_ = std::min(oldest_look_needed_, lane.next);
@@ -169,16 +136,44 @@ void Engine::StepRule(int rule) {
 
 // Keeps what a walk back may reach, and two frames more for differences between frames.
 void Engine::ForgetThePast() {
-  const auto reach = [&](FrameNumber frame) {
-    return std::max(history_.first(), history_.FirstNotBefore(history_.At(frame).tick - longest_look_back_) - 2);
+  const auto reach = [&](FrameNumber needed, FrameNumber before) {
+    const Tick earliest = history_.At(std::max(needed, history_.first())).tick - longest_look_back_;
+    FrameNumber frame = std::max(before, history_.first());
+    while (frame + 2 <= history_.now() && history_.At(frame + 2).tick < earliest) ++frame;
+    return frame;
   };
-  const FrameNumber ticks = reach(std::max(oldest_needed_, history_.first()));
-  const FrameNumber looks = reach(std::max(oldest_look_needed_, history_.first()));
-  history_.Forget(ticks, looks);
-  for (const int index : awake_[kTouchingRule]) {
-    Ring<TouchSample>& touches = lanes_[index].touches;
-    while (!touches.empty() && touches.front().frame < looks) touches.PopFront();
+  first_needed_ = reach(oldest_needed_, first_needed_);
+  first_look_needed_ = reach(oldest_look_needed_, first_look_needed_);
+  history_.Forget(first_needed_, first_look_needed_);
+}
+
+// Lanes that have rested for so long that nobody can ask about what they were before.
+void Engine::FreeLanes() {
+  while (!retirees_.empty() && retirees_.front().since < history_.first()) {
+    Lane& lane = lanes_[retirees_.front().lane];
+    retirees_.PopFront();
+    lane.retiring = false;
+    if (lane.awake || lane.open) continue;  // retires when it rests again
+    if (lane.resting_since >= history_.first()) {
+      Retire(lane);
+    } else if (CanBeFreed(lane)) {
+      scratch_.clear();
+      lanes_.Free(lane.index, scratch_);
+      for (const int orphan : scratch_) {
+        if (!lanes_[orphan].awake && !lanes_[orphan].open) Retire(lanes_[orphan]);
+      }
+    }
   }
+}
+
+bool Engine::CanBeFreed(const Lane& lane) const {
+  const Form form = RuleOf(lane).form;
+  if (form != Form::kTouching && !lanes_.GuardRests(lane)) return false;
+  // Compositions remember; and whoever asks about this lane must be woken by it, unless it is made to be.
+  const auto remembers = [](const std::vector<Span>& spans) { return !spans.empty(); };
+  const auto depends = [&](int watcher) { return RuleOf(lanes_[watcher]).form != Form::kAny; };
+  return std::none_of(lane.parts.begin(), lane.parts.end(), remembers) &&
+         std::none_of(lane.watchers.begin(), lane.watchers.end(), depends);
 }
 
 }  // namespace prehend::grammar

@@ -7,11 +7,15 @@
 // first frame where its condition is not known yet; Lane::known says up to where a lane's own truth is final. So a
 // lane that waits (a gap that may be bridged, an approach that may end in a landing) delays only the lanes that ask
 // about just those frames.
+// A lane rests as soon as its newest frame is decided and nothing but a change can decide otherwise: what it asks about
+// wakes it. What time alone changes is either an alarm (the end of a gap, the shortest duration) or, where a value
+// moves by itself (Evaluator::restless), keeps the lane awake. So a frame costs as much as changes in it.
 // Data structures: lanes.h (state per binding), history.h (the frames that some lane may still ask for).
 // Tested by tests/grammar/monitor_test.cc and the corpus in tests/grammar/corpus/
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,7 +33,9 @@ class Engine {
 
   const std::string& error() const { return error_; }
   void Advance(const Frame& frame, std::vector<Event>& out);
+  void AdvanceBy(const FrameChanges& changes, std::vector<Event>& out);
   void Finish(Tick end, std::vector<Event>& out);
+  int lanes_in_use() const { return lanes_.in_use(); }
 
  private:
   struct RuleTicks {
@@ -38,16 +44,46 @@ class Engine {
     Tick idle = 0;
     Tick back = 0;
   };
+  /// A lane to look at when this tick comes, and perhaps for nothing.
+  struct Alarm {
+    Tick tick = 0;
+    int lane = kNone;
+  };
+  struct Retiree {
+    FrameNumber since = 0;
+    int lane = kNone;
+  };
 
-  // Waking and sleeping.
+  // What a frame says (engine_frames.cc).
+  std::string WhyNoTick(Tick tick) const;
   std::string WhyNotWatchable(const Frame& frame) const;
-  void WatchTouches(const Frame& frame);
-  void EndTouches(Moment end, bool all);
+  std::string WhyNotWatchable(const FrameChanges& changes) const;
+  std::string WhyNoTouches(std::span<const Touch> touches) const;
+  bool IsEntity(int entity) const { return entity >= 0 && entity < static_cast<int>(cast_.entities.size()); }
+  template <typename AnyFrame>
+  bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);
+  void EndFrame();
+  void SortNewEvents();
+  void Look(int entity, const EntityLook& look);
+  void Look(const HandLook& hand);
+  void Press(const Touch& touch);
+  void Part(int touching);
+  void CloseTouch(Lane& touching, Moment end);
+
+  // Waking and resting.
   void Wake(int lane);
-  void StirDependents(const Lane& lane);
-  bool AtRest(const Lane& lane) const;
+  void WakeWatchers(const std::vector<Watch>& watchers);
+  void Tell(Lane& lane);
+  void TellIfChanged(Lane& lane);
+  void WakeAt(Tick tick, int lane);
+  void RingAlarms();
+  bool MayRest(const Lane& lane);
+  void Rest(Lane& lane);
+  void Retire(Lane& lane);
   void StepRule(int rule);
   void ForgetThePast();
+  void FreeLanes();
+  bool CanBeFreed(const Lane& lane) const;
 
   // The forms; each looks at one frame and says whether it could decide it.
   void StepLane(Lane& lane);
@@ -89,11 +125,18 @@ class Engine {
   std::vector<RuleTicks> rule_ticks_;
   Tick longest_look_back_ = 0;
   std::vector<std::vector<int>> awake_;  // by rule
+  std::vector<int> touching_;            // the pairs that touch now
+  std::vector<Alarm> alarms_;            // a heap, the next one first
+  Ring<Retiree> retirees_;               // in the order in which they came to rest
+  std::vector<int> scratch_;             // lanes; kept for its memory
   FrameNumber oldest_needed_ = 0;        // of the awake lanes
   FrameNumber oldest_look_needed_ = 0;
+  FrameNumber first_needed_ = 0;         // and what they can look back to
+  FrameNumber first_look_needed_ = 0;
   bool finishing_ = false;
   Tick decided_ = 0;
-  std::vector<Event>* out_ = nullptr;    // only during Advance and Finish
+  std::vector<Event>* out_ = nullptr;  // only during Advance and Finish
+  std::size_t first_new_ = 0;          // among them, of this call
   std::string error_;
 };
 

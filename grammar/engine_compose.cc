@@ -87,8 +87,7 @@ void Engine::TellCompositions(const Lane& part, const Span& span) {
 
 // All intervals of the lane that end at or before this frame are out.
 FrameNumber Engine::Settled(const Lane& lane) const {
-  if (!lane.awake) return finishing_ ? kNever : history_.now();
-  FrameNumber settled = lane.next - 1;
+  FrameNumber settled = lane.awake ? lane.next - 1 : finishing_ ? kNever : history_.now();
   if (lane.in_gap) settled = std::min(settled, lane.gap.frame - 1);
   for (const Pending& pending : lane.pending) settled = std::min(settled, pending.span.end.frame - 1);
   return settled;
@@ -98,7 +97,7 @@ void Engine::StepCompose(Lane& lane) {
   const Rule& rule = RuleOf(lane);
   FrameNumber settled = finishing_ ? kNever : history_.now();
   for (const int part : rule.composition.parts) {
-    const int index = lanes_.Resolve(lane, part);
+    const int index = lanes_.Find(lane, part);
     if (index != kNone) settled = std::min(settled, Settled(lanes_[index]));
   }
   for (;;) {

@@ -110,7 +110,6 @@ void Engine::UpdateKnown(Lane& lane) {
 
 // The last frames are decided, then what is open ends with the episode.
 void Engine::FinishLane(Lane& lane, Moment end) {
-  if (RuleOf(lane).form == Form::kTouching) return;
   if (RuleOf(lane).form == Form::kCompose) return StepCompose(lane);
   StepLane(lane);
   if (lane.open && lane.in_gap) {
@@ -118,9 +117,9 @@ void Engine::FinishLane(Lane& lane, Moment end) {
   } else if (lane.open && !RuleOf(lane).or_drop) {
     Close(lane, end, true);
   }
-  lane.open = false;
+  lane.open = lane.in_gap = lane.awake = false;
   lane.pending.clear();
-  lane.awake = false;
+  lane.known = kNever;
 }
 
 }  // namespace prehend::grammar

@@ -9,6 +9,7 @@ namespace prehend::grammar {
 void Engine::StepLane(Lane& lane) {
   for (; lane.next <= history_.now(); ++lane.next) {
     bool decided = false;
+    evaluator_.CalmDown();
     switch (RuleOf(lane).form) {
       case Form::kTouching: return;
       case Form::kCompose: return StepCompose(lane);

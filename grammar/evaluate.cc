@@ -58,7 +58,13 @@ Kleene Evaluator::Holds(int slot, const View& view) const {
 }
 
 Kleene Evaluator::Begins(int slot, const View& view) const {
-  return lanes_.BeginsAt(lanes_.Resolve(view.lane, slot), view.frame);
+  return AtAnInstant(lanes_.BeginsAt(lanes_.Resolve(view.lane, slot), view.frame));
+}
+
+// What is true here only will be false at the next frame, where its parts are as they are.
+Kleene Evaluator::AtAnInstant(Kleene truth) const {
+  restless_ = restless_ || truth == Kleene::kTrue;
+  return truth;
 }
 
 // Of a reference: one of its intervals begins or ends here. Of any other condition: it changes here.
@@ -67,7 +73,7 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
   const Node& arg = program_.nodes[node.args[0]];
   if (arg.op == Op::kHolds) {
     const int lane = lanes_.Resolve(view.lane, arg.slot);
-    return begins ? lanes_.BeginsAt(lane, view.frame) : lanes_.EndsAt(lane, view.frame);
+    return AtAnInstant(begins ? lanes_.BeginsAt(lane, view.frame) : lanes_.EndsAt(lane, view.frame));
   }
   const Kleene now = Truth(node.args[0], view);
   const Kleene wanted = begins ? now : Not(now);
@@ -75,7 +81,7 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
   const bool is_first = view.frame == 0;
   Kleene before = Kleene::kFalse;
   if (!is_first) before = Truth(node.args[0], {.lane = view.lane, .frame = view.frame - 1, .end = view.end});
-  return And(wanted, begins ? Not(before) : before);
+  return AtAnInstant(And(wanted, begins ? Not(before) : before));
 }
 
 Kleene Evaluator::Compare(const Node& node, const View& view) const {
@@ -217,12 +223,14 @@ double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
 }
 
 double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
+  restless_ = true;
   if (frame <= history_.first()) return 0;
   const double seconds = history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
   return (Gap(hand, object, frame - 1) - Gap(hand, object, frame)) / seconds;
 }
 
 double Evaluator::SurfaceSpeed(int hand, int object, FrameNumber frame) const {
+  restless_ = true;
   if (frame <= history_.first()) return 0;
   const HandSample* now = history_.Hand(hand, frame);
   const HandSample* before = history_.Hand(hand, frame - 1);
@@ -238,6 +246,7 @@ double Evaluator::SurfaceSpeed(int hand, int object, FrameNumber frame) const {
 // The way of a as seen from b, turned to where b is now, from the last frame that is half the window earlier to the
 // first one that is half the window later; at the episode's begin and end the window is cut off.
 std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) const {
+  restless_ = true;
   const Tick now = history_.At(view.frame).tick;
   const Tick half = history_.AtLeastTicks(node.number / 2);
   const FrameNumber early = history_.LastNotAfter(now - half);
@@ -263,23 +272,13 @@ Vector3d Evaluator::RelativeVelocity(int a, int b, FrameNumber frame) const {
   return look_a.v_WB_m_per_s - (look_b.v_WB_m_per_s + look_b.w_WB_rad_per_s.cross(arm));
 }
 
+// Null where the two do not touch.
 const TouchSample* Evaluator::Touch(const Node& node, const View& view, bool& swapped) const {
   const int index = lanes_.Resolve(view.lane, node.slot);
-  if (index == kNone) return nullptr;
+  if (lanes_.TruthAt(index, view.frame) != Kleene::kTrue) return nullptr;
   const Lane& lane = lanes_[index];
   swapped = lane.entities[0] != Entity(node, view, 0);
-  std::size_t low = 0;
-  std::size_t high = lane.touches.size();
-  while (low < high) {
-    const std::size_t middle = low + (high - low) / 2;
-    if (lane.touches[middle].frame < view.frame) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  const bool found = low < lane.touches.size() && lane.touches[low].frame == view.frame;
-  return found ? &lane.touches[low] : nullptr;
+  return &SampleAt(lane.touches, view.frame);
 }
 
 std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {

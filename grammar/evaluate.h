@@ -35,10 +35,16 @@ class Evaluator {
   /// at the end, and they are too far apart for that. False if this cannot be told.
   bool TooFarApart(int node, Lane& lane, FrameNumber early, FrameNumber late) const;
 
+  /// Whether a value asked for since CalmDown() may change with time alone, though nothing that it is made of changes:
+  /// an instant that is over one frame later, a speed from frame to frame, a window of time.
+  bool restless() const { return restless_; }
+  void CalmDown() { restless_ = false; }
+
   /// Keeps the values of all anchors of the lane's rule at this frame. False while one is not known.
   [[nodiscard]] bool CaptureAnchors(Lane& lane, FrameNumber frame) const;
 
  private:
+  Kleene AtAnInstant(Kleene truth) const;
   Kleene Edge(const Node& node, const View& view) const;
   Kleene Compare(const Node& node, const View& view) const;
   Kleene Inside(const Node& node, const View& view) const;
@@ -57,6 +63,7 @@ class Evaluator {
   const Cast& cast_;
   const History& history_;
   Lanes& lanes_;
+  mutable bool restless_ = false;
 };
 
 }  // namespace prehend::grammar

@@ -92,4 +92,26 @@ struct Frame {
   std::span<const Touch> touches;        ///< sorted by (a, b)
 };
 
+/// One entity whose pose or velocity is not as it was.
+struct EntityChange {
+  int entity = kNobody;
+  EntityLook look;
+};
+
+/// Two entities that touch no more, in any order.
+struct Parting {
+  int a = kNobody;
+  int b = kNobody;
+};
+
+/// One look at the world as what is new in it: whatever is not mentioned is as it was in the frame before. Before the
+/// first one, everything is at the origin and nothing touches. A pair among both touches and partings touches.
+struct FrameChanges {
+  Tick tick = 0;
+  std::span<const EntityChange> entities;  ///< each entity at most once
+  std::span<const HandLook> hands;         ///< each hand at most once
+  std::span<const Touch> touches;          ///< begun, or pressed otherwise than before
+  std::span<const Parting> partings;
+};
+
 }  // namespace prehend::grammar

@@ -103,6 +103,21 @@ double LooksAround(const Program& program, int index) {
   return seconds;
 }
 
+// A value where the interval begins or ends is not asked for at every frame.
+void WatchEntities(const Program& program, Rule& rule, int index) {
+  if (index == kNone) return;
+  const Node& node = program.nodes[index];
+  switch (node.op) {
+    case Op::kHolds: case Op::kPartOf: case Op::kIsA: case Op::kAtBegin: case Op::kAtEnd: return;
+    case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: rule.watches_press = true; return;
+    default: break;
+  }
+  for (const int role : node.roles) {
+    if (role != kNone) (node.op == Op::kTrigger ? rule.watches_grip : rule.watches_pose)[role] = true;
+  }
+  for (const int arg : node.args) WatchEntities(program, rule, arg);
+}
+
 // A composition is told of finished intervals; every other rule asks for the truth at a frame.
 void MarkReferenced(Program& program, int index) {
   const Rule& rule = program.events[index];
@@ -125,6 +140,10 @@ void ChooseGuards(Program& program) {
     rule.uses_looks = rule.style_role != kNone || rule.approach != kNone || !rule.anchors.empty() ||
                       (rule.form != Form::kRestOf && UsesLooks(program, rule.first)) || UsesLooks(program, rule.second) ||
                       UsesLooks(program, rule.during) || UsesLooks(program, rule.requirement);
+    if (rule.form != Form::kRestOf) WatchEntities(program, rule, rule.first);
+    // The approach to an end is looked at when the end is there, unless others must know at all times.
+    if (rule.form != Form::kUntilSince || rule.referenced) WatchEntities(program, rule, rule.second);
+    WatchEntities(program, rule, rule.during);
     std::vector<int> nodes = rule.anchors;
     nodes.insert(nodes.end(), {rule.second, rule.during, rule.approach, rule.motion, rule.requirement});
     if (rule.form != Form::kRestOf) nodes.push_back(rule.first);

@@ -10,28 +10,6 @@ namespace {
 constexpr double kRounding = 1e-6;  // of a product of seconds and ticks per second
 constexpr double kMostTicks = 1e15;
 
-// The last sample at or before `frame`; the newest is asked for most. Samples are sorted by frame.
-template <typename Sample>
-const Sample& SampleAt(const Ring<Sample>& samples, FrameNumber frame) {
-  if (samples.back().frame <= frame) return samples.back();
-  std::size_t low = 0;
-  std::size_t high = samples.size();
-  while (high - low > 1) {
-    const std::size_t middle = low + (high - low) / 2;
-    (samples[middle].frame <= frame ? low : high) = middle;
-  }
-  return samples[low];
-}
-
-template <typename Sample>
-void ForgetSamples(Ring<Sample>& samples, FrameNumber frame) {
-  while (samples.size() > 1 && samples[1].frame <= frame) samples.PopFront();
-}
-
-bool SameRest(const EntityLook& a, const EntityLook& b) {
-  return a.asleep && b.asleep && a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs();
-}
-
 }  // namespace
 
 History::History(const Cast& cast)
@@ -39,32 +17,35 @@ History::History(const Cast& cast)
       looks_(cast.entities.size()),
       hand_of_entity_(cast.entities.size(), -1) {}
 
-void History::Push(const Frame& frame) {
-  ticks_.PushBack() = frame.tick;
-  for (std::size_t i = 0; i < frame.entities.size(); ++i) {
-    const EntityLook& look = frame.entities[i];
-    if (!looks_[i].empty() && SameRest(looks_[i].back().look, look)) continue;
-    looks_[i].PushBack() = {count_, look};
-  }
-  for (const HandLook& hand : frame.hands) {
-    int& index = hand_of_entity_[hand.entity];
-    if (index < 0) {
-      index = static_cast<int>(hand_samples_.size());
-      hand_samples_.emplace_back();
-    }
-    HandSample& sample = hand_samples_[index].PushBack();
-    sample.frame = count_;
-    sample.look = hand;
-    sample.feelers.assign(hand.feelers.begin(), hand.feelers.end());
-    sample.look.feelers = {};
-  }
+void History::BeginFrame(Tick tick) {
+  ticks_.PushBack() = tick;
   ++count_;
+}
+
+void History::SetLook(int entity, const EntityLook& look) {
+  Ring<LookSample>& samples = looks_[entity];
+  ForgetSamples(samples, first_look_);
+  if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
+  samples.PushBack() = {now(), look};
+}
+
+void History::SetHand(const HandLook& look) {
+  int& index = hand_of_entity_[look.entity];
+  if (index < 0) {
+    index = static_cast<int>(hand_samples_.size());
+    hand_samples_.emplace_back();
+  }
+  ForgetSamples(hand_samples_[index], first_look_);
+  HandSample& sample = hand_samples_[index].PushBack();
+  sample.frame = now();
+  sample.look = look;
+  sample.feelers.assign(look.feelers.begin(), look.feelers.end());
+  sample.look.feelers = {};
 }
 
 void History::Forget(FrameNumber ticks, FrameNumber looks) {
   while (ticks_.size() > 2 && first() < ticks) ticks_.PopFront();
-  for (Ring<LookSample>& samples : looks_) ForgetSamples(samples, looks);
-  for (Ring<HandSample>& samples : hand_samples_) ForgetSamples(samples, looks);
+  first_look_ = std::max(first_look_, looks);
 }
 
 FrameNumber History::FirstNotBefore(Tick tick) const {
@@ -96,7 +77,8 @@ Tick History::AtLeastTicks(double seconds) const {
 }
 
 const EntityLook& History::Look(int entity, FrameNumber frame) const {
-  return SampleAt(looks_[entity], frame).look;
+  static const EntityLook kNotSeenYet;
+  return looks_[entity].empty() ? kNotSeenYet : SampleAt(looks_[entity], frame).look;
 }
 
 const HandSample* History::Hand(int entity, FrameNumber frame) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The recent past, by frame number: ticks of frames, looks of entities and hands. An entity's look is stored only when
-// it changed, so sleeping objects take no space however long the past is kept.
+// The recent past, by frame number: ticks of frames, looks of entities and hands. A look is stored only when it changed,
+// so what is at rest takes no space and no time however long the past is kept.
 // Tested by tests/grammar/history_test.cc
 #pragma once
 
@@ -28,13 +28,39 @@ struct HandSample {
   std::vector<Feeler> feelers;
 };
 
+/// The last sample at or before `frame`, or the first one; the newest is asked for most. Samples are sorted by frame,
+/// and there is one.
+template <typename Sample>
+const Sample& SampleAt(const Ring<Sample>& samples, FrameNumber frame) {
+  if (samples.back().frame <= frame) return samples.back();
+  std::size_t low = 0;
+  std::size_t high = samples.size();
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    (samples[middle].frame <= frame ? low : high) = middle;
+  }
+  return samples[low];
+}
+
+/// Drops what only frames before `frame` need.
+template <typename Sample>
+void ForgetSamples(Ring<Sample>& samples, FrameNumber frame) {
+  while (samples.size() > 1 && samples[1].frame <= frame) samples.PopFront();
+}
+
 class History {
  public:
   explicit History(const Cast& cast);
 
-  void Push(const Frame& frame);
-  /// Forgets ticks of frames before `ticks` and looks that only frames before `looks` need.
+  /// A new frame in which everything looks as before, until it is said otherwise.
+  void BeginFrame(Tick tick);
+  void SetLook(int entity, const EntityLook& look);
+  void SetHand(const HandLook& look);
+
+  /// Forgets ticks of frames before `ticks` and looks that only frames before `looks` need; of an entity, when its
+  /// next look comes.
   void Forget(FrameNumber ticks, FrameNumber looks);
+  FrameNumber first_look() const { return first_look_; }
 
   /// No more frames will come.
   void Complete() { complete_ = true; }
@@ -52,6 +78,7 @@ class History {
   const EntityLook& Look(int entity, FrameNumber frame) const;
   /// Null if this entity is no hand.
   const HandSample* Hand(int entity, FrameNumber frame) const;
+  bool Shows(int hand) const { return hand_of_entity_[hand] >= 0; }
   double Seconds(Tick ticks) const { return static_cast<double>(ticks) / ticks_per_second_; }
   /// Whole ticks such that comparing differences of ticks gives the same as comparing seconds.
   Tick AtMostTicks(double seconds) const;
@@ -65,6 +92,7 @@ class History {
 
   double ticks_per_second_;
   FrameNumber count_ = 0;
+  FrameNumber first_look_ = 0;
   bool complete_ = false;
   Ring<Tick> ticks_;
   std::vector<Ring<LookSample>> looks_;        // by entity

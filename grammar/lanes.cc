@@ -7,25 +7,22 @@
 namespace prehend::grammar {
 namespace {
 
-// More bindings than this are a mistake in the grammar or need another machine: about 400 bytes each.
+// More bindings than this are a mistake in the grammar or need another machine: see LaneBytes in bench/.
 constexpr int kMaxLanes = 1'000'000;
 
 }  // namespace
 
-std::size_t Lanes::KeyHash::operator()(const Key& key) const {
-  std::uint64_t hash = static_cast<std::uint64_t>(key.rule) + 1;
-  for (const int entity : key.entities) {
-    hash = (hash ^ static_cast<std::uint32_t>(entity)) * 0x9E3779B97F4A7C15ULL;
-    hash ^= hash >> 32;
-  }
-  return static_cast<std::size_t>(hash);
-}
-
 Lanes::Lanes(const Program& program, const Cast& cast)
-    : program_(program), cast_(cast), guarded_(program.events.size()), name_rank_(cast.entities.size()) {
+    : program_(program),
+      cast_(cast),
+      guarded_(program.events.size()),
+      pose_watchers_(cast.entities.size()),
+      grip_watchers_(cast.entities.size()),
+      name_rank_(cast.entities.size()) {
   for (const int index : program.schedule) {
     const Rule& rule = program.events[index];
-    if (rule.guard != kNone) guarded_[rule.references[rule.guard].rule].push_back(index);
+    // Compositions are made when a part has an interval for them.
+    if (rule.guard != kNone && rule.form != Form::kCompose) guarded_[rule.references[rule.guard].rule].push_back(index);
   }
   for (const Rule& rule : program.events) {
     std::vector<std::vector<bool>>& roles = fits_.emplace_back();
@@ -60,47 +57,41 @@ void Lanes::BindUnguarded() {
       return;
     }
     Binding entities = kUnbound;
-    BindRest(rule, entities, 0, kNone);
+    BindRest(rule, entities, 0, kNone, nullptr);
   }
 }
 
 // Fills in the roles from `role` on that are still free, in all ways that fit.
-void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard) {
+void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard, std::vector<int>* made) {
   if (too_many_) return;
   if (role == program_.events[rule].roles.size()) {
-    const int made = Ensure(rule, entities);
-    if (made == kNone || guard == kNone) return;
-    std::vector<int>& dependents = lanes_[guard].dependents;
-    if (std::find(dependents.begin(), dependents.end(), made) != dependents.end()) return;
-    dependents.push_back(made);
-    if (program_.events[rule].form == Form::kAny) lanes_[made].members.push_back(guard);
+    const int lane = Ensure(rule, entities);
+    if (lane == kNone || guard == kNone) return;
+    LinkToGuard(lane, guard);
+    made->push_back(lane);
     return;
   }
   if (entities[role] != kNobody) {
-    BindRest(rule, entities, role + 1, guard);
+    BindRest(rule, entities, role + 1, guard, made);
     return;
   }
   for (std::size_t e = 0; e < cast_.entities.size(); ++e) {
     if (!fits_[rule][role][e]) continue;
     if (std::find(entities.begin(), entities.end(), static_cast<int>(e)) != entities.end()) continue;
     entities[role] = static_cast<int>(e);
-    BindRest(rule, entities, role + 1, guard);
+    BindRest(rule, entities, role + 1, guard, made);
     entities[role] = kNobody;
   }
 }
 
-Binding Lanes::Canonical(const Rule& rule, Binding entities) const {
-  if (rule.symmetric && name_rank_[entities[1]] < name_rank_[entities[0]]) std::swap(entities[0], entities[1]);
-  return entities;
+LaneKey Lanes::Canonical(int rule, Binding entities) const {
+  const bool swap = program_.events[rule].symmetric && name_rank_[entities[1]] < name_rank_[entities[0]];
+  if (swap) std::swap(entities[0], entities[1]);
+  return {rule, entities};
 }
 
-int Lanes::Find(int rule, const Binding& entities) const {
-  const auto found = index_.find({rule, Canonical(program_.events[rule], entities)});
-  return found == index_.end() ? kNone : found->second;
-}
-
-bool Lanes::Fits(int rule, const Binding& entities, std::size_t count) const {
-  for (std::size_t i = 0; i < count; ++i) {
+bool Lanes::Fits(int rule, const Binding& entities) const {
+  for (std::size_t i = 0; i < program_.events[rule].roles.size(); ++i) {
     if (!fits_[rule][i][entities[i]]) return false;
     for (std::size_t j = 0; j < i; ++j) {
       if (entities[i] == entities[j]) return false;
@@ -110,28 +101,33 @@ bool Lanes::Fits(int rule, const Binding& entities, std::size_t count) const {
 }
 
 int Lanes::Ensure(int rule, const Binding& entities) {
-  const Rule& r = program_.events[rule];
-  if (!Fits(rule, entities, r.roles.size())) return kNone;
-  const Key key{rule, Canonical(r, entities)};
-  if (const auto found = index_.find(key); found != index_.end()) return found->second;
-  if (size() >= kMaxLanes) {
+  const LaneKey key = Canonical(rule, entities);
+  if (const int found = index_.Find(key, KeyOf()); found != kNone) return found;
+  if (!Fits(rule, entities)) return kNone;
+  if (in_use() >= kMaxLanes) {
     too_many_ = true;
     return kNone;
   }
-  const int index = size();
-  index_.emplace(key, index);
-  Lane& lane = lanes_.emplace_back();
+  if (free_.empty()) {
+    free_.push_back(size());
+    lanes_.emplace_back();
+  }
+  Lane& lane = lanes_[free_.back()];
+  lane.index = free_.back();
+  free_.pop_back();
   lane.rule = rule;
   lane.entities = key.entities;
+  const Rule& r = program_.events[rule];
   lane.references.assign(r.references.size(), kNone);
   lane.anchors.assign(3 * r.anchors.size(), 0);
   lane.parts.resize(r.composition.parts.size());
-  MakeDependents(index);
-  return index;
+  index_.Insert(lane.index, KeyOf());
+  WatchEntities(lane);
+  return lane.index;
 }
 
 // For every rule guarded by this lane's rule: its roles that the guard names are settled, the rest are free.
-void Lanes::MakeDependents(int lane) {
+void Lanes::MakeDependents(int lane, std::vector<int>& made) {
   const int guard_rule = lanes_[lane].rule;
   const bool both_orders = program_.events[guard_rule].symmetric;
   for (const int rule : guarded_[guard_rule]) {
@@ -147,25 +143,107 @@ void Lanes::MakeDependents(int lane) {
         entities[mapping[i]] = guard_entities[i];
         fits = fits && fits_[rule][mapping[i]][guard_entities[i]];
       }
-      if (fits) BindRest(rule, entities, 0, lane);
+      if (fits) BindRest(rule, entities, 0, lane, &made);
     }
+  }
+  lanes_[lane].dependents_made = true;
+}
+
+void Lanes::LinkToGuard(int index, int guard) {
+  Lane& lane = lanes_[index];
+  const Rule& rule = program_.events[lane.rule];
+  if (rule.form == Form::kAny) {
+    if (std::find(lane.members.begin(), lane.members.end(), guard) != lane.members.end()) return;
+    lane.members.push_back(guard);
+  } else {
+    if (lane.references[rule.guard] != kNone) return;
+    lane.references[rule.guard] = guard;
+  }
+  lanes_[guard].watchers.push_back(index);
+}
+
+void Lanes::WatchEntities(Lane& lane) {
+  const Rule& rule = program_.events[lane.rule];
+  for (std::size_t role = 0; role < rule.roles.size(); ++role) {
+    if (!rule.watches_pose[role] && !rule.watches_grip[role]) continue;
+    std::vector<Watch>& watchers = (rule.watches_pose[role] ? pose_watchers_ : grip_watchers_)[lane.entities[role]];
+    lane.watch_places[role] = static_cast<int>(watchers.size());
+    watchers.push_back({lane.index, static_cast<int>(role)});
   }
 }
 
-int Lanes::Resolve(Lane& lane, int slot) {
-  int& target = lane.references[slot];
-  if (target != kNone) return target;
+void Lanes::UnwatchEntities(const Lane& lane) {
+  const Rule& rule = program_.events[lane.rule];
+  for (std::size_t role = 0; role < rule.roles.size(); ++role) {
+    if (!rule.watches_pose[role] && !rule.watches_grip[role]) continue;
+    std::vector<Watch>& watchers = (rule.watches_pose[role] ? pose_watchers_ : grip_watchers_)[lane.entities[role]];
+    const Watch last = watchers.back();
+    watchers[lane.watch_places[role]] = last;
+    lanes_[last.lane].watch_places[last.role] = lane.watch_places[role];
+    watchers.pop_back();
+  }
+}
+
+// Before `lane` is freed: it is no watcher any more, and has to be made again when its guard holds again.
+void Lanes::Unlink(int index, int watcher, std::vector<int>& orphans) {
+  Lane& lane = lanes_[index];
+  std::erase(lane.watchers, watcher);
+  lane.dependents_made = false;
+  if (lane.watchers.empty()) orphans.push_back(index);
+}
+
+void Lanes::Free(int index, std::vector<int>& orphans) {
+  Lane& lane = lanes_[index];
+  UnwatchEntities(lane);
+  index_.Erase(index, KeyOf());
+  for (const int reference : lane.references) {
+    if (reference != kNone) Unlink(reference, index, orphans);
+  }
+  for (const int member : lane.members) Unlink(member, index, orphans);
+  for (const int any : lane.watchers) std::erase(lanes_[any].members, index);
+  lane.members.clear();
+  lane.watchers.clear();
+  lane.past.clear();
+  lane.touches.Clear();
+  lane.dependents_made = false;
+  lane.told = Kleene::kFalse;
+  lane.last_end = 0;
+  lane.touched = -1;
+  lane.style = kNobody;
+  lane.rule = kNone;
+  free_.push_back(index);
+}
+
+bool Lanes::GuardRests(const Lane& lane) const {
+  const Rule& rule = program_.events[lane.rule];
+  const auto rests = [&](int guard) { return !lanes_[guard].awake && !lanes_[guard].open; };
+  if (rule.form == Form::kAny) return std::all_of(lane.members.begin(), lane.members.end(), rests);
+  if (rule.guard == kNone) return false;
+  const int guard = lane.references[rule.guard];
+  return guard == kNone || rests(guard);
+}
+
+LaneKey Lanes::Referred(const Lane& lane, int slot) const {
   const Reference& reference = program_.events[lane.rule].references[slot];
-  const Rule& rule = program_.events[reference.rule];
   Binding entities = kUnbound;
-  for (std::size_t i = 0; i < rule.roles.size(); ++i) entities[i] = lane.entities[reference.roles[i]];
-  return target = Find(reference.rule, entities);
+  for (std::size_t i = 0; i < program_.events[reference.rule].roles.size(); ++i) {
+    entities[i] = lane.entities[reference.roles[i]];
+  }
+  return Canonical(reference.rule, entities);
+}
+
+int Lanes::Resolve(Lane& lane, int slot) {
+  if (lane.references[slot] != kNone) return lane.references[slot];
+  const LaneKey key = Referred(lane, slot);
+  const int target = Ensure(key.rule, key.entities);
+  if (target != kNone) lanes_[target].watchers.push_back(lane.index);
+  return lane.references[slot] = target;
 }
 
 Kleene Lanes::TruthAt(int index, FrameNumber frame) const {
   if (index == kNone) return Kleene::kFalse;
   const Lane& lane = lanes_[index];
-  if (lane.awake && frame >= lane.known) return Kleene::kUnknown;
+  if (frame >= lane.known) return Kleene::kUnknown;
   if (lane.open && lane.certain && frame >= lane.begin.frame) return Kleene::kTrue;
   for (auto span = lane.past.rbegin(); span != lane.past.rend(); ++span) {
     if (frame >= span->begin.frame && frame < span->end.frame) return Kleene::kTrue;
@@ -176,7 +254,7 @@ Kleene Lanes::TruthAt(int index, FrameNumber frame) const {
 Kleene Lanes::BeginsAt(int index, FrameNumber frame) const {
   if (index == kNone) return Kleene::kFalse;
   const Lane& lane = lanes_[index];
-  if (lane.awake && frame >= lane.known) return Kleene::kUnknown;
+  if (frame >= lane.known) return Kleene::kUnknown;
   if (lane.open && lane.certain && frame == lane.begin.frame) return Kleene::kTrue;
   return Known(std::any_of(lane.past.rbegin(), lane.past.rend(),
                            [&](const Span& span) { return span.begin.frame == frame; }));
@@ -185,7 +263,7 @@ Kleene Lanes::BeginsAt(int index, FrameNumber frame) const {
 Kleene Lanes::EndsAt(int index, FrameNumber frame) const {
   if (index == kNone) return Kleene::kFalse;
   const Lane& lane = lanes_[index];
-  if (lane.awake && frame >= lane.known) return Kleene::kUnknown;
+  if (frame >= lane.known) return Kleene::kUnknown;
   return Known(std::any_of(lane.past.rbegin(), lane.past.rend(),
                            [&](const Span& span) { return span.end.frame == frame; }));
 }

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lanes: one per rule and binding, each with the state of its rule for these entities. A lane exists from when its guard
-// first held; while nothing about it is true, open or undecided it sleeps and costs nothing.
-// Tested by tests/grammar/monitor_test.cc
+// Lanes: one per rule and binding, each with the state of its rule for these entities.
+//
+// A lane is *awake* while there is something to look at in the next frame, else it rests: its condition is what it was,
+// and nobody looks at it until something it is made of changes. So each lane knows who asks about it (its watchers),
+// and each entity which lanes look at it.
+// A lane exists from when its guard first held, or when somebody first asked, until nothing about it is true, open,
+// undecided or within the remembered past. Its place is used again.
+// Tested by tests/grammar/monitor_test.cc and tests/grammar/restless_test.cc
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <deque>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "grammar/history.h"
 #include "grammar/kleene.h"
+#include "grammar/lane_index.h"
 #include "grammar/program.h"
 
 namespace prehend::grammar {
@@ -39,17 +44,20 @@ struct Pending {
   FrameNumber next = 0;  ///< first frame not yet searched for the confirmation
 };
 
-struct Lane {
-  int rule = 0;
-  Binding entities = kUnbound;
-  std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not there yet
-  std::vector<int> dependents;  ///< lanes this one guards
+struct Lane : LaneKey {  // rule kNone: the lane is free
+  int index = kNone;
+  std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not asked for yet
+  std::vector<int> watchers;    ///< lanes to wake when the truth of this one changes
   std::vector<int> members;     ///< kAny only: the lanes of which one must hold
+  std::array<int, kMaxRoles> watch_places = kUnbound;  ///< by role: where in the list of the entity's watchers
 
   bool awake = false;
-  FrameNumber stirred = -1;  ///< the last frame at which a guard was not at rest
-  FrameNumber next = 0;      ///< first frame not yet looked at
-  FrameNumber known = 0;     ///< truth is final before this frame
+  bool dependents_made = false;  ///< the lanes that this one guards are there
+  bool retiring = false;         ///< waits to be freed
+  Kleene told = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
+  FrameNumber next = 0;          ///< first frame not yet looked at; nothing while at rest
+  FrameNumber known = kNever;    ///< truth is final before this frame
+  FrameNumber resting_since = 0;
 
   bool open = false;     ///< a run has begun
   bool certain = false;  ///< the open run will be an interval whatever comes
@@ -63,7 +71,15 @@ struct Lane {
   std::vector<Span> past;         ///< intervals, as long as somebody may ask
   std::vector<Pending> pending;
   std::vector<std::vector<Span>> parts;  ///< kCompose: finished intervals of each part
-  Ring<TouchSample> touches;             ///< kTouching only
+  Ring<TouchSample> touches;             ///< kTouching only, where they change
+  FrameNumber touched = -1;              ///< kTouching only: the last frame that said so
+  std::size_t touching_place = 0;        ///< kTouching only: where among those that touch now
+};
+
+/// A lane that looks at an entity in one of its roles.
+struct Watch {
+  int lane = kNone;
+  int role = kNone;
 };
 
 class Lanes {
@@ -72,18 +88,31 @@ class Lanes {
 
   /// Binds the rules that have no guard.
   void BindUnguarded();
-  /// kNone if there is no such lane.
-  int Find(int rule, const Binding& entities) const;
-  /// Makes the lane and those it guards, unless an entity's class does not fit: then kNone.
+  /// Makes the lane, at rest, if it is not there. kNone if an entity's class does not fit, or there are TooMany().
   int Ensure(int rule, const Binding& entities);
+  /// Makes the lanes that this one guards and appends them to `made`, those that were there already, too.
+  void MakeDependents(int lane, std::vector<int>& made);
+  /// Frees a lane that nothing but kAny lanes watches. Appends the lanes that it leaves without a watcher.
+  void Free(int lane, std::vector<int>& orphans);
   bool TooMany() const { return too_many_; }
 
   Lane& operator[](int lane) { return lanes_[lane]; }
   const Lane& operator[](int lane) const { return lanes_[lane]; }
+  /// Numbers of lanes are below this, free ones included.
   int size() const { return static_cast<int>(lanes_.size()); }
+  int in_use() const { return static_cast<int>(lanes_.size() - free_.size()); }
 
-  /// The lane that reference `slot` of `lane` means, kNone if nothing was ever true there.
+  /// The lane that reference `slot` of `lane` means, made if need be; from now on its changes wake this one.
   int Resolve(Lane& lane, int slot);
+  /// Likewise, kNone if it is not there.
+  int Find(const Lane& lane, int slot) const { return Find(Referred(lane, slot)); }
+  int Find(int rule, const Binding& entities) const { return Find(Canonical(rule, entities)); }
+
+  /// The lanes that look at an entity, and those that look at nothing but its grip.
+  const std::vector<Watch>& PoseWatchers(int entity) const { return pose_watchers_[entity]; }
+  const std::vector<Watch>& GripWatchers(int entity) const { return grip_watchers_[entity]; }
+  /// Nothing about the lane can be true until its guard wakes it.
+  bool GuardRests(const Lane& lane) const;
 
   Kleene TruthAt(int lane, FrameNumber frame) const;
   Kleene BeginsAt(int lane, FrameNumber frame) const;
@@ -92,27 +121,28 @@ class Lanes {
   bool IsA(int entity, const std::string& class_name) const;
 
  private:
-  struct Key {
-    int rule;
-    Binding entities;
-    friend bool operator==(const Key&, const Key&) = default;
-  };
-  struct KeyHash {
-    std::size_t operator()(const Key& key) const;
-  };
-
-  Binding Canonical(const Rule& rule, Binding entities) const;
-  bool Fits(int rule, const Binding& entities, std::size_t count) const;
-  void BindRest(int rule, Binding& entities, std::size_t role, int guard);
-  void MakeDependents(int lane);
-
+  auto KeyOf() const {
+    return [this](int lane) -> const LaneKey& { return lanes_[lane]; };
+  }
+  LaneKey Canonical(int rule, Binding entities) const;
+  int Find(const LaneKey& key) const { return index_.Find(key, KeyOf()); }
+  LaneKey Referred(const Lane& lane, int slot) const;
+  bool Fits(int rule, const Binding& entities) const;
+  void BindRest(int rule, Binding& entities, std::size_t role, int guard, std::vector<int>* made);
+  void LinkToGuard(int lane, int guard);
+  void WatchEntities(Lane& lane);
+  void UnwatchEntities(const Lane& lane);
+  void Unlink(int lane, int watcher, std::vector<int>& orphans);
   const Program& program_;
   const Cast& cast_;
   std::deque<Lane> lanes_;  // a lane stays where it is when others are made
-  std::unordered_map<Key, int, KeyHash> index_;     // looked up only, never walked
-  std::vector<std::vector<int>> guarded_;           // by rule: the rules it guards
+  std::vector<int> free_;
+  LaneIndex index_;
+  std::vector<std::vector<int>> guarded_;             // by rule: the rules it guards
   std::vector<std::vector<std::vector<bool>>> fits_;  // by rule, role, entity
-  std::vector<int> name_rank_;                      // alphabetical order of entities
+  std::vector<std::vector<Watch>> pose_watchers_;     // by entity
+  std::vector<std::vector<Watch>> grip_watchers_;
+  std::vector<int> name_rank_;                        // alphabetical order of entities
   bool too_many_ = false;
 };
 

@@ -124,6 +124,10 @@ struct Rule {
   std::vector<PartOf> part_of;  ///< compositions that collect its intervals
   bool referenced = false;   ///< another rule asks for its truth
   bool uses_looks = false;   ///< asks for poses, hands or touches of the frames it looks at
+  // What its condition asks at every frame, by role: an entity's pose; nothing but a hand's grip.
+  std::array<bool, kMaxRoles> watches_pose = {};
+  std::array<bool, kMaxRoles> watches_grip = {};
+  bool watches_press = false;  ///< how entities touch, not only whether
   double looks_around_s = 0; ///< its signals ask for poses so long before and after the frames it looks at
 };
 

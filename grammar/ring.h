@@ -37,9 +37,12 @@ class Ring {
     --size_;
   }
 
+  /// Keeps its memory.
+  void Clear() { front_ = size_ = 0; }
+
  private:
   void Grow() {
-    std::vector<T> larger(slots_.empty() ? 8 : 2 * slots_.size());
+    std::vector<T> larger(slots_.empty() ? 2 : 2 * slots_.size());
     for (std::size_t i = 0; i < size_; ++i) larger[i] = std::move((*this)[i]);
     slots_ = std::move(larger);
     front_ = 0;

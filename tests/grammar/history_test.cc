@@ -8,13 +8,21 @@ namespace {
 
 using testing::Scene;
 
+void Push(History& history, const Frame& frame) {
+  history.BeginFrame(frame.tick);
+  for (std::size_t i = 0; i < frame.entities.size(); ++i) {
+    if (i != Scene::kTray || history.now() == 0) history.SetLook(static_cast<int>(i), frame.entities[i]);
+  }
+  for (const HandLook& hand : frame.hands) history.SetHand(hand);
+}
+
 TEST(History, RemembersLooksOfEachFrame) {
   Scene scene;
   History history(scene.cast);
   for (int i = 0; i < 100; ++i) {
     scene.looks[Scene::kCup].p_WB_m.x() = i;
     scene.hand.trigger = i / 100.0;
-    history.Push(scene.At(10 * i));
+    Push(history, scene.At(10 * i));
   }
   for (int i = 0; i < 100; ++i) {
     EXPECT_EQ(history.Look(Scene::kCup, i).p_WB_m.x(), i);
@@ -34,7 +42,7 @@ TEST(History, ForgetsButKeepsTheLookOfASleeper) {
   scene.looks[Scene::kTray].p_WB_m.x() = 7;
   for (int i = 0; i < 100; ++i) {
     scene.looks[Scene::kCup].p_WB_m.x() = i;
-    history.Push(scene.At(i));
+    Push(history, scene.At(i));
   }
   history.Forget(60, 80);
   EXPECT_EQ(history.first(), 60);

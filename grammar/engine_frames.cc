@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a frame says, and the end of the episode. A whole frame is compared with the one before it; from there on there
+// are only changes.
+#include <algorithm>
+#include <tuple>
+
+#include "grammar/engine.h"
+
+namespace prehend::grammar {
+namespace {
+
+// Far enough from the limits of a Tick that times can be added and subtracted.
+constexpr Tick kLatestTick = 1'000'000'000'000'000;
+
+constexpr const char* kTooMany = "more bindings than this monitor can watch; give the roles narrower classes";
+
+bool Same(const EntityLook& a, const EntityLook& b) {
+  return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() && a.v_WB_m_per_s == b.v_WB_m_per_s &&
+         a.w_WB_rad_per_s == b.w_WB_rad_per_s;
+}
+
+bool SamePose(const HandLook& a, const HandSample& b) {
+  const auto same = [](const Feeler& x, const Feeler& y) { return x.p_W_m == y.p_W_m && x.radius_m == y.radius_m; };
+  return a.style == b.look.style && a.ahead_W == b.look.ahead_W &&
+         std::equal(a.feelers.begin(), a.feelers.end(), b.feelers.begin(), b.feelers.end(), same);
+}
+
+bool Same(const TouchSample& a, const TouchSample& b) {
+  return a.up == b.up && a.force_n == b.force_n && a.sensor_sets == b.sensor_sets;
+}
+
+}  // namespace
+
+std::string Engine::WhyNoTick(Tick tick) const {
+  if (tick > kLatestTick || tick < -kLatestTick) return "a frame's tick is too large";
+  if (history_.now() >= 0 && tick <= history_.At(history_.now()).tick) return "the frames are not in order of time";
+  return {};
+}
+
+std::string Engine::WhyNotWatchable(const Frame& frame) const {
+  if (frame.entities.size() != cast_.entities.size()) return "a frame shows another number of entities than the cast";
+  int last_hand = kNobody;
+  for (const HandLook& hand : frame.hands) {
+    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the cast";
+    if (hand.entity <= last_hand) return "a frame shows a hand twice, or its hands are not in the order of the cast";
+    last_hand = hand.entity;
+  }
+  return WhyNoTouches(frame.touches);
+}
+
+std::string Engine::WhyNotWatchable(const FrameChanges& changes) const {
+  for (const EntityChange& change : changes.entities) {
+    if (!IsEntity(change.entity)) return "a frame shows somebody who is not in the cast";
+  }
+  for (const HandLook& hand : changes.hands) {
+    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the cast";
+  }
+  for (const Parting& parting : changes.partings) {
+    if (!IsEntity(parting.a) || !IsEntity(parting.b)) return "a frame shows a parting of somebody not in the cast";
+  }
+  return WhyNoTouches(changes.touches);
+}
+
+std::string Engine::WhyNoTouches(std::span<const Touch> touches) const {
+  for (const Touch& touch : touches) {
+    if (!IsEntity(touch.a) || !IsEntity(touch.b) || touch.a >= touch.b) {
+      return "a frame shows a touch of somebody not in the cast";
+    }
+  }
+  return {};
+}
+
+void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
+  if (!BeginFrame(frame, out)) return;
+  for (std::size_t i = 0; i < frame.entities.size(); ++i) {
+    const int entity = static_cast<int>(i);
+    if (!Same(frame.entities[i], history_.Look(entity, history_.now()))) Look(entity, frame.entities[i]);
+  }
+  for (const HandLook& hand : frame.hands) Look(hand);
+  for (const Touch& touch : frame.touches) Press(touch);
+  // A touch that this frame does not show has ended.
+  for (std::size_t i = touching_.size(); i-- > 0;) Part(touching_[i]);
+  EndFrame();
+}
+
+void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
+  if (!BeginFrame(changes, out)) return;
+  for (const EntityChange& change : changes.entities) Look(change.entity, change.look);
+  for (const HandLook& hand : changes.hands) Look(hand);
+  for (const Touch& touch : changes.touches) Press(touch);
+  for (const Parting& parting : changes.partings) {
+    const int index = lanes_.Find(kTouchingRule, {parting.a, parting.b, kNobody, kNobody});
+    if (index != kNone && lanes_[index].open) Part(index);
+  }
+  EndFrame();
+}
+
+template <typename AnyFrame>
+bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
+  if (!error_.empty() || finishing_) return false;
+  error_ = WhyNoTick(frame.tick);
+  if (error_.empty()) error_ = WhyNotWatchable(frame);
+  if (!error_.empty()) return false;
+  out_ = &out;
+  first_new_ = out.size();
+  decided_ = frame.tick;
+  history_.BeginFrame(frame.tick);
+  oldest_needed_ = oldest_look_needed_ = history_.now();
+  RingAlarms();
+  return true;
+}
+
+void Engine::EndFrame() {
+  for (const int rule : program_->schedule) StepRule(rule);
+  ForgetThePast();
+  FreeLanes();
+  if (lanes_.TooMany()) error_ = kTooMany;
+  SortNewEvents();
+}
+
+void Engine::SortNewEvents() {
+  std::sort(out_->begin() + static_cast<std::ptrdiff_t>(first_new_), out_->end(), [](const Event& a, const Event& b) {
+    return std::tie(a.decided, a.interval.begin, a.rule, a.roles) < std::tie(b.decided, b.interval.begin, b.rule, b.roles);
+  });
+  out_ = nullptr;
+}
+
+void Engine::Finish(Tick end, std::vector<Event>& out) {
+  if (!error_.empty() || finishing_ || history_.now() < 0) return;
+  finishing_ = true;
+  history_.Complete();
+  out_ = &out;
+  first_new_ = out.size();
+  // The episode's last frame belongs to it, so its end is later.
+  const Moment last{history_.now() + 1, std::clamp(end, history_.At(history_.now()).tick + 1, kLatestTick + 1)};
+  decided_ = last.tick;
+  for (const int touching : touching_) CloseTouch(lanes_[touching], last);
+  // What rests is decided; if it is open, it ends now.
+  for (int i = 0; i < lanes_.size(); ++i) {
+    Lane& lane = lanes_[i];
+    if (lane.rule == kNone || lane.awake || !lane.open) continue;
+    Wake(i);
+    lane.next = history_.now() + 1;
+  }
+  for (const int rule : program_->schedule) {
+    for (const int lane : awake_[rule]) FinishLane(lanes_[lane], last);
+    awake_[rule].clear();
+  }
+  SortNewEvents();
+}
+
+void Engine::Look(int entity, const EntityLook& look) {
+  history_.SetLook(entity, look);
+  WakeWatchers(lanes_.PoseWatchers(entity));
+}
+
+void Engine::Look(const HandLook& hand) {
+  const HandSample* before = history_.Hand(hand.entity, history_.now());
+  const bool same_grip = before != nullptr && before->look.trigger == hand.trigger;
+  const bool same_pose = before != nullptr && SamePose(hand, *before);
+  if (same_grip && same_pose) return;
+  history_.SetHand(hand);
+  if (!same_grip) WakeWatchers(lanes_.GripWatchers(hand.entity));
+  WakeWatchers(lanes_.PoseWatchers(hand.entity));
+}
+
+void Engine::Press(const Touch& touch) {
+  const int index = lanes_.Ensure(kTouchingRule, {touch.a, touch.b, kNobody, kNobody});
+  if (index == kNone) return;
+  Lane& lane = lanes_[index];
+  if (lane.touched == history_.now()) return;  // said twice
+  lane.touched = history_.now();
+  const bool swapped = lane.entities[0] != touch.a;
+  const TouchSample sample{.frame = history_.now(),
+                           .up = {swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b},
+                           .force_n = touch.normal_force_n,
+                           .sensor_sets = touch.sensor_sets};
+  if (lane.open && Same(lane.touches.back(), sample)) return;
+  ForgetSamples(lane.touches, history_.first_look());
+  lane.touches.PushBack() = sample;
+  if (lane.open) {
+    for (const int watcher : lane.watchers) {
+      if (RuleOf(lanes_[watcher]).watches_press) Wake(watcher);
+    }
+    return;
+  }
+  lane.open = lane.certain = true;
+  lane.begin = history_.At(history_.now());
+  lane.touching_place = touching_.size();
+  touching_.push_back(index);
+  Tell(lane);
+}
+
+void Engine::Part(int touching) {
+  Lane& lane = lanes_[touching];
+  if (lane.touched == history_.now()) return;
+  CloseTouch(lane, history_.At(history_.now()));
+  touching_[lane.touching_place] = touching_.back();
+  lanes_[touching_.back()].touching_place = lane.touching_place;
+  touching_.pop_back();
+  Tell(lane);
+  lane.resting_since = history_.now();
+  Retire(lane);
+}
+
+void Engine::CloseTouch(Lane& lane, Moment end) {
+  std::erase_if(lane.past, [&](const Span& past) { return past.end.frame < history_.first(); });
+  lane.past.push_back({lane.begin, end});
+  lane.open = false;
+}
+
+}  // namespace prehend::grammar
