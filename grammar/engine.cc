@@ -43,9 +43,12 @@ void Engine::Wake(int index) {
 
 void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
   for (const Watch& watch : watchers) {
-    if (!lanes_.GuardRests(lanes_[watch.lane])) Wake(watch.lane);
+    if (MayStir(lanes_[watch.lane])) Wake(watch.lane);
   }
 }
+
+// What is not open does not begin while its guard rests, whatever else happens.
+bool Engine::MayStir(const Lane& lane) const { return lane.open || !lanes_.GuardRests(lane); }
 
 // The truth of this lane is another one than in the frame before.
 void Engine::Tell(Lane& lane) {
@@ -54,7 +57,9 @@ void Engine::Tell(Lane& lane) {
     lanes_.MakeDependents(lane.index, scratch_);
     for (const int dependent : scratch_) Wake(dependent);
   }
-  for (const int watcher : lane.watchers) Wake(watcher);
+  for (const int watcher : lane.watchers) {
+    if (lanes_.Guards(lane.index, lanes_[watcher]) || MayStir(lanes_[watcher])) Wake(watcher);
+  }
 }
 
 void Engine::TellIfChanged(Lane& lane) {

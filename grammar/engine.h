@@ -73,6 +73,7 @@ class Engine {
   // Waking and resting.
   void Wake(int lane);
   void WakeWatchers(const std::vector<Watch>& watchers);
+  bool MayStir(const Lane& lane) const;
   void Tell(Lane& lane);
   void TellIfChanged(Lane& lane);
   void WakeAt(Tick tick, int lane);

@@ -5,7 +5,8 @@
 // from the begin of the first part to the end of the last. They do not overlap: the one that ends first is taken, of
 // those that end together the one that begins last.
 // Algorithm: parts deliver their intervals; a combination is judged as soon as no interval can still come that ends
-// before it does. Only the last kRemembered intervals of a part are kept.
+// before it does. An interval that nothing to come can complete is forgotten, and of the others only the last
+// kRemembered of a part are kept.
 // Tested by tests/grammar/compose_test.cc
 #include <algorithm>
 
@@ -18,6 +19,31 @@ namespace {
 constexpr std::size_t kRemembered = 64;
 
 Interval TicksOf(const Span& span) { return {span.begin.tick, span.end.tick}; }
+
+constexpr AllenSet Bits(std::initializer_list<Allen> relations) {
+  AllenSet bits = 0;
+  for (const Allen relation : relations) bits |= Bit(relation);
+  return bits;
+}
+
+// How an interval lies to one that ends earlier, and to one that ends later.
+constexpr AllenSet kToEarlier =
+    Bits({Allen::kContains, Allen::kStartedBy, Allen::kOverlappedBy, Allen::kMetBy, Allen::kAfter});
+constexpr AllenSet kToLater = Bits({Allen::kBefore, Allen::kMeets, Allen::kOverlaps, Allen::kStarts, Allen::kDuring});
+
+// Some relation to another part holds to none of the remembered intervals, nor to one that ends later than all of them.
+bool IsHopeless(const Composition& composition, const Lane& lane, int part, const Span& span) {
+  return std::any_of(composition.clauses.begin(), composition.clauses.end(), [&](const Composition::Clause& clause) {
+    if (clause.left == clause.right || (clause.left != part && clause.right != part)) return false;
+    const bool is_left = clause.left == part;
+    if ((clause.relations & (is_left ? kToLater : kToEarlier)) != 0) return false;
+    const std::vector<Span>& others = lane.parts[is_left ? clause.right : clause.left];
+    return std::none_of(others.begin(), others.end(), [&](const Span& other) {
+      const Allen relation = is_left ? Relate(TicksOf(span), TicksOf(other)) : Relate(TicksOf(other), TicksOf(span));
+      return (Bit(relation) & clause.relations) != 0;
+    });
+  });
+}
 
 // Tries all ways to complete `chosen` and keeps the best one.
 class Combinations {
@@ -109,6 +135,14 @@ void Engine::StepCompose(Lane& lane) {
       std::erase_if(spans, [&](const Span& span) { return span.begin.frame < whole.begin.frame; });
     }
     Conclude(lane, whole);
+  }
+  for (bool again = true; again;) {
+    again = false;
+    for (std::size_t part = 0; part < lane.parts.size(); ++part) {
+      again |= std::erase_if(lane.parts[part], [&](const Span& span) {
+                 return span.end.frame <= settled && IsHopeless(rule.composition, lane, static_cast<int>(part), span);
+               }) > 0;
+    }
   }
   lane.next = lane.known = std::min(settled, history_.now()) + 1;
 }

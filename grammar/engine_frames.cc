@@ -180,7 +180,7 @@ void Engine::Press(const Touch& touch) {
   lane.touches.PushBack() = sample;
   if (lane.open) {
     for (const int watcher : lane.watchers) {
-      if (RuleOf(lanes_[watcher]).watches_press) Wake(watcher);
+      if (RuleOf(lanes_[watcher]).watches_press && MayStir(lanes_[watcher])) Wake(watcher);
     }
     return;
   }

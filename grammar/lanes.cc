@@ -223,6 +223,11 @@ bool Lanes::GuardRests(const Lane& lane) const {
   return guard == kNone || rests(guard);
 }
 
+bool Lanes::Guards(int guard, const Lane& lane) const {
+  const Rule& rule = program_.events[lane.rule];
+  return rule.form == Form::kAny || (rule.guard != kNone && lane.references[rule.guard] == guard);
+}
+
 LaneKey Lanes::Referred(const Lane& lane, int slot) const {
   const Reference& reference = program_.events[lane.rule].references[slot];
   Binding entities = kUnbound;

@@ -111,8 +111,9 @@ class Lanes {
   /// The lanes that look at an entity, and those that look at nothing but its grip.
   const std::vector<Watch>& PoseWatchers(int entity) const { return pose_watchers_[entity]; }
   const std::vector<Watch>& GripWatchers(int entity) const { return grip_watchers_[entity]; }
-  /// Nothing about the lane can be true until its guard wakes it.
+  /// The lane's guard is false, and known to be.
   bool GuardRests(const Lane& lane) const;
+  bool Guards(int guard, const Lane& lane) const;
 
   Kleene TruthAt(int lane, FrameNumber frame) const;
   Kleene BeginsAt(int lane, FrameNumber frame) const;

@@ -119,7 +119,7 @@ struct Rule {
   std::vector<Reference> references;
   std::vector<int> anchors;  ///< nodes whose values are kept from where an interval begins
 
-  /// While this reference is false and known, nothing of this rule is true or open. kNone: watch every binding.
+  /// While this reference is false and known, nothing of this rule begins. kNone: watch every binding.
   int guard = kNone;
   std::vector<PartOf> part_of;  ///< compositions that collect its intervals
   bool referenced = false;   ///< another rule asks for its truth
