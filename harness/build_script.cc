@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "harness/build_scene.h"
 #include "harness/scenario_fields.h"
@@ -111,6 +112,43 @@ void CheckLength(const ScenarioEntry& entry, const physics::Script& script, Comp
   }
 }
 
+/// What a hand's steps so far allow the next one to take for granted.
+struct HandSoFar {
+  std::string reached;  ///< the entity last reached for
+  bool closed = false;  ///< its grip has been commanded
+};
+
+/// Steps about the held thing need a hand that may hold something.
+void CheckOrder(const std::vector<BeatEntry>& script, Complaints& complaints) {
+  std::map<std::string, HandSoFar> hands;
+  const auto check_holds = [&](const std::string& key, const Named<StepEntry>& step, const Where& where) {
+    const HandSoFar& hand = hands[step.name];
+    if (!hand.reached.empty() || hand.closed) return;
+    complaints.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
+                   "it has neither reached for something nor closed before");
+  };
+  for (const BeatEntry& beat : script) {
+    for (const Named<StepEntry>& step : beat) {
+      HandSoFar& hand = hands[step.name];
+      if (const auto* reach = std::get_if<ReachEntry>(&step.value)) hand.reached = reach->reach.value;
+      if (const auto* close = std::get_if<CloseEntry>(&step.value)) hand.closed |= close->close_to > 0;
+      if (const auto* poses = std::get_if<PosesEntry>(&step.value)) {
+        for (const PoseEntry& pose : poses->poses) hand.closed |= pose.trigger.value_or(0) > 0;
+      }
+      if (const auto* carry = std::get_if<CarryEntry>(&step.value)) {
+        check_holds("carry_to_m", step, carry->where);
+      }
+      if (const auto* place = std::get_if<PlaceEntry>(&step.value)) {
+        check_holds("place_on", step, place->where);
+        if (place->place_on.value == hand.reached) {
+          complaints.Add(place->place_on.where,
+                         fmt::format("place_on: {} holds '{}' itself", step.name, hand.reached));
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints) {
@@ -132,6 +170,7 @@ physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& sc
       beat.steps.push_back(std::move(step));
     }
   }
+  CheckOrder(entry.script, complaints);
   CheckLength(entry, script, complaints);
   return script;
 }

@@ -19,7 +19,8 @@ namespace {
 
 std::vector<Command> Commands() {
   return {ListCommand(),   ValidateCommand(), RunCommand(), CheckCommand(),
-          AcceptCommand(), RenderCommand(),   NewCommand(), SchemaCommand()};
+          AcceptCommand(), RenderCommand(),   NewCommand(), SchemaCommand(),
+          ResegmentCommand(), ScoreCommand()};
 }
 
 bool IsSet(const char* variable) {

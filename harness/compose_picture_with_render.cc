@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
+#include "harness/moment.h"
 #include "harness/phases.h"
 
 namespace prehend::harness {
@@ -226,25 +226,9 @@ render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& pi
 
 }  // namespace
 
-Moment FindMoment(const std::string& at, const RunResult& run) {
-  double seconds = 0;
-  const auto parsed = std::from_chars(at.data(), at.data() + at.size(), seconds);
-  if (parsed.ec == std::errc() && parsed.ptr == at.data() + at.size())
-    return {.tick = static_cast<grammar::Tick>(
-                seconds * static_cast<double>(run.timeline.ticks_per_second) + 0.5),
-            .is_time = true};
-  const std::size_t dot = at.rfind('.');
-  const std::string event = at.substr(0, dot);
-  const bool end = dot != std::string::npos && at.substr(dot) == ".end";
-  for (const grammar::NamedEvent& e : run.timeline.events) {
-    if (e.event == event) return {end ? e.interval.end : e.interval.begin, true};
-  }
-  return {run.ticks, false};
-}
-
 render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
                                const PictureEntry& entry) {
-  const Moment moment = FindMoment(entry.at, run);
+  const Moment moment = FindMoment(entry.at.value, run);
   render::Picture picture;
   picture.scene = &scenario.scene;
   picture.snapshot = SnapshotAt(run, moment.tick);
@@ -258,10 +242,9 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
   picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
   picture.strip = ComposeStrip(scenario, run, moment.tick);
   picture.camera = ComposeCamera(scenario, picture, entry.camera);
-  const std::string at =
-      moment.is_time
-          ? ""
-          : fmt::format("  ·  {}{}", entry.at, moment.found ? "" : " did not happen; the end");
+  const auto name = ParseMoment(entry.at.value);
+  std::string at = name && name->time_s ? "" : fmt::format("  ·  {}", entry.at.value);
+  if (!moment.missed.empty()) at = fmt::format("  ·  {}; the end", moment.missed);
   picture.title =
       fmt::format("{}{}  ·  {:.3f} s", scenario.name, at, Seconds(picture.snapshot.tick, run));
   return picture;

@@ -8,15 +8,6 @@
 
 namespace prehend::harness {
 
-/// The tick that `at` names ("reaching.begin", "grasping.end", "1.25"), or the end of the run when
-/// the event named did not happen; `found` tells which.
-struct Moment {
-  grammar::Tick tick = 0;
-  bool found = true;
-  bool is_time = false;  ///< `at` is a number of seconds
-};
-Moment FindMoment(const std::string& at, const RunResult& run);
-
 /// The recording must not be empty. The scenario must outlive the picture.
 render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
                                const PictureEntry& entry);

@@ -143,7 +143,7 @@ Format<bool> Flag() {
 }
 
 Format<std::string> Text(std::size_t max_length) {
-  const std::string wanted = fmt::format("text of at most {} bytes", max_length);
+  const std::string wanted = fmt::format("text of 1 to {} bytes", max_length);
   return {.schema = {{"type", "string"}, {"minLength", 1}, {"maxLength", max_length}},
           .read =
               [=](const YamlNode& node, Complaints& complaints, std::string& value) {

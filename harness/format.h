@@ -44,13 +44,6 @@ struct Format {
   std::function<Json(const T&)> show;
 };
 
-/// A value that knows where it was written.
-template <class T>
-struct Located {
-  T value{};
-  Where where;
-};
-
 /// An entry of a mapping whose keys are names that the writer chose.
 template <class T>
 struct Named {

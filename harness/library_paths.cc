@@ -86,7 +86,7 @@ std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenari
   const auto matching = Matching(scenarios, typed);
   if (matching.size() == 1) return matching.front()->path;
   std::error_code error;
-  const bool is_path = typed.ends_with(kScenarioEnding) || fs::exists(typed, error);
+  const bool is_path = typed.find('.') != std::string::npos || fs::exists(typed, error);
   if (matching.empty() && is_path) return typed;
   return std::nullopt;
 }

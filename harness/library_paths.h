@@ -19,6 +19,7 @@ struct ScenarioFile {
   std::string skill;  ///< its folder below scenarios/, or ""
   std::string name;   ///< without ".yaml"
   std::string path;
+  bool in_project = true;  ///< below root/scenarios, so that it has a golden
 };
 
 /// All below root/scenarios, sorted by skill and name, without the folder `invalid` (which shows errors).

@@ -59,6 +59,9 @@ class TreeBuilder : public YAML::EventHandler {
     YamlNode node = NewNode(Kind::kScalar, mark);
     node.text = value;
     node.quoted = tag == "!";  // yaml-cpp's way to say so; explicit tags were refused by NewNode()
+    if (node.quoted && !IsClosed(Offset(mark))) {
+      Complain(node.where.place, "this quotation does not end", "close it with the same quote");
+    }
     Attach(std::move(node));
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
@@ -91,6 +94,21 @@ class TreeBuilder : public YAML::EventHandler {
   static Place PlaceOf(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
   std::size_t Offset(const YAML::Mark& mark) const {
     return std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), text_.size());
+  }
+
+  /// Whether the quotation that opens here is closed; yaml-cpp takes the end of the file for its end.
+  bool IsClosed(std::size_t open) const {
+    const char quote = open < text_.size() ? text_[open] : '\0';
+    if (quote != '"' && quote != '\'') return true;  // a block scalar
+    for (std::size_t i = open + 1; i < text_.size(); ++i) {
+      const bool escapes = quote == '"' ? text_[i] == '\\' : text_.compare(i, 2, "''") == 0;
+      if (escapes) {
+        ++i;
+      } else if (text_[i] == quote) {
+        return true;
+      }
+    }
+    return false;
   }
 
   YamlNode NewNode(Kind kind, const YAML::Mark& mark) {

@@ -6,6 +6,7 @@
 // Tested by tests/harness/located_yaml_test.cc
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,13 @@ inline constexpr int kMaxYamlDepth = 64;
 struct Where {
   int source = 0;  ///< index into YamlDocument::sources
   grammar::Place place;
+};
+
+/// A value that knows where it was written.
+template <class T>
+struct Located {
+  T value{};
+  Where where;
 };
 
 struct YamlNode {
@@ -52,7 +60,9 @@ ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text);
 ReadResult<YamlDocument> ReadYamlFile(const std::string& path);
 
 /// Replaces (or adds) a value: `entities.milk.mass_kg=8`, `pictures.0.camera=left`. The value is YAML, too.
-/// The new node's place is in a source called `--set`. Complains when the path leads nowhere.
-grammar::Diagnostics ApplyOverride(const std::string& assignment, YamlDocument& document);
+/// The new node's place is in a source called `--set`. Complains when the path leads nowhere; a mapping that is left
+/// out in the file is made when the JSON Schema knows a field of that name there.
+grammar::Diagnostics ApplyOverride(const std::string& assignment, const nlohmann::ordered_json& schema,
+                                   YamlDocument& document);
 
 }  // namespace prehend::harness

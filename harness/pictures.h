@@ -15,6 +15,7 @@ namespace prehend::harness {
 struct WrittenPicture {
   std::string file;     ///< path as written
   std::string caption;  ///< "reaching.begin, 0.412 s"
+  std::string missed;   ///< empty, or why the end is shown instead of the moment that was asked for
 };
 
 struct PictureResult {

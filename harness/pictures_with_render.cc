@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "harness/compose_picture_with_render.h"
+#include "harness/moment.h"
 #include "harness/pictures.h"
 
 namespace prehend::harness {
@@ -18,7 +19,7 @@ std::string DrawOne(render::Painter& painter, const Scenario& scenario, const Ru
   const render::Image image = painter.Draw(picture);
   if (image.rgb.empty()) return painter.error();
   if (!render::WritePng(image, file)) return "cannot write " + file;
-  written.push_back({file, picture.title});
+  written.push_back({file, picture.title, FindMoment(entry.at.value, run).missed});
   return "";
 }
 

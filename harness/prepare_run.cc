@@ -2,9 +2,14 @@
 // See prepare_run.h. Tested by tests/house/command_line_test.cc
 #include "harness/prepare_run.h"
 
+#include <functional>
+
 #include "grammar/program.h"
 #include "harness/library_paths.h"
 #include "harness/load_grammar.h"
+#include "harness/moment.h"
+#include "harness/scenario_fields.h"
+#include "harness/text_file.h"
 
 namespace prehend::harness {
 namespace {
@@ -15,16 +20,21 @@ struct Settings {
   grammar::Diagnostics diagnostics;
 };
 
-Settings Split(const std::vector<std::string>& settings) {
+/// `is_field`: whether a name means a field of the scenario.
+Settings Split(const std::vector<std::string>& settings, const std::function<bool(const std::string&)>& is_field) {
   Settings split;
+  std::set<std::string> seen;
   for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
     const std::string name = setting.substr(0, equals);
-    if (equals == std::string::npos || name.empty()) {
-      split.diagnostics.push_back(
-          grammar::DiagnosticAt("--set", setting, {1, 1}, "expected name=value",
-                                "--set reach_radius=25cm, --set entities.milk.mass_kg=8"));
-    } else if (name.find('.') != std::string::npos) {
+    const auto complain = [&](const char* message, const std::string& hint) {
+      split.diagnostics.push_back(grammar::DiagnosticAt("--set", setting, {1, 1}, message, hint));
+    };
+    if (equals == std::string::npos || name.empty() || equals + 1 == setting.size()) {
+      complain("expected NAME=VALUE", "--set reach_radius=25cm, --set entities.milk.mass_kg=8");
+    } else if (!seen.insert(name).second) {
+      complain("the same name is set twice", "give each --set a name of its own");
+    } else if (is_field(name)) {
       split.of_scenario.push_back(setting);
     } else {
       split.of_grammar[name] = setting.substr(equals + 1);
@@ -33,20 +43,48 @@ Settings Split(const std::vector<std::string>& settings) {
   return split;
 }
 
+/// The scenario's own grammar must have the events that pictures ask for.
+grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Program& program) {
+  grammar::Diagnostics diagnostics;
+  for (const PictureEntry& picture : scenario.pictures) {
+    const auto problem = WhyNoMoment(picture.at.value, program);
+    if (!problem) continue;
+    const bool in_file = picture.at.where.source == 0;
+    const ReadResult<std::string> text =
+        in_file ? ReadTextFile(scenario.file) : ReadResult<std::string>{};
+    diagnostics.push_back(grammar::DiagnosticAt(in_file ? scenario.file : "--set", text.value.value_or(""),
+                                                picture.at.where.place, "at: " + problem->message,
+                                                problem->hint));
+  }
+  return diagnostics;
+}
+
 }  // namespace
 
 ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root) {
-  Settings settings = Split(request.settings);
+  const Json fields = ScenarioFormat().schema.at("properties");
+  Settings settings = Split(request.settings, [&](const std::string& name) {
+    return name.find('.') != std::string::npos || fields.contains(name);
+  });
   if (!settings.diagnostics.empty()) return {std::nullopt, std::move(settings.diagnostics)};
-  if (!request.pictures.empty()) settings.of_scenario.push_back("pictures=" + request.pictures);
   ReadResult<Scenario> scenario =
       ReadScenario(request.scenario_file, settings.of_scenario, ProjectLibrary(root));
   if (!scenario.value) return {std::nullopt, std::move(scenario.diagnostics)};
   if (!request.grammar.empty()) scenario.value->grammar = request.grammar;
   grammar::CompileResult compiled = LoadGrammar(root, scenario.value->grammar, settings.of_grammar);
   if (!compiled.program) return {std::nullopt, std::move(compiled.diagnostics)};
+  if (request.grammar.empty()) {
+    grammar::Diagnostics pictures = CheckPictures(*scenario.value, *compiled.program);
+    if (!pictures.empty()) return {std::nullopt, std::move(pictures)};
+  }
   scenario.value->grammar = compiled.program->name;
   return {PreparedRun{std::move(*scenario.value), std::move(compiled.program)}, {}};
+}
+
+ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings) {
+  Settings split = Split(settings, [](const std::string&) { return false; });
+  if (!split.diagnostics.empty()) return {std::nullopt, std::move(split.diagnostics)};
+  return {std::move(split.of_grammar), {}};
 }
 
 std::string ScenarioId(const std::string& skill, const std::string& name) {

@@ -18,8 +18,7 @@ struct RunRequest {
   std::string scenario_file;
   std::string grammar;                ///< name or path; empty: the scenario's own
   std::vector<std::string> settings;  ///< "name=value": a field of the scenario when the name has a
-                                      ///< dot, else a parameter
-  std::string pictures;  ///< YAML that replaces the scenario's pictures; empty: keep them
+                                      ///< dot or is that of a field, else a parameter
 };
 
 struct PreparedRun {
@@ -28,6 +27,9 @@ struct PreparedRun {
 };
 
 ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root);
+
+/// "name=value" settings that can only mean parameters of a grammar.
+ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings);
 
 /// "skill/name": how goldens, reports and the command line call it.
 std::string ScenarioId(const std::string& skill, const std::string& name);

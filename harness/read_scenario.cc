@@ -103,8 +103,9 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
 ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocument> document,
                                     const std::vector<std::string>& overrides, const ScenarioLibrary& library) {
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
+  const Json schema = overrides.empty() ? Json() : ScenarioFormat().schema;
   for (const std::string& assignment : overrides) {
-    if (auto bad = ApplyOverride(assignment, *document.value); !bad.empty()) return {std::nullopt, std::move(bad)};
+    if (auto bad = ApplyOverride(assignment, schema, *document.value); !bad.empty()) return {std::nullopt, std::move(bad)};
   }
   return Resolve(file, *document.value, library);
 }

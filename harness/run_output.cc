@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/event_text.h"
+#include "harness/timeline_json.h"
 
 namespace prehend::harness {
 namespace {
@@ -22,22 +23,6 @@ bool Completed(const RunResult& run) {
 
 double SecondsOf(Tick tick, Tick ticks_per_second) {
   return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
-}
-
-OrderedJson EventJson(const NamedEvent& event, Tick ticks_per_second) {
-  OrderedJson roles = OrderedJson::object();
-  OrderedJson attributes = OrderedJson::object();
-  for (const grammar::Role& role : event.roles)
-    (IsAttribute(role) ? attributes : roles)[role.name] = role.value;
-  return {{"event", event.event},
-          {"roles", std::move(roles)},
-          {"attributes", std::move(attributes)},
-          {"begin_tick", event.interval.begin},
-          {"end_tick", event.interval.end},
-          {"begin_s", SecondsOf(event.interval.begin, ticks_per_second)},
-          {"end_s", SecondsOf(event.interval.end, ticks_per_second)},
-          {"decided_tick", event.decided},
-          {"open_end", event.open_end}};
 }
 
 }  // namespace
@@ -83,10 +68,7 @@ OrderedJson RunJson(const Scenario& scenario, const RunResult& run) {
                        {"reason", run.status.reason},
                        {"advice", run.status.advice}};
   }
-  json["events"] = OrderedJson::array();
-  for (const NamedEvent& event : run.timeline.events) {
-    json["events"].push_back(EventJson(event, run.timeline.ticks_per_second));
-  }
+  json["events"] = TimelineJson(run.timeline)["events"];
   return json;
 }
 

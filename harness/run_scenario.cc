@@ -52,6 +52,7 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
     clock.Lap(result.seconds.sensing);
     monitor.Advance(frame, events);
     clock.Lap(result.seconds.grammar);
+    if (options.watch) options.watch(frame);
     if (options.record) result.recording.push_back(snapshot);
   }
 
@@ -63,6 +64,17 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
   clock.Lap(result.seconds.grammar);
   result.seconds.total = result.seconds.physics + result.seconds.sensing + result.seconds.grammar;
   return result;
+}
+
+grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
+                            std::shared_ptr<const grammar::Program> program, grammar::Tick end) {
+  Sensing sensing(scenario.scene, scenario.world.sensing_hz);
+  const grammar::Cast cast = MakeCast(scenario);
+  grammar::Monitor monitor(program, cast);
+  std::vector<grammar::Event> events;
+  for (const physics::Snapshot& snapshot : recording) monitor.Advance(sensing.Sense(snapshot), events);
+  monitor.Finish(end, events);
+  return grammar::NameEvents(*program, cast, events);
 }
 
 }  // namespace prehend::harness

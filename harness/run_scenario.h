@@ -4,6 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "grammar/monitor.h"
@@ -15,6 +18,7 @@ namespace prehend::harness {
 
 struct RunOptions {
   bool record = false;   ///< keep a snapshot per sensed frame (pictures, oracle)
+  std::function<void(const grammar::Frame&)> watch;  ///< shown every sensed frame; may be empty
   bool measure = false;  ///< clock physics, sensing and grammar apart
 };
 
@@ -34,5 +38,9 @@ struct RunResult {
 
 RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                       const RunOptions& options = {});
+
+/// What another grammar makes of the same episode, without simulating it again. `recording` has the sensed snapshots.
+grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
+                            std::shared_ptr<const grammar::Program> program, grammar::Tick end);
 
 }  // namespace prehend::harness

@@ -4,6 +4,11 @@
 
 namespace prehend::harness {
 
+const std::vector<std::string>& CameraWords() {
+  static const std::vector<std::string> words = {"front", "left", "right", "top", "three_quarter"};
+  return words;
+}
+
 grammar::Cast MakeCast(const Scenario& scenario) {
   grammar::Cast cast;
   cast.ticks_per_second = scenario.scene.world.rate_hz;

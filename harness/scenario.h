@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "grammar/frame.h"
+#include "harness/located_yaml.h"
 #include "physics/scene.h"
 #include "physics/script.h"
 
@@ -22,9 +23,11 @@ struct WorldEntry {
 };
 
 struct PictureEntry {
-  std::string at;  ///< "reaching.begin", "putting_down.end", or a time: "1.25"
+  Located<std::string> at;  ///< "reaching.begin", "putting_down.end", or a time: "1.25"; see harness/moment.h
   std::string camera = "three_quarter";
 };
+/// What PictureEntry::camera can be; the same as render::CameraNames(), which is there only with the render room.
+const std::vector<std::string>& CameraWords();
 
 /// A whole scenario, read, checked and resolved: entities and actors are already bodies and hands.
 struct Scenario {

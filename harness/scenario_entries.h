@@ -75,10 +75,12 @@ struct MoveEntry {
   double over_s = 0.8;
 };
 struct CarryEntry {
+  Where where;
   Eigen::Vector2d carry_to_m = Eigen::Vector2d::Zero();
   double over_s = 1.0;
 };
 struct PlaceEntry {
+  Where where;
   Located<std::string> place_on;
   double over_s = 0.6;
 };

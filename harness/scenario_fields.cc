@@ -4,6 +4,7 @@
 
 #include "harness/record.h"
 #include "harness/step_fields.h"
+#include "harness/yaml_scalar.h"
 
 namespace prehend::harness {
 namespace {
@@ -136,10 +137,14 @@ Format<WorldEntry> WorldFormat() {
       .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53), "Seed of all randomness.")
       .Check([](const YamlNode& node, const W& world, Complaints& complaints) {
         if (world.sensing_hz <= world.rate_hz) return;
-        const YamlNode* written = node.Find("sensing_hz");
-        complaints.Add(written ? written->where : node.Find("rate_hz")->where,
-                       "sensing_hz " + std::to_string(world.sensing_hz) + " is above rate_hz " +
-                           std::to_string(world.rate_hz));
+        const std::string sensing = std::to_string(world.sensing_hz), rate = std::to_string(world.rate_hz);
+        if (const YamlNode* written = node.Find("sensing_hz")) {
+          complaints.Add(written->where, "sensing_hz " + sensing + " is above rate_hz " + rate);
+        } else {
+          complaints.Add(node.Find("rate_hz")->where,
+                         "rate_hz " + rate + " is below sensing_hz, which is " + sensing + " unless given",
+                         "add sensing_hz: " + rate);
+        }
       })
       .format();
 }
@@ -151,13 +156,11 @@ Format<std::string> MomentFormat() {
   return {.schema = {{"anyOf", {seconds.schema, boundary.schema}}},
           .read =
               [=](const YamlNode& node, Complaints& complaints, std::string& moment) {
-                Complaints unused = complaints;
                 double time_s = 0;
-                if (seconds.read(node, unused, time_s)) {
-                  moment = node.text;
-                  return true;
-                }
-                return boundary.read(node, complaints, moment);
+                const bool is_time = node.kind == YamlNode::Kind::kScalar && MeaningOf(node).number;
+                if (!is_time) return boundary.read(node, complaints, moment);
+                moment = node.text;
+                return seconds.read(node, complaints, time_s);
               },
           .show = {}};
 }
@@ -166,7 +169,7 @@ Format<PictureEntry> PictureFormat() {
   return Record<PictureEntry>("a picture")
       .Required("at", &PictureEntry::at, MomentFormat(), "When: an event's 'begin' or 'end', or seconds.")
       .Optional("camera", &PictureEntry::camera,
-                Choice(std::vector<std::string>{"front", "left", "right", "top", "three_quarter"}), "From where.")
+                Choice(CameraWords()), "From where.")
       .format();
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 
 #include "harness/located_yaml.h"
 
@@ -27,6 +28,20 @@ void Relocate(YamlNode& node, int source, int column_offset) {
   }
 }
 
+/// The schema of the field called `step`; null when it says nothing of one.
+nlohmann::ordered_json FieldSchema(const nlohmann::ordered_json& schema, const std::string& step) {
+  const auto properties = schema.find("properties");
+  if (properties != schema.end() && properties->contains(step)) return (*properties)[step];
+  const auto others = schema.find("additionalProperties");
+  return others != schema.end() && others->is_object() ? *others : nlohmann::ordered_json();
+}
+
+/// Whether a field of that name may be left out in the file, and is a mapping.
+bool IsOptionalMapping(const nlohmann::ordered_json& schema, const std::string& step) {
+  const auto properties = schema.find("properties");
+  return properties != schema.end() && properties->contains(step) && (*properties)[step].contains("properties");
+}
+
 /// The child called `step` of a mapping or sequence; null when there is none.
 YamlNode* ChildOf(YamlNode& node, std::string_view step) {
   if (node.kind == Kind::kSequence) {
@@ -38,21 +53,26 @@ YamlNode* ChildOf(YamlNode& node, std::string_view step) {
   return const_cast<YamlNode*>(node.Find(step));
 }
 
-std::vector<std::string> NamesIn(const YamlNode& node) {
+/// What a mapping has, and what its schema says it may have.
+std::vector<std::string> NamesIn(const YamlNode& node, const nlohmann::ordered_json& schema) {
   std::vector<std::string> names;
+  if (schema.contains("properties")) {
+    for (const auto& [name, field] : schema["properties"].items()) names.push_back(name);
+  }
   for (const YamlNode& child : node.children) names.push_back(child.key);
   return names;
 }
 
-std::string HintFor(const YamlNode& node, const std::string& step) {
+std::string HintFor(const YamlNode& node, const nlohmann::ordered_json& schema, const std::string& step) {
   if (node.kind == Kind::kSequence) return fmt::format("'{}' is a list of {}", node.key, node.children.size());
-  const std::string near = grammar::NearestName(step, NamesIn(node));
+  const std::string near = grammar::NearestName(step, NamesIn(node, schema));
   return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
 }
 
 }  // namespace
 
-Diagnostics ApplyOverride(const std::string& assignment, YamlDocument& document) {
+Diagnostics ApplyOverride(const std::string& assignment, const nlohmann::ordered_json& schema,
+                          YamlDocument& document) {
   const auto complain = [&](std::size_t offset, std::string message, std::string hint) -> Diagnostics {
     return {grammar::DiagnosticAt("--set", assignment, {1, static_cast<int>(offset) + 1}, std::move(message),
                                   std::move(hint))};
@@ -64,25 +84,30 @@ Diagnostics ApplyOverride(const std::string& assignment, YamlDocument& document)
   auto parsed = ParseYaml("--set", assignment.substr(equals + 1));
   if (!parsed.value) return std::move(parsed.diagnostics);
 
+  document.sources.push_back({"--set", assignment});
+  const int source = static_cast<int>(document.sources.size()) - 1;
   YamlNode* node = &document.root;
+  nlohmann::ordered_json known = schema;  // about `node`
   for (std::size_t begin = 0; begin <= equals;) {
     const std::size_t end = std::min(assignment.find('.', begin), equals);
     const std::string step = assignment.substr(begin, end - begin);
     YamlNode* child = ChildOf(*node, step);
     const bool last = end == equals;
-    if (!child && !(last && node->kind == Kind::kMapping)) {
-      return complain(begin, fmt::format("nothing is called '{}' here", step), HintFor(*node, step));
+    const bool may_add = node->kind == Kind::kMapping && (last || IsOptionalMapping(known, step));
+    if (!child && !may_add) {
+      return complain(begin, fmt::format("nothing is called '{}' here", step), HintFor(*node, known, step));
     }
     if (!child) {
       child = &node->children.emplace_back();
       child->key = step;
+      if (!last) child->kind = Kind::kMapping;
+      child->where = child->key_where = {source, {1, static_cast<int>(begin) + 1}};
     }
+    known = FieldSchema(known, step);
     node = child;
     begin = end + 1;
   }
 
-  document.sources.push_back({"--set", assignment});
-  const int source = static_cast<int>(document.sources.size()) - 1;
   YamlNode value = std::move(parsed.value->root);
   value.key = node->key;
   Relocate(value, source, static_cast<int>(equals) + 1);

@@ -32,18 +32,71 @@ Eigen::Matrix3d WholeInertia(const HandModel& model) {
   return inertia;
 }
 
-std::string TooStiff(const char* which, double derivative, double inertia, const char* unit,
-                     int rate_hz) {
-  const double ratio = derivative / (rate_hz * inertia);
+/// What a PID moves: the least and the largest mass or moment of inertia.
+struct Inertia {
+  const char* of;
+  const char* unit;
+  double least;
+  double most;
+};
+
+std::string NotPositive(const Inertia& inertia, const PidGains& gains) {
+  char text[160];
+  for (const auto& [name, gain] : {std::pair{"proportional gain", gains.proportional},
+                                   std::pair{"derivative gain", gains.derivative},
+                                   std::pair{"limit", gains.limit}}) {
+    if (gain > 0) continue;
+    std::snprintf(text, sizeof text, "the %s %s is %g; without it the hand cannot follow its target",
+                  inertia.of, name, gain);
+    return text;
+  }
+  return "";
+}
+
+/// Of a mass m under F = -kp x - kd v, stepped by semi-implicit Euler: kp dt^2/m + 2 kd dt/m < 4 (Jury). Of the same with
+/// an integral in continuous time: ki m < kp kd (Routh and Hurwitz).
+std::string Diverges(const Inertia& inertia, const PidGains& gains, int rate_hz) {
+  char text[256];
+  const double dt_s = 1.0 / rate_hz;
+  const double room = 4 - 2 * gains.derivative * dt_s / inertia.least;
+  const double most_proportional = room * inertia.least / (dt_s * dt_s);
+  if (gains.proportional >= most_proportional) {
+    std::snprintf(text, sizeof text,
+                  "the %s proportional gain %g cannot be stable: it overshoots more with every 1/%d s; it must stay below "
+                  "%.4g here",
+                  inertia.of, gains.proportional, rate_hz, most_proportional);
+    return text;
+  }
+  const double most_integral = gains.proportional * gains.derivative / inertia.most;
+  if (gains.integral >= most_integral) {
+    std::snprintf(text, sizeof text,
+                  "the %s integral gain %g cannot be stable: it must stay below proportional * derivative / inertia = %.4g",
+                  inertia.of, gains.integral, most_integral);
+    return text;
+  }
+  return "";
+}
+
+/// The damping alone excites the hand.
+std::string TooStiff(const Inertia& inertia, const PidGains& gains, int rate_hz) {
+  const double ratio = gains.derivative / (rate_hz * inertia.least);
   if (ratio < 1) return "";
   char text[256];
   std::snprintf(text, sizeof text,
                 "the %s derivative gain %g cannot be stable: gain * dt / inertia = %g * (1/%d s) / "
                 "%.4g %s = %.2f, "
                 "which must stay below 1 (at most %.4g here)",
-                which, derivative, derivative, rate_hz, inertia, unit, ratio,
-                0.99 * rate_hz * inertia);
+                inertia.of, gains.derivative, gains.derivative, rate_hz, inertia.least, inertia.unit, ratio,
+                0.99 * rate_hz * inertia.least);
   return text;
+}
+
+/// Empty when these gains are stable.
+std::string WhyUnstable(const Inertia& inertia, const PidGains& gains, int rate_hz) {
+  std::string problem = NotPositive(inertia, gains);
+  if (problem.empty()) problem = TooStiff(inertia, gains, rate_hz);
+  if (problem.empty()) problem = Diverges(inertia, gains, rate_hz);
+  return problem;
 }
 
 void MirrorVector(Eigen::Vector3d& v) { v.y() = -v.y(); }
@@ -107,13 +160,13 @@ int FindStyle(const HandModel& model, const std::string& name) {
 std::string CheckGains(const HandModel& model, int rate_hz) {
   double mass_kg = model.palm_mass_kg;
   for (const HandLink& link : model.links) mass_kg += link.mass_kg;
-  const std::string problem =
-      TooStiff("translation", model.translation.derivative, mass_kg, "kg", rate_hz);
-  if (!problem.empty()) return problem;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(WholeInertia(model),
                                                               Eigen::EigenvaluesOnly);
-  return TooStiff("rotation", model.rotation.derivative, solver.eigenvalues()[0], "kg m^2",
-                  rate_hz);
+  const Inertia translation{"translation", "kg", mass_kg, mass_kg};
+  const Inertia rotation{"rotation", "kg m^2", solver.eigenvalues()[0], solver.eigenvalues()[2]};
+  std::string problem = WhyUnstable(translation, model.translation, rate_hz);
+  if (problem.empty()) problem = WhyUnstable(rotation, model.rotation, rate_hz);
+  return problem;
 }
 
 }  // namespace prehend::physics

@@ -104,9 +104,8 @@ HandModel Mirrored(HandModel model);
 /// Index of the style of that name; -1 when there is none.
 int FindStyle(const HandModel& model, const std::string& name);
 
-/// Empty when the palm's PIDs are stable at this rate: derivative * dt / inertia must stay below 1
-/// for the mass and for the least moment of inertia of the whole hand, else the damping itself
-/// excites the hand. Otherwise the reason.
+/// Empty when the palm's PIDs can follow a target and are stable at this rate, for the mass and for
+/// the moments of inertia of the whole hand; otherwise the reason.
 std::string CheckGains(const HandModel& model, int rate_hz);
 
 }  // namespace prehend::physics

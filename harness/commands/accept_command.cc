@@ -88,6 +88,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!refusal.empty()) return Complain(context, ExitCode::kBadInput, refusal);
   const auto file = FindScenarioOrComplain(ValueOf(options, "scenario"), context);
   if (!file) return ExitCode::kNothing;
+  if (!file->in_project) {
+    return Complain(context, ExitCode::kBadInput,
+                    "goldens are kept of scenarios in scenarios/ only; put the file there and accept it by name");
+  }
   const std::string id = ScenarioId(file->skill, file->name);
   const ReadResult<PreparedRun> prepared = PrepareRun({.scenario_file = file->path}, context.root);
   if (!prepared.value) return Complain(context, prepared.diagnostics);

@@ -59,7 +59,7 @@ std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
       });
   if (known != scenarios.end()) return *known;
   return ScenarioFile{
-      .skill = "", .name = std::filesystem::path(*path).stem().string(), .path = *path};
+      .skill = "", .name = std::filesystem::path(*path).stem().string(), .path = *path, .in_project = false};
 }
 
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message) {

@@ -48,7 +48,9 @@ Command CheckCommand();
 Command AcceptCommand();
 Command RenderCommand();
 Command NewCommand();
+Command ResegmentCommand();
 Command SchemaCommand();
+Command ScoreCommand();
 
 // What was typed for an option; `name` is "--json", or "scenario" for a positional.
 bool IsGiven(const CLI::App& options, const std::string& name);

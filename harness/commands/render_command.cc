@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend render. Tested by tests/house/command_line_test.cc
-#include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "harness/commands/command.h"
+#include "harness/moment.h"
 #include "harness/pictures.h"
 #include "harness/run_output.h"
 
@@ -23,23 +24,32 @@ void Declare(CLI::App& options) {
   options.add_option("--at", "the moment: EVENT.begin, EVENT.end, or seconds")
       ->type_name("MOMENT")
       ->expected(1);
-  options.add_option("--camera", "front, left, right, top or three_quarter")
-      ->type_name("NAME")
-      ->expected(1);
+  options.add_option("--camera", "from where")
+      ->expected(1)
+      ->check(CLI::IsMember(CameraWords()));
   DeclareRunOptions(options);
   DeclareFlag(options, "--json", "the run as one JSON object, with the pictures' files");
 }
 
-/// What the command line asks for instead of the scenario's own pictures, as YAML; empty when it
-/// asks for nothing.
-std::string AskedPicture(const CLI::App& options, const Scenario& scenario) {
+/// What the command line asks for instead of the scenario's own pictures; nothing when it does not.
+std::optional<PictureEntry> AskedPicture(const CLI::App& options, const Scenario& scenario) {
   if (!IsGiven(options, "--at") && !IsGiven(options, "--camera") && !IsGiven(options, "--output"))
-    return "";
+    return std::nullopt;
   PictureEntry entry =
-      scenario.pictures.empty() ? PictureEntry{.at = "0"} : scenario.pictures.front();
-  entry.at = ValueOf(options, "--at", entry.at);
+      scenario.pictures.empty() ? PictureEntry{.at = {"0", {}}} : scenario.pictures.front();
+  entry.at.value = ValueOf(options, "--at", entry.at.value);
   entry.camera = ValueOf(options, "--camera", entry.camera);
-  return fmt::format("[{{at: {}, camera: {}}}]", entry.at, entry.camera);
+  return entry;
+}
+
+/// "" or why no picture can be written to this file.
+std::string WhyNotWritable(const fs::path& file) {
+  std::error_code error;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (!fs::is_directory(folder, error)) return "there is no folder " + folder.string();
+  if (fs::is_directory(file, error)) return file.string() + " is a folder";
+  const fs::path target = fs::exists(file, error) ? file : folder;
+  return access(target.c_str(), W_OK) == 0 ? "" : target.string() + " cannot be written to";
 }
 
 PictureResult Draw(const CLI::App& options, const ScenarioFile& file, const PreparedRun& prepared,
@@ -56,21 +66,32 @@ PictureResult Draw(const CLI::App& options, const ScenarioFile& file, const Prep
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const auto file = FindScenarioOrComplain(ValueOf(options, "scenario"), context);
   if (!file) return ExitCode::kNothing;
-  RunRequest request = RequestOf(options, file->path);
-  ReadResult<PreparedRun> prepared = PrepareRun(request, context.root);
-  if (prepared.value) {
-    request.pictures = AskedPicture(options, prepared.value->scenario);
-    if (!request.pictures.empty()) prepared = PrepareRun(request, context.root);
-  }
+  ReadResult<PreparedRun> prepared = PrepareRun(RequestOf(options, file->path), context.root);
   if (!prepared.value) return Complain(context, prepared.diagnostics);
+  if (auto asked = AskedPicture(options, prepared.value->scenario)) {
+    const auto problem = WhyNoMoment(asked->at.value, *prepared.value->program);
+    if (problem && IsGiven(options, "--at")) {
+      return Complain(context, ExitCode::kBadInput, "--at: " + problem->message + "; " + problem->hint);
+    }
+    prepared.value->scenario.pictures = {std::move(*asked)};
+  }
   if (prepared.value->scenario.pictures.empty()) {
     return Complain(context, ExitCode::kNothing,
                     "the scenario asks for no pictures; ask for one with --at");
   }
 
+  if (IsGiven(options, "--output")) {
+    const std::string why = WhyNotWritable(ValueOf(options, "--output"));
+    if (!why.empty()) return Complain(context, ExitCode::kBadInput, "--output: " + why);
+  }
+
   const RunResult run =
       RunScenario(prepared.value->scenario, prepared.value->program, {.record = true});
   const PictureResult drawn = Draw(options, *file, *prepared.value, run, context.root);
+  for (const WrittenPicture& picture : drawn.pictures) {
+    if (!picture.missed.empty())
+      context.err << "prehend: warning: " << picture.file << ": " << picture.missed << "; it shows the end\n";
+  }
   if (IsGiven(options, "--json")) {
     OrderedJson json = RunJson(prepared.value->scenario, run);
     json["pictures"] = OrderedJson::array();

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend run. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "harness/commands/command.h"
+#include "harness/episode_file.h"
 #include "harness/run_output.h"
 
 namespace prehend::harness {
@@ -13,6 +15,9 @@ void Declare(CLI::App& options) {
   options.add_option("scenario", "a name, skill/name or a file")->required()->expected(1);
   DeclareRunOptions(options);
   DeclareFlag(options, "--json", "one JSON object instead of a table");
+  options.add_option("--record", "write the episode to FILE, for 'prehend resegment'")
+      ->type_name("FILE")
+      ->expected(1);
   DeclareFlag(options, "--measure", "say where the time went, and the peak memory");
 }
 
@@ -23,8 +28,26 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!prepared.value) return Complain(context, prepared.diagnostics);
 
   const bool measure = IsGiven(options, "--measure");
-  const RunResult run =
-      RunScenario(prepared.value->scenario, prepared.value->program, {.measure = measure});
+  RunOptions how{.measure = measure};
+  std::ofstream file_out;
+  std::optional<EpisodeWriter> recorder;
+  if (IsGiven(options, "--record")) {
+    file_out.open(ValueOf(options, "--record"), std::ios::binary | std::ios::trunc);
+    if (!file_out) {
+      return Complain(context, ExitCode::kBadInput, "--record: cannot write " + ValueOf(options, "--record"));
+    }
+    const Scenario& scenario = prepared.value->scenario;
+    recorder.emplace(file_out, EpisodeHeader{scenario.name, scenario.grammar, MakeCast(scenario)});
+    how.watch = [&](const grammar::Frame& frame) { recorder->Write(frame); };
+  }
+  const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, how);
+  if (recorder) {
+    recorder->Finish(run.ticks + 1);
+    file_out.close();
+    if (!file_out) {
+      return Complain(context, ExitCode::kFailure, "--record: cannot write " + ValueOf(options, "--record"));
+    }
+  }
   if (IsGiven(options, "--json")) {
     OrderedJson json = RunJson(prepared.value->scenario, run);
     if (measure) json["measured"] = MeasurementJson(Measure(run));
@@ -45,6 +68,7 @@ Command RunCommand() {
           .examples =
               "prehend run milk_carton_wrap\n"
               "prehend run milk_carton_wrap --json\n"
+              "prehend run milk_carton_wrap --record milk.jsonl\n"
               "prehend run milk_carton_wrap --set entities.milk.mass_kg=8\n"
               "prehend run milk_carton_wrap --set lift_rise=10cm --measure\n"
               "prehend run my/scenario.yaml --grammar my/rules.grammar",

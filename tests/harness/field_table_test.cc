@@ -85,7 +85,7 @@ TEST(FieldTable, AMisspeltRequiredKeyIsOneComplaint) {
 
 TEST(FieldTable, ControlCharactersFromEscapesAreRefused) {
   EXPECT_EQ(Brief(ReadWheel("radius_m: 1\nlabel: \"a\\x1b[31m\"\n").diagnostics),
-            "2:8: label: expected text of at most 500 bytes, found control characters\n");
+            "2:8: label: expected text of 1 to 500 bytes, found control characters\n");
   EXPECT_EQ(Brief(ReadWheel("radius_m: 1\nloads_kg: {\"a\\0\": 1}\n").diagnostics),
             "2:12: expected a name like 'milk_carton', found control characters\n");
 }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {
@@ -102,9 +104,18 @@ TEST(LocatedYaml, DeepNestingIsRefusedBeforeTheStackIsGone) {
   EXPECT_NE(Complaints(repeated("[", 65) + repeated("]", 65)), "");
 }
 
+const nlohmann::ordered_json kSchema = {
+    {"properties", {{"world", {{"properties", {{"rate_hz", {{"type", "integer"}}}}}}}, {"settle_s", {{"type", "number"}}}}}};
+
+TEST(LocatedYaml, QuotationsMustEnd) {
+  EXPECT_EQ(Complaints("a: 'it''s\n"), "1:4: this quotation does not end | close it with the same quote\n");
+  EXPECT_EQ(Complaints("a: \"b\\\"\n"), "1:4: this quotation does not end | close it with the same quote\n");
+  EXPECT_EQ(Complaints("a: 'it''s'\nb: \"c\\\\\"\nd: |\n  'e\n"), "");
+}
+
 std::string Overridden(const std::string& assignment) {
   YamlDocument document = Parse("entities:\n  milk: {mass_kg: 1, at_m: [1, 2]}\n");
-  const auto diagnostics = ApplyOverride(assignment, document);
+  const auto diagnostics = ApplyOverride(assignment, kSchema, document);
   if (!diagnostics.empty()) return Brief(diagnostics);
   const YamlNode& milk = *document.root.Find("entities")->Find("milk");
   std::string all;
@@ -125,10 +136,18 @@ TEST(Override, ReplacesAndAdds) {
 
 TEST(Override, KnowsItsPlace) {
   YamlDocument document = Parse("a: {b: 1}\n");
-  ASSERT_TRUE(ApplyOverride("a.b=[x, y]", document).empty());
+  ASSERT_TRUE(ApplyOverride("a.b=[x, y]", {}, document).empty());
   const YamlNode& y = document.root.Find("a")->Find("b")->children[1];
   EXPECT_EQ(document.sources[static_cast<std::size_t>(y.where.source)].name, "--set");
   ExpectPlace(y.where, 1, 9);
+}
+
+TEST(Override, MakesMappingsThatTheFileLeavesOut) {
+  YamlDocument document = Parse("entities: {}\n");
+  ASSERT_TRUE(ApplyOverride("world.rate_hz=960", kSchema, document).empty());
+  EXPECT_EQ(document.root.Find("world")->Find("rate_hz")->text, "960");
+  EXPECT_EQ(Brief(ApplyOverride("wrold.rate_hz=960", kSchema, document)),
+            "--set:1:1: nothing is called 'wrold' here | did you mean 'world'?\n");
 }
 
 TEST(Override, ComplainsAboutPathsThatLeadNowhere) {

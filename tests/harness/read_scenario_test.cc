@@ -41,7 +41,7 @@ TEST(ReadScenario, TheProbe) {
   EXPECT_EQ(std::get<physics::ReachStep>(scenario.script.beats[0].steps[0].action).object, "milk");
   EXPECT_EQ(scenario.script.beats[1].steps[0].over_s, 0.6) << "the default of close_to";
   EXPECT_EQ(scenario.script.settle_s, 0.5);
-  EXPECT_EQ(scenario.pictures[0].at, "reaching.begin");
+  EXPECT_EQ(scenario.pictures[0].at.value, "reaching.begin");
 }
 
 TEST(ReadScenario, EveryStep) {

@@ -138,7 +138,7 @@ TEST_P(ScoreMetrics, IdentificationErrors) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, ScoreMetrics,
                          testing::Values("A_exact", "B_late1", "C_flicker", "D_missing_sub", "E_repeat_merge", "F_empty"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& named) { return named.param; });
 
 Ward WardOf(const std::string& name, const std::string& label) {
   const Episode episode = EpisodeOf(name);

@@ -97,7 +97,19 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
       {"check --filter tag:none", 4, "prehend: no scenario is selected.*\n  again: .*\n"},
       {"run missing.yaml", 2, "missing.yaml: error: [^]*\n  again: prehend run missing.yaml\n"},
       {"run carton_rests --set lift_ris=3cm", 2, "[^]*error: [^]*lift_rise[^]*\n  again: [^]*\n"},
-      {"run carton_rests --set lift_rise", 2, "--set:1:1: error: expected name=value\n[^]*"},
+      {"run carton_rests --set lift_rise", 2, "--set:1:1: error: expected NAME=VALUE\n[^]*"},
+      {"run carton_rests --set lift_rise=", 2, "--set:1:1: error: expected NAME=VALUE\n[^]*"},
+      {"run carton_rests --set lift_rise=1cm --set lift_rise=2cm", 2,
+       "--set:1:1: error: the same name is set twice\n[^]*"},
+      {"run carton_rests --set wrold.rate_hz=960", 2, "--set:1:1: error: [^]*did you mean 'world'[^]*"},
+      {"run carton_rests --set settle_s=soon", 2, "--set:1:10: error: settle_s: expected a number[^]*"},
+      {"run missing.yml", 2, "missing.yml: error: no such file\n[^]*"},
+      {"render carton_rests --at reching.begin", 2,
+       "prehend: --at: grammar 'pick_and_place' has no event 'reching'; did you mean 'reaching'\\?\n[^]*"},
+      {"render carton_rests --at soon", 2, "prehend: --at: 'soon' is no moment; write seconds[^]*"},
+      {"render carton_rests --camera back", 2, "prehend: --camera: [^]*"},
+      {"render carton_rests --at 0 -o no/such/folder/a.png", 2,
+       "prehend: --output: there is no folder no/such/folder\n[^]*"},
       {"run carton_rests --set entities.carton.mass=1", 2, "--set[^]*error: [^]*mass_kg[^]*"},
       {"run carton_rests --grammar none.grammar", 2, "none.grammar: error: [^]*"},
       {"accept carton_rests", 2,
@@ -194,6 +206,23 @@ TEST_F(CommandLine, AGoldenIsPendingThenAcceptedThenKept) {
   EXPECT_EQ(passed.exit_code, 0) << passed.out;
   EXPECT_TRUE(passed.out.ends_with("\n1 passed, 0 failed\n")) << passed.out;
   EXPECT_NE(ReadFile(root_ / "build/report/index.html").find("1 passed"), std::string::npos);
+}
+
+TEST_F(CommandLine, OnlyScenariosOfTheProjectHaveGoldens) {
+  const fs::path loose = root_ / "elsewhere/carton_waits.yaml";
+  WriteFile(loose, std::regex_replace(std::string(kScenario), std::regex("carton_rests"), "carton_waits"));
+  const Said ended = Do("accept " + loose.string() + " --reason because");
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_NE(ended.err.find("goldens are kept of scenarios in scenarios/ only"), std::string::npos) << ended.err;
+  EXPECT_FALSE(fs::exists(root_ / "golden"));
+}
+
+TEST_F(CommandLine, FieldsThatTheFileLeavesOutCanBeSet) {
+  const auto ticks = [&](const std::string& settings) {
+    return nlohmann::json::parse(Do("run carton_rests --json " + settings).out)["ticks"].get<int>();
+  };
+  EXPECT_EQ(ticks("--set settle_s=0.6") - ticks(""), 240);
+  EXPECT_EQ(ticks("--set world.rate_hz=960"), 2 * ticks(""));
 }
 
 TEST_F(CommandLine, ADifferenceNamesTheEventTheIntervalsAndTheCommand) {

@@ -52,6 +52,21 @@ TEST(HandModelTest, UnstableGainsAreNamed) {
   EXPECT_NE(CheckGains(model, 480).find("rotation"), std::string::npos);
 }
 
+TEST(HandModelTest, GainsThatCannotFollowOrDivergeAreNamed) {
+  const HandModel good = LibraryHand("human_right");
+  const auto why = [&](double PidGains::* gain, double value) {
+    HandModel model = good;
+    model.translation.*gain = value;
+    return CheckGains(model, 480);
+  };
+  EXPECT_NE(why(&PidGains::proportional, 0).find("proportional gain is 0"), std::string::npos);
+  EXPECT_NE(why(&PidGains::derivative, 0).find("derivative gain is 0"), std::string::npos);
+  EXPECT_NE(why(&PidGains::limit, 0).find("limit is 0"), std::string::npos);
+  EXPECT_NE(why(&PidGains::proportional, 1e6).find("overshoots"), std::string::npos);
+  EXPECT_NE(why(&PidGains::integral, 1e6).find("integral"), std::string::npos);
+  EXPECT_EQ(why(&PidGains::integral, 0), "");
+}
+
 TEST(HandModelTest, StylesAreFoundByName) {
   const HandModel model = LibraryHand("human_right");
   for (const char* name : {"wrap", "pinch", "tripod", "lateral"})

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/house/score_test.cc
+#include "harness/judge_episode.h"
+
+#include <algorithm>
+
+#include "grammar/program.h"
+#include "harness/load_grammar.h"
+#include "harness/oracle/oracle.h"
+#include "harness/prepare_run.h"
+#include "harness/run_output.h"
+
+namespace prehend::harness {
+namespace {
+
+bool Prints(const grammar::Program& program, const std::string& event) {
+  return std::ranges::any_of(program.events,
+                             [&](const auto& rule) { return rule.printed && rule.name == event; });
+}
+
+}  // namespace
+
+ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request) {
+  const ReadResult<PreparedRun> prepared =
+      PrepareRun({.scenario_file = request.scenario_file, .grammar = request.grammars.front()}, request.root);
+  if (!prepared.value) return {std::nullopt, prepared.diagnostics};
+  const Scenario& scenario = prepared.value->scenario;
+  const RunResult run = RunScenario(scenario, prepared.value->program, {.record = true});
+  if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
+    return {std::nullopt, {{.file = request.scenario_file, .place = {}, .message = StatusText(run), .source_line = {}, .hint = {}}}};
+  }
+  const grammar::Tick end = run.ticks + 1;
+  const grammar::Timeline truth = TrueTimeline(scenario, run.recording, end);
+  std::vector<score::JudgedEpisode> episodes;
+  for (const std::string& name : request.grammars) {
+    const grammar::CompileResult compiled = LoadGrammar(request.root, name);
+    if (!compiled.program) return {std::nullopt, compiled.diagnostics};
+    score::JudgedEpisode& episode = episodes.emplace_back();
+    episode = {.scenario = request.id,
+               .ticks = end,
+               .truth = truth,
+               .found = Resegment(scenario, run.recording, compiled.program, end)};
+    std::erase_if(episode.truth.events, [&](const auto& event) { return !Prints(*compiled.program, event.event); });
+    std::erase_if(episode.found.events, [](const auto& event) { return !OracleDefines(event.event); });
+  }
+  return {std::move(episodes), {}};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well a grammar recognises: its timelines against true ones, per kind of event and in total.
+// Tested by tests/harness/score_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grammar/timeline.h"
+#include "harness/score/overlap_metrics.h"
+#include "harness/score/ward.h"
+
+namespace prehend::harness::score {
+
+/// One episode as it truly was and as a grammar says it was.
+struct JudgedEpisode {
+  std::string scenario;
+  grammar::Tick ticks = 0;
+  grammar::Timeline truth;
+  grammar::Timeline found;
+};
+
+/// Signed offsets of boundaries (found - true) of the events that were matched, in seconds.
+struct BoundaryErrors {
+  std::vector<double> seconds;
+
+  /// Nearest-rank quantile of the signed, and of the absolute offsets; 0 without any.
+  double Median() const;
+  double AbsoluteQuantile(double share) const;
+};
+
+struct EventScore {
+  std::string event;  ///< "all" for the total
+  int truths = 0, found = 0;
+  Ward ward;
+  BoundaryErrors begin, end;
+  Hits overlap_10, overlap_25, overlap_50;
+  EventErrors within_collar;
+  FrameCounts frames;
+  double edit = 100;  ///< mean over the episodes in which it happened or was said to
+  std::vector<double> latency_s;  ///< from an event's end to its decision
+
+  double LatencyQuantile(double share) const;
+};
+
+struct Score {
+  std::string grammar;
+  std::vector<EventScore> events;  ///< sorted by name
+  EventScore total;
+  int episodes = 0;
+};
+
+/// Labels are events with their roles. `collar_s` is for the collar-based scores.
+Score ScoreOf(const std::string& grammar, const std::vector<JudgedEpisode>& episodes, double collar_s);
+
+/// A table for people: Ward's error row, boundary errors, F1@{10,25,50}, edit, frames, F at the collar, latency.
+std::string ScoreTable(const Score& score, double collar_s);
+
+/// The totals of several grammars beside each other, as a Markdown table.
+std::string SideBySide(const std::vector<Score>& scores, double collar_s);
+
+}  // namespace prehend::harness::score

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores as tables. Tested by tests/harness/score_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/score/score.h"
+
+namespace prehend::harness::score {
+namespace {
+
+using Row = std::vector<std::string>;
+
+constexpr double kMsPerS = 1000;
+
+std::string Percent(double share) { return fmt::format("{:.1f}", 100 * share); }
+
+/// "median/p95/max": the median signed, the others absolute.
+std::string Milliseconds(const BoundaryErrors& errors) {
+  if (errors.seconds.empty()) return "-";
+  return fmt::format("{:+.0f}/{:.0f}/{:.0f}", kMsPerS * errors.Median(), kMsPerS * errors.AbsoluteQuantile(0.95),
+                     kMsPerS * errors.AbsoluteQuantile(1));
+}
+
+Row Header(double collar_s) {
+  return {"event", "true", "found", "C",   "D",   "F",   "M",    "FM",   "I'",
+          "begin ms", "end ms", "F1@10", "@25", "@50", "edit", "frames", fmt::format("F@{:.0f}ms", kMsPerS * collar_s), "late ms"};
+}
+
+Row RowOf(const EventScore& s) {
+  const WardEvents& ward = s.ward.events;
+  const auto count = [](int n) { return n == 0 ? std::string(".") : std::to_string(n); };
+  return {s.event,
+          std::to_string(s.truths),
+          std::to_string(s.found),
+          count(ward.correct),
+          count(ward.deleted),
+          count(ward.fragmented),
+          count(ward.merged),
+          count(ward.fragmented_and_merged),
+          count(ward.inserted),
+          Milliseconds(s.begin),
+          Milliseconds(s.end),
+          Percent(s.overlap_10.F1()),
+          Percent(s.overlap_25.F1()),
+          Percent(s.overlap_50.F1()),
+          fmt::format("{:.1f}", s.edit),
+          Percent(s.frames.Accuracy()),
+          Percent(s.within_collar.AsHits().F1()),
+          fmt::format("{:.0f}/{:.0f}", kMsPerS * s.LatencyQuantile(0.5), kMsPerS * s.LatencyQuantile(1))};
+}
+
+/// Columns two blanks apart; the first one to the left, the others to the right.
+std::string Aligned(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      text += i == 0 ? fmt::format("{:<{}}", row[i], widths[i]) : fmt::format("  {:>{}}", row[i], widths[i]);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ScoreTable(const Score& score, double collar_s) {
+  std::vector<Row> rows = {Header(collar_s)};
+  for (const EventScore& event : score.events) rows.push_back(RowOf(event));
+  rows.push_back(RowOf(score.total));
+  return fmt::format("{}, {} episodes\n{}", score.grammar, score.episodes, Aligned(rows));
+}
+
+std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
+  std::string text = fmt::format(
+      "| grammar | true | correct | deleted | fragmented | merged | inserted | begin, ms | end, ms | F1@10 | F1@25 | F1@50 "
+      "| edit | frames % | F at {:.0f} ms |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      kMsPerS * collar_s);
+  for (const Score& score : scores) {
+    const EventScore& s = score.total;
+    const WardEvents& ward = s.ward.events;
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1f} | {} | {} |\n", score.grammar,
+                        s.truths, ward.correct, ward.deleted, ward.fragmented + ward.fragmented_and_merged, ward.merged,
+                        ward.inserted, Milliseconds(s.begin), Milliseconds(s.end), Percent(s.overlap_10.F1()),
+                        Percent(s.overlap_25.F1()), Percent(s.overlap_50.F1()), s.edit, Percent(s.frames.Accuracy()),
+                        Percent(s.within_collar.AsHits().F1()));
+  }
+  return text;
+}
+
+}  // namespace prehend::harness::score

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recorded episodes and scores, as a person uses them.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/house/program.h"
+
+namespace prehend::house {
+namespace {
+
+TEST(Recording, ResegmentingGivesTheSameTimelineAndOtherGrammarsTheirs) {
+  const auto file = (FreshFolder("recording") / "milk.jsonl").string();
+  const Said played = Prehend({"run", "milk_carton_wrap", "--json", "--record", file});
+  ASSERT_EQ(played.exit_code, 0) << played.err;
+  const Said again = Prehend({"resegment", file, "--json"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
+  EXPECT_EQ(first["events"], second["events"]);
+  EXPECT_EQ(second["scenario"], "milk_carton_wrap");
+  EXPECT_FALSE(first["events"].empty());
+
+  const Said contacts = Prehend({"resegment", file, "--grammar", "contact", "--json"});
+  for (const auto& event : nlohmann::json::parse(contacts.out)["events"]) {
+    EXPECT_TRUE(event["event"] == "contact" || event["event"] == "supported_by") << event;
+  }
+  const Said higher = Prehend({"resegment", file, "--set", "lift_rise=10m"});
+  EXPECT_EQ(higher.out.find("picking_up"), std::string::npos) << higher.out;
+}
+
+TEST(Recording, BadOnesEndWithExitCodeTwo) {
+  const auto folder = FreshFolder("recording");
+  WriteFile(folder / "bad.jsonl", "{\"recording\": 1}\n");
+  for (const std::string& file : {(folder / "bad.jsonl").string(), (folder / "none.jsonl").string(), folder.string()}) {
+    const Said said = Prehend({"resegment", file});
+    EXPECT_EQ(said.exit_code, 2) << said.err;
+    EXPECT_EQ(said.out, "");
+    EXPECT_NE(said.err.find(file), std::string::npos) << said.err;
+  }
+  EXPECT_EQ(Prehend({"run", "milk_carton_wrap", "--record", "no/such/folder/x.jsonl"}).exit_code, 2);
+}
+
+TEST(Score, ATruthfulGrammarScoresFullMarksAndAChangedOneLess) {
+  const Said said = Prehend({"score", "milk_carton_wrap", "--grammar", "pick_and_place", "--json"});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const auto total = nlohmann::json::parse(said.out)["grammars"][0]["total"];
+  EXPECT_EQ(total["f1_50"], 1.0) << total;
+  EXPECT_GT(total["true"], 8);
+  EXPECT_EQ(Prehend({"score", "--grammar", "pick_and_plaice"}).exit_code, 2);
+  EXPECT_EQ(Prehend({"score", "no_such_scenario"}).exit_code, 4);
+}
+
+}  // namespace
+}  // namespace prehend::house
