@@ -36,9 +36,10 @@ std::string DumpCompose(const Definition& d) {
 
 std::string DumpForm(const Definition& d) {
   switch (d.form) {
-    case Definition::Form::kWhile: return "while " + Dump(d.first);
+    case Definition::Form::kWhile: return "while " + Dump(d.first) + (d.until ? " until " + Dump(*d.until) : "");
     case Definition::Form::kFromTo: {
-      std::string text = "from " + Dump(d.first) + " to " + Dump(d.second);
+      std::string text = "from " + Dump(d.first) + (d.absence ? " without " : " to ") + Dump(d.second);
+      if (d.within) text += " within " + Dump(*d.within);
       if (d.during) text += " during " + Dump(*d.during) + (d.or_drop ? " or drop" : "");
       return text;
     }
@@ -59,7 +60,16 @@ std::string DumpDefinition(const Definition& d) {
   if (d.requirement) text += " requires " + Dump(*d.requirement);
   if (d.confirmed) text += " confirmed by " + Dump(d.confirmed->by) + " within " + Dump(d.confirmed->within);
   if (d.style) text += " with style = style(" + Dump(*d.style) + ")";
+  for (const Attribute& attribute : d.attributes) text += " with " + attribute.name + " = " + Dump(attribute.value);
   return text + "\n";
+}
+
+std::string DumpDefine(const Define& define) {
+  std::string text = "define " + define.name + "(";
+  for (const Role& parameter : define.parameters) {
+    text += (&parameter == &define.parameters.front() ? "" : ", ") + parameter.name + ": " + parameter.class_name;
+  }
+  return text + ") = " + Dump(define.body) + "\n";
 }
 
 }  // namespace
@@ -67,7 +77,8 @@ std::string DumpDefinition(const Definition& d) {
 std::string Dump(const Expr& expr) {
   switch (expr.kind) {
     case Expr::Kind::kQuantity: return QuantityText(expr.quantity);
-    case Expr::Kind::kName: return expr.text;
+    case Expr::Kind::kName: return expr.text + (expr.args.empty() ? "" : " " + Dump(expr.args[0]));
+    case Expr::Kind::kText: return '"' + expr.text + '"';
     case Expr::Kind::kCall: return expr.text + "(" + Joined(expr.args, ", ") + ")";
     case Expr::Kind::kUnary: return "(" + expr.text + (expr.text == "not" ? " " : "") + Dump(expr.args[0]) + ")";
     case Expr::Kind::kBinary:
@@ -80,8 +91,9 @@ std::string Dump(const Expr& expr) {
 
 std::string Dump(const File& file) {
   std::string text = "grammar " + file.name + "\n";
-  for (const Use& use : file.uses) text += "use " + use.name + "\n";
+  for (const Use& use : file.uses) text += "use " + (use.is_path ? '"' + use.name + '"' : use.name) + "\n";
   for (const Param& param : file.params) text += "param " + param.name + " = " + QuantityText(param.value) + "\n";
+  for (const Define& define : file.defines) text += DumpDefine(define);
   for (const Definition& definition : file.definitions) text += DumpDefinition(definition);
   return text;
 }

@@ -15,7 +15,8 @@ namespace prehend::grammar::ast {
 struct Expr {
   enum class Kind {
     kQuantity,  ///< 25 cm
-    kName,      ///< a role, a parameter, or `any`
+    kName,      ///< a role, a parameter, or `any`; `any Cup` has the class as its arg
+    kText,      ///< "in quotes"
     kCall,      ///< text(args)
     kUnary,     ///< text is `not` or `-`
     kBinary,    ///< text is an arithmetic operator or a comparison
@@ -44,6 +45,13 @@ struct Approach {
   std::optional<Expr> motion;
   std::optional<Expr> speed;
   std::optional<Expr> idle;
+};
+
+/// `with name = value`
+struct Attribute {
+  std::string name;
+  Place place;
+  Expr value;
 };
 
 struct Confirmation {
@@ -76,7 +84,10 @@ struct Definition {
 
   Form form = Form::kWhile;
   Expr first;                      ///< while F, from A, until A, rest of E
-  Expr second;                     ///< to B, since F
+  Expr second;                     ///< to B, without B, since F
+  std::optional<Expr> until;       ///< while A until B
+  bool absence = false;            ///< from A without B
+  std::optional<Expr> within;      ///< from .. within t
   std::optional<Expr> during;
   bool or_drop = false;            ///< `during G or drop`
   std::optional<Approach> approach;
@@ -90,6 +101,16 @@ struct Definition {
   std::optional<Expr> requirement;
   std::optional<Confirmation> confirmed;
   std::optional<Expr> style;       ///< with style = style(hand)
+  std::vector<Attribute> attributes;
+};
+
+/// `define name(parameters) = body`. A parameter's class may also be a unit, `number` or `position`.
+struct Define {
+  std::string name;
+  Place place;
+  std::vector<Role> parameters;
+  std::vector<Dimension> dimensions;  ///< of the parameters that are numbers
+  Expr body;
 };
 
 struct Param {
@@ -99,7 +120,8 @@ struct Param {
 };
 
 struct Use {
-  std::string name;
+  std::string name;  ///< of the library, or a path as seen from this file
+  bool is_path = false;
   Place place;
 };
 
@@ -107,6 +129,7 @@ struct File {
   std::string name;
   std::vector<Use> uses;
   std::vector<Param> params;
+  std::vector<Define> defines;
   std::vector<Definition> definitions;
 };
 

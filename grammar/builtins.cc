@@ -13,6 +13,9 @@ std::span<const Builtin> Builtins() {
       {"in_cylinder", Op::kInCylinder, T::kTruth, kPlain, {A::kPosition, A::kPosition, A::kLength, A::kLength},
        "(position, centre, radius, height): in the upright cylinder, at most height above or below its centre"},
       {"part_of", Op::kPartOf, T::kTruth, kPlain, {A::kEntity, A::kEntity}, "the first is a part of the second"},
+      {"gazed", Op::kGazed, T::kTruth, kPlain, {A::kEntity, A::kEntity}, "the first looks at the second"},
+      {"sensor_set", Op::kSensorSet, T::kTruth, kPlain, {A::kHand, A::kSet, A::kThing},
+       "(hand, set, object): the object touches this sensor set of the hand; a name, or a number from 1"},
       {"trigger", Op::kTrigger, T::kNumber, kPlain, {A::kHand}, "commanded grip, 0 open .. 1 closed"},
       {"sensor_sets", Op::kSensorSets, T::kNumber, kPlain, {A::kHand, A::kThing},
        "how many sensor sets of the hand the object touches"},
@@ -36,6 +39,13 @@ std::span<const Builtin> Builtins() {
        "(a, b, window): how far a gets horizontally, as seen from b, from half the window before to half of it after, "
        "per time"},
       {"tilt", Op::kTilt, T::kNumber, kRadians, {A::kEntity}, "angle between the entity's own z axis and up"},
+      {"joint_fraction", Op::kJointFraction, T::kNumber, kPlain, {A::kThing}, "of a moving part, 0 closed .. 1 open"},
+      {"joint_angle", Op::kJointAngle, T::kNumber, kRadians, {A::kThing}, "of a part on a hinge"},
+      {"joint_travel", Op::kJointTravel, T::kNumber, kMetres, {A::kThing}, "of a part on a slide"},
+      {"weight", Op::kWeight, T::kNumber, kNewtons, {A::kThing}, "of the thing; of a fixed one, infinite"},
+      {"strength", Op::kStrength, T::kNumber, kNewtons, {A::kHand}, "the weight that the hand can lift"},
+      {"rate", Op::kRate, T::kNumber, kPlain, {A::kNumber, A::kWindow},
+       "(value, window): how fast a value grows, from half the window before to half of it after"},
       {"position", Op::kPosition, T::kPosition, kMetres, {A::kEntity}, "of the entity's origin"},
       {"position_on", Op::kPositionOn, T::kPosition, kMetres, {A::kEntity, A::kEntity},
        "of the first's origin as seen from the second, so that it stays when both move together"},
@@ -50,6 +60,7 @@ std::optional<Range> RangeOf(Op op) {
     case Op::kTrigger: return Range{0, 1};
     case Op::kSensorSets: return Range{0, 32};
     case Op::kUp: return Range{-1, 1};
+    case Op::kJointFraction: return Range{0, 1};
     default: return std::nullopt;
   }
 }

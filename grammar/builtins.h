@@ -17,8 +17,8 @@ namespace prehend::grammar {
 enum class Type : std::uint8_t { kTruth, kNumber, kPosition };
 
 /// What an argument must be. The first four are roles of that class.
-/// A window is a constant span of time.
-enum class Argument : std::uint8_t { kEntity, kHand, kThing, kMovable, kPosition, kLength, kNumber, kWindow };
+/// A window is a constant span of time; a set is the name of a sensor set, or its number.
+enum class Argument : std::uint8_t { kEntity, kHand, kThing, kMovable, kPosition, kLength, kNumber, kWindow, kSet };
 
 struct Builtin {
   std::string_view name;

@@ -8,6 +8,7 @@
 
 #include "grammar/guard.h"
 #include "grammar/lower.h"
+#include "grammar/lower_definition.h"
 #include "grammar/monitor.h"
 #include "grammar/parser.h"
 
@@ -35,11 +36,16 @@ class Compiler {
     CollectParams();
     ApplyOverrides();
     CollectHeads();
+    CollectDefines();
+    if (diagnostics_.empty()) CheckDefines();
     if (diagnostics_.empty()) LowerAll();
     if (diagnostics_.empty()) Order();
-    if (!diagnostics_.empty()) return {.program = nullptr, .diagnostics = std::move(diagnostics_)};
+    if (!diagnostics_.empty()) return {.program = nullptr, .diagnostics = std::move(diagnostics_), .warnings = {}};
     ChooseGuards(program_);
-    return {.program = std::make_shared<const Program>(std::move(program_)), .diagnostics = {}};
+    WarnOfUnused();
+    return {.program = std::make_shared<const Program>(std::move(program_)),
+            .diagnostics = {},
+            .warnings = std::move(warnings_)};
   }
 
  private:
@@ -59,19 +65,35 @@ class Compiler {
     Source source{grammar, Parse(grammar, diagnostics_)};
     seen.insert(source.file.name);
     for (const ast::Use& use : source.file.uses) {
-      if (!seen.insert(use.name).second) continue;
+      if (use.is_path && !CheckPath(source, use)) continue;
+      const std::string name = use.is_path ? Beside(grammar.file, use.name) : use.name;
+      if (!seen.insert(name).second) continue;
       if (seen.size() > kMaxFiles) {
         Complain(source, use.place, "more than " + std::to_string(kMaxFiles) + " grammars are used together");
         break;
       }
-      const std::optional<GrammarText> used = includer_ ? includer_(use.name) : std::nullopt;
+      const std::optional<GrammarText> used = includer_ ? includer_(name) : std::nullopt;
       if (!used) {
-        Complain(source, use.place, "there is no grammar '" + use.name + "' to use");
+        Complain(source, use.place, "there is no grammar '" + use.name + "' to use", use.is_path ? "looked for " + name : "");
       } else {
         ReadFile(*used, seen);
       }
     }
     sources_.push_back(std::move(source));
+  }
+
+  // A path is seen from the file that names it, and leads to a file of the same folder or below.
+  bool CheckPath(const Source& source, const ast::Use& use) {
+    const bool climbs = use.name.starts_with("/") || ("/" + use.name + "/").find("/../") != std::string::npos;
+    if (!climbs && use.name.ends_with(".grammar")) return true;
+    Complain(source, use.place, "\"" + use.name + "\" is not a file beside this one",
+             "a relative path that ends with .grammar and does not climb: use \"shared/pouring.grammar\"");
+    return false;
+  }
+
+  static std::string Beside(const std::string& file, const std::string& path) {
+    const std::size_t slash = file.rfind('/');
+    return (slash == std::string::npos ? "./" : file.substr(0, slash + 1)) + path;
   }
 
   void CollectParams() {
@@ -141,8 +163,7 @@ class Compiler {
       if (program_.events.size() == kMaxRules + 1) Complain(source, definition.place, "the grammar has more than 1000 rules");
       return;
     }
-    if (FindBuiltin(definition.name) != nullptr || definition.name == "is" || definition.name == "displacement" ||
-        definition.name == "rise" || definition.name == "drop") {
+    if (IsBuiltin(definition.name)) {
       return Complain(source, definition.place, "'" + definition.name + "' is a built-in signal", "choose another name");
     }
     const auto [entry, is_new] = symbols_.rules.try_emplace(definition.name, index);
@@ -157,6 +178,55 @@ class Compiler {
     for (const ast::Role& role : definition.roles) rule.roles.push_back({role.name, role.class_name});
     program_.events.push_back(std::move(rule));
     definitions_.push_back({&source, &definition});
+  }
+
+  static bool IsBuiltin(std::string_view name) {
+    return FindBuiltin(name) != nullptr || name == "is" || IsOverInterval(name);
+  }
+
+  void CollectDefines() {
+    for (const Source& source : sources_) {
+      for (const ast::Define& define : source.file.defines) {
+        const bool taken = IsBuiltin(define.name) || symbols_.rules.contains(define.name) || symbols_.params.contains(define.name);
+        if (taken || !symbols_.defines.try_emplace(define.name, DefineSource{&source.text, &define}).second) {
+          Complain(source, define.place, "'" + define.name + "' means something already", "choose another name");
+        }
+        CheckParameters(source, define);
+      }
+    }
+  }
+
+  void CheckParameters(const Source& source, const ast::Define& define) {
+    std::set<std::string> names;
+    for (const ast::Role& parameter : define.parameters) {
+      if (!names.insert(parameter.name).second) {
+        Complain(source, parameter.place, "the parameter '" + parameter.name + "' is named twice");
+      }
+      if (symbols_.params.contains(parameter.name)) {
+        Complain(source, parameter.place, "'" + parameter.name + "' is a parameter of the grammar already");
+      }
+      if (parameter.class_name != "number" && parameter.class_name != "position") CheckClassName(source, parameter);
+    }
+  }
+
+  // Each body for itself, on a copy of the heads, with the widest entities that it allows.
+  void CheckDefines() {
+    Program scratch = program_;
+    for (const auto& [name, source] : symbols_.defines) {
+      Symbols symbols{scratch, symbols_.rules, symbols_.params, symbols_.defines, {}, {}, {}, {}};
+      scratch.events.resize(program_.events.size());
+      scratch.nodes.clear();
+      Rule& rule = scratch.events.emplace_back();
+      rule.place = source.define->place;
+      for (const ast::Role& parameter : source.define->parameters) {
+        if (parameter.class_name != "number" && parameter.class_name != "position") {
+          rule.roles.push_back({parameter.name, parameter.class_name});
+        }
+      }
+      Lowering(symbols, static_cast<int>(scratch.events.size()) - 1, *source.text, diagnostics_).Check(source);
+      symbols_.used_params.merge(symbols.used_params);
+      if (!diagnostics_.empty()) return;
+    }
   }
 
   void CheckRoles(const Source& source, const Definition& definition) {
@@ -181,9 +251,8 @@ class Compiler {
   void CheckClassName(const Source& source, const ast::Role& role) {
     static const std::vector<std::string> kRoots = {"Entity", "Hand", "Thing", "Movable", "Fixed"};
     if (std::find(kRoots.begin(), kRoots.end(), role.class_name) != kRoots.end()) return;
-    const bool capital = role.class_name[0] >= 'A' && role.class_name[0] <= 'Z';
     const std::string near = NearestName(role.class_name, kRoots);
-    if (!capital) {
+    if (!StartsWithCapital(role.class_name)) {
       Complain(source, role.place, "'" + role.class_name + "' is not a class; classes start with a capital letter",
                near.empty() ? "" : "did you mean '" + near + "'?");
     }
@@ -198,175 +267,13 @@ class Compiler {
   void LowerDefinition(const Source& source, const Definition& definition, int index) {
     Lowering lowering(symbols_, index, source.text, diagnostics_);
     const std::size_t before = diagnostics_.size();
-    LowerForm(definition, index, lowering);
-    LowerModifiers(definition, index, lowering);
+    LowerDefinitionInto(program_, index, definition, lowering);
     if (diagnostics_.size() != before) return;
     for (std::size_t i = 0; i < definition.roles.size(); ++i) {
       if (!lowering.RoleUsed(i)) {
         Complain(source, definition.roles[i].place, "the role '" + definition.roles[i].name + "' is not used",
                  "an event says something about each of its roles; leave this one out or use it");
       }
-    }
-  }
-
-  // Lowering may add rules, so a Rule is looked up again after each step.
-  Rule& At(int index) { return program_.events[index]; }
-
-  void LowerForm(const Definition& d, int index, Lowering& lowering) {
-    using Form_ = Definition::Form;
-    switch (d.form) {
-      case Form_::kWhile: {
-        At(index).form = Form::kWhile;
-        const int first = lowering.Truth(d.first, {});
-        At(index).first = first;
-        break;
-      }
-      case Form_::kFromTo: return LowerFromTo(d, index, lowering);
-      case Form_::kUntilSince: return LowerUntilSince(d, index, lowering);
-      case Form_::kRestOf: {
-        At(index).form = Form::kRestOf;
-        const int first = lowering.RuleCall(d.first);
-        At(index).first = first;
-        for (const ast::Expr& other : d.outside) {
-          const int reference = lowering.RuleCall(other);
-          At(index).outside.push_back(reference);
-        }
-        break;
-      }
-      case Form_::kCompose: return LowerCompose(d, index, lowering);
-    }
-  }
-
-  void LowerFromTo(const Definition& d, int index, Lowering& lowering) {
-    At(index).form = Form::kFromTo;
-    const int first = lowering.Instant(d.first, {});
-    const int second = lowering.Instant(d.second, {.begin = true});
-    const int during = d.during ? lowering.Truth(*d.during, {.begin = true}) : kNone;
-    Rule& rule = At(index);
-    rule.first = first;
-    rule.second = second;
-    rule.during = during;
-    rule.or_drop = d.or_drop;
-  }
-
-  void LowerUntilSince(const Definition& d, int index, Lowering& lowering) {
-    At(index).form = Form::kUntilSince;
-    const int first = lowering.Instant(d.first, {});
-    const int second = lowering.Truth(d.second, {.end = true});
-    At(index).first = first;
-    At(index).second = second;
-    if (d.approach) LowerApproach(*d.approach, index, lowering);
-    const double back_s = lowering.Constant(d.at_most_back, kSeconds, "'at most .. back'");
-    At(index).back_s = back_s;
-  }
-
-  void LowerApproach(const ast::Approach& approach, int index, Lowering& lowering) {
-    Dimension dimension;
-    const int signal = lowering.Signal(approach.signal, {.end = true}, dimension);
-    if (signal == kNone) return;
-    const double slack = lowering.Constant(approach.slack, dimension, "'receding at most'");
-    int motion = kNone;
-    Dimension motion_dimension = Quotient(dimension, kSeconds);
-    double speed = 0;
-    double idle_s = -1;
-    if (approach.motion) motion = lowering.Signal(*approach.motion, {.end = true}, motion_dimension);
-    if (approach.speed) {
-      speed = lowering.Constant(*approach.speed, motion_dimension, "'slower than'");
-      idle_s = lowering.Constant(*approach.idle, kSeconds, "'slower than .. at most'");
-    }
-    Rule& rule = At(index);
-    rule.approach = signal;
-    rule.slack = slack;
-    rule.motion = motion;
-    rule.speed = speed;
-    rule.idle_s = idle_s;
-  }
-
-  void LowerCompose(const Definition& d, int index, Lowering& lowering) {
-    At(index).form = Form::kCompose;
-    std::vector<std::string> labels;
-    if (d.parts.size() > kMaxParts) {
-      return lowering.Complain(d.parts[kMaxParts].place, "more than " + std::to_string(kMaxParts) + " parts",
-                               "compose some of them into an event of its own");
-    }
-    for (const ast::Part& part : d.parts) {
-      if (std::find(labels.begin(), labels.end(), part.label) != labels.end()) {
-        lowering.Complain(part.place, "the label '" + part.label + "' is used twice");
-      }
-      labels.push_back(part.label);
-      const int reference = lowering.RuleCall(part.call);
-      if (reference == kNone) continue;
-      CheckPart(part, index, reference, lowering);
-      At(index).composition.parts.push_back(reference);
-    }
-    if (labels.size() != At(index).composition.parts.size()) return;
-    const auto find = [&](const std::string& label, Place place) {
-      const auto found = std::find(labels.begin(), labels.end(), label);
-      if (found == labels.end()) {
-        const std::string near = NearestName(label, labels);
-        lowering.Complain(place, "no part is labelled '" + label + "'", near.empty() ? "" : "did you mean '" + near + "'?");
-      }
-      return static_cast<int>(found - labels.begin());
-    };
-    for (const ast::Relation& relation : d.relations) {
-      Composition::Clause clause{.left = find(relation.left, relation.place), .right = find(relation.right, relation.place)};
-      for (const std::string& name : relation.relations) {
-        const std::optional<Allen> allen = AllenNamed(name);
-        if (!allen) {
-          lowering.Complain(relation.place, "'" + name + "' is none of Allen's relations",
-                            "they are " + JoinedAllenNames());
-          continue;
-        }
-        clause.relations |= Bit(*allen);
-      }
-      At(index).composition.clauses.push_back(clause);
-    }
-  }
-
-  // All parts are about the same entities: those of the composition.
-  void CheckPart(const ast::Part& part, int index, int reference, Lowering& lowering) {
-    const Binding& named = At(index).references[reference].roles;
-    for (std::size_t role = 0; role < At(index).roles.size(); ++role) {
-      if (std::find(named.begin(), named.end(), static_cast<int>(role)) != named.end()) continue;
-      lowering.Complain(part.place, "the part '" + part.label + "' does not name the role '" + At(index).roles[role].name + "'",
-                        "every part of a composition names all its roles");
-    }
-  }
-
-  static std::string JoinedAllenNames() {
-    std::string text;
-    for (const std::string_view name : kAllenNames) text += (text.empty() ? "" : ", ") + std::string(name);
-    return text;
-  }
-
-  void LowerModifiers(const Definition& d, int index, Lowering& lowering) {
-    if (d.bridging) {
-      if (d.form != Definition::Form::kWhile) {
-        lowering.Complain(d.bridging->place, "'bridging' goes with 'while' only", "put the bridged part into a condition of its own");
-      }
-      const double bridging_s = lowering.Constant(*d.bridging, kSeconds, "'bridging'");
-      At(index).bridging_s = bridging_s;
-    }
-    if (d.lasting) {
-      const double lasting_s = lowering.Constant(*d.lasting, kSeconds, "'lasting'");
-      At(index).lasting_s = lasting_s;
-    }
-    if (d.form == Definition::Form::kCompose && (d.requirement || d.confirmed)) {
-      lowering.Complain(d.place, "a composition takes no 'requires' and no 'confirmed by'", "put it into one of the parts");
-    }
-    if (d.requirement) {
-      const int requirement = lowering.Truth(*d.requirement, {.begin = true, .end = true});
-      At(index).requirement = requirement;
-    }
-    if (d.confirmed) {
-      const int by = lowering.RuleCall(d.confirmed->by);
-      const int within = lowering.RuleCall(d.confirmed->within);
-      At(index).confirmed_by = by;
-      At(index).confirmed_within = within;
-    }
-    if (d.style) {
-      const int role = lowering.HandRole(*d.style);
-      At(index).style_role = role;
     }
   }
 
@@ -399,15 +306,45 @@ class Compiler {
   }
 
   void ComplainCycle(int rule) {
-    while (program_.events[rule].form == Form::kAny) rule = program_.events[rule].references[0].rule;
+    while (program_.events[rule].hidden) rule = program_.events[rule].references[0].rule;
     const Rule& circular = program_.events[rule];
     Complain(*definitions_[rule - 1].source, circular.place, "'" + circular.name + "' refers to itself",
              "a rule may only use rules that do not use it, directly or through others");
   }
 
+  // In the grammar itself; a library may offer more than one uses.
+  void WarnOfUnused() {
+    const Source& own = sources_.back();
+    const auto warn = [&](Place place, std::string message, std::string hint) {
+      Diagnostic warning = DiagnosticAt(own.text.file, own.text.text, place, std::move(message), std::move(hint));
+      warning.is_warning = true;
+      warnings_.push_back(std::move(warning));
+    };
+    for (const ast::Param& param : own.file.params) {
+      if (symbols_.used_params.contains(symbols_.params.find(param.name)->second)) continue;
+      warn(param.place, "the parameter '" + param.name + "' is not used", "use it, or leave it out");
+    }
+    for (const ast::Define& define : own.file.defines) {
+      if (symbols_.used_defines.contains(define.name)) continue;
+      warn(define.place, "the definition '" + define.name + "' is not used", "use it, or leave it out");
+    }
+    std::vector<bool> reached(program_.events.size());
+    for (auto rule = program_.schedule.rbegin(); rule != program_.schedule.rend(); ++rule) {
+      if (!reached[*rule] && !program_.events[*rule].printed) continue;
+      reached[*rule] = true;
+      for (const Reference& reference : program_.events[*rule].references) reached[reference.rule] = true;
+    }
+    for (const Definition& definition : own.file.definitions) {
+      if (reached[symbols_.rules.find(definition.name)->second]) continue;
+      warn(definition.place, "no event uses the condition '" + definition.name + "'",
+           "make it an event, use it, or leave it out");
+    }
+  }
+
   const Includer& includer_;
   const Overrides& overrides_;
   Diagnostics diagnostics_;
+  Diagnostics warnings_;
   std::deque<Source> sources_;
   struct Located {
     const Source* source;
@@ -415,7 +352,7 @@ class Compiler {
   };
   std::vector<Located> definitions_;  // definition i is rule i + 1
   Program program_;
-  Symbols symbols_{program_, {}, {}, {}};
+  Symbols symbols_{program_, {}, {}, {}, {}, {}, {}, {}};
 };
 
 }  // namespace

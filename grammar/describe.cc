@@ -41,7 +41,7 @@ class Waits {
     // The truth at a frame may have to wait for more than the end's decision: see engine_events.cc, UpdateKnown.
     Wait& truth = truth_[index];
     truth = end;
-    truth.seconds += rule.lasting_s + rule.back_s;
+    truth.seconds += rule.lasting_s + rule.back_s + std::max(rule.within_s, 0.0);
     const bool decided_at_its_end = rule.or_drop || (rule.requirement != kNone && rule.form != Form::kUntilSince);
     if (decided_at_its_end) truth.until_end_of.insert(rule.name);
   }
@@ -107,7 +107,7 @@ GrammarDescription Describe(const Program& program) {
   for (std::size_t i = 0; i < program.events.size(); ++i) {
     const Rule& rule = program.events[i];
     description.history_s = std::max(description.history_s, rule.back_s + rule.looks_around_s);
-    if (rule.form == Form::kTouching || rule.form == Form::kAny) continue;
+    if (rule.form == Form::kTouching || rule.hidden) continue;
     description.rules.push_back({.head = Head(rule),
                                  .printed = rule.printed,
                                  .latency = waits.OfEnd(static_cast<int>(i)),

@@ -78,7 +78,7 @@ std::string Format(const Diagnostic& diagnostic) {
   if (diagnostic.place.line > 0) {
     text += ":" + std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column);
   }
-  text += ": error: " + diagnostic.message + "\n";
+  text += (diagnostic.is_warning ? ": warning: " : ": error: ") + diagnostic.message + "\n";
   if (!diagnostic.source_line.empty()) text += CaretBlock(diagnostic.source_line, diagnostic.place.column);
   if (!diagnostic.hint.empty()) text += "  hint: " + diagnostic.hint + "\n";
   return text;

@@ -22,11 +22,12 @@ struct Diagnostic {
   std::string message;      ///< what was found, what was wanted
   std::string source_line;  ///< the line at `place`, without newline; may be empty
   std::string hint;         ///< the remedy or the nearest known name; may be empty
+  bool is_warning = false;
 };
 
 using Diagnostics = std::vector<Diagnostic>;
 
-/// `file:line:column: error: message`, then the source line and a caret below it (tabs kept, very long lines
+/// `file:line:column: error: message` (or `warning:`), then the source line and a caret below it (tabs kept, very long lines
 /// cut around the caret), then the hint. Ends with a newline.
 std::string Format(const Diagnostic& diagnostic);
 

@@ -21,9 +21,10 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
     rule_ticks_.push_back({.bridging = history_.AtMostTicks(rule.bridging_s),
                            .lasting = history_.AtLeastTicks(rule.lasting_s),
                            .idle = history_.AtMostTicks(rule.idle_s),
-                           .back = history_.AtMostTicks(rule.back_s)});
-    // A requirement is asked for where the run ended, when its gap is too long.
-    const double waits_s = rule.requirement == kNone ? 0 : rule.bridging_s;
+                           .back = history_.AtMostTicks(rule.back_s),
+                           .within = rule.within_s < 0 ? -1 : history_.AtMostTicks(rule.within_s)});
+    // A requirement or an attribute is asked for where the run ended, when its gap is too long.
+    const double waits_s = rule.requirement == kNone && rule.attributes.empty() ? 0 : rule.bridging_s;
     longest_look_back_ =
         std::max(longest_look_back_, history_.AtLeastTicks(rule.back_s + rule.looks_around_s + waits_s));
   }
@@ -94,6 +95,11 @@ bool Engine::MayRest(const Lane& lane) {
   switch (rule.form) {
     case Form::kCompose: return true;
     case Form::kFromTo:
+      // What must not come may still come at the deadline; what should have come is too late after it.
+      if (lane.open && TicksOf(lane).within >= 0) {
+        WakeAt(lane.begin.tick + TicksOf(lane).within + (rule.absence ? 0 : 1), lane.index);
+      }
+      return true;
     case Form::kRestOf: return true;
     case Form::kUntilSince: return !rule.referenced || lane.approach_from > history_.now();
     case Form::kWhile:

@@ -43,6 +43,7 @@ class Engine {
     Tick lasting = 0;
     Tick idle = 0;
     Tick back = 0;
+    Tick within = -1;
   };
   /// A lane to look at when this tick comes, and perhaps for nothing.
   struct Alarm {
@@ -93,6 +94,7 @@ class Engine {
   bool StepRun(Lane& lane, FrameNumber frame, Kleene truth);
   bool StepRest(Lane& lane, FrameNumber frame);
   bool StepFromTo(Lane& lane, FrameNumber frame);
+  bool MeetDeadline(Lane& lane, Moment now);
   bool StepUntil(Lane& lane, FrameNumber frame);
 
   // Walking back from `end`: the frame where the interval begins; `end` if there is none; kNever if not known yet.
@@ -105,7 +107,8 @@ class Engine {
   bool Close(Lane& lane, Moment end, bool open_end = false);
   bool Conclude(Lane& lane, const Span& span);
   void ResolvePending(Lane& lane);
-  void Emit(Lane& lane, const Span& span, int style);
+  void Emit(Lane& lane, const Pending& finished);
+  Tick DecidedAt(const Lane& lane, const Span& span) const;
   void UpdateKnown(Lane& lane);
   bool RunIsCertain(const Lane& lane) const;
   void FinishLane(Lane& lane, Moment end);

@@ -40,10 +40,17 @@ bool Engine::Conclude(Lane& lane, const Span& span) {
     if (required == Kleene::kUnknown) return false;
     if (required == Kleene::kFalse) return true;
   }
+  Pending finished{.span = span, .style = lane.style, .next = span.end.frame};
+  for (std::size_t i = 0; i < rule.attributes.size(); ++i) {
+    const FrameNumber last = std::min(span.end.frame, history_.now());
+    const std::optional<double> value = evaluator_.Number(rule.attributes[i].node, {lane, last, last});
+    if (!value) return false;
+    finished.attributes[i] = *value;
+  }
   if (rule.confirmed_by != kNone) {
-    lane.pending.push_back({.span = span, .style = lane.style, .next = span.end.frame});
+    lane.pending.push_back(finished);
   } else {
-    Emit(lane, span, lane.style);
+    Emit(lane, finished);
   }
   return true;
 }
@@ -58,7 +65,7 @@ void Engine::ResolvePending(Lane& lane) {
       if (within == Kleene::kFalse) return true;
       const Kleene begins = evaluator_.Begins(rule.confirmed_by, view);
       if (And(within, begins) == Kleene::kTrue) {
-        Emit(lane, pending.span, pending.style);
+        Emit(lane, pending);
         return true;
       }
       if (within == Kleene::kUnknown || begins == Kleene::kUnknown) return false;
@@ -67,8 +74,9 @@ void Engine::ResolvePending(Lane& lane) {
   });
 }
 
-void Engine::Emit(Lane& lane, const Span& span, int style) {
+void Engine::Emit(Lane& lane, const Pending& finished) {
   const Rule& rule = RuleOf(lane);
+  const Span& span = finished.span;
   if (rule.referenced) {
     const FrameNumber oldest = history_.first();
     std::erase_if(lane.past, [&](const Span& past) { return past.end.frame < oldest; });
@@ -79,14 +87,22 @@ void Engine::Emit(Lane& lane, const Span& span, int style) {
   out_->push_back({.rule = lane.rule,
                    .roles = lane.entities,
                    .interval = {span.begin.tick, span.end.tick},
-                   .decided = decided_,
-                   .style = style,
-                   .open_end = span.open_end});
+                   .decided = DecidedAt(lane, span),
+                   .style = finished.style,
+                   .open_end = span.open_end,
+                   .attributes = finished.attributes});
+}
+
+// A deadline that passes between two frames decides at once; the later frame only tells that time went on.
+Tick Engine::DecidedAt(const Lane& lane, const Span& span) const {
+  const FrameNumber before = finishing_ ? history_.now() : history_.now() - 1;
+  const bool just_passed = before >= history_.first() && span.end.tick > history_.At(before).tick;
+  return RuleOf(lane).absence && just_passed ? span.end.tick : decided_;
 }
 
 bool Engine::RunIsCertain(const Lane& lane) const {
   const Rule& rule = RuleOf(lane);
-  if (rule.requirement != kNone || rule.confirmed_by != kNone || rule.or_drop) return false;
+  if (rule.requirement != kNone || rule.confirmed_by != kNone || rule.or_drop || rule.within_s >= 0) return false;
   const Tick earliest_end = lane.in_gap ? lane.gap.tick : history_.At(lane.next - 1).tick + 1;
   return earliest_end - lane.begin.tick >= TicksOf(lane).lasting;
 }
@@ -112,6 +128,7 @@ void Engine::UpdateKnown(Lane& lane) {
 void Engine::FinishLane(Lane& lane, Moment end) {
   if (RuleOf(lane).form == Form::kCompose) return StepCompose(lane);
   StepLane(lane);
+  if (lane.open && TicksOf(lane).within >= 0) MeetDeadline(lane, end);
   if (lane.open && lane.in_gap) {
     Close(lane, lane.gap);
   } else if (lane.open && !RuleOf(lane).or_drop) {

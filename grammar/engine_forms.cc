@@ -26,7 +26,13 @@ void Engine::StepLane(Lane& lane) {
 }
 
 bool Engine::StepWhile(Lane& lane, FrameNumber frame) {
-  return StepRun(lane, frame, evaluator_.Truth(RuleOf(lane).first, {lane, frame}));
+  const Rule& rule = RuleOf(lane);
+  const Evaluator::View view{lane, frame};
+  if (rule.second == kNone) return StepRun(lane, frame, evaluator_.Truth(rule.first, view));
+  // Two thresholds: what has begun goes on until the second says so.
+  const bool on = lane.open && !lane.in_gap;
+  const Kleene goes_on = Not(evaluator_.Truth(rule.second, view));
+  return StepRun(lane, frame, on ? goes_on : And(goes_on, evaluator_.Truth(rule.first, view)));
 }
 
 bool Engine::StepAny(Lane& lane, FrameNumber frame) {
@@ -77,9 +83,11 @@ bool Engine::StepFromTo(Lane& lane, FrameNumber frame) {
   const Rule& rule = RuleOf(lane);
   const Evaluator::View view{lane, frame};
   const auto during = [&] { return rule.during == kNone ? Kleene::kTrue : evaluator_.Truth(rule.during, view); };
+  if (lane.open && TicksOf(lane).within >= 0 && !MeetDeadline(lane, history_.At(frame))) return false;
   if (lane.open) {
     const Kleene closes = evaluator_.Truth(rule.second, view);
-    if (closes == Kleene::kTrue) return Close(lane, history_.At(frame));
+    if (closes == Kleene::kTrue && rule.absence) lane.open = false;
+    if (closes == Kleene::kTrue) return !lane.open || Close(lane, history_.At(frame));
     const Kleene holds = during();
     if (holds == Kleene::kFalse && !rule.or_drop) return Close(lane, history_.At(frame));
     if (closes == Kleene::kUnknown || holds == Kleene::kUnknown) return false;
@@ -95,6 +103,22 @@ bool Engine::StepFromTo(Lane& lane, FrameNumber frame) {
   const Kleene closes = evaluator_.Truth(rule.second, view);
   if (closes == Kleene::kUnknown) return false;
   return closes == Kleene::kTrue || Open(lane, frame);
+}
+
+// What is open, but waits no longer: without the end that it waited for, it is dropped, or that is what it is about.
+bool Engine::MeetDeadline(Lane& lane, Moment now) {
+  const Rule& rule = RuleOf(lane);
+  const Tick deadline = lane.begin.tick + TicksOf(lane).within;
+  if (now.tick < deadline || (now.tick == deadline && !rule.absence)) return true;
+  if (!rule.absence) {
+    lane.open = false;
+    return true;
+  }
+  if (now.tick == deadline && now.frame <= history_.now()) {  // just in time
+    const Kleene comes = evaluator_.Truth(rule.second, {lane, now.frame});
+    if (comes != Kleene::kFalse) return comes == Kleene::kTrue;
+  }
+  return Close(lane, {now.frame, deadline});
 }
 
 bool Engine::StepUntil(Lane& lane, FrameNumber frame) {

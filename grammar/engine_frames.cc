@@ -16,7 +16,8 @@ constexpr const char* kTooMany = "more bindings than this monitor can watch; giv
 
 bool Same(const EntityLook& a, const EntityLook& b) {
   return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() && a.v_WB_m_per_s == b.v_WB_m_per_s &&
-         a.w_WB_rad_per_s == b.w_WB_rad_per_s;
+         a.w_WB_rad_per_s == b.w_WB_rad_per_s && a.joint_position == b.joint_position &&
+         a.joint_fraction == b.joint_fraction && a.gazes_at == b.gazes_at;
 }
 
 bool SamePose(const HandLook& a, const HandSample& b) {

@@ -10,6 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kBoundless = std::numeric_limits<double>::infinity();
+
 // From a point in the world to the oriented bounding box of an entity; 0 inside.
 double DistanceToBox(const Vector3d& p_W, const CastMember& member, const EntityLook& look) {
   const Vector3d p_B = look.q_WB.conjugate() * (p_W - look.p_WB_m);
@@ -48,6 +50,8 @@ Kleene Evaluator::Truth(int index, const View& view) const {
     case Op::kBoxInSphere:
     case Op::kInCylinder: return Inside(node, view);
     case Op::kPartOf: return Known(cast_.entities[Entity(node, view, 0)].part_of == Entity(node, view, 1));
+    case Op::kGazed: return Known(history_.Look(Entity(node, view, 0), view.frame).gazes_at == Entity(node, view, 1));
+    case Op::kSensorSet: return Known(SensorSet(node, view));
     case Op::kIsA: return Known(lanes_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));
     default: return Compare(node, view);
   }
@@ -155,6 +159,7 @@ std::optional<double> Evaluator::Number(int index, const View& view) const {
     case Op::kAdd: case Op::kSubtract: case Op::kMultiply: case Op::kDivide: case Op::kNegate: case Op::kAbs:
       return Arithmetic(node, view);
     case Op::kDriftAlong: return DriftAlong(node, view);
+    case Op::kRate: return Rate(node, view);
     default: return SignalOf(node, view);
   }
 }
@@ -207,8 +212,31 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
       const double up = (history_.Look(a, frame).q_WB * Vector3d::UnitZ()).z();
       return std::acos(std::clamp(up, -1.0, 1.0));
     }
+    case Op::kJointFraction: return history_.Look(a, frame).joint_fraction;
+    case Op::kJointAngle:
+    case Op::kJointTravel: return history_.Look(a, frame).joint_position;
+    case Op::kWeight: return Weight(a);
+    case Op::kStrength: return cast_.entities[a].strength_n > 0 ? cast_.entities[a].strength_n : kBoundless;
     default: return 0;
   }
+}
+
+double Evaluator::Weight(int entity) const {
+  constexpr double kGravity_m_per_s2 = 9.81;
+  return lanes_.IsA(entity, "Fixed") ? kBoundless : cast_.entities[entity].mass_kg * kGravity_m_per_s2;
+}
+
+bool Evaluator::SensorSet(const Node& node, const View& view) const {
+  bool swapped = false;
+  const TouchSample* touch = Touch(node, view, swapped);
+  if (touch == nullptr) return false;
+  int set = static_cast<int>(node.number) - 1;
+  if (node.name != kNone) {
+    const std::vector<std::string>& names = cast_.entities[Entity(node, view, 0)].sensor_sets;
+    const auto found = std::find(names.begin(), names.end(), program_.set_names[node.name]);
+    set = found == names.end() ? kNone : static_cast<int>(found - names.begin());
+  }
+  return set >= 0 && set < 32 && ((touch->sensor_sets >> set) & 1U) != 0;
 }
 
 double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
@@ -241,6 +269,21 @@ double Evaluator::SurfaceSpeed(int hand, int object, FrameNumber frame) const {
     farthest = std::max(farthest, (now->feelers[i].p_W_m - before->feelers[i].p_W_m - object_moved).norm());
   }
   return farthest / history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
+}
+
+// Like DriftAlong, of any value: the window is cut off at the episode's begin and end.
+std::optional<double> Evaluator::Rate(const Node& node, const View& view) const {
+  restless_ = true;
+  const Tick now = history_.At(view.frame).tick;
+  const Tick half = history_.AtLeastTicks(node.number / 2);
+  const FrameNumber early = history_.LastNotAfter(now - half);
+  const FrameNumber late = std::min(history_.FirstNotBefore(now + half), history_.now());
+  if (history_.At(late).tick < now + half && !history_.complete()) return std::nullopt;
+  if (early == late) return 0;
+  const std::optional<double> before = Number(node.args[0], {.lane = view.lane, .frame = early, .end = view.end});
+  const std::optional<double> after = Number(node.args[0], {.lane = view.lane, .frame = late, .end = view.end});
+  if (!before || !after) return std::nullopt;
+  return (*after - *before) / history_.Seconds(history_.At(late).tick - history_.At(early).tick);
 }
 
 // The way of a as seen from b, turned to where b is now, from the last frame that is half the window earlier to the

@@ -53,6 +53,9 @@ class Evaluator {
   double Gap(int hand, int object, FrameNumber frame) const;
   double ClosingSpeed(int hand, int object, FrameNumber frame) const;
   double SurfaceSpeed(int hand, int object, FrameNumber frame) const;
+  bool SensorSet(const Node& node, const View& view) const;
+  double Weight(int entity) const;
+  std::optional<double> Rate(const Node& node, const View& view) const;
   std::optional<double> DriftAlong(const Node& node, const View& view) const;
   Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;
   Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;

@@ -37,6 +37,8 @@ struct CastMember {
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
   /// Hands only: names of the sensor sets; bit i of Touch::sensor_sets is set i. At most 32.
   std::vector<std::string> sensor_sets;
+  double mass_kg = 0;     ///< 0: not known, nothing is too heavy
+  double strength_n = 0;  ///< hands only: the weight that it can lift; 0: not known, it lifts everything
 };
 
 struct Cast {
@@ -52,6 +54,11 @@ struct EntityLook {
   Eigen::Vector3d v_WB_m_per_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_WB_rad_per_s = Eigen::Vector3d::Zero();
   bool asleep = false;
+  /// Of a moving part of furniture: radians of a hinge, metres of a slide; and 0 closed .. 1 open.
+  double joint_position = 0;
+  double joint_fraction = 0;
+  /// Of a person, camera or head: the entity it looks at.
+  int gazes_at = kNobody;
 };
 
 /// A ball that stands for a piece of a hand's surface, for distances from hand to object.

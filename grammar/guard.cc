@@ -23,7 +23,8 @@ void CollectNecessary(const Program& program, int index, std::vector<int>& refer
   if (index == kNone) return;
   const Node& node = program.nodes[index];
   switch (node.op) {
-    case Op::kHolds: references.push_back(node.slot); break;
+    case Op::kHolds:
+    case Op::kSensorSet: references.push_back(node.slot); break;
     case Op::kAnd:
       CollectNecessary(program, node.args[0], references);
       CollectNecessary(program, node.args[1], references);
@@ -83,7 +84,8 @@ bool IsLook(Op op) {
     case Op::kInSphere: case Op::kBoxInSphere: case Op::kInCylinder:
     case Op::kTrigger: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kGap: case Op::kClosingSpeed: case Op::kSurfaceSpeed:
     case Op::kDistance: case Op::kHeight: case Op::kSpeed: case Op::kVerticalSpeed: case Op::kRelativeVerticalSpeed:
-    case Op::kSpeedAlong: case Op::kDriftAlong: case Op::kTilt: case Op::kPosition: case Op::kPositionOn: case Op::kAhead: return true;
+    case Op::kSpeedAlong: case Op::kDriftAlong: case Op::kTilt: case Op::kSensorSet: case Op::kGazed:
+    case Op::kJointFraction: case Op::kJointAngle: case Op::kJointTravel: case Op::kRate: case Op::kPosition: case Op::kPositionOn: case Op::kAhead: return true;
     default: return false;
   }
 }
@@ -98,9 +100,9 @@ bool UsesLooks(const Program& program, int index) {
 double LooksAround(const Program& program, int index) {
   if (index == kNone) return 0;
   const Node& node = program.nodes[index];
-  double seconds = node.op == Op::kDriftAlong ? node.number / 2 : 0;
+  double seconds = 0;
   for (const int arg : node.args) seconds = std::max(seconds, LooksAround(program, arg));
-  return seconds;
+  return node.op == Op::kDriftAlong || node.op == Op::kRate ? seconds + node.number / 2 : seconds;
 }
 
 // A value where the interval begins or ends is not asked for at every frame.
@@ -108,8 +110,8 @@ void WatchEntities(const Program& program, Rule& rule, int index) {
   if (index == kNone) return;
   const Node& node = program.nodes[index];
   switch (node.op) {
-    case Op::kHolds: case Op::kPartOf: case Op::kIsA: case Op::kAtBegin: case Op::kAtEnd: return;
-    case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: rule.watches_press = true; return;
+    case Op::kHolds: case Op::kPartOf: case Op::kIsA: case Op::kWeight: case Op::kStrength: case Op::kAtBegin: case Op::kAtEnd: return;
+    case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kSensorSet: rule.watches_press = true; return;
     default: break;
   }
   for (const int role : node.roles) {
@@ -139,12 +141,14 @@ void ChooseGuards(Program& program) {
     rule.guard = ChooseGuard(program, rule);
     rule.uses_looks = rule.style_role != kNone || rule.approach != kNone || !rule.anchors.empty() ||
                       (rule.form != Form::kRestOf && UsesLooks(program, rule.first)) || UsesLooks(program, rule.second) ||
-                      UsesLooks(program, rule.during) || UsesLooks(program, rule.requirement);
+                      UsesLooks(program, rule.during) || UsesLooks(program, rule.requirement) ||
+                      !rule.attributes.empty();
     if (rule.form != Form::kRestOf) WatchEntities(program, rule, rule.first);
     // The approach to an end is looked at when the end is there, unless others must know at all times.
     if (rule.form != Form::kUntilSince || rule.referenced) WatchEntities(program, rule, rule.second);
     WatchEntities(program, rule, rule.during);
     std::vector<int> nodes = rule.anchors;
+    for (const RuleAttribute& attribute : rule.attributes) nodes.push_back(attribute.node);
     nodes.insert(nodes.end(), {rule.second, rule.during, rule.approach, rule.motion, rule.requirement});
     if (rule.form != Form::kRestOf) nodes.push_back(rule.first);
     for (const int node : nodes) rule.looks_around_s = std::max(rule.looks_around_s, LooksAround(program, node));

@@ -42,6 +42,7 @@ struct Pending {
   Span span;
   int style = kNobody;
   FrameNumber next = 0;  ///< first frame not yet searched for the confirmation
+  std::array<double, kMaxAttributes> attributes = {};
 };
 
 struct Lane : LaneKey {  // rule kNone: the lane is free

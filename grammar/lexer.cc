@@ -81,6 +81,8 @@ class Lexer {
       Take(Token::Kind::kName, NameLength());
     } else if (IsDigit(Peek()) || (Peek() == '.' && IsDigit(Peek(1)))) {
       TakeNumber();
+    } else if (Peek() == '"') {
+      TakeText();
     } else {
       TakeSymbol();
     }
@@ -103,6 +105,15 @@ class Lexer {
     const auto [end, error] = std::from_chars(begin, text().data() + text().size(), number);
     if (error != std::errc()) Complain("this number does not fit a double");
     Take(Token::Kind::kNumber, static_cast<std::size_t>(end - begin), number);
+  }
+
+  void TakeText() {
+    std::size_t length = 1;
+    while (at_ + length < text().size() && Peek(length) != '"' && Peek(length) != '\n') ++length;
+    const bool closed = Peek(length) == '"' && at_ + length < text().size();
+    if (!closed) Complain("this quote is not closed on its line");
+    tokens_.push_back({Token::Kind::kText, std::string(text().substr(at_ + 1, length - 1)), Here()});
+    at_ += length + (closed ? 1 : 0);
   }
 
   void TakeSymbol() {

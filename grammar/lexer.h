@@ -12,9 +12,9 @@
 namespace prehend::grammar {
 
 struct Token {
-  enum class Kind { kName, kNumber, kSymbol, kEnd };
+  enum class Kind { kName, kNumber, kText, kSymbol, kEnd };
   Kind kind = Kind::kEnd;
-  std::string text;
+  std::string text;  ///< of a kText, what is between the quotes
   Place place;
   double number = 0;
 };

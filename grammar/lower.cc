@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
+
+#include "grammar/bounds.h"
 
 namespace prehend::grammar {
 namespace {
@@ -12,21 +15,7 @@ using ast::Expr;
 
 constexpr std::size_t kMaxNodes = 10000;
 constexpr std::array<std::string_view, 3> kOverInterval = {"displacement", "rise", "drop"};
-
-std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
-std::string Suggest(std::string_view name, const std::vector<std::string>& known) {
-  const std::string near = NearestName(name, known);
-  return near.empty() ? std::string() : "did you mean " + Quoted(near) + "?";
-}
-
-std::string_view ClassOf(Argument argument) {
-  switch (argument) {
-    case Argument::kHand: return "Hand";
-    case Argument::kThing: return "Thing";
-    case Argument::kMovable: return "Movable";
-    default: return "Entity";
-  }
-}
+constexpr double kLongest_s = 86400;  // more is a slip of the finger
 
 // `signal op value` for no signal within the range.
 bool NeverHolds(Op op, const Range& range, double value) {
@@ -51,21 +40,30 @@ std::string_view TypeText(Type type) {
 
 }  // namespace
 
+std::string Suggest(std::string_view name, const std::vector<std::string>& known) {
+  const std::string near = NearestName(name, known);
+  return near.empty() ? std::string() : "did you mean " + Quoted(near) + "?";
+}
+
 bool ClassesMeet(std::string_view a, std::string_view b) {
   if (a == b || a == "Entity" || b == "Entity") return true;
   if (a == "Hand" || b == "Hand") return false;
   return !(a == "Movable" && b == "Fixed") && !(a == "Fixed" && b == "Movable");
 }
 
+bool IsOverInterval(std::string_view name) {
+  return std::find(kOverInterval.begin(), kOverInterval.end(), name) != kOverInterval.end();
+}
+
 Lowering::Lowering(Symbols& symbols, int rule, const GrammarText& source, Diagnostics& diagnostics)
     : symbols_(symbols),
       rule_(rule),
-      source_(source),
+      source_(&source),
       diagnostics_(diagnostics),
       role_used_(symbols.program.events[rule].roles.size()) {}
 
 void Lowering::Complain(Place place, std::string message, std::string hint) {
-  diagnostics_.push_back(DiagnosticAt(source_.file, source_.text, place, std::move(message), std::move(hint)));
+  diagnostics_.push_back(DiagnosticAt(source_->file, source_->text, place, std::move(message), std::move(hint)));
 }
 
 Lowering::Typed Lowering::Bad(Place place, std::string message, std::string hint) {
@@ -96,8 +94,11 @@ int Lowering::RuleCall(const Expr& expr) {
     return kNone;
   }
   const Typed typed = Lower(expr);
-  if (typed.bad || symbols_.program.nodes[typed.node].op != Op::kHolds) return kNone;
-  return symbols_.program.nodes[typed.node].slot;
+  if (typed.bad) return kNone;
+  const Node& node = symbols_.program.nodes[typed.node];
+  if (node.op == Op::kHolds) return node.slot;
+  Complain(expr.place, "an event or condition is needed here, " + Quoted(expr.text) + " is none", "define it as a condition: condition near(..) while ..");
+  return kNone;
 }
 
 int Lowering::Signal(const Expr& expr, Anchors anchors, Dimension& dimension) {
@@ -107,9 +108,23 @@ int Lowering::Signal(const Expr& expr, Anchors anchors, Dimension& dimension) {
   return typed.bad ? kNone : typed.node;
 }
 
+int Lowering::Attribute(const Expr& expr, Dimension& dimension) {
+  attribute_ = true;
+  const int node = Signal(expr, {.begin = true, .end = true}, dimension);
+  attribute_ = false;
+  return node;
+}
+
 double Lowering::Constant(const Expr& expr, const Dimension& dimension, std::string_view what) {
   anchors_ = {};
   return ConstantOf(expr, dimension, what).value_or(0);
+}
+
+double Lowering::Span(const Expr& expr, std::string_view what) {
+  anchors_ = {};
+  const std::optional<double> seconds = ConstantOf(expr, kSeconds, what);
+  if (seconds == 0) Complain(expr.place, std::string(what) + " must be longer than 0 s");
+  return seconds.value_or(0);
 }
 
 std::optional<double> Lowering::ConstantOf(const Expr& expr, const Dimension& dimension, std::string_view what) {
@@ -123,6 +138,8 @@ std::optional<double> Lowering::ConstantOf(const Expr& expr, const Dimension& di
              std::string(what) + " is in " + DimensionText(dimension) + ", this is " + DimensionText(typed.dimension));
   } else if (node.number < 0) {
     Complain(expr.place, std::string(what) + " cannot be negative");
+  } else if (dimension == kSeconds && node.number > kLongest_s) {
+    Complain(expr.place, std::string(what) + " is longer than a day", "times are in s or ms");
   } else {
     return node.number;
   }
@@ -132,11 +149,26 @@ std::optional<double> Lowering::ConstantOf(const Expr& expr, const Dimension& di
 int Lowering::HandRole(const Expr& expr) { return RoleArgument(expr, "Hand", "style").value_or(kNone); }
 
 int Lowering::Add(Node node) {
-  if (symbols_.program.nodes.size() == kMaxNodes) {
+  std::vector<Node>& nodes = symbols_.program.nodes;
+  if (nodes.size() < kMaxNodes) {
+    nodes.push_back(node);
+  } else if (!full_) {
+    full_ = true;
     Complain(rule().place, "the grammar has more than " + std::to_string(kMaxNodes) + " expressions");
   }
-  symbols_.program.nodes.push_back(node);
-  return static_cast<int>(symbols_.program.nodes.size()) - 1;
+  return static_cast<int>(nodes.size()) - 1;
+}
+
+// What is observed of somebody; an attribute takes it where the interval begins.
+int Lowering::AddSignal(Node node) {
+  const int here = Add(node);
+  const bool observes = node.roles[0] != kNone || node.op == Op::kRate;
+  return attribute_ && observes ? AnchorAtBegin(here) : here;
+}
+
+Lowering::Typed Lowering::NumberNode(double value, const Dimension& dimension, Place place) {
+  if (!std::isfinite(value)) return Bad(place, "this number is not finite", "is something divided by zero?");
+  return {.node = Add({.op = Op::kNumber, .number = value}), .type = Type::kNumber, .dimension = dimension};
 }
 
 int Lowering::AddReference(const Reference& reference) {
@@ -154,6 +186,10 @@ int Lowering::AnchorAtBegin(int node) {
 }
 
 int Lowering::FindRole(std::string_view name) const {
+  if (scope_ != nullptr) {
+    const auto found = scope_->roles.find(name);
+    return found == scope_->roles.end() ? kNone : found->second;
+  }
   const std::vector<RuleRole>& roles = symbols_.program.events[rule_].roles;
   for (std::size_t i = 0; i < roles.size(); ++i) {
     if (roles[i].name == name) return static_cast<int>(i);
@@ -165,23 +201,29 @@ std::vector<std::string> Lowering::KnownNames(bool calls) const {
   std::vector<std::string> names;
   if (calls) {
     for (const auto& [name, rule] : symbols_.rules) names.push_back(name);
+    for (const auto& [name, define] : symbols_.defines) names.push_back(name);
     for (const Builtin& builtin : Builtins()) names.emplace_back(builtin.name);
     names.insert(names.end(), kOverInterval.begin(), kOverInterval.end());
     names.emplace_back("is");
   } else {
     for (const auto& [name, param] : symbols_.params) names.push_back(name);
-    for (const RuleRole& role : symbols_.program.events[rule_].roles) names.push_back(role.name);
+    for (const auto& [name, define] : symbols_.defines) names.push_back(name);
+    if (scope_ != nullptr) {
+      for (const auto& [name, role] : scope_->roles) names.push_back(name);
+      for (const auto& [name, value] : scope_->values) names.push_back(name);
+    } else {
+      for (const RuleRole& role : symbols_.program.events[rule_].roles) names.push_back(role.name);
+    }
   }
   return names;
 }
 
 Lowering::Typed Lowering::Lower(const Expr& expr) {
+  if (full_) return {.bad = true};
   switch (expr.kind) {
-    case Expr::Kind::kQuantity:
-      return {.node = Add({.op = Op::kNumber, .number = expr.quantity.value}),
-              .type = Type::kNumber,
-              .dimension = expr.quantity.dimension};
+    case Expr::Kind::kQuantity: return NumberNode(expr.quantity.value, expr.quantity.dimension, expr.place);
     case Expr::Kind::kName: return LowerName(expr);
+    case Expr::Kind::kText: return Bad(expr.place, "a value is needed here, not a text");
     case Expr::Kind::kCall: return LowerCall(expr);
     case Expr::Kind::kUnary: return LowerUnary(expr);
     case Expr::Kind::kBinary: return LowerBinary(expr);
@@ -210,7 +252,9 @@ Lowering::Typed Lowering::Position(const Expr& expr) {
   if (expr.kind == Expr::Kind::kName) {
     if (const int role = FindRole(expr.text); role != kNone) {
       role_used_[role] = true;
-      return {.node = Add({.op = Op::kPosition, .roles = {role, kNone}}), .type = Type::kPosition, .dimension = kMetres};
+      return {.node = AddSignal({.op = Op::kPosition, .roles = {role, kNone}}),
+              .type = Type::kPosition,
+              .dimension = kMetres};
     }
   }
   const Typed typed = Lower(expr);
@@ -220,13 +264,20 @@ Lowering::Typed Lowering::Position(const Expr& expr) {
 }
 
 Lowering::Typed Lowering::LowerName(const Expr& expr) {
-  if (const auto param = symbols_.params.find(expr.text); param != symbols_.params.end()) {
-    const Quantity& value = symbols_.program.params[param->second].value;
-    return {.node = Add({.op = Op::kNumber, .number = value.value}), .type = Type::kNumber, .dimension = value.dimension};
+  if (scope_ != nullptr) {
+    if (const auto value = scope_->values.find(expr.text); value != scope_->values.end()) return LowerValue(value->second);
   }
   if (FindRole(expr.text) != kNone) {
     return Bad(expr.place, Quoted(expr.text) + " is a role; a value is needed here",
                "ask for one of its signals: position(" + expr.text + ")");
+  }
+  if (const auto param = symbols_.params.find(expr.text); param != symbols_.params.end()) {
+    symbols_.used_params.insert(param->second);
+    const Quantity& value = symbols_.program.params[param->second].value;
+    return NumberNode(value.value, value.dimension, expr.place);
+  }
+  if (const auto define = symbols_.defines.find(expr.text); define != symbols_.defines.end()) {
+    return LowerDefine(define->second, expr);
   }
   if (expr.text == "any") {
     return Bad(expr.place, "'any' stands only for a role of an event or condition",
@@ -243,10 +294,8 @@ Lowering::Typed Lowering::LowerUnary(const Expr& expr) {
   }
   Typed arg = Number(expr.args[0]);
   if (arg.bad) return arg;
-  if (symbols_.program.nodes[arg.node].op == Op::kNumber) {
-    symbols_.program.nodes[arg.node].number *= -1;
-    return arg;
-  }
+  const Node node = symbols_.program.nodes[arg.node];
+  if (node.op == Op::kNumber) return NumberNode(-node.number, arg.dimension, expr.place);
   arg.node = Add({.op = Op::kNegate, .args = {arg.node, kNone, kNone, kNone}});
   return arg;
 }
@@ -266,28 +315,58 @@ Lowering::Typed Lowering::LowerBinary(const Expr& expr) {
   const Typed left = Number(expr.args[0]);
   const Typed right = Number(expr.args[1]);
   if (left.bad || right.bad) return {.bad = true};
-  Typed result{.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}),
-               .type = Type::kNumber,
-               .dimension = left.dimension};
-  if (op == Op::kMultiply) {
-    result.dimension = Product(left.dimension, right.dimension);
-  } else if (op == Op::kDivide) {
-    result.dimension = Quotient(left.dimension, right.dimension);
-  } else if (!(left.dimension == right.dimension)) {
+  const bool scales = op == Op::kMultiply || op == Op::kDivide;
+  if (!scales && !(left.dimension == right.dimension)) {
     const bool sum = op == Op::kAdd || op == Op::kSubtract;
     return Bad(expr.place, std::string(sum ? "cannot combine " : "cannot compare ") + DimensionText(left.dimension) +
                                " with " + DimensionText(right.dimension),
                right.dimension == kPlain ? "the right side needs a unit" : "both sides must have the same unit");
   }
-  if (op < Op::kLess || op > Op::kNotEqual) return result;
+  if (op >= Op::kLess && op <= Op::kNotEqual) return LowerComparison(op, left, right, expr);
+  return LowerArithmetic(op, left, right, expr);
+}
+
+// What only depends on parameters is one number, so that it can stand where a constant must.
+Lowering::Typed Lowering::LowerArithmetic(Op op, const Typed& left, const Typed& right, const Expr& expr) {
+  Dimension dimension = left.dimension;
+  if (op == Op::kMultiply) dimension = Product(left.dimension, right.dimension);
+  if (op == Op::kDivide) dimension = Quotient(left.dimension, right.dimension);
+  if (!dimension.IsModest()) return Bad(expr.place, "a unit to such a power means nothing");
+  const Node a = symbols_.program.nodes[left.node];
+  const Node b = symbols_.program.nodes[right.node];
+  if (a.op == Op::kNumber && b.op == Op::kNumber) {
+    switch (op) {
+      case Op::kAdd: return NumberNode(a.number + b.number, dimension, expr.place);
+      case Op::kSubtract: return NumberNode(a.number - b.number, dimension, expr.place);
+      case Op::kMultiply: return NumberNode(a.number * b.number, dimension, expr.place);
+      default: return NumberNode(a.number / b.number, dimension, expr.place);
+    }
+  }
+  return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}),
+          .type = Type::kNumber,
+          .dimension = dimension};
+}
+
+Lowering::Typed Lowering::LowerComparison(Op op, const Typed& left, const Typed& right, const Expr& expr) {
   const Node& value = symbols_.program.nodes[right.node];
   const std::optional<Range> range = RangeOf(symbols_.program.nodes[left.node].op);
-  if (range && value.op == Op::kNumber && NeverHolds(op, *range, value.number)) {
+  if (!checking_ && range && value.op == Op::kNumber && NeverHolds(op, *range, value.number)) {
     return Bad(expr.place, "this is never true: " + Quoted(expr.args[0].text) + " goes from " +
                                QuantityText({range->low, left.dimension}) + " to " +
                                QuantityText({range->high, left.dimension}));
   }
-  return {.node = result.node, .type = Type::kTruth};
+  return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}), .type = Type::kTruth};
+}
+
+void Lowering::CheckBounds(const Expr& chain, const std::vector<int>& nodes) {
+  if (checking_) return;
+  Bounds bounds(symbols_.program);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (bounds.Add(nodes[i])) continue;
+    Complain(chain.args[i].place, "this is never true together with what stands before it: " + Dump(chain.args[i]),
+             "use 'or', or change one of the bounds");
+    return;
+  }
 }
 
 // Long chains become balanced trees, so that walking them never goes deep.
@@ -303,6 +382,7 @@ Lowering::Typed Lowering::LowerChain(const Expr& expr) {
     nodes.push_back(typed.node);
   }
   if (bad) return {.bad = true};
+  if (is_and) CheckBounds(expr, nodes);
   while (nodes.size() > 1) {
     std::vector<int> halved;
     for (std::size_t i = 0; i + 1 < nodes.size(); i += 2) {
@@ -327,204 +407,21 @@ Lowering::Typed Lowering::LowerAnchor(const Expr& expr) {
   const bool at_begin = expr.text == "begin";
   if (at_begin ? !anchors_.begin : !anchors_.end) {
     return Bad(expr.place, "the interval's " + expr.text + " is not known here",
-               at_begin ? "'@begin' can be used after 'to', 'during' and 'requires'"
-                        : "'@end' can be used after 'since' and 'requires'");
+               at_begin ? "'@begin' can be used after 'to', 'during', 'requires' and 'with'"
+                        : "'@end' can be used after 'since', 'requires' and 'with'");
   }
   // Inside, the boundary is a single frame: no further anchors.
   const Anchors outer = std::exchange(anchors_, Anchors{});
+  const bool in_attribute = std::exchange(attribute_, false);
   Typed arg = Lower(expr.args[0]);
   anchors_ = outer;
+  attribute_ = in_attribute;
   if (arg.bad) return arg;
   if (arg.type == Type::kTruth) {
     return Bad(expr.place, "'@" + expr.text + "' takes a number or a position, this is true or false");
   }
   arg.node = at_begin ? AnchorAtBegin(arg.node) : Add({.op = Op::kAtEnd, .args = {arg.node, kNone, kNone, kNone}});
   return arg;
-}
-
-std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wanted_class, std::string_view callee) {
-  const int role = expr.kind == Expr::Kind::kName ? FindRole(expr.text) : kNone;
-  if (role == kNone) {
-    std::vector<std::string> names;
-    for (const RuleRole& known : rule().roles) names.push_back(known.name);
-    if (expr.text == "any") {
-      Complain(expr.place, "'any' stands only for a role of an event or condition", "for example: contact(object, any)");
-      return std::nullopt;
-    }
-    Complain(expr.place, Quoted(callee) + " takes a role here" +
-                             (expr.kind == Expr::Kind::kName ? ", and there is no role " + Quoted(expr.text) : ""),
-             expr.kind == Expr::Kind::kName ? Suggest(expr.text, names) : "");
-    return std::nullopt;
-  }
-  role_used_[role] = true;
-  const std::string& class_name = rule().roles[role].class_name;
-  if (!ClassesMeet(class_name, wanted_class)) {
-    Complain(expr.place, Quoted(callee) + " takes a " + std::string(wanted_class) + " here, but " + Quoted(expr.text) +
-                             " is a " + class_name);
-    return std::nullopt;
-  }
-  return role;
-}
-
-Lowering::Typed Lowering::LowerCall(const Expr& expr) {
-  if (std::find(kOverInterval.begin(), kOverInterval.end(), expr.text) != kOverInterval.end()) {
-    return LowerOverInterval(expr);
-  }
-  if (expr.text == "is") return LowerIs(expr);
-  const auto found = symbols_.rules.find(expr.text);
-  if (found == symbols_.rules.end()) {
-    if (const Builtin* builtin = FindBuiltin(expr.text)) return LowerBuiltin(*builtin, expr);
-    return Bad(expr.place, "unknown event, condition or signal " + Quoted(expr.text),
-               Suggest(expr.text, KnownNames(true)));
-  }
-  const std::vector<RuleRole> wanted = symbols_.program.events[found->second].roles;
-  if (wanted.size() != expr.args.size()) {
-    return Bad(expr.place, Quoted(expr.text) + " takes " + std::to_string(wanted.size()) + " roles, found " +
-                               std::to_string(expr.args.size()));
-  }
-  Reference reference{.rule = found->second};
-  std::vector<int> kept;
-  int count = 0;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (expr.args[i].kind == Expr::Kind::kName && expr.args[i].text == "any") continue;
-    const std::optional<int> role = RoleArgument(expr.args[i], wanted[i].class_name, expr.text);
-    if (!role) return {.bad = true};
-    kept.push_back(static_cast<int>(i));
-    reference.roles[count++] = *role;
-  }
-  if (kept.empty()) return Bad(expr.place, "at least one role must be named; all are 'any'");
-  if (kept.size() < wanted.size()) reference.rule = AnyRule(found->second, kept);
-  return {.node = Add({.op = Op::kHolds, .slot = AddReference(reference)}), .type = Type::kTruth};
-}
-
-// The hidden rule "some binding of `rule` with these roles holds".
-int Lowering::AnyRule(int rule, const std::vector<int>& kept) {
-  const auto [entry, is_new] = symbols_.any_rules.try_emplace({rule, kept}, static_cast<int>(symbols_.program.events.size()));
-  if (is_new) {
-    const Rule& source = symbols_.program.events[rule];
-    Rule any{.name = source.name, .file = source.file, .place = source.place, .form = Form::kAny};
-    Reference guard{.rule = rule};
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      any.roles.push_back(source.roles[kept[i]]);
-      guard.roles[kept[i]] = static_cast<int>(i);
-    }
-    any.references = {guard};
-    any.guard = 0;
-    symbols_.program.events.push_back(std::move(any));
-  }
-  return entry->second;
-}
-
-// is(object, Cup): the class test.
-Lowering::Typed Lowering::LowerIs(const Expr& expr) {
-  if (expr.args.size() != 2 || expr.args[1].kind != Expr::Kind::kName) {
-    return Bad(expr.place, "'is' takes a role and the name of a class", "for example: is(object, Cup)");
-  }
-  const std::optional<int> role = RoleArgument(expr.args[0], "Entity", "is");
-  if (!role) return {.bad = true};
-  symbols_.program.class_names.push_back(expr.args[1].text);
-  const int slot = static_cast<int>(symbols_.program.class_names.size()) - 1;
-  return {.node = Add({.op = Op::kIsA, .roles = {*role, kNone}, .slot = slot}), .type = Type::kTruth};
-}
-
-// displacement, rise and drop compare this frame with the interval's begin.
-Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
-  if (!anchors_.begin) {
-    return Bad(expr.place, Quoted(expr.text) + " is measured over an interval; there is none here",
-               "it can be used after 'to', 'during' and 'requires'");
-  }
-  const bool is_displacement = expr.text == "displacement";
-  if (expr.args.empty() || expr.args.size() > (is_displacement ? 2 : 1)) {
-    return Bad(expr.place, Quoted(expr.text) + (is_displacement ? " takes one or two roles" : " takes one role"));
-  }
-  Node now{.op = is_displacement ? (expr.args.size() == 2 ? Op::kPositionOn : Op::kPosition) : Op::kHeight};
-  for (std::size_t i = 0; i < expr.args.size(); ++i) {
-    const std::optional<int> role = RoleArgument(expr.args[i], "Entity", expr.text);
-    if (!role) return {.bad = true};
-    now.roles[i] = *role;
-  }
-  if (!is_displacement) {
-    now.args[0] = Add({.op = Op::kPosition, .roles = {now.roles[0], kNone}});
-    now.roles[0] = kNone;
-  }
-  const int here = Add(now);
-  const int there = AnchorAtBegin(here);
-  const Op op = is_displacement ? Op::kDistance : Op::kSubtract;
-  const bool falls = expr.text == "drop";
-  return {.node = Add({.op = op, .args = {falls ? there : here, falls ? here : there, kNone, kNone}}),
-          .type = Type::kNumber,
-          .dimension = kMetres};
-}
-
-Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr) {
-  if (expr.args.size() != builtin.arguments.size()) {
-    return Bad(expr.place, Quoted(builtin.name) + " takes " + std::to_string(builtin.arguments.size()) +
-                               " arguments, found " + std::to_string(expr.args.size()),
-               std::string(builtin.name) + ": " + std::string(builtin.meaning));
-  }
-  Typed result{.type = builtin.type, .dimension = builtin.dimension};
-  Node node{.op = builtin.op};
-  int next_node = 0;
-  int next_role = 0;
-  for (std::size_t i = 0; i < expr.args.size(); ++i) {
-    if (!LowerArgument(expr.args[i], builtin.arguments[i], builtin, node, next_node, next_role, result)) {
-      return {.bad = true};
-    }
-  }
-  const bool from_touch = node.op == Op::kHolds || node.op == Op::kSensorSets || node.op == Op::kUp ||
-                          node.op == Op::kForceBetween;
-  if (from_touch) {
-    node.slot = AddReference({.rule = kTouchingRule, .roles = {node.roles[0], node.roles[1], kNone, kNone}});
-  }
-  result.node = Add(node);
-  return result;
-}
-
-bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Builtin& builtin, Node& node, int& next_node,
-                             int& next_role, Typed& result) {
-  switch (wanted) {
-    case Argument::kPosition: {
-      if (node.op == Op::kInSphere && next_node == 0 && arg.kind == Expr::Kind::kName && FindRole(arg.text) != kNone) {
-        node.op = Op::kBoxInSphere;
-        node.roles[next_role++] = FindRole(arg.text);
-        role_used_[node.roles[0]] = true;
-        return true;
-      }
-      const Typed position = Position(arg);
-      node.args[next_node++] = position.node;
-      return !position.bad;
-    }
-    case Argument::kLength:
-    case Argument::kNumber: {
-      const Typed number = Number(arg);
-      if (number.bad) return false;
-      if (wanted == Argument::kLength && !(number.dimension == kMetres)) {
-        Complain(arg.place, Quoted(builtin.name) + " takes a length here, this is " + DimensionText(number.dimension));
-        return false;
-      }
-      if (wanted == Argument::kNumber) result.dimension = number.dimension;
-      node.args[next_node++] = number.node;
-      return true;
-    }
-    case Argument::kWindow: {
-      const std::optional<double> window_s = ConstantOf(arg, kSeconds, "the window of " + Quoted(builtin.name));
-      if (!window_s) return false;
-      node.number = *window_s;
-      if (node.number > 0) return true;
-      Complain(arg.place, "the window of " + Quoted(builtin.name) + " must be longer than 0 s", "for example: 100 ms");
-      return false;
-    }
-    default: {
-      const std::optional<int> role = RoleArgument(arg, ClassOf(wanted), builtin.name);
-      if (!role) return false;
-      if (next_role == 1 && node.roles[0] == *role) {
-        Complain(arg.place, Quoted(builtin.name) + " needs two different roles");
-        return false;
-      }
-      node.roles[next_role++] = *role;
-      return true;
-    }
-  }
 }
 
 }  // namespace prehend::grammar

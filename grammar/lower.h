@@ -6,6 +6,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,16 +17,35 @@
 
 namespace prehend::grammar {
 
+/// A `define`, with the file it stands in.
+struct DefineSource {
+  const GrammarText* text = nullptr;
+  const ast::Define* define = nullptr;
+};
+
 /// What all rules share while a grammar is compiled.
 struct Symbols {
   Program& program;
   std::map<std::string, int, std::less<>> rules;   ///< name -> index in Program::events
   std::map<std::string, int, std::less<>> params;  ///< name -> index in Program::params
+  std::map<std::string, DefineSource, std::less<>> defines;
   std::map<std::pair<int, std::vector<int>>, int> any_rules;  ///< (rule, kept roles) -> rule
+  std::map<std::pair<int, std::vector<std::string>>, int> narrowed_rules;  ///< (rule, classes of its roles) -> rule
+  std::set<int> used_params;
+  std::set<std::string, std::less<>> used_defines;
 };
 
 /// True if some entity can be of both classes. Names other than the built-in ones are taken to be Things.
 bool ClassesMeet(std::string_view a, std::string_view b);
+
+inline bool StartsWithCapital(std::string_view name) { return !name.empty() && name[0] >= 'A' && name[0] <= 'Z'; }
+
+/// The signals that are measured over an interval: displacement, rise, drop.
+bool IsOverInterval(std::string_view name);
+
+inline std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+/// "did you mean 'height'?", or nothing.
+std::string Suggest(std::string_view name, const std::vector<std::string>& known);
 
 class Lowering {
  public:
@@ -46,9 +66,15 @@ class Lowering {
   int RuleCall(const ast::Expr& expr);
   /// A number; its dimension is written to `dimension`.
   int Signal(const ast::Expr& expr, Anchors anchors, Dimension& dimension);
+  /// A number to be asked for where the interval ends: signals as they were at its begin, `x@end` as they are.
+  int Attribute(const ast::Expr& expr, Dimension& dimension);
   /// A number that only depends on parameters, zero or more.
   double Constant(const ast::Expr& expr, const Dimension& dimension, std::string_view what);
+  /// A constant time of more than 0 s.
+  double Span(const ast::Expr& expr, std::string_view what);
   int HandRole(const ast::Expr& expr);
+  /// The body of a definition for itself: only for its mistakes.
+  void Check(const DefineSource& define);
 
   bool RoleUsed(std::size_t role) const { return role_used_[role]; }
   void Complain(Place place, std::string message, std::string hint = {});
@@ -61,41 +87,70 @@ class Lowering {
     bool instant = false;
     bool bad = false;
   };
+  /// What the names of a definition's parameters stand for while its body is lowered.
+  struct Scope {
+    struct Value {
+      const ast::Expr* expr = nullptr;  ///< the argument, and where it was written
+      const GrammarText* source = nullptr;
+      const Scope* scope = nullptr;
+      Typed stand_in = {};              ///< without an argument
+    };
+    std::string_view define;
+    const Scope* outer = nullptr;
+    int depth = 1;
+    std::map<std::string, int, std::less<>> roles = {};
+    std::map<std::string, Value, std::less<>> values = {};
+  };
   Rule& rule() { return symbols_.program.events[rule_]; }
 
   Typed Lower(const ast::Expr& expr);
   Typed LowerName(const ast::Expr& expr);
   Typed LowerUnary(const ast::Expr& expr);
   Typed LowerBinary(const ast::Expr& expr);
+  Typed LowerArithmetic(Op op, const Typed& left, const Typed& right, const ast::Expr& expr);
+  Typed LowerComparison(Op op, const Typed& left, const Typed& right, const ast::Expr& expr);
   Typed LowerChain(const ast::Expr& expr);
+  void CheckBounds(const ast::Expr& chain, const std::vector<int>& nodes);
   Typed LowerEdge(const ast::Expr& expr);
   Typed LowerAnchor(const ast::Expr& expr);
   Typed LowerCall(const ast::Expr& expr);
+  Typed LowerRuleCall(int rule, const ast::Expr& expr);
+  Typed LowerDefine(const DefineSource& source, const ast::Expr& expr);
+  Typed LowerBody(const DefineSource& source, const Scope& scope);
+  Typed LowerValue(const Scope::Value& value);
+  bool BindParameter(const DefineSource& source, std::size_t index, const ast::Expr& arg, Scope& scope);
   Typed LowerBuiltin(const Builtin& builtin, const ast::Expr& expr);
   Typed LowerOverInterval(const ast::Expr& expr);
   Typed LowerIs(const ast::Expr& expr);
   bool LowerArgument(const ast::Expr& arg, Argument wanted, const Builtin& builtin, Node& node, int& next_node,
                      int& next_role, Typed& result);
+  bool LowerSet(const ast::Expr& arg, Node& node);
 
   std::optional<double> ConstantOf(const ast::Expr& expr, const Dimension& dimension, std::string_view what);
   Typed Bad(Place place, std::string message, std::string hint = {});
   Typed Number(const ast::Expr& expr);
   Typed Position(const ast::Expr& expr);
   Typed TruthValue(const ast::Expr& expr);
+  Typed NumberNode(double value, const Dimension& dimension, Place place);
   int Add(Node node);
+  int AddSignal(Node node);
   int AddReference(const Reference& reference);
   int AnchorAtBegin(int node);
   int FindRole(std::string_view name) const;
   std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class, std::string_view callee);
   int AnyRule(int rule, const std::vector<int>& kept);
-  int UnknownName(const ast::Expr& expr);
+  int NarrowedRule(int rule, const std::vector<std::string>& classes);
   std::vector<std::string> KnownNames(bool calls) const;
 
   Symbols& symbols_;
   int rule_;
-  const GrammarText& source_;
+  const GrammarText* source_;
   Diagnostics& diagnostics_;
   Anchors anchors_;
+  bool attribute_ = false;  ///< signals are taken where the interval begins
+  bool full_ = false;       ///< the grammar has too many expressions
+  bool checking_ = false;   ///< numbers of parameters are stand-ins
+  const Scope* scope_ = nullptr;
   std::vector<bool> role_used_;
 };
 

@@ -34,12 +34,14 @@ using Overrides = std::map<std::string, std::string>;
 struct CompileResult {
   std::shared_ptr<const Program> program;  ///< null when there are errors
   Diagnostics diagnostics;
+  Diagnostics warnings;  ///< what is allowed and yet looks like a mistake
 };
 
 CompileResult Compile(const GrammarText& grammar, const Includer& includer,
                       const Overrides& overrides = {});
 
 inline constexpr int kMaxRoles = 4;
+inline constexpr int kMaxAttributes = 4;
 
 /// One recognised event. Names are in Program::events[rule].
 struct Event {
@@ -49,6 +51,8 @@ struct Event {
   Tick decided = 0;       ///< the tick of the frame at which it became certain
   int style = kNobody;    ///< value of `with style = style(hand)`, index into Cast::styles
   bool open_end = false;  ///< closed by Finish(), not by what happened
+  /// Values of `with name = value`, SI units, in the order of Program::events[rule].attributes.
+  std::array<double, kMaxAttributes> attributes = {};
 };
 
 /// Watches one episode. Allocates nothing per frame after warm-up.

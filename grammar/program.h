@@ -24,13 +24,16 @@ enum class Op : std::uint8_t {
   kHolds,   ///< reference `slot` is true
   kBegins,  ///< args[0] becomes true at this frame; of a reference: one of its intervals begins
   kEnds,    ///< likewise
-  kInSphere, kBoxInSphere, kInCylinder, kPartOf, kIsA,
+  kInSphere, kBoxInSphere, kInCylinder, kPartOf, kIsA, kGazed,
+  kSensorSet,  ///< the set named `name`, or without a name the `number`th
   // Numbers, SI units.
   kNumber, kAdd, kSubtract, kMultiply, kDivide, kNegate, kAbs,
   kTrigger, kSensorSets, kUp, kForceBetween,
   kGap, kClosingSpeed, kSurfaceSpeed, kDistance, kHeight, kSpeed, kVerticalSpeed, kRelativeVerticalSpeed, kSpeedAlong,
   kDriftAlong,  ///< over `number` seconds around the frame
   kTilt,
+  kJointFraction, kJointAngle, kJointTravel, kWeight, kStrength,
+  kRate,  ///< of args[0], over `number` seconds around the frame
   // Positions in metres.
   kPosition, kPositionOn, kAhead,
   // Numbers or positions.
@@ -43,7 +46,8 @@ struct Node {
   std::array<int, 4> args = {kNone, kNone, kNone, kNone};  ///< nodes
   std::array<int, 2> roles = {kNone, kNone};               ///< roles of the rule
   int slot = kNone;       ///< reference, anchor or class name
-  double number = 0;      ///< kNumber, kDriftAlong
+  int name = kNone;       ///< kSensorSet: index into Program::set_names
+  double number = 0;      ///< kNumber, kDriftAlong, kRate, kSensorSet
 };
 
 /// One number per role.
@@ -81,6 +85,13 @@ struct Composition {
   std::vector<Clause> clauses;
 };
 
+/// `with name = value`: a number that the event carries.
+struct RuleAttribute {
+  std::string name;
+  int node = kNone;  ///< asked for where the interval ends
+  Dimension dimension;
+};
+
 /// A rule is part `part` of the composition `rule`.
 struct PartOf {
   int rule = kNone;
@@ -94,12 +105,15 @@ struct Rule {
   std::vector<RuleRole> roles;
   Form form = Form::kWhile;
   bool printed = false;    ///< an event, not a condition
+  bool hidden = false;     ///< made for an `any`
   bool symmetric = false;  ///< bound once per pair, names in alphabetical order
 
   int first = kNone;   ///< node: while, from, until; kRestOf: reference
-  int second = kNone;  ///< node: to, since
+  int second = kNone;  ///< node: to, without, since; kWhile: what ends it, kNone: that `first` is false
   int during = kNone;  ///< node
-  bool or_drop = false;
+  bool or_drop = false;   ///< an interval that does not reach `second` is dropped
+  bool absence = false;   ///< `without`: an interval that reaches `second` is dropped
+  double within_s = -1;   ///< kFromTo: how long to wait for `second`; negative: forever
   int approach = kNone;  ///< node: the signal that must not recede
   double slack = 0;      ///< in the signal's unit
   int motion = kNone;    ///< node: how fast it moves; kNone: as fast as the signal falls
@@ -115,6 +129,7 @@ struct Rule {
   int confirmed_by = kNone;     ///< reference
   int confirmed_within = kNone; ///< reference
   int style_role = kNone;
+  std::vector<RuleAttribute> attributes;  ///< at most kMaxAttributes
 
   std::vector<Reference> references;
   std::vector<int> anchors;  ///< nodes whose values are kept from where an interval begins
@@ -146,6 +161,7 @@ struct Program {
   std::vector<int> schedule;  ///< rules so that each comes after those it refers to
   std::vector<Node> nodes;
   std::vector<std::string> class_names;  ///< for kIsA
+  std::vector<std::string> set_names;    ///< for kSensorSet
   std::vector<ProgramParam> params;
 };
 

@@ -24,6 +24,14 @@ void AppendPower(std::string& text, std::string_view name, int power) {
 
 }  // namespace
 
+bool Dimension::IsModest() const {
+  constexpr int kHighest = 9;
+  for (const int power : {length, time, force, angle}) {
+    if (power > kHighest || power < -kHighest) return false;
+  }
+  return true;
+}
+
 Dimension Product(const Dimension& a, const Dimension& b) {
   return {a.length + b.length, a.time + b.time, a.force + b.force, a.angle + b.angle};
 }

@@ -16,6 +16,8 @@ struct Dimension {
   int force = 0;
   int angle = 0;
   friend bool operator==(const Dimension&, const Dimension&) = default;
+  /// No power is absurdly high.
+  bool IsModest() const;
 };
 
 inline constexpr Dimension kPlain{};

@@ -36,6 +36,11 @@ Timeline NameEvents(const Program& program, const Cast& cast, const std::vector<
     if (event.style >= 0 && event.style < static_cast<int>(cast.styles.size())) {
       named.roles.push_back({"style", cast.styles[event.style]});
     }
+    for (std::size_t i = 0; i < rule.attributes.size(); ++i) {
+      const RuleAttribute& attribute = rule.attributes[i];
+      const std::string unit = attribute.dimension == kPlain ? "" : DimensionText(attribute.dimension);
+      named.values.push_back({attribute.name, event.attributes[i], unit});
+    }
     timeline.events.push_back(std::move(named));
   }
   Sort(timeline);

@@ -17,12 +17,21 @@ struct Role {
   friend auto operator<=>(const Role&, const Role&) = default;
 };
 
+/// `with force = force(hand, object)`: a number that the event carries.
+struct NamedValue {
+  std::string name;
+  double value = 0;  ///< SI units
+  std::string unit;  ///< "N", "m/s"; empty for a plain number
+  friend bool operator==(const NamedValue&, const NamedValue&) = default;
+};
+
 struct NamedEvent {
   std::string event;
   std::vector<Role> roles;  ///< in the order of the rule's head, attributes last
   Interval interval;
   Tick decided = 0;
   bool open_end = false;  ///< closed by the end of the episode
+  std::vector<NamedValue> values = {};
 
   /// "reaching(right_hand, milk)"; attributes are left out.
   std::string Label() const;
