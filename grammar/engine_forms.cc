@@ -95,11 +95,13 @@ bool Engine::StepFromTo(Lane& lane, FrameNumber frame) {
     return true;
   }
   Kleene opens = evaluator_.Truth(rule.first, view);
-  if (opens != Kleene::kFalse) opens = And(opens, during());
+  if (opens == Kleene::kFalse) return true;
+  // What `during` and `to` say of @begin refers to this very frame.
+  if (!evaluator_.CaptureAnchors(lane, frame)) return false;
+  opens = And(opens, during());
   if (opens == Kleene::kFalse) return true;
   if (opens == Kleene::kUnknown) return false;
-  // A begin that is an end at once is no interval. What `to` says of @begin refers to this very frame.
-  if (!evaluator_.CaptureAnchors(lane, frame)) return false;
+  // A begin that is an end at once is no interval.
   const Kleene closes = evaluator_.Truth(rule.second, view);
   if (closes == Kleene::kUnknown) return false;
   return closes == Kleene::kTrue || Open(lane, frame);
