@@ -29,6 +29,7 @@ struct MemberEntry {
   bool hand = false;
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  double mass_kg = 0, strength_n = 0;
   std::optional<Located<std::string>> part_of;
   std::vector<std::string> sensor_sets = {"fingers", "thumb", "palm"};
 };
@@ -45,6 +46,8 @@ struct LookEntry {
   std::optional<Located<Eigen::Vector4d>> quat_wxyz;
   std::optional<Eigen::Vector3d> v_m_per_s, w_rad_per_s;
   bool asleep = false;
+  double joint_position = 0, joint_fraction = 0;
+  std::optional<Located<std::string>> gazes_at;
 };
 struct HandEntry {
   double trigger = 0;
@@ -93,6 +96,8 @@ Format<HeaderEntry> HeaderFormat() {
                                .Optional("hand", &M::hand, Flag(), "")
                                .Optional("centre_m", &M::centre_m, Position(), "")
                                .Required("size_m", &M::size_m, Vector<3>(0, kFarthestM), "")
+                               .Optional("mass_kg", &M::mass_kg, Number(0, 1e6), "")
+                               .Optional("strength_n", &M::strength_n, Number(0, 1e6), "")
                                .Optional("part_of", &M::part_of, Name(), "")
                                .Optional("sensor_sets", &M::sensor_sets, ListOf(Name(), 1, kMaxSets), "")
                                .format();
@@ -116,6 +121,9 @@ Format<LineEntry> LineFormat() {
                              .Optional("v_m_per_s", &L::v_m_per_s, Velocity(), "")
                              .Optional("w_rad_per_s", &L::w_rad_per_s, Velocity(), "")
                              .Optional("asleep", &L::asleep, Flag(), "")
+                             .Optional("joint_position", &L::joint_position, Number(-1e4, 1e4), "")
+                             .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
+                             .Optional("gazes_at", &L::gazes_at, Name(), "")
                              .Check([](const YamlNode&, const L& l, Complaints& complaints) {
                                if (!l.quat_wxyz || std::abs(l.quat_wxyz->value.norm() - 1) < 0.01) return;
                                complaints.Add(l.quat_wxyz->where, "quat_wxyz: expected a unit quaternion [w, x, y, z]");
@@ -208,6 +216,8 @@ class EpisodeReader {
       member.name = entry.name;
       member.p_BC_m = m.centre_m;
       member.half_size_m = m.size_m / 2;
+      member.mass_kg = m.mass_kg;
+      member.strength_n = m.strength_n;
       if (m.part_of) member.part_of = IndexOf(m.part_of->value, m.part_of->where, complaints);
       if (m.hand) {
         member.classes = {"Hand", "Entity"};
@@ -250,7 +260,11 @@ class EpisodeReader {
     for (grammar::EntityLook& look : now_.entities) look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
     for (const Named<LookEntry>& look : entry.looks) {
       const int index = IndexOf(look.name, look.name_where, complaints);
-      if (index != grammar::kNobody) TakeLook(look.value, first ? 0 : dt_s, now_.entities[index]);
+      if (index == grammar::kNobody) continue;
+      TakeLook(look.value, first ? 0 : dt_s, now_.entities[index]);
+      if (const auto& gazes_at = look.value.gazes_at) {
+        now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, complaints);
+      }
     }
     for (const Named<HandEntry>& hand : entry.hands) TakeHand(hand, complaints);
     now_.touches.clear();
@@ -270,6 +284,9 @@ class EpisodeReader {
       look.q_WB = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
     }
     look.asleep = entry.asleep;
+    look.joint_position = entry.joint_position;
+    look.joint_fraction = entry.joint_fraction;
+    look.gazes_at = grammar::kNobody;
     if (dt_s > 0) {
       look.v_WB_m_per_s = (look.p_WB_m - before.p_WB_m) / dt_s;
       const Eigen::AngleAxisd turn(look.q_WB * before.q_WB.conjugate());

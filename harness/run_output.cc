@@ -47,6 +47,9 @@ std::string RunTable(const RunResult& run) {
   std::vector<std::vector<std::string>> rows = {{"event", "begin_s", "end_s", "roles"}};
   for (const NamedEvent& event : run.timeline.events) {
     rows.push_back(EventCells(event, run.timeline.ticks_per_second, role_columns));
+    for (const grammar::NamedValue& value : event.values) {
+      rows.back().push_back(fmt::format("{}={:.4g}{}{}", value.name, value.value, value.unit.empty() ? "" : " ", value.unit));
+    }
   }
   std::string table;
   for (const std::string& line : AlignColumns(rows)) table += line + "\n";

@@ -17,6 +17,7 @@ Json EventJson(const grammar::NamedEvent& event, grammar::Tick ticks_per_second)
   Json roles = Json::object(), attributes = Json::object();
   for (const grammar::Role& role : event.roles)
     (IsAttribute(role) ? attributes : roles)[role.name] = role.value;
+  for (const grammar::NamedValue& value : event.values) attributes[value.name] = value.value;
   return {{"event", event.event},
           {"roles", std::move(roles)},
           {"attributes", std::move(attributes)},
@@ -40,7 +41,13 @@ grammar::Timeline TimelineFromJson(const Json& json) {
     grammar::NamedEvent& named = timeline.events.emplace_back();
     named.event = event.at("event");
     for (const char* part : {"roles", "attributes"}) {
-      for (const auto& [name, value] : event.at(part).items()) named.roles.push_back({name, value});
+      for (const auto& [name, value] : event.at(part).items()) {
+        if (value.is_number()) {
+          named.values.push_back({name, value, ""});
+        } else {
+          named.roles.push_back({name, value});
+        }
+      }
     }
     named.interval = {event.at("begin_tick"), event.at("end_tick")};
     named.decided = event.at("decided_tick");

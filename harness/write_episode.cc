@@ -17,6 +17,8 @@ bool IsHand(const grammar::CastMember& member) { return member.classes.front() =
 Json MemberJson(const grammar::CastMember& member, const grammar::Cast& cast) {
   Json json = {{"centre_m", ToJson(member.p_BC_m)}, {"size_m", ToJson(2 * member.half_size_m)}};
   if (member.part_of != grammar::kNobody) json["part_of"] = cast.entities[member.part_of].name;
+  if (member.mass_kg > 0) json["mass_kg"] = member.mass_kg;
+  if (member.strength_n > 0) json["strength_n"] = member.strength_n;
   if (IsHand(member)) {
     json["hand"] = true;
     json["sensor_sets"] = member.sensor_sets;
@@ -27,12 +29,15 @@ Json MemberJson(const grammar::CastMember& member, const grammar::Cast& cast) {
   return json;
 }
 
-Json LookJson(const grammar::EntityLook& look) {
+Json LookJson(const grammar::EntityLook& look, const grammar::Cast& cast) {
   Json json = {{"at_m", ToJson(look.p_WB_m)},
                {"quat_wxyz", ToJson(look.q_WB)},
                {"v_m_per_s", ToJson(look.v_WB_m_per_s)},
                {"w_rad_per_s", ToJson(look.w_WB_rad_per_s)}};
   if (look.asleep) json["asleep"] = true;
+  if (look.joint_position != 0) json["joint_position"] = look.joint_position;
+  if (look.joint_fraction != 0) json["joint_fraction"] = look.joint_fraction;
+  if (look.gazes_at != grammar::kNobody) json["gazes_at"] = cast.entities[look.gazes_at].name;
   return json;
 }
 
@@ -81,7 +86,7 @@ EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
 void EpisodeWriter::Write(const grammar::Frame& frame) {
   Json looks = Json::object();
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
-    Json look = LookJson(frame.entities[i]);
+    Json look = LookJson(frame.entities[i], cast_);
     std::string text = look.dump();
     if (text == shown_[i]) continue;
     looks[cast_.entities[i].name] = std::move(look);

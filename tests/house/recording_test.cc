@@ -41,6 +41,17 @@ TEST(Recording, TheDocumentedExampleIsRead) {
   EXPECT_EQ(nlohmann::json::parse(said.out)["events"].size(), 3) << said.out;
 }
 
+TEST(Grammar, TheFirstDocumentedExampleRecognisesItsEvent) {
+  std::ifstream document(std::string(PREHEND_SOURCE_DIR) + "/docs/grammar-language.md");
+  const std::string text{std::istreambuf_iterator<char>(document), {}};
+  const std::size_t begin = text.find("```\n") + 4;
+  const auto file = FreshFolder("grammar") / "carrying.grammar";
+  WriteFile(file, text.substr(begin, text.find("```", begin) - begin));
+  const Said said = Prehend({"run", "milk_carton_wrap", "--grammar", file.string()});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("carried"), std::string::npos) << said.out;
+}
+
 TEST(Recording, BadOnesEndWithExitCodeTwo) {
   const auto folder = FreshFolder("recording");
   WriteFile(folder / "bad.jsonl", "{\"recording\": 1}\n");
