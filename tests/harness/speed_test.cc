@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The speed figures measure the same thing twice: the grammar and the automata by hand recognise the same.
+#include <gtest/gtest.h>
+
+#include "harness/speed/four_rules.h"
+
+namespace prehend::harness {
+namespace {
+
+Recognised Watch(const ChangeLog& log) {
+  grammar::Monitor monitor(CompileFourRules(), log.cast);
+  const Recognised recognised = WatchByGrammar(log, monitor);
+  EXPECT_EQ(monitor.error(), "");
+  return recognised;
+}
+
+TEST(Speed, GrammarAndAutomataByHandRecogniseTheSame) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    const ChangeLog log = MakeStations(40, 5000, 3, seed);
+    const Recognised by_grammar = Watch(log);
+    EXPECT_GT(by_grammar.events, 1000u);
+    EXPECT_EQ(by_grammar, WatchByHand(log));
+  }
+  for (const bool grasps : {false, true}) {
+    const ChangeLog log = MakeFlicker(10, 100, 3, grasps);
+    EXPECT_EQ(Watch(log), WatchByHand(log));
+    EXPECT_EQ(Watch(log).events > 0, true);
+  }
+}
+
+TEST(Speed, TheHashSeesEveryPartOfAnEvent) {
+  const auto hash = [](int rule, int hand, int object, grammar::Interval interval) {
+    Recognised recognised;
+    recognised.Add(rule, hand, object, interval);
+    return recognised.hash;
+  };
+  const std::uint64_t one = hash(1, 2, 3, {4, 5});
+  EXPECT_NE(one, hash(0, 2, 3, {4, 5}));
+  EXPECT_NE(one, hash(1, 3, 2, {4, 5}));
+  EXPECT_NE(one, hash(1, 2, 3, {4, 6}));
+  EXPECT_NE(one, hash(1, 2, 3, {3, 5}));
+}
+
+}  // namespace
+}  // namespace prehend::harness
