@@ -17,6 +17,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "grammar/evaluate.h"
@@ -56,10 +57,10 @@ class Engine {
   };
 
   // What a frame says (engine_frames.cc).
-  std::string WhyNoTick(Tick tick) const;
-  std::string WhyNotWatchable(const Frame& frame) const;
-  std::string WhyNotWatchable(const FrameChanges& changes) const;
-  std::string WhyNoTouches(std::span<const Touch> touches) const;
+  std::string_view WhyNoTick(Tick tick) const;
+  std::string_view WhyNotWatchable(const Frame& frame) const;
+  std::string_view WhyNotWatchable(const FrameChanges& changes) const;
+  std::string_view WhyNoTouches(std::span<const Touch> touches) const;
   bool IsEntity(int entity) const { return entity >= 0 && entity < static_cast<int>(cast_.entities.size()); }
   template <typename AnyFrame>
   bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);

@@ -32,13 +32,13 @@ bool Same(const TouchSample& a, const TouchSample& b) {
 
 }  // namespace
 
-std::string Engine::WhyNoTick(Tick tick) const {
+std::string_view Engine::WhyNoTick(Tick tick) const {
   if (tick > kLatestTick || tick < -kLatestTick) return "a frame's tick is too large";
   if (history_.now() >= 0 && tick <= history_.At(history_.now()).tick) return "the frames are not in order of time";
   return {};
 }
 
-std::string Engine::WhyNotWatchable(const Frame& frame) const {
+std::string_view Engine::WhyNotWatchable(const Frame& frame) const {
   if (frame.entities.size() != cast_.entities.size()) return "a frame shows another number of entities than the cast";
   int last_hand = kNobody;
   for (const HandLook& hand : frame.hands) {
@@ -49,7 +49,7 @@ std::string Engine::WhyNotWatchable(const Frame& frame) const {
   return WhyNoTouches(frame.touches);
 }
 
-std::string Engine::WhyNotWatchable(const FrameChanges& changes) const {
+std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) const {
   for (const EntityChange& change : changes.entities) {
     if (!IsEntity(change.entity)) return "a frame shows somebody who is not in the cast";
   }
@@ -62,7 +62,7 @@ std::string Engine::WhyNotWatchable(const FrameChanges& changes) const {
   return WhyNoTouches(changes.touches);
 }
 
-std::string Engine::WhyNoTouches(std::span<const Touch> touches) const {
+std::string_view Engine::WhyNoTouches(std::span<const Touch> touches) const {
   for (const Touch& touch : touches) {
     if (!IsEntity(touch.a) || !IsEntity(touch.b) || touch.a >= touch.b) {
       return "a frame shows a touch of somebody not in the cast";
@@ -99,9 +99,12 @@ void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
 template <typename AnyFrame>
 bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
   if (!error_.empty() || finishing_) return false;
-  error_ = WhyNoTick(frame.tick);
-  if (error_.empty()) error_ = WhyNotWatchable(frame);
-  if (!error_.empty()) return false;
+  std::string_view why_not = WhyNoTick(frame.tick);
+  if (why_not.empty()) why_not = WhyNotWatchable(frame);
+  if (!why_not.empty()) {
+    error_ = why_not;
+    return false;
+  }
   out_ = &out;
   first_new_ = out.size();
   decided_ = frame.tick;
