@@ -50,6 +50,7 @@ Command RenderCommand();
 Command NewCommand();
 Command ResegmentCommand();
 Command SchemaCommand();
+Command BenchCommand();
 Command ScoreCommand();
 
 // What was typed for an option; `name` is "--json", or "scenario" for a positional.

@@ -61,11 +61,22 @@ class CommandLine : public testing::Test {
   const fs::path root_ = FreshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
+TEST_F(CommandLine, BenchAgreesWithTheAutomataByHand) {
+  const Said json = Do("bench --quick --json");
+  EXPECT_EQ(json.exit_code, 0) << json.err;
+  int compared = 0;
+  for (const auto& figure : nlohmann::json::parse(json.out)["figures"]) {
+    EXPECT_GT(figure["operations_per_s"], 0) << figure;
+    if (figure.contains("agrees_with_by_hand")) ++compared, EXPECT_TRUE(figure["agrees_with_by_hand"]) << figure;
+  }
+  EXPECT_EQ(compared, 7);
+}
+
 TEST_F(CommandLine, HelpIsEverywhere) {
   const Said all = Do("--help");
   EXPECT_EQ(all.exit_code, 0);
   for (const std::string command :
-       {"list", "validate", "run", "check", "accept", "render", "new", "schema"}) {
+       {"list", "validate", "run", "check", "accept", "render", "new", "schema", "bench"}) {
     EXPECT_NE(all.out.find("  " + command), std::string::npos) << command;
     const Said ended = Do(command + " --help");
     EXPECT_EQ(ended.exit_code, 0);

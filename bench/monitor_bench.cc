@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// The monitor alone, on worlds in memory; beside each the same rules by hand. The label is the hash of what was
+// recognised: the two of a pair must show the same one. Figures to look at are ratios within one run.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include "harness/run_output.h"
+#include "harness/speed/four_rules.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr double kPeriod_s = 60;
+
+int FramesFor(int objects) { return std::max(240, 4'000'000 / objects); }
+
+template <typename Watch>
+void Play(benchmark::State& state, const ChangeLog& log, double operations, Watch&& watch) {
+  Recognised recognised;
+  for (auto _ : state) recognised = watch(log, state);
+  state.SetLabel(HashText(recognised.hash));
+  using benchmark::Counter;
+  const auto rate = [](double count) { return Counter(count, Counter::kIsIterationInvariantRate); };
+  state.counters["operations"] = rate(operations);
+  state.counters["events"] = rate(static_cast<double>(recognised.events));
+}
+
+Recognised ByGrammar(const ChangeLog& log, benchmark::State& state) {
+  state.PauseTiming();
+  grammar::Monitor monitor(CompileFourRules(), log.cast);
+  state.ResumeTiming();
+  return WatchByGrammar(log, monitor);
+}
+
+Recognised ByHand(const ChangeLog& log, benchmark::State&) { return WatchByHand(log); }
+
+template <auto kWatch>
+void FourRules(benchmark::State& state) {
+  const int objects = static_cast<int>(state.range(0));
+  const int frames = FramesFor(objects);
+  const ChangeLog log = MakeStations(objects, frames, kPeriod_s);
+  Play(state, log, 1.0 * kFourRules * objects * frames, kWatch);
+}
+BENCHMARK(FourRules<ByGrammar>)->Arg(1)->Arg(1024)->Arg(4096)->Arg(65'536)->Unit(benchmark::kMillisecond);
+BENCHMARK(FourRules<ByHand>)->Arg(1)->Arg(1024)->Arg(4096)->Arg(65'536)->Unit(benchmark::kMillisecond);
+
+// Argument: whether each touch begins or ends a grasp.
+template <auto kWatch>
+void Flicker(benchmark::State& state) {
+  constexpr int kObjects = 64, kFrames = 2000;
+  const ChangeLog log = MakeFlicker(kObjects, kFrames, kObjects, state.range(0) != 0);
+  Play(state, log, 1.0 * kObjects * (kFrames - 1), kWatch);
+}
+BENCHMARK(Flicker<ByGrammar>)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(Flicker<ByHand>)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+void IdleTick(benchmark::State& state) {
+  const ChangeLog log = MakeStations(static_cast<int>(state.range(0)), 1, kPeriod_s);
+  grammar::Monitor monitor(CompileFourRules(), log.cast);
+  std::vector<grammar::Event> events;
+  monitor.AdvanceBy(log[0], events);
+  grammar::Tick tick = 1;
+  for (auto _ : state) monitor.AdvanceBy({.tick = tick++}, events);
+}
+BENCHMARK(IdleTick)->Arg(1)->Arg(1024)->Arg(65'536);
+
+void Binding(benchmark::State& state) {
+  const ChangeLog log = MakeStations(1024, 1, kPeriod_s);
+  const auto program = CompileFourRules();
+  int bindings = 0;
+  for (auto _ : state) {
+    grammar::Monitor monitor(program, log.cast);
+    std::vector<grammar::Event> events;
+    monitor.AdvanceBy(log[0], events);
+    bindings = monitor.lanes_in_use();
+  }
+  state.counters["bindings"] = benchmark::Counter(bindings, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(Binding)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace prehend::harness
