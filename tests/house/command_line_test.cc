@@ -62,12 +62,18 @@ class CommandLine : public testing::Test {
 };
 
 TEST_F(CommandLine, BenchAgreesWithTheAutomataByHand) {
+  const fs::path watched = "scenarios/pick_and_place/milk_carton_wrap.yaml";
+  fs::create_directories((root_ / watched).parent_path());
+  fs::copy(PREHEND_SOURCE_DIR / watched, root_ / watched);
   const Said json = Do("bench --quick --json");
   EXPECT_EQ(json.exit_code, 0) << json.err;
   int compared = 0;
-  for (const auto& figure : nlohmann::json::parse(json.out)["figures"]) {
+  const auto report = nlohmann::json::parse(json.out);
+  for (const auto& figure : report["figures"]) {
     EXPECT_GT(figure["operations_per_s"], 0) << figure;
-    if (figure.contains("agrees_with_by_hand")) ++compared, EXPECT_TRUE(figure["agrees_with_by_hand"]) << figure;
+    if (!figure.contains("agrees_with_by_hand")) continue;
+    EXPECT_TRUE(figure["agrees_with_by_hand"]) << figure;
+    ++compared;
   }
   EXPECT_EQ(compared, 7);
 }
