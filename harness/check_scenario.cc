@@ -131,7 +131,9 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
   ScenarioVerdict verdict{.scenario = request.id, .shows = {}, .verdict = Verdict::kPassed};
   verdict.command = RepeatCommand(request.id, request.run);
-  const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root);
+  std::vector<std::string> files = {GoldenFiles(request.root).GoldenPath(request.id).string()};
+  const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root, &files);
+  verdict.inputs = HashFiles(files);
   if (!prepared.value) {
     Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(prepared.diagnostics));
     verdict.command = "prehend validate " + request.id + ChangesText(request.run);
@@ -140,9 +142,14 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   const Scenario& scenario = prepared.value->scenario;
   verdict.shows = scenario.shows;
 
-  const RunResult watched = RunScenario(scenario, prepared.value->program, {.record = true});
+  RunOptions how;
+  if (request.last_tick)
+    how.watch = [&](const grammar::Frame& frame) { request.last_tick->store(frame.tick); };
+  RunOptions how_watched = how;
+  how_watched.record = true;
+  const RunResult watched = RunScenario(scenario, prepared.value->program, how_watched);
   Draw(request, scenario, watched, verdict);
-  const RunResult plain = RunScenario(scenario, prepared.value->program, {});
+  const RunResult plain = RunScenario(scenario, prepared.value->program, how);
   verdict.state_hash = HashText(plain.state_hash);
   verdict.ticks = plain.ticks;
 

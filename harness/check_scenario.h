@@ -7,6 +7,7 @@
 #include <string>
 
 #include "harness/prepare_run.h"
+#include "harness/shared_ticks.h"
 #include "harness/verdict.h"
 
 namespace prehend::harness {
@@ -18,6 +19,7 @@ struct CheckRequest {
   std::string report_folder;  ///< pictures go to its folder `pictures`
   bool pictures = true;
   bool write_pending = true;
+  SharedTicks::Tick* last_tick = nullptr;  ///< told how far the run came; may be null
 };
 
 /// Never fails: what goes wrong is the verdict.

@@ -3,7 +3,6 @@
 #include "harness/golden_files.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "harness/text_file.h"
 
@@ -63,21 +62,6 @@ std::vector<std::string> GoldenFiles::List() const {
   }
   std::sort(scenarios.begin(), scenarios.end());
   return scenarios;
-}
-
-std::string WriteTextFile(const fs::path& path, std::string_view text) {
-  std::error_code error;
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-  if (error) return "cannot create " + path.parent_path().string() + ": " + error.message();
-  const fs::path unfinished = path.string() + ".unfinished";
-  {
-    std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    file.close();
-    if (!file) return "cannot write " + unfinished.string();
-  }
-  fs::rename(unfinished, path, error);
-  return error ? "cannot write " + path.string() + ": " + error.message() : "";
 }
 
 }  // namespace prehend::harness

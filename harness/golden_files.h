@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/golden.h"
+#include "harness/whole_file.h"
 
 namespace prehend::harness {
 
@@ -34,8 +35,5 @@ class GoldenFiles {
  private:
   std::filesystem::path root_;
 };
-
-/// Writes a file and the folders above it, as a whole or not at all. "" or what went wrong.
-std::string WriteTextFile(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace prehend::harness

@@ -110,12 +110,14 @@ std::string HandPath(const std::string& root, const std::string& name) {
   return (HandFolder(root) / (name + kHandEnding)).string();
 }
 
-ScenarioLibrary ProjectLibrary(const std::string& root) {
+ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>* files) {
   return {.grammars = NamesIn(GrammarFolder(root), kGrammarEnding),
           .hands = NamesIn(HandFolder(root), kHandEnding),
-          .read_hand = [root](const std::string& name_or_path) {
+          .read_hand = [root, files](const std::string& name_or_path) {
             const bool is_path = name_or_path.ends_with(kScenarioEnding);
-            return ReadHandModel(is_path ? name_or_path : HandPath(root, name_or_path));
+            const std::string path = is_path ? name_or_path : HandPath(root, name_or_path);
+            if (files) files->push_back(path);
+            return ReadHandModel(path);
           }};
 }
 

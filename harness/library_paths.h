@@ -36,7 +36,7 @@ std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const st
 std::string GrammarPath(const std::string& root, const std::string& name);
 std::string HandPath(const std::string& root, const std::string& name);
 
-/// Grammars and hands of the project.
-ScenarioLibrary ProjectLibrary(const std::string& root);
+/// Grammars and hands of the project. `files` gets the path of every hand that is read, and must live as long.
+ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>* files = nullptr);
 
 }  // namespace prehend::harness

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "grammar/monitor.h"
 
@@ -11,8 +12,10 @@ namespace prehend::harness {
 /// The file for a name of the library, or for a path (it has a slash, or ends with ".grammar").
 std::string GrammarFile(const std::string& root, const std::string& name_or_path);
 
-/// What it uses is looked for beside it, then in the library.
+/// What it uses is looked for beside it, then in the library. `files` gets every path that was
+/// looked at, whether there is a file or not.
 grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
-                                   const grammar::Overrides& overrides = {});
+                                   const grammar::Overrides& overrides = {},
+                                   std::vector<std::string>* files = nullptr);
 
 }  // namespace prehend::harness

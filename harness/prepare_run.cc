@@ -61,17 +61,19 @@ grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Prog
 
 }  // namespace
 
-ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root) {
+ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root,
+                                   std::vector<std::string>* files) {
   const Json fields = ScenarioFormat().schema.at("properties");
   Settings settings = Split(request.settings, [&](const std::string& name) {
     return name.find('.') != std::string::npos || fields.contains(name);
   });
   if (!settings.diagnostics.empty()) return {std::nullopt, std::move(settings.diagnostics)};
+  if (files) files->push_back(request.scenario_file);
   ReadResult<Scenario> scenario =
-      ReadScenario(request.scenario_file, settings.of_scenario, ProjectLibrary(root));
+      ReadScenario(request.scenario_file, settings.of_scenario, ProjectLibrary(root, files));
   if (!scenario.value) return {std::nullopt, std::move(scenario.diagnostics)};
   if (!request.grammar.empty()) scenario.value->grammar = request.grammar;
-  grammar::CompileResult compiled = LoadGrammar(root, scenario.value->grammar, settings.of_grammar);
+  grammar::CompileResult compiled = LoadGrammar(root, scenario.value->grammar, settings.of_grammar, files);
   if (!compiled.program) return {std::nullopt, std::move(compiled.diagnostics)};
   if (request.grammar.empty()) {
     grammar::Diagnostics pictures = CheckPictures(*scenario.value, *compiled.program);

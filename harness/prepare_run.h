@@ -26,7 +26,9 @@ struct PreparedRun {
   std::shared_ptr<const grammar::Program> program;
 };
 
-ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root);
+/// `files` gets every path that was looked at, also when the result is no run.
+ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root,
+                                   std::vector<std::string>* files = nullptr);
 
 /// "name=value" settings that can only mean parameters of a grammar.
 ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings);

@@ -23,6 +23,7 @@ table { border-collapse: collapse; width: 100%; margin: 1rem 0 2rem; }
 td, th { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
 td.number, th.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 .passed { color: var(--passed); } .failed { color: var(--failed); } .pending { color: var(--pending); }
+.flaky { color: var(--failed); } .unchanged { color: var(--passed); }
 .verdict { font-weight: 600; }
 section { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: 1rem 1.2rem; margin: 1rem 0; }
 pre { background: var(--paper); border: 1px solid var(--line); border-radius: 6px; padding: .6rem .8rem; overflow-x: auto;
@@ -42,6 +43,8 @@ std::string SummaryText(const Tally& tally) {
                   tally.passed, tally.failed > 0 ? "failed" : "soft", tally.failed);
   if (tally.pending > 0)
     text += fmt::format(", <span class=\"pending\">{} pending</span>", tally.pending);
+  if (tally.unchanged > 0)
+    text += fmt::format(", <span class=\"unchanged\">{} unchanged</span>", tally.unchanged);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <charconv>
 #include <iterator>
 #include <set>
 
@@ -29,7 +30,7 @@ bool HasTag(const ScenarioFile& file, const std::string& tag, const std::string&
 }
 
 bool PassesFilter(const ScenarioFile& file, const std::string& filter, const std::string& root) {
-  if (filter.empty()) return true;
+  if (filter.starts_with('!')) return !PassesFilter(file, filter.substr(1), root);
   if (filter.starts_with("tag:")) return HasTag(file, filter.substr(4), root);
   return Matches(filter, file);
 }
@@ -48,8 +49,8 @@ std::vector<std::string> OrphanGoldens(const std::vector<ScenarioFile>& all,
 }  // namespace
 
 std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
-                                                 const std::string& filter, const std::string& root,
-                                                 std::string& problem) {
+                                                 const std::vector<std::string>& filters,
+                                                 const std::string& root, std::string& problem) {
   const std::vector<ScenarioFile> all = ListScenarios(root);
   for (const std::string& pattern : patterns) {
     if (std::any_of(all.begin(), all.end(),
@@ -66,12 +67,38 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
                                                        [&](const std::string& pattern) {
                                                          return Matches(pattern, file);
                                                        });
-    if (named && PassesFilter(file, filter, root)) selection.scenarios.push_back(file);
+    const bool passes = std::all_of(filters.begin(), filters.end(), [&](const std::string& filter) {
+      return PassesFilter(file, filter, root);
+    });
+    if (named && passes) selection.scenarios.push_back(file);
   }
-  if (patterns.empty() && filter.empty()) selection.orphans = OrphanGoldens(all, root);
+  if (patterns.empty() && filters.empty()) selection.orphans = OrphanGoldens(all, root);
   if (!selection.scenarios.empty() || !selection.orphans.empty()) return selection;
   problem = "no scenario is selected ('prehend list' shows all)";
   return std::nullopt;
+}
+
+std::optional<Shard> ParseShard(std::string_view text) {
+  constexpr int kMaxShards = 10'000;
+  Shard shard;
+  const char* const end = text.data() + text.size();
+  const auto [slash, bad_number] = std::from_chars(text.data(), end, shard.number);
+  if (bad_number != std::errc() || slash == end || *slash != '/') return std::nullopt;
+  const auto [rest, bad_count] = std::from_chars(slash + 1, end, shard.count);
+  if (bad_count != std::errc() || rest != end) return std::nullopt;
+  if (shard.count > kMaxShards || shard.number < 1 || shard.number > shard.count)
+    return std::nullopt;
+  return shard;
+}
+
+void KeepShard(const Shard& shard, ScenarioSelection& selection) {
+  std::vector<ScenarioFile> kept;
+  for (std::size_t i = 0; i < selection.scenarios.size(); ++i) {
+    if (static_cast<int>(i % shard.count) == shard.number - 1)
+      kept.push_back(selection.scenarios[i]);
+  }
+  selection.scenarios = std::move(kept);
+  if (shard.number != 1) selection.orphans.clear();
 }
 
 }  // namespace prehend::harness

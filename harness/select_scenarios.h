@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/library_paths.h"
@@ -16,10 +17,23 @@ struct ScenarioSelection {
       orphans;  ///< goldens without scenario; looked for when nothing narrows the selection
 };
 
-/// `patterns` are globs over names and skill/name; none means all. `filter` is a glob, too, or
-/// tag:NAME. When a pattern matches nothing, or nothing is left, `problem` says so.
+/// `patterns` are globs over names and skill/name; none means all. A scenario must pass each of
+/// `filters`, which are globs, too, or tag:NAME; with a leading '!' it must not match. When a
+/// pattern matches nothing, or nothing is left, `problem` says so.
 std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
-                                                 const std::string& filter, const std::string& root,
-                                                 std::string& problem);
+                                                 const std::vector<std::string>& filters,
+                                                 const std::string& root, std::string& problem);
+
+/// One of `count` parts of a selection; each scenario is in exactly one of them.
+struct Shard {
+  int number = 1;  ///< from 1 to count
+  int count = 1;
+};
+
+/// "2/3"; nothing when it is no shard.
+std::optional<Shard> ParseShard(std::string_view text);
+
+/// Every count-th scenario. Orphans are of the first shard.
+void KeepShard(const Shard& shard, ScenarioSelection& selection);
 
 }  // namespace prehend::harness

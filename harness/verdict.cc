@@ -2,8 +2,14 @@
 // See verdict.h. Tested by tests/harness/verdict_test.cc
 #include "harness/verdict.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <tuple>
+#include <utility>
 
 namespace prehend::harness {
 
@@ -17,6 +23,10 @@ std::string_view Name(Verdict verdict) {
       return "failed";
     case Verdict::kPending:
       return "pending";
+    case Verdict::kFlaky:
+      return "flaky";
+    case Verdict::kUnchanged:
+      return "unchanged";
   }
   return "";
 }
@@ -37,13 +47,16 @@ Json ToJson(const ScenarioVerdict& verdict) {
           {"state_hash", verdict.state_hash},
           {"ticks", verdict.ticks},
           {"seconds", verdict.seconds},
+          {"peak_memory_kib", verdict.peak_memory_kib},
+          {"inputs", verdict.inputs},
           {"pictures", std::move(pictures)},
           {"timeline_svg", verdict.timeline_svg}};
 }
 
 ScenarioVerdict VerdictFromJson(const Json& json) {
   ScenarioVerdict verdict{.scenario = json.at("scenario"), .shows = json.at("shows")};
-  for (const Verdict candidate : {Verdict::kPassed, Verdict::kFailed, Verdict::kPending}) {
+  for (const Verdict candidate : {Verdict::kPassed, Verdict::kFailed, Verdict::kPending,
+                                  Verdict::kFlaky, Verdict::kUnchanged}) {
     if (json.at("verdict") == Name(candidate)) verdict.verdict = candidate;
   }
   verdict.exit_code = static_cast<ExitCode>(json.at("exit_code").get<int>());
@@ -54,11 +67,59 @@ ScenarioVerdict VerdictFromJson(const Json& json) {
   verdict.state_hash = json.at("state_hash");
   verdict.ticks = json.at("ticks");
   verdict.seconds = json.at("seconds");
+  verdict.peak_memory_kib = json.at("peak_memory_kib");
+  verdict.inputs = json.at("inputs").get<FileHashes>();
   for (const Json& picture : json.at("pictures")) {
     verdict.pictures.push_back({.file = picture.at("file"), .caption = picture.at("caption")});
   }
   verdict.timeline_svg = json.at("timeline_svg");
   return verdict;
+}
+
+namespace {
+
+bool SaySame(const ScenarioVerdict& a, const ScenarioVerdict& b) {
+  const auto said = [](const ScenarioVerdict& v) {
+    return std::tie(v.verdict, v.exit_code, v.reason, v.details, v.state_hash, v.ticks);
+  };
+  return said(a) == said(b);
+}
+
+/// "flaky: of 5 runs 3 passed, 2 failed; 2 different state hashes"
+std::string FlakyReason(const std::vector<ScenarioVerdict>& runs) {
+  std::map<std::string_view, int> counts;
+  std::set<std::string> hashes;
+  for (const ScenarioVerdict& run : runs) {
+    ++counts[Name(run.verdict)];
+    if (!run.state_hash.empty()) hashes.insert(run.state_hash);
+  }
+  std::string reason = fmt::format("flaky: of {} runs", runs.size());
+  const char* separator = " ";
+  for (const auto& [name, count] : counts) {
+    reason += fmt::format("{}{} {}", std::exchange(separator, ", "), count, name);
+  }
+  if (hashes.size() > 1) reason += fmt::format("; {} different state hashes", hashes.size());
+  return reason;
+}
+
+}  // namespace
+
+ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs) {
+  // What a failed run said is of more use than what a passed one did.
+  const auto telling = std::ranges::find_if(
+      runs, [](const ScenarioVerdict& run) { return run.verdict != Verdict::kPassed; });
+  ScenarioVerdict merged = telling == runs.end() ? runs.front() : *telling;
+  for (const ScenarioVerdict& run : runs) {
+    merged.seconds = std::max(merged.seconds, run.seconds);
+    merged.peak_memory_kib = std::max(merged.peak_memory_kib, run.peak_memory_kib);
+  }
+  const bool agree = std::ranges::all_of(
+      runs, [&](const ScenarioVerdict& run) { return SaySame(run, runs.front()); });
+  if (agree) return merged;
+  merged.verdict = Verdict::kFlaky;
+  if (merged.exit_code != ExitCode::kFailure) merged.exit_code = ExitCode::kDiffers;
+  merged.reason = FlakyReason(runs);
+  return merged;
 }
 
 Tally Count(const std::vector<ScenarioVerdict>& verdicts) {
@@ -68,8 +129,9 @@ Tally Count(const std::vector<ScenarioVerdict>& verdicts) {
                       [&](const ScenarioVerdict& verdict) { return verdict.verdict == wanted; }));
   };
   return {.passed = count(Verdict::kPassed),
-          .failed = count(Verdict::kFailed),
-          .pending = count(Verdict::kPending)};
+          .failed = count(Verdict::kFailed) + count(Verdict::kFlaky),
+          .pending = count(Verdict::kPending),
+          .unchanged = count(Verdict::kUnchanged)};
 }
 
 ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts) {

@@ -8,13 +8,20 @@
 #include <string>
 #include <vector>
 
+#include "harness/content_hash.h"
 #include "harness/exit_code.h"
 
 namespace prehend::harness {
 
-enum class Verdict { kPassed, kFailed, kPending };
+enum class Verdict {
+  kPassed,
+  kFailed,
+  kPending,    ///< there is no golden yet
+  kFlaky,      ///< repeated runs did not agree
+  kUnchanged,  ///< passed before, and nothing that it depends on changed since: not run again
+};
 
-/// "passed", "failed", "pending"
+/// "passed", "failed", ...
 std::string_view Name(Verdict verdict);
 
 struct ReportedPicture {
@@ -33,7 +40,9 @@ struct ScenarioVerdict {
   std::string command;   ///< shows it again
   std::string state_hash;
   std::int64_t ticks = 0;
-  double seconds = 0;  ///< wall time in its worker
+  double seconds = 0;                ///< wall time in its worker
+  std::int64_t peak_memory_kib = 0;  ///< of its worker
+  FileHashes inputs;  ///< every file that decides what the verdict is, as it was before the run
   std::vector<ReportedPicture> pictures;
   std::string timeline_svg;
 };
@@ -42,8 +51,12 @@ struct ScenarioVerdict {
 nlohmann::ordered_json ToJson(const ScenarioVerdict& verdict);
 ScenarioVerdict VerdictFromJson(const nlohmann::ordered_json& json);
 
+/// What repeated runs of one scenario come to: their common verdict, or kFlaky when they differ in
+/// anything but time and memory. Of these the largest is kept. Needs at least one.
+ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs);
+
 struct Tally {
-  int passed = 0, failed = 0, pending = 0;
+  int passed = 0, failed = 0, pending = 0, unchanged = 0;  ///< `failed` has the flaky ones, too
 };
 Tally Count(const std::vector<ScenarioVerdict>& verdicts);
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,13 +15,16 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <new>
 
 namespace prehend::harness {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// Exit statuses of a child whose job did not return.
 constexpr int kJobThrew = 70;
+constexpr int kJobOutOfMemory = 71;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -38,14 +42,17 @@ void WriteAll(int file, std::string_view text) {
 /// The child's life. Leaves by _exit: the parent's buffers and destructors are not the child's to
 /// run.
 [[noreturn]] void Work(const WorkerJob& job, const WorkerLimits& limits, int pipe) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would read what an orphan finds out
   if (limits.memory_limit_bytes > 0) {
     const rlimit limit{limits.memory_limit_bytes, limits.memory_limit_bytes};
-    setrlimit(RLIMIT_AS, &limit);
+    setrlimit(RLIMIT_DATA, &limit);
   }
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   try {
     WriteAll(pipe, job());
+  } catch (const std::bad_alloc&) {
+    _exit(kJobOutOfMemory);
   } catch (const std::exception& problem) {
     WriteAll(pipe, problem.what());
     _exit(kJobThrew);
@@ -157,6 +164,11 @@ class Pool {
     if (worker.killed) return fmt::format("no end after {:g} s", limits_.time_limit_s);
     if (WIFSIGNALED(status))
       return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    if (WEXITSTATUS(status) == kJobOutOfMemory) {
+      return limits_.memory_limit_bytes == 0
+                 ? "no memory is left"
+                 : fmt::format("more memory than {} MB", limits_.memory_limit_bytes / kMegabyte);
+    }
     if (WEXITSTATUS(status) == kJobThrew) return "exception: " + worker.output;
     return fmt::format("exit status {}", WEXITSTATUS(status));
   }

@@ -11,17 +11,19 @@
 
 namespace prehend::harness {
 
+inline constexpr std::uint64_t kMegabyte = 1'000'000;
+
 struct WorkerLimits {
-  int jobs = 1;  ///< processes at a time
-  double time_limit_s = 60;
-  std::uint64_t memory_limit_bytes = 0;  ///< of address space; 0: none
+  int jobs = 1;                          ///< processes at a time
+  double time_limit_s = 60;              ///< of wall time, for each job
+  std::uint64_t memory_limit_bytes = 0;  ///< of private memory (RLIMIT_DATA); 0: none
 };
 
 struct WorkerResult {
   bool finished = false;  ///< false: crashed, killed, out of time or memory
   std::string output;     ///< what the job returned; empty unless finished
-  std::string
-      reason;  ///< "signal 11 (Segmentation fault)", "no end after 60 s"; empty when finished
+  std::string reason;  ///< "signal 11 (Segmentation fault)", "no end after 60 s", "more memory than
+                       ///< 1000 MB"; empty when finished
   double seconds = 0;
   std::int64_t peak_memory_kib = 0;
 };

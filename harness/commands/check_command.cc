@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend check: the regression suite. Tested by tests/house/command_line_test.cc
+// prehend check: the regression suite. Tested by tests/house/command_line_test.cc and
+// tests/house/runner_test.cc
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,114 +9,120 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "harness/check_scenario.h"
 #include "harness/commands/command.h"
-#include "harness/golden_files.h"
+#include "harness/junit.h"
 #include "harness/report.h"
-#include "harness/select_scenarios.h"
-#include "harness/worker_pool.h"
+#include "harness/run_suite.h"
+#include "harness/whole_file.h"
 
 namespace prehend::harness {
 namespace {
 
 namespace fs = std::filesystem;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::uint64_t kWorkerMemory_bytes = 0;  // shadow memory is larger than any limit
-#else
-constexpr std::uint64_t kWorkerMemory_bytes = 4ull << 30;
-#endif
-constexpr double kDefaultTimeLimit_s = 120;
+constexpr const char* kDefaultTimeLimit_s = "120";
+constexpr const char* kDefaultMemoryLimit_mb = "1000";
 constexpr int kMaxJobs = 256;
+constexpr int kMaxRepeats = 10'000;
 
-void Declare(CLI::App& options) {
+void DeclareSelection(CLI::App& options) {
   options.add_option("names", "names, skill/name or globs; nothing: all")
       ->expected(-1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  options.add_option("--filter", "only those that match this glob, or have tag:NAME")
-      ->type_name("GLOB|tag:NAME")
-      ->expected(1);
+  options
+      .add_option("--filter",
+                  "only those that match this glob, or have tag:NAME; with a leading ! only the "
+                  "others; may be given again, then all must hold")
+      ->type_name("[!]GLOB|[!]tag:NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  const auto is_shard = [](const std::string& text) {
+    return ParseShard(text) ? std::string()
+                            : "'" + text + "' is no shard; the second of three is 2/3";
+  };
+  options.add_option("--shard", "only the I-th of N parts of the selection")
+      ->type_name("I/N")
+      ->expected(1)
+      ->check(CLI::Validator(is_shard, "", "shard"));
+  DeclareFlag(options, "--changed",
+              "skip what passed before and depends on no file, and no part of the program, that "
+              "changed since");
+}
+
+void DeclareRunning(CLI::App& options) {
   options.add_option("--jobs,-j", "processes at a time; otherwise one per core")
       ->type_name("N")
       ->expected(1)
       ->check(CLI::Range(1, kMaxJobs));
-  options.add_option("--time-limit", "seconds that one scenario may take; otherwise 120")
+  options
+      .add_option("--time-limit-s,--time-limit",
+                  "seconds that one scenario may take; otherwise 120")
       ->type_name("S")
       ->expected(1)
       ->check(CLI::Range(0.1, 86400.0));
+  options
+      .add_option("--memory-limit-mb",
+                  "private memory that one scenario may take; otherwise 1000, 0 is no limit")
+      ->type_name("MB")
+      ->expected(1)
+      ->check(CLI::Range(0, 1'000'000));
+  options
+      .add_option(
+          "--repeat",
+          "run each scenario N times; different results, or state hashes, are flaky and fail")
+      ->type_name("N")
+      ->expected(1)
+      ->check(CLI::Range(1, kMaxRepeats));
+  options
+      .add_option("--shuffle", "run in an order drawn with this seed; otherwise the slowest first")
+      ->type_name("SEED")
+      ->expected(1)
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62));
+}
+
+void Declare(CLI::App& options) {
+  DeclareSelection(options);
+  DeclareRunning(options);
   options.add_option("--report", "folder for index.html and pictures; otherwise build/report")
       ->type_name("DIR")
+      ->expected(1);
+  options.add_option("--junit", "write the verdicts as JUnit XML, too")
+      ->type_name("FILE")
       ->expected(1);
   DeclareFlag(options, "--no-pictures", "do not draw");
   DeclareFlag(options, "--json", "one JSON object instead of text");
   DeclareRunOptions(options);
 }
 
-ScenarioVerdict OrphanVerdict(const std::string& id, const GoldenFiles& files) {
-  return {.scenario = id,
-          .shows = {},
-          .verdict = Verdict::kFailed,
-          .exit_code = ExitCode::kDiffers,
-          .reason = "a golden without scenario",
-          .details =
-              fmt::format("{} belongs to no scenario: remove it, or bring scenarios/{}.yaml back\n",
-                          files.GoldenPath(id).string(), id),
-          .headroom = {},
-          .command = "prehend check"};
+std::uint64_t MemoryLimit_bytes(const CLI::App& options) {
+#ifdef __SANITIZE_ADDRESS__
+  (void)options;
+  return 0;  // shadow memory is larger than any limit
+#else
+  return std::stoull(ValueOf(options, "--memory-limit-mb", kDefaultMemoryLimit_mb)) * kMegabyte;
+#endif
 }
 
-ScenarioVerdict VerdictOf(const CLI::App& options, const std::string& id,
-                          const WorkerResult& result) {
-  if (result.finished) {
-    ScenarioVerdict verdict = VerdictFromJson(nlohmann::ordered_json::parse(result.output));
-    verdict.seconds = result.seconds;
-    return verdict;
-  }
-  return {.scenario = id,
-          .shows = {},
-          .verdict = Verdict::kFailed,
-          .exit_code = ExitCode::kFailure,
-          .reason = "its process ended: " + result.reason,
-          .details = {},
-          .headroom = {},
-          .command = ExplainCommand(id, RequestOf(options, {})),
-          .seconds = result.seconds};
-}
-
-std::vector<ScenarioVerdict> CheckAll(const CLI::App& options, const CommandContext& context,
-                                      const ScenarioSelection& selection,
-                                      const std::string& report_folder) {
-  const bool own_rules = IsGiven(options, "--grammar") || IsGiven(options, "--set");
-  std::vector<WorkerJob> jobs;
-  std::vector<std::string> ids;
-  for (const ScenarioFile& file : selection.scenarios) {
-    ids.push_back(ScenarioId(file.skill, file.name));
-    const CheckRequest request{.run = RequestOf(options, file.path),
-                               .id = ids.back(),
-                               .root = context.root,
-                               .report_folder = report_folder,
-                               .pictures = !IsGiven(options, "--no-pictures"),
-                               .write_pending = !own_rules};
-    jobs.push_back([request] { return ToJson(CheckScenario(request)).dump(); });
-  }
+SuiteRequest RequestFrom(const CLI::App& options, const CommandContext& context,
+                         ScenarioSelection selection) {
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const WorkerLimits limits{.jobs = std::stoi(ValueOf(options, "--jobs", std::to_string(cores))),
-                            .time_limit_s = std::stod(ValueOf(options, "--time-limit",
-                                                              std::to_string(kDefaultTimeLimit_s))),
-                            .memory_limit_bytes = kWorkerMemory_bytes};
-  std::size_t done = 0;
-  const auto results = RunInWorkers(jobs, limits, [&](std::size_t job, const WorkerResult&) {
-    if (context.progress)
-      context.err << fmt::format("\r\033[K[{}/{}] {}", ++done, jobs.size(), ids[job]) << std::flush;
-  });
-  if (context.progress) context.err << "\r\033[K" << std::flush;
-
-  std::vector<ScenarioVerdict> verdicts;
-  for (std::size_t i = 0; i < results.size(); ++i)
-    verdicts.push_back(VerdictOf(options, ids[i], results[i]));
-  for (const std::string& orphan : selection.orphans)
-    verdicts.push_back(OrphanVerdict(orphan, GoldenFiles(context.root)));
-  return verdicts;
+  SuiteRequest request{.selection = std::move(selection),
+                       .changes = RequestOf(options, {}),
+                       .root = context.root,
+                       .report_folder = ValueOf(options, "--report",
+                                                (fs::path(context.root) / "build/report").string()),
+                       .pictures = !IsGiven(options, "--no-pictures"),
+                       .only_changed = IsGiven(options, "--changed"),
+                       .repeat = std::stoi(ValueOf(options, "--repeat", "1")),
+                       .shuffle_seed = {},
+                       .limits = {}};
+  if (IsGiven(options, "--shuffle"))
+    request.shuffle_seed = std::stoull(ValueOf(options, "--shuffle"));
+  request.limits = {
+      .jobs = std::stoi(ValueOf(options, "--jobs", std::to_string(cores))),
+      .time_limit_s = std::stod(ValueOf(options, "--time-limit-s", kDefaultTimeLimit_s)),
+      .memory_limit_bytes = MemoryLimit_bytes(options)};
+  return request;
 }
 
 std::string Indented(const std::string& text) {
@@ -131,7 +138,8 @@ std::string Indented(const std::string& text) {
 std::string Colored(Verdict verdict, bool colored) {
   const std::string name(Name(verdict));
   if (!colored) return name;
-  const int color = verdict == Verdict::kPassed ? 32 : verdict == Verdict::kFailed ? 31 : 33;
+  const bool good = verdict == Verdict::kPassed || verdict == Verdict::kUnchanged;
+  const int color = good ? 32 : verdict == Verdict::kPending ? 33 : 31;
   return fmt::format("\033[{}m{}\033[0m", color, name);
 }
 
@@ -141,7 +149,7 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, const std::string& 
     const std::string& note = verdict.reason.empty() ? verdict.headroom : verdict.reason;
     context.out << fmt::format("{}  {}{}{}\n", Colored(verdict.verdict, context.colored),
                                verdict.scenario, note.empty() ? "" : "  ", note);
-    if (verdict.verdict == Verdict::kPassed) continue;
+    if (verdict.exit_code == ExitCode::kAgrees) continue;
     context.out << Indented(verdict.details);
     context.out << "    again: " << verdict.command << "\n";
   }
@@ -149,6 +157,8 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, const std::string& 
   context.out << "report: " << page << "\n";
   if (tally.pending > 0)
     context.out << fmt::format("{} pending: accept with a reason, or mend\n", tally.pending);
+  if (tally.unchanged > 0)
+    context.out << fmt::format("{} unchanged since they passed, not run again\n", tally.unchanged);
   context.out << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);
 }
 
@@ -160,24 +170,40 @@ nlohmann::ordered_json SummaryJson(const std::vector<ScenarioVerdict>& verdicts,
     scenarios.push_back(ToJson(verdict));
     scenarios.back().erase("timeline_svg");
   }
-  return {{"passed", tally.passed},
-          {"failed", tally.failed},
-          {"pending", tally.pending},
-          {"report", page},
-          {"scenarios", scenarios}};
+  return {{"passed", tally.passed},       {"failed", tally.failed}, {"pending", tally.pending},
+          {"unchanged", tally.unchanged}, {"report", page},         {"scenarios", scenarios}};
 }
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
+  if (IsGiven(options, "--changed") &&
+      (IsGiven(options, "--grammar") || IsGiven(options, "--set"))) {
+    return Complain(context, ExitCode::kBadInput,
+                    "--changed is about scenarios as their files say: not with --grammar or --set");
+  }
   std::string problem;
-  const auto selection = SelectScenarios(ValuesOf(options, "names"), ValueOf(options, "--filter"),
-                                         context.root, problem);
+  auto selection = SelectScenarios(ValuesOf(options, "names"), ValuesOf(options, "--filter"),
+                                   context.root, problem);
   if (!selection) return Complain(context, ExitCode::kNothing, problem);
-  const std::string folder =
-      ValueOf(options, "--report", (fs::path(context.root) / "build" / "report").string());
-  const std::vector<ScenarioVerdict> verdicts = CheckAll(options, context, *selection, folder);
+  if (IsGiven(options, "--shard")) {
+    KeepShard(*ParseShard(ValueOf(options, "--shard")), *selection);
+    if (selection->scenarios.empty() && selection->orphans.empty())
+      return Complain(context, ExitCode::kNothing,
+                      "this shard is empty: there are fewer scenarios");
+  }
+  const SuiteRequest request = RequestFrom(options, context, std::move(*selection));
+  SuiteProgress progress;
+  if (context.progress) {
+    progress = [&](std::size_t done, std::size_t all, const std::string& id) {
+      context.err << fmt::format("\r\033[K[{}/{}] {}", done, all, id) << std::flush;
+      if (done == all) context.err << "\r\033[K" << std::flush;
+    };
+  }
+  const std::vector<ScenarioVerdict> verdicts = RunSuite(request, progress);
 
-  const std::string page = (fs::path(folder) / "index.html").string();
+  const std::string page = (fs::path(request.report_folder) / "index.html").string();
   problem = WriteTextFile(page, ReportHtml(verdicts));
+  if (problem.empty() && IsGiven(options, "--junit"))
+    problem = WriteTextFile(ValueOf(options, "--junit"), JunitXml(verdicts));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   if (IsGiven(options, "--json")) {
     context.out << SummaryJson(verdicts, page).dump(2) << "\n";
@@ -195,7 +221,10 @@ Command CheckCommand() {
           .examples =
               "prehend check\n"
               "prehend check milk_carton_wrap 'slide/*'\n"
-              "prehend check --filter tag:smoke --no-pictures --jobs 1\n"
+              "prehend check --filter tag:smoke --filter '!reach/*' --no-pictures --jobs 1\n"
+              "prehend check --changed\n"
+              "prehend check --shard 2/3 --junit verdicts.xml\n"
+              "prehend check 'slide/*' --repeat 10\n"
               "prehend check --grammar my/rules.grammar --json",
           .declare = Declare,
           .run = Run};

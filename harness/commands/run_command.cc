@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend run. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "harness/commands/command.h"
 #include "harness/episode_file.h"
 #include "harness/run_output.h"
+#include "harness/whole_file.h"
 
 namespace prehend::harness {
 namespace {
@@ -29,24 +29,22 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 
   const bool measure = IsGiven(options, "--measure");
   RunOptions how{.measure = measure};
-  std::ofstream file_out;
+  std::optional<WholeFile> record;
   std::optional<EpisodeWriter> recorder;
   if (IsGiven(options, "--record")) {
-    file_out.open(ValueOf(options, "--record"), std::ios::binary | std::ios::trunc);
-    if (!file_out) {
-      return Complain(context, ExitCode::kBadInput, "--record: cannot write " + ValueOf(options, "--record"));
-    }
+    record.emplace(ValueOf(options, "--record"));
+    if (!record->problem().empty())
+      return Complain(context, ExitCode::kBadInput, "--record: " + record->problem());
     const Scenario& scenario = prepared.value->scenario;
-    recorder.emplace(file_out, EpisodeHeader{scenario.name, scenario.grammar, MakeCast(scenario)});
+    recorder.emplace(record->stream(),
+                     EpisodeHeader{scenario.name, scenario.grammar, MakeCast(scenario)});
     how.watch = [&](const grammar::Frame& frame) { recorder->Write(frame); };
   }
   const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, how);
   if (recorder) {
     recorder->Finish(run.ticks + 1);
-    file_out.close();
-    if (!file_out) {
-      return Complain(context, ExitCode::kFailure, "--record: cannot write " + ValueOf(options, "--record"));
-    }
+    const std::string problem = record->Commit();
+    if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--record: " + problem);
   }
   if (IsGiven(options, "--json")) {
     OrderedJson json = RunJson(prepared.value->scenario, run);

@@ -27,9 +27,11 @@ void Declare(CLI::App& options) {
   options.add_option("names", "names, skill/name or globs; nothing: all")
       ->expected(-1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  options.add_option("--filter", "only those that match this glob, or have tag:NAME")
-      ->type_name("GLOB|tag:NAME")
-      ->expected(1);
+  options
+      .add_option("--filter", "only those that match this glob, or have tag:NAME; see prehend check --help")
+      ->type_name("[!]GLOB|[!]tag:NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   options.add_option("--grammar", "a grammar to score, may be given again; otherwise pick_and_place and original_2020")
       ->type_name("NAME|FILE")
       ->expected(1)
@@ -134,7 +136,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
   std::string problem;
   const auto selection =
-      SelectScenarios(ValuesOf(options, "names"), ValueOf(options, "--filter"), context.root, problem);
+      SelectScenarios(ValuesOf(options, "names"), ValuesOf(options, "--filter"), context.root, problem);
   if (!selection) return Complain(context, ExitCode::kNothing, problem);
 
   int failed = 0;

@@ -21,6 +21,8 @@ TEST(Verdict, TravelsAsJson) {
                                 .state_hash = "0x1",
                                 .ticks = 5,
                                 .seconds = 0.25,
+                                .peak_memory_kib = 9,
+                                .inputs = {{"a.yaml", "0123"}},
                                 .pictures = {{"p.png", "caption"}},
                                 .timeline_svg = "<svg/>"};
   const auto json = ToJson(verdict);
@@ -56,6 +58,37 @@ TEST(Verdict, AreCounted) {
   EXPECT_EQ(tally.passed, 2);
   EXPECT_EQ(tally.failed, 1);
   EXPECT_EQ(tally.pending, 0);
+}
+
+TEST(Verdict, RepeatsThatAgreeAreOneVerdict) {
+  ScenarioVerdict run{.scenario = "a/b", .shows = {}, .verdict = Verdict::kPassed};
+  run.state_hash = "0x1";
+  std::vector<ScenarioVerdict> runs(3, run);
+  runs[1].seconds = 2;
+  runs[2].peak_memory_kib = 7;
+  const ScenarioVerdict merged = MergeRepeats(runs);
+  EXPECT_EQ(merged.verdict, Verdict::kPassed);
+  EXPECT_EQ(merged.seconds, 2);
+  EXPECT_EQ(merged.peak_memory_kib, 7);
+}
+
+TEST(Verdict, RepeatsThatDifferAreFlaky) {
+  ScenarioVerdict run{.scenario = "a/b", .shows = {}, .verdict = Verdict::kPassed};
+  run.state_hash = "0x1";
+  std::vector<ScenarioVerdict> runs(3, run);
+  runs[1].state_hash = "0x2";
+  EXPECT_EQ(MergeRepeats(runs).verdict, Verdict::kFlaky);
+  EXPECT_EQ(MergeRepeats(runs).exit_code, ExitCode::kDiffers);
+  EXPECT_EQ(MergeRepeats(runs).reason, "flaky: of 3 runs 3 passed; 2 different state hashes");
+
+  runs[1].verdict = Verdict::kFailed;
+  runs[1].state_hash = "";
+  runs[1].exit_code = ExitCode::kFailure;
+  runs[1].details = "what the failed one said";
+  EXPECT_EQ(MergeRepeats(runs).exit_code, ExitCode::kFailure);
+  EXPECT_EQ(MergeRepeats(runs).reason, "flaky: of 3 runs 1 failed, 2 passed");
+  EXPECT_EQ(MergeRepeats(runs).details, "what the failed one said");
+  EXPECT_EQ(Count({MergeRepeats(runs)}).failed, 1);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <csignal>
 #include <stdexcept>
 
+#include "harness/shared_ticks.h"
+
 namespace prehend::harness {
 namespace {
 
@@ -31,6 +33,21 @@ TEST(WorkerPool, WhatAJobChangesStaysInItsProcess) {
   int counter = 0;
   RunInWorkers({[&] { return std::to_string(++counter); }}, {});
   EXPECT_EQ(counter, 0);
+}
+
+TEST(WorkerPool, TicksOutliveTheWorker) {
+  SharedTicks ticks(2);
+  const auto job = [&](std::size_t i) {
+    return [&ticks, i] {
+      ticks[i] = 7;
+      if (i == 1) raise(SIGKILL);
+      return Good();
+    };
+  };
+  RunInWorkers({job(0), job(1)}, {.jobs = 2});
+  EXPECT_EQ(ticks[0], 7);
+  EXPECT_EQ(ticks[1], 7);
+  EXPECT_EQ(SharedTicks(1)[0], SharedTicks::kNone);
 }
 
 struct Misbehaviour {
@@ -71,7 +88,7 @@ TEST(WorkerPool, MemoryHasALimit) {
   const WorkerJob greedy = [] { return std::string(1'000'000'000, 'x'); };
   const auto results = RunInWorkers(
       {greedy, Good}, {.jobs = 1, .time_limit_s = 10, .memory_limit_bytes = 500'000'000});
-  EXPECT_EQ(results[0].reason, "exception: std::bad_alloc");
+  EXPECT_EQ(results[0].reason, "more memory than 500 MB");
   EXPECT_TRUE(results[1].finished);
 }
 #endif

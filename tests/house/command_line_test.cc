@@ -1,65 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The built program as a person or a script uses it: what it prints where, and how it ends. Every
-// test has a project folder of its own, with the libraries of grammars and hands, and one scenario
-// that nothing moves in.
+// The built program as a person or a script uses it: what it prints where, and how it ends.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <sstream>
 
-#include "tests/house/program.h"
+#include "tests/house/small_project.h"
 
 namespace prehend::house {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kScenario = R"(scenario: carton_rests
-shows: a carton stands on a table and nobody touches it
-tags: [quiet]
-entities:
-  table: {class: Table, fixed: true, box: {size_m: [1.2, 0.8, 0.04]}, at_m: [0, 0, 0.74]}
-  carton: {class: Carton, box: {size_m: [0.06, 0.06, 0.10]}, mass_kg: 0.3, on: table, at_m: [0.15, 0.15]}
-actors:
-  right_hand: {hand: human_right, at_m: [-0.25, -0.1, 1.1]}
-script:
-  - right_hand: {wait_s: 0.2}
-settle_s: 0.1
-)";
-
-class CommandLine : public testing::Test {
- protected:
-  CommandLine() {
-    for (const char* library : {"grammar/library", "physics/library"}) {
-      fs::create_directories(root_ / library);
-      fs::copy(fs::path(PREHEND_SOURCE_DIR) / library, root_ / library,
-               fs::copy_options::recursive);
-    }
-    WriteFile(Scenario(), kScenario);
-  }
-  ~CommandLine() override { fs::remove_all(root_); }
-
-  fs::path Scenario() const { return root_ / "scenarios/rest/carton_rests.yaml"; }
-  fs::path Golden() const { return root_ / "golden/rest/carton_rests.timeline"; }
-  fs::path Pending() const { return root_ / "build/pending/rest/carton_rests.timeline"; }
-
-  /// `prehend ARGUMENTS`, which are separated by blanks.
-  Said Do(const std::string& arguments, const std::string& ci = "") const {
-    std::istringstream words(arguments);
-    const std::vector<std::string> split{std::istream_iterator<std::string>(words), {}};
-    return Prehend(split, {"PREHEND_HOME=" + root_.string(), "CI=" + ci});
-  }
-
-  void Accept() const {
-    const Said ended = Do("accept carton_rests --reason nothing_happens");
-    ASSERT_EQ(ended.exit_code, 0) << ended.err;
-  }
-
-  const fs::path root_ = FreshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
-};
+using CommandLine = SmallProject;
 
 TEST_F(CommandLine, BenchAgreesWithTheAutomataByHand) {
   const fs::path watched = "scenarios/pick_and_place/milk_carton_wrap.yaml";
@@ -111,6 +66,13 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
        "carton_rest\n"},
       {"check slide/*", 4,
        "prehend: no scenario matches 'slide/\\*'.*\n  again: prehend check 'slide/\\*'\n"},
+      {"check --shard 0/2", 2, "prehend: --shard: '0/2' is no shard; the second of three is 2/3\n[^]*"},
+      {"check --shard 2/2", 4, "prehend: this shard is empty[^]*"},
+      {"check --repeat 0", 2, "prehend: [^]*"},
+      {"check --changed --set lift_rise=1cm", 2, "prehend: --changed is about [^]*"},
+      {"check --filter tag:quiet --filter !*rests", 4, "prehend: no scenario is selected[^]*"},
+      {"run carton_rests --record no/such/folder/e.jsonl", 2,
+       "prehend: --record: cannot write no/such/folder/e.jsonl: [^]*"},
       {"check --filter tag:none", 4, "prehend: no scenario is selected.*\n  again: .*\n"},
       {"run missing.yaml", 2, "missing.yaml: error: [^]*\n  again: prehend run missing.yaml\n"},
       {"run carton_rests --set lift_ris=3cm", 2, "[^]*error: [^]*lift_rise[^]*\n  again: [^]*\n"},
@@ -167,7 +129,7 @@ TEST_F(CommandLine, ValidateReadsScenariosGrammarsAndGoldens) {
 
   WriteFile(root_ / "bad.grammar", "grammar bad\nevent x(a: Thing\n");
   WriteFile(Scenario(),
-            std::regex_replace(std::string(kScenario), std::regex("mass_kg: 0.3"), "mass_kg: no"));
+            std::regex_replace(std::string(kCartonRests), std::regex("mass_kg: 0.3"), "mass_kg: no"));
   const Said bad = Do("validate --json carton_rests " + (root_ / "bad.grammar").string());
   EXPECT_EQ(bad.exit_code, 2);
   const auto files = nlohmann::json::parse(bad.out)["files"];
@@ -227,7 +189,7 @@ TEST_F(CommandLine, AGoldenIsPendingThenAcceptedThenKept) {
 
 TEST_F(CommandLine, OnlyScenariosOfTheProjectHaveGoldens) {
   const fs::path loose = root_ / "elsewhere/carton_waits.yaml";
-  WriteFile(loose, std::regex_replace(std::string(kScenario), std::regex("carton_rests"), "carton_waits"));
+  WriteFile(loose, std::regex_replace(std::string(kCartonRests), std::regex("carton_rests"), "carton_waits"));
   const Said ended = Do("accept " + loose.string() + " --reason because");
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_NE(ended.err.find("goldens are kept of scenarios in scenarios/ only"), std::string::npos) << ended.err;
@@ -288,7 +250,8 @@ TEST_F(CommandLine, AScenarioThatNeverEndsIsAVerdict) {
   EXPECT_NE(ended.out.find("its process ended: no end after 0.2 s"), std::string::npos)
       << ended.out;
   EXPECT_NE(
-      ended.out.find("again: prehend run rest/carton_rests --set script.0.right_hand.wait_s=600"),
+      ended.out.find("again: prehend check rest/carton_rests --set script.0.right_hand.wait_s=600 "
+                     "--time-limit-s 0.2 --memory-limit-mb 1000\n"),
       std::string::npos)
       << ended.out;
 }

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// See content_hash.h. Tested by tests/harness/check_record_test.cc
+#include "harness/content_hash.h"
+
+#include <fmt/format.h>
+#include <link.h>
+#include <sys/stat.h>
+
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+
+namespace prehend::harness {
+namespace {
+
+/// For dl_iterate_phdr: "path size seconds" of one library. Its bytes would be far too many.
+int AddLibrary(dl_phdr_info* info, std::size_t, void* text) {
+  struct stat status {};
+  if (info->dlpi_name && *info->dlpi_name && stat(info->dlpi_name, &status) == 0) {
+    *static_cast<std::string*>(text) +=
+        fmt::format("{} {} {}\n", info->dlpi_name, status.st_size, status.st_mtim.tv_sec);
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::string ContentHash(std::string_view bytes) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
+  return fmt::format("{:016x}", hash);
+}
+
+std::string FileHash(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  return file.is_open() && !file.bad() ? ContentHash(bytes.view()) : "none";
+}
+
+FileHashes HashFiles(const std::vector<std::string>& paths) {
+  FileHashes hashes;
+  for (const std::string& path : paths) hashes[path] = FileHash(path);
+  return hashes;
+}
+
+std::string ProgramHash() {
+  std::string libraries;
+  dl_iterate_phdr(AddLibrary, &libraries);
+  return ContentHash(FileHash("/proc/self/exe") + libraries);
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// See junit.h. Tested by tests/harness/junit_test.cc
+#include "harness/junit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace prehend::harness {
+namespace {
+
+/// For attributes and content; what XML 1.0 cannot hold is left out.
+std::string EscapeXml(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\n':
+      case '\t':
+        escaped += c;
+        break;
+      default:
+        if (static_cast<unsigned char>(c) >= 0x20) escaped += c;
+    }
+  }
+  return escaped;
+}
+
+/// What a case came to: "failure", "error", "skipped", or "" for a pass.
+std::string_view Element(const ScenarioVerdict& verdict) {
+  if (verdict.verdict == Verdict::kPassed) return "";
+  if (verdict.verdict == Verdict::kUnchanged) return "skipped";
+  const bool broken =
+      verdict.exit_code == ExitCode::kFailure || verdict.exit_code == ExitCode::kBadInput;
+  return broken ? "error" : "failure";
+}
+
+std::string Outcome(const ScenarioVerdict& verdict) {
+  const std::string_view element = Element(verdict);
+  if (element.empty()) return "";
+  if (element == "skipped") return "      <skipped message=\"nothing changed since it passed\"/>\n";
+  return fmt::format("      <{0} type=\"{1}\" message=\"{2}\">{3}again: {4}\n</{0}>\n", element,
+                     Name(verdict.verdict), EscapeXml(verdict.reason), EscapeXml(verdict.details),
+                     EscapeXml(verdict.command));
+}
+
+std::string Case(const ScenarioVerdict& verdict) {
+  const std::size_t slash = verdict.scenario.find('/');
+  const std::string skill =
+      slash == std::string::npos ? "scenarios" : verdict.scenario.substr(0, slash);
+  const std::string name =
+      slash == std::string::npos ? verdict.scenario : verdict.scenario.substr(slash + 1);
+  std::string xml =
+      fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">\n{}",
+                  EscapeXml(skill), EscapeXml(name), verdict.seconds, Outcome(verdict));
+  if (!verdict.headroom.empty())
+    xml += fmt::format("      <system-out>{}</system-out>\n", EscapeXml(verdict.headroom));
+  return xml + "    </testcase>\n";
+}
+
+}  // namespace
+
+std::string JunitXml(const std::vector<ScenarioVerdict>& verdicts) {
+  double seconds = 0;
+  std::string cases;
+  for (const ScenarioVerdict& verdict : verdicts) {
+    seconds += verdict.seconds;
+    cases += Case(verdict);
+  }
+  const auto count = [&](std::string_view element) {
+    return std::ranges::count_if(
+        verdicts, [&](const ScenarioVerdict& verdict) { return Element(verdict) == element; });
+  };
+  const std::string totals = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\"",
+                                         verdicts.size(), count("failure"), count("error"));
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<testsuites name=\"prehend\" {0} time=\"{1:.3f}\">\n"
+      "  <testsuite name=\"prehend check\" {0} skipped=\"{2}\" time=\"{1:.3f}\">\n"
+      "{3}  </testsuite>\n</testsuites>\n",
+      totals, seconds, count("skipped"), cases);
+}
+
+}  // namespace prehend::harness
