@@ -31,8 +31,9 @@ class Carrier {
   Carrying Find() {
     Spans supported;
     for (const auto& [support, spans] : supports_) supported = Union(supported, spans);
-    for (const Span& span : Within(supported, grasp_.span)) FindSlides(span);
-    for (const Span& span : Rest(supported, grasp_.span)) DivideUnsupported(span);
+    for (const Span& span : supported) FindSlides(Common(span, grasp_.span), span);
+    for (const Span& span : Rest(supported, grasp_.span))
+      DivideUnsupported(span, Covers(supported, span.begin - 1));
     return found_;
   }
 
@@ -79,10 +80,10 @@ class Carrier {
     return farthest;
   }
 
-  void FindSlides(Span supported) {
+  /// `held`: the part of `supported` in which it is grasped. Whether it moves is to be seen from all of `supported`.
+  void FindSlides(Span held, Span supported) {
     std::vector<bool> moving(recording_.size());
-    for (int frame = supported.begin; frame < supported.end; ++frame)
-      moving[frame] = Slides(frame, supported);
+    for (int frame = held.begin; frame < held.end; ++frame) moving[frame] = Slides(frame, supported);
     for (const Span& slide :
          Bridged(WhereTrue(moving), recording_.ticks, recording_.Ticks(settings_.slide_pause_s)))
       if (Displacement(slide) >= settings_.slide_displacement_m) found_.slides.push_back(slide);
@@ -97,8 +98,6 @@ class Carrier {
 
   /// From where the support was lost to where the object leaves the region around that place.
   std::optional<Span> PickUp(Span unsupported) const {
-    if (unsupported.begin == grasp_.span.begin)
-      return std::nullopt;  // it was caught, or taken over in the air
     const Region region{place(unsupported.begin), settings_.pick_up_radius_m,
                         settings_.pick_up_height_m};
     int end = unsupported.begin;
@@ -127,13 +126,14 @@ class Carrier {
     return Span{near + begin, landing};
   }
 
-  void DivideUnsupported(Span unsupported) {
+  /// `lost_support`: it was supported before. Otherwise it was caught, or taken over in the air.
+  void DivideUnsupported(Span unsupported, bool lost_support) {
     Span transport = unsupported;
     if (const auto put_down = PutDown(unsupported)) {
       found_.put_downs.push_back(*put_down);
       transport.end = put_down->begin;
     }
-    if (const auto pick_up = PickUp(unsupported)) {
+    if (const auto pick_up = lost_support ? PickUp(unsupported) : std::nullopt) {
       const Span part = Common(*pick_up, transport);
       if (!part.empty()) found_.pick_ups.push_back(part);
       transport.begin = std::max(transport.begin, part.end);

@@ -71,7 +71,7 @@ class TimelineBuilder {
     const Span reach = AddReach(grasp);
     const Carrying carrying = AddCarrying(grasp);
     if (!reach.empty() && !carrying.put_downs.empty())
-      Add("pick_and_place", RolesOf(grasp), {reach.begin, carrying.put_downs.back().end});
+      Add("pick_and_place", RolesOf(grasp), {reach.begin, carrying.put_downs.front().end});
   }
 
   /// Only the first grasp of a contact was reached for; for a second one the hand was already
