@@ -147,6 +147,7 @@ void Engine::StepRule(int rule) {
 
 // Keeps what a walk back may reach, and two frames more for differences between frames.
 void Engine::ForgetThePast() {
+  if (fates_ != nullptr) return;
   const auto reach = [&](FrameNumber needed, FrameNumber before) {
     const Tick earliest = history_.At(std::max(needed, history_.first())).tick - longest_look_back_;
     FrameNumber frame = std::max(before, history_.first());
@@ -160,7 +161,7 @@ void Engine::ForgetThePast() {
 
 // Lanes that have rested for so long that nobody can ask about what they were before.
 void Engine::FreeLanes() {
-  while (!retirees_.empty() && retirees_.front().since < history_.first()) {
+  while (!retirees_.empty() && fates_ == nullptr && retirees_.front().since < history_.first()) {
     Lane& lane = lanes_[retirees_.front().lane];
     retirees_.PopFront();
     lane.retiring = false;

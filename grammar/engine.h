@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "grammar/evaluate.h"
+#include "grammar/fate.h"
 #include "grammar/history.h"
 #include "grammar/lanes.h"
 
@@ -37,6 +38,14 @@ class Engine {
   void AdvanceBy(const FrameChanges& changes, std::vector<Event>& out);
   void Finish(Tick end, std::vector<Event>& out);
   int lanes_in_use() const { return lanes_.in_use(); }
+
+  // For hindsight.h. From now on nothing is forgotten, and what becomes of each run is noted. Before the first frame.
+  void Remember(Fates& fates) { fates_ = &fates; }
+  const Program& program() const { return *program_; }
+  const Cast& cast() const { return cast_; }
+  const History& history() const { return history_; }
+  Lanes& lanes() { return lanes_; }
+  const Evaluator& evaluator() const { return evaluator_; }
 
  private:
   struct RuleTicks {
@@ -98,8 +107,7 @@ class Engine {
   bool MeetDeadline(Lane& lane, Moment now);
   bool StepUntil(Lane& lane, FrameNumber frame);
 
-  // Walking back from `end`: the frame where the interval begins; `end` if there is none; kNever if not known yet.
-  FrameNumber ApproachBegin(Lane& lane, FrameNumber end) const;
+  WalkBack ApproachBegin(Lane& lane, FrameNumber end) const;
   std::optional<double> ApproachSpeed(Lane& lane, FrameNumber frame, FrameNumber end, double way) const;
 
   // From a run to an event.
@@ -113,6 +121,7 @@ class Engine {
   void UpdateKnown(Lane& lane);
   bool RunIsCertain(const Lane& lane) const;
   void FinishLane(Lane& lane, Moment end);
+  void Note(const Lane& lane, Fate::Kind kind, const Span& span, FrameNumber cause = kNever, const WalkBack& walk = {});
 
   // Compositions are told of each finished interval of their parts.
   void TellCompositions(const Lane& part, const Span& span);
@@ -142,6 +151,7 @@ class Engine {
   Tick decided_ = 0;
   std::vector<Event>* out_ = nullptr;  // only during Advance and Finish
   std::size_t first_new_ = 0;          // among them, of this call
+  Fates* fates_ = nullptr;             // null unless they are to be remembered
   std::string error_;
 };
 

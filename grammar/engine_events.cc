@@ -33,11 +33,15 @@ bool Engine::Close(Lane& lane, Moment end, bool open_end) {
 
 bool Engine::Conclude(Lane& lane, const Span& span) {
   const Rule& rule = RuleOf(lane);
-  if (span.end.tick - span.begin.tick < TicksOf(lane).lasting) return true;
+  if (span.end.tick - span.begin.tick < TicksOf(lane).lasting) {
+    Note(lane, Fate::Kind::kTooShort, span);
+    return true;
+  }
   if (rule.requirement != kNone) {
     const FrameNumber last = std::min(span.end.frame, history_.now());
     const Kleene required = evaluator_.Truth(rule.requirement, {lane, last, last});
     if (required == Kleene::kUnknown) return false;
+    if (required == Kleene::kFalse) Note(lane, Fate::Kind::kRefused, span);
     if (required == Kleene::kFalse) return true;
   }
   Pending finished{.span = span, .style = lane.style, .next = span.end.frame};
@@ -62,6 +66,7 @@ void Engine::ResolvePending(Lane& lane) {
     for (; pending.next <= history_.now(); ++pending.next) {
       const Evaluator::View view{lane, pending.next};
       const Kleene within = evaluator_.Holds(rule.confirmed_within, view);
+      if (within == Kleene::kFalse) Note(lane, Fate::Kind::kUnconfirmed, pending.span, pending.next);
       if (within == Kleene::kFalse) return true;
       const Kleene begins = evaluator_.Begins(rule.confirmed_by, view);
       if (And(within, begins) == Kleene::kTrue) {
@@ -77,6 +82,7 @@ void Engine::ResolvePending(Lane& lane) {
 void Engine::Emit(Lane& lane, const Pending& finished) {
   const Rule& rule = RuleOf(lane);
   const Span& span = finished.span;
+  Note(lane, Fate::Kind::kInterval, span, rule.confirmed_by == kNone ? kNever : finished.next);
   if (rule.referenced) {
     const FrameNumber oldest = history_.first();
     std::erase_if(lane.past, [&](const Span& past) { return past.end.frame < oldest; });
@@ -91,6 +97,11 @@ void Engine::Emit(Lane& lane, const Pending& finished) {
                    .style = finished.style,
                    .open_end = span.open_end,
                    .attributes = finished.attributes});
+}
+
+void Engine::Note(const Lane& lane, Fate::Kind kind, const Span& span, FrameNumber cause, const WalkBack& walk) {
+  if (fates_ == nullptr) return;
+  fates_->push_back({kind, lane.index, span, cause, DecidedAt(lane, span), walk});
 }
 
 // A deadline that passes between two frames decides at once; the later frame only tells that time went on.
@@ -133,7 +144,10 @@ void Engine::FinishLane(Lane& lane, Moment end) {
     Close(lane, lane.gap);
   } else if (lane.open && !RuleOf(lane).or_drop) {
     Close(lane, end, true);
+  } else if (lane.open) {
+    Note(lane, Fate::Kind::kUnfinished, {lane.begin, end});
   }
+  for (const Pending& pending : lane.pending) Note(lane, Fate::Kind::kUnconfirmed, pending.span, end.frame);
   lane.open = lane.in_gap = lane.awake = false;
   lane.pending.clear();
   lane.known = kNever;

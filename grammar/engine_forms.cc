@@ -86,12 +86,18 @@ bool Engine::StepFromTo(Lane& lane, FrameNumber frame) {
   if (lane.open && TicksOf(lane).within >= 0 && !MeetDeadline(lane, history_.At(frame))) return false;
   if (lane.open) {
     const Kleene closes = evaluator_.Truth(rule.second, view);
-    if (closes == Kleene::kTrue && rule.absence) lane.open = false;
+    if (closes == Kleene::kTrue && rule.absence) {
+      Note(lane, Fate::Kind::kCame, {lane.begin, history_.At(frame)}, frame);
+      lane.open = false;
+    }
     if (closes == Kleene::kTrue) return !lane.open || Close(lane, history_.At(frame));
     const Kleene holds = during();
     if (holds == Kleene::kFalse && !rule.or_drop) return Close(lane, history_.At(frame));
     if (closes == Kleene::kUnknown || holds == Kleene::kUnknown) return false;
-    if (holds == Kleene::kFalse) lane.open = false;
+    if (holds == Kleene::kFalse) {
+      Note(lane, Fate::Kind::kDropped, {lane.begin, history_.At(frame)}, frame);
+      lane.open = false;
+    }
     return true;
   }
   Kleene opens = evaluator_.Truth(rule.first, view);
@@ -113,6 +119,7 @@ bool Engine::MeetDeadline(Lane& lane, Moment now) {
   const Tick deadline = lane.begin.tick + TicksOf(lane).within;
   if (now.tick < deadline || (now.tick == deadline && !rule.absence)) return true;
   if (!rule.absence) {
+    Note(lane, Fate::Kind::kTooLate, {lane.begin, {now.frame, deadline}}, now.frame);
     lane.open = false;
     return true;
   }
@@ -128,8 +135,11 @@ bool Engine::StepUntil(Lane& lane, FrameNumber frame) {
   const Kleene ends = evaluator_.Truth(rule.first, {lane, frame});
   if (ends == Kleene::kUnknown) return false;
   if (ends == Kleene::kTrue) {
-    const FrameNumber begin = ApproachBegin(lane, frame);
+    const WalkBack walk = ApproachBegin(lane, frame);
+    const FrameNumber begin = walk.begin;
     if (begin == kNever) return false;
+    const Fate::Kind kind = begin < frame ? Fate::Kind::kWalkedBack : Fate::Kind::kNothingBack;
+    Note(lane, kind, {history_.At(begin), history_.At(frame)}, frame, walk);
     if (begin < frame) {
       if (!evaluator_.CaptureAnchors(lane, begin)) return false;
       lane.style = StyleAt(lane, begin);
@@ -152,37 +162,43 @@ std::optional<double> Engine::ApproachSpeed(Lane& lane, FrameNumber frame, Frame
   return way / history_.Seconds(history_.At(frame + 1).tick - history_.At(frame).tick);
 }
 
-FrameNumber Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
+// Walks back from `end` to where the interval begins.
+WalkBack Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
+  using Stop = WalkBack::Stop;
   const Rule& rule = RuleOf(lane);
   const Tick end_tick = history_.At(end).tick;
-  const FrameNumber earliest = std::max({history_.FirstNotBefore(end_tick - TicksOf(lane).back), lane.last_end, history_.first()});
+  const FrameNumber back = history_.FirstNotBefore(end_tick - TicksOf(lane).back);
+  const FrameNumber earliest = std::max({back, lane.last_end, history_.first()});
+  const Stop at_earliest = earliest == lane.last_end && earliest > 0 ? Stop::kPreviousEnd
+                           : earliest == 0                           ? Stop::kFirstFrame
+                                                                     : Stop::kTooFarBack;
+  const WalkBack unknown{.begin = kNever};
   FrameNumber begin = end;  // the earliest frame of movement; if pauses do not count, the earliest frame
   FrameNumber turn = end;   // the movement that began from the farthest point
   std::optional<double> after = 0;  // the signal one frame later
   if (rule.approach != kNone) after = evaluator_.Number(rule.approach, {lane, end, end});
-  if (!after) return kNever;
+  if (!after) return unknown;
   double farthest = *after;
-  Tick last_progress = end_tick;
+  FrameNumber last_progress = end;
   for (FrameNumber frame = end - 1; frame >= earliest; --frame) {
     const Evaluator::View view{lane, frame, end};
     const Kleene holds = evaluator_.Truth(rule.second, view);
-    if (holds == Kleene::kUnknown) return kNever;
-    if (holds == Kleene::kFalse) break;
+    if (holds == Kleene::kUnknown) return unknown;
+    if (holds == Kleene::kFalse) return {begin, Stop::kSince, frame};
     if (rule.approach == kNone) {
       begin = frame;
       continue;
     }
     // Read backwards, an approach moves away from its goal.
     const std::optional<double> here = evaluator_.Number(rule.approach, view);
-    if (!here) return kNever;
-    if (*here < farthest - rule.slack) return turn;
+    if (!here) return unknown;
+    if (*here < farthest - rule.slack) return {turn, Stop::kReceding, frame};
     const std::optional<double> speed = ApproachSpeed(lane, frame, end, *here - *after);
-    if (!speed) return kNever;
-    const Tick tick = history_.At(frame).tick;
+    if (!speed) return unknown;
     if (*speed >= rule.speed) {
-      last_progress = tick;
-    } else if (rule.idle_s >= 0 && last_progress - tick > TicksOf(lane).idle) {
-      break;
+      last_progress = frame;
+    } else if (rule.idle_s >= 0 && history_.At(last_progress).tick - history_.At(frame).tick > TicksOf(lane).idle) {
+      return {begin, Stop::kIdle, last_progress};
     }
     // The slow start of a movement belongs to it, as long as it is a tenth of the speed that counts.
     const auto moves = [&](FrameNumber since) {
@@ -193,7 +209,7 @@ FrameNumber Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
     farthest = std::max(farthest, *here);
     after = here;
   }
-  return begin;
+  return {begin, at_earliest, earliest};
 }
 
 }  // namespace prehend::grammar

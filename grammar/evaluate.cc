@@ -48,7 +48,10 @@ Kleene Evaluator::Truth(int index, const View& view) const {
     case Op::kEnds: return Edge(node, view);
     case Op::kInSphere:
     case Op::kBoxInSphere:
-    case Op::kInCylinder: return Inside(node, view);
+    case Op::kInCylinder: {
+      const std::optional<Reach> reach = ReachOf(node, view);
+      return reach ? Known(reach->IsInside()) : Kleene::kUnknown;
+    }
     case Op::kPartOf: return Known(cast_.entities[Entity(node, view, 0)].part_of == Entity(node, view, 1));
     case Op::kGazed: return Known(history_.Look(Entity(node, view, 0), view.frame).gazes_at == Entity(node, view, 1));
     case Op::kSensorSet: return Known(SensorSet(node, view));
@@ -102,22 +105,26 @@ Kleene Evaluator::Compare(const Node& node, const View& view) const {
   }
 }
 
-Kleene Evaluator::Inside(const Node& node, const View& view) const {
+std::optional<Evaluator::Reach> Evaluator::ReachOf(const Node& node, const View& view) const {
   const bool box = node.op == Op::kBoxInSphere;
   const std::optional<Vector3d> centre = Position(node.args[box ? 0 : 1], view);
   const std::optional<double> radius = Number(node.args[box ? 1 : 2], view);
-  if (!centre || !radius) return Kleene::kUnknown;
+  if (!centre || !radius) return std::nullopt;
   if (box) {
     const int entity = Entity(node, view, 0);
-    return Known(DistanceToBox(*centre, cast_.entities[entity], history_.Look(entity, view.frame)) <= *radius);
+    const double distance = DistanceToBox(*centre, cast_.entities[entity], history_.Look(entity, view.frame));
+    return Reach{.distance_m = distance, .radius_m = *radius};
   }
   const std::optional<Vector3d> point = Position(node.args[0], view);
-  if (!point) return Kleene::kUnknown;
+  if (!point) return std::nullopt;
   const Vector3d offset = *point - *centre;
-  if (node.op == Op::kInSphere) return Known(offset.norm() <= *radius);
+  if (node.op == Op::kInSphere) return Reach{.distance_m = offset.norm(), .radius_m = *radius};
   const std::optional<double> height = Number(node.args[3], view);
-  if (!height) return Kleene::kUnknown;
-  return Known(offset.head<2>().norm() <= *radius && std::abs(offset.z()) <= *height);
+  if (!height) return std::nullopt;
+  return Reach{.distance_m = offset.head<2>().norm(),
+               .radius_m = *radius,
+               .height_m = std::abs(offset.z()),
+               .most_height_m = *height};
 }
 
 bool Evaluator::TooFarApart(int index, Lane& lane, FrameNumber early, FrameNumber late) const {

@@ -27,6 +27,17 @@ class Evaluator {
   std::optional<double> Number(int node, const View& view) const;
   std::optional<Eigen::Vector3d> Position(int node, const View& view) const;
 
+  /// How far something is from the centre of a region, and how far it may be; of a sphere, the height does not count.
+  struct Reach {
+    double distance_m = 0;
+    double radius_m = 0;
+    double height_m = 0;
+    double most_height_m = 0;
+    bool IsInside() const { return distance_m <= radius_m && height_m <= most_height_m; }
+  };
+  /// Of a node that tests for a region; nullopt like Number().
+  std::optional<Reach> ReachOf(const Node& node, const View& view) const;
+
   /// The truth of reference `slot` at the view's frame.
   Kleene Holds(int slot, const View& view) const;
   Kleene Begins(int slot, const View& view) const;
@@ -47,7 +58,6 @@ class Evaluator {
   Kleene AtAnInstant(Kleene truth) const;
   Kleene Edge(const Node& node, const View& view) const;
   Kleene Compare(const Node& node, const View& view) const;
-  Kleene Inside(const Node& node, const View& view) const;
   std::optional<double> Arithmetic(const Node& node, const View& view) const;
   double SignalOf(const Node& node, const View& view) const;
   double Gap(int hand, int object, FrameNumber frame) const;

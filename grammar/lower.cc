@@ -220,6 +220,12 @@ std::vector<std::string> Lowering::KnownNames(bool calls) const {
 
 Lowering::Typed Lowering::Lower(const Expr& expr) {
   if (full_) return {.bad = true};
+  const Typed typed = LowerKind(expr);
+  if (!typed.bad) Note(expr, typed);
+  return typed;
+}
+
+Lowering::Typed Lowering::LowerKind(const Expr& expr) {
   switch (expr.kind) {
     case Expr::Kind::kQuantity: return NumberNode(expr.quantity.value, expr.quantity.dimension, expr.place);
     case Expr::Kind::kName: return LowerName(expr);

@@ -104,6 +104,11 @@ class Lowering {
   Rule& rule() { return symbols_.program.events[rule_]; }
 
   Typed Lower(const ast::Expr& expr);
+  Typed LowerKind(const ast::Expr& expr);
+  void Note(const ast::Expr& expr, const Typed& typed);
+  std::string TextOf(const ast::Expr& expr);
+  std::string Bracketed(const ast::Expr& expr);
+  std::string TextOfName(const ast::Expr& expr);
   Typed LowerName(const ast::Expr& expr);
   Typed LowerUnary(const ast::Expr& expr);
   Typed LowerBinary(const ast::Expr& expr);

@@ -146,6 +146,14 @@ struct Rule {
   double looks_around_s = 0; ///< its signals ask for poses so long before and after the frames it looks at
 };
 
+/// What stood in the grammar for a node, for explanations.
+struct NodeNote {
+  std::string text;  ///< "rise({1}) >= lift_rise", {1} being the rule's second role; may be empty, may be cut
+  Dimension dimension;
+  std::string file;
+  Place place;
+};
+
 struct ProgramParam {
   std::string name;
   Quantity value;
@@ -160,6 +168,7 @@ struct Program {
   std::vector<Rule> events;
   std::vector<int> schedule;  ///< rules so that each comes after those it refers to
   std::vector<Node> nodes;
+  std::vector<NodeNote> notes;  ///< of the first so many nodes
   std::vector<std::string> class_names;  ///< for kIsA
   std::vector<std::string> set_names;    ///< for kSensorSet
   std::vector<ProgramParam> params;
