@@ -20,7 +20,7 @@ namespace {
 std::vector<Command> Commands() {
   return {ListCommand(),   ValidateCommand(), RunCommand(), CheckCommand(),
           AcceptCommand(), RenderCommand(),   NewCommand(), SchemaCommand(), BenchCommand(),
-          ResegmentCommand(), ScoreCommand()};
+          ResegmentCommand(), ScoreCommand(),    ExplainCommand()};
 }
 
 bool IsSet(const char* variable) {

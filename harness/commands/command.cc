@@ -62,6 +62,21 @@ std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
       .skill = "", .name = std::filesystem::path(*path).stem().string(), .path = *path, .in_project = false};
 }
 
+OpenedEpisode OpenEpisodeOrComplain(const CLI::App& options, const CommandContext& context) {
+  const std::string typed = ValueOf(options, "scenario");
+  const RunRequest request = RequestOf(options, typed);
+  ReadResult<EpisodeSource> source;
+  if (IsRecording(typed)) {
+    source = OpenRecording(typed, request.grammar, request.settings, context.root);
+  } else {
+    const auto file = FindScenarioOrComplain(typed, context);
+    if (!file) return {std::nullopt, ExitCode::kNothing};
+    source = OpenScenario(file->path, request.grammar, request.settings, context.root);
+  }
+  if (!source.value) return {std::nullopt, Complain(context, source.diagnostics)};
+  return {std::move(source.value), ExitCode::kAgrees};
+}
+
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message) {
   context.err << "prehend: " << message << "\n  again: " << context.command_line << "\n";
   return code;

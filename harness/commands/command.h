@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "grammar/diagnostic.h"
+#include "harness/episode_source.h"
 #include "harness/exit_code.h"
 #include "harness/library_paths.h"
 #include "harness/prepare_run.h"
@@ -52,6 +53,7 @@ Command ResegmentCommand();
 Command SchemaCommand();
 Command BenchCommand();
 Command ScoreCommand();
+Command ExplainCommand();
 
 // What was typed for an option; `name` is "--json", or "scenario" for a positional.
 bool IsGiven(const CLI::App& options, const std::string& name);
@@ -68,6 +70,13 @@ RunRequest RequestOf(const CLI::App& options, const std::string& scenario_file);
 /// The scenario that was typed, by name or path; otherwise says so, with the nearest name.
 std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
                                                    const CommandContext& context);
+
+/// The episode that was typed for `scenario`, a scenario or a recording, with the run options; otherwise says why not.
+struct OpenedEpisode {
+  std::optional<EpisodeSource> value;
+  ExitCode exit_code = ExitCode::kAgrees;
+};
+OpenedEpisode OpenEpisodeOrComplain(const CLI::App& options, const CommandContext& context);
 
 /// Prints to `err`, followed by the command line, and returns `code`.
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message);

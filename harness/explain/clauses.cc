@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// See clauses.h. Tested by tests/harness/explain_test.cc
+#include "harness/explain/clauses.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/explain/wording.h"
+
+namespace prehend::harness::explain {
+
+using grammar::Fate;
+using grammar::FrameNumber;
+using grammar::kNone;
+using grammar::Node;
+using grammar::Op;
+using Mark = Reason::Mark;
+
+namespace {
+
+bool IsComparison(Op op) { return op >= Op::kLess && op <= Op::kNotEqual; }
+bool IsRegion(Op op) { return op == Op::kInSphere || op == Op::kBoxInSphere || op == Op::kInCylinder; }
+
+}  // namespace
+
+std::string Clauses::Time(FrameNumber frame) { return At(past_.TickOf(frame), past_.cast().ticks_per_second); }
+
+void Clauses::Split(int node, bool truth, std::vector<Clause>& out) const {
+  const Node& n = NodeAt(node);
+  if (n.op == Op::kNot) return Split(n.args[0], !truth, out);
+  if (n.op != Op::kAnd && n.op != Op::kOr) return out.push_back({node, truth});
+  Split(n.args[0], truth, out);
+  Split(n.args[1], truth, out);
+}
+
+std::vector<Clauses::Clause> Clauses::Split(int node, bool truth) const {
+  std::vector<Clause> clauses;
+  Split(node, truth, clauses);
+  return clauses;
+}
+
+bool Clauses::AsksForBegin(int node) const {
+  if (node == kNone) return false;
+  const Node& n = NodeAt(node);
+  return n.op == Op::kAtBegin || std::any_of(n.args.begin(), n.args.end(), [&](int arg) { return AsksForBegin(arg); });
+}
+
+std::optional<Clauses::Measured> Clauses::Measure(int node, const Moment& at) {
+  const Node& n = NodeAt(node);
+  if (IsComparison(n.op)) {
+    const auto value = past_.Number(n.args[0], at);
+    const auto limit = past_.Number(n.args[1], at);
+    if (!value || !limit) return std::nullopt;
+    const auto& notes = past_.program().notes;
+    const bool noted = n.args[0] < static_cast<int>(notes.size());
+    return Measured{*value, *limit, noted ? notes[n.args[0]].dimension : grammar::kPlain, ""};
+  }
+  if (!IsRegion(n.op)) return std::nullopt;
+  const auto reach = past_.ReachOf(node, at);
+  if (!reach) return std::nullopt;
+  const Measured across{reach->distance_m, reach->radius_m, grammar::kMetres, " from the centre"};
+  const Measured upright{reach->height_m, reach->most_height_m, grammar::kMetres, " above or below the centre"};
+  if (n.op != Op::kInCylinder) return across;
+  // The side of the cylinder that is nearest to being crossed, or is crossed most.
+  return reach->distance_m - reach->radius_m >= reach->height_m - reach->most_height_m ? across : upright;
+}
+
+Reason Clauses::Measurement(const Clause& clause, const Moment& at, const std::optional<Measured>& before) {
+  Reason reason{.mark = Mark::kHeld, .what = ClauseText(past_, at.lane, clause.node), .how = {}, .where = {},
+                .tick = past_.TickOf(at.frame), .reading = {}, .because = {}};
+  const std::optional<Measured> now = Measure(clause.node, at);
+  if (!now) return reason;
+  const std::string unit = now->dimension == grammar::kPlain ? "" : grammar::DimensionText(now->dimension);
+  reason.reading = Reading{now->value, now->limit, unit};
+  const ValueTexts texts = Compared(now->value, now->limit, now->dimension);
+  const bool is_region = !now->of.empty();
+  const std::string verb = !before || before->of != now->of ? "at"
+                           : now->value > before->value     ? "rose to"
+                           : now->value < before->value     ? "fell to"
+                                                            : "stayed at";
+  std::string relation = now->value > now->limit   ? (is_region ? "beyond " : "above ")
+                         : now->value < now->limit ? (is_region ? "within " : "below ")
+                                                   : "exactly ";
+  reason.how = fmt::format("{} {}{}, ", verb, texts.value, now->of);
+  const double by = std::abs(now->value - now->limit);
+  const bool tell_by = verb == "at" && by > 0 && std::isfinite(by);
+  if (tell_by) relation = QuantityText(by, now->dimension) + " " + relation;
+  reason.how += relation + texts.limit;
+  return reason;
+}
+
+std::string Clauses::Since(int node, const Moment& at, bool truth) {
+  const FrameNumber floor = AsksForBegin(node) && at.begin ? *at.begin : 0;
+  FrameNumber first = at.frame;
+  Moment earlier = at;
+  for (earlier.frame = at.frame - 1; earlier.frame >= floor && past_.Truth(node, earlier) == truth; --earlier.frame) {
+    first = earlier.frame;
+  }
+  return first == 0 ? "from the first frame on" : "since " + Time(first);
+}
+
+Reason Clauses::Leaf(int node, const Moment& at, bool truth, bool brief) {
+  Moment earlier = at;
+  --earlier.frame;
+  const bool turned = at.frame > 0 && past_.Truth(node, earlier) != truth;
+  Reason reason = Measurement({node, truth}, at, turned ? Measure(node, earlier) : std::nullopt);
+  reason.mark = turned || at.frame == 0 ? Mark::kTurned : Mark::kHeld;
+  if (reason.how.empty()) reason.how = std::string(turned ? "became " : "") + (truth ? "true" : "false");
+  if (!turned && !brief) reason.how += ", " + Since(node, at, truth);
+  return reason;
+}
+
+Reason Clauses::Boundary(int lane, const Fate& fate, bool end, const Follow& follow) {
+  const grammar::Rule& rule = past_.RuleOf(lane);
+  const FrameNumber frame = end ? fate.span.end.frame : fate.span.begin.frame;
+  return {.mark = Mark::kTurned,
+          .what = Label(past_, lane),
+          .how = end ? "ended" : frame == 0 ? "held from the first frame on" : "began",
+          .where = rule.form == grammar::Form::kTouching ? "" : Source(rule.file, rule.place),
+          .tick = past_.TickOf(frame),
+          .reading = {},
+          .because = follow ? follow(lane, fate, end) : Reasons{}};
+}
+
+Reason Clauses::Reference(int lane, int slot, FrameNumber frame, bool truth, const Follow& follow) {
+  const int target = past_.Referred(lane, slot);
+  if (target == kNone) return {.mark = Mark::kHeld, .what = "", .how = "impossible: an entity's class does not fit"};
+  const Fate* begun = past_.LastBegun(target, frame);
+  Reason reason{.mark = Mark::kHeld, .what = Label(past_, target), .how = {}, .where = {}, .tick = {}, .reading = {}, .because = {}};
+  if (truth && begun != nullptr) {
+    if (begun->span.begin.frame == frame) return Boundary(target, *begun, false, follow);
+    reason.how = begun->span.begin.frame == 0 ? "held from the first frame on" : "held since " + Time(begun->span.begin.frame);
+    reason.tick = begun->span.begin.tick;
+  } else if (begun == nullptr) {
+    reason.how = "never held so far";
+  } else {
+    if (begun->span.end.frame == frame) return Boundary(target, *begun, true, follow);
+    reason.how = "had ended at " + Time(begun->span.end.frame);
+    reason.tick = begun->span.end.tick;
+  }
+  return reason;
+}
+
+// Of a reference, a boundary of its interval; of any other condition, its clauses.
+void Clauses::Edge(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out) {
+  const Node& n = NodeAt(node);
+  const bool end = n.op == Op::kEnds;
+  const Node& arg = NodeAt(n.args[0]);
+  if (!truth) {
+    out.push_back({.mark = Mark::kHeld, .what = ClauseText(past_, at.lane, node), .how = "not at this moment"});
+  } else if (arg.op != Op::kHolds) {
+    Collect(n.args[0], at, !end, follow, brief, out);
+  } else {
+    const int target = past_.Referred(at.lane, arg.slot);
+    for (const Fate& fate : past_.FatesOf(target)) {
+      const FrameNumber boundary = end ? fate.span.end.frame : fate.span.begin.frame;
+      if (fate.kind != Fate::Kind::kInterval || boundary != at.frame) continue;
+      return out.push_back(Boundary(target, fate, end, follow));
+    }
+  }
+}
+
+// A conjunction is true because all its parts are, and false because of those that are not.
+void Clauses::Collect(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out) {
+  const Node& n = NodeAt(node);
+  switch (n.op) {
+    case Op::kNot: return Collect(n.args[0], at, !truth, follow, brief, out);
+    case Op::kAnd:
+    case Op::kOr:
+      for (const int arg : {n.args[0], n.args[1]}) {
+        if (past_.Truth(arg, at) == truth) Collect(arg, at, truth, follow, brief, out);
+      }
+      return;
+    case Op::kBegins:
+    case Op::kEnds: return Edge(node, at, truth, follow, brief, out);
+    case Op::kHolds: return out.push_back(Reference(at.lane, n.slot, at.frame, truth, follow));
+    default: return out.push_back(Leaf(node, at, truth, brief));
+  }
+}
+
+Reasons Clauses::Change(int node, const Moment& at, bool truth, const Follow& follow, bool brief) {
+  Reasons reasons;
+  Collect(node, at, truth, follow, brief, reasons);
+  if (brief) std::erase_if(reasons, [](const Reason& reason) { return reason.mark != Mark::kTurned; });
+  return reasons;
+}
+
+Reason Clauses::Told(const Clause& clause, const Moment& at) {
+  const Node& n = NodeAt(clause.node);
+  const bool now = past_.Truth(clause.node, at);
+  Reason reason;
+  if (n.op == Op::kHolds) {
+    reason = Reference(at.lane, n.slot, at.frame, now, nullptr);
+  } else {
+    reason = Measurement(clause, at, std::nullopt);
+    if (reason.how.empty()) reason.how = now ? "true" : "false";
+  }
+  reason.mark = now == clause.truth ? Mark::kHeld : Mark::kFailed;
+  return reason;
+}
+
+Reasons Clauses::State(int node, const Moment& at, bool truth) {
+  Reasons reasons;
+  for (const Clause& clause : Split(node, truth)) reasons.push_back(Told(clause, at));
+  return reasons;
+}
+
+double Clauses::Nearness(int node, const Moment& at, bool truth, int depth) {
+  constexpr int kDeepest = 6;
+  const Node& n = NodeAt(node);
+  if (past_.Truth(node, at) == truth) return 1;
+  if (n.op == Op::kNot) return Nearness(n.args[0], at, !truth, depth);
+  if (n.op == Op::kAnd || n.op == Op::kOr) {
+    const double left = Nearness(n.args[0], at, truth, depth);
+    const double right = Nearness(n.args[1], at, truth, depth);
+    return (n.op == Op::kAnd) == truth ? (left + right) / 2 : std::max(left, right);
+  }
+  if (n.op == Op::kHolds) {
+    const int target = past_.Referred(at.lane, n.slot);
+    if (!truth || target == kNone || depth == kDeepest) return 0;
+    const grammar::Rule& rule = past_.RuleOf(target);
+    if (rule.form == grammar::Form::kWhile) {
+      return 0.9 * Nearness(rule.first, {.lane = target, .frame = at.frame}, true, depth + 1);
+    }
+    return 0;
+  }
+  const std::optional<Measured> measured = Measure(node, at);
+  if (!measured) return 0;
+  const double scale = std::max(std::abs(measured->value), std::abs(measured->limit));
+  const double off = std::abs(measured->value - measured->limit);
+  return std::isfinite(scale) && scale > 0 ? 0.9 * (1 - std::min(1.0, off / scale)) : 0;
+}
+
+}  // namespace prehend::harness::explain

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The clauses of a condition at a frame: which of them made it true or false, with what they measured.
+// Knows the forms of the language, no rule.
+// Tested by tests/harness/explain_test.cc
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "grammar/hindsight.h"
+#include "harness/explain/reason.h"
+
+namespace prehend::harness::explain {
+
+using Moment = grammar::Hindsight::Moment;
+
+class Clauses {
+ public:
+  /// Reasons that stand behind a boundary of another rule's interval: (binding, interval, its end).
+  using Follow = std::function<Reasons(int lane, const grammar::Fate& fate, bool end)>;
+
+  explicit Clauses(grammar::Hindsight& past) : past_(past) {}
+
+  /// The clauses that make the node what it is at the frame: true, or false. What became so at this very frame is
+  /// followed. `brief` leaves out what was so already.
+  Reasons Change(int node, const Moment& at, bool truth, const Follow& follow, bool brief = false);
+  /// The same for a reference of the binding.
+  Reason Reference(int lane, int slot, grammar::FrameNumber frame, bool truth, const Follow& follow);
+
+  /// Every clause of the node, as it was at the frame: those that are not `truth` have failed.
+  Reasons State(int node, const Moment& at, bool truth);
+
+  /// 1 when the node has this truth; else how near its clauses are to it, less than 1.
+  double Nearness(int node, const Moment& at, bool truth, int depth = 0);
+
+  /// The clauses of the node: what is left of it without `and`, `or` and `not`.
+  struct Clause {
+    int node = grammar::kNone;
+    bool truth = true;  ///< as the node needs it
+  };
+  std::vector<Clause> Split(int node, bool truth) const;
+
+  /// A sentence about one comparison, region, test or reference, as it was at the frame.
+  Reason Told(const Clause& clause, const Moment& at);
+
+  std::string Time(grammar::FrameNumber frame);
+
+ private:
+  struct Measured {
+    double value = 0;
+    double limit = 0;
+    grammar::Dimension dimension;
+    std::string of;  ///< " from the centre"
+  };
+  std::optional<Measured> Measure(int node, const Moment& at);
+  Reason Boundary(int lane, const grammar::Fate& fate, bool end, const Follow& follow);
+  void Edge(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out);
+  Reason Leaf(int node, const Moment& at, bool truth, bool brief);
+  Reason Measurement(const Clause& clause, const Moment& at, const std::optional<Measured>& before);
+  void Collect(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out);
+  void Split(int node, bool truth, std::vector<Clause>& out) const;
+  bool AsksForBegin(int node) const;
+  std::string Since(int node, const Moment& at, bool truth);
+  const grammar::Node& NodeAt(int node) const { return past_.program().nodes[node]; }
+
+  grammar::Hindsight& past_;
+};
+
+}  // namespace prehend::harness::explain

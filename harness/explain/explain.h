@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers of `prehend explain`, as values, as text and as JSON.
+// Tested by tests/harness/explain_test.cc
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "grammar/hindsight.h"
+#include "harness/explain/ask.h"
+#include "harness/explain/reason.h"
+
+namespace prehend::harness::explain {
+
+/// Every event of the episode in the order of time, with what turned at its boundaries.
+std::vector<WhyEvent> ExplainAll(grammar::Hindsight& past);
+/// The intervals that are asked for, in the order of time: those that contain its moment, if it has one.
+std::vector<WhyEvent> ExplainEvents(grammar::Hindsight& past, const Ask& ask);
+/// The intervals of the asked name and entities that are nearest to its moment, at most three; without reasons.
+std::vector<WhyEvent> NearestEvents(grammar::Hindsight& past, const Ask& ask);
+/// Why there is none.
+WhyMissing ExplainMissing(grammar::Hindsight& past, const Ask& ask);
+
+std::string Text(const WhyEvent& why, grammar::Tick ticks_per_second);
+std::string Text(const WhyMissing& why, grammar::Tick ticks_per_second);
+/// One line per event.
+std::string Table(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_second);
+
+nlohmann::ordered_json ToJson(const WhyEvent& why, grammar::Tick ticks_per_second);
+nlohmann::ordered_json ToJson(const WhyMissing& why, grammar::Tick ticks_per_second);
+
+}  // namespace prehend::harness::explain

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+// See why_event.h. Tested by tests/harness/explain_test.cc
+#include "harness/explain/why_event.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/allen.h"
+#include "harness/event_text.h"
+#include "harness/explain/wording.h"
+
+namespace prehend::harness::explain {
+
+using grammar::Fate;
+using grammar::Form;
+using grammar::FrameNumber;
+using grammar::kNone;
+using grammar::Rule;
+using grammar::Tick;
+using grammar::WalkBack;
+using Mark = Reason::Mark;
+
+namespace {
+
+constexpr int kDeepest = 8;  // rules behind rules
+
+Reason NoteOf(std::string what, std::string how = {}) {
+  return {.mark = Mark::kNote, .what = std::move(what), .how = std::move(how), .where = {}, .tick = {}, .reading = {}, .because = {}};
+}
+
+}  // namespace
+
+std::string EventReasons::Seconds(double seconds) const { return QuantityText(seconds, grammar::kSeconds); }
+
+Clauses::Follow EventReasons::FollowFrom(int depth) {
+  return [this, depth](int lane, const Fate& fate, bool end) {
+    if (depth >= kDeepest) return Reasons{};
+    return end ? End(lane, fate, depth + 1) : Begin(lane, fate, depth + 1);
+  };
+}
+
+Reasons EventReasons::Change(int node, const Moment& at, bool truth, int depth) {
+  return node == kNone ? Reasons{} : clauses_.Change(node, at, truth, FollowFrom(depth), brief_);
+}
+
+Reasons EventReasons::Begin(int lane, const Fate& fate, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  const FrameNumber begin = fate.span.begin.frame;
+  switch (rule.form) {
+    case Form::kTouching: return {};
+    case Form::kAny: return BeginOrEndOfAny(lane, begin, false, depth);
+    case Form::kWhile: return Change(rule.first, {.lane = lane, .frame = begin}, true, depth);
+    case Form::kFromTo: {
+      const Moment at{.lane = lane, .frame = begin, .begin = begin};
+      Reasons reasons = Change(rule.first, at, true, depth);
+      for (Reason& reason : Change(rule.during, at, true, kDeepest)) reasons.push_back(std::move(reason));
+      return reasons;
+    }
+    case Form::kUntilSince: return BeginOfWalk(lane, fate, depth);
+    case Form::kRestOf: return BeginOrEndOfRest(lane, begin, true, depth);
+    case Form::kCompose: return Parts(lane, fate);
+  }
+  return {};
+}
+
+Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  const FrameNumber begin = fate.span.begin.frame;
+  const FrameNumber end = fate.span.end.frame;
+  if (end >= past_.frames()) return {NoteOf("the episode ends here")};
+  switch (rule.form) {
+    case Form::kTouching: return {};
+    case Form::kAny: return BeginOrEndOfAny(lane, end, true, depth);
+    case Form::kWhile: {
+      const bool hysteresis = rule.second != kNone;
+      return Change(hysteresis ? rule.second : rule.first, {.lane = lane, .frame = end}, hysteresis, depth);
+    }
+    case Form::kFromTo: {
+      const Moment at{.lane = lane, .frame = end, .begin = begin};
+      if (rule.absence && fate.span.end.tick >= fate.span.begin.tick && !past_.Truth(rule.second, at)) {
+        const bool in_time = rule.during == kNone || past_.Truth(rule.during, at);
+        if (in_time) return {NoteOf("nothing came within " + Seconds(rule.within_s))};
+      }
+      const bool closed = past_.Truth(rule.second, at);
+      return Change(closed ? rule.second : rule.during, at, closed, depth);
+    }
+    case Form::kUntilSince: return Change(rule.first, {.lane = lane, .frame = end}, true, depth);
+    case Form::kRestOf: return BeginOrEndOfRest(lane, end, false, depth);
+    case Form::kCompose: return {};
+  }
+  return {};
+}
+
+// What stopped the walk back from the end.
+Reasons EventReasons::BeginOfWalk(int lane, const Fate& fate, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  const FrameNumber begin = fate.span.begin.frame;
+  const FrameNumber end = fate.span.end.frame;
+  const FrameNumber at = fate.walk.at;
+  const auto signal = [&](FrameNumber frame) { return past_.Number(rule.approach, {.lane = lane, .frame = frame, .end = end}).value_or(0); };
+  const auto text = [&](double value) {
+    return QuantityText(value, past_.program().notes[rule.approach].dimension);
+  };
+  Reasons reasons;
+  switch (fate.walk.stop) {
+    case WalkBack::Stop::kFirstFrame: reasons = {NoteOf("it held from the first frame on")}; break;
+    case WalkBack::Stop::kPreviousEnd: reasons = {NoteOf("the one before ended here")}; break;
+    case WalkBack::Stop::kTooFarBack: reasons = {NoteOf("it looks at most " + Seconds(rule.back_s) + " back")}; break;
+    case WalkBack::Stop::kSince: reasons = Change(rule.second, {.lane = lane, .frame = at + 1, .end = end}, true, depth); break;
+    case WalkBack::Stop::kReceding:
+      reasons = {NoteOf("the approach turns here: " + ClauseText(past_, lane, rule.approach),
+                        fmt::format("is {}; at {} it was {}, and it may recede by at most {}", text(signal(begin)),
+                                    clauses_.Time(at), text(signal(at)), text(rule.slack)))};
+      reasons.front().mark = Mark::kTurned;
+      break;
+    case WalkBack::Stop::kIdle:
+      reasons = {NoteOf("it paused before", fmt::format("for more than {}", Seconds(rule.idle_s)))};
+      reasons.front().mark = Mark::kTurned;
+      break;
+  }
+  const bool later = fate.walk.stop != WalkBack::Stop::kReceding && fate.walk.stop != WalkBack::Stop::kIdle &&
+                     begin > at + (fate.walk.stop == WalkBack::Stop::kSince ? 1 : 0);
+  if (!later || rule.approach == kNone) return reasons;
+  Reason moved = NoteOf("moves from here on",
+                        "not slower than " + QuantityText(rule.speed, rule.motion == kNone ? grammar::kMetresPerSecond
+                                                                                           : past_.program().notes[rule.motion].dimension));
+  if (rule.motion != kNone) moved.what = ClauseText(past_, lane, rule.motion) + " " + moved.what;
+  moved.mark = Mark::kTurned;
+  reasons.insert(reasons.begin(), std::move(moved));
+  return reasons;
+}
+
+Reasons EventReasons::BeginOrEndOfRest(int lane, FrameNumber frame, bool begins, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  Reasons reasons;
+  const auto add = [&](int slot, bool truth) {
+    const int target = past_.Referred(lane, slot);
+    const bool holds = target != kNone && past_.Covering(target, frame) != nullptr;
+    if (holds != truth) return;
+    Reason reason = clauses_.Reference(lane, slot, frame, truth, FollowFrom(depth));
+    if (!brief_ || reason.mark == Mark::kTurned) reasons.push_back(std::move(reason));
+  };
+  add(rule.first, begins);
+  for (const int other : rule.outside) add(other, !begins);
+  return reasons;
+}
+
+// The bindings that begin or end here; of several that hold, others go on.
+Reasons EventReasons::BeginOrEndOfAny(int lane, FrameNumber frame, bool end, int depth) {
+  Reasons reasons;
+  std::vector<int> members = past_.At(lane).members;
+  std::sort(members.begin(), members.end(), [&](int a, int b) { return past_.At(a).entities < past_.At(b).entities; });
+  for (const int member : members) {
+    for (const Fate& fate : past_.FatesOf(member)) {
+      const FrameNumber boundary = end ? fate.span.end.frame : fate.span.begin.frame;
+      if (fate.kind != Fate::Kind::kInterval || boundary != frame) continue;
+      const Rule& rule = past_.RuleOf(member);
+      reasons.push_back({.mark = Mark::kTurned,
+                         .what = Label(past_, member),
+                         .how = end ? "ended" : "began",
+                         .where = rule.form == Form::kTouching ? "" : Source(rule.file, rule.place),
+                         .tick = past_.TickOf(frame),
+                         .reading = {},
+                         .because = FollowFrom(depth)(member, fate, end)});
+    }
+  }
+  return reasons;
+}
+
+bool EventReasons::ChooseParts(int lane, const Fate& whole, std::vector<const Fate*>& chosen) {
+  const grammar::Composition& composition = past_.RuleOf(lane).composition;
+  const std::size_t part = chosen.size();
+  if (part == composition.parts.size()) return true;
+  const int target = past_.Referred(lane, composition.parts[part]);
+  for (const Fate& fate : past_.FatesOf(target)) {
+    if (fate.kind != Fate::Kind::kInterval) continue;
+    if (part == 0 && fate.span.begin.frame != whole.span.begin.frame) continue;
+    if (part + 1 == composition.parts.size() && fate.span.end.frame != whole.span.end.frame) continue;
+    chosen.push_back(&fate);
+    const auto holds = [&](const grammar::Composition::Clause& clause) {
+      if (std::max(clause.left, clause.right) != static_cast<int>(part)) return true;
+      const auto ticks = [&](int i) { return grammar::Interval{chosen[i]->span.begin.tick, chosen[i]->span.end.tick}; };
+      return (grammar::Bit(grammar::Relate(ticks(clause.left), ticks(clause.right))) & clause.relations) != 0;
+    };
+    const bool fits = std::all_of(composition.clauses.begin(), composition.clauses.end(), holds);
+    if (fits && ChooseParts(lane, whole, chosen)) return true;
+    chosen.pop_back();
+  }
+  return false;
+}
+
+Reasons EventReasons::Parts(int lane, const Fate& fate) {
+  std::vector<const Fate*> chosen;
+  Reasons reasons;
+  if (!ChooseParts(lane, fate, chosen)) return reasons;
+  for (const Fate* part : chosen) {
+    Reason reason = NoteOf("part " + Label(past_, part->lane),
+                           IntervalText({part->span.begin.tick, part->span.end.tick}, past_.cast().ticks_per_second));
+    if (part->span.begin.frame == fate.span.begin.frame) reason.mark = Mark::kTurned;
+    reasons.push_back(std::move(reason));
+  }
+  return reasons;
+}
+
+Reasons EventReasons::Counted(int lane, const Fate& fate) {
+  const Rule& rule = past_.RuleOf(lane);
+  const Tick per_second = past_.cast().ticks_per_second;
+  Reasons reasons;
+  if (rule.lasting_s > 0) {
+    reasons.push_back(NoteOf("lasting " + Seconds(rule.lasting_s),
+                             "it lasted " + Duration(fate.span.end.tick - fate.span.begin.tick, per_second)));
+  }
+  if (rule.requirement != kNone) {
+    const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
+    const Moment at{.lane = lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
+    for (Reason& reason : clauses_.State(rule.requirement, at, true)) {
+      reason.what = "requires " + reason.what;
+      reasons.push_back(std::move(reason));
+    }
+  }
+  if (rule.confirmed_by != kNone && fate.cause != grammar::kNever) {
+    const int by = past_.Referred(lane, rule.confirmed_by);
+    const int within = past_.Referred(lane, rule.confirmed_within);
+    reasons.push_back(NoteOf("confirmed by " + Label(past_, by),
+                             "it began at " + clauses_.Time(fate.cause) + ", while " + Label(past_, within) + " held"));
+  }
+  return reasons;
+}
+
+// Why it was not known at its end already.
+Reasons EventReasons::Waited(int lane, const Fate& fate, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  const Tick end = fate.span.end.tick;
+  Reasons reasons;
+  if (fate.decided <= end || depth >= kDeepest) return reasons;
+  if (rule.bridging_s > 0 && !fate.span.open_end) {
+    reasons.push_back(NoteOf(Label(past_, lane), "a gap of up to " + Seconds(rule.bridging_s) + " would have been bridged"));
+  }
+  if (rule.looks_around_s > 0 && !fate.span.open_end) {
+    reasons.push_back(NoteOf(Label(past_, lane), "a signal over a window looks " + Seconds(rule.looks_around_s) + " ahead"));
+  }
+  if (rule.confirmed_by != kNone && fate.cause != grammar::kNever) {
+    reasons.push_back(NoteOf(Label(past_, past_.Referred(lane, rule.confirmed_by)),
+                             "had to begin, and did so at " + clauses_.Time(fate.cause)));
+  }
+  // What it refers to, and was known at that very moment only.
+  std::vector<int> targets = past_.At(lane).members;
+  for (std::size_t slot = 0; slot < rule.references.size() && rule.form != Form::kAny; ++slot) {
+    targets.push_back(past_.Referred(lane, static_cast<int>(slot)));
+  }
+  for (const int target : targets) {
+    for (const Fate& other : past_.FatesOf(target)) {
+      if (other.decided != fate.decided || other.span.end.tick >= other.decided) continue;
+      Reasons behind = Waited(target, other, depth + 1);
+      Reason reason = NoteOf(Label(past_, target), "was decided only then");
+      reason.because = std::move(behind);
+      reasons.push_back(std::move(reason));
+      break;
+    }
+  }
+  return reasons;
+}
+
+WhyEvent EventReasons::Explain(int lane, const Fate& fate, bool brief) {
+  brief_ = brief;
+  const Rule& rule = past_.RuleOf(lane);
+  WhyEvent why{.event = Label(past_, lane),
+               .where = Source(rule.file, rule.place),
+               .interval = {fate.span.begin.tick, fate.span.end.tick},
+               .decided = fate.decided,
+               .open_end = fate.span.open_end,
+               .began = Begin(lane, fate),
+               .ended = End(lane, fate),
+               .counted = {},
+               .waited = {}};
+  if (brief) return why;
+  why.counted = Counted(lane, fate);
+  why.waited = Waited(lane, fate, 0);
+  return why;
+}
+
+}  // namespace prehend::harness::explain

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// See why_missing.h. Runs that were given up, and the choice of what to blame.
+// Tested by tests/harness/explain_test.cc
+#include "harness/explain/why_missing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/event_text.h"
+#include "harness/explain/wording.h"
+
+namespace prehend::harness::explain {
+
+using grammar::Fate;
+using grammar::FrameNumber;
+using grammar::kNone;
+using grammar::Rule;
+using grammar::Tick;
+using Mark = Reason::Mark;
+
+namespace {
+
+constexpr int kDeepest = 8;  // rules behind rules
+constexpr double kAround_s = 0.25;  // a person's or a golden's idea of a moment is not exact
+
+// The innermost clause that failed first.
+const Reason* FirstFailure(const Reasons& reasons) {
+  for (const Reason& reason : reasons) {
+    if (reason.mark != Mark::kFailed) continue;
+    const Reason* inner = FirstFailure(reason.because);
+    return inner != nullptr ? inner : &reason;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+MissingReasons::Window MissingReasons::Around(FrameNumber frame) {
+  const Tick tick = past_.TickOf(frame);
+  const Tick around = grammar::Tick(kAround_s * static_cast<double>(past_.cast().ticks_per_second));
+  return {past_.FrameAt(tick - around), past_.FrameAt(tick + around), frame};
+}
+
+WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<FrameNumber> at) {
+  const Window window = at ? Around(*at) : Whole();
+  std::optional<Blame> worst;
+  int blamed = lanes.front();
+  for (const int lane : lanes) {
+    Blame blame = OfLane(lane, window, 0);
+    if (worst && blame.closeness <= worst->closeness) continue;
+    worst = std::move(blame);
+    blamed = lane;
+  }
+  const Rule& rule = past_.RuleOf(blamed);
+  WhyMissing why{.event = Label(past_, blamed), .where = Source(rule.file, rule.place), .expected_at = {}, .because = {},
+                 .reasons = std::move(worst->reasons), .nearest = {}};
+  if (at) why.expected_at = past_.TickOf(*at);
+  if (const Reason* failure = FirstFailure(why.reasons)) {
+    why.because = failure->what + (failure->how.empty() ? "" : ": " + failure->how);
+    if (failure->tick && failure->reading) why.because += ", at " + At(*failure->tick, past_.cast().ticks_per_second);
+  }
+  for (const Fate& fate : past_.FatesOf(blamed)) {
+    if (fate.kind != Fate::Kind::kInterval) continue;
+    why.nearest.push_back({.event = why.event, .where = why.where, .interval = {fate.span.begin.tick, fate.span.end.tick},
+                           .decided = fate.decided, .open_end = fate.span.open_end, .began = {}, .ended = {}, .counted = {},
+                           .waited = {}});
+  }
+  return why;
+}
+
+MissingReasons::Blame MissingReasons::OfLane(int lane, const Window& window, int depth) {
+  if (lane == kNone || depth >= kDeepest) return {};
+  if (const Fate* run = NearestRun(lane, window)) return OfRun(*run, depth);
+  return OfForm(lane, window, depth);
+}
+
+// Of the runs within the window that came to nothing, the one that was nearest to being an interval.
+const Fate* MissingReasons::NearestRun(int lane, const Window& window) {
+  const Fate* nearest = nullptr;
+  double closeness = 0;
+  for (const Fate& fate : past_.FatesOf(lane)) {
+    const bool within = fate.span.begin.frame <= window.last && fate.span.end.frame >= window.first;
+    if (fate.kind == Fate::Kind::kInterval || !within) continue;
+    const bool covers = window.at && fate.span.begin.frame <= *window.at && *window.at < fate.span.end.frame;
+    const double here = RunCloseness(fate) + (covers ? 1 : 0);
+    if (nearest != nullptr && here <= closeness) continue;
+    nearest = &fate;
+    closeness = here;
+  }
+  return nearest;
+}
+
+double MissingReasons::RunCloseness(const Fate& fate) {
+  const Rule& rule = past_.RuleOf(fate.lane);
+  const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
+  const double lasted_s = static_cast<double>(fate.span.end.tick - fate.span.begin.tick) /
+                          static_cast<double>(past_.cast().ticks_per_second);
+  switch (fate.kind) {
+    case Fate::Kind::kTooShort: return 1 + 0.5 * lasted_s / rule.lasting_s;
+    case Fate::Kind::kRefused: {
+      const Moment at{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
+      return 1 + 0.9 * clauses_.Nearness(rule.requirement, at, true);
+    }
+    case Fate::Kind::kUnconfirmed: return 1.9;
+    case Fate::Kind::kNothingBack: return 1;
+    default: return 1.5;
+  }
+}
+
+MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
+  const int lane = fate.lane;
+  const Rule& rule = past_.RuleOf(lane);
+  const Tick per_second = past_.cast().ticks_per_second;
+  const FrameNumber begin = fate.span.begin.frame;
+  const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
+  const Moment at_end{.lane = lane, .frame = last, .begin = begin, .end = last};
+  Reason run{.mark = Mark::kFailed, .what = Label(past_, lane),
+             .how = "from " + clauses_.Time(begin) + " to " + At(fate.span.end.tick, per_second) + ": ",
+             .where = Source(rule.file, rule.place), .tick = fate.span.begin.tick, .reading = {}, .because = {}};
+  const auto fail = [&](std::string what, std::string how) {
+    run.because.push_back({.mark = Mark::kFailed, .what = std::move(what), .how = std::move(how)});
+  };
+  const auto clauses = [&](const char* word, int node, const Moment& at) {
+    for (Reason& reason : clauses_.State(node, at, true)) {
+      reason.what = word + reason.what;
+      run.because.push_back(std::move(reason));
+    }
+  };
+  const std::string lasted = Duration(fate.span.end.tick - fate.span.begin.tick, per_second);
+  switch (fate.kind) {
+    case Fate::Kind::kTooShort:
+      run.how += "too short";
+      fail("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds), "it lasted only " + lasted);
+      break;
+    case Fate::Kind::kRefused:
+      run.how += "not what is required";
+      clauses("requires ", rule.requirement, at_end);
+      break;
+    case Fate::Kind::kUnconfirmed: {
+      run.how += "not confirmed";
+      const int by = past_.Referred(lane, rule.confirmed_by);
+      const int within = past_.Referred(lane, rule.confirmed_within);
+      const bool episode = fate.cause >= past_.frames();
+      fail("confirmed by " + Label(past_, by),
+           "it did not begin before " + (episode ? std::string("the episode ended") : Label(past_, within) + " was over") +
+               " at " + clauses_.Time(fate.cause));
+      const Window wait{fate.span.end.frame, std::min(fate.cause, past_.frames() - 1)};
+      run.because.back().because = OfLane(by, wait, depth + 1).reasons;
+      break;
+    }
+    case Fate::Kind::kDropped:
+      run.how += "dropped";
+      clauses("during ", rule.during, {.lane = lane, .frame = fate.cause, .begin = begin});
+      break;
+    case Fate::Kind::kTooLate:
+      run.how += "dropped";
+      fail("to " + ClauseText(past_, lane, rule.second), "it did not come within " + QuantityText(rule.within_s, grammar::kSeconds));
+      break;
+    case Fate::Kind::kCame:
+      run.how += "what must not come came";
+      fail("without " + ClauseText(past_, lane, rule.second), "it came after " + lasted);
+      break;
+    case Fate::Kind::kUnfinished:
+      run.how += "dropped";
+      fail("to " + ClauseText(past_, lane, rule.second), "the episode ended before");
+      break;
+    case Fate::Kind::kNothingBack: {
+      run.how = "nothing before its end at " + clauses_.Time(fate.span.end.frame);
+      const FrameNumber before = std::max<FrameNumber>(last - 1, 0);
+      Reasons state = clauses_.State(rule.second, {.lane = lane, .frame = before, .end = last}, true);
+      for (Reason& reason : state) {
+        reason.what = "since " + reason.what;
+        run.because.push_back(std::move(reason));
+      }
+      break;
+    }
+    default: break;
+  }
+  const bool has_end = fate.kind == Fate::Kind::kTooShort || fate.kind == Fate::Kind::kRefused;
+  if (has_end) {
+    Reason ended{.mark = Mark::kNote, .what = "it ended there", .because = events_.End(lane, fate, kDeepest - 1)};
+    run.because.push_back(std::move(ended));
+  }
+  return {{std::move(run)}, RunCloseness(fate)};
+}
+
+}  // namespace prehend::harness::explain

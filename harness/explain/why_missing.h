@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why an interval that was expected is none: the run that nearly was one and what it lacked, or else the first clause that
+// failed where the condition came closest, into the rules that it refers to.
+// Tested by tests/harness/explain_test.cc
+#pragma once
+
+#include "harness/explain/why_event.h"
+
+namespace prehend::harness::explain {
+
+class MissingReasons {
+ public:
+  explicit MissingReasons(grammar::Hindsight& past) : past_(past), clauses_(past), events_(past) {}
+
+  /// Of the bindings the one that came closest. `at`: where it should have been; otherwise anywhere.
+  WhyMissing Explain(const std::vector<int>& lanes, std::optional<grammar::FrameNumber> at);
+
+ private:
+  /// The frames to look at, and the one that it is about.
+  struct Window {
+    grammar::FrameNumber first = 0;
+    grammar::FrameNumber last = 0;
+    std::optional<grammar::FrameNumber> at = std::nullopt;
+  };
+  struct Blame {
+    Reasons reasons;
+    double closeness = 0;  ///< of runs 1 to 2, of conditions less
+  };
+  Window Whole() { return {0, past_.frames() - 1}; }
+  Window Around(grammar::FrameNumber frame);
+
+  Blame OfLane(int lane, const Window& window, int depth);
+  const grammar::Fate* NearestRun(int lane, const Window& window);
+  double RunCloseness(const grammar::Fate& fate);
+  Blame OfRun(const grammar::Fate& fate, int depth);
+  Blame OfForm(int lane, const Window& window, int depth);
+  Blame OfWhile(int lane, const Window& window, int depth);
+  Blame OfFromTo(int lane, const Window& window, int depth);
+  Blame OfUntil(int lane, const Window& window, int depth);
+  Blame OfRest(int lane, const Window& window, int depth);
+  Blame OfAny(int lane, const Window& window, int depth);
+  Blame OfCompose(int lane, const Window& window, int depth);
+  Blame OfFact(int lane, const Window& window);
+
+  /// The clauses of a condition where they came closest to holding, the first failed one followed.
+  Blame OfClauses(int node, Moment at, const Window& window, int depth);
+  grammar::FrameNumber Closest(int node, Moment at, const Window& window);
+  /// The moment never came.
+  Blame OfMoment(int node, int lane, const Window& window, int depth);
+  Reason Intervals(int lane, std::string how);
+
+  grammar::Hindsight& past_;
+  Clauses clauses_;
+  EventReasons events_;
+};
+
+}  // namespace prehend::harness::explain

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where there was no run: which clause kept each form from beginning one.
+// Tested by tests/harness/explain_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/allen.h"
+#include "harness/event_text.h"
+#include "harness/explain/bindings.h"
+#include "harness/explain/why_missing.h"
+#include "harness/explain/wording.h"
+
+namespace prehend::harness::explain {
+
+using grammar::Fate;
+using grammar::Form;
+using grammar::FrameNumber;
+using grammar::kNone;
+using grammar::Op;
+using grammar::Rule;
+using Mark = Reason::Mark;
+
+namespace {
+
+constexpr FrameNumber kMostLooks = 2000;  // of a long window only so many frames are looked at
+constexpr std::size_t kMostIntervals = 4;  // are listed
+
+Reason Failed(std::string what, std::string how, Reasons because = {}) {
+  return {.mark = Mark::kFailed, .what = std::move(what), .how = std::move(how), .where = {}, .tick = {}, .reading = {},
+          .because = std::move(because)};
+}
+
+}  // namespace
+
+// "contact(hand, cup)  1.0..2.0 s, 3.0..4.0 s"
+Reason MissingReasons::Intervals(int lane, std::string how) {
+  std::size_t count = 0;
+  for (const Fate& fate : past_.FatesOf(lane)) {
+    if (fate.kind != Fate::Kind::kInterval) continue;
+    if (count++ == kMostIntervals) how += ", ..";
+    if (count > kMostIntervals) continue;
+    how += (count == 1 ? " " : ", ") + IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second);
+  }
+  return {.mark = Mark::kNote, .what = Label(past_, lane), .how = count == 0 ? "never" : how};
+}
+
+MissingReasons::Blame MissingReasons::OfForm(int lane, const Window& window, int depth) {
+  switch (past_.RuleOf(lane).form) {
+    case Form::kTouching: return OfFact(lane, window);
+    case Form::kAny: return OfAny(lane, window, depth);
+    case Form::kWhile: return OfWhile(lane, window, depth);
+    case Form::kFromTo: return OfFromTo(lane, window, depth);
+    case Form::kUntilSince: return OfUntil(lane, window, depth);
+    case Form::kRestOf: return OfRest(lane, window, depth);
+    case Form::kCompose: return OfCompose(lane, window, depth);
+  }
+  return {};
+}
+
+MissingReasons::Blame MissingReasons::OfFact(int lane, const Window& window) {
+  const bool at = window.at.has_value();
+  Reason reason = Failed(Label(past_, lane), at ? "they did not touch at " + clauses_.Time(*window.at) : "they did not touch");
+  if (!past_.FatesOf(lane).empty()) reason.because.push_back(Intervals(lane, "they touched"));
+  return {{std::move(reason)}, 0};
+}
+
+FrameNumber MissingReasons::Closest(int node, Moment at, const Window& window) {
+  FrameNumber first = window.first;
+  FrameNumber last = window.last;
+  if (window.at) {
+    // Of the stretch around the moment in which it does not hold.
+    const auto fails = [&](FrameNumber frame) {
+      at.frame = frame;
+      return !past_.Truth(node, at);
+    };
+    if (!fails(*window.at)) return *window.at;
+    FrameNumber from = *window.at;
+    FrameNumber to = *window.at;
+    while (from > first && fails(from - 1)) --from;
+    while (to < last && fails(to + 1)) ++to;
+    first = from;
+    last = to;
+  }
+  const FrameNumber step = std::max<FrameNumber>(1, (last - first) / kMostLooks);
+  FrameNumber closest = window.at.value_or(first);
+  at.frame = closest;
+  double best = clauses_.Nearness(node, at, true);
+  for (FrameNumber frame = first; frame <= last; frame += step) {
+    at.frame = frame;
+    const double nearness = clauses_.Nearness(node, at, true);
+    if (nearness <= best) continue;
+    best = nearness;
+    closest = frame;
+  }
+  return closest;
+}
+
+MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Window& window, int depth) {
+  at.frame = Closest(node, at, window);
+  Blame blame{.reasons = {}, .closeness = clauses_.Nearness(node, at, true)};
+  bool followed = false;
+  for (const Clauses::Clause& clause : clauses_.Split(node, true)) {
+    Reason reason = clauses_.Told(clause, at);
+    const grammar::Node& n = past_.program().nodes[clause.node];
+    const bool follow = reason.mark == Mark::kFailed && !followed;
+    followed |= reason.mark == Mark::kFailed;
+    if (follow && n.op == Op::kHolds && clause.truth) {
+      Window there = Around(at.frame);
+      reason.because = OfLane(past_.Referred(at.lane, n.slot), there, depth + 1).reasons;
+    }
+    blame.reasons.push_back(std::move(reason));
+  }
+  return blame;
+}
+
+MissingReasons::Blame MissingReasons::OfWhile(int lane, const Window& window, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  Blame inner = OfClauses(rule.first, {.lane = lane}, window, depth);
+  const FrameNumber closest = Closest(rule.first, {.lane = lane}, window);
+  Reason reason = Failed(Label(past_, lane), "came closest at " + clauses_.Time(closest), std::move(inner.reasons));
+  reason.where = Source(rule.file, rule.place);
+  reason.tick = past_.TickOf(closest);
+  return {{std::move(reason)}, inner.closeness};
+}
+
+MissingReasons::Blame MissingReasons::OfMoment(int node, int lane, const Window& window, int depth) {
+  Blame best;
+  for (const Clauses::Clause& clause : clauses_.Split(node, true)) {
+    const grammar::Node& n = past_.program().nodes[clause.node];
+    if (!clause.truth || (n.op != Op::kBegins && n.op != Op::kEnds)) continue;
+    const grammar::Node& arg = past_.program().nodes[n.args[0]];
+    Blame blame;
+    if (arg.op == Op::kHolds) {
+      const int target = past_.Referred(lane, arg.slot);
+      if (target == kNone) continue;
+      if (past_.LastBegun(target, past_.frames()) != nullptr) {
+        blame = {{Intervals(target, "is there at")}, 0.95};
+      } else {
+        blame = OfLane(target, window, depth + 1);
+      }
+    } else {
+      blame = OfClauses(n.args[0], {.lane = lane}, window, depth);
+    }
+    if (best.reasons.empty() || blame.closeness > best.closeness) best = std::move(blame);
+  }
+  return best;
+}
+
+MissingReasons::Blame MissingReasons::OfFromTo(int lane, const Window& window, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  // The last moment that should have begun it.
+  const FrameNumber until = window.at.value_or(window.last);
+  FrameNumber from = until;
+  const auto begins = [&](FrameNumber frame) { return past_.Truth(rule.first, {.lane = lane, .frame = frame, .begin = frame}); };
+  while (from >= 0 && !begins(from)) --from;
+  Reason reason = Failed(Label(past_, lane), "", {});
+  reason.where = Source(rule.file, rule.place);
+  if (from < 0) {
+    const std::string text = ClauseText(past_, lane, rule.first);
+    Blame blame = OfMoment(rule.first, lane, window, depth);
+    reason.how = "nothing began it";
+    reason.because = {Failed(text.empty() ? "what begins it" : "from " + text, "did not happen up to " + clauses_.Time(until),
+                             std::move(blame.reasons))};
+    return {{std::move(reason)}, 0.5 * blame.closeness};
+  }
+  for (const Fate& fate : past_.FatesOf(lane)) {
+    if (fate.span.begin.frame != from) continue;
+    if (fate.kind != Fate::Kind::kInterval) return OfRun(fate, depth);
+    reason.how = "was over at " + clauses_.Time(fate.span.end.frame) + " already";
+    reason.because = events_.End(lane, fate);
+    return {{std::move(reason)}, 0.9};
+  }
+  reason.how = "could have begun at " + clauses_.Time(from);
+  const Moment at{.lane = lane, .frame = from, .begin = from};
+  if (rule.during != kNone && !past_.Truth(rule.during, at)) {
+    for (Reason& state : clauses_.State(rule.during, at, true)) {
+      state.what = "during " + state.what;
+      reason.because.push_back(std::move(state));
+    }
+  } else {
+    reason.because = {Failed("to " + ClauseText(past_, lane, rule.second), "was at the same moment, and that is no interval")};
+  }
+  return {{std::move(reason)}, 0.8};
+}
+
+MissingReasons::Blame MissingReasons::OfUntil(int lane, const Window& window, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  Reason reason = Failed(Label(past_, lane), "", {});
+  reason.where = Source(rule.file, rule.place);
+  // Whatever ended one later begins too late; whatever came to nothing later, did so.
+  for (const Fate& fate : past_.FatesOf(lane)) {
+    if (fate.span.end.frame < window.at.value_or(0)) continue;
+    if (fate.kind != Fate::Kind::kInterval) return OfRun(fate, depth);
+    reason.how = "begins at " + clauses_.Time(fate.span.begin.frame) + " only";
+    reason.because = events_.Begin(lane, fate);
+    return {{std::move(reason)}, 0.9};
+  }
+  const std::string text = ClauseText(past_, lane, rule.first);
+  Blame blame = OfMoment(rule.first, lane, window.at ? Window{*window.at, past_.frames() - 1} : window, depth);
+  reason.how = "nothing ended it";
+  reason.because = {Failed(text.empty() ? "what ends it" : "until " + text,
+                           window.at ? "did not happen at or after " + clauses_.Time(*window.at) : "never happened",
+                           std::move(blame.reasons))};
+  return {{std::move(reason)}, 0.5 * blame.closeness};
+}
+
+MissingReasons::Blame MissingReasons::OfRest(int lane, const Window& window, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  const int whole = past_.Referred(lane, rule.first);
+  Reason reason = Failed(Label(past_, lane), "", {});
+  reason.where = Source(rule.file, rule.place);
+  const auto covers = [&](int target, FrameNumber frame) { return target != kNone && past_.Covering(target, frame) != nullptr; };
+  FrameNumber frame = window.at.value_or(window.first);
+  for (; !window.at && frame < window.last && !covers(whole, frame); ++frame) {
+  }
+  if (!covers(whole, frame)) {
+    reason.how = "is a rest of " + (whole == kNone ? "nothing" : Label(past_, whole));
+    Reason missing = Failed(whole == kNone ? "it" : Label(past_, whole), window.at ? "did not hold at " + clauses_.Time(frame) : "never held",
+                            OfLane(whole, window, depth + 1).reasons);
+    reason.because = {std::move(missing)};
+    return {{std::move(reason)}, 0.1};
+  }
+  reason.how = "nothing is left of " + Label(past_, whole) + " at " + clauses_.Time(frame);
+  for (const int slot : rule.outside) {
+    const int target = past_.Referred(lane, slot);
+    if (!covers(target, frame)) continue;
+    const Fate& fate = *past_.Covering(target, frame);
+    reason.because.push_back(Failed("outside " + Label(past_, target),
+                                    "it held " + IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second)));
+  }
+  return {{std::move(reason)}, 0.7};
+}
+
+MissingReasons::Blame MissingReasons::OfAny(int lane, const Window& window, int depth) {
+  Blame best{{Failed(Label(past_, lane), "nothing that fits was there")}, -1};
+  const grammar::Reference& reference = past_.RuleOf(lane).references[0];
+  grammar::Binding wanted = grammar::kUnbound;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (reference.roles[i] != kNone) wanted[i] = past_.At(lane).entities[reference.roles[i]];
+  }
+  for (const int candidate : BindingsThatFit(past_, reference.rule, wanted)) {
+    Blame blame = OfLane(candidate, window, depth + 1);
+    if (blame.closeness > best.closeness) best = std::move(blame);
+  }
+  return best;
+}
+
+MissingReasons::Blame MissingReasons::OfCompose(int lane, const Window& window, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  Reason reason = Failed(Label(past_, lane), "needs all its parts", {});
+  reason.where = Source(rule.file, rule.place);
+  std::vector<int> parts;
+  bool complete = true;
+  for (const int slot : rule.composition.parts) {
+    parts.push_back(past_.Referred(lane, slot));
+    if (parts.back() == kNone) return {{std::move(reason)}, 0};
+    Reason part = Intervals(parts.back(), "was there");
+    if (past_.LastBegun(parts.back(), past_.frames()) == nullptr) {
+      part.mark = Mark::kFailed;
+      if (complete) part.because = OfLane(parts.back(), window, depth + 1).reasons;
+      complete = false;
+    }
+    reason.because.push_back(std::move(part));
+  }
+  for (const grammar::Composition::Clause& clause : rule.composition.clauses) {
+    if (!complete) break;
+    const auto ticks = [](const Fate& fate) { return grammar::Interval{fate.span.begin.tick, fate.span.end.tick}; };
+    bool holds = false;
+    std::string relation;
+    for (const Fate& left : past_.FatesOf(parts[clause.left])) {
+      for (const Fate& right : past_.FatesOf(parts[clause.right])) {
+        if (left.kind != Fate::Kind::kInterval || right.kind != Fate::Kind::kInterval) continue;
+        const grammar::Allen is = grammar::Relate(ticks(left), ticks(right));
+        holds |= (grammar::Bit(is) & clause.relations) != 0;
+        relation = grammar::kAllenNames[static_cast<std::size_t>(is)];
+      }
+    }
+    if (holds) continue;
+    std::string wanted;
+    for (std::size_t i = 0; i < grammar::kAllenNames.size(); ++i) {
+      if ((clause.relations >> i & 1U) != 0) wanted += (wanted.empty() ? "" : "|") + std::string(grammar::kAllenNames[i]);
+    }
+    reason.because.push_back(Failed(Label(past_, parts[clause.left]) + " " + wanted + " " + Label(past_, parts[clause.right]),
+                                    "it is " + relation));
+  }
+  return {{std::move(reason)}, complete ? 0.9 : 0.4};
+}
+
+}  // namespace prehend::harness::explain
