@@ -7,9 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/commands/command.h"
+#include "harness/event_text.h"
 #include "harness/explain/explain.h"
 #include "harness/explain/watch.h"
 #include "harness/run_output.h"
+#include "harness/shell_word.h"
 
 namespace prehend::harness {
 namespace {
@@ -43,13 +45,14 @@ void PrintEvents(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_se
   for (const WhyEvent& why : events) out << (&why == &events.front() ? "" : "\n") << explain::Text(why, ticks_per_second);
 }
 
-ExitCode ComplainOfNone(const std::string& typed, grammar::Hindsight& past, const Ask& ask, const CommandContext& context) {
+ExitCode ComplainOfNone(const CLI::App& options, grammar::Hindsight& past, const Ask& ask, const CommandContext& context) {
+  const std::string typed = ValueOf(options, "--event");
   const std::vector<WhyEvent> nearest = explain::NearestEvents(past, ask);
-  std::string message = fmt::format("--event: no '{}'", typed);
-  if (nearest.empty()) message += "; it never happened";
-  message += fmt::format("\n  why not: prehend explain .. --expected '{}'", typed);
-  if (!nearest.empty()) message += "\n  nearest:\n" + explain::Table(nearest, past.cast().ticks_per_second);
-  while (message.ends_with('\n')) message.pop_back();
+  std::string message = fmt::format("--event: there is no '{}'{}", typed, nearest.empty() ? " in the whole episode" : "; the nearest:");
+  for (const WhyEvent& other : nearest) {
+    message += fmt::format("\n  {}  {}", other.event, IntervalText(other.interval, past.cast().ticks_per_second));
+  }
+  message += fmt::format("\n  why not: prehend explain {} --expected {}", ShellWord(ValueOf(options, "scenario")), ShellWord(typed));
   return Complain(context, ExitCode::kNothing, message);
 }
 
@@ -78,7 +81,7 @@ ExitCode Answer(const CLI::App& options, const CommandContext& context, const st
     }
   } else if (question.event) {
     const std::vector<WhyEvent> events = explain::ExplainEvents(past, *question.event);
-    if (events.empty()) return ComplainOfNone(ValueOf(options, "--event"), past, *question.event, context);
+    if (events.empty()) return ComplainOfNone(options, past, *question.event, context);
     json["events"] = ToJson(events, per_second);
     if (!as_json) PrintEvents(events, per_second, context.out);
   } else {

@@ -76,16 +76,16 @@ Reason Clauses::Measurement(const Clause& clause, const Moment& at, const std::o
   reason.reading = Reading{now->value, now->limit, unit};
   const ValueTexts texts = Compared(now->value, now->limit, now->dimension);
   const bool is_region = !now->of.empty();
-  const std::string verb = !before || before->of != now->of ? "at"
+  const std::string verb = !before || before->of != now->of ? "is"
                            : now->value > before->value     ? "rose to"
                            : now->value < before->value     ? "fell to"
                                                             : "stayed at";
   std::string relation = now->value > now->limit   ? (is_region ? "beyond " : "above ")
                          : now->value < now->limit ? (is_region ? "within " : "below ")
-                                                   : "exactly ";
+                                                   : "equal to ";
   reason.how = fmt::format("{} {}{}, ", verb, texts.value, now->of);
   const double by = std::abs(now->value - now->limit);
-  const bool tell_by = verb == "at" && by > 0 && std::isfinite(by);
+  const bool tell_by = verb == "is" && by > 0 && std::isfinite(by);
   if (tell_by) relation = QuantityText(by, now->dimension) + " " + relation;
   reason.how += relation + texts.limit;
   return reason;
@@ -133,12 +133,15 @@ Reason Clauses::Reference(int lane, int slot, FrameNumber frame, bool truth, con
     if (begun->span.begin.frame == frame) return Boundary(target, *begun, false, follow);
     reason.how = begun->span.begin.frame == 0 ? "held from the first frame on" : "held since " + Time(begun->span.begin.frame);
     reason.tick = begun->span.begin.tick;
-  } else if (begun == nullptr) {
-    reason.how = "never held so far";
   } else {
-    if (begun->span.end.frame == frame) return Boundary(target, *begun, true, follow);
-    reason.how = "had ended at " + Time(begun->span.end.frame);
-    reason.tick = begun->span.end.tick;
+    if (begun != nullptr && begun->span.end.frame == frame) return Boundary(target, *begun, true, follow);
+    reason.how = begun == nullptr ? "never held so far" : "had ended at " + Time(begun->span.end.frame);
+    if (begun != nullptr) reason.tick = begun->span.end.tick;
+    for (const Fate& next : past_.FatesOf(target)) {
+      if (next.kind != Fate::Kind::kInterval || next.span.begin.frame <= frame) continue;
+      reason.how += ", begins at " + Time(next.span.begin.frame);
+      break;
+    }
   }
   return reason;
 }
@@ -207,6 +210,16 @@ Reasons Clauses::State(int node, const Moment& at, bool truth) {
   return reasons;
 }
 
+double Clauses::NearestMember(int any_lane, FrameNumber frame, int depth) {
+  double nearest = 0;
+  for (const int member : past_.At(any_lane).members) {
+    const grammar::Rule& rule = past_.RuleOf(member);
+    if (rule.form != grammar::Form::kWhile) continue;
+    nearest = std::max(nearest, 0.9 * Nearness(rule.first, {.lane = member, .frame = frame}, true, depth));
+  }
+  return nearest;
+}
+
 double Clauses::Nearness(int node, const Moment& at, bool truth, int depth) {
   constexpr int kDeepest = 6;
   const Node& n = NodeAt(node);
@@ -224,7 +237,7 @@ double Clauses::Nearness(int node, const Moment& at, bool truth, int depth) {
     if (rule.form == grammar::Form::kWhile) {
       return 0.9 * Nearness(rule.first, {.lane = target, .frame = at.frame}, true, depth + 1);
     }
-    return 0;
+    return rule.form == grammar::Form::kAny ? NearestMember(target, at.frame, depth + 1) : 0;
   }
   const std::optional<Measured> measured = Measure(node, at);
   if (!measured) return 0;

@@ -67,10 +67,23 @@ const Reason* FirstTurned(const Reasons& reasons) {
   return reasons.empty() ? nullptr : &reasons.front();
 }
 
+// "in_cylinder(..)": the whole clause is in the event's own explanation.
+std::string Short(const std::string& clause) {
+  constexpr std::size_t kLong = 32;
+  const std::size_t open = clause.find('(');
+  if (clause.size() <= kLong || open == std::string::npos) return clause;
+  std::size_t close = open;
+  for (int depth = 0; close < clause.size(); ++close) {
+    depth += clause[close] == '(' ? 1 : clause[close] == ')' ? -1 : 0;
+    if (depth == 0) break;
+  }
+  return clause.substr(0, open) + "(..)" + clause.substr(std::min(close + 1, clause.size()));
+}
+
 std::string InOneLine(const Reasons& reasons) {
   const Reason* first = FirstTurned(reasons);
   if (first == nullptr) return "";
-  return first->how.empty() ? first->what : first->what + " " + first->how;
+  return first->how.empty() ? first->what : Short(first->what) + " " + first->how;
 }
 
 std::string Late(const WhyEvent& why, Tick ticks_per_second) {

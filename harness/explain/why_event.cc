@@ -54,12 +54,15 @@ Reasons EventReasons::Begin(int lane, const Fate& fate, int depth) {
     case Form::kFromTo: {
       const Moment at{.lane = lane, .frame = begin, .begin = begin};
       Reasons reasons = Change(rule.first, at, true, depth);
-      for (Reason& reason : Change(rule.during, at, true, kDeepest)) reasons.push_back(std::move(reason));
+      for (Reason& reason : Change(rule.during, at, true, kDeepest)) {
+        const auto same = [&](const Reason& other) { return other.what == reason.what; };
+        if (std::none_of(reasons.begin(), reasons.end(), same)) reasons.push_back(std::move(reason));
+      }
       return reasons;
     }
     case Form::kUntilSince: return BeginOfWalk(lane, fate, depth);
     case Form::kRestOf: return BeginOrEndOfRest(lane, begin, true, depth);
-    case Form::kCompose: return Parts(lane, fate);
+    case Form::kCompose: return Parts(lane, fate, depth);
   }
   return {};
 }
@@ -87,7 +90,14 @@ Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
     }
     case Form::kUntilSince: return Change(rule.first, {.lane = lane, .frame = end}, true, depth);
     case Form::kRestOf: return BeginOrEndOfRest(lane, end, false, depth);
-    case Form::kCompose: return {};
+    case Form::kCompose: {
+      std::vector<const Fate*> parts;
+      if (!ChooseParts(lane, fate, parts)) return {};
+      Reason last = NoteOf(Label(past_, parts.back()->lane), "ended");
+      last.mark = Mark::kTurned;
+      if (depth < kDeepest) last.because = End(parts.back()->lane, *parts.back(), depth + 1);
+      return {std::move(last)};
+    }
   }
   return {};
 }
@@ -190,14 +200,15 @@ bool EventReasons::ChooseParts(int lane, const Fate& whole, std::vector<const Fa
   return false;
 }
 
-Reasons EventReasons::Parts(int lane, const Fate& fate) {
+Reasons EventReasons::Parts(int lane, const Fate& fate, int depth) {
   std::vector<const Fate*> chosen;
   Reasons reasons;
   if (!ChooseParts(lane, fate, chosen)) return reasons;
   for (const Fate* part : chosen) {
     Reason reason = NoteOf("part " + Label(past_, part->lane),
                            IntervalText({part->span.begin.tick, part->span.end.tick}, past_.cast().ticks_per_second));
-    if (part->span.begin.frame == fate.span.begin.frame) reason.mark = Mark::kTurned;
+    if (part == chosen.front()) reason.mark = Mark::kTurned;
+    if (part == chosen.front() && depth < kDeepest) reason.because = Begin(part->lane, *part, depth + 1);
     reasons.push_back(std::move(reason));
   }
   return reasons;
@@ -244,20 +255,33 @@ Reasons EventReasons::Waited(int lane, const Fate& fate, int depth) {
     reasons.push_back(NoteOf(Label(past_, past_.Referred(lane, rule.confirmed_by)),
                              "had to begin, and did so at " + clauses_.Time(fate.cause)));
   }
-  // What it refers to, and was known at that very moment only.
+  for (Reason& reason : WaitedFor(lane, fate, depth)) reasons.push_back(std::move(reason));
+  return reasons;
+}
+
+// What it refers to and was known at that very moment only; or what might still have come in that time.
+Reasons EventReasons::WaitedFor(int lane, const Fate& fate, int depth) {
+  const Rule& rule = past_.RuleOf(lane);
   std::vector<int> targets = past_.At(lane).members;
   for (std::size_t slot = 0; slot < rule.references.size() && rule.form != Form::kAny; ++slot) {
     targets.push_back(past_.Referred(lane, static_cast<int>(slot)));
   }
+  std::erase(targets, kNone);
+  Reasons reasons;
   for (const int target : targets) {
-    for (const Fate& other : past_.FatesOf(target)) {
-      if (other.decided != fate.decided || other.span.end.tick >= other.decided) continue;
-      Reasons behind = Waited(target, other, depth + 1);
-      Reason reason = NoteOf(Label(past_, target), "was decided only then");
-      reason.because = std::move(behind);
-      reasons.push_back(std::move(reason));
-      break;
-    }
+    const std::vector<Fate>& fates = past_.FatesOf(target);
+    const auto only_then = [&](const Fate& other) { return other.decided == fate.decided && other.span.end.tick < other.decided; };
+    const auto other = std::find_if(fates.begin(), fates.end(), only_then);
+    if (other == fates.end()) continue;
+    Reason reason = NoteOf(Label(past_, target), "was decided only then");
+    reason.because = Waited(target, *other, depth + 1);
+    reasons.push_back(std::move(reason));
+  }
+  for (const int target : targets) {
+    const Rule& asked = past_.RuleOf(target);
+    if (!reasons.empty() || asked.form != Form::kUntilSince) continue;
+    reasons.push_back(NoteOf(Label(past_, target), "might still have turned out to hold: it is known from its end on, and looks back up to " +
+                                                       Seconds(asked.back_s)));
   }
   return reasons;
 }

@@ -22,10 +22,11 @@ class EventReasons {
   Reasons BeginOfWalk(int lane, const grammar::Fate& fate, int depth);
   Reasons BeginOrEndOfRest(int lane, grammar::FrameNumber frame, bool begins, int depth);
   Reasons BeginOrEndOfAny(int lane, grammar::FrameNumber frame, bool end, int depth);
-  Reasons Parts(int lane, const grammar::Fate& fate);
+  Reasons Parts(int lane, const grammar::Fate& fate, int depth);
   bool ChooseParts(int lane, const grammar::Fate& whole, std::vector<const grammar::Fate*>& chosen);
   Reasons Counted(int lane, const grammar::Fate& fate);
   Reasons Waited(int lane, const grammar::Fate& fate, int depth);
+  Reasons WaitedFor(int lane, const grammar::Fate& fate, int depth);
   Reasons Change(int node, const Moment& at, bool truth, int depth);
   Clauses::Follow FollowFrom(int depth);
   const grammar::Node& NodeAt(int node) const { return past_.program().nodes[node]; }

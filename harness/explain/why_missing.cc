@@ -58,6 +58,9 @@ WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<
   if (at) why.expected_at = past_.TickOf(*at);
   if (const Reason* failure = FirstFailure(why.reasons)) {
     why.because = failure->what + (failure->how.empty() ? "" : ": " + failure->how);
+    if (!failure->because.empty() && failure->because.front().mark == Mark::kTurned) {
+      why.because += ": " + failure->because.front().what + " " + failure->because.front().how;
+    }
     if (failure->tick && failure->reading) why.because += ", at " + At(*failure->tick, past_.cast().ticks_per_second);
   }
   for (const Fate& fate : past_.FatesOf(blamed)) {

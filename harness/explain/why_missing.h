@@ -44,6 +44,8 @@ class MissingReasons {
 
   /// The clauses of a condition where they came closest to holding, the first failed one followed.
   Blame OfClauses(int node, Moment at, const Window& window, int depth);
+  void Follow(Reason& reason, int target, grammar::FrameNumber frame, const Window& window, int depth);
+  Reason ClosestApproach(int lane, const Window& window);
   grammar::FrameNumber Closest(int node, Moment at, const Window& window);
   /// The moment never came.
   Blame OfMoment(int node, int lane, const Window& window, int depth);

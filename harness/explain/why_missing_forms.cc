@@ -106,12 +106,24 @@ MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Windo
     const bool follow = reason.mark == Mark::kFailed && !followed;
     followed |= reason.mark == Mark::kFailed;
     if (follow && n.op == Op::kHolds && clause.truth) {
-      Window there = Around(at.frame);
-      reason.because = OfLane(past_.Referred(at.lane, n.slot), there, depth + 1).reasons;
+      Follow(reason, past_.Referred(at.lane, n.slot), at.frame, window, depth);
     }
     blame.reasons.push_back(std::move(reason));
   }
   return blame;
+}
+
+// Into the rule that is to blame. What never held is looked for everywhere, if no moment was asked for.
+void MissingReasons::Follow(Reason& reason, int target, FrameNumber frame, const Window& window, int depth) {
+  if (target == kNone || past_.RuleOf(target).form == Form::kTouching) return;
+  const bool never = past_.LastBegun(target, past_.frames()) == nullptr;
+  Reasons behind = OfLane(target, never && !window.at ? window : Around(frame), depth + 1).reasons;
+  if (behind.size() == 1 && behind.front().what == reason.what) {
+    reason.how += "; " + behind.front().how;
+    reason.where = behind.front().where;
+    behind = Reasons(std::move(behind.front().because));
+  }
+  reason.because = std::move(behind);
 }
 
 MissingReasons::Blame MissingReasons::OfWhile(int lane, const Window& window, int depth) {
@@ -184,6 +196,21 @@ MissingReasons::Blame MissingReasons::OfFromTo(int lane, const Window& window, i
   return {{std::move(reason)}, 0.8};
 }
 
+Reason MissingReasons::ClosestApproach(int lane, const Window& window) {
+  const Rule& rule = past_.RuleOf(lane);
+  Reason reason{.mark = Mark::kNote, .what = ClauseText(past_, lane, rule.approach)};
+  double smallest = 0;
+  for (FrameNumber frame = window.first; frame <= window.last; ++frame) {
+    const double value = past_.Number(rule.approach, {.lane = lane, .frame = frame, .end = window.last}).value_or(0);
+    if (reason.tick && value >= smallest) continue;
+    smallest = value;
+    reason.tick = past_.TickOf(frame);
+  }
+  reason.how = "was smallest at " + At(*reason.tick, past_.cast().ticks_per_second) + ": " +
+               QuantityText(smallest, past_.program().notes[rule.approach].dimension);
+  return reason;
+}
+
 MissingReasons::Blame MissingReasons::OfUntil(int lane, const Window& window, int depth) {
   const Rule& rule = past_.RuleOf(lane);
   Reason reason = Failed(Label(past_, lane), "", {});
@@ -202,6 +229,7 @@ MissingReasons::Blame MissingReasons::OfUntil(int lane, const Window& window, in
   reason.because = {Failed(text.empty() ? "what ends it" : "until " + text,
                            window.at ? "did not happen at or after " + clauses_.Time(*window.at) : "never happened",
                            std::move(blame.reasons))};
+  if (rule.approach != kNone) reason.because.push_back(ClosestApproach(lane, window));
   return {{std::move(reason)}, 0.5 * blame.closeness};
 }
 
