@@ -62,7 +62,10 @@ std::string Lowering::TextOf(const Expr& expr) {
     case Expr::Kind::kUnary: return expr.text + (expr.text == "not" ? " " : "") + Bracketed(expr.args[0]);
     case Expr::Kind::kBinary:
     case Expr::Kind::kChain: return joined(" " + expr.text + " ", true);
-    case Expr::Kind::kEdge: return Bracketed(expr.args[0]) + " " + expr.text;
+    case Expr::Kind::kEdge: {
+      const bool is_chain = expr.args[0].kind == Expr::Kind::kChain;
+      return (is_chain ? Bracketed(expr.args[0]) : TextOf(expr.args[0])) + " " + expr.text;
+    }
     case Expr::Kind::kAnchor: return Bracketed(expr.args[0]) + "@" + expr.text;
   }
   return {};

@@ -20,7 +20,8 @@ namespace {
 std::vector<Command> Commands() {
   return {ListCommand(),   ValidateCommand(), RunCommand(), CheckCommand(),
           AcceptCommand(), RenderCommand(),   NewCommand(), SchemaCommand(), BenchCommand(),
-          ResegmentCommand(), ScoreCommand(),    ExplainCommand()};
+          ResegmentCommand(), ScoreCommand(),    ExplainCommand(),
+          TracksCommand()};
 }
 
 bool IsSet(const char* variable) {

@@ -54,6 +54,7 @@ Command SchemaCommand();
 Command BenchCommand();
 Command ScoreCommand();
 Command ExplainCommand();
+Command TracksCommand();
 
 // What was typed for an option; `name` is "--json", or "scenario" for a positional.
 bool IsGiven(const CLI::App& options, const std::string& name);

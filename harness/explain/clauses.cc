@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/explain/nodes.h"
 #include "harness/explain/wording.h"
 
 namespace prehend::harness::explain {
@@ -17,13 +18,6 @@ using grammar::kNone;
 using grammar::Node;
 using grammar::Op;
 using Mark = Reason::Mark;
-
-namespace {
-
-bool IsComparison(Op op) { return op >= Op::kLess && op <= Op::kNotEqual; }
-bool IsRegion(Op op) { return op == Op::kInSphere || op == Op::kBoxInSphere || op == Op::kInCylinder; }
-
-}  // namespace
 
 std::string Clauses::Time(FrameNumber frame) { return At(past_.TickOf(frame), past_.cast().ticks_per_second); }
 
@@ -41,21 +35,13 @@ std::vector<Clauses::Clause> Clauses::Split(int node, bool truth) const {
   return clauses;
 }
 
-bool Clauses::AsksForBegin(int node) const {
-  if (node == kNone) return false;
-  const Node& n = NodeAt(node);
-  return n.op == Op::kAtBegin || std::any_of(n.args.begin(), n.args.end(), [&](int arg) { return AsksForBegin(arg); });
-}
-
 std::optional<Clauses::Measured> Clauses::Measure(int node, const Moment& at) {
   const Node& n = NodeAt(node);
   if (IsComparison(n.op)) {
     const auto value = past_.Number(n.args[0], at);
     const auto limit = past_.Number(n.args[1], at);
     if (!value || !limit) return std::nullopt;
-    const auto& notes = past_.program().notes;
-    const bool noted = n.args[0] < static_cast<int>(notes.size());
-    return Measured{*value, *limit, noted ? notes[n.args[0]].dimension : grammar::kPlain, ""};
+    return Measured{*value, *limit, NoteOf(past_.program(), n.args[0]).dimension, ""};
   }
   if (!IsRegion(n.op)) return std::nullopt;
   const auto reach = past_.ReachOf(node, at);
@@ -92,7 +78,7 @@ Reason Clauses::Measurement(const Clause& clause, const Moment& at, const std::o
 }
 
 std::string Clauses::Since(int node, const Moment& at, bool truth) {
-  const FrameNumber floor = AsksForBegin(node) && at.begin ? *at.begin : 0;
+  const FrameNumber floor = AsksFor(past_.program(), node, Op::kAtBegin) && at.begin ? *at.begin : 0;
   FrameNumber first = at.frame;
   Moment earlier = at;
   for (earlier.frame = at.frame - 1; earlier.frame >= floor && past_.Truth(node, earlier) == truth; --earlier.frame) {
@@ -196,6 +182,7 @@ Reason Clauses::Told(const Clause& clause, const Moment& at) {
   Reason reason;
   if (n.op == Op::kHolds) {
     reason = Reference(at.lane, n.slot, at.frame, now, nullptr);
+    if (reason.mark == Mark::kTurned && at.frame > 0) reason.how += " at " + Time(at.frame);
   } else {
     reason = Measurement(clause, at, std::nullopt);
     if (reason.how.empty()) reason.how = now ? "true" : "false";

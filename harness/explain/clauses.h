@@ -60,7 +60,6 @@ class Clauses {
   void Collect(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out);
   void Split(int node, bool truth, std::vector<Clause>& out) const;
   double NearestMember(int any_lane, grammar::FrameNumber frame, int depth);
-  bool AsksForBegin(int node) const;
   std::string Since(int node, const Moment& at, bool truth);
   const grammar::Node& NodeAt(int node) const { return past_.program().nodes[node]; }
 

@@ -8,6 +8,7 @@
 
 #include "grammar/allen.h"
 #include "harness/event_text.h"
+#include "harness/explain/nodes.h"
 #include "harness/explain/wording.h"
 
 namespace prehend::harness::explain {
@@ -25,7 +26,7 @@ namespace {
 
 constexpr int kDeepest = 8;  // rules behind rules
 
-Reason NoteOf(std::string what, std::string how = {}) {
+Reason Remark(std::string what, std::string how = {}) {
   return {.mark = Mark::kNote, .what = std::move(what), .how = std::move(how), .where = {}, .tick = {}, .reading = {}, .because = {}};
 }
 
@@ -50,7 +51,11 @@ Reasons EventReasons::Begin(int lane, const Fate& fate, int depth) {
   switch (rule.form) {
     case Form::kTouching: return {};
     case Form::kAny: return BeginOrEndOfAny(lane, begin, false, depth);
-    case Form::kWhile: return Change(rule.first, {.lane = lane, .frame = begin}, true, depth);
+    case Form::kWhile: {
+      Reasons reasons = Change(rule.first, {.lane = lane, .frame = begin}, true, depth);
+      for (Reason& reason : Change(rule.second, {.lane = lane, .frame = begin}, false, depth)) reasons.push_back(std::move(reason));
+      return reasons;
+    }
     case Form::kFromTo: {
       const Moment at{.lane = lane, .frame = begin, .begin = begin};
       Reasons reasons = Change(rule.first, at, true, depth);
@@ -71,7 +76,7 @@ Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
   const Rule& rule = past_.RuleOf(lane);
   const FrameNumber begin = fate.span.begin.frame;
   const FrameNumber end = fate.span.end.frame;
-  if (end >= past_.frames()) return {NoteOf("the episode ends here")};
+  if (end >= past_.frames()) return {Remark("the episode ends here")};
   switch (rule.form) {
     case Form::kTouching: return {};
     case Form::kAny: return BeginOrEndOfAny(lane, end, true, depth);
@@ -83,7 +88,7 @@ Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
       const Moment at{.lane = lane, .frame = end, .begin = begin};
       if (rule.absence && fate.span.end.tick >= fate.span.begin.tick && !past_.Truth(rule.second, at)) {
         const bool in_time = rule.during == kNone || past_.Truth(rule.during, at);
-        if (in_time) return {NoteOf("nothing came within " + Seconds(rule.within_s))};
+        if (in_time) return {Remark("nothing came within " + Seconds(rule.within_s))};
       }
       const bool closed = past_.Truth(rule.second, at);
       return Change(closed ? rule.second : rule.during, at, closed, depth);
@@ -93,7 +98,7 @@ Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
     case Form::kCompose: {
       std::vector<const Fate*> parts;
       if (!ChooseParts(lane, fate, parts)) return {};
-      Reason last = NoteOf(Label(past_, parts.back()->lane), "ended");
+      Reason last = Remark(Label(past_, parts.back()->lane), "ended");
       last.mark = Mark::kTurned;
       if (depth < kDeepest) last.because = End(parts.back()->lane, *parts.back(), depth + 1);
       return {std::move(last)};
@@ -110,32 +115,33 @@ Reasons EventReasons::BeginOfWalk(int lane, const Fate& fate, int depth) {
   const FrameNumber at = fate.walk.at;
   const auto signal = [&](FrameNumber frame) { return past_.Number(rule.approach, {.lane = lane, .frame = frame, .end = end}).value_or(0); };
   const auto text = [&](double value) {
-    return QuantityText(value, past_.program().notes[rule.approach].dimension);
+    return QuantityText(value, NoteOf(past_.program(), rule.approach).dimension);
   };
   Reasons reasons;
   switch (fate.walk.stop) {
-    case WalkBack::Stop::kFirstFrame: reasons = {NoteOf("it held from the first frame on")}; break;
-    case WalkBack::Stop::kPreviousEnd: reasons = {NoteOf("the one before ended here")}; break;
-    case WalkBack::Stop::kTooFarBack: reasons = {NoteOf("it looks at most " + Seconds(rule.back_s) + " back")}; break;
+    case WalkBack::Stop::kFirstFrame: reasons = {Remark("it held from the first frame on")}; break;
+    case WalkBack::Stop::kPreviousEnd: reasons = {Remark("the one before ended here")}; break;
+    case WalkBack::Stop::kTooFarBack: reasons = {Remark("it looks at most " + Seconds(rule.back_s) + " back")}; break;
     case WalkBack::Stop::kSince: reasons = Change(rule.second, {.lane = lane, .frame = at + 1, .end = end}, true, depth); break;
     case WalkBack::Stop::kReceding:
-      reasons = {NoteOf("the approach turns here: " + ClauseText(past_, lane, rule.approach),
+      reasons = {Remark("the approach turns here: " + ClauseText(past_, lane, rule.approach),
                         fmt::format("is {}; at {} it was {}, and it may recede by at most {}", text(signal(begin)),
                                     clauses_.Time(at), text(signal(at)), text(rule.slack)))};
       reasons.front().mark = Mark::kTurned;
       break;
     case WalkBack::Stop::kIdle:
-      reasons = {NoteOf("it paused before", fmt::format("for more than {}", Seconds(rule.idle_s)))};
+      reasons = {Remark("it paused before", fmt::format("for more than {}", Seconds(rule.idle_s)))};
       reasons.front().mark = Mark::kTurned;
       break;
   }
   const bool later = fate.walk.stop != WalkBack::Stop::kReceding && fate.walk.stop != WalkBack::Stop::kIdle &&
                      begin > at + (fate.walk.stop == WalkBack::Stop::kSince ? 1 : 0);
   if (!later || rule.approach == kNone) return reasons;
-  Reason moved = NoteOf("moves from here on",
-                        "not slower than " + QuantityText(rule.speed, rule.motion == kNone ? grammar::kMetresPerSecond
-                                                                                           : past_.program().notes[rule.motion].dimension));
-  if (rule.motion != kNone) moved.what = ClauseText(past_, lane, rule.motion) + " " + moved.what;
+  const grammar::Dimension of_signal = NoteOf(past_.program(), rule.approach).dimension;
+  const grammar::Dimension dimension = rule.motion == kNone ? grammar::Quotient(of_signal, grammar::kSeconds)
+                                                            : NoteOf(past_.program(), rule.motion).dimension;
+  Reason moved = Remark(ClauseText(past_, lane, rule.motion == kNone ? rule.approach : rule.motion) + " moves from here on",
+                        "not slower than " + QuantityText(rule.speed, dimension));
   moved.mark = Mark::kTurned;
   reasons.insert(reasons.begin(), std::move(moved));
   return reasons;
@@ -205,7 +211,7 @@ Reasons EventReasons::Parts(int lane, const Fate& fate, int depth) {
   Reasons reasons;
   if (!ChooseParts(lane, fate, chosen)) return reasons;
   for (const Fate* part : chosen) {
-    Reason reason = NoteOf("part " + Label(past_, part->lane),
+    Reason reason = Remark("part " + Label(past_, part->lane),
                            IntervalText({part->span.begin.tick, part->span.end.tick}, past_.cast().ticks_per_second));
     if (part == chosen.front()) reason.mark = Mark::kTurned;
     if (part == chosen.front() && depth < kDeepest) reason.because = Begin(part->lane, *part, depth + 1);
@@ -219,7 +225,7 @@ Reasons EventReasons::Counted(int lane, const Fate& fate) {
   const Tick per_second = past_.cast().ticks_per_second;
   Reasons reasons;
   if (rule.lasting_s > 0) {
-    reasons.push_back(NoteOf("lasting " + Seconds(rule.lasting_s),
+    reasons.push_back(Remark("lasting " + Seconds(rule.lasting_s),
                              "it lasted " + Duration(fate.span.end.tick - fate.span.begin.tick, per_second)));
   }
   if (rule.requirement != kNone) {
@@ -233,7 +239,7 @@ Reasons EventReasons::Counted(int lane, const Fate& fate) {
   if (rule.confirmed_by != kNone && fate.cause != grammar::kNever) {
     const int by = past_.Referred(lane, rule.confirmed_by);
     const int within = past_.Referred(lane, rule.confirmed_within);
-    reasons.push_back(NoteOf("confirmed by " + Label(past_, by),
+    reasons.push_back(Remark("confirmed by " + Label(past_, by),
                              "it began at " + clauses_.Time(fate.cause) + ", while " + Label(past_, within) + " held"));
   }
   return reasons;
@@ -246,13 +252,13 @@ Reasons EventReasons::Waited(int lane, const Fate& fate, int depth) {
   Reasons reasons;
   if (fate.decided <= end || depth >= kDeepest) return reasons;
   if (rule.bridging_s > 0 && !fate.span.open_end) {
-    reasons.push_back(NoteOf(Label(past_, lane), "a gap of up to " + Seconds(rule.bridging_s) + " would have been bridged"));
+    reasons.push_back(Remark(Label(past_, lane), "a gap of up to " + Seconds(rule.bridging_s) + " would have been bridged"));
   }
   if (rule.looks_around_s > 0 && !fate.span.open_end) {
-    reasons.push_back(NoteOf(Label(past_, lane), "a signal over a window looks " + Seconds(rule.looks_around_s) + " ahead"));
+    reasons.push_back(Remark(Label(past_, lane), "a signal over a window looks " + Seconds(rule.looks_around_s) + " ahead"));
   }
   if (rule.confirmed_by != kNone && fate.cause != grammar::kNever) {
-    reasons.push_back(NoteOf(Label(past_, past_.Referred(lane, rule.confirmed_by)),
+    reasons.push_back(Remark(Label(past_, past_.Referred(lane, rule.confirmed_by)),
                              "had to begin, and did so at " + clauses_.Time(fate.cause)));
   }
   for (Reason& reason : WaitedFor(lane, fate, depth)) reasons.push_back(std::move(reason));
@@ -273,14 +279,14 @@ Reasons EventReasons::WaitedFor(int lane, const Fate& fate, int depth) {
     const auto only_then = [&](const Fate& other) { return other.decided == fate.decided && other.span.end.tick < other.decided; };
     const auto other = std::find_if(fates.begin(), fates.end(), only_then);
     if (other == fates.end()) continue;
-    Reason reason = NoteOf(Label(past_, target), "was decided only then");
+    Reason reason = Remark(Label(past_, target), "was decided only then");
     reason.because = Waited(target, *other, depth + 1);
     reasons.push_back(std::move(reason));
   }
   for (const int target : targets) {
     const Rule& asked = past_.RuleOf(target);
     if (!reasons.empty() || asked.form != Form::kUntilSince) continue;
-    reasons.push_back(NoteOf(Label(past_, target), "might still have turned out to hold: it is known from its end on, and looks back up to " +
+    reasons.push_back(Remark(Label(past_, target), "might still have turned out to hold: it is known from its end on, and looks back up to " +
                                                        Seconds(asked.back_s)));
   }
   return reasons;

@@ -8,6 +8,7 @@
 #include "grammar/allen.h"
 #include "harness/event_text.h"
 #include "harness/explain/bindings.h"
+#include "harness/explain/nodes.h"
 #include "harness/explain/why_missing.h"
 #include "harness/explain/wording.h"
 
@@ -137,6 +138,11 @@ MissingReasons::Blame MissingReasons::OfWhile(int lane, const Window& window, in
 }
 
 MissingReasons::Blame MissingReasons::OfMoment(int node, int lane, const Window& window, int depth) {
+  // Some of it happened, but not all at once.
+  const Moment at{.lane = lane, .frame = Closest(node, {.lane = lane}, window)};
+  if (past_.program().nodes[node].op == Op::kAnd && clauses_.Nearness(node, at, true) >= 0.5) {
+    return OfClauses(node, {.lane = lane}, window, depth);
+  }
   Blame best;
   for (const Clauses::Clause& clause : clauses_.Split(node, true)) {
     const grammar::Node& n = past_.program().nodes[clause.node];
@@ -207,7 +213,7 @@ Reason MissingReasons::ClosestApproach(int lane, const Window& window) {
     reason.tick = past_.TickOf(frame);
   }
   reason.how = "was smallest at " + At(*reason.tick, past_.cast().ticks_per_second) + ": " +
-               QuantityText(smallest, past_.program().notes[rule.approach].dimension);
+               QuantityText(smallest, NoteOf(past_.program(), rule.approach).dimension);
   return reason;
 }
 

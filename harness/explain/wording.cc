@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "harness/event_text.h"
+#include "harness/explain/nodes.h"
 
 namespace prehend::harness::explain {
 
@@ -72,10 +73,8 @@ std::string Source(const std::string& file, const Place& place) {
 }
 
 std::string ClauseText(Hindsight& past, int lane, int node) {
-  const auto& notes = past.program().notes;
+  const std::string& written = NoteOf(past.program(), node).text;
   std::string text;
-  if (node >= static_cast<int>(notes.size())) return text;
-  const std::string& written = notes[node].text;
   for (std::size_t i = 0; i < written.size(); ++i) {
     // "{1}": a role is one digit.
     const bool is_role = written[i] == '{' && i + 2 < written.size() && written[i + 2] == '}';

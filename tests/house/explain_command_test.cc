@@ -64,5 +64,29 @@ TEST(ExplainCommand, BadQuestionsEndWithExitCodeTwo) {
   EXPECT_EQ(Prehend({"explain", "milk_carton_warp"}).exit_code, 4);
 }
 
+TEST(TracksCommand, WritesAWholeFileOrNothing) {
+  const auto folder = FreshFolder("tracks");
+  const auto csv = folder / "milk.csv";
+  const Said said = Prehend({"tracks", "milk_carton_wrap", "-o", csv.string()});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const std::string text = ReadFile(csv);
+  EXPECT_TRUE(text.starts_with("time_s,tick,\"touching(")) << text.substr(0, 200);
+  EXPECT_NE(text.find("\"speed_along(milk, table) [m/s]\""), std::string::npos);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "something was left behind";
+
+  const Said some = Prehend({"tracks", "milk_carton_wrap", "--only", "grasping", "--json"});
+  ASSERT_EQ(some.exit_code, 0) << some.err;
+  EXPECT_EQ(nlohmann::json::parse(some.out)["tracks"][0]["name"], "grasping(right_hand, milk)");
+
+  for (const std::vector<std::string>& slip : std::vector<std::vector<std::string>>{
+           {"-o", "no/such/folder/milk.csv"}, {"-o", folder.string() + "/milk.txt"}, {"--only", "graping"}, {"-o", "/x.csv", "--json"}}) {
+    std::vector<std::string> arguments = {"tracks", "milk_carton_wrap"};
+    arguments.insert(arguments.end(), slip.begin(), slip.end());
+    const Said bad = Prehend(arguments);
+    EXPECT_EQ(bad.exit_code, 2) << bad.err;
+    EXPECT_EQ(bad.out, "");
+  }
+}
+
 }  // namespace
 }  // namespace prehend::house
