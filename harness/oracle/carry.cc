@@ -80,10 +80,12 @@ class Carrier {
     return farthest;
   }
 
-  /// `held`: the part of `supported` in which it is grasped. Whether it moves is to be seen from all of `supported`.
+  /// `held`: the part of `supported` in which it is grasped. Whether it moves is to be seen from
+  /// all of `supported`.
   void FindSlides(Span held, Span supported) {
     std::vector<bool> moving(recording_.size());
-    for (int frame = held.begin; frame < held.end; ++frame) moving[frame] = Slides(frame, supported);
+    for (int frame = held.begin; frame < held.end; ++frame)
+      moving[frame] = Slides(frame, supported);
     for (const Span& slide :
          Bridged(WhereTrue(moving), recording_.ticks, recording_.Ticks(settings_.slide_pause_s)))
       if (Displacement(slide) >= settings_.slide_displacement_m) found_.slides.push_back(slide);
