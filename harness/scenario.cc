@@ -9,6 +9,16 @@ const std::vector<std::string>& CameraWords() {
   return words;
 }
 
+namespace {
+
+/// What hangs on a joint is neither fixed nor can it be picked up.
+const char* MobilityOf(const physics::Scene& scene, int body) {
+  if (scene.bodies[static_cast<std::size_t>(body)].fixed) return "Fixed";
+  return physics::MovesFreely(scene, body) ? "Movable" : "Jointed";
+}
+
+}  // namespace
+
 grammar::Cast MakeCast(const Scenario& scenario) {
   grammar::Cast cast;
   cast.ticks_per_second = scenario.scene.world.rate_hz;
@@ -17,7 +27,9 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     const physics::LocalBox box = physics::BoundingBox(body);
     grammar::CastMember& member = cast.entities.emplace_back();
     member.name = body.name;
-    member.classes = {scenario.body_classes[i], body.fixed ? "Fixed" : "Movable", "Thing", "Entity"};
+    member.classes = {scenario.body_classes[i], MobilityOf(scenario.scene, static_cast<int>(i)),
+                      "Thing", "Entity"};
+    member.part_of = scenario.body_part_of[i];
     member.p_BC_m = box.p_BC_m;
     member.half_size_m = box.half_size_m;
   }
@@ -28,9 +40,11 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     member.half_size_m = hand.model.palm_size_m / 2;
     member.sensor_sets = hand.model.sensor_sets;
   }
-  // Frames carry a style as its index in the hand's own list, so the first hand's names stand for all.
+  // Frames carry a style as its index in the hand's own list, so the first hand's names stand for
+  // all.
   if (!scenario.scene.hands.empty()) {
-    for (const auto& style : scenario.scene.hands.front().model.styles) cast.styles.push_back(style.name);
+    for (const auto& style : scenario.scene.hands.front().model.styles)
+      cast.styles.push_back(style.name);
   }
   return cast;
 }

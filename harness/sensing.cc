@@ -43,7 +43,11 @@ std::vector<grammar::Feeler> LinkFeelers(const physics::HandModel& model) {
 }
 
 grammar::EntityLook LookAt(const physics::BodyState& body) {
-  return {body.X_WB.p_m, body.X_WB.q, body.v_WB_m_per_s, body.w_WB_rad_per_s, body.asleep};
+  return {.p_WB_m = body.X_WB.p_m,
+          .q_WB = body.X_WB.q,
+          .v_WB_m_per_s = body.v_WB_m_per_s,
+          .w_WB_rad_per_s = body.w_WB_rad_per_s,
+          .asleep = body.asleep};
 }
 
 }  // namespace
@@ -56,6 +60,7 @@ Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
     geometry_.push_back({hand.model, PalmFeelers(hand.model), LinkFeelers(hand.model)});
     feelers_.emplace_back(geometry_.back().palm.size() + geometry_.back().links.size());
   }
+  for (const physics::Joint& joint : scene.joints) jointed_.push_back(joint.body);
   entities_.resize(scene.bodies.size() + scene.hands.size());
   hands_.resize(scene.hands.size());
 }
@@ -63,6 +68,8 @@ Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
 grammar::Frame Sensing::Sense(const physics::Snapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.bodies.size(); ++i)
     entities_[i] = LookAt(snapshot.bodies[i]);
+  for (std::size_t i = 0; i < snapshot.joints.size(); ++i)
+    entities_[static_cast<std::size_t>(jointed_[i])].joint_fraction = snapshot.joints[i].fraction;
   SenseHands(snapshot);
   SenseTouches(snapshot);
   return {snapshot.tick, entities_, hands_, touches_};

@@ -53,6 +53,7 @@ class Sensing {
   std::int64_t rate_hz_ = 480;
   std::int64_t sensing_hz_ = 240;
   int body_count_ = 0;
+  std::vector<int> jointed_;  ///< for every joint the body that hangs on it
   std::vector<HandGeometry> geometry_;
   std::vector<grammar::EntityLook> entities_;
   std::vector<grammar::HandLook> hands_;

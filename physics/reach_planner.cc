@@ -7,6 +7,7 @@
 
 #include "physics/geometry.h"
 #include "physics/hand_clearance.h"
+#include "physics/joint.h"
 
 namespace prehend::physics {
 namespace {
@@ -26,6 +27,9 @@ constexpr int kRoundDirections = 24;
 /// Cost, in radians, of a grip that the hand cannot open far enough for: only when nothing else is
 /// left.
 constexpr double kTooWide = 100;
+
+/// Cost of a hand that is turned by a right angle about its way: only when upright does not do.
+constexpr double kRolled = 20;
 
 /// Bends of the way, tried in order: how far the last part follows the direction of arrival, how
 /// much it rises first.
@@ -81,7 +85,8 @@ class CandidateList {
         X_WB_(now.bodies[static_cast<std::size_t>(query.object)].X_WB),
         box_(BoundingBox(body_)),
         centre_m_(X_WB_ * box_.p_BC_m),
-        lowest_m_(WorldBounds(body_, X_WB_).min().z()) {}
+        lowest_m_(WorldBounds(body_, X_WB_).min().z()),
+        mounted_(JointThatMoves(scene, query.object) >= 0) {}
 
   std::vector<Candidate> FromAbove() const;
   std::vector<Candidate> FromSide() const;
@@ -97,6 +102,7 @@ class CandidateList {
   const LocalBox box_;
   const Eigen::Vector3d centre_m_;
   const double lowest_m_;
+  const bool mounted_;  ///< held by a joint, so there is no table below it
 };
 
 Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quaterniond& q) const {
@@ -110,7 +116,8 @@ Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quater
   const Eigen::Vector3d centre_H = on_post + style_.grip_axis * half_grip + approach.toward * depth;
 
   Candidate candidate{.X_WH = {centre_m_ - q * centre_H, q}, .toward_W = toward_W};
-  candidate.X_WH.p_m.z() = std::max(candidate.X_WH.p_m.z(), lowest_m_ + approach.floor_m);
+  if (!mounted_)
+    candidate.X_WH.p_m.z() = std::max(candidate.X_WH.p_m.z(), lowest_m_ + approach.floor_m);
   candidate.X_WH.p_m += query_.offset_m;
   candidate.cost = RotationVector(q * query_.from.X_WH.q.conjugate()).norm();
   if (2 * half_grip > style_.opening_m) candidate.cost += kTooWide;
@@ -135,14 +142,24 @@ std::vector<Candidate> CandidateList::FromSide() const {
   Eigen::Vector3d way = centre_m_ - query_.from.X_WH.p_m;
   way.z() = 0;
   const bool above_it = way.norm() < box_.half_size_m.minCoeff();
+  const double half_height = HalfWidthAlong(box_, X_WB_, Eigen::Vector3d::UnitZ());
+  const auto add = [&](const Eigen::Vector3d& toward_W, const Eigen::Vector3d& up_W, double cost) {
+    const Eigen::Quaterniond q =
+        RotationFromPairs(style_.side->toward, style_.side->up, toward_W, up_W);
+    candidates.push_back(Make(*style_.side, q));
+    candidates.back().cost += cost;
+  };
   for (const double yaw : YawsOf(body_, X_WB_, YawOf(way))) {
     const Eigen::Vector3d toward_W = Horizontal(yaw);
-    const Eigen::Quaterniond q =
-        RotationFromPairs(style_.side->toward, style_.side->up, toward_W, Eigen::Vector3d::UnitZ());
-    candidates.push_back(Make(*style_.side, q));
+    const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(toward_W);
     // Coming from the far side means going around the object.
-    if (!above_it)
-      candidates.back().cost += std::acos(std::clamp(toward_W.dot(way.normalized()), -1.0, 1.0));
+    const double around =
+        above_it ? 0 : std::acos(std::clamp(toward_W.dot(way.normalized()), -1.0, 1.0));
+    add(toward_W, Eigen::Vector3d::UnitZ(), around);
+    // A thing that is lower than wide can also be gripped from above and below.
+    if (half_height >= HalfWidthAlong(box_, X_WB_, across_W)) continue;
+    add(toward_W, across_W, around + kRolled);
+    add(toward_W, -across_W, around + kRolled);
   }
   return candidates;
 }

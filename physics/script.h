@@ -38,6 +38,10 @@ struct PlaceStep {  ///< place_on: lower until the held object's lowest point me
 struct RetreatStep {  ///< retreat_by_m: back along the direction the hand came from
   double by_m = 0.2;
 };
+struct FollowJointStep {  ///< the target goes the way that the entity's joint leaves free
+  std::string entity;
+  double to = 1;  ///< until the joint stands at this fraction of its range
+};
 struct WaitStep {};
 struct TimedPose {
   double t_s = 0;  ///< since the step's start, increasing
@@ -48,7 +52,7 @@ struct PosesStep {  ///< raw 6D way-points
   std::vector<TimedPose> poses;
 };
 using StepAction = std::variant<WaitStep, ReachStep, TriggerStep, MoveStep, CarryStep, PlaceStep,
-                                RetreatStep, PosesStep>;
+                                RetreatStep, FollowJointStep, PosesStep>;
 
 struct Step {
   int hand = 0;  ///< index into Scene::hands

@@ -36,7 +36,7 @@ TEST(ReadHandModelTest, TheLibrarysHandsAreWhole) {
     ASSERT_TRUE(hand.value.has_value()) << Format(hand.diagnostics.front());
     EXPECT_EQ(hand.value->name, name);
     EXPECT_EQ(hand.value->links.size(), 16u);
-    EXPECT_EQ(hand.value->styles.size(), 4u);
+    EXPECT_EQ(hand.value->styles.size(), 6u);
     EXPECT_EQ(physics::CheckGains(*hand.value, 480), "");
     for (const auto& style : hand.value->styles) EXPECT_EQ(style.effort.size(), 16u);
   }

@@ -41,6 +41,17 @@ physics::ContactPoint Point(physics::ContactSide a, physics::ContactSide b, doub
       .a = a, .b = b, .nhat_BA_W = {std::sqrt(1 - up * up), 0, up}, .normal_impulse_n_s = impulse};
 }
 
+TEST(Sensing, TellsWhereAJointStands) {
+  physics::Scene scene = TwoBodiesAndAHand();
+  scene.joints.push_back({.kind = physics::JointKind::kSlider, .body = 1, .upper = 0.4});
+  physics::Snapshot snapshot = StillSnapshot(1);
+  snapshot.joints = {{.position = 0.1, .fraction = 0.25}};
+  Sensing sensing(scene, 480);
+  const grammar::Frame frame = sensing.Sense(snapshot);
+  EXPECT_EQ(frame.entities[1].joint_fraction, 0.25);
+  EXPECT_EQ(frame.entities[0].joint_fraction, 0);
+}
+
 TEST(Sensing, LooksAtEveryRateWithoutDrift) {
   const physics::Scene scene = TwoBodiesAndAHand();
   for (const int hz : {30, 60, 90, 240, 480, 7}) {
