@@ -80,9 +80,9 @@ ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::stri
   return {std::move(varied), {}};
 }
 
-ReadResult<std::vector<TrialResult>> RunTrials(const RunRequest& request, const std::string& root,
-                                               const TrialSettings& settings,
-                                               const std::function<void(int done)>& progress) {
+ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
+                                  const TrialSettings& settings,
+                                  const std::function<void(int done)>& progress) {
   const ReadResult<PreparedRun> nominal = PrepareRun(request, root);
   if (!nominal.value) return {std::nullopt, nominal.diagnostics};
   if (nominal.value->scenario.outcomes.empty()) {
@@ -107,15 +107,17 @@ ReadResult<std::vector<TrialResult>> RunTrials(const RunRequest& request, const 
                                     [&](std::size_t, const WorkerResult&) {
                                       if (progress) progress(++done);
                                     });
-  std::vector<TrialResult> results;
+  TrialReport report;
+  for (const Outcome& outcome : nominal.value->scenario.outcomes)
+    report.outcomes.push_back(outcome.name);
   for (std::size_t i = 0; i < workers.size(); ++i)
-    results.push_back(FromWorker(static_cast<int>(i) + 1, workers[i]));
-  return {std::move(results), {}};
+    report.results.push_back(FromWorker(static_cast<int>(i) + 1, workers[i]));
+  return {std::move(report), {}};
 }
 
-std::string TrialTable(const std::vector<TrialResult>& results,
-                       const std::vector<std::string>& outcomes, const std::string& command) {
-  std::vector<std::string> names = outcomes;
+std::string TrialTable(const TrialReport& report, const std::string& command) {
+  const std::vector<TrialResult>& results = report.results;
+  std::vector<std::string> names = report.outcomes;
   names.insert(names.end(), {kOther, kFailed});
   std::string table;
   for (const std::string& name : names) {

@@ -22,10 +22,15 @@ struct TrialResult {
   std::string reason;   ///< why it failed
 };
 
+struct TrialReport {
+  std::vector<std::string> outcomes;  ///< of the scenario, the wanted one first
+  std::vector<TrialResult> results;   ///< trial 1, 2, ...
+};
+
 /// Trial 1 .. count of a scenario. Complains when it has no outcomes.
-ReadResult<std::vector<TrialResult>> RunTrials(const RunRequest& request, const std::string& root,
-                                               const TrialSettings& settings,
-                                               const std::function<void(int done)>& progress = {});
+ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
+                                  const TrialSettings& settings,
+                                  const std::function<void(int done)>& progress = {});
 
 /// The request with the draws of one trial added to its settings.
 ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root,
@@ -33,7 +38,6 @@ ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::stri
 
 /// How often each outcome came, and the trials that did not end with the first one, each with the
 /// command that shows it again: `command` and the trial's number.
-std::string TrialTable(const std::vector<TrialResult>& results,
-                       const std::vector<std::string>& outcomes, const std::string& command);
+std::string TrialTable(const TrialReport& report, const std::string& command);
 
 }  // namespace prehend::harness

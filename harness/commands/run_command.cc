@@ -55,16 +55,13 @@ ExitCode CountTrials(const CLI::App& options, const RunRequest& request,
   const TrialSettings settings{
       .count = std::stoi(ValueOf(options, "--trials")),
       .jobs = std::stoi(ValueOf(options, "--jobs", std::to_string(cores)))};
-  const auto results = RunTrials(request, context.root, settings, [&](int done) {
+  const auto report = RunTrials(request, context.root, settings, [&](int done) {
     if (context.progress)
       context.err << "\r\033[K[" << done << "/" << settings.count << "]" << std::flush;
   });
   if (context.progress) context.err << "\r\033[K" << std::flush;
-  if (!results.value) return Complain(context, results.diagnostics);
-  std::vector<std::string> outcomes;
-  for (const Outcome& outcome : PrepareRun(request, context.root).value->scenario.outcomes)
-    outcomes.push_back(outcome.name);
-  context.out << TrialTable(*results.value, outcomes, AgainCommand(options));
+  if (!report.value) return Complain(context, report.diagnostics);
+  context.out << TrialTable(*report.value, AgainCommand(options));
   return ExitCode::kAgrees;
 }
 

@@ -36,9 +36,9 @@ TEST(RunTrials, CountsOutcomesAndRepeats) {
   const auto again = RunTrials(request, kRoot, {.count = 12, .jobs = 1});
   int stays = 0;
   for (std::size_t i = 0; i < 12; ++i) {
-    const TrialResult& result = (*first.value)[i];
+    const TrialResult& result = first.value->results[i];
     EXPECT_EQ(result.trial, static_cast<int>(i) + 1);
-    EXPECT_EQ(result.outcome, (*again.value)[i].outcome);
+    EXPECT_EQ(result.outcome, again.value->results[i].outcome);
     stays += result.outcome == "stays";
     // What the trial is made of says how it ends.
     const auto varied = RequestOfTrial(request, kRoot, result.trial);
@@ -53,7 +53,7 @@ TEST(RunTrials, CountsOutcomesAndRepeats) {
 TEST(RunTrials, TheTableNamesTheWorstAndHowToRepeatThem) {
   const std::vector<TrialResult> results = {
       {1, "stays", ""}, {2, "falls", ""}, {3, "failed", "ball: gone"}, {4, "stays", ""}};
-  EXPECT_EQ(TrialTable(results, {"stays", "falls"}, "prehend run ball"),
+  EXPECT_EQ(TrialTable({{"stays", "falls"}, results}, "prehend run ball"),
             "stays                        2   50.0 %\n"
             "falls                        1   25.0 %\n"
             "failed                       1   25.0 %\n"
