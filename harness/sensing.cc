@@ -68,8 +68,11 @@ Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
 grammar::Frame Sensing::Sense(const physics::Snapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.bodies.size(); ++i)
     entities_[i] = LookAt(snapshot.bodies[i]);
-  for (std::size_t i = 0; i < snapshot.joints.size(); ++i)
-    entities_[static_cast<std::size_t>(jointed_[i])].joint_fraction = snapshot.joints[i].fraction;
+  for (std::size_t i = 0; i < snapshot.joints.size(); ++i) {
+    grammar::EntityLook& look = entities_[static_cast<std::size_t>(jointed_[i])];
+    look.joint_position = snapshot.joints[i].position;
+    look.joint_fraction = snapshot.joints[i].fraction;
+  }
   SenseHands(snapshot);
   SenseTouches(snapshot);
   return {snapshot.tick, entities_, hands_, touches_};
