@@ -32,6 +32,7 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     member.part_of = scenario.body_part_of[i];
     member.p_BC_m = box.p_BC_m;
     member.half_size_m = box.half_size_m;
+    member.mass_kg = body.fixed ? 0 : body.mass_kg;
   }
   for (const physics::Hand& hand : scenario.scene.hands) {
     grammar::CastMember& member = cast.entities.emplace_back();
@@ -39,6 +40,7 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     member.classes = {"Hand", "Entity"};
     member.half_size_m = hand.model.palm_size_m / 2;
     member.sensor_sets = hand.model.sensor_sets;
+    member.strength_n = hand.model.translation.limit;
   }
   // Frames carry a style as its index in the hand's own list, so the first hand's names stand for
   // all.
