@@ -2,6 +2,8 @@
 // Tested by tests/harness/read_scenario_test.cc
 #include "harness/scenario.h"
 
+#include "harness/sensing.h"
+
 namespace prehend::harness {
 
 const std::vector<std::string>& CameraWords() {
@@ -42,12 +44,7 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     member.sensor_sets = hand.model.sensor_sets;
     member.strength_n = hand.model.translation.limit;
   }
-  // Frames carry a style as its index in the hand's own list, so the first hand's names stand for
-  // all.
-  if (!scenario.scene.hands.empty()) {
-    for (const auto& style : scenario.scene.hands.front().model.styles)
-      cast.styles.push_back(style.name);
-  }
+  cast.styles = StyleNames(scenario.scene);
   return cast;
 }
 
