@@ -9,10 +9,14 @@
 
 #include "harness/build_scene.h"
 #include "harness/scenario_fields.h"
+#include "physics/geometry.h"
 #include "physics/joint.h"
 
 namespace prehend::harness {
 namespace {
+
+/// So far outside of a thing a point to grasp may be: written numbers are rounded.
+constexpr double kFarthestPointM = 0.005;
 
 template <class T>
 std::vector<std::string> NamesOf(const std::vector<Named<T>>& entries) {
@@ -43,7 +47,10 @@ struct StepMaker {
   physics::Step operator()(const ReachEntry& e) const {
     CheckEntity("reach", e.reach);
     CheckStyle(e);
-    return {0, physics::ReachStep{e.reach.value, e.style.value, e.from, e.offset_m}, e.over_s};
+    CheckPoint(e);
+    physics::ReachStep reach{e.reach.value, e.style.value, e.from, e.offset_m, {}};
+    if (e.point_m) reach.point_m = e.point_m->value;
+    return {0, std::move(reach), e.over_s};
   }
   physics::Step operator()(const CloseEntry& e) const {
     return {0, physics::TriggerStep{e.close_to}, e.over_s};
@@ -86,6 +93,19 @@ struct StepMaker {
     complaints.AddUnknownName(name.where,
                               fmt::format("{}: no entity is called '{}'", key, name.value),
                               name.value, entities);
+  }
+
+  /// A point to grasp has to be on the thing or in it.
+  void CheckPoint(const ReachEntry& e) const {
+    const auto found = std::find(entities.begin(), entities.end(), e.reach.value);
+    if (!e.point_m || found == entities.end()) return;
+    const auto index = static_cast<std::size_t>(found - entities.begin());
+    if (index >= scene.bodies.size()) return;
+    const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
+    if (away_m <= kFarthestPointM) return;
+    complaints.Add(e.point_m->where,
+                   fmt::format("point_m: the point is {:.3f} m outside of '{}'", away_m, *found),
+                   "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
   }
 
   void CheckJoint(const Located<std::string>& name) const {

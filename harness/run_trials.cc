@@ -98,7 +98,7 @@ ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& 
       const auto prepared =
           varied.value ? PrepareRun(*varied.value, root) : ReadResult<PreparedRun>{};
       if (!prepared.value)
-        return ToJson({trial, kFailed, "it cannot be read:\n" + Format(prepared.diagnostics)});
+        return ToJson({trial, kFailed, "it cannot be read:\n" + grammar::Format(prepared.diagnostics)});
       return ToJson(RunTrial(prepared.value->scenario, trial));
     });
   }

@@ -90,6 +90,7 @@ struct ReachEntry {
   Located<std::string> style{"wrap", {}};
   physics::Approach from = physics::Approach::kAuto;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  std::optional<Located<Eigen::Vector3d>> point_m;
   double over_s = 0.8;
 };
 struct CloseEntry {

@@ -43,6 +43,8 @@ Format<StepEntry> ReachFormat() {
                     "Where the hand comes from; auto chooses by style and shape.")
           .Optional("offset_m", &R::offset_m, Vector<3>(-kLongestMoveM, kLongestMoveM),
                     "Added to where the hand goes, world axes: reach beside or above the entity.")
+          .Optional("point_m", &R::point_m, Vector<3>(-kFarthestM, kFarthestM),
+                    "The point to grasp, in the entity's own frame; default: its centre.")
           .Optional("over_s", &R::over_s, Duration(), kOverDoc)
           .format());
 }

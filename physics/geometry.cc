@@ -96,6 +96,25 @@ double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S) {
   return std::visit(DistanceOf{p_S}, shape);
 }
 
+namespace {
+
+double DistanceTo(const PlacedShape& part, const Eigen::Vector3d& p_B_m) {
+  return SignedDistance(part.shape, part.X_BS.inverse() * p_B_m);
+}
+
+}  // namespace
+
+const PlacedShape& PartAt(const Body& body, const Eigen::Vector3d& p_B_m) {
+  return *std::min_element(body.shapes.begin(), body.shapes.end(),
+                           [&](const PlacedShape& l, const PlacedShape& r) {
+                             return DistanceTo(l, p_B_m) < DistanceTo(r, p_B_m);
+                           });
+}
+
+double DistanceTo(const Body& body, const Eigen::Vector3d& p_B_m) {
+  return DistanceTo(PartAt(body, p_B_m), p_B_m);
+}
+
 bool IsRoundAboutVertical(const Body& body, const Pose& X_WB) {
   if (body.shapes.size() != 1) return false;
   const PlacedShape& placed = body.shapes.front();

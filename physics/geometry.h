@@ -25,6 +25,12 @@ double HighestBelow(const Body& support, const Pose& X_WS, const Body& object, c
 /// Distance of a point, in the shape's frame, from the surface: negative inside. Metres.
 double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S);
 
+/// The part of a body, in its own frame, that is nearest to a point.
+const PlacedShape& PartAt(const Body& body, const Eigen::Vector3d& p_B_m);
+
+/// Distance of a point, in the body's frame, from the nearest surface: negative inside. Metres.
+double DistanceTo(const Body& body, const Eigen::Vector3d& p_B_m);
+
 /// Do all horizontal directions look the same? True for spheres and for upright cylinders and
 /// capsules.
 bool IsRoundAboutVertical(const Body& body, const Pose& X_WB);

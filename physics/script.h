@@ -21,6 +21,7 @@ struct ReachStep {  ///< move to where the style's closed grasp would hold the o
   std::string style = "wrap";
   Approach approach = Approach::kAuto;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< added to the grasp pose, world axes
+  std::optional<Eigen::Vector3d> point_m;  ///< what to grasp, in the object's frame; else its centre
 };
 struct TriggerStep {  ///< close_to, open_to: the analog trigger goes linearly to this value, 0..1
   double trigger = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "physics/geometry.h"
 #include "physics/joint.h"
@@ -38,6 +39,16 @@ int FindBody(const Scene& scene, const std::string& name) {
   const auto it = std::find_if(scene.bodies.begin(), scene.bodies.end(),
                                [&](const Body& body) { return body.name == name; });
   return it == scene.bodies.end() ? -1 : static_cast<int>(it - scene.bodies.begin());
+}
+
+/// Hands that touch a body, at least one.
+int HandsOn(int body, const Snapshot& now) {
+  std::set<int> hands;
+  for (const ContactPoint& contact : now.contacts) {
+    if (contact.a.body == body && contact.b.hand >= 0) hands.insert(contact.b.hand);
+    if (contact.b.body == body && contact.a.hand >= 0) hands.insert(contact.a.hand);
+  }
+  return std::max(static_cast<int>(hands.size()), 1);
 }
 
 }  // namespace
@@ -108,6 +119,7 @@ void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
                                       .style = style,
                                       .approach = reach.approach,
                                       .offset_m = reach.offset_m,
+                                      .point_m = reach.point_m,
                                       .from = hand_.target,
                                       .over_s = step_.over_s});
     hand_.style = style;
@@ -159,9 +171,9 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
                                                         scene_.bodies[h], now_.bodies[h].X_WB);
     const double stiffness =
         scene_.hands[static_cast<std::size_t>(step_.hand)].model.translation.proportional;
-    const double spring = std::min(
-        scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / std::max(stiffness, 1.0),
-        kMostSpring_m);
+    const double weight_n =
+        scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / HandsOn(held, now_);
+    const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMostSpring_m);
     MoveBy({0, 0, -drop - kPress_m - spring}, kLoweringShare * step_.over_s);
   }
 }
