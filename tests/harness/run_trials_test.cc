@@ -44,7 +44,9 @@ TEST(RunTrials, CountsOutcomesAndRepeats) {
     const auto varied = RequestOfTrial(request, kRoot, result.trial);
     const std::string setting = varied.value->settings.back();
     const double x = std::stod(setting.substr(setting.find('=') + 1));
-    if (std::abs(x - 0.5) > 0.01) EXPECT_EQ(result.outcome, x < 0.5 ? "stays" : "falls") << setting;
+    if (std::abs(x - 0.5) > 0.01) {
+      EXPECT_EQ(result.outcome, x < 0.5 ? "stays" : "falls") << setting;
+    }
   }
   EXPECT_GT(stays, 1);
   EXPECT_LT(stays, 11);
