@@ -28,8 +28,8 @@ inline constexpr int kNobody = -1;
 struct CastMember {
   std::string name;
   /// Most specific first, e.g. {"MilkCarton", "Movable", "Thing", "Entity"} or {"Hand", "Entity"}.
-  /// The built-in roots are Entity; Hand and Thing (everything that is not a hand); Movable and
-  /// Fixed (Things).
+  /// The built-in roots are Entity; Hand and Thing (everything that is not a hand); Movable, Fixed
+  /// and Jointed (Things; what hangs on a joint, as a drawer does, is only Jointed).
   std::vector<std::string> classes;
   int part_of = kNobody;
   /// Centre and half sizes of the oriented bounding box, in the entity's own frame, metres.

@@ -15,13 +15,31 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDefaultSphereRollingFriction = 0.006;  // a ball on a table stops within a metre (docs/physics.md)
+constexpr double kDefaultSphereRollingFriction =
+    0.006;  // a ball on a table stops within a metre (docs/physics.md)
 
-physics::Shape ShapeOf(const EntityEntry& entity) {
-  if (entity.sphere) return *entity.sphere;
-  if (entity.cylinder) return *entity.cylinder;
-  if (entity.capsule) return *entity.capsule;
-  return entity.box.value_or(physics::Box{});
+physics::PlacedShape ShapeOf(const PartEntry& part) {
+  const physics::Pose X_BS{part.at_m, FromRollPitchYaw(part.rpy_deg)};
+  if (part.sphere) return {*part.sphere, X_BS};
+  if (part.cylinder) return {*part.cylinder, X_BS};
+  if (part.capsule) return {*part.capsule, X_BS};
+  return {part.box.value_or(physics::Box{}), X_BS};
+}
+
+std::vector<physics::PlacedShape> ShapesOf(const EntityEntry& entity) {
+  if (entity.tray) return physics::ShapesOf(*entity.tray);
+  if (entity.mug) return physics::ShapesOf(*entity.mug);
+  if (entity.bowl) return physics::ShapesOf(*entity.bowl);
+  if (entity.shelf) return physics::ShapesOf(*entity.shelf);
+  if (entity.parts.empty()) {
+    return {ShapeOf(PartEntry{.box = entity.box,
+                              .sphere = entity.sphere,
+                              .cylinder = entity.cylinder,
+                              .capsule = entity.capsule})};
+  }
+  std::vector<physics::PlacedShape> shapes;
+  for (const PartEntry& part : entity.parts) shapes.push_back(ShapeOf(part));
+  return shapes;
 }
 
 /// Everything but the place.
@@ -29,18 +47,22 @@ physics::Body MakeBody(const Named<EntityEntry>& named) {
   const EntityEntry& entity = named.value;
   physics::Body body;
   body.name = named.name;
-  body.shapes = {{ShapeOf(entity), {}}};
+  body.shapes = ShapesOf(entity);
   body.fixed = entity.fixed;
   body.mass_kg = entity.mass_kg ? entity.mass_kg->value : 0;
-  body.friction = entity.friction;
-  body.rolling_friction = entity.rolling_friction.value_or(entity.sphere ? kDefaultSphereRollingFriction : 0);
+  if (entity.friction) body.friction = entity.friction->value;
+  body.rolling_friction =
+      entity.rolling_friction.value_or(entity.sphere ? kDefaultSphereRollingFriction : 0);
   body.restitution = entity.restitution;
+  body.linear_damping_per_s = entity.linear_damping_per_s;
+  body.angular_damping_per_s = entity.angular_damping_per_s;
   if (entity.rpy_deg) body.X_WB.q = FromRollPitchYaw(*entity.rpy_deg);
   if (entity.yaw_deg) body.X_WB.q = FromRollPitchYaw({0, 0, *entity.yaw_deg});
   return body;
 }
 
-/// Is the point above the body? An upright body is asked in its own axes, a tilted one by its world box.
+/// Is the point above the body? An upright body is asked in its own axes, a tilted one by its world
+/// box.
 bool StandsAbove(const physics::Body& support, const Eigen::Vector2d& p_W) {
   constexpr double kUprightCosine = 0.999;
   const Vector3d top_W(p_W.x(), p_W.y(), support.X_WB.p_m.z());
@@ -51,14 +73,22 @@ bool StandsAbove(const physics::Body& support, const Eigen::Vector2d& p_W) {
   const Vector3d p_B = support.X_WB.inverse() * top_W;
   const physics::LocalBox box = physics::BoundingBox(support);
   const Eigen::Vector2d offset = (p_B - box.p_BC_m).head<2>();
-  if (physics::IsRoundAboutVertical(support, support.X_WB)) return offset.norm() <= box.half_size_m.x();
+  if (physics::IsRoundAboutVertical(support, support.X_WB))
+    return offset.norm() <= box.half_size_m.x();
   return std::abs(offset.x()) <= box.half_size_m.x() && std::abs(offset.y()) <= box.half_size_m.y();
+}
+
+/// The same place, higher than anything.
+physics::Pose Above(physics::Pose X_WB) {
+  X_WB.p_m.z() = 1e6;
+  return X_WB;
 }
 
 /// Places every body after the one it stands on.
 class Stacking {
  public:
-  Stacking(const ScenarioEntry& entry, Complaints& complaints) : entry_(entry), complaints_(complaints) {
+  Stacking(const ScenarioEntry& entry, Complaints& complaints)
+      : entry_(entry), complaints_(complaints) {
     for (const auto& named : entry.entities) {
       index_[named.name] = bodies.size();
       names_.push_back(named.name);
@@ -78,8 +108,8 @@ class Stacking {
     }
     if (next && progress_[*next] == Progress::kBegun) {
       const EntityEntry& entity = entry_.entities[above.back()].value;
-      complaints_.Add(entity.on->where,
-                      fmt::format("on: '{}' stands, directly or not, on itself", entry_.entities[*next].name));
+      complaints_.Add(entity.on->where, fmt::format("on: '{}' stands, directly or not, on itself",
+                                                    entry_.entities[*next].name));
     }
     for (; !above.empty(); above.pop_back()) {
       PlaceOnSupport(above.back());
@@ -97,7 +127,8 @@ class Stacking {
     if (!on) return std::nullopt;
     const auto found = index_.find(on->value);
     if (found != index_.end()) return found->second;
-    complaints_.AddUnknownName(on->where, fmt::format("on: no entity is called '{}'", on->value), on->value, names_);
+    complaints_.AddUnknownName(on->where, fmt::format("on: no entity is called '{}'", on->value),
+                               on->value, names_);
     return std::nullopt;
   }
 
@@ -108,14 +139,17 @@ class Stacking {
     if (at.size() < 2) return;  // was complained about
     body.X_WB.p_m = {at[0], at[1], at.size() > 2 ? at[2] : 0};
     const auto found = entity.on ? index_.find(entity.on->value) : index_.end();
-    if (found == index_.end() || progress_[found->second] != Progress::kDone) return;  // unknown or cyclic
+    if (found == index_.end() || progress_[found->second] != Progress::kDone)
+      return;  // unknown or cyclic
     const physics::Body& support = bodies[found->second];
     const double lowest = physics::WorldBounds(body, {Vector3d::Zero(), body.X_WB.q}).min().z();
-    body.X_WB.p_m.z() = physics::WorldBounds(support, support.X_WB).max().z() - lowest;
+    body.X_WB.p_m.z() =
+        physics::HighestBelow(support, support.X_WB, body, Above(body.X_WB)) - lowest;
     if (!StandsAbove(support, {at[0], at[1]})) {
-      complaints_.Add(entity.at_m.where,
-                      fmt::format("at_m: the centre of '{}' is not above '{}'", body.name, support.name),
-                      "at_m is in world coordinates, also with 'on'");
+      complaints_.Add(
+          entity.at_m.where,
+          fmt::format("at_m: the centre of '{}' is not above '{}'", body.name, support.name),
+          "at_m is in world coordinates, also with 'on'");
     }
   }
 
@@ -137,7 +171,8 @@ void Override(const PidOverride& given, physics::PidGains& gains) {
 
 Eigen::Quaterniond FromRollPitchYaw(const Vector3d& rpy_deg) {
   const Vector3d rad = rpy_deg * std::numbers::pi / 180;
-  return Eigen::AngleAxisd(rad.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(rad.y(), Vector3d::UnitY()) *
+  return Eigen::AngleAxisd(rad.z(), Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(rad.y(), Vector3d::UnitY()) *
          Eigen::AngleAxisd(rad.x(), Vector3d::UnitX());
 }
 
@@ -147,7 +182,8 @@ std::vector<physics::Body> PlaceBodies(const ScenarioEntry& entry, Complaints& c
   return std::move(stacking.bodies);
 }
 
-physics::Hand PlaceHand(const Named<ActorEntry>& actor, physics::HandModel model, int rate_hz, Complaints& complaints) {
+physics::Hand PlaceHand(const Named<ActorEntry>& actor, physics::HandModel model, int rate_hz,
+                        Complaints& complaints) {
   if (actor.value.gains) {
     Override(actor.value.gains->value.translation, model.translation);
     Override(actor.value.gains->value.rotation, model.rotation);
@@ -156,7 +192,9 @@ physics::Hand PlaceHand(const Named<ActorEntry>& actor, physics::HandModel model
     complaints.Add(actor.value.gains ? actor.value.gains->where : actor.value.hand.where,
                    fmt::format("actor '{}' cannot be stable: {}", actor.name, unstable));
   }
-  return {actor.name, std::move(model), {actor.value.at_m.value, FromRollPitchYaw(actor.value.rpy_deg)}};
+  return {actor.name,
+          std::move(model),
+          {actor.value.at_m.value, FromRollPitchYaw(actor.value.rpy_deg)}};
 }
 
 }  // namespace prehend::harness

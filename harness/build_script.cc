@@ -9,9 +9,14 @@
 
 #include "harness/build_scene.h"
 #include "harness/scenario_fields.h"
+#include "physics/geometry.h"
+#include "physics/joint.h"
 
 namespace prehend::harness {
 namespace {
+
+/// So far outside of a thing a point to grasp may be: written numbers are rounded.
+constexpr double kFarthestPointM = 0.005;
 
 template <class T>
 std::vector<std::string> NamesOf(const std::vector<Named<T>>& entries) {
@@ -35,27 +40,44 @@ physics::TimedPose TimedPoseOf(const PoseEntry& pose) {
 /// Makes one step of each kind of entry; the names in it must be among those of the scenario.
 struct StepMaker {
   const std::vector<std::string>& entities;
+  const physics::Scene& scene;
   const physics::HandModel* model;  ///< null when the hand is not known
   Complaints& complaints;
 
   physics::Step operator()(const ReachEntry& e) const {
     CheckEntity("reach", e.reach);
     CheckStyle(e);
-    return {0, physics::ReachStep{e.reach.value, e.style.value, e.from, e.offset_m}, e.over_s};
+    CheckPoint(e);
+    physics::ReachStep reach{e.reach.value, e.style.value, e.from, e.offset_m, {}};
+    if (e.point_m) reach.point_m = e.point_m->value;
+    return {0, std::move(reach), e.over_s};
   }
-  physics::Step operator()(const CloseEntry& e) const { return {0, physics::TriggerStep{e.close_to}, e.over_s}; }
-  physics::Step operator()(const OpenEntry& e) const { return {0, physics::TriggerStep{e.open_to}, e.over_s}; }
+  physics::Step operator()(const CloseEntry& e) const {
+    return {0, physics::TriggerStep{e.close_to}, e.over_s};
+  }
+  physics::Step operator()(const OpenEntry& e) const {
+    return {0, physics::TriggerStep{e.open_to}, e.over_s};
+  }
   physics::Step operator()(const LiftEntry& e) const {
     return {0, physics::MoveStep{{0, 0, e.lift_by_m}}, e.over_s};
   }
-  physics::Step operator()(const MoveEntry& e) const { return {0, physics::MoveStep{e.move_by_m}, e.over_s}; }
-  physics::Step operator()(const CarryEntry& e) const { return {0, physics::CarryStep{e.carry_to_m}, e.over_s}; }
+  physics::Step operator()(const MoveEntry& e) const {
+    return {0, physics::MoveStep{e.move_by_m}, e.over_s};
+  }
+  physics::Step operator()(const CarryEntry& e) const {
+    return {0, physics::CarryStep{e.carry_to_m}, e.over_s};
+  }
   physics::Step operator()(const PlaceEntry& e) const {
     CheckEntity("place_on", e.place_on);
     return {0, physics::PlaceStep{e.place_on.value}, e.over_s};
   }
   physics::Step operator()(const RetreatEntry& e) const {
     return {0, physics::RetreatStep{e.retreat_by_m}, e.over_s};
+  }
+  physics::Step operator()(const FollowJointEntry& e) const {
+    CheckEntity("follow_joint", e.follow_joint);
+    CheckJoint(e.follow_joint);
+    return {0, physics::FollowJointStep{e.follow_joint.value, e.to}, e.over_s};
   }
   physics::Step operator()(const WaitEntry& e) const { return {0, physics::WaitStep{}, e.wait_s}; }
   physics::Step operator()(const PosesEntry& e) const {
@@ -68,19 +90,47 @@ struct StepMaker {
  private:
   void CheckEntity(const char* key, const Located<std::string>& name) const {
     if (std::find(entities.begin(), entities.end(), name.value) != entities.end()) return;
-    complaints.AddUnknownName(name.where, fmt::format("{}: no entity is called '{}'", key, name.value), name.value,
-                              entities);
+    complaints.AddUnknownName(name.where,
+                              fmt::format("{}: no entity is called '{}'", key, name.value),
+                              name.value, entities);
+  }
+
+  /// A point to grasp has to be on the thing or in it.
+  void CheckPoint(const ReachEntry& e) const {
+    const auto found = std::find(entities.begin(), entities.end(), e.reach.value);
+    if (!e.point_m || found == entities.end()) return;
+    const auto index = static_cast<std::size_t>(found - entities.begin());
+    if (index >= scene.bodies.size()) return;
+    const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
+    if (away_m <= kFarthestPointM) return;
+    complaints.Add(e.point_m->where,
+                   fmt::format("point_m: the point is {:.3f} m outside of '{}'", away_m, *found),
+                   "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
+  }
+
+  void CheckJoint(const Located<std::string>& name) const {
+    const auto found = std::find(entities.begin(), entities.end(), name.value);
+    if (found == entities.end()) return;  // was complained about
+    const int joint = physics::JointThatMoves(scene, static_cast<int>(found - entities.begin()));
+    if (joint >= 0 &&
+        scene.joints[static_cast<std::size_t>(joint)].kind != physics::JointKind::kBall)
+      return;
+    complaints.Add(name.where,
+                   fmt::format("follow_joint: '{}' hangs on no slider or hinge", name.value),
+                   "give it one, or move the hand by 'move_by_m'");
   }
 
   void CheckStyle(const ReachEntry& e) const {
     if (!model || model->styles.empty()) return;
-    const Where where = e.style.where.place.line > 0 ? e.style.where : e.reach.where;  // the default has no place
+    const Where where =
+        e.style.where.place.line > 0 ? e.style.where : e.reach.where;  // the default has no place
     const int style = physics::FindStyle(*model, e.style.value);
     if (style < 0) {
       std::vector<std::string> known;
       for (const auto& candidate : model->styles) known.push_back(candidate.name);
-      complaints.AddUnknownName(where, fmt::format("style: hand '{}' has no style '{}'", model->name, e.style.value),
-                                e.style.value, known);
+      complaints.AddUnknownName(
+          where, fmt::format("style: hand '{}' has no style '{}'", model->name, e.style.value),
+          e.style.value, known);
       return;
     }
     const physics::GraspStyle& chosen = model->styles[static_cast<std::size_t>(style)];
@@ -94,21 +144,25 @@ struct StepMaker {
 };
 
 /// Limits that concern the script as a whole, at the beat where they are passed.
-void CheckLength(const ScenarioEntry& entry, const physics::Script& script, Complaints& complaints) {
+void CheckLength(const ScenarioEntry& entry, const physics::Script& script,
+                 Complaints& complaints) {
   double total_s = script.settle_s;
   std::size_t poses = 0;
   for (std::size_t i = 0; i < script.beats.size(); ++i) {
     double beat_s = 0;
     for (const physics::Step& step : script.beats[i].steps) {
       beat_s = std::max(beat_s, step.over_s);
-      if (const auto* step_poses = std::get_if<physics::PosesStep>(&step.action)) poses += step_poses->poses.size();
+      if (const auto* step_poses = std::get_if<physics::PosesStep>(&step.action))
+        poses += step_poses->poses.size();
     }
     total_s += beat_s;
     const Where where = entry.script[i].front().name_where;
     if (total_s > kMaxDurationS) {
-      return complaints.Add(where, fmt::format("the script takes more than {} s up to here", kMaxDurationS));
+      return complaints.Add(
+          where, fmt::format("the script takes more than {} s up to here", kMaxDurationS));
     }
-    if (poses > kMaxPoses) return complaints.Add(where, fmt::format("more than {} poses up to here", kMaxPoses));
+    if (poses > kMaxPoses)
+      return complaints.Add(where, fmt::format("more than {} poses up to here", kMaxPoses));
   }
 }
 
@@ -151,7 +205,8 @@ void CheckOrder(const std::vector<BeatEntry>& script, Complaints& complaints) {
 
 }  // namespace
 
-physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints) {
+physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene,
+                            Complaints& complaints) {
   const std::vector<std::string> entities = NamesOf(entry.entities), actors = NamesOf(entry.actors);
   physics::Script script;
   script.settle_s = entry.settle_s;
@@ -160,12 +215,14 @@ physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& sc
     for (const Named<StepEntry>& named : beat_entry) {
       const auto actor = std::find(actors.begin(), actors.end(), named.name);
       if (actor == actors.end()) {
-        complaints.AddUnknownName(named.name_where, fmt::format("no actor is called '{}'", named.name), named.name,
+        complaints.AddUnknownName(named.name_where,
+                                  fmt::format("no actor is called '{}'", named.name), named.name,
                                   actors);
       }
       const auto hand = static_cast<std::size_t>(actor - actors.begin());
-      const physics::HandModel* model = hand < scene.hands.size() ? &scene.hands[hand].model : nullptr;
-      physics::Step step = std::visit(StepMaker{entities, model, complaints}, named.value);
+      const physics::HandModel* model =
+          hand < scene.hands.size() ? &scene.hands[hand].model : nullptr;
+      physics::Step step = std::visit(StepMaker{entities, scene, model, complaints}, named.value);
       step.hand = static_cast<int>(hand);
       beat.steps.push_back(std::move(step));
     }

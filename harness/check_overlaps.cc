@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sort and sweep along x, then separating axes. Complains once per thing, so that a mess stays readable.
-// Tested by tests/harness/read_scenario_test.cc
+// Sort and sweep along x, then separating axes. Complains once per thing, so that a mess stays
+// readable. Tested by tests/harness/read_scenario_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "harness/build_scene.h"
 #include "harness/penetration.h"
 #include "physics/geometry.h"
+#include "physics/joint.h"
 
 namespace prehend::harness {
 namespace {
@@ -41,13 +42,14 @@ Occupant OccupantOf(const physics::Hand& hand, Where where) {
   Occupant occupant{.name = hand.name, .where = where, .hand = true, .solids = {}, .bounds = {}};
   const physics::HandModel& model = hand.model;
   AddSolid(physics::Box{model.palm_size_m}, hand.X_WH, occupant);
-  const std::vector<double> joints =
-      model.styles.empty() ? std::vector<double>(model.links.size()) : physics::JointTargets(model.styles[0], 0);
+  const std::vector<double> joints = model.styles.empty()
+                                         ? std::vector<double>(model.links.size())
+                                         : physics::JointTargets(model.styles[0], 0);
   const std::vector<physics::Pose> poses = physics::LinkPoses(model, joints);
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const physics::HandLink& link = model.links[i];
-    AddSolid(physics::Box{{link.length_m, 2 * link.half_width_m, 2 * link.half_thickness_m}}, hand.X_WH * poses[i],
-             occupant);
+    AddSolid(physics::Box{{link.length_m, 2 * link.half_width_m, 2 * link.half_thickness_m}},
+             hand.X_WH * poses[i], occupant);
   }
   return occupant;
 }
@@ -56,26 +58,38 @@ double Depth(const Occupant& a, const Occupant& b) {
   double deepest = 0;
   if (!a.bounds.intersects(b.bounds)) return 0;
   for (const PlacedSolid& solid_a : a.solids) {
-    for (const PlacedSolid& solid_b : b.solids) deepest = std::max(deepest, Penetration(solid_a, solid_b));
+    for (const PlacedSolid& solid_b : b.solids)
+      deepest = std::max(deepest, Penetration(solid_a, solid_b));
   }
   return deepest;
 }
 
-void Complain(const Occupant& later, const Occupant& earlier, double depth_m, Complaints& complaints) {
+/// Bodies on the two sides of a joint never touch: a drawer may stand in its cabinet.
+bool Joined(const physics::Scene& scene, std::size_t a, std::size_t b) {
+  if (std::max(a, b) >= scene.bodies.size()) return false;
+  return physics::NeverTouch(scene, static_cast<int>(a), static_cast<int>(b));
+}
+
+void Complain(const Occupant& later, const Occupant& earlier, double depth_m,
+              Complaints& complaints) {
   const double depth_mm = depth_m * 1000;
   if (later.hand) {
     complaints.Add(later.where,
-                   fmt::format("actor '{}' starts inside '{}', {:.0f} mm deep", later.name, earlier.name, depth_mm),
+                   fmt::format("actor '{}' starts inside '{}', {:.0f} mm deep", later.name,
+                               earlier.name, depth_mm),
                    "let the hand start in free space");
   } else {
-    complaints.Add(later.where, fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),
-                   fmt::format("'on: {}' with at_m: [x, y] puts it on top", earlier.name));
+    complaints.Add(
+        later.where,
+        fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),
+        fmt::format("'on: {}' with at_m: [x, y] puts it on top", earlier.name));
   }
 }
 
 }  // namespace
 
-void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints) {
+void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene,
+                   Complaints& complaints) {
   std::vector<Occupant> occupants;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     occupants.push_back(OccupantOf(scene.bodies[i], entry.entities[i].value.at_m.where));
@@ -86,7 +100,8 @@ void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene, Comp
   std::vector<std::size_t> by_x(occupants.size());
   for (std::size_t i = 0; i < by_x.size(); ++i) by_x[i] = i;
   std::sort(by_x.begin(), by_x.end(), [&](std::size_t a, std::size_t b) {
-    return std::tuple(occupants[a].bounds.min().x(), a) < std::tuple(occupants[b].bounds.min().x(), b);
+    return std::tuple(occupants[a].bounds.min().x(), a) <
+           std::tuple(occupants[b].bounds.min().x(), b);
   });
 
   std::set<std::size_t> complained;
@@ -96,7 +111,7 @@ void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene, Comp
       if (occupants[by_x[j]].bounds.min().x() > occupants[by_x[i]].bounds.max().x()) break;
       if (complained.contains(later)) continue;
       const double depth_m = Depth(occupants[earlier], occupants[later]);
-      if (depth_m <= kAllowedM) continue;
+      if (depth_m <= kAllowedM || Joined(scene, earlier, later)) continue;
       Complain(occupants[later], occupants[earlier], depth_m, complaints);
       complained.insert(later);
     }

@@ -43,6 +43,9 @@ struct YamlNode {
   const YamlNode* Find(std::string_view name) const;
 };
 
+/// The child called `step` of a mapping, or of a sequence the one with this index; null when there is none.
+const YamlNode* ChildOf(const YamlNode& node, std::string_view step);
+
 /// A text that nodes come from: the file, or one `--set` from the command line.
 struct YamlSource {
   std::string name;

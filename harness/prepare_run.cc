@@ -95,8 +95,9 @@ std::string ScenarioId(const std::string& skill, const std::string& name) {
 
 std::set<std::string> MovableEntities(const Scenario& scenario) {
   std::set<std::string> movable;
-  for (const physics::Body& body : scenario.scene.bodies) {
-    if (!body.fixed) movable.insert(body.name);
+  const physics::Scene& scene = scenario.scene;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (physics::MovesFreely(scene, static_cast<int>(i))) movable.insert(scene.bodies[i].name);
   }
   return movable;
 }

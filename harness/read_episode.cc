@@ -26,6 +26,7 @@ constexpr std::size_t kMaxSets = 32;
 struct MemberEntry {
   std::string class_name = "Object";
   bool fixed = false;
+  bool jointed = false;
   bool hand = false;
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
@@ -93,6 +94,7 @@ Format<HeaderEntry> HeaderFormat() {
                                .NamedByKey()
                                .Optional("class", &M::class_name, Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"), "")
                                .Optional("fixed", &M::fixed, Flag(), "")
+                               .Optional("jointed", &M::jointed, Flag(), "")
                                .Optional("hand", &M::hand, Flag(), "")
                                .Optional("centre_m", &M::centre_m, Position(), "")
                                .Required("size_m", &M::size_m, Vector<3>(0, kFarthestM), "")
@@ -224,7 +226,7 @@ class EpisodeReader {
         member.sensor_sets = m.sensor_sets;
         hands_.push_back(static_cast<int>(cast.entities.size()) - 1);
       } else {
-        member.classes = {m.class_name, m.fixed ? "Fixed" : "Movable", "Thing", "Entity"};
+        member.classes = {m.class_name, m.fixed ? "Fixed" : m.jointed ? "Jointed" : "Movable", "Thing", "Entity"};
       }
     }
     now_.entities.resize(names_.size());

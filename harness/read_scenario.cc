@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "harness/build_joints.h"
 #include "harness/build_scene.h"
 #include "harness/build_script.h"
 #include "harness/scenario_fields.h"
+#include "harness/trial_fields.h"
 #include "harness/text_file.h"
 
 namespace prehend::harness {
@@ -26,31 +28,38 @@ void CheckNames(const std::string& file, const ScenarioEntry& entry, const Scena
                 Complaints& complaints) {
   const std::string stem = path(file).stem().string();
   if (entry.name.value != stem) {
-    complaints.Add(entry.name.where, fmt::format("scenario: the name is '{}', but the file is called '{}'",
-                                                 entry.name.value, path(file).filename().string()),
+    complaints.Add(entry.name.where,
+                   fmt::format("scenario: the name is '{}', but the file is called '{}'",
+                               entry.name.value, path(file).filename().string()),
                    "rename one of them");
   }
   if (!Contains(library.grammars, entry.grammar.value)) {
-    complaints.AddUnknownName(entry.grammar.where, fmt::format("grammar: no grammar is called '{}'", entry.grammar.value),
-                              entry.grammar.value, library.grammars);
+    complaints.AddUnknownName(
+        entry.grammar.where, fmt::format("grammar: no grammar is called '{}'", entry.grammar.value),
+        entry.grammar.value, library.grammars);
   }
   for (const auto& actor : entry.actors) {
     const bool taken = std::any_of(entry.entities.begin(), entry.entities.end(),
                                    [&](const auto& entity) { return entity.name == actor.name; });
-    if (taken) complaints.Add(actor.name_where, fmt::format("'{}' is already the name of an entity", actor.name));
+    if (taken)
+      complaints.Add(actor.name_where,
+                     fmt::format("'{}' is already the name of an entity", actor.name));
   }
 }
 
-/// The actor's model, or an empty one after complaining; what is wrong in a hand's file goes to `in_hand_files`.
-physics::HandModel FindHand(const std::string& file, const Located<std::string>& hand, const ScenarioLibrary& library,
-                            Complaints& complaints, Diagnostics& in_hand_files) {
+/// The actor's model, or an empty one after complaining; what is wrong in a hand's file goes to
+/// `in_hand_files`.
+physics::HandModel FindHand(const std::string& file, const Located<std::string>& hand,
+                            const ScenarioLibrary& library, Complaints& complaints,
+                            Diagnostics& in_hand_files) {
   const bool is_file = hand.value.ends_with(".yaml");
   if (!is_file && !Contains(library.hands, hand.value)) {
-    complaints.AddUnknownName(hand.where, fmt::format("hand: no hand is called '{}'", hand.value), hand.value,
-                              library.hands);
+    complaints.AddUnknownName(hand.where, fmt::format("hand: no hand is called '{}'", hand.value),
+                              hand.value, library.hands);
     return {};
   }
-  auto model = library.read_hand(is_file ? (path(file).parent_path() / hand.value).string() : hand.value);
+  auto model =
+      library.read_hand(is_file ? (path(file).parent_path() / hand.value).string() : hand.value);
   if (model.value) return std::move(*model.value);
   complaints.Add(hand.where, fmt::format("hand: '{}' cannot be used, see below", hand.value));
   in_hand_files.insert(in_hand_files.end(), model.diagnostics.begin(), model.diagnostics.end());
@@ -62,10 +71,12 @@ std::string SkillOf(const std::string& file) {
   return folder.parent_path().filename() == "scenarios" ? folder.filename().string() : "";
 }
 
-ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& document, const ScenarioLibrary& library) {
+ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& document,
+                             const ScenarioLibrary& library) {
   Complaints complaints(document);
   ScenarioEntry entry;
-  if (!ScenarioFormat().read(document.root, complaints, entry)) return {std::nullopt, complaints.Sorted()};
+  if (!ScenarioFormat().read(document.root, complaints, entry))
+    return {std::nullopt, complaints.Sorted()};
 
   CheckNames(file, entry, library, complaints);
   Diagnostics in_hand_files;
@@ -74,13 +85,18 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scene.world.rate_hz = entry.world.rate_hz;
   scene.world.seed = entry.world.seed;
   scene.bodies = PlaceBodies(entry, complaints);
+  scene.joints = BuildJoints(entry, complaints);
+  scenario.body_part_of = PartsOf(entry, complaints);
   for (const auto& actor : entry.actors) {
     physics::HandModel model = FindHand(file, actor.value.hand, library, complaints, in_hand_files);
     const bool known = !model.name.empty();
-    scene.hands.push_back(known ? PlaceHand(actor, std::move(model), entry.world.rate_hz, complaints)
-                                : physics::Hand{actor.name, {}, {}});
+    scene.hands.push_back(known
+                              ? PlaceHand(actor, std::move(model), entry.world.rate_hz, complaints)
+                              : physics::Hand{actor.name, {}, {}});
   }
   scenario.script = BuildScript(entry, scene, complaints);
+  scenario.outcomes = BuildOutcomes(entry.outcomes, scene, complaints);
+  CheckVariations(document, entry.vary, complaints);
   if (complaints.empty()) CheckOverlaps(entry, scene, complaints);
   if (!complaints.empty()) {
     Diagnostics diagnostics = complaints.Sorted();
@@ -95,13 +111,16 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scenario.grammar = entry.grammar.value;
   scenario.tags = std::move(entry.tags);
   scenario.world = entry.world;
-  for (const auto& entity : entry.entities) scenario.body_classes.push_back(entity.value.class_name.value);
+  for (const auto& entity : entry.entities)
+    scenario.body_classes.push_back(entity.value.class_name.value);
+  scenario.variations = std::move(entry.vary);
   scenario.pictures = std::move(entry.pictures);
   return {std::move(scenario), {}};
 }
 
 ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocument> document,
-                                    const std::vector<std::string>& overrides, const ScenarioLibrary& library) {
+                                    const std::vector<std::string>& overrides,
+                                    const ScenarioLibrary& library) {
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
   const Json schema = overrides.empty() ? Json() : ScenarioFormat().schema;
   for (const std::string& assignment : overrides) {
@@ -112,13 +131,15 @@ ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocu
 
 }  // namespace
 
-ReadResult<Scenario> ReadScenario(const std::string& file, const std::vector<std::string>& overrides,
+ReadResult<Scenario> ReadScenario(const std::string& file,
+                                  const std::vector<std::string>& overrides,
                                   const ScenarioLibrary& library) {
   return ReadDocumentAs(file, ReadYamlFile(file), overrides, library);
 }
 
 ReadResult<Scenario> ReadScenarioText(const std::string& file, std::string text,
-                                      const std::vector<std::string>& overrides, const ScenarioLibrary& library) {
+                                      const std::vector<std::string>& overrides,
+                                      const ScenarioLibrary& library) {
   return ReadDocumentAs(file, ParseYaml(file, std::move(text)), overrides, library);
 }
 

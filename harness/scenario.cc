@@ -2,12 +2,24 @@
 // Tested by tests/harness/read_scenario_test.cc
 #include "harness/scenario.h"
 
+#include "harness/sensing.h"
+
 namespace prehend::harness {
 
 const std::vector<std::string>& CameraWords() {
   static const std::vector<std::string> words = {"front", "left", "right", "top", "three_quarter"};
   return words;
 }
+
+namespace {
+
+/// What hangs on a joint is neither fixed nor can it be picked up.
+const char* MobilityOf(const physics::Scene& scene, int body) {
+  if (scene.bodies[static_cast<std::size_t>(body)].fixed) return "Fixed";
+  return physics::MovesFreely(scene, body) ? "Movable" : "Jointed";
+}
+
+}  // namespace
 
 grammar::Cast MakeCast(const Scenario& scenario) {
   grammar::Cast cast;
@@ -17,9 +29,12 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     const physics::LocalBox box = physics::BoundingBox(body);
     grammar::CastMember& member = cast.entities.emplace_back();
     member.name = body.name;
-    member.classes = {scenario.body_classes[i], body.fixed ? "Fixed" : "Movable", "Thing", "Entity"};
+    member.classes = {scenario.body_classes[i], MobilityOf(scenario.scene, static_cast<int>(i)),
+                      "Thing", "Entity"};
+    member.part_of = scenario.body_part_of[i];
     member.p_BC_m = box.p_BC_m;
     member.half_size_m = box.half_size_m;
+    member.mass_kg = body.fixed ? 0 : body.mass_kg;
   }
   for (const physics::Hand& hand : scenario.scene.hands) {
     grammar::CastMember& member = cast.entities.emplace_back();
@@ -27,11 +42,9 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     member.classes = {"Hand", "Entity"};
     member.half_size_m = hand.model.palm_size_m / 2;
     member.sensor_sets = hand.model.sensor_sets;
+    member.strength_n = hand.model.translation.limit;
   }
-  // Frames carry a style as its index in the hand's own list, so the first hand's names stand for all.
-  if (!scenario.scene.hands.empty()) {
-    for (const auto& style : scenario.scene.hands.front().model.styles) cast.styles.push_back(style.name);
-  }
+  cast.styles = StyleNames(scenario.scene);
   return cast;
 }
 

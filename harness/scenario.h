@@ -10,6 +10,7 @@
 
 #include "grammar/frame.h"
 #include "harness/located_yaml.h"
+#include "harness/trials.h"
 #include "physics/scene.h"
 #include "physics/script.h"
 
@@ -40,7 +41,10 @@ struct Scenario {
   WorldEntry world;
   physics::Scene scene;
   std::vector<std::string> body_classes;  ///< one per scene body
+  std::vector<int> body_part_of;          ///< one per scene body: a scene body, or grammar::kNobody
   physics::Script script;
+  std::vector<VariationEntry> variations;
+  std::vector<Outcome> outcomes;
   std::vector<PictureEntry> pictures;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scenario as it is written, before names are resolved and places computed. harness/scenario_fields.cc says how each
-// field is called and bounded; harness/build_scene.h and build_script.h make bodies, hands and steps of it.
+// A scenario as it is written, before names are resolved and places computed.
+// harness/scenario_fields.cc says how each field is called and bounded; harness/build_scene.h and
+// build_script.h make bodies, hands and steps of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,23 +12,56 @@
 
 #include "harness/format.h"
 #include "harness/scenario.h"
+#include "physics/compounds.h"
 #include "physics/scene.h"
 #include "physics/script.h"
 
 namespace prehend::harness {
 
-struct EntityEntry {
-  Where where;
-  Located<std::string> class_name{"Object", {}};
+/// One of the shapes of a compound; exactly one of the first four is given.
+struct PartEntry {
   std::optional<physics::Box> box;
   std::optional<physics::Sphere> sphere;
   std::optional<physics::Cylinder> cylinder;
   std::optional<physics::Capsule> capsule;
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
+};
+
+/// A joint to another entity; which numbers are read depends on its kind.
+struct JointEntry {
+  Located<std::string> to;
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  Located<Eigen::Vector2d> range{Eigen::Vector2d::Zero(), {}};  ///< metres or degrees
+  double friction = 0;
+  double damping = 0;
+  double spring = 0;  ///< per metre or per radian
+  double rest = 0;    ///< metres or degrees
+};
+
+struct EntityEntry {
+  Where where;
+  Located<std::string> class_name{"Object", {}};
+  std::optional<Located<std::string>> part_of;
+  std::optional<physics::Box> box;
+  std::optional<physics::Sphere> sphere;
+  std::optional<physics::Cylinder> cylinder;
+  std::optional<physics::Capsule> capsule;
+  std::optional<physics::Tray> tray;
+  std::optional<physics::Mug> mug;
+  std::optional<physics::Bowl> bowl;
+  std::optional<physics::Shelf> shelf;
+  std::vector<PartEntry> parts;
   bool fixed = false;
   std::optional<Located<double>> mass_kg;
-  double friction = 0.8;
+  std::optional<Located<double>> friction;  ///< default: that of physics::Body
   std::optional<double> rolling_friction;
   double restitution = 0;
+  double linear_damping_per_s = 0;
+  double angular_damping_per_s = 0;
+  std::optional<Located<std::string>> fixed_to;
+  std::optional<Located<JointEntry>> slider, hinge, ball_joint;
   std::optional<Located<std::string>> on;
   Located<std::vector<double>> at_m;
   std::optional<Eigen::Vector3d> rpy_deg;
@@ -56,6 +90,7 @@ struct ReachEntry {
   Located<std::string> style{"wrap", {}};
   physics::Approach from = physics::Approach::kAuto;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  std::optional<Located<Eigen::Vector3d>> point_m;
   double over_s = 0.8;
 };
 struct CloseEntry {
@@ -88,6 +123,11 @@ struct RetreatEntry {
   double retreat_by_m = 0;
   double over_s = 0.6;
 };
+struct FollowJointEntry {
+  Located<std::string> follow_joint;
+  double to = 1;
+  double over_s = 1.5;
+};
 struct WaitEntry {
   double wait_s = 0;
 };
@@ -102,8 +142,8 @@ struct PoseEntry {
 struct PosesEntry {
   std::vector<PoseEntry> poses;
 };
-using StepEntry = std::variant<WaitEntry, ReachEntry, CloseEntry, OpenEntry, LiftEntry, MoveEntry, CarryEntry,
-                               PlaceEntry, RetreatEntry, PosesEntry>;
+using StepEntry = std::variant<WaitEntry, ReachEntry, CloseEntry, OpenEntry, LiftEntry, MoveEntry,
+                               CarryEntry, PlaceEntry, RetreatEntry, FollowJointEntry, PosesEntry>;
 
 /// One item of the script: what each named actor does at the same time.
 using BeatEntry = std::vector<Named<StepEntry>>;
@@ -119,6 +159,8 @@ struct ScenarioEntry {
   std::vector<Named<ActorEntry>> actors;
   std::vector<BeatEntry> script;
   double settle_s = physics::Script{}.settle_s;
+  std::vector<VariationEntry> vary;
+  std::vector<Named<std::vector<ConditionEntry>>> outcomes;
   std::vector<PictureEntry> pictures;
 };
 

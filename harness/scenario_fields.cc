@@ -2,103 +2,24 @@
 // Tested by tests/harness/scenario_fields_test.cc
 #include "harness/scenario_fields.h"
 
+#include "harness/entity_fields.h"
 #include "harness/record.h"
 #include "harness/step_fields.h"
+#include "harness/trial_fields.h"
 #include "harness/yaml_scalar.h"
 
 namespace prehend::harness {
 namespace {
 
-constexpr double kFarthestM = 100;   // of anything from the origin
-constexpr double kSmallestM = 0.001;  // below, the collision margins (1 mm) would be larger than the thing
-constexpr double kLargestM = 100;
-
-Format<double> Length() { return Number(kSmallestM, kLargestM); }
-Format<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
-Format<Eigen::Vector3d> RollPitchYaw() { return Vector<3>(-360, 360); }
-
-const std::string kRpyDoc = "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis.";
-
-Format<physics::Box> BoxFormat() {
-  return Record<physics::Box>("a box")
-      .Required("size_m", &physics::Box::size_m, Vector<3>(kSmallestM, kLargestM), "Full edge lengths [x, y, z].")
-      .format();
-}
-Format<physics::Sphere> SphereFormat() {
-  return Record<physics::Sphere>("a sphere")
-      .Required("radius_m", &physics::Sphere::radius_m, Length(), "Radius.")
-      .format();
-}
-/// Cylinders and capsules: the axis is along z.
-template <class Round>
-Format<Round> RoundFormat(const std::string& noun, const std::string& length_doc) {
-  return Record<Round>(noun)
-      .Required("radius_m", &Round::radius_m, Length(), "Radius.")
-      .Required("length_m", &Round::length_m, Length(), length_doc)
-      .format();
-}
-
-void CheckClass(const EntityEntry& entity, Complaints& complaints) {
-  for (const char* reserved : {"Entity", "Thing", "Movable", "Fixed", "Hand"}) {
-    if (entity.class_name.value != reserved) continue;
-    complaints.Add(entity.class_name.where, "class: '" + entity.class_name.value + "' is built in and given anyway",
-                   "name what the thing is, for example Cup");
-  }
-}
-
-void CheckEntity(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
-  CheckClass(entity, complaints);
-  const std::string title = "entity '" + node.key + "'";
-  if (entity.fixed && entity.mass_kg) {
-    complaints.Add(entity.mass_kg->where, title + " is fixed: it cannot have a mass", "remove fixed or mass_kg");
-  }
-  if (!entity.fixed && !entity.mass_kg) {
-    complaints.Add(node.key_where, title + " can move: it needs the key 'mass_kg'", "or 'fixed: true'");
-  }
-  const std::size_t wanted = entity.on ? 2 : 3;
-  if (entity.at_m.value.size() != wanted) {
-    complaints.Add(entity.at_m.where,
-                   entity.on ? "at_m: with 'on' expected [x, y]; z follows from the top of the support"
-                             : "at_m: expected [x, y, z], the centre",
-                   entity.on ? "" : "or [x, y] together with 'on: SUPPORT'");
-  }
-}
-
-Format<EntityEntry> EntityFormat() {
-  using E = EntityEntry;
-  return Record<E>("entity")
-      .NamedByKey()
-      .Optional("class", &E::class_name, Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'"),
-                "What it is; grammars select roles by class.")
-      .Optional("box", &E::box, BoxFormat(), "Its shape: a box.")
-      .Optional("sphere", &E::sphere, SphereFormat(), "Its shape: a sphere.")
-      .Optional("cylinder", &E::cylinder, RoundFormat<physics::Cylinder>("a cylinder", "Height, along z."),
-                "Its shape: a cylinder, axis along z.")
-      .Optional("capsule", &E::capsule,
-                RoundFormat<physics::Capsule>("a capsule", "Along z, without the two half spheres."),
-                "Its shape: a cylinder with half spheres at its ends, axis along z.")
-      .Optional("fixed", &E::fixed, Flag(), "True: never moves and has no mass.")
-      .Optional("mass_kg", &E::mass_kg, Number(0.001, 1000), "Mass; required unless fixed.")
-      .Optional("friction", &E::friction, Number(0, 5), "Coulomb friction; that of two bodies is multiplied.")
-      .Optional("rolling_friction", &E::rolling_friction, Number(0, 1),
-                "Slows rolling; default 0.006 for a sphere, 0 for the others.")
-      .Optional("restitution", &E::restitution, Number(0, 1), "0: does not bounce. 1: bounces without loss.")
-      .Optional("on", &E::on, Identifier(), "The entity it stands on; then at_m is [x, y].")
-      .Required("at_m", &E::at_m, ListOf(Number(-kFarthestM, kFarthestM), 2, 3),
-                "World coordinates of its centre: [x, y, z], or [x, y] with 'on'.")
-      .Optional("rpy_deg", &E::rpy_deg, RollPitchYaw(), kRpyDoc)
-      .Optional("yaw_deg", &E::yaw_deg, Number(-360, 360), "Turn about the vertical, degrees.")
-      .ExactlyOneOf({"box", "sphere", "cylinder", "capsule"})
-      .AtMostOneOf({"rpy_deg", "yaw_deg"})
-      .Check(CheckEntity)
-      .format();
-}
+constexpr double kFarthestM = 100;  // of anything from the origin
 
 Format<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)[4]) {
   return Record<PidOverride>(noun)
       .Optional(keys[0], &PidOverride::proportional, Number(0, 1e6), "Force or torque per error.")
-      .Optional(keys[1], &PidOverride::derivative, Number(0, 1e5), "Force or torque per speed of the error.")
-      .Optional(keys[2], &PidOverride::integral, Number(0, 1e6), "Force or torque per error and second.")
+      .Optional(keys[1], &PidOverride::derivative, Number(0, 1e5),
+                "Force or torque per speed of the error.")
+      .Optional(keys[2], &PidOverride::integral, Number(0, 1e6),
+                "Force or torque per error and second.")
       .Optional(keys[3], &PidOverride::limit, Number(0, 1e4), "Largest force or torque.")
       .format();
 }
@@ -106,13 +27,14 @@ Format<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)
 Format<GainsOverride> GainsFormat() {
   return Record<GainsOverride>("the gains")
       .Optional("translation", &GainsOverride::translation,
-                PidFormat("the translation gains",
-                          {"proportional_n_per_m", "derivative_n_s_per_m", "integral_n_per_m_s", "limit_n"}),
+                PidFormat("the translation gains", {"proportional_n_per_m", "derivative_n_s_per_m",
+                                                    "integral_n_per_m_s", "limit_n"}),
                 "How the palm follows the position of its tracked target.")
-      .Optional("rotation", &GainsOverride::rotation,
-                PidFormat("the rotation gains", {"proportional_nm_per_rad", "derivative_nm_s_per_rad",
-                                                 "integral_nm_per_rad_s", "limit_nm"}),
-                "How the palm follows the orientation of its tracked target.")
+      .Optional(
+          "rotation", &GainsOverride::rotation,
+          PidFormat("the rotation gains", {"proportional_nm_per_rad", "derivative_nm_s_per_rad",
+                                           "integral_nm_per_rad_s", "limit_nm"}),
+          "How the palm follows the orientation of its tracked target.")
       .format();
 }
 
@@ -120,21 +42,29 @@ Format<ActorEntry> ActorFormat() {
   using A = ActorEntry;
   return Record<A>("actor")
       .NamedByKey()
-      .Required("hand", &A::hand, Word("[A-Za-z0-9_./-]+", "a hand like 'human_right', or a .hand.yaml file", 255),
+      .Required("hand", &A::hand,
+                Word("[A-Za-z0-9_./-]+", "a hand like 'human_right', or a .hand.yaml file", 255),
                 "A hand of the library, or a .hand.yaml file beside the scenario.")
-      .Required("at_m", &A::at_m, Position(), "World coordinates of the palm's centre at the start.")
-      .Optional("rpy_deg", &A::rpy_deg, RollPitchYaw(), kRpyDoc + " At 0 fingers point along x, the palm looks down.")
-      .Optional("gains", &A::gains, GainsFormat(), "Replaces gains of the hand file; what is not given stays.")
+      .Required("at_m", &A::at_m, Vector<3>(-kFarthestM, kFarthestM),
+                "World coordinates of the palm's centre at the start.")
+      .Optional("rpy_deg", &A::rpy_deg, Vector<3>(-360, 360),
+                "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis. "
+                "At 0 fingers point along x, the palm looks down.")
+      .Optional("gains", &A::gains, GainsFormat(),
+                "Replaces gains of the hand file; what is not given stays.")
       .format();
 }
 
 Format<WorldEntry> WorldFormat() {
   using W = WorldEntry;
   return Record<W>("the world")
-      .Optional("engine", &W::engine, Choice(std::vector<std::string>{"bullet"}), "The physics engine.")
+      .Optional("engine", &W::engine, Choice(std::vector<std::string>{"bullet"}),
+                "The physics engine.")
       .Optional("rate_hz", &W::rate_hz, Integer<int>(60, 4800), "Physics steps per second.")
-      .Optional("sensing_hz", &W::sensing_hz, Integer<int>(1, 4800), "Looks of the grammar per second, at most rate_hz.")
-      .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53), "Seed of all randomness.")
+      .Optional("sensing_hz", &W::sensing_hz, Integer<int>(1, 4800),
+                "Looks of the grammar per second, at most rate_hz.")
+      .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
+                "Seed of all randomness.")
       .Check([](const YamlNode& node, const W& world, Complaints& complaints) {
         if (world.sensing_hz <= world.rate_hz) return;
         const std::string sensing = std::to_string(world.sensing_hz), rate = std::to_string(world.rate_hz);
@@ -152,7 +82,8 @@ Format<WorldEntry> WorldFormat() {
 /// A moment is an event's boundary or a time; PictureEntry keeps both as text.
 Format<std::string> MomentFormat() {
   const auto seconds = Number(0, kMaxDurationS);
-  const auto boundary = Word("[a-z][a-z0-9_]*\\.(begin|end)", "a time in seconds, or an event like 'reaching.begin'");
+  const auto boundary =
+      Word("[a-z][a-z0-9_]*\\.(begin|end)", "a time in seconds, or an event like 'reaching.begin'");
   return {.schema = {{"anyOf", {seconds.schema, boundary.schema}}},
           .read =
               [=](const YamlNode& node, Complaints& complaints, std::string& moment) {
@@ -167,7 +98,8 @@ Format<std::string> MomentFormat() {
 
 Format<PictureEntry> PictureFormat() {
   return Record<PictureEntry>("a picture")
-      .Required("at", &PictureEntry::at, MomentFormat(), "When: an event's 'begin' or 'end', or seconds.")
+      .Required("at", &PictureEntry::at, MomentFormat(),
+                "When: an event's 'begin' or 'end', or seconds.")
       .Optional("camera", &PictureEntry::camera,
                 Choice(CameraWords()), "From where.")
       .format();
@@ -180,23 +112,33 @@ Format<ScenarioEntry> ScenarioFormat() {
   return Record<S>("the scenario")
       .Required("scenario", &S::name, Identifier(), "Its name: that of the file without '.yaml'.")
       .Required("shows", &S::shows, Text(), "One sentence: what happens and what it proves.")
-      .Optional("grammar", &S::grammar, Identifier(), "The grammar that watches, from grammar/library.")
+      .Optional("grammar", &S::grammar, Identifier(),
+                "The grammar that watches, from grammar/library.")
       .Optional("tags", &S::tags, ListOf(Identifier(), 0, 32), "Words to select scenarios by.")
       .Optional("world", &S::world, WorldFormat(), "Engine, rates and seed.")
       .Required("entities", &S::entities, MapOf(Identifier(), EntityFormat(), 1, kMaxEntities),
                 "The things in the world, by name.")
-      .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors), "The hands, by name.")
-      .Optional("script", &S::script, ListOf(MapOf(Identifier(), StepFormat(), 1, kMaxActors), 0, kMaxBeats),
+      .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors),
+                "The hands, by name.")
+      .Optional("script", &S::script,
+                ListOf(MapOf(Identifier(), StepFormat(), 1, kMaxActors), 0, kMaxBeats),
                 "What the hands do: beats, one after another; in a beat one step per named actor.")
       .Optional("settle_s", &S::settle_s, Number(0, 60), "Simulated on after the last beat.")
-      .Optional("pictures", &S::pictures, ListOf(PictureFormat(), 0, kMaxPictures), "Which pictures are drawn.")
+      .Optional("vary", &S::vary, ListOf(VariationFormat(), 0, kMaxVariations),
+                "What differs from trial to trial of 'prehend run --trials'.")
+      .Optional("outcomes", &S::outcomes, MapOf(Identifier(), OutcomeFormat(), 0, kMaxOutcomes),
+                "How a trial can end, by name; the first one is the one that is wanted.")
+      .Optional("pictures", &S::pictures, ListOf(PictureFormat(), 0, kMaxPictures),
+                "Which pictures are drawn.")
       .format();
 }
 
 std::string ScenarioSchema() {
-  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                 {"title", "prehend scenario, version 1"},
-                 {"description", "Generated by 'prehend schema'. The reader checks more: see docs/scenario-format.md."}};
+  Json schema = {
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+      {"title", "prehend scenario, version 1"},
+      {"description",
+       "Generated by 'prehend schema'. The reader checks more: see docs/scenario-format.md."}};
   schema.update(ScenarioFormat().schema);
   return schema.dump(1) + "\n";
 }

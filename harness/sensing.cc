@@ -42,20 +42,46 @@ std::vector<grammar::Feeler> LinkFeelers(const physics::HandModel& model) {
   return feelers;
 }
 
+/// For each style of the hand its index in `names`, which has them all.
+std::vector<int> StyleIndices(const physics::HandModel& model,
+                              const std::vector<std::string>& names) {
+  std::vector<int> indices;
+  for (const physics::GraspStyle& style : model.styles)
+    indices.push_back(static_cast<int>(std::ranges::find(names, style.name) - names.begin()));
+  return indices;
+}
+
 grammar::EntityLook LookAt(const physics::BodyState& body) {
-  return {body.X_WB.p_m, body.X_WB.q, body.v_WB_m_per_s, body.w_WB_rad_per_s, body.asleep};
+  return {.p_WB_m = body.X_WB.p_m,
+          .q_WB = body.X_WB.q,
+          .v_WB_m_per_s = body.v_WB_m_per_s,
+          .w_WB_rad_per_s = body.w_WB_rad_per_s,
+          .asleep = body.asleep};
 }
 
 }  // namespace
+
+std::vector<std::string> StyleNames(const physics::Scene& scene) {
+  std::vector<std::string> names;
+  for (const physics::Hand& hand : scene.hands) {
+    for (const physics::GraspStyle& style : hand.model.styles) {
+      if (std::ranges::find(names, style.name) == names.end()) names.push_back(style.name);
+    }
+  }
+  return names;
+}
 
 Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
     : rate_hz_(scene.world.rate_hz),
       sensing_hz_(sensing_hz),
       body_count_(static_cast<int>(scene.bodies.size())) {
+  const std::vector<std::string> styles = StyleNames(scene);
   for (const physics::Hand& hand : scene.hands) {
-    geometry_.push_back({hand.model, PalmFeelers(hand.model), LinkFeelers(hand.model)});
+    geometry_.push_back({hand.model, PalmFeelers(hand.model), LinkFeelers(hand.model),
+                         StyleIndices(hand.model, styles)});
     feelers_.emplace_back(geometry_.back().palm.size() + geometry_.back().links.size());
   }
+  for (const physics::Joint& joint : scene.joints) jointed_.push_back(joint.body);
   entities_.resize(scene.bodies.size() + scene.hands.size());
   hands_.resize(scene.hands.size());
 }
@@ -63,6 +89,11 @@ Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
 grammar::Frame Sensing::Sense(const physics::Snapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.bodies.size(); ++i)
     entities_[i] = LookAt(snapshot.bodies[i]);
+  for (std::size_t i = 0; i < snapshot.joints.size(); ++i) {
+    grammar::EntityLook& look = entities_[static_cast<std::size_t>(jointed_[i])];
+    look.joint_position = snapshot.joints[i].position;
+    look.joint_fraction = snapshot.joints[i].fraction;
+  }
   SenseHands(snapshot);
   SenseTouches(snapshot);
   return {snapshot.tick, entities_, hands_, touches_};
@@ -82,7 +113,9 @@ void Sensing::SenseHands(const physics::Snapshot& snapshot) {
     }
     const int entity = body_count_ + static_cast<int>(h);
     entities_[entity] = LookAt(hand.palm);
-    hands_[h] = {entity, hand.trigger, hand.style, hand.palm.X_WB.q * geometry.model.ahead,
+    const auto style = static_cast<std::size_t>(hand.style);
+    const int named = style < geometry.styles.size() ? geometry.styles[style] : grammar::kNobody;
+    hands_[h] = {entity, hand.trigger, named, hand.palm.X_WB.q * geometry.model.ahead,
                  feelers};
   }
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,10 @@
 #include "physics/snapshot.h"
 
 namespace prehend::harness {
+
+/// The grasp styles of all hands, each name once, in the order of the hands: what
+/// grammar::HandLook::style indexes, while a snapshot counts in its own hand's list.
+std::vector<std::string> StyleNames(const physics::Scene& scene);
 
 class Sensing {
  public:
@@ -40,6 +45,7 @@ class Sensing {
     physics::HandModel model;
     std::vector<grammar::Feeler> palm;   ///< in the hand's frame
     std::vector<grammar::Feeler> links;  ///< in the links' frames, the same number for each link
+    std::vector<int> styles;             ///< for each of the hand's styles its index in StyleNames
   };
 
   /// One contact point seen from the pair (a, b) with a < b.
@@ -53,6 +59,7 @@ class Sensing {
   std::int64_t rate_hz_ = 480;
   std::int64_t sensing_hz_ = 240;
   int body_count_ = 0;
+  std::vector<int> jointed_;  ///< for every joint the body that hangs on it
   std::vector<HandGeometry> geometry_;
   std::vector<grammar::EntityLook> entities_;
   std::vector<grammar::HandLook> hands_;

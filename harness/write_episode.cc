@@ -25,6 +25,7 @@ Json MemberJson(const grammar::CastMember& member, const grammar::Cast& cast) {
   } else {
     json["class"] = member.classes.front();
     json["fixed"] = member.classes[1] == "Fixed";
+    if (member.classes[1] == "Jointed") json["jointed"] = true;
   }
   return json;
 }

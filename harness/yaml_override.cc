@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `--set a.b.c=value`: changes a tree before it is read, so that every check of the file holds for it, too.
-// Tested by tests/harness/located_yaml_test.cc
+// `--set a.b.c=value`: changes a tree before it is read, so that every check of the file holds for
+// it, too. Tested by tests/harness/located_yaml_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,8 @@ using grammar::Diagnostics;
 using grammar::Place;
 using Kind = YamlNode::Kind;
 
-/// Moves a parsed value to its place in the assignment's text, and names the items of lists after `node.key`.
+/// Moves a parsed value to its place in the assignment's text, and names the items of lists after
+/// `node.key`.
 void Relocate(YamlNode& node, int source, int column_offset) {
   for (Where* where : {&node.where, &node.key_where}) {
     where->source = source;
@@ -42,17 +43,6 @@ bool IsOptionalMapping(const nlohmann::ordered_json& schema, const std::string& 
   return properties != schema.end() && properties->contains(step) && (*properties)[step].contains("properties");
 }
 
-/// The child called `step` of a mapping or sequence; null when there is none.
-YamlNode* ChildOf(YamlNode& node, std::string_view step) {
-  if (node.kind == Kind::kSequence) {
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), index);
-    const bool whole = error == std::errc() && end == step.data() + step.size();
-    return whole && index < node.children.size() ? &node.children[index] : nullptr;
-  }
-  return const_cast<YamlNode*>(node.Find(step));
-}
-
 /// What a mapping has, and what its schema says it may have.
 std::vector<std::string> NamesIn(const YamlNode& node, const nlohmann::ordered_json& schema) {
   std::vector<std::string> names;
@@ -70,6 +60,14 @@ std::string HintFor(const YamlNode& node, const nlohmann::ordered_json& schema, 
 }
 
 }  // namespace
+
+const YamlNode* ChildOf(const YamlNode& node, std::string_view step) {
+  if (node.kind != Kind::kSequence) return node.Find(step);
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), index);
+  const bool whole = error == std::errc() && end == step.data() + step.size();
+  return whole && index < node.children.size() ? &node.children[index] : nullptr;
+}
 
 Diagnostics ApplyOverride(const std::string& assignment, const nlohmann::ordered_json& schema,
                           YamlDocument& document) {
@@ -91,7 +89,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const nlohmann::ordered
   for (std::size_t begin = 0; begin <= equals;) {
     const std::size_t end = std::min(assignment.find('.', begin), equals);
     const std::string step = assignment.substr(begin, end - begin);
-    YamlNode* child = ChildOf(*node, step);
+    auto* child = const_cast<YamlNode*>(ChildOf(*node, step));
     const bool last = end == equals;
     const bool may_add = node->kind == Kind::kMapping && (last || IsOptionalMapping(known, step));
     if (!child && !may_add) {

@@ -2,6 +2,7 @@
 // Tested by tests/physics/world_test.cc
 #include "physics/bullet_body.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "physics/bullet_convert.h"
@@ -50,23 +51,41 @@ struct VolumeOf {
   }
 };
 
-/// The mass of a compound is spread evenly over its shapes' volumes.
-std::vector<btScalar> MassesOfShapes(const Body& body) {
-  std::vector<btScalar> masses;
-  double volume = 0;
-  for (const PlacedShape& placed : body.shapes) {
-    masses.push_back(std::visit(VolumeOf{}, placed.shape));
-    volume += masses.back();
+/// A shape of one of the bodies that make up a rigid body, in the root's frame R.
+struct Member {
+  const PlacedShape* placed;
+  Pose X_RS;
+  btScalar mass_kg;
+};
+
+/// The mass of a body is spread evenly over its shapes' volumes.
+std::vector<Member> MembersOf(const std::vector<const Body*>& bodies,
+                              std::vector<std::size_t>& owners) {
+  std::vector<Member> members;
+  const Pose X_RW = bodies.front()->X_WB.inverse();
+  const bool fixed = bodies.front()->fixed;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = *bodies[i];
+    double volume = 0;
+    for (const PlacedShape& placed : body.shapes) volume += std::visit(VolumeOf{}, placed.shape);
+    const double density = (fixed ? 1.0 : body.mass_kg) / volume;
+    for (const PlacedShape& placed : body.shapes) {
+      // The root's own shapes keep their pose to the last bit.
+      const Pose X_RS = i == 0 ? placed.X_BS : X_RW * body.X_WB * placed.X_BS;
+      members.push_back({&placed, X_RS, density * std::visit(VolumeOf{}, placed.shape)});
+      owners.push_back(i);
+    }
   }
-  const double density = (body.fixed ? 1.0 : body.mass_kg) / volume;
-  for (btScalar& mass : masses) mass *= density;
-  return masses;
+  return members;
 }
 
-bool IsSimple(const Body& body) {
-  const Pose& X_BS = body.shapes.front().X_BS;
-  return body.shapes.size() == 1 && X_BS.p_m.isZero() && X_BS.q.vec().isZero();
+bool IsSimple(const std::vector<Member>& members) {
+  const Pose& X_RS = members.front().X_RS;
+  return members.size() == 1 && X_RS.p_m.isZero() && X_RS.q.vec().isZero();
 }
+
+/// Bullet's damping is the share of the speed that is lost in a second.
+double ShareLost(double rate_per_s) { return 1 - std::exp(-rate_per_s); }
 
 }  // namespace
 
@@ -74,45 +93,55 @@ std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape) {
   return std::visit(MakeShapeOf{}, shape);
 }
 
-BulletBody::BulletBody(const Body& body) {
-  const btScalar mass = body.fixed ? 0 : body.mass_kg;
+BulletBody::BulletBody(const std::vector<const Body*>& bodies) {
+  const Body& root = *bodies.front();
+  const std::vector<Member> members = MembersOf(bodies, owners_);
+  btScalar mass = 0;
+  for (const Body* body : bodies) mass += root.fixed ? 0 : body->mass_kg;
   btVector3 inertia(0, 0, 0);
-  for (const PlacedShape& placed : body.shapes) shapes_.push_back(MakeShape(placed.shape));
+  for (const Member& member : members) shapes_.push_back(MakeShape(member.placed->shape));
   btCollisionShape* whole = shapes_.front().get();
-  if (IsSimple(body)) {
+  Pose X_CR;
+  if (IsSimple(members)) {
     if (mass > 0) whole->calculateLocalInertia(mass, inertia);
   } else {
-    btCompoundShape in_body_frame;
-    for (std::size_t i = 0; i < shapes_.size(); ++i)
-      in_body_frame.addChildShape(ToBullet(body.shapes[i].X_BS), shapes_[i].get());
-    btTransform X_BC;
-    in_body_frame.calculatePrincipalAxisTransform(MassesOfShapes(body).data(), X_BC, inertia);
-    if (body.fixed) inertia.setZero();
+    btCompoundShape in_root_frame;
+    std::vector<btScalar> masses;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      in_root_frame.addChildShape(ToBullet(members[i].X_RS), shapes_[i].get());
+      masses.push_back(members[i].mass_kg);
+    }
+    btTransform X_RC;
+    in_root_frame.calculatePrincipalAxisTransform(masses.data(), X_RC, inertia);
+    if (root.fixed) inertia.setZero();
     auto compound = std::make_unique<btCompoundShape>();
-    for (std::size_t i = 0; i < shapes_.size(); ++i)
-      compound->addChildShape(X_BC.inverse() * ToBullet(body.shapes[i].X_BS), shapes_[i].get());
+    for (std::size_t i = 0; i < members.size(); ++i)
+      compound->addChildShape(X_RC.inverse() * ToBullet(members[i].X_RS), shapes_[i].get());
     whole = shapes_.emplace_back(std::move(compound)).get();
-    X_CB_ = FromBullet(X_BC).inverse();
+    X_CR = FromBullet(X_RC).inverse();
   }
+  X_CB_.push_back(X_CR);
+  for (std::size_t i = 1; i < bodies.size(); ++i)
+    X_CB_.push_back(X_CR * root.X_WB.inverse() * bodies[i]->X_WB);
 
   btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, whole, inertia);
-  info.m_startWorldTransform = ToBullet(body.X_WB * X_CB_.inverse());
-  info.m_friction = body.friction;
-  info.m_rollingFriction = body.rolling_friction;
-  info.m_restitution = body.restitution;
-  info.m_linearDamping = 0;
-  info.m_angularDamping = 0;
+  info.m_startWorldTransform = ToBullet(root.X_WB * X_CR.inverse());
+  info.m_friction = root.friction;
+  info.m_rollingFriction = root.rolling_friction;
+  info.m_restitution = root.restitution;
+  info.m_linearDamping = ShareLost(root.linear_damping_per_s);
+  info.m_angularDamping = ShareLost(root.angular_damping_per_s);
   info.m_linearSleepingThreshold = kSleepSpeed_m_per_s;
   info.m_angularSleepingThreshold = kSleepTurn_rad_per_s;
   rigid_ = std::make_unique<btRigidBody>(info);
 }
 
-BodyState BulletBody::State() const {
+BodyState BulletBody::State(std::size_t i) const {
   const Pose X_WC = FromBullet(rigid_->getWorldTransform());
   const Eigen::Vector3d w = FromBullet(rigid_->getAngularVelocity());
   const Eigen::Vector3d v = FromBullet(rigid_->getLinearVelocity());
-  return {.X_WB = X_WC * X_CB_,
-          .v_WB_m_per_s = v + w.cross(X_WC.q * X_CB_.p_m),
+  return {.X_WB = X_WC * X_CB_[i],
+          .v_WB_m_per_s = v + w.cross(X_WC.q * X_CB_[i].p_m),
           .w_WB_rad_per_s = w,
           .asleep = !rigid_->isStaticObject() && !rigid_->isActive()};
 }

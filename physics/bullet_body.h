@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A body of the scene as a Bullet rigid body. Bullet wants the frame at the centre of mass with
-// principal axes; our frame B stays where the scene put it. Only for bullet_*.cc.
+// A body of the scene, with all bodies that fixed joints tie to it, as one Bullet rigid body.
+// Bullet wants the frame at the centre of mass with principal axes; our frame B stays where the
+// scene put it. Only for bullet_*.cc.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -21,15 +22,20 @@ std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape);
 
 class BulletBody {
  public:
-  explicit BulletBody(const Body& body);
+  /// `bodies`: the root, then those tied to it. Friction, restitution and damping are the root's.
+  explicit BulletBody(const std::vector<const Body*>& bodies);
 
   btRigidBody& rigid() { return *rigid_; }
-  BodyState State() const;
+  /// Of the i-th of the bodies.
+  BodyState State(std::size_t i) const;
+  /// Which of the bodies each of the rigid body's shapes belongs to.
+  const std::vector<std::size_t>& owners() const { return owners_; }
 
  private:
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::unique_ptr<btRigidBody> rigid_;
-  Pose X_CB_;  ///< frame B in Bullet's centre-of-mass frame
+  std::vector<std::size_t> owners_;
+  std::vector<Pose> X_CB_;  ///< the bodies' frames B in Bullet's centre-of-mass frame
 };
 
 }  // namespace prehend::physics

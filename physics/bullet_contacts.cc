@@ -16,6 +16,12 @@ constexpr double kTouchDistance_m = 0.0005;
 /// A pair that stops pushing for no longer than this still touches: 8 ms at 480 Hz.
 constexpr int kHoldTicks = 4;
 
+/// `shape` is the index that Bullet gives to a compound's shape at a point.
+const ContactSide& SideOf(const ContactSides& sides, const btCollisionObject& object, int shape) {
+  const auto& of_object = sides[static_cast<std::size_t>(object.getUserIndex())];
+  return of_object[of_object.size() == 1 ? 0 : static_cast<std::size_t>(shape)];
+}
+
 ContactPoint MakePoint(const btManifoldPoint& point, const ContactSide& side0,
                        const ContactSide& side1) {
   // Bullet's normal points from body 1 into body 0.
@@ -42,13 +48,11 @@ void BulletContacts::Read(const btDispatcher& const_dispatcher) {
   for (auto& [key, pair] : pairs_) pair.seen = false;
   for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
     const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
-    const ContactSide& side0 =
-        sides_[static_cast<std::size_t>(manifold.getBody0()->getUserIndex())];
-    const ContactSide& side1 =
-        sides_[static_cast<std::size_t>(manifold.getBody1()->getUserIndex())];
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
       const btManifoldPoint& point = manifold.getContactPoint(k);
       if (point.getDistance() >= kTouchDistance_m || point.getAppliedImpulse() <= 0) continue;
+      const ContactSide& side0 = SideOf(sides_, *manifold.getBody0(), point.m_index0);
+      const ContactSide& side1 = SideOf(sides_, *manifold.getBody1(), point.m_index1);
       Pair& pair = pairs_[std::minmax(side0, side1)];
       if (!pair.seen) pair = {.points = {}, .quiet_ticks = 0, .seen = true};
       pair.points.push_back(MakePoint(point, side0, side1));

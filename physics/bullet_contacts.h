@@ -15,8 +15,9 @@
 
 namespace prehend::physics {
 
-/// Who a collision object is. The world gives every object its index here as Bullet's user index.
-using ContactSides = std::vector<ContactSide>;
+/// Who a collision object is: one side for all of it, or one for each shape of its compound. The
+/// world gives every object its index here as Bullet's user index.
+using ContactSides = std::vector<std::vector<ContactSide>>;
 
 class BulletContacts {
  public:

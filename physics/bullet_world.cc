@@ -12,6 +12,8 @@
 #include "physics/bullet_contacts.h"
 #include "physics/bullet_convert.h"
 #include "physics/bullet_hand.h"
+#include "physics/bullet_joint.h"
+#include "physics/joint.h"
 
 // The only process-wide setting of Bullet that is touched. Every world sets the same constant.
 extern btScalar gDbvtMargin;
@@ -49,39 +51,50 @@ class BulletWorld final : public World {
 
  private:
   void Configure();
-  void AddBodies(const std::vector<Body>& bodies);
+  void AddBodies();
+  /// One rigid body of these bodies of the scene, the root first.
+  void AddRigid(const std::vector<std::size_t>& group);
+  void AddJoints();
   void AddHands(const std::vector<Hand>& hands, const std::vector<int>& styles);
 
+  const Scene scene_;
   const double dt_s_;
-  const double gravity_m_per_s2_;
   std::int64_t tick_ = 0;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
   btMultiBodyConstraintSolver solver_;
   btMultiBodyDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
-  std::vector<std::unique_ptr<BulletBody>> bodies_;
+  struct Place {
+    std::size_t rigid = 0;   ///< index into rigids_
+    std::size_t member = 0;  ///< of that rigid body
+  };
+  std::vector<std::unique_ptr<BulletBody>> rigids_;
+  std::vector<Place> places_;  ///< one per body of the scene
+  std::vector<std::unique_ptr<btTypedConstraint>> joints_;
   std::vector<std::unique_ptr<BulletHand>> hands_;
   ContactSides sides_;
   BulletContacts contacts_{{}};
 };
 
 BulletWorld::BulletWorld(const Scene& scene, const std::vector<int>& styles)
-    : dt_s_(1.0 / scene.world.rate_hz), gravity_m_per_s2_(scene.world.gravity_m_per_s2) {
+    : scene_(scene), dt_s_(1.0 / scene.world.rate_hz) {
   Configure();
-  AddBodies(scene.bodies);
+  AddBodies();
+  AddJoints();
   AddHands(scene.hands, styles);
   contacts_ = BulletContacts(sides_);
 }
 
 BulletWorld::~BulletWorld() {
   hands_.clear();
-  for (auto& body : bodies_) world_.removeRigidBody(&body->rigid());
+  for (auto& joint : joints_) world_.removeConstraint(joint.get());
+  for (auto& rigid : rigids_) world_.removeRigidBody(&rigid->rigid());
 }
 
 void BulletWorld::Configure() {
   gDbvtMargin = kBroadphaseMargin_m;
-  world_.setGravity({0, 0, -gravity_m_per_s2_});
+  world_.setGravity({0, 0, -scene_.world.gravity_m_per_s2});
   world_.setForceUpdateAllAabbs(false);
   world_.setLatencyMotionStateInterpolation(false);
   world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
@@ -99,16 +112,48 @@ void BulletWorld::Configure() {
   info.m_solverMode &= ~SOLVER_RANDMIZE_ORDER;
 }
 
-void BulletWorld::AddBodies(const std::vector<Body>& bodies) {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    auto body = std::make_unique<BulletBody>(bodies[i]);
-    body->rigid().setUserIndex(static_cast<int>(sides_.size()));
-    sides_.push_back({.body = static_cast<int>(i)});
-    if (bodies[i].fixed)
-      world_.addRigidBody(&body->rigid(), kFixedGroup, ~kFixedGroup);
-    else
-      world_.addRigidBody(&body->rigid(), kMovingGroup, -1);
-    bodies_.push_back(std::move(body));
+void BulletWorld::AddBodies() {
+  const std::size_t count = scene_.bodies.size();
+  places_.resize(count);
+  std::vector<std::vector<std::size_t>> tied(count);  // by root, the root itself first
+  for (std::size_t i = 0; i < count; ++i) tied[i].push_back(i);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto root = static_cast<std::size_t>(RootOf(scene_, static_cast<int>(i)));
+    if (root == i) continue;
+    tied[root].push_back(i);
+    tied[i].clear();
+  }
+  for (const auto& group : tied) {
+    if (!group.empty()) AddRigid(group);
+  }
+}
+
+void BulletWorld::AddRigid(const std::vector<std::size_t>& group) {
+  std::vector<const Body*> bodies;
+  for (const std::size_t i : group) {
+    places_[i] = {rigids_.size(), bodies.size()};
+    bodies.push_back(&scene_.bodies[i]);
+  }
+  auto made = std::make_unique<BulletBody>(bodies);
+  made->rigid().setUserIndex(static_cast<int>(sides_.size()));
+  std::vector<ContactSide>& sides = sides_.emplace_back();
+  for (const std::size_t owner : made->owners())
+    sides.push_back({.body = static_cast<int>(group[owner])});
+  if (bodies.front()->fixed)
+    world_.addRigidBody(&made->rigid(), kFixedGroup, ~kFixedGroup);
+  else
+    world_.addRigidBody(&made->rigid(), kMovingGroup, -1);
+  rigids_.push_back(std::move(made));
+}
+
+void BulletWorld::AddJoints() {
+  const auto rigid = [&](int body) -> btRigidBody& {
+    return rigids_[places_[static_cast<std::size_t>(body)].rigid]->rigid();
+  };
+  for (const Joint& joint : scene_.joints) {
+    if (joint.kind == JointKind::kFixed) continue;
+    joints_.push_back(MakeConstraint(joint, rigid(joint.base), rigid(joint.body)));
+    world_.addConstraint(joints_.back().get(), /*disableCollisionsBetweenLinkedBodies=*/true);
   }
 }
 
@@ -117,7 +162,7 @@ void BulletWorld::AddHands(const std::vector<Hand>& hands, const std::vector<int
     auto hand = std::make_unique<BulletHand>(hands[i], styles[i], kFirstHandGroup << i, world_);
     for (auto& collider : hand->colliders()) {
       collider->setUserIndex(static_cast<int>(sides_.size()));
-      sides_.push_back({.hand = static_cast<int>(i), .link = collider->m_link});
+      sides_.push_back({{.hand = static_cast<int>(i), .link = collider->m_link}});
     }
     hands_.push_back(std::move(hand));
   }
@@ -125,7 +170,7 @@ void BulletWorld::AddHands(const std::vector<Hand>& hands, const std::vector<int
 
 void BulletWorld::Step(const std::vector<HandCommand>& commands) {
   for (std::size_t i = 0; i < hands_.size(); ++i)
-    hands_[i]->Drive(commands[i], dt_s_, gravity_m_per_s2_);
+    hands_[i]->Drive(commands[i], dt_s_, scene_.world.gravity_m_per_s2);
   world_.stepSimulation(dt_s_, 0);
   contacts_.Read(dispatcher_);
   ++tick_;
@@ -133,8 +178,16 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
 
 void BulletWorld::Describe(Snapshot& snapshot) const {
   snapshot.tick = tick_;
-  snapshot.bodies.resize(bodies_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i) snapshot.bodies[i] = bodies_[i]->State();
+  snapshot.bodies.resize(places_.size());
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    snapshot.bodies[i] = rigids_[places_[i].rigid]->State(places_[i].member);
+  snapshot.joints.resize(scene_.joints.size());
+  for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
+    const Joint& joint = scene_.joints[i];
+    snapshot.joints[i] =
+        StateOf(scene_, joint, snapshot.bodies[static_cast<std::size_t>(joint.base)].X_WB,
+                snapshot.bodies[static_cast<std::size_t>(joint.body)].X_WB);
+  }
   snapshot.hands.resize(hands_.size());
   for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i]->Describe(snapshot.hands[i]);
   contacts_.Describe(snapshot.contacts);

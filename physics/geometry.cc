@@ -12,6 +12,9 @@ namespace {
 /// degrees.
 constexpr double kUprightCosine = 0.996;
 
+/// Of the vertical component of a support's own z axis.
+constexpr double kUprightError = 1e-9;
+
 /// Half extents of a shape along axes in which it stands with rotation R.
 struct HalfExtentsIn {
   const Eigen::Matrix3d& R;
@@ -70,8 +73,46 @@ Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB) {
   return bounds;
 }
 
+double HighestBelow(const Body& support, const Pose& X_WS, const Body& object, const Pose& X_WO) {
+  // A part that reaches this far into the object is still below it.
+  constexpr double kOverlap_m = 0.005;
+  const bool upright = std::abs((X_WS.q * Eigen::Vector3d::UnitZ()).z() - 1) < kUprightError;
+  // The footprints are compared in the support's own axes if it stands upright: a turned tray's
+  // walls would look thick in the world's.
+  const Pose X_WA = upright ? Pose{Eigen::Vector3d::Zero(), X_WS.q} : Pose{};
+  const Eigen::AlignedBox3d bounds = WorldBounds(object, X_WA.inverse() * X_WO);
+  double top = -HUGE_VAL;
+  for (const PlacedShape& placed : support.shapes) {
+    const Eigen::AlignedBox3d part = WorldBounds(placed.shape, X_WA.inverse() * X_WS * placed.X_BS);
+    const Eigen::AlignedBox3d shared = part.intersection(bounds);
+    const bool beneath = shared.min().x() < shared.max().x() && shared.min().y() < shared.max().y();
+    if (beneath && part.max().z() <= bounds.min().z() + kOverlap_m)
+      top = std::max(top, part.max().z());
+  }
+  return std::isfinite(top) ? top : WorldBounds(support, X_WS).max().z();
+}
+
 double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S) {
   return std::visit(DistanceOf{p_S}, shape);
+}
+
+namespace {
+
+double DistanceTo(const PlacedShape& part, const Eigen::Vector3d& p_B_m) {
+  return SignedDistance(part.shape, part.X_BS.inverse() * p_B_m);
+}
+
+}  // namespace
+
+const PlacedShape& PartAt(const Body& body, const Eigen::Vector3d& p_B_m) {
+  return *std::min_element(body.shapes.begin(), body.shapes.end(),
+                           [&](const PlacedShape& l, const PlacedShape& r) {
+                             return DistanceTo(l, p_B_m) < DistanceTo(r, p_B_m);
+                           });
+}
+
+double DistanceTo(const Body& body, const Eigen::Vector3d& p_B_m) {
+  return DistanceTo(PartAt(body, p_B_m), p_B_m);
 }
 
 bool IsRoundAboutVertical(const Body& body, const Pose& X_WB) {

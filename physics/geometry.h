@@ -18,8 +18,18 @@ Eigen::AlignedBox3d WorldBounds(const Shape& shape, const Pose& X_WS);
 /// World axes-aligned box of a whole body, metres.
 Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB);
 
+/// Height of what carries an object that stands at X_WO: the highest part of `support` that lies
+/// below it. The top of the whole support when no part does.
+double HighestBelow(const Body& support, const Pose& X_WS, const Body& object, const Pose& X_WO);
+
 /// Distance of a point, in the shape's frame, from the surface: negative inside. Metres.
 double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S);
+
+/// The part of a body, in its own frame, that is nearest to a point.
+const PlacedShape& PartAt(const Body& body, const Eigen::Vector3d& p_B_m);
+
+/// Distance of a point, in the body's frame, from the nearest surface: negative inside. Metres.
+double DistanceTo(const Body& body, const Eigen::Vector3d& p_B_m);
 
 /// Do all horizontal directions look the same? True for spheres and for upright cylinders and
 /// capsules.

@@ -7,6 +7,7 @@
 
 #include "physics/geometry.h"
 #include "physics/hand_clearance.h"
+#include "physics/joint.h"
 
 namespace prehend::physics {
 namespace {
@@ -26,6 +27,13 @@ constexpr int kRoundDirections = 24;
 /// Cost, in radians, of a grip that the hand cannot open far enough for: only when nothing else is
 /// left.
 constexpr double kTooWide = 100;
+
+/// Cost of coming from where the hand does not get as deep as the point that it has to grasp.
+constexpr double kTooDeep = 50;
+constexpr double kDeepEnough_m = 0.01;
+
+/// Cost of a hand that is turned by a right angle about its way: only when upright does not do.
+constexpr double kRolled = 20;
 
 /// Bends of the way, tried in order: how far the last part follows the direction of arrival, how
 /// much it rises first.
@@ -71,17 +79,40 @@ std::vector<double> YawsOf(const Body& body, const Pose& X_WB, double hand_yaw_r
   return yaws;
 }
 
+/// What the hand has to enclose, and where: a body as a whole at its centre, or a part of it.
+struct Target {
+  Target(const Body& whole, const Pose& X_WWhole, const std::optional<Eigen::Vector3d>& point_m)
+      : body(whole), X_WB(X_WWhole) {
+    if (point_m) {
+      const PlacedShape& part = PartAt(whole, *point_m);
+      body.shapes = {{part.shape, {}}};
+      X_WB = X_WWhole * part.X_BS;
+    }
+    box = BoundingBox(body);
+    centre_W_m = X_WB * box.p_BC_m;
+    point_W_m = point_m ? X_WWhole * *point_m : centre_W_m;
+  }
+
+  Body body;
+  Pose X_WB;
+  LocalBox box;
+  Eigen::Vector3d centre_W_m;
+  Eigen::Vector3d point_W_m;
+};
+
 class CandidateList {
  public:
   CandidateList(const Scene& scene, const Snapshot& now, const ReachQuery& query)
       : query_(query),
-        body_(scene.bodies[static_cast<std::size_t>(query.object)]),
         style_(scene.hands[static_cast<std::size_t>(query.hand)]
                    .model.styles[static_cast<std::size_t>(query.style)]),
-        X_WB_(now.bodies[static_cast<std::size_t>(query.object)].X_WB),
-        box_(BoundingBox(body_)),
-        centre_m_(X_WB_ * box_.p_BC_m),
-        lowest_m_(WorldBounds(body_, X_WB_).min().z()) {}
+        target_(scene.bodies[static_cast<std::size_t>(query.object)],
+                now.bodies[static_cast<std::size_t>(query.object)].X_WB, query.point_m),
+        lowest_m_(WorldBounds(scene.bodies[static_cast<std::size_t>(query.object)],
+                              now.bodies[static_cast<std::size_t>(query.object)].X_WB)
+                      .min()
+                      .z()),
+        mounted_(JointThatMoves(scene, query.object) >= 0) {}
 
   std::vector<Candidate> FromAbove() const;
   std::vector<Candidate> FromSide() const;
@@ -91,29 +122,36 @@ class CandidateList {
   Candidate Make(const GraspApproach& approach, const Eigen::Quaterniond& q) const;
 
   const ReachQuery& query_;
-  const Body& body_;
+  double HalfWidth(const Eigen::Vector3d& direction_W) const {
+    return HalfWidthAlong(target_.box, target_.X_WB, direction_W);
+  }
+
   const GraspStyle& style_;
-  const Pose X_WB_;
-  const LocalBox box_;
-  const Eigen::Vector3d centre_m_;
+  const Target target_;
   const double lowest_m_;
+  const bool mounted_;  ///< held by a joint, so there is no table below it
 };
 
 Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quaterniond& q) const {
   const Eigen::Vector3d toward_W = q * approach.toward, grip_W = q * style_.grip_axis;
-  const double half_grip = HalfWidthAlong(box_, X_WB_, grip_W);
-  const double depth =
-      std::max(approach.pads_m, approach.palm_gap_m + HalfWidthAlong(box_, X_WB_, toward_W));
+  const double half_grip = HalfWidth(grip_W);
+  // The post stands at the face, so the middle counts along the grip, the point in the other ways.
+  const Eigen::Vector3d to_middle = target_.centre_W_m - target_.point_W_m;
+  const Eigen::Vector3d point_W = target_.point_W_m + grip_W * grip_W.dot(to_middle);
+  const double to_face = HalfWidth(toward_W) - toward_W.dot(to_middle);
+  const double depth = std::max(approach.pads_m, approach.palm_gap_m + to_face);
   // In H: from the post along the grip axis to the object's middle, at the right depth.
   const Eigen::Vector3d on_post =
       style_.post_m - approach.toward * approach.toward.dot(style_.post_m);
   const Eigen::Vector3d centre_H = on_post + style_.grip_axis * half_grip + approach.toward * depth;
 
-  Candidate candidate{.X_WH = {centre_m_ - q * centre_H, q}, .toward_W = toward_W};
-  candidate.X_WH.p_m.z() = std::max(candidate.X_WH.p_m.z(), lowest_m_ + approach.floor_m);
+  Candidate candidate{.X_WH = {point_W - q * centre_H, q}, .toward_W = toward_W};
+  if (!mounted_)
+    candidate.X_WH.p_m.z() = std::max(candidate.X_WH.p_m.z(), lowest_m_ + approach.floor_m);
   candidate.X_WH.p_m += query_.offset_m;
   candidate.cost = RotationVector(q * query_.from.X_WH.q.conjugate()).norm();
   if (2 * half_grip > style_.opening_m) candidate.cost += kTooWide;
+  if (query_.point_m && depth > approach.pads_m + kDeepEnough_m) candidate.cost += kTooDeep;
   return candidate;
 }
 
@@ -121,7 +159,7 @@ std::vector<Candidate> CandidateList::FromAbove() const {
   std::vector<Candidate> candidates;
   if (!style_.above) return candidates;
   const double hand_yaw = YawOf(query_.from.X_WH.q * style_.grip_axis);
-  for (const double yaw : YawsOf(body_, X_WB_, hand_yaw)) {
+  for (const double yaw : YawsOf(target_.body, target_.X_WB, hand_yaw)) {
     const Eigen::Quaterniond q = RotationFromPairs(style_.above->toward, style_.grip_axis,
                                                    -Eigen::Vector3d::UnitZ(), Horizontal(yaw));
     candidates.push_back(Make(*style_.above, q));
@@ -132,23 +170,36 @@ std::vector<Candidate> CandidateList::FromAbove() const {
 std::vector<Candidate> CandidateList::FromSide() const {
   std::vector<Candidate> candidates;
   if (!style_.side) return candidates;
-  Eigen::Vector3d way = centre_m_ - query_.from.X_WH.p_m;
+  Eigen::Vector3d way = target_.point_W_m - query_.from.X_WH.p_m;
   way.z() = 0;
-  const bool above_it = way.norm() < box_.half_size_m.minCoeff();
-  for (const double yaw : YawsOf(body_, X_WB_, YawOf(way))) {
-    const Eigen::Vector3d toward_W = Horizontal(yaw);
+  const bool above_it = way.norm() < target_.box.half_size_m.minCoeff();
+  const double half_height = HalfWidth(Eigen::Vector3d::UnitZ());
+  const auto add = [&](const Eigen::Vector3d& toward_W, const Eigen::Vector3d& up_W, double cost) {
     const Eigen::Quaterniond q =
-        RotationFromPairs(style_.side->toward, style_.side->up, toward_W, Eigen::Vector3d::UnitZ());
+        RotationFromPairs(style_.side->toward, style_.side->up, toward_W, up_W);
     candidates.push_back(Make(*style_.side, q));
+    candidates.back().cost += cost;
+  };
+  Eigen::Vector3d inwards = target_.centre_W_m - target_.point_W_m;
+  inwards.z() = 0;
+  const bool at_rim = inwards.norm() > kDeepEnough_m;
+  for (const double yaw : YawsOf(target_.body, target_.X_WB, YawOf(at_rim ? inwards : way))) {
+    const Eigen::Vector3d toward_W = Horizontal(yaw);
+    const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(toward_W);
     // Coming from the far side means going around the object.
-    if (!above_it)
-      candidates.back().cost += std::acos(std::clamp(toward_W.dot(way.normalized()), -1.0, 1.0));
+    const double around =
+        above_it ? 0 : std::acos(std::clamp(toward_W.dot(way.normalized()), -1.0, 1.0));
+    add(toward_W, Eigen::Vector3d::UnitZ(), around);
+    // A thing that is lower than wide can also be gripped from above and below.
+    if (half_height >= HalfWidth(across_W)) continue;
+    add(toward_W, across_W, around + kRolled);
+    add(toward_W, -across_W, around + kRolled);
   }
   return candidates;
 }
 
 bool CandidateList::SideIsNatural() const {
-  const Eigen::Vector3d size = WorldBounds(body_, X_WB_).sizes();
+  const Eigen::Vector3d size = WorldBounds(target_.body, target_.X_WB).sizes();
   return style_.side && size.z() >= kTall_m && size.z() >= kSlender * std::min(size.x(), size.y());
 }
 

@@ -26,6 +26,8 @@ struct ReachQuery {
   int style = 0;   ///< index into HandModel::styles
   Approach approach = Approach::kAuto;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  /// Grasp the part of the object that is nearest to this point, there. In the object's frame.
+  std::optional<Eigen::Vector3d> point_m;
   TargetState from;
   double over_s = 0.8;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stands in the world before the first tick: plain structs with defaults. SI units, world z
 // up. A Scene is complete: the same Scene and script give the same run, bit for bit. Tested by
-// tests/physics/scene_test.cc
+// tests/physics/joint_test.cc
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,33 @@ struct Body {
   double friction = 0.8;
   double rolling_friction = 0;
   double restitution = 0;
+  double linear_damping_per_s = 0;   ///< its speed decays with this rate, as if in a thick medium
+  double angular_damping_per_s = 0;  ///< the same for its turning
   Pose X_WB;
+};
+
+/// What a joint leaves free. A ball joint has no limits, friction or spring.
+enum class JointKind {
+  kFixed,   ///< nothing: the two are one rigid body, but touched apart
+  kSlider,  ///< motion along the axis
+  kHinge,   ///< turning about the axis through the pivot
+  kBall     ///< turning about the pivot
+};
+
+/// Ties a body to another one, its base. As placed, the joint stands at 0. Metres, newtons and
+/// newton seconds per metre for a slider; radians and newton metres for a hinge.
+struct Joint {
+  JointKind kind = JointKind::kFixed;
+  int body = 0;  ///< index into Scene::bodies; at most one joint per body
+  int base = 0;  ///< index into Scene::bodies; no body is its own base's base
+  Eigen::Vector3d pivot_W_m = Eigen::Vector3d::Zero();  ///< as placed
+  Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX();    ///< unit, as placed; positive way
+  double lower = 0;                                     ///< at most 0
+  double upper = 0;                                     ///< at least 0
+  double friction = 0;  ///< largest force or torque that holds still
+  double damping = 0;   ///< force or torque per speed
+  double spring = 0;    ///< force or torque per distance from `rest`
+  double rest = 0;      ///< where the spring pulls to
 };
 
 /// A hand that takes part: the model says how it is built, the pose where the tracked target
@@ -63,8 +89,12 @@ struct WorldSettings {
 struct Scene {
   WorldSettings world;
   std::vector<Body> bodies;
+  std::vector<Joint> joints;
   std::vector<Hand> hands;
 };
+
+/// Can it be picked up? Not when it is fixed, nor when a joint ties it to something.
+bool MovesFreely(const Scene& scene, int body);
 
 /// Tight oriented bounding box of a body, in its own frame B: centre and half sizes, metres.
 struct LocalBox {

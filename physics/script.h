@@ -21,6 +21,7 @@ struct ReachStep {  ///< move to where the style's closed grasp would hold the o
   std::string style = "wrap";
   Approach approach = Approach::kAuto;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< added to the grasp pose, world axes
+  std::optional<Eigen::Vector3d> point_m;  ///< what to grasp, in the object's frame; else its centre
 };
 struct TriggerStep {  ///< close_to, open_to: the analog trigger goes linearly to this value, 0..1
   double trigger = 0;
@@ -38,6 +39,10 @@ struct PlaceStep {  ///< place_on: lower until the held object's lowest point me
 struct RetreatStep {  ///< retreat_by_m: back along the direction the hand came from
   double by_m = 0.2;
 };
+struct FollowJointStep {  ///< the target goes the way that the entity's joint leaves free
+  std::string entity;
+  double to = 1;  ///< until the joint stands at this fraction of its range
+};
 struct WaitStep {};
 struct TimedPose {
   double t_s = 0;  ///< since the step's start, increasing
@@ -48,7 +53,7 @@ struct PosesStep {  ///< raw 6D way-points
   std::vector<TimedPose> poses;
 };
 using StepAction = std::variant<WaitStep, ReachStep, TriggerStep, MoveStep, CarryStep, PlaceStep,
-                                RetreatStep, PosesStep>;
+                                RetreatStep, FollowJointStep, PosesStep>;
 
 struct Step {
   int hand = 0;  ///< index into Scene::hands

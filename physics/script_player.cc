@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "physics/geometry.h"
+#include "physics/joint.h"
 #include "physics/reach_planner.h"
 
 namespace prehend::physics {
@@ -19,6 +21,8 @@ constexpr double kPress_m = 0.002;
 constexpr double kMostSpring_m = 0.01;
 /// Putting down is over after this share of its time; in the rest the object settles.
 constexpr double kLoweringShare = 0.85;
+/// Way-points on the arc of a joint: between them the way is straight to a tenth of a millimetre.
+constexpr int kJointWaypoints = 40;
 
 double DurationOf(const Step& step) {
   const auto* poses = std::get_if<PosesStep>(&step.action);
@@ -37,20 +41,14 @@ int FindBody(const Scene& scene, const std::string& name) {
   return it == scene.bodies.end() ? -1 : static_cast<int>(it - scene.bodies.begin());
 }
 
-/// Height of what carries an object with these bounds: the highest part of `support` that is below
-/// it.
-double TopBelow(const Body& support, const Pose& X_WB, const Eigen::AlignedBox3d& object) {
-  constexpr double kOverlap_m =
-      0.005;  // a part that reaches this far into the object is still below it
-  double top = -HUGE_VAL;
-  for (const PlacedShape& placed : support.shapes) {
-    const Eigen::AlignedBox3d part = WorldBounds(placed.shape, X_WB * placed.X_BS);
-    const Eigen::AlignedBox3d shared = part.intersection(object);
-    const bool beneath = shared.min().x() < shared.max().x() && shared.min().y() < shared.max().y();
-    if (beneath && part.max().z() <= object.min().z() + kOverlap_m)
-      top = std::max(top, part.max().z());
+/// Hands that touch a body, at least one.
+int HandsOn(int body, const Snapshot& now) {
+  std::set<int> hands;
+  for (const ContactPoint& contact : now.contacts) {
+    if (contact.a.body == body && contact.b.hand >= 0) hands.insert(contact.b.hand);
+    if (contact.b.body == body && contact.a.hand >= 0) hands.insert(contact.a.hand);
   }
-  return std::isfinite(top) ? top : WorldBounds(support, X_WB).max().z();
+  return std::max(static_cast<int>(hands.size()), 1);
 }
 
 }  // namespace
@@ -73,11 +71,13 @@ class ScriptPlayer::Resolver {
   void operator()(const CarryStep& carry);
   void operator()(const PlaceStep& place);
   void operator()(const RetreatStep& retreat);
+  void operator()(const FollowJointStep& follow);
   void operator()(const PosesStep& poses);
 
  private:
   void MoveBy(const Eigen::Vector3d& by_m, double duration_s);
   void Follow(const Segment& segment);
+  void Follow(const std::vector<TimedPose>& poses);
   int HeldBody() const;
 
   const Scene& scene_;
@@ -90,6 +90,11 @@ class ScriptPlayer::Resolver {
 void ScriptPlayer::Resolver::Follow(const Segment& segment) {
   hand_.motion = Trajectory(hand_.target);
   hand_.motion.Append(segment);
+  hand_.target = hand_.motion.At(hand_.motion.duration_s());
+}
+
+void ScriptPlayer::Resolver::Follow(const std::vector<TimedPose>& poses) {
+  hand_.motion = WaypointTrajectory(hand_.target, poses);
   hand_.target = hand_.motion.At(hand_.motion.duration_s());
 }
 
@@ -114,6 +119,7 @@ void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
                                       .style = style,
                                       .approach = reach.approach,
                                       .offset_m = reach.offset_m,
+                                      .point_m = reach.point_m,
                                       .from = hand_.target,
                                       .over_s = step_.over_s});
     hand_.style = style;
@@ -136,9 +142,7 @@ int ScriptPlayer::Resolver::HeldBody() const {
   for (const ContactPoint& contact : now_.contacts) {
     const ContactSide &body = contact.a.body >= 0 ? contact.a : contact.b,
                       &hand = contact.a.body >= 0 ? contact.b : contact.a;
-    if (body.body < 0 || hand.hand != step_.hand ||
-        scene_.bodies[static_cast<std::size_t>(body.body)].fixed)
-      continue;
+    if (body.body < 0 || hand.hand != step_.hand || !MovesFreely(scene_, body.body)) continue;
     impulse[static_cast<std::size_t>(body.body)] += contact.normal_impulse_n_s;
   }
   const auto most = std::max_element(impulse.begin(), impulse.end());
@@ -163,12 +167,13 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
   } else {
     const auto h = static_cast<std::size_t>(held), s = static_cast<std::size_t>(support);
     const Eigen::AlignedBox3d object = WorldBounds(scene_.bodies[h], now_.bodies[h].X_WB);
-    const double drop = object.min().z() - TopBelow(scene_.bodies[s], now_.bodies[s].X_WB, object);
+    const double drop = object.min().z() - HighestBelow(scene_.bodies[s], now_.bodies[s].X_WB,
+                                                        scene_.bodies[h], now_.bodies[h].X_WB);
     const double stiffness =
         scene_.hands[static_cast<std::size_t>(step_.hand)].model.translation.proportional;
-    const double spring = std::min(
-        scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / std::max(stiffness, 1.0),
-        kMostSpring_m);
+    const double weight_n =
+        scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / HandsOn(held, now_);
+    const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMostSpring_m);
     MoveBy({0, 0, -drop - kPress_m - spring}, kLoweringShare * step_.over_s);
   }
 }
@@ -182,9 +187,28 @@ void ScriptPlayer::Resolver::operator()(const RetreatStep& retreat) {
 }
 
 void ScriptPlayer::Resolver::operator()(const PosesStep& poses) {
-  if (poses.poses.empty()) return;
-  hand_.motion = WaypointTrajectory(hand_.target, poses.poses);
-  hand_.target = hand_.motion.At(hand_.motion.duration_s());
+  if (!poses.poses.empty()) Follow(poses.poses);
+}
+
+void ScriptPlayer::Resolver::operator()(const FollowJointStep& follow) {
+  const int body = FindBody(scene_, follow.entity);
+  const int index = body < 0 ? -1 : JointThatMoves(scene_, body);
+  if (index < 0) {
+    problem_ = "follow_joint: no joint moves '" + follow.entity + "'";
+    return;
+  }
+  const Joint& joint = scene_.joints[static_cast<std::size_t>(index)];
+  const Pose& X_WBase = now_.bodies[static_cast<std::size_t>(joint.base)].X_WB;
+  const double to = joint.lower + follow.to * (joint.upper - joint.lower);
+  const double change = to - now_.joints[static_cast<std::size_t>(index)].position;
+  std::vector<TimedPose> poses;
+  for (int i = 1; i <= kJointWaypoints; ++i) {
+    const double x = static_cast<double>(i) / kJointWaypoints;
+    const Pose motion = MotionAlong(scene_, joint, X_WBase, MinimumJerk(x) * change);
+    poses.push_back({.t_s = x * step_.over_s, .X_WH = motion * hand_.target.X_WH, .trigger = {}});
+  }
+  hand_.came_along_W = MotionAlong(scene_, joint, X_WBase, change).q * hand_.came_along_W;
+  Follow(poses);
 }
 
 ScriptPlayer::ScriptPlayer(const Scene& scene, Script script)

@@ -33,6 +33,7 @@ class StateHash {
   }
   void Add(const Snapshot& snapshot) {
     for (const BodyState& body : snapshot.bodies) Add(body);
+    for (const JointState& joint : snapshot.joints) Add(&joint.position, 1);
     for (const HandState& hand : snapshot.hands) {
       Add(hand.palm);
       Add(hand.joints_rad.data(), static_cast<Eigen::Index>(hand.joints_rad.size()));

@@ -17,6 +17,12 @@ struct BodyState {
   bool asleep = false;
 };
 
+/// Where a joint stands, in the order of Scene::joints. A fixed or ball joint is always at 0.
+struct JointState {
+  double position = 0;  ///< metres or radians from where it was placed
+  double fraction = 0;  ///< of its range: 0 at the lower limit, 1 at the upper one
+};
+
 struct HandState {
   BodyState palm;  ///< never asleep
   std::vector<Pose>
@@ -47,6 +53,7 @@ struct ContactPoint {
 struct Snapshot {
   std::int64_t tick = 0;  ///< physics steps done; 0 is the scene as placed
   std::vector<BodyState> bodies;
+  std::vector<JointState> joints;
   std::vector<HandState> hands;
   std::vector<ContactPoint> contacts;  ///< sorted by (a, b, point); a < b
 };

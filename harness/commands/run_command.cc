@@ -1,19 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend run. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "harness/commands/command.h"
 #include "harness/episode_file.h"
 #include "harness/run_output.h"
+#include "harness/run_trials.h"
+#include "harness/shell_word.h"
 #include "harness/whole_file.h"
 
 namespace prehend::harness {
 namespace {
 
+constexpr int kMostTrials = 100000;
+
 void Declare(CLI::App& options) {
   options.add_option("scenario", "a name, skill/name or a file")->required()->expected(1);
   DeclareRunOptions(options);
+  options
+      .add_option("--trials",
+                  "simulate this many variations of the scenario and count its outcomes")
+      ->type_name("N")
+      ->expected(1)
+      ->check(CLI::Range(1, kMostTrials));
+  options.add_option("--trial", "simulate one of these variations")
+      ->type_name("K")
+      ->expected(1)
+      ->check(CLI::Range(1, kMostTrials));
+  options.add_option("--jobs", "trials at a time; default: one per core")
+      ->type_name("N")
+      ->expected(1)
+      ->check(CLI::Range(1, 256));
   DeclareFlag(options, "--json", "one JSON object instead of a table");
   options.add_option("--record", "write the episode to FILE, for 'prehend resegment'")
       ->type_name("FILE")
@@ -21,10 +41,41 @@ void Declare(CLI::App& options) {
   DeclareFlag(options, "--measure", "say where the time went, and the peak memory");
 }
 
+/// The command that shows one trial again, but for its number.
+std::string AgainCommand(const CLI::App& options) {
+  std::string command = "prehend run " + ShellWord(ValueOf(options, "scenario"));
+  for (const std::string& setting : ValuesOf(options, "--set"))
+    command += " --set " + ShellWord(setting);
+  return command;
+}
+
+ExitCode CountTrials(const CLI::App& options, const RunRequest& request,
+                     const CommandContext& context) {
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const TrialSettings settings{
+      .count = std::stoi(ValueOf(options, "--trials")),
+      .jobs = std::stoi(ValueOf(options, "--jobs", std::to_string(cores)))};
+  const auto report = RunTrials(request, context.root, settings, [&](int done) {
+    if (context.progress)
+      context.err << "\r\033[K[" << done << "/" << settings.count << "]" << std::flush;
+  });
+  if (context.progress) context.err << "\r\033[K" << std::flush;
+  if (!report.value) return Complain(context, report.diagnostics);
+  context.out << TrialTable(*report.value, AgainCommand(options));
+  return ExitCode::kAgrees;
+}
+
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const auto file = FindScenarioOrComplain(ValueOf(options, "scenario"), context);
   if (!file) return ExitCode::kNothing;
-  const ReadResult<PreparedRun> prepared = PrepareRun(RequestOf(options, file->path), context.root);
+  RunRequest request = RequestOf(options, file->path);
+  if (IsGiven(options, "--trials")) return CountTrials(options, request, context);
+  if (IsGiven(options, "--trial")) {
+    auto varied = RequestOfTrial(request, context.root, std::stoi(ValueOf(options, "--trial")));
+    if (!varied.value) return Complain(context, varied.diagnostics);
+    request = std::move(*varied.value);
+  }
+  const ReadResult<PreparedRun> prepared = PrepareRun(request, context.root);
   if (!prepared.value) return Complain(context, prepared.diagnostics);
 
   const bool measure = IsGiven(options, "--measure");
@@ -69,6 +120,8 @@ Command RunCommand() {
               "prehend run milk_carton_wrap --record milk.jsonl\n"
               "prehend run milk_carton_wrap --set entities.milk.mass_kg=8\n"
               "prehend run milk_carton_wrap --set lift_rise=10cm --measure\n"
+              "prehend run furniture/drawer_is_opened_with_hook --trials 50\n"
+              "prehend run furniture/drawer_is_opened_with_hook --trial 17\n"
               "prehend run my/scenario.yaml --grammar my/rules.grammar",
           .declare = Declare,
           .run = Run};

@@ -154,7 +154,7 @@ class Carrier {
 
 Carrying FindCarrying(const Recording& recording, const OracleSettings& settings,
                       const Grasp& grasp, const std::map<int, Spans>& supports) {
-  if (recording.scene.bodies[grasp.body].fixed) return {};
+  if (!physics::MovesFreely(recording.scene, grasp.body)) return {};
   return Carrier(recording, settings, grasp, supports).Find();
 }
 

@@ -52,7 +52,7 @@ TEST(EpisodeFile, WhatIsLeftOutHasADefault) {
 
 TEST(EpisodeFile, IsReadAsItWasWritten) {
   const auto read = ReadText(std::string(kHeader) +
-                             R"({"tick": 3, "looks": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.6, 0.8, 0, 0], "asleep": true}}, )"
+                             R"({"tick": 3, "looks": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.6, 0.8, 0, 0], "asleep": true, "joint_fraction": 0.25}}, )"
                              R"("hands": {"hand": {"trigger": 0.4, "style": "pinch", "ahead": [0, 0, -1], "feelers_m": [[1, 2, 3, 0.01]]}}, )"
                              R"("touches": [{"a": "table", "b": "cup", "up_on_b": 1, "force_n": 2}]})"
                              "\n{\"end_tick\": 9}\n");
@@ -69,6 +69,7 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
   EXPECT_EQ(b.entities[1].p_WB_m, a.entities[1].p_WB_m);
   EXPECT_TRUE(b.entities[1].q_WB.isApprox(a.entities[1].q_WB));
   EXPECT_TRUE(b.entities[1].asleep);
+  EXPECT_EQ(b.entities[1].joint_fraction, 0.25);
   EXPECT_EQ(b.hands[0].style, 1);
   EXPECT_EQ(b.hands[0].trigger, 0.4);
   EXPECT_EQ(b.feelers[0][0].radius_m, 0.01);

@@ -46,7 +46,7 @@ TEST(ReadScenario, TheProbe) {
 
 TEST(ReadScenario, EveryStep) {
   const Scenario scenario = Read(ProbeWith("  - right_hand: {close_to: 1.0}\n", R"(
-  - right_hand: {reach: milk, style: pinch, from: above, offset_m: [0, 0, 0.1], over_s: 1}
+  - right_hand: {reach: milk, style: pinch, from: above, offset_m: [0, 0, 0.1], point_m: [0, 0.03, 0.05], over_s: 1}
   - right_hand: {close_to: 0.5, over_s: 1}
   - right_hand: {open_to: 0.25, over_s: 1}
   - right_hand: {lift_by_m: 0.1, over_s: 1}
@@ -64,6 +64,7 @@ TEST(ReadScenario, EveryStep) {
   EXPECT_EQ(reach.style, "pinch");
   EXPECT_EQ(reach.approach, physics::Approach::kAbove);
   EXPECT_EQ(reach.offset_m.z(), 0.1);
+  EXPECT_EQ(reach.point_m, Eigen::Vector3d(0, 0.03, 0.05));
   EXPECT_EQ(std::get<physics::TriggerStep>(step(2).action).trigger, 0.5);
   EXPECT_EQ(std::get<physics::TriggerStep>(step(3).action).trigger, 0.25);
   EXPECT_EQ(std::get<physics::MoveStep>(step(4).action).by_m, Eigen::Vector3d(0, 0, 0.1));

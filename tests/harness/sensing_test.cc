@@ -41,6 +41,33 @@ physics::ContactPoint Point(physics::ContactSide a, physics::ContactSide b, doub
       .a = a, .b = b, .nhat_BA_W = {std::sqrt(1 - up * up), 0, up}, .normal_impulse_n_s = impulse};
 }
 
+TEST(Sensing, TellsWhereAJointStands) {
+  physics::Scene scene = TwoBodiesAndAHand();
+  scene.joints.push_back({.kind = physics::JointKind::kSlider, .body = 1, .upper = 0.4});
+  physics::Snapshot snapshot = StillSnapshot(1);
+  snapshot.joints = {{.position = 0.1, .fraction = 0.25}};
+  Sensing sensing(scene, 480);
+  const grammar::Frame frame = sensing.Sense(snapshot);
+  EXPECT_EQ(frame.entities[1].joint_fraction, 0.25);
+  EXPECT_EQ(frame.entities[0].joint_fraction, 0);
+}
+
+TEST(Sensing, HandsWithDifferentStylesShareOneListOfNames) {
+  physics::Scene scene = TwoBodiesAndAHand();
+  scene.hands.push_back(scene.hands[0]);
+  scene.hands[0].model.styles = {{.name = "wrap"}, {.name = "pinch"}};
+  scene.hands[1].model.styles = {{.name = "jaws"}, {.name = "wrap"}};
+  EXPECT_EQ(StyleNames(scene), (std::vector<std::string>{"wrap", "pinch", "jaws"}));
+
+  physics::Snapshot snapshot = StillSnapshot(1);
+  snapshot.hands.push_back(snapshot.hands[0]);
+  snapshot.hands[0].style = 1;
+  Sensing sensing(scene, 480);
+  const grammar::Frame frame = sensing.Sense(snapshot);
+  EXPECT_EQ(frame.hands[0].style, 1);  // pinch
+  EXPECT_EQ(frame.hands[1].style, 2);  // jaws
+}
+
 TEST(Sensing, LooksAtEveryRateWithoutDrift) {
   const physics::Scene scene = TwoBodiesAndAHand();
   for (const int hz : {30, 60, 90, 240, 480, 7}) {

@@ -70,6 +70,28 @@ TEST(ReachPlannerTest, TheWayIsClearFromManySidesAndEndsWithTheHandOverTheTable)
   }
 }
 
+TEST(ReachPlannerTest, APointOnAPartIsGraspedThere) {
+  Scene scene = MakeScene({});
+  // A wide board with a thin rod on it: only the rod can be gripped.
+  scene.bodies[kObject].shapes = {{Box{{0.3, 0.3, 0.02}}, {}},
+                                  {Box{{0.2, 0.02, 0.02}}, {{0, 0.1, 0.05}}}};
+  Simulation simulation(scene, {});
+  const auto plan = [&](const Vector3d& point_m) {
+    return PlanReach(scene, simulation.snapshot(),
+                     {.object = kObject,
+                      .style = FindStyle(scene.hands[0].model, "wrap"),
+                      .approach = Approach::kAbove,
+                      .point_m = point_m,
+                      .from = {.X_WH = scene.hands[0].X_WH}});
+  };
+  const ReachPlan left = plan({-0.06, 0.1, 0.05}), right = plan({0.06, 0.1, 0.05});
+  EXPECT_NEAR(std::abs((left.segment.q_end * Vector3d::UnitX()).y()), 1, 1e-9);
+  EXPECT_LT((right.segment.curve_m[3] - left.segment.curve_m[3] - Vector3d(0.12, 0, 0)).norm(),
+            1e-9);
+  // Beside the rod's middle line, the middle counts.
+  EXPECT_LT((plan({0.06, 0.105, 0.05}).segment.curve_m[3] - right.segment.curve_m[3]).norm(), 1e-9);
+}
+
 TEST(ReachPlannerTest, AnOffsetMovesTheEnd) {
   const Scene scene = MakeScene({});
   const Vector3d offset(0, -0.15, 0);

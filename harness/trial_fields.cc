@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/vary_test.cc and outcome_test.cc
+#include "harness/trial_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/record.h"
+#include "harness/scenario_fields.h"
+#include "harness/vary.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr double kFarthestM = 100;
+constexpr double kLargest = 1e6;
+
+Format<ConditionEntry> ConditionFormat() {
+  using C = ConditionEntry;
+  const auto height = Number(-kFarthestM, kFarthestM);
+  const auto angle = Number(0, 180);
+  const auto fraction = Number(0, 1);
+  return Record<C>("a condition")
+      .Required("entity", &C::entity, Identifier(), "The entity that it is about.")
+      .Optional("at_s", &C::at_s, Number(0, kMaxDurationS), "When; default: when the run ends.")
+      .Optional("near_m", &C::near_m, ListOf(height, 2, 3),
+                "Its centre is near [x, y] or [x, y, z] ...")
+      .Optional("within_m", &C::within_m, Number(0, kFarthestM), "... as near as this.")
+      .Optional("above_m", &C::above_m, height, "Its centre is higher than this.")
+      .Optional("below_m", &C::below_m, height, "Its centre is lower than this.")
+      .Optional("tilt_below_deg", &C::tilt_below_deg, angle,
+                "It is tilted less than this since it was placed.")
+      .Optional("tilt_above_deg", &C::tilt_above_deg, angle,
+                "It is tilted more than this since it was placed.")
+      .Optional("slower_than_m_per_s", &C::slower_than_m_per_s, Number(0, 100),
+                "It moves slower than this.")
+      .Optional("joint_above", &C::joint_above, fraction,
+                "Its joint stands above this fraction of its range.")
+      .Optional("joint_below", &C::joint_below, fraction,
+                "Its joint stands below this fraction of its range.")
+      .format();
+}
+
+}  // namespace
+
+Format<VariationEntry> VariationFormat() {
+  using V = VariationEntry;
+  const auto range = Vector<2>(-kLargest, kLargest);
+  return Record<V>("a variation")
+      .Required(
+          "fields", &V::fields,
+          ListOf(Word("[a-z0-9_]+(\\.[a-z0-9_]+)*", "a field like 'entities.milk.mass_kg'", 255), 1,
+                 64),
+          "The fields that get the same draw, written as for --set.")
+      .Optional("uniform", &V::uniform, range, "Anything between [least, most].")
+      .Optional("normal", &V::normal, range, "[mean, standard deviation].")
+      .Optional("plus", &V::plus, range, "What is written, plus anything between [least, most].")
+      .Optional("times", &V::times, range, "What is written, times anything between [least, most].")
+      .Optional("choose", &V::choose, ListOf(Text(), 1, 64), "One of these values.")
+      .ExactlyOneOf({"uniform", "normal", "plus", "times", "choose"})
+      .Check([](const YamlNode& node, const V& variation, Complaints& complaints) {
+        for (const char* key : {"uniform", "plus", "times"}) {
+          const YamlNode* written = node.Find(key);
+          if (!written) continue;
+          const auto& given = variation.uniform ? variation.uniform
+                              : variation.plus  ? variation.plus
+                                                : variation.times;
+          if ((*given)[0] > (*given)[1])
+            complaints.Add(written->where, std::string(key) + ": expected [least, most]");
+        }
+      })
+      .format();
+}
+
+Format<std::vector<ConditionEntry>> OutcomeFormat() { return ListOf(ConditionFormat(), 1, 32); }
+
+void CheckVariations(const YamlDocument& document, const std::vector<VariationEntry>& variations,
+                     Complaints& complaints) {
+  for (const VariationEntry& variation : variations) {
+    const bool relative = variation.plus || variation.times;
+    for (const std::string& field : variation.fields) {
+      const std::size_t dot = field.rfind('.');
+      const YamlNode* node = FindField(document.root, field);
+      const YamlNode* parent = dot == std::string::npos
+                                   ? &document.root
+                                   : FindField(document.root, field.substr(0, dot));
+      if (!parent || (!node && (relative || parent->kind != YamlNode::Kind::kMapping))) {
+        complaints.Add(variation.where, fmt::format("fields: the scenario has no '{}'", field),
+                       relative ? "plus and times need a number that is written" : "");
+      } else if (relative && !NumberOf(*node)) {
+        complaints.Add(variation.where, fmt::format("fields: '{}' is no number", field));
+      }
+    }
+  }
+}
+
+std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionEntry>>>& entries,
+                                   const physics::Scene& scene, Complaints& complaints) {
+  std::vector<std::string> names;
+  for (const physics::Body& body : scene.bodies) names.push_back(body.name);
+  std::vector<Outcome> outcomes;
+  for (const auto& entry : entries) {
+    Outcome& outcome = outcomes.emplace_back();
+    outcome.name = entry.name;
+    for (const ConditionEntry& condition : entry.value) {
+      const std::string& entity = condition.entity;
+      const auto found = std::find(names.begin(), names.end(), entity);
+      if (found == names.end()) {
+        complaints.AddUnknownName(condition.where,
+                                  fmt::format("entity: no entity is called '{}'", entity), entity,
+                                  names);
+        continue;
+      }
+      const int body = static_cast<int>(found - names.begin());
+      const auto joint =
+          std::find_if(scene.joints.begin(), scene.joints.end(),
+                       [&](const physics::Joint& candidate) { return candidate.body == body; });
+      if ((condition.joint_above || condition.joint_below) && joint == scene.joints.end())
+        complaints.Add(condition.where, fmt::format("entity: '{}' hangs on no joint", entity));
+      outcome.conditions.push_back(
+          {body, joint == scene.joints.end() ? -1 : static_cast<int>(joint - scene.joints.begin()),
+           condition});
+    }
+  }
+  return outcomes;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fields of `vary:` and `outcomes:`, and what has to fit the rest of the scenario.
+// Tested by tests/harness/vary_test.cc and outcome_test.cc
+#pragma once
+
+#include "harness/format.h"
+#include "harness/trials.h"
+#include "physics/scene.h"
+
+namespace prehend::harness {
+
+Format<VariationEntry> VariationFormat();
+Format<std::vector<ConditionEntry>> OutcomeFormat();
+
+/// Complains about fields that the scenario does not have, or that are no numbers where numbers are
+/// varied.
+void CheckVariations(const YamlDocument& document, const std::vector<VariationEntry>& variations,
+                     Complaints& complaints);
+
+/// Complains about unknown entities, and about joints that are asked for but not there.
+std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionEntry>>>& entries,
+                                   const physics::Scene& scene, Complaints& complaints);
+
+}  // namespace prehend::harness

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scenario says about trials: `vary:`, what differs from one to the next, and `outcomes:`,
+// how one can end. Their YAML face is in harness/trial_fields.h. Tested by
+// tests/harness/vary_test.cc and outcome_test.cc
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/located_yaml.h"
+
+namespace prehend::harness {
+
+inline constexpr std::size_t kMaxVariations = 64;
+inline constexpr std::size_t kMaxOutcomes = 16;
+
+/// One draw for all its fields; exactly one distribution is given.
+struct VariationEntry {
+  Where where;
+  std::vector<std::string> fields;         ///< paths as of --set
+  std::optional<Eigen::Vector2d> uniform;  ///< [least, most]
+  std::optional<Eigen::Vector2d> normal;   ///< [mean, standard deviation]
+  std::optional<Eigen::Vector2d> plus;     ///< uniform, added to what is written
+  std::optional<Eigen::Vector2d> times;    ///< uniform, multiplied with what is written
+  std::optional<std::vector<std::string>> choose;
+};
+
+/// What has to be true of one entity; everything that is given.
+struct ConditionEntry {
+  Where where;
+  std::string entity;
+  std::optional<double> at_s;                 ///< when; default: at the end
+  std::optional<std::vector<double>> near_m;  ///< its centre is near [x, y] or [x, y, z]
+  double within_m = 0.05;
+  std::optional<double> above_m, below_m;                ///< its centre's height
+  std::optional<double> tilt_below_deg, tilt_above_deg;  ///< since it was placed
+  std::optional<double> slower_than_m_per_s;
+  std::optional<double> joint_above, joint_below;  ///< fraction of its joint's range
+};
+
+/// An outcome whose entities are resolved; it holds when all its conditions do.
+struct Outcome {
+  struct Condition {
+    int body = 0;
+    int joint = -1;  ///< index into Scene::joints
+    ConditionEntry wanted;
+  };
+  std::string name;
+  std::vector<Condition> conditions;
+};
+
+}  // namespace prehend::harness

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/vary_test.cc
+#include "harness/vary.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "harness/format.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr double kLargest = 1e6;
+
+/// SplitMix64 (Steele, Lea & Flood 2014): small, and the same everywhere.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  std::uint64_t Next() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+  /// In [0, 1).
+  double Share() { return static_cast<double>(Next() >> 11) * 0x1p-53; }
+  double Between(const Eigen::Vector2d& range) {
+    return range[0] + (range[1] - range[0]) * Share();
+  }
+  /// Box & Muller 1958.
+  double Normal(const Eigen::Vector2d& mean_and_deviation) {
+    const double radius = std::sqrt(-2 * std::log(1 - Share()));
+    return mean_and_deviation[0] +
+           mean_and_deviation[1] * radius * std::cos(2 * std::numbers::pi * Share());
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Every variation of every trial has a generator of its own: adding one leaves the others as they
+/// were.
+Random GeneratorFor(std::uint64_t seed, int trial, std::size_t variation) {
+  Random mixed(seed);
+  mixed = Random(mixed.Next() ^ static_cast<std::uint64_t>(trial));
+  return Random(mixed.Next() ^ variation);
+}
+
+std::string DrawValue(const VariationEntry& variation, double written, Random& random) {
+  if (variation.choose) return (*variation.choose)[random.Next() % variation.choose->size()];
+  double value = written;
+  if (variation.uniform) value = random.Between(*variation.uniform);
+  if (variation.normal) value = random.Normal(*variation.normal);
+  if (variation.plus) value = written + random.Between(*variation.plus);
+  if (variation.times) value = written * random.Between(*variation.times);
+  return fmt::format("{:.6f}", value);
+}
+
+}  // namespace
+
+const YamlNode* FindField(const YamlNode& root, const std::string& path) {
+  const YamlNode* node = &root;
+  for (std::size_t begin = 0; node && begin <= path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    node = ChildOf(*node, path.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return node;
+}
+
+std::optional<double> NumberOf(const YamlNode& node) {
+  double number = 0;
+  YamlDocument nowhere;
+  Complaints ignored(nowhere);
+  if (!Number(-kLargest, kLargest).read(node, ignored, number)) return std::nullopt;
+  return number;
+}
+
+std::vector<std::string> DrawTrial(const YamlDocument& document,
+                                   const std::vector<VariationEntry>& variations,
+                                   std::uint64_t seed, int trial) {
+  std::vector<std::string> settings;
+  for (std::size_t i = 0; i < variations.size(); ++i) {
+    for (const std::string& field : variations[i].fields) {
+      Random random = GeneratorFor(seed, trial, i);
+      const YamlNode* node = FindField(document.root, field);
+      const double written = node ? NumberOf(*node).value_or(0) : 0;
+      settings.push_back(field + "=" + DrawValue(variations[i], written, random));
+    }
+  }
+  return settings;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The draws of a trial. A trial is the scenario with some fields changed, by --set as it were, so
+// that every check of the file holds for it, too. Tested by tests/harness/vary_test.cc
+#pragma once
+
+#include <cstdint>
+
+#include "harness/trials.h"
+
+namespace prehend::harness {
+
+/// The settings ("entities.milk.mass_kg=0.31") of trial 1, 2, ...: the same ones for the same seed
+/// and trial, whatever was drawn before. The variations have passed CheckVariations().
+std::vector<std::string> DrawTrial(const YamlDocument& document,
+                                   const std::vector<VariationEntry>& variations,
+                                   std::uint64_t seed, int trial);
+
+/// What a path like "entities.milk.mass_kg" leads to; null when it leads nowhere.
+const YamlNode* FindField(const YamlNode& root, const std::string& path);
+
+/// The number that is written there, if it is one.
+std::optional<double> NumberOf(const YamlNode& node);
+
+}  // namespace prehend::harness

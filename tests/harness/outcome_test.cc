@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a run ended, by name: judged on snapshots made by hand.
+#include "harness/outcome.h"
+
+#include <gtest/gtest.h>
+
+#include "harness/read_scenario.h"
+#include "tests/harness/scenario_fixture.h"
+
+namespace prehend::harness {
+namespace {
+
+ReadResult<Scenario> Read(const std::string& outcomes) {
+  return ReadScenarioText("probe.yaml", kProbe + ("outcomes:\n" + outcomes), {}, ProbeLibrary());
+}
+
+/// Judges a run of one tick a snapshot in which the milk is at these places.
+std::string Judge(const std::string& outcomes, const std::vector<physics::Pose>& milk) {
+  const auto read = Read(outcomes);
+  EXPECT_TRUE(read.value) << Brief(read.diagnostics);
+  if (!read.value) return "";
+  OutcomeWatch watch(read.value->scene, read.value->outcomes);
+  physics::Snapshot snapshot;
+  snapshot.bodies.resize(2);
+  for (const physics::Pose& pose : milk) {
+    ++snapshot.tick;
+    snapshot.bodies[1].X_WB = pose;
+    watch.Look(snapshot);
+  }
+  return watch.Judge(snapshot);
+}
+
+physics::Pose Upright(double x, double z) { return {{x, 0, z}}; }
+physics::Pose Lying(double x, double z) {
+  return {{x, 0, z}, Eigen::Quaterniond(Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitX()))};
+}
+
+TEST(Outcome, TheFirstThatHoldsIsTheOne) {
+  const std::string outcomes =
+      "  placed: [{entity: milk, near_m: [0.5, 0], within_m: 0.02, tilt_below_deg: 10}]\n"
+      "  tipped: [{entity: milk, tilt_above_deg: 45, above_m: 0.5}]\n"
+      "  dropped: [{entity: milk, below_m: 0.5}]\n";
+  EXPECT_EQ(Judge(outcomes, {Upright(0.51, 0.8)}), "placed");
+  EXPECT_EQ(Judge(outcomes, {Upright(0.53, 0.8)}), "");
+  EXPECT_EQ(Judge(outcomes, {Lying(0.5, 0.8)}), "tipped");
+  EXPECT_EQ(Judge(outcomes, {Lying(0.5, 0.1)}), "dropped");
+}
+
+TEST(Outcome, AMomentIsLookedAtWhenItComes) {
+  const std::string outcomes =
+      "  held: [{entity: milk, at_s: 0.00625, above_m: 1}, {entity: milk, below_m: 0.9}]\n";  // tick
+                                                                                              // 3
+  EXPECT_EQ(Judge(outcomes, {Upright(0, 0.8), Upright(0, 0.8), Upright(0, 1.1), Upright(0, 0.8)}),
+            "held");
+  EXPECT_EQ(Judge(outcomes, {Upright(0, 1.1), Upright(0, 1.1), Upright(0, 0.8), Upright(0, 0.8)}),
+            "");
+  EXPECT_EQ(Judge(outcomes, {Upright(0, 0.8)}), "");  // it never came
+}
+
+TEST(Outcome, RefusesWhatIsNotThere) {
+  EXPECT_EQ(Brief(Read("  held: [{entity: mlik}]\n").diagnostics),
+            "14:10: entity: no entity is called 'mlik' | did you mean 'milk'?\n");
+  EXPECT_EQ(Brief(Read("  open: [{entity: milk, joint_above: 0.5}]\n").diagnostics),
+            "14:10: entity: 'milk' hangs on no joint\n");
+}
+
+}  // namespace
+}  // namespace prehend::harness

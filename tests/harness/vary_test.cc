@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trials: the same draws for the same seed, within their bounds, and nothing varied that is not
+// there.
+#include "harness/vary.h"
+
+#include <gtest/gtest.h>
+
+#include "harness/read_scenario.h"
+#include "tests/harness/scenario_fixture.h"
+
+namespace prehend::harness {
+namespace {
+
+ReadResult<Scenario> Read(const std::string& vary) {
+  return ReadScenarioText("probe.yaml", kProbe + vary, {}, ProbeLibrary());
+}
+
+std::vector<std::string> Draw(const std::string& vary, std::uint64_t seed, int trial) {
+  const auto read = Read(vary);
+  EXPECT_TRUE(read.value) << Brief(read.diagnostics);
+  if (!read.value) return {};
+  const auto document = ParseYaml("probe.yaml", kProbe + vary);
+  return DrawTrial(*document.value, read.value->variations, seed, trial);
+}
+
+double NumberIn(const std::string& setting) {
+  return std::stod(setting.substr(setting.find('=') + 1));
+}
+
+const std::string kMass = "vary:\n  - {fields: [entities.milk.mass_kg], uniform: [0.2, 0.5]}\n";
+
+TEST(Vary, TheSameTrialIsTheSameDraw) {
+  EXPECT_EQ(Draw(kMass, 1, 7), Draw(kMass, 1, 7));
+  EXPECT_NE(Draw(kMass, 1, 7), Draw(kMass, 1, 8));
+  EXPECT_NE(Draw(kMass, 1, 7), Draw(kMass, 2, 7));
+  // Another variation after it changes nothing.
+  const std::string more = kMass + "  - {fields: [entities.milk.friction], uniform: [0.7, 0.9]}\n";
+  EXPECT_EQ(Draw(more, 1, 7)[0], Draw(kMass, 1, 7)[0]);
+}
+
+TEST(Vary, DrawsStayWithinTheirBoundsAndFillThem) {
+  double least = 1, most = 0, sum = 0;
+  for (int trial = 1; trial <= 400; ++trial) {
+    const double mass_kg = NumberIn(Draw(kMass, 1, trial)[0]);
+    least = std::min(least, mass_kg);
+    most = std::max(most, mass_kg);
+    sum += mass_kg;
+  }
+  EXPECT_GE(least, 0.2);
+  EXPECT_LT(least, 0.21);
+  EXPECT_LE(most, 0.5);
+  EXPECT_GT(most, 0.49);
+  EXPECT_NEAR(sum / 400, 0.35, 0.015);
+}
+
+TEST(Vary, RelativeDrawsStartFromWhatIsWritten) {
+  const std::string vary =
+      "vary:\n  - {fields: [entities.milk.at_m.0, actors.right_hand.at_m.0], plus: [-0.008, "
+      "0.008]}\n"
+      "  - {fields: [entities.milk.box.size_m.2], times: [0.9, 1.1]}\n";
+  for (int trial = 1; trial <= 20; ++trial) {
+    const auto settings = Draw(vary, 3, trial);
+    ASSERT_EQ(settings.size(), 3u);
+    EXPECT_NEAR(NumberIn(settings[0]), 0.2, 0.008);
+    EXPECT_NEAR(NumberIn(settings[1]) - NumberIn(settings[0]), -0.4, 2e-6);  // one draw for both
+    EXPECT_NEAR(NumberIn(settings[2]), 0.2, 0.0201);
+    EXPECT_TRUE(ReadScenarioText("probe.yaml", kProbe, settings, ProbeLibrary()).value);
+  }
+}
+
+TEST(Vary, NormalAndChosenDraws) {
+  const std::string vary =
+      "vary:\n  - {fields: [entities.milk.friction], normal: [0.8, 0.05]}\n"
+      "  - {fields: [script.0.right_hand.style], choose: [wrap, pinch]}\n";
+  double sum = 0, squares = 0;
+  int pinches = 0;
+  for (int trial = 1; trial <= 400; ++trial) {
+    const auto settings = Draw(vary, 1, trial);
+    const double off = NumberIn(settings[0]) - 0.8;
+    sum += off;
+    squares += off * off;
+    pinches += settings[1] == "script.0.right_hand.style=pinch";
+  }
+  EXPECT_NEAR(sum / 400, 0, 0.01);
+  EXPECT_NEAR(std::sqrt(squares / 400), 0.05, 0.005);
+  EXPECT_NEAR(pinches, 200, 40);
+}
+
+TEST(Vary, RefusesFieldsThatAreNotThere) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"- {fields: [entities.mlik.mass_kg], uniform: [0, 1]}",
+       "14:5: fields: the scenario has no 'entities.mlik.mass_kg'\n"},
+      {"- {fields: [entities.milk.friction], times: [0.9, 1.1]}",
+       "14:5: fields: the scenario has no 'entities.milk.friction' | plus and times need a number "
+       "that is written\n"},
+      {"- {fields: [entities.milk.on], plus: [0, 1]}",
+       "14:5: fields: 'entities.milk.on' is no number\n"},
+      {"- {fields: [entities.milk.mass_kg], uniform: [1, 0]}",
+       "14:49: uniform: expected [least, most]\n"},
+      {"- {fields: [entities.milk.mass_kg]}",
+       "14:5: a variation needs one of the keys uniform, normal, plus, times, choose\n"}};
+  for (const auto& [line, complaint] : cases)
+    EXPECT_EQ(Brief(Read("vary:\n  " + std::string(line) + "\n").diagnostics), complaint);
+}
+
+}  // namespace
+}  // namespace prehend::harness
