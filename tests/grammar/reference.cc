@@ -71,6 +71,45 @@ Runs FromTo(const Stream& from, const Stream& to, const Stream& during, bool or_
   return runs;
 }
 
+Stream Hold(const Stream& on, const Stream& off) {
+  Stream holds(on.size());
+  for (std::size_t i = 0; i < on.size(); ++i) holds[i] = !off[i] && (on[i] || (i > 0 && holds[i - 1]));
+  return holds;
+}
+
+Runs FromToWithin(const Stream& from, const Stream& to, const Stream& during, bool or_drop, const Ticks& ticks, Tick within) {
+  Runs runs;
+  const int frames = static_cast<int>(from.size());
+  for (int i = 0; i < frames; ++i) {
+    if (!from[i] || !during[i] || to[i]) continue;
+    const Tick latest = ticks[i] + within;
+    int end = i + 1;
+    while (end < frames && ticks[end] <= latest && !to[end] && during[end]) ++end;
+    const bool in_time = ticks[end] <= latest;
+    const bool reached = in_time && end < frames && to[end];
+    if (reached || (in_time && !or_drop)) runs.push_back({i, end});
+    i = end - (end < frames && in_time ? 0 : 1);  // a frame after the deadline may begin the next one
+  }
+  return runs;
+}
+
+std::vector<Interval> FromWithout(const Stream& from, const Stream& without, const Stream& during, const Ticks& ticks,
+                                  Tick within) {
+  std::vector<Interval> found;
+  const int frames = static_cast<int>(from.size());
+  for (int i = 0; i < frames; ++i) {
+    if (!from[i] || !during[i] || without[i]) continue;
+    const Tick deadline = ticks[i] + within;
+    int end = i + 1;
+    while (end < frames && ticks[end] < deadline && !without[end] && during[end]) ++end;
+    const bool waited = ticks[end] >= deadline;
+    const bool just_in_time = waited && end < frames && ticks[end] == deadline && without[end];
+    if (waited && !just_in_time) found.push_back({ticks[i], deadline});
+    i = end - (waited && !just_in_time ? 1 : 0);
+  }
+  return found;
+}
+
 Runs UntilSince(const Stream& until, const Stream& since, const Ticks& ticks, Tick back) {
   Runs runs;
   const int frames = static_cast<int>(until.size());

@@ -34,6 +34,13 @@ Stream Ends(const Runs& runs, int frames);
 
 /// Maximal runs; gaps of at most `bridging` ticks are closed.
 Runs While(const Stream& f, const Ticks& ticks, Tick bridging);
+/// True from where `on` holds, without `off`, until `off` holds.
+Stream Hold(const Stream& on, const Stream& off);
+/// `from .. to .. within`: what has not ended in time is dropped.
+Runs FromToWithin(const Stream& from, const Stream& to, const Stream& during, bool or_drop, const Ticks& ticks, Tick within);
+/// `from .. without .. within`: in ticks, since a deadline may lie between two frames.
+std::vector<Interval> FromWithout(const Stream& from, const Stream& without, const Stream& during, const Ticks& ticks,
+                                  Tick within);
 Runs FromTo(const Stream& from, const Stream& to, const Stream& during, bool or_drop);
 Runs UntilSince(const Stream& until, const Stream& since, const Ticks& ticks, Tick back);
 Runs RestOf(const Runs& whole, const std::vector<Stream>& outside);

@@ -37,6 +37,14 @@ event confirmed_one(x: X, p: P, q: Q, r: R)
 event plain_r(x: X, r: R) while touching(x, r)
 event cut_by_later(x: X, p: P, q: Q, r: R)
   from touching(x, r) ends to (approach(x, p, q) begins or touching(x, r) begins) during not plain(x, p)
+event held(x: X, p: P, q: Q) while touching(x, p) until touching(x, q) bridging 1 ms
+event in_time(x: X, p: P, q: Q, r: R) from touching(x, p) begins to touching(x, q) begins within 4 ms during touching(x, r)
+event timely(x: X, p: P, q: Q, r: R)
+  from bridged(x, p) ends to touching(x, q) begins within 5 ms during not touching(x, r) or drop
+event missed(x: X, p: P, q: Q, r: R)
+  from touching(x, p) begins without touching(x, q) begins within 3 ms during touching(x, r)
+event missed_late(x: X, p: P, q: Q) from bridged(x, p) ends without touching(x, q) ends within 4 ms
+event after_missed(x: X, p: P, q: Q, r: R) while missed(x, p, q, r) or in_time(x, p, q, r) bridging 1 ms
 event anywhere(x: X, p: P) while mixed(x, p, any, any) or late(x, p, any, any)
 )";
 
@@ -50,6 +58,41 @@ struct Episode {
   Stream p, q, r;
   Ticks ticks;  // and the end
 };
+
+// True at the frames inside.
+Stream TruthOf(const std::vector<Interval>& intervals, const Ticks& ticks, int frames) {
+  Stream truth(frames, false);
+  for (const Interval& interval : intervals) {
+    for (int i = 0; i < frames; ++i) truth[i] = truth[i] || (ticks[i] >= interval.begin && ticks[i] < interval.end);
+  }
+  return truth;
+}
+
+std::vector<Interval> InTicks(const Runs& runs, const Ticks& ticks) {
+  std::vector<Interval> intervals;
+  for (const auto& run : runs) intervals.push_back({ticks[run.begin], ticks[run.end]});
+  return intervals;
+}
+
+// What must not come: with deadlines between frames, hence in ticks.
+std::vector<std::pair<std::string, std::vector<Interval>>> ExpectedDeadlines(const Episode& e) {
+  using namespace reference;
+  const int n = static_cast<int>(e.p.size());
+  const auto run = [&](const Stream& s) { return While(s, e.ticks, 0); };
+  const Stream always(n, true);
+  const Runs bridged = Lasting(While(e.p, e.ticks, 2), e.ticks, 3);
+  const Stream p_begins = Begins(run(e.p), n);
+  const Stream q_begins = Begins(run(e.q), n);
+  const Runs in_time = FromToWithin(p_begins, q_begins, e.r, false, e.ticks, 4);
+  const auto missed = FromWithout(p_begins, q_begins, e.r, e.ticks, 3);
+  const Stream after = Or(TruthOf(missed, e.ticks, n), Truth(in_time, n));
+  return {{"held", InTicks(While(Hold(e.p, e.q), e.ticks, 1), e.ticks)},
+          {"in_time", InTicks(in_time, e.ticks)},
+          {"timely", InTicks(FromToWithin(Ends(bridged, n), q_begins, Not(e.r), true, e.ticks, 5), e.ticks)},
+          {"missed", missed},
+          {"missed_late", FromWithout(Ends(bridged, n), Ends(run(e.q), n), always, e.ticks, 4)},
+          {"after_missed", InTicks(While(after, e.ticks, 1), e.ticks)}};
+}
 
 // The rules of kForms, by the meaning table.
 std::vector<std::pair<std::string, Runs>> Expected(const Episode& e) {
@@ -127,9 +170,9 @@ std::string IntervalsText(std::vector<Interval> intervals) {
 // One comparison of all rules; false at the first difference.
 bool Agrees(const std::shared_ptr<const Program>& program, const Episode& episode) {
   const std::vector<Event> events = Watch(program, episode);
-  for (const auto& [name, runs] : Expected(episode)) {
-    std::vector<Interval> expected;
-    for (const auto& run : runs) expected.push_back({episode.ticks[run.begin], episode.ticks[run.end]});
+  std::vector<std::pair<std::string, std::vector<Interval>>> all = ExpectedDeadlines(episode);
+  for (const auto& [name, runs] : Expected(episode)) all.push_back({name, InTicks(runs, episode.ticks)});
+  for (const auto& [name, expected] : all) {
     std::vector<Interval> found;
     for (const Event& event : events) {
       if (program->events[event.rule].name != name) continue;
