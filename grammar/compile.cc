@@ -27,8 +27,9 @@ struct Source {
 
 class Compiler {
  public:
-  Compiler(const GrammarText& grammar, const Includer& includer, const Overrides& overrides)
-      : includer_(includer), overrides_(overrides) {
+  Compiler(const GrammarText& grammar, const Includer& includer, const Overrides& overrides,
+           const std::vector<std::string>& known)
+      : includer_(includer), overrides_(overrides), known_(known) {
     Read(grammar);
   }
 
@@ -63,7 +64,7 @@ class Compiler {
 
   void ReadFile(const GrammarText& grammar, std::set<std::string, std::less<>>& seen) {
     Source source{grammar, Parse(grammar, diagnostics_)};
-    seen.insert(source.file.name);
+    seen.insert({source.file.name, grammar.file});
     for (const ast::Use& use : source.file.uses) {
       if (use.is_path && !CheckPath(source, use)) continue;
       const std::string name = use.is_path ? Beside(grammar.file, use.name) : use.name;
@@ -74,7 +75,8 @@ class Compiler {
       }
       const std::optional<GrammarText> used = includer_ ? includer_(name) : std::nullopt;
       if (!used) {
-        Complain(source, use.place, "there is no grammar '" + use.name + "' to use", use.is_path ? "looked for " + name : "");
+        Complain(source, use.place, "there is no grammar '" + use.name + "' to use",
+                 use.is_path ? "looked for " + name : Suggest(use.name, known_));
       } else {
         ReadFile(*used, seen);
       }
@@ -93,7 +95,7 @@ class Compiler {
 
   static std::string Beside(const std::string& file, const std::string& path) {
     const std::size_t slash = file.rfind('/');
-    return (slash == std::string::npos ? "./" : file.substr(0, slash + 1)) + path;
+    return file.substr(0, slash == std::string::npos ? 0 : slash + 1) + path.substr(path.starts_with("./") ? 2 : 0);
   }
 
   void CollectParams() {
@@ -249,10 +251,10 @@ class Compiler {
 
   // `hand: hand` is meant to be `hand: Hand`; other unknown names may be classes of a scenario.
   void CheckClassName(const Source& source, const ast::Role& role) {
-    static const std::vector<std::string> kRoots = {"Entity", "Hand", "Thing", "Movable", "Fixed"};
-    if (std::find(kRoots.begin(), kRoots.end(), role.class_name) != kRoots.end()) return;
-    const std::string near = NearestName(role.class_name, kRoots);
-    if (!StartsWithCapital(role.class_name)) {
+    if (StartsWithCapital(role.class_name)) {
+      NoteClass(program_, role.class_name, source.text.file, role.place);
+    } else {
+      const std::string near = NearestName(role.class_name, BuiltinClasses());
       Complain(source, role.place, "'" + role.class_name + "' is not a class; classes start with a capital letter",
                near.empty() ? "" : "did you mean '" + near + "'?");
     }
@@ -343,6 +345,7 @@ class Compiler {
 
   const Includer& includer_;
   const Overrides& overrides_;
+  const std::vector<std::string>& known_;
   Diagnostics diagnostics_;
   Diagnostics warnings_;
   std::deque<Source> sources_;
@@ -357,8 +360,9 @@ class Compiler {
 
 }  // namespace
 
-CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides) {
-  return Compiler(grammar, includer, overrides).Run();
+CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides,
+                      const std::vector<std::string>& known) {
+  return Compiler(grammar, includer, overrides, known).Run();
 }
 
 }  // namespace prehend::grammar

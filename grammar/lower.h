@@ -38,6 +38,12 @@ struct Symbols {
 /// True if some entity can be of both classes. Names other than the built-in ones are taken to be Things.
 bool ClassesMeet(std::string_view a, std::string_view b);
 
+bool IsBuiltinClass(std::string_view name);
+const std::vector<std::string>& BuiltinClasses();
+
+/// Remembers a class that stands at a place of a file, once per name and file.
+void NoteClass(Program& program, std::string_view name, const std::string& file, Place place);
+
 inline bool StartsWithCapital(std::string_view name) { return !name.empty() && name[0] >= 'A' && name[0] <= 'Z'; }
 
 /// The signals that are measured over an interval: displacement, rise, drop.

@@ -19,8 +19,8 @@ namespace prehend::grammar {
 
 struct Program;  // grammar/program.h
 
-/// Text of the file that `use NAME` asks for, with the file name to report in diagnostics; nullopt:
-/// no such file.
+/// Text of the file that `use NAME` or `use "PATH"` asks for, with the file name to report in diagnostics; nullopt:
+/// no such file. A path comes as seen from the file of the grammar, like it, and ends with ".grammar".
 struct GrammarText {
   std::string file;
   std::string text;
@@ -37,8 +37,9 @@ struct CompileResult {
   Diagnostics warnings;  ///< what is allowed and yet looks like a mistake
 };
 
-CompileResult Compile(const GrammarText& grammar, const Includer& includer,
-                      const Overrides& overrides = {});
+/// `known`: names that `use` could ask for, to suggest one of them.
+CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides = {},
+                      const std::vector<std::string>& known = {});
 
 inline constexpr int kMaxRoles = 4;
 inline constexpr int kMaxAttributes = 4;

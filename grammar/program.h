@@ -146,6 +146,13 @@ struct Rule {
   double looks_around_s = 0; ///< its signals ask for poses so long before and after the frames it looks at
 };
 
+/// A class that the text of a grammar names, where it first does in its file.
+struct NamedClass {
+  std::string name;
+  std::string file;
+  Place place;
+};
+
 struct ProgramParam {
   std::string name;
   Quantity value;
@@ -162,6 +169,7 @@ struct Program {
   std::vector<Node> nodes;
   std::vector<std::string> class_names;  ///< for kIsA
   std::vector<std::string> set_names;    ///< for kSensorSet
+  std::vector<NamedClass> named_classes; ///< all but the built-in ones
   std::vector<ProgramParam> params;
 };
 

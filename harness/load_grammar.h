@@ -18,4 +18,7 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
                                    const grammar::Overrides& overrides = {},
                                    std::vector<std::string>* files = nullptr);
 
+/// Classes that the grammar names and that nobody of the cast has: its rules about them never see anybody.
+grammar::Diagnostics ClassWarnings(const grammar::Program& program, const grammar::Cast& cast);
+
 }  // namespace prehend::harness

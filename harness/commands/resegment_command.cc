@@ -37,6 +37,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!compiled.program) return Complain(context, compiled.diagnostics);
 
   const grammar::Cast& cast = episode.value->header.cast;
+  Warn(context, compiled.warnings);
+  Warn(context, ClassWarnings(*compiled.program, cast));
   grammar::Monitor monitor(compiled.program, cast);
   std::vector<grammar::Event> events;
   for (EpisodeFrame& frame : episode.value->frames) monitor.Advance(frame.View(), events);

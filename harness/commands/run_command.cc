@@ -26,6 +26,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!file) return ExitCode::kNothing;
   const ReadResult<PreparedRun> prepared = PrepareRun(RequestOf(options, file->path), context.root);
   if (!prepared.value) return Complain(context, prepared.diagnostics);
+  Warn(context, prepared.value->warnings);
 
   const bool measure = IsGiven(options, "--measure");
   RunOptions how{.measure = measure};

@@ -171,7 +171,7 @@ std::string ReadFile(const std::string& path) {
 
 Includer LibraryIncluder() {
   return [](std::string_view name) -> std::optional<GrammarText> {
-    const std::string file = "grammar/library/" + std::string(name) + ".grammar";
+    const std::string file = name.ends_with(".grammar") ? std::string(name) : "grammar/library/" + std::string(name) + ".grammar";
     if (!std::ifstream(std::string(PREHEND_SOURCE_DIR) + "/" + file)) return std::nullopt;
     return GrammarText{file, ReadFile(std::string(PREHEND_SOURCE_DIR) + "/" + file)};
   };
