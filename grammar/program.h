@@ -33,6 +33,7 @@ enum class Op : std::uint8_t {
   kDriftAlong,  ///< over `number` seconds around the frame
   kTilt,
   kJointFraction, kJointAngle, kJointTravel, kWeight, kStrength,
+  kTurnRate,  ///< over `number` seconds around the frame
   kRate,  ///< of args[0], over `number` seconds around the frame
   // Positions in metres.
   kPosition, kPositionOn, kAhead,
@@ -47,7 +48,7 @@ struct Node {
   std::array<int, 2> roles = {kNone, kNone};               ///< roles of the rule
   int slot = kNone;       ///< reference, anchor or class name
   int name = kNone;       ///< kSensorSet: index into Program::set_names
-  double number = 0;      ///< kNumber, kDriftAlong, kRate, kSensorSet
+  double number = 0;      ///< kNumber, kSensorSet, and the windows of kDriftAlong, kTurnRate, kRate
 };
 
 /// One number per role.

@@ -57,67 +57,92 @@ Runs While(const Stream& f, const Ticks& ticks, Tick bridging) {
   return runs;
 }
 
-Runs FromTo(const Stream& from, const Stream& to, const Stream& during, bool or_drop) {
-  Runs runs;
-  const int frames = static_cast<int>(from.size());
-  for (int i = 0; i < frames; ++i) {
-    if (!from[i] || !during[i] || to[i]) continue;
-    int end = i + 1;
-    while (end < frames && !to[end] && during[end]) ++end;
-    const bool reached = end < frames && to[end];
-    if (reached || !or_drop) runs.push_back({i, end});
-    i = end - (end < frames ? 0 : 1);  // what ends one interval does not begin the next
-  }
-  return runs;
-}
-
 Stream Hold(const Stream& on, const Stream& off) {
   Stream holds(on.size());
   for (std::size_t i = 0; i < on.size(); ++i) holds[i] = !off[i] && (on[i] || (i > 0 && holds[i - 1]));
   return holds;
 }
 
-Runs FromToWithin(const Stream& from, const Stream& to, const Stream& during, bool or_drop, const Ticks& ticks, Tick within) {
+Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool or_drop, const Ticks& ticks, Tick within) {
   Runs runs;
   const int frames = static_cast<int>(from.size());
   for (int i = 0; i < frames; ++i) {
-    if (!from[i] || !during[i] || to[i]) continue;
-    const Tick latest = ticks[i] + within;
+    if (!from[i]) continue;
+    const Stream ends = to.at(i);
+    const Stream holds = during.at(i);
+    if (!holds[i] || ends[i]) continue;
     int end = i + 1;
-    while (end < frames && ticks[end] <= latest && !to[end] && during[end]) ++end;
-    const bool in_time = ticks[end] <= latest;
-    const bool reached = in_time && end < frames && to[end];
-    if (reached || (in_time && !or_drop)) runs.push_back({i, end});
-    i = end - (end < frames && in_time ? 0 : 1);  // a frame after the deadline may begin the next one
+    const auto in_time = [&] { return within < 0 || ticks[end] - ticks[i] <= within; };
+    while (end < frames && in_time() && !ends[end] && holds[end]) ++end;
+    const bool reached = in_time() && end < frames && ends[end];
+    if (reached || (in_time() && !or_drop)) runs.push_back({i, end});
+    i = end - (end < frames && in_time() ? 0 : 1);  // what ends one does not begin the next; a frame after the deadline may
   }
   return runs;
 }
 
-std::vector<Interval> FromWithout(const Stream& from, const Stream& without, const Stream& during, const Ticks& ticks,
-                                  Tick within) {
-  std::vector<Interval> found;
+Deadlines FromWithout(const Stream& from, const Anchored& without, const Anchored& during, const Ticks& ticks, Tick within) {
+  Deadlines found;
   const int frames = static_cast<int>(from.size());
   for (int i = 0; i < frames; ++i) {
-    if (!from[i] || !during[i] || without[i]) continue;
+    if (!from[i]) continue;
+    const Stream comes = without.at(i);
+    const Stream holds = during.at(i);
+    if (!holds[i] || comes[i]) continue;
     const Tick deadline = ticks[i] + within;
     int end = i + 1;
-    while (end < frames && ticks[end] < deadline && !without[end] && during[end]) ++end;
+    while (end < frames && ticks[end] < deadline && !comes[end] && holds[end]) ++end;
     const bool waited = ticks[end] >= deadline;
-    const bool just_in_time = waited && end < frames && ticks[end] == deadline && without[end];
-    if (waited && !just_in_time) found.push_back({ticks[i], deadline});
+    const bool just_in_time = waited && end < frames && ticks[end] == deadline && comes[end];
+    if (waited && !just_in_time) {
+      found.runs.push_back({i, end});
+      found.ticks.push_back({ticks[i], deadline});
+    }
     i = end - (waited && !just_in_time ? 1 : 0);
   }
   return found;
 }
 
-Runs UntilSince(const Stream& until, const Stream& since, const Ticks& ticks, Tick back) {
+namespace {
+
+// Where an approach that reaches `end` begins; `earliest` is as far back as anything else allows.
+int ApproachBegin(const Approach& a, const Ticks& ticks, int earliest, int end) {
+  const auto speed = [&](int i) {
+    return (a.signal[i] - a.signal[i + 1]) / (static_cast<double>(ticks[i + 1] - ticks[i]) / 1000);
+  };
+  const auto largest_after = [&](int i) { return *std::max_element(a.signal.begin() + i + 1, a.signal.begin() + end + 1); };
+  // How far back it goes before it recedes or pauses.
+  int limit = end;
+  bool receded = false;
+  for (Tick moved = ticks[end]; limit > earliest; --limit) {
+    const int i = limit - 1;
+    receded = a.signal[i] < largest_after(i) - a.slack;
+    if (receded) break;
+    if (speed(i) >= a.speed) moved = ticks[i];
+    if (a.idle >= 0 && moved - ticks[i] > a.idle) break;
+  }
+  if (a.idle < 0 && !receded) return limit;
+  // Movement, or the slow start of one; after receding only where the signal is larger than ever after.
+  int begin = end;
+  for (int i = end - 1; i >= limit; --i) {
+    const bool moves = speed(i) >= a.speed || (begin == i + 1 && speed(i) > a.speed / 10);
+    if (moves && (!receded || a.signal[i] > largest_after(i))) begin = i;
+  }
+  return begin;
+}
+
+}  // namespace
+
+Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, Tick back, const Approach* approach) {
   Runs runs;
   const int frames = static_cast<int>(until.size());
   int previous = 0;
   for (int end = 0; end < frames; ++end) {
     if (!until[end]) continue;
+    const Stream holds = since.at(end);
     int begin = end;
-    while (begin > previous && since[begin - 1] && ticks[end] - ticks[begin - 1] <= back) --begin;
+    while (begin > previous && holds[begin - 1] && ticks[end] - ticks[begin - 1] <= back) --begin;
+    if (approach != nullptr) begin = ApproachBegin(*approach, ticks, begin, end);
     if (begin < end) runs.push_back({begin, end});
     previous = end;
   }
@@ -156,6 +181,30 @@ Runs ConfirmedBy(const Runs& runs, const Runs& by, const Stream& within) {
       kept.push_back(run);
       break;
     }
+  }
+  return kept;
+}
+
+Runs Compose(const std::vector<Runs>& parts, const Ticks& ticks, const std::function<bool(const std::vector<Interval>&)>& fits) {
+  Runs all;
+  std::vector<Run> chosen(parts.size());
+  const std::function<void(std::size_t)> choose = [&](std::size_t part) {
+    if (part < parts.size()) {
+      for (const Run& run : parts[part]) {
+        chosen[part] = run;
+        choose(part + 1);
+      }
+      return;
+    }
+    std::vector<Interval> intervals;
+    for (const Run& run : chosen) intervals.push_back({ticks[run.begin], ticks[run.end]});
+    if (chosen.front().begin < chosen.back().end && fits(intervals)) all.push_back({chosen.front().begin, chosen.back().end});
+  };
+  choose(0);
+  std::sort(all.begin(), all.end(), [](const Run& a, const Run& b) { return std::pair(a.end, -a.begin) < std::pair(b.end, -b.begin); });
+  Runs kept;
+  for (const Run& run : all) {
+    if (kept.empty() || run.begin >= kept.back().end) kept.push_back(run);
   }
   return kept;
 }

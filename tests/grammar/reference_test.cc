@@ -8,6 +8,7 @@
 #include "grammar/monitor.h"
 #include "grammar/program.h"
 #include "tests/grammar/reference.h"
+#include "tests/grammar/reference_trial.h"
 
 namespace prehend::grammar {
 namespace {
@@ -59,15 +60,6 @@ struct Episode {
   Ticks ticks;  // and the end
 };
 
-// True at the frames inside.
-Stream TruthOf(const std::vector<Interval>& intervals, const Ticks& ticks, int frames) {
-  Stream truth(frames, false);
-  for (const Interval& interval : intervals) {
-    for (int i = 0; i < frames; ++i) truth[i] = truth[i] || (ticks[i] >= interval.begin && ticks[i] < interval.end);
-  }
-  return truth;
-}
-
 std::vector<Interval> InTicks(const Runs& runs, const Ticks& ticks) {
   std::vector<Interval> intervals;
   for (const auto& run : runs) intervals.push_back({ticks[run.begin], ticks[run.end]});
@@ -83,14 +75,14 @@ std::vector<std::pair<std::string, std::vector<Interval>>> ExpectedDeadlines(con
   const Runs bridged = Lasting(While(e.p, e.ticks, 2), e.ticks, 3);
   const Stream p_begins = Begins(run(e.p), n);
   const Stream q_begins = Begins(run(e.q), n);
-  const Runs in_time = FromToWithin(p_begins, q_begins, e.r, false, e.ticks, 4);
-  const auto missed = FromWithout(p_begins, q_begins, e.r, e.ticks, 3);
-  const Stream after = Or(TruthOf(missed, e.ticks, n), Truth(in_time, n));
+  const Runs in_time = FromTo(p_begins, q_begins, e.r, false, e.ticks, 4);
+  const Deadlines missed = FromWithout(p_begins, q_begins, e.r, e.ticks, 3);
+  const Stream after = Or(Truth(missed.runs, n), Truth(in_time, n));
   return {{"held", InTicks(While(Hold(e.p, e.q), e.ticks, 1), e.ticks)},
           {"in_time", InTicks(in_time, e.ticks)},
-          {"timely", InTicks(FromToWithin(Ends(bridged, n), q_begins, Not(e.r), true, e.ticks, 5), e.ticks)},
-          {"missed", missed},
-          {"missed_late", FromWithout(Ends(bridged, n), Ends(run(e.q), n), always, e.ticks, 4)},
+          {"timely", InTicks(FromTo(Ends(bridged, n), q_begins, Not(e.r), true, e.ticks, 5), e.ticks)},
+          {"missed", missed.ticks},
+          {"missed_late", FromWithout(Ends(bridged, n), Ends(run(e.q), n), always, e.ticks, 4).ticks},
           {"after_missed", InTicks(While(after, e.ticks, 1), e.ticks)}};
 }
 
@@ -113,16 +105,16 @@ std::vector<std::pair<std::string, Runs>> Expected(const Episode& e) {
   return {{"plain", run(e.p)},
           {"bridged", bridged},
           {"mixed", run(mixed)},
-          {"between", FromTo(begins(e.p), begins(e.q), always, false)},
-          {"cut", FromTo(begins(e.p), ends(e.q), e.r, false)},
-          {"dropped", FromTo(Begins(bridged, n), begins(e.q), e.r, true)},
+          {"between", FromTo(begins(e.p), begins(e.q), always, false, e.ticks)},
+          {"cut", FromTo(begins(e.p), ends(e.q), e.r, false, e.ticks)},
+          {"dropped", FromTo(Begins(bridged, n), begins(e.q), e.r, true, e.ticks)},
           {"approach", approach},
           {"late", late},
           {"remaining", remaining},
           {"tangled", While(tangled, e.ticks, 1)},
           {"confirmed_one", ConfirmedBy(UntilSince(begins(e.p), e.q, e.ticks, 20), run(e.r), in_bridged)},
           {"plain_r", run(e.r)},
-          {"cut_by_later", FromTo(ends(e.r), Or(Begins(approach, n), begins(e.r)), Not(e.p), false)},
+          {"cut_by_later", FromTo(ends(e.r), Or(Begins(approach, n), begins(e.r)), Not(e.p), false, e.ticks)},
           {"anywhere", run(Or(mixed, Truth(late, n)))}};
 }
 
@@ -222,6 +214,18 @@ TEST(Reference, AgreesOnRandomStreams) {
     episode.ticks.push_back(tick);
     if (!Agrees(program, episode)) return;
   }
+}
+
+// `reference_run` does the same for as many ticks as one likes.
+TEST(Reference, AgreesOnRandomGrammars) {
+  const testing::TrialResult result = testing::TryRandomGrammars(20260101, 200'000);
+  EXPECT_EQ(result.mismatches, 0) << result.Text() << "\n" << result.first;
+  EXPECT_LT(result.refused, result.grammars);
+}
+
+TEST(Reference, RandomGrammarsAgreeOnAllSmallEpisodes) {
+  const testing::TrialResult result = testing::TryAllEpisodes(7, 40, 3);
+  EXPECT_EQ(result.mismatches, 0) << result.Text() << "\n" << result.first;
 }
 
 }  // namespace

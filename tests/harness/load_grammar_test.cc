@@ -68,7 +68,7 @@ TEST_F(LoadGrammarFiles, WarnsOfClassesThatNobodyHas) {
             file + ":2:24: warning: nobody in this episode is a 'Cupp'\n"
                    "  event near(h: Hand, c: Cupp) while distance(h, c) < 1 cm\n"
                    "                      ^\n  hint: did you mean 'Cup'?\n" +
-            file + ":3:58: warning: nobody in this episode is a 'Pot'\n"
+            file + ":3:52: warning: nobody in this episode is a 'Pot'\n"
                    "  event on(c: Cup) while near(any Hand, c) and is(c, Pot)\n"
                    "                                                     ^\n");
 }
