@@ -207,7 +207,10 @@ class Compiler {
       if (symbols_.params.contains(parameter.name)) {
         Complain(source, parameter.place, "'" + parameter.name + "' is a parameter of the grammar already");
       }
-      if (parameter.class_name != "number" && parameter.class_name != "position") CheckClassName(source, parameter);
+      if (parameter.class_name == "number" || parameter.class_name == "position") continue;
+      std::vector<std::string> others = UnitNames();
+      others.insert(others.end(), {"number", "position"});
+      CheckClassName(source, parameter, others);
     }
   }
 
@@ -250,11 +253,12 @@ class Compiler {
   }
 
   // `hand: hand` is meant to be `hand: Hand`; other unknown names may be classes of a scenario.
-  void CheckClassName(const Source& source, const ast::Role& role) {
+  void CheckClassName(const Source& source, const ast::Role& role, std::vector<std::string> known = {}) {
     if (StartsWithCapital(role.class_name)) {
       NoteClass(program_, role.class_name, source.text.file, role.place);
     } else {
-      const std::string near = NearestName(role.class_name, BuiltinClasses());
+      known.insert(known.end(), BuiltinClasses().begin(), BuiltinClasses().end());
+      const std::string near = NearestName(role.class_name, known);
       Complain(source, role.place, "'" + role.class_name + "' is not a class; classes start with a capital letter",
                near.empty() ? "" : "did you mean '" + near + "'?");
     }

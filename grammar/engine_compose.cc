@@ -2,21 +2,20 @@
 // Compositions: events made of finished events by Allen's relations.
 //
 // Needs: per composition and binding the combinations, one interval of each part, whose relations hold; each reaches
-// from the begin of the first part to the end of the last. They do not overlap: the one that ends first is taken, of
-// those that end together the one that begins last.
+// from the begin of the first part to the end of the last. They do not overlap: the one that is complete first is taken,
+// that is, whose last interval ends first; of those the one that ends first, then the one that begins last.
 // Algorithm: parts deliver their intervals; a combination is judged as soon as no interval can still come that ends
-// before it does. An interval that nothing to come can complete is forgotten, and of the others only the last
-// kRemembered of a part are kept.
+// before it is complete. An interval that nothing to come can complete is forgotten, and of the others only the last
+// kRememberedSpans of a part are kept.
 // Tested by tests/grammar/compose_test.cc
 #include <algorithm>
+#include <tuple>
 
 #include "grammar/allen.h"
 #include "grammar/engine.h"
 
 namespace prehend::grammar {
 namespace {
-
-constexpr std::size_t kRemembered = 64;
 
 Interval TicksOf(const Span& span) { return {span.begin.tick, span.end.tick}; }
 
@@ -75,9 +74,14 @@ class Combinations {
     const Span& last = *chosen_[lane_.parts.size() - 1];
     const Span whole{chosen_[0]->begin, last.end, last.open_end};
     if (whole.begin.frame >= whole.end.frame || whole.begin.frame < lane_.last_end) return;
-    const bool better = !found_ || whole.end.frame < best_.end.frame ||
-                        (whole.end.frame == best_.end.frame && whole.begin.frame > best_.begin.frame);
-    if (better) best_ = whole;
+    FrameNumber complete = 0;
+    for (std::size_t part = 0; part < lane_.parts.size(); ++part) complete = std::max(complete, chosen_[part]->end.frame);
+    const auto order = [](FrameNumber completed, const Span& span) {
+      return std::tuple(completed, span.end.frame, -span.begin.frame);
+    };
+    if (found_ && order(complete, whole) >= order(complete_, best_)) return;
+    best_ = whole;
+    complete_ = complete;
     found_ = true;
   }
 
@@ -86,6 +90,7 @@ class Combinations {
   FrameNumber settled_;
   std::array<const Span*, kMaxParts> chosen_ = {};
   Span best_;
+  FrameNumber complete_ = 0;  ///< where the last interval of the best one ends
   bool found_ = false;
 };
 
@@ -104,7 +109,7 @@ void Engine::TellCompositions(const Lane& part, const Span& span) {
       const int index = lanes_.Ensure(part_of.rule, entities);
       if (index == kNone) continue;
       std::vector<Span>& spans = lanes_[index].parts[part_of.part];
-      if (spans.size() == kRemembered) spans.erase(spans.begin());
+      if (spans.size() == kRememberedSpans) spans.erase(spans.begin());
       spans.push_back(span);
       Wake(index);
     }
@@ -131,9 +136,9 @@ void Engine::StepCompose(Lane& lane) {
     if (combinations.best() == nullptr) break;
     const Span whole = *combinations.best();
     lane.last_end = whole.end.frame;
-    for (std::vector<Span>& spans : lane.parts) {
-      std::erase_if(spans, [&](const Span& span) { return span.begin.frame < whole.begin.frame; });
-    }
+    // The next one begins with a first part that begins, and ends with a last part that ends, later than this ends.
+    std::erase_if(lane.parts.front(), [&](const Span& span) { return span.begin.frame < lane.last_end; });
+    std::erase_if(lane.parts.back(), [&](const Span& span) { return span.end.frame <= lane.last_end; });
     Conclude(lane, whole);
   }
   for (bool again = true; again;) {

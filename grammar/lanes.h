@@ -29,6 +29,9 @@ struct Span {
   bool open_end = false;
 };
 
+/// Of each part of a composition only the last ones are kept.
+inline constexpr std::size_t kRememberedSpans = 64;
+
 /// What one frame says about two entities that touch; `up` in the order of the lane's roles.
 struct TouchSample {
   FrameNumber frame = 0;

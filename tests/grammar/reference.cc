@@ -2,6 +2,7 @@
 #include "tests/grammar/reference.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace prehend::grammar::reference {
 
@@ -186,7 +187,11 @@ Runs ConfirmedBy(const Runs& runs, const Runs& by, const Stream& within) {
 }
 
 Runs Compose(const std::vector<Runs>& parts, const Ticks& ticks, const std::function<bool(const std::vector<Interval>&)>& fits) {
-  Runs all;
+  struct Combination {
+    Run whole;
+    int complete = 0;
+  };
+  std::vector<Combination> all;
   std::vector<Run> chosen(parts.size());
   const std::function<void(std::size_t)> choose = [&](std::size_t part) {
     if (part < parts.size()) {
@@ -196,15 +201,21 @@ Runs Compose(const std::vector<Runs>& parts, const Ticks& ticks, const std::func
       }
       return;
     }
+    Combination combination{{chosen.front().begin, chosen.back().end}};
     std::vector<Interval> intervals;
-    for (const Run& run : chosen) intervals.push_back({ticks[run.begin], ticks[run.end]});
-    if (chosen.front().begin < chosen.back().end && fits(intervals)) all.push_back({chosen.front().begin, chosen.back().end});
+    for (const Run& run : chosen) {
+      intervals.push_back({ticks[run.begin], ticks[run.end]});
+      combination.complete = std::max(combination.complete, run.end);
+    }
+    if (combination.whole.begin < combination.whole.end && fits(intervals)) all.push_back(combination);
   };
   choose(0);
-  std::sort(all.begin(), all.end(), [](const Run& a, const Run& b) { return std::pair(a.end, -a.begin) < std::pair(b.end, -b.begin); });
+  std::sort(all.begin(), all.end(), [](const Combination& a, const Combination& b) {
+    return std::tuple(a.complete, a.whole.end, -a.whole.begin) < std::tuple(b.complete, b.whole.end, -b.whole.begin);
+  });
   Runs kept;
-  for (const Run& run : all) {
-    if (kept.empty() || run.begin >= kept.back().end) kept.push_back(run);
+  for (const Combination& one : all) {
+    if (kept.empty() || one.whole.begin >= kept.back().end) kept.push_back(one.whole);
   }
   return kept;
 }
