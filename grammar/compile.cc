@@ -176,6 +176,7 @@ class Compiler {
     Rule rule{.name = definition.name, .file = source.text.file, .place = definition.place};
     rule.printed = definition.is_event;
     rule.symmetric = definition.symmetric;
+    if (definition.form == Definition::Form::kCompose) rule.form = Form::kCompose;  // others must know before it is lowered
     CheckRoles(source, definition);
     for (const ast::Role& role : definition.roles) rule.roles.push_back({role.name, role.class_name});
     program_.events.push_back(std::move(rule));

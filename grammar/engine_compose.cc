@@ -31,14 +31,18 @@ constexpr AllenSet kToEarlier =
 constexpr AllenSet kToLater = Bits({Allen::kBefore, Allen::kMeets, Allen::kOverlaps, Allen::kStarts, Allen::kDuring});
 
 // Some relation to another part holds to none of the remembered intervals, nor to one that ends later than all of them.
-bool IsHopeless(const Composition& composition, const Lane& lane, int part, const Span& span) {
+// Compositions come in the order in which they are complete, not in that of their ends, so all may still be hoped of them.
+bool IsHopeless(const Program& program, const Rule& rule, const Lane& lane, int part, const Span& span) {
+  const Composition& composition = rule.composition;
   return std::any_of(composition.clauses.begin(), composition.clauses.end(), [&](const Composition::Clause& clause) {
     if (clause.left == clause.right || (clause.left != part && clause.right != part)) return false;
     const bool is_left = clause.left == part;
+    const int other = is_left ? clause.right : clause.left;
+    if (program.events[rule.references[composition.parts[other]].rule].form == Form::kCompose) return false;
     if ((clause.relations & (is_left ? kToLater : kToEarlier)) != 0) return false;
-    const std::vector<Span>& others = lane.parts[is_left ? clause.right : clause.left];
-    return std::none_of(others.begin(), others.end(), [&](const Span& other) {
-      const Allen relation = is_left ? Relate(TicksOf(span), TicksOf(other)) : Relate(TicksOf(other), TicksOf(span));
+    const std::vector<Span>& others = lane.parts[other];
+    return std::none_of(others.begin(), others.end(), [&](const Span& one) {
+      const Allen relation = is_left ? Relate(TicksOf(span), TicksOf(one)) : Relate(TicksOf(one), TicksOf(span));
       return (Bit(relation) & clause.relations) != 0;
     });
   });
@@ -57,7 +61,7 @@ class Combinations {
   void Choose(std::size_t part) {
     if (part == lane_.parts.size()) return Judge();
     for (const Span& span : lane_.parts[part]) {
-      if (span.end.frame > settled_) continue;
+      if (span.Complete().frame > settled_) continue;
       chosen_[part] = &span;
       if (RelationsHoldUpTo(static_cast<int>(part))) Choose(part + 1);
     }
@@ -72,16 +76,17 @@ class Combinations {
 
   void Judge() {
     const Span& last = *chosen_[lane_.parts.size() - 1];
-    const Span whole{chosen_[0]->begin, last.end, last.open_end};
+    Span whole{chosen_[0]->begin, last.end, last.open_end, last.Complete()};
+    for (std::size_t part = 0; part < lane_.parts.size(); ++part) {
+      const Moment complete = chosen_[part]->Complete();
+      if (complete.tick > whole.completed.tick) whole.completed = complete;
+    }
     if (whole.begin.frame >= whole.end.frame || whole.begin.frame < lane_.last_end) return;
-    FrameNumber complete = 0;
-    for (std::size_t part = 0; part < lane_.parts.size(); ++part) complete = std::max(complete, chosen_[part]->end.frame);
-    const auto order = [](FrameNumber completed, const Span& span) {
-      return std::tuple(completed, span.end.frame, -span.begin.frame);
+    const auto order = [](const Span& span) {
+      return std::tuple(span.completed.tick, span.end.tick, -span.begin.tick);
     };
-    if (found_ && order(complete, whole) >= order(complete_, best_)) return;
+    if (found_ && order(whole) >= order(best_)) return;
     best_ = whole;
-    complete_ = complete;
     found_ = true;
   }
 
@@ -90,7 +95,6 @@ class Combinations {
   FrameNumber settled_;
   std::array<const Span*, kMaxParts> chosen_ = {};
   Span best_;
-  FrameNumber complete_ = 0;  ///< where the last interval of the best one ends
   bool found_ = false;
 };
 
@@ -145,7 +149,7 @@ void Engine::StepCompose(Lane& lane) {
     again = false;
     for (std::size_t part = 0; part < lane.parts.size(); ++part) {
       again |= std::erase_if(lane.parts[part], [&](const Span& span) {
-                 return span.end.frame <= settled && IsHopeless(rule.composition, lane, static_cast<int>(part), span);
+                 return span.Complete().frame <= settled && IsHopeless(*program_, rule, lane, static_cast<int>(part), span);
                }) > 0;
     }
   }

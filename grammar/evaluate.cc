@@ -83,6 +83,7 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
   const Kleene now = Truth(node.args[0], view);
   const Kleene wanted = begins ? now : Not(now);
   if (wanted == Kleene::kFalse) return wanted;
+  restless_ = restless_ || now == Kleene::kUnknown;  // even if there is no change here, the next frame looks back at it
   const bool is_first = view.frame == 0;
   Kleene before = Kleene::kFalse;
   if (!is_first) before = Truth(node.args[0], {.lane = view.lane, .frame = view.frame - 1, .end = view.end});

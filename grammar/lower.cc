@@ -119,6 +119,13 @@ int Lowering::RuleCall(const Expr& expr) {
   return kNone;
 }
 
+int Lowering::PartCall(const Expr& expr) {
+  part_ = true;
+  const int reference = RuleCall(expr);
+  part_ = false;
+  return reference;
+}
+
 int Lowering::Signal(const Expr& expr, Anchors anchors, Dimension& dimension) {
   anchors_ = anchors;
   const Typed typed = Number(expr);

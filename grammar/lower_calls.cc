@@ -93,6 +93,12 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
     reference.roles[count++] = *role;
   }
   if (kept.empty()) return Bad(expr.place, "at least one role must be named; all are 'any'");
+  // It may begin long before it is complete, so nobody can be told in time where it holds.
+  const bool composed = symbols_.program.events[rule].form == Form::kCompose;
+  if (composed && (!part_ || narrowed || kept.size() < wanted.size())) {
+    return Bad(expr.place, Quoted(expr.text) + " is a composition; only another composition can use it, with all its roles named",
+               "use its parts instead");
+  }
   if (narrowed) reference.rule = NarrowedRule(rule, classes);
   if (kept.size() < wanted.size()) reference.rule = AnyRule(reference.rule, kept);
   return {.node = Add({.op = Op::kHolds, .slot = AddReference(reference)}), .type = Type::kTruth};

@@ -113,7 +113,7 @@ class DefinitionLowering {
         lowering_.Complain(part.place, "the label '" + part.label + "' is used twice");
       }
       labels.push_back(part.label);
-      const int reference = lowering_.RuleCall(part.call);
+      const int reference = lowering_.PartCall(part.call);
       if (reference == kNone) continue;
       CheckPart(part, reference);
       Here().composition.parts.push_back(reference);

@@ -102,14 +102,22 @@ class Maker {
     for (unsigned i = 0; i <= others; ++i) rule.calls.push_back(Call());
   }
 
+  int AnyRule() { return static_cast<int>(Below(rules_.size())); }
+
   void MakeCompose(RandomRule& rule) {
     const unsigned parts = 1 + Below(3);
-    unsigned common = ~0U;
-    for (unsigned i = 0; i < parts; ++i) {
-      Term part{.kind = Kind::kRule, .which = static_cast<int>(Below(rules_.size()))};
-      common &= rules_[part.which].roles;
-      rule.calls.push_back(std::move(part));
-    }
+    unsigned common = 0;
+    const auto loses_roles = [&](const Term& part) {  // a composition's roles are all named
+      return rules_[part.which].form == Form::kCompose && rules_[part.which].roles != common;
+    };
+    do {
+      rule.calls.clear();
+      common = ~0U;
+      for (unsigned i = 0; i < parts; ++i) {
+        rule.calls.push_back({.kind = Kind::kRule, .which = AnyRule()});
+        common &= rules_[rule.calls.back().which].roles;
+      }
+    } while (std::ranges::any_of(rule.calls, loses_roles));
     for (Term& part : rule.calls) part.named = common;
     const unsigned clauses = 1 + Below(parts);
     for (unsigned i = 0; i < clauses; ++i) {
@@ -154,7 +162,8 @@ class Maker {
   Term Touch() { return {.kind = Kind::kTouch, .which = static_cast<int>(Below(kRoles))}; }
 
   Term Call() {
-    Term call{.kind = Kind::kRule, .which = static_cast<int>(Below(rules_.size()))};
+    Term call{.kind = Kind::kRule, .which = AnyRule()};
+    while (rules_[call.which].form == Form::kCompose) call.which = AnyRule();  // the first rule is none
     const unsigned roles = rules_[call.which].roles;
     call.named = Below(3) == 0 ? roles & Below(8) : roles;
     return call;
@@ -255,26 +264,19 @@ class Meaning {
     }
   }
 
-  struct Found {
-    Runs runs;
-    std::vector<Interval> ticks;
-  };
+  using Found = std::vector<reference::Timed>;
   const Found& Of(std::size_t rule, int p) const { return found_[rule][p]; }
 
  private:
-  Found InTicks(Runs runs) const {
-    Found found{std::move(runs), {}};
-    for (const auto& run : found.runs) found.ticks.push_back({e_.ticks[run.begin], e_.ticks[run.end]});
-    return found;
-  }
+  Found InTicks(const Runs& runs) const { return reference::InTicks(runs, e_.ticks); }
 
   // The intervals that a call stands for.
-  Runs CallRuns(const Term& term, int p) const {
-    if (term.kind == Kind::kTouch) return While(Truth(term, p, 0));
-    const unsigned roles = rules_[term.which].roles;
-    if (term.named == roles) return found_[term.which][p].runs;
-    return While(Truth(term, p, 0));  // of somebody: where one goes on when another ends, it is one
+  Found Intervals(const Term& term, int p) const {
+    const bool own = term.kind == Kind::kRule && term.named == rules_[term.which].roles;
+    if (own) return found_[term.which][p];
+    return InTicks(While(Truth(term, p, 0)));  // of somebody: where one goes on when another ends, it is one
   }
+  Runs CallRuns(const Term& term, int p) const { return reference::RunsOf(Intervals(term, p)); }
   Runs While(const Stream& stream) const { return reference::While(stream, e_.ticks, 0); }
 
   Stream Truth(const Term& term, int p, int anchor) const {
@@ -288,8 +290,8 @@ class Meaning {
       }
       case Kind::kRule: {
         const bool anybody = (rules_[term.which].roles & kP & ~term.named) != 0;
-        const Stream own = reference::Truth(found_[term.which][anybody ? 0 : p].runs, n_);
-        return anybody ? reference::Or(own, reference::Truth(found_[term.which][1].runs, n_)) : own;
+        const Stream own = reference::Truth(reference::RunsOf(found_[term.which][anybody ? 0 : p]), n_);
+        return anybody ? reference::Or(own, reference::Truth(reference::RunsOf(found_[term.which][1]), n_)) : own;
       }
       case Kind::kAnd: return reference::And(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
       case Kind::kOr: return reference::Or(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
@@ -317,10 +319,8 @@ class Meaning {
       }
       case Form::kFromTo:
         return InTicks(reference::FromTo(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p), during, rule.or_drop, e_.ticks, rule.within));
-      case Form::kWithout: {
-        reference::Deadlines found = reference::FromWithout(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p), during, e_.ticks, rule.within);
-        return {std::move(found.runs), std::move(found.ticks)};
-      }
+      case Form::kWithout:
+        return reference::FromWithout(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p), during, e_.ticks, rule.within);
       case Form::kUntil: {
         reference::Approach approach{.signal = {e_.height_m.begin(), e_.height_m.end()}, .slack = rule.slack_m + 0.5,
                                      .speed = rule.speed_m_per_s, .idle = rule.idles ? rule.idle : -1};
@@ -333,26 +333,23 @@ class Meaning {
         return InTicks(reference::RestOf(CallRuns(rule.calls[0], p), outside));
       }
       case Form::kCompose: {
-        std::vector<Runs> parts;
-        for (const Term& call : rule.calls) parts.push_back(CallRuns(call, p));
-        return InTicks(reference::Compose(parts, e_.ticks, [&](const std::vector<Interval>& chosen) {
+        std::vector<Found> parts;
+        for (const Term& call : rule.calls) parts.push_back(Intervals(call, p));
+        return reference::Compose(parts, [&](const std::vector<Interval>& chosen) {
           return std::ranges::all_of(rule.clauses, [&](const RandomRule::Clause& clause) {
             return (Bit(Relate(chosen[clause.left], chosen[clause.right])) & clause.relations) != 0;
           });
-        }));
+        });
       }
     }
     return {};
   }
 
   Found Find(const RandomRule& rule, int p) const {
-    const Found all = FindForm(rule, p);
     Found kept;
-    for (std::size_t i = 0; i < all.runs.size(); ++i) {
-      const reference::Run& run = all.runs[i];
-      if (all.ticks[i].end - all.ticks[i].begin < rule.lasting || !Meets(rule, run, p) || !IsConfirmed(rule, run, p)) continue;
-      kept.runs.push_back(run);
-      kept.ticks.push_back(all.ticks[i]);
+    for (const reference::Timed& one : FindForm(rule, p)) {
+      if (one.ticks.end - one.ticks.begin < rule.lasting) continue;
+      if (Meets(rule, one.run, p) && IsConfirmed(rule, one.run, p)) kept.push_back(one);
     }
     return kept;
   }
@@ -445,7 +442,8 @@ std::map<std::string, std::vector<Interval>> RandomGrammar::Expected(const Rando
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     const bool two = (rules_[i].roles & kP) != 0;
     for (int p = 0; p < (two ? 2 : 1); ++p) {
-      std::vector<Interval> intervals = meaning.Of(i, p).ticks;
+      std::vector<Interval> intervals;
+      for (const reference::Timed& one : meaning.Of(i, p)) intervals.push_back(one.ticks);
       if (intervals.empty()) continue;
       std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
       expected["rule" + std::to_string(i) + (two ? "(p" + std::to_string(p + 1) + ")" : "")] = std::move(intervals);

@@ -82,8 +82,8 @@ Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool
   return runs;
 }
 
-Deadlines FromWithout(const Stream& from, const Anchored& without, const Anchored& during, const Ticks& ticks, Tick within) {
-  Deadlines found;
+std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during, const Ticks& ticks, Tick within) {
+  std::vector<Timed> found;
   const int frames = static_cast<int>(from.size());
   for (int i = 0; i < frames; ++i) {
     if (!from[i]) continue;
@@ -95,10 +95,7 @@ Deadlines FromWithout(const Stream& from, const Anchored& without, const Anchore
     while (end < frames && ticks[end] < deadline && !comes[end] && holds[end]) ++end;
     const bool waited = ticks[end] >= deadline;
     const bool just_in_time = waited && end < frames && ticks[end] == deadline && comes[end];
-    if (waited && !just_in_time) {
-      found.runs.push_back({i, end});
-      found.ticks.push_back({ticks[i], deadline});
-    }
+    if (waited && !just_in_time) found.push_back({{i, end}, {ticks[i], deadline}});
     i = end - (waited && !just_in_time ? 1 : 0);
   }
   return found;
@@ -164,6 +161,18 @@ Runs RestOf(const Runs& whole, const std::vector<Stream>& outside) {
   return runs;
 }
 
+std::vector<Timed> InTicks(const Runs& runs, const Ticks& ticks) {
+  std::vector<Timed> timed;
+  for (const Run& run : runs) timed.push_back({run, {ticks[run.begin], ticks[run.end]}});
+  return timed;
+}
+
+Runs RunsOf(const std::vector<Timed>& timed) {
+  Runs runs;
+  for (const Timed& one : timed) runs.push_back(one.run);
+  return runs;
+}
+
 Runs Lasting(const Runs& runs, const Ticks& ticks, Tick lasting) {
   Runs kept;
   for (const Run& run : runs) {
@@ -186,36 +195,35 @@ Runs ConfirmedBy(const Runs& runs, const Runs& by, const Stream& within) {
   return kept;
 }
 
-Runs Compose(const std::vector<Runs>& parts, const Ticks& ticks, const std::function<bool(const std::vector<Interval>&)>& fits) {
-  struct Combination {
-    Run whole;
-    int complete = 0;
-  };
-  std::vector<Combination> all;
-  std::vector<Run> chosen(parts.size());
+std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
+                           const std::function<bool(const std::vector<Interval>&)>& fits) {
+  std::vector<Timed> all;
+  std::vector<Timed> chosen(parts.size());
   const std::function<void(std::size_t)> choose = [&](std::size_t part) {
     if (part < parts.size()) {
-      for (const Run& run : parts[part]) {
-        chosen[part] = run;
+      for (const Timed& one : parts[part]) {
+        chosen[part] = one;
         choose(part + 1);
       }
       return;
     }
-    Combination combination{{chosen.front().begin, chosen.back().end}};
+    const Timed& first = chosen.front();
+    const Timed& last = chosen.back();
+    Timed whole{{first.run.begin, last.run.end}, {first.ticks.begin, last.ticks.end}};
     std::vector<Interval> intervals;
-    for (const Run& run : chosen) {
-      intervals.push_back({ticks[run.begin], ticks[run.end]});
-      combination.complete = std::max(combination.complete, run.end);
+    for (const Timed& one : chosen) {
+      intervals.push_back(one.ticks);
+      whole.completed = std::max(whole.completed, one.Complete());
     }
-    if (combination.whole.begin < combination.whole.end && fits(intervals)) all.push_back(combination);
+    if (first.ticks.begin < last.ticks.end && fits(intervals)) all.push_back(whole);
   };
   choose(0);
-  std::sort(all.begin(), all.end(), [](const Combination& a, const Combination& b) {
-    return std::tuple(a.complete, a.whole.end, -a.whole.begin) < std::tuple(b.complete, b.whole.end, -b.whole.begin);
+  std::sort(all.begin(), all.end(), [](const Timed& a, const Timed& b) {
+    return std::tuple(a.completed, a.ticks.end, -a.ticks.begin) < std::tuple(b.completed, b.ticks.end, -b.ticks.begin);
   });
-  Runs kept;
-  for (const Combination& one : all) {
-    if (kept.empty() || one.whole.begin >= kept.back().end) kept.push_back(one.whole);
+  std::vector<Timed> kept;
+  for (const Timed& one : all) {
+    if (kept.empty() || one.ticks.begin >= kept.back().ticks.end) kept.push_back(one);
   }
   return kept;
 }

@@ -3,6 +3,7 @@
 // nothing with the engine but the words.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -50,13 +51,21 @@ struct Anchored {
 Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool or_drop, const Ticks& ticks,
             Tick within = -1);
 
-/// A deadline may lie between two frames: the run ends with the first frame at or after it, the interval with itself.
-struct Deadlines {
-  Runs runs;
-  std::vector<Interval> ticks;
+/// An interval in frames and in ticks. A deadline may lie between two frames: the run ends with the first frame at or after
+/// it, the interval with itself.
+struct Timed {
+  Run run;
+  Interval ticks;
+  Tick completed = 0;  ///< of a composition: when its last part has ended
+
+  Tick Complete() const { return std::max(completed, ticks.end); }
 };
+std::vector<Timed> InTicks(const Runs& runs, const Ticks& ticks);
+Runs RunsOf(const std::vector<Timed>& timed);
+
 /// `from .. without .. within [during]`.
-Deadlines FromWithout(const Stream& from, const Anchored& without, const Anchored& during, const Ticks& ticks, Tick within);
+std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during, const Ticks& ticks,
+                               Tick within);
 
 /// `approaching signal receding at most slack [, slower than speed at most idle]`, one tick being 1 ms.
 struct Approach {
@@ -68,7 +77,8 @@ struct Approach {
 Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, Tick back, const Approach* approach = nullptr);
 
 /// `compose`: `fits` judges one interval of each part.
-Runs Compose(const std::vector<Runs>& parts, const Ticks& ticks, const std::function<bool(const std::vector<Interval>&)>& fits);
+std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
+                           const std::function<bool(const std::vector<Interval>&)>& fits);
 Runs RestOf(const Runs& whole, const std::vector<Stream>& outside);
 
 Runs Lasting(const Runs& runs, const Ticks& ticks, Tick lasting);

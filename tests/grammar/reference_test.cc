@@ -60,11 +60,13 @@ struct Episode {
   Ticks ticks;  // and the end
 };
 
-std::vector<Interval> InTicks(const Runs& runs, const Ticks& ticks) {
+std::vector<Interval> TicksOf(const std::vector<reference::Timed>& timed) {
   std::vector<Interval> intervals;
-  for (const auto& run : runs) intervals.push_back({ticks[run.begin], ticks[run.end]});
+  for (const auto& one : timed) intervals.push_back(one.ticks);
   return intervals;
 }
+
+std::vector<Interval> TicksOf(const Runs& runs, const Ticks& ticks) { return TicksOf(reference::InTicks(runs, ticks)); }
 
 // What must not come: with deadlines between frames, hence in ticks.
 std::vector<std::pair<std::string, std::vector<Interval>>> ExpectedDeadlines(const Episode& e) {
@@ -76,14 +78,14 @@ std::vector<std::pair<std::string, std::vector<Interval>>> ExpectedDeadlines(con
   const Stream p_begins = Begins(run(e.p), n);
   const Stream q_begins = Begins(run(e.q), n);
   const Runs in_time = FromTo(p_begins, q_begins, e.r, false, e.ticks, 4);
-  const Deadlines missed = FromWithout(p_begins, q_begins, e.r, e.ticks, 3);
-  const Stream after = Or(Truth(missed.runs, n), Truth(in_time, n));
-  return {{"held", InTicks(While(Hold(e.p, e.q), e.ticks, 1), e.ticks)},
-          {"in_time", InTicks(in_time, e.ticks)},
-          {"timely", InTicks(FromTo(Ends(bridged, n), q_begins, Not(e.r), true, e.ticks, 5), e.ticks)},
-          {"missed", missed.ticks},
-          {"missed_late", FromWithout(Ends(bridged, n), Ends(run(e.q), n), always, e.ticks, 4).ticks},
-          {"after_missed", InTicks(While(after, e.ticks, 1), e.ticks)}};
+  const std::vector<Timed> missed = FromWithout(p_begins, q_begins, e.r, e.ticks, 3);
+  const Stream after = Or(Truth(RunsOf(missed), n), Truth(in_time, n));
+  return {{"held", TicksOf(While(Hold(e.p, e.q), e.ticks, 1), e.ticks)},
+          {"in_time", TicksOf(in_time, e.ticks)},
+          {"timely", TicksOf(FromTo(Ends(bridged, n), q_begins, Not(e.r), true, e.ticks, 5), e.ticks)},
+          {"missed", TicksOf(missed)},
+          {"missed_late", TicksOf(FromWithout(Ends(bridged, n), Ends(run(e.q), n), always, e.ticks, 4))},
+          {"after_missed", TicksOf(While(after, e.ticks, 1), e.ticks)}};
 }
 
 // The rules of kForms, by the meaning table.
@@ -163,7 +165,7 @@ std::string IntervalsText(std::vector<Interval> intervals) {
 bool Agrees(const std::shared_ptr<const Program>& program, const Episode& episode) {
   const std::vector<Event> events = Watch(program, episode);
   std::vector<std::pair<std::string, std::vector<Interval>>> all = ExpectedDeadlines(episode);
-  for (const auto& [name, runs] : Expected(episode)) all.push_back({name, InTicks(runs, episode.ticks)});
+  for (const auto& [name, runs] : Expected(episode)) all.push_back({name, TicksOf(runs, episode.ticks)});
   for (const auto& [name, expected] : all) {
     std::vector<Interval> found;
     for (const Event& event : events) {
