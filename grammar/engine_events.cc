@@ -126,7 +126,6 @@ void Engine::UpdateKnown(Lane& lane) {
 
 // The last frames are decided, then what is open ends with the episode.
 void Engine::FinishLane(Lane& lane, Moment end) {
-  if (RuleOf(lane).form == Form::kCompose) return StepCompose(lane);
   StepLane(lane);
   if (lane.open && TicksOf(lane).within >= 0) MeetDeadline(lane, end);
   if (lane.open && lane.in_gap) {
