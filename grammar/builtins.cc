@@ -2,6 +2,11 @@
 #include "grammar/builtins.h"
 
 namespace prehend::grammar {
+namespace {
+
+constexpr Dimension kRadiansPerSecond{.time = -1, .angle = 1};
+
+}  // namespace
 
 std::span<const Builtin> Builtins() {
   using A = Argument;

@@ -2,6 +2,8 @@
 // Grammar files -> Program: reads includes, collects parameters and heads, lowers every definition, orders the
 // rules so that each follows those it refers to, and picks each rule's guard.
 // Tested by tests/grammar/compile_test.cc
+#include "grammar/compile.h"
+
 #include <algorithm>
 #include <deque>
 #include <set>
@@ -9,7 +11,6 @@
 #include "grammar/guard.h"
 #include "grammar/lower.h"
 #include "grammar/lower_definition.h"
-#include "grammar/monitor.h"
 #include "grammar/parser.h"
 
 namespace prehend::grammar {
@@ -44,6 +45,7 @@ class Compiler {
     if (!diagnostics_.empty()) return {.program = nullptr, .diagnostics = std::move(diagnostics_), .warnings = {}};
     ChooseGuards(program_);
     WarnOfUnused();
+    program_.warnings = warnings_;
     return {.program = std::make_shared<const Program>(std::move(program_)),
             .diagnostics = {},
             .warnings = std::move(warnings_)};
@@ -364,6 +366,10 @@ class Compiler {
 };
 
 }  // namespace
+
+CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides) {
+  return Compile(grammar, includer, overrides, {});
+}
 
 CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides,
                       const std::vector<std::string>& known) {

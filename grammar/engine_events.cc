@@ -133,6 +133,7 @@ void Engine::FinishLane(Lane& lane, Moment end) {
   } else if (lane.open && !RuleOf(lane).or_drop) {
     Close(lane, end, true);
   }
+  ResolvePending(lane);  // a gap that nothing bridges any more ends an interval that others may have confirmed
   lane.open = lane.in_gap = lane.awake = false;
   lane.pending.clear();
   lane.known = kNever;

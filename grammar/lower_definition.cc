@@ -171,7 +171,7 @@ class DefinitionLowering {
       Here().lasting_s = lasting_s;
       CheckLasting(*d_.lasting);
     }
-    if (d_.form == Definition::Form::kCompose && (d_.requirement || d_.confirmed || !d_.attributes.empty())) {
+    if (d_.form == Definition::Form::kCompose && (d_.requirement || d_.confirmed || d_.style || !d_.attributes.empty())) {
       lowering_.Complain(d_.place, "a composition takes no 'requires', no 'confirmed by' and no attributes of its own",
                          "put it into one of the parts");
     }

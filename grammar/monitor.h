@@ -19,8 +19,8 @@ namespace prehend::grammar {
 
 struct Program;  // grammar/program.h
 
-/// Text of the file that `use NAME` or `use "PATH"` asks for, with the file name to report in diagnostics; nullopt:
-/// no such file. A path comes as seen from the file of the grammar, like it, and ends with ".grammar".
+/// Text of the file that `use NAME` asks for, with the file name to report in diagnostics; nullopt:
+/// no such file.
 struct GrammarText {
   std::string file;
   std::string text;
@@ -37,9 +37,8 @@ struct CompileResult {
   Diagnostics warnings;  ///< what is allowed and yet looks like a mistake
 };
 
-/// `known`: names that `use` could ask for, to suggest one of them.
-CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides = {},
-                      const std::vector<std::string>& known = {});
+CompileResult Compile(const GrammarText& grammar, const Includer& includer,
+                      const Overrides& overrides = {});
 
 inline constexpr int kMaxRoles = 4;
 inline constexpr int kMaxAttributes = 4;

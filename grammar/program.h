@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "grammar/allen.h"
+#include "grammar/diagnostic.h"
 #include "grammar/monitor.h"
 #include "grammar/quantity.h"
 
@@ -171,6 +172,7 @@ struct Program {
   std::vector<std::string> class_names;  ///< for kIsA
   std::vector<std::string> set_names;    ///< for kSensorSet
   std::vector<NamedClass> named_classes; ///< all but the built-in ones
+  Diagnostics warnings;                  ///< what Compile() warned of
   std::vector<ProgramParam> params;
 };
 

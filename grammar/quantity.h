@@ -24,7 +24,6 @@ inline constexpr Dimension kPlain{};
 inline constexpr Dimension kMetres{.length = 1};
 inline constexpr Dimension kSeconds{.time = 1};
 inline constexpr Dimension kMetresPerSecond{.length = 1, .time = -1};
-inline constexpr Dimension kRadiansPerSecond{.time = -1, .angle = 1};
 inline constexpr Dimension kNewtons{.force = 1};
 inline constexpr Dimension kRadians{.angle = 1};
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "grammar/compile.h"
 #include "grammar/program.h"
 #include "harness/library_paths.h"
 #include "harness/text_file.h"
@@ -44,10 +45,10 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
   return grammar::Compile({file, std::move(*text.value)}, include, overrides, ProjectLibrary(root).grammars);
 }
 
-grammar::Diagnostics ClassWarnings(const grammar::Program& program, const grammar::Cast& cast) {
+grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Cast& cast) {
   std::set<std::string> known;
   for (const grammar::CastMember& member : cast.entities) known.insert(member.classes.begin(), member.classes.end());
-  grammar::Diagnostics warnings;
+  grammar::Diagnostics warnings = program.warnings;
   for (const grammar::NamedClass& named : program.named_classes) {
     if (known.contains(named.name)) continue;
     const std::string near = grammar::NearestName(named.name, {known.begin(), known.end()});

@@ -2,9 +2,7 @@
 // See prepare_run.h. Tested by tests/house/command_line_test.cc
 #include "harness/prepare_run.h"
 
-#include <algorithm>
 #include <functional>
-#include <iterator>
 
 #include "grammar/program.h"
 #include "harness/library_paths.h"
@@ -82,9 +80,7 @@ ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string&
     if (!pictures.empty()) return {std::nullopt, std::move(pictures)};
   }
   scenario.value->grammar = compiled.program->name;
-  grammar::Diagnostics warnings = std::move(compiled.warnings);
-  std::ranges::move(ClassWarnings(*compiled.program, MakeCast(*scenario.value)), std::back_inserter(warnings));
-  return {PreparedRun{std::move(*scenario.value), std::move(compiled.program), std::move(warnings)}, {}};
+  return {PreparedRun{std::move(*scenario.value), std::move(compiled.program)}, {}};
 }
 
 ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings) {

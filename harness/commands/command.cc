@@ -72,8 +72,4 @@ ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& dia
   return ExitCode::kBadInput;
 }
 
-void Warn(const CommandContext& context, const grammar::Diagnostics& warnings) {
-  if (!warnings.empty()) context.err << Format(warnings);
-}
-
 }  // namespace prehend::harness

@@ -72,7 +72,5 @@ std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
 /// Prints to `err`, followed by the command line, and returns `code`.
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message);
 ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& diagnostics);
-/// Prints what is allowed and yet looks like a mistake; nothing when there is nothing.
-void Warn(const CommandContext& context, const grammar::Diagnostics& warnings);
 
 }  // namespace prehend::harness

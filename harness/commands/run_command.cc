@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/commands/command.h"
+#include "harness/commands/warn.h"
 #include "harness/episode_file.h"
 #include "harness/run_output.h"
 #include "harness/whole_file.h"
@@ -26,7 +27,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!file) return ExitCode::kNothing;
   const ReadResult<PreparedRun> prepared = PrepareRun(RequestOf(options, file->path), context.root);
   if (!prepared.value) return Complain(context, prepared.diagnostics);
-  Warn(context, prepared.value->warnings);
+  WarnOf(*prepared.value->program, MakeCast(prepared.value->scenario), context);
 
   const bool measure = IsGiven(options, "--measure");
   RunOptions how{.measure = measure};

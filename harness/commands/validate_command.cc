@@ -5,6 +5,7 @@
 
 #include "grammar/describe.h"
 #include "harness/commands/command.h"
+#include "harness/commands/warn.h"
 #include "harness/golden.h"
 #include "harness/load_grammar.h"
 #include "harness/text_file.h"
@@ -49,7 +50,7 @@ std::optional<Validated> Validate(const std::string& typed, const CLI::App& opti
   if (!file) return std::nullopt;
   ReadResult<PreparedRun> prepared = PrepareRun(RequestOf(options, file->path), context.root);
   Validated validated{file->path, std::move(prepared.diagnostics)};
-  if (prepared.value) validated.warnings = std::move(prepared.value->warnings);
+  if (prepared.value) validated.warnings = Warnings(*prepared.value->program, MakeCast(prepared.value->scenario));
   return validated;
 }
 

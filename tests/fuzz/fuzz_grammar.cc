@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "grammar/compile.h"
 #include "grammar/describe.h"
-#include "grammar/monitor.h"
 #include "grammar/program.h"
 
 namespace {

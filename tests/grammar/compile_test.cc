@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "grammar/monitor.h"
+#include "grammar/compile.h"
 #include "grammar/program.h"
 #include "tests/grammar/corpus.h"
 

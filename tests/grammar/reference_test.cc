@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "grammar/allen.h"
 #include "grammar/monitor.h"
 #include "grammar/program.h"
 #include "tests/grammar/reference.h"
@@ -46,6 +47,9 @@ event missed(x: X, p: P, q: Q, r: R)
   from touching(x, p) begins without touching(x, q) begins within 3 ms during touching(x, r)
 event missed_late(x: X, p: P, q: Q) from bridged(x, p) ends without touching(x, q) ends within 4 ms
 event after_missed(x: X, p: P, q: Q, r: R) while missed(x, p, q, r) or in_time(x, p, q, r) bridging 1 ms
+event plain_q(x: X, q: Q) while touching(x, q)
+event story(x: X, p: P, q: Q) compose a: plain(x, p), b: plain_q(x, q) where a before|overlaps|contains|finishes b
+event ends_in_r(x: X, p: P, r: R) while touching(x, p) bridging 1 ms requires touching(x, r)
 event anywhere(x: X, p: P) while mixed(x, p, any, any) or late(x, p, any, any)
 )";
 
@@ -80,7 +84,17 @@ std::vector<std::pair<std::string, std::vector<Interval>>> ExpectedDeadlines(con
   const Runs in_time = FromTo(p_begins, q_begins, e.r, false, e.ticks, 4);
   const std::vector<Timed> missed = FromWithout(p_begins, q_begins, e.r, e.ticks, 3);
   const Stream after = Or(Truth(RunsOf(missed), n), Truth(in_time, n));
-  return {{"held", TicksOf(While(Hold(e.p, e.q), e.ticks, 1), e.ticks)},
+  const auto related = [](const std::vector<Interval>& chosen) {
+    const Allen relation = Relate(chosen[0], chosen[1]);
+    return relation == Allen::kBefore || relation == Allen::kOverlaps || relation == Allen::kContains || relation == Allen::kFinishes;
+  };
+  Runs ends_in_r;
+  for (const auto& one : While(e.p, e.ticks, 1)) {
+    if (e.r[std::min(one.end, n - 1)]) ends_in_r.push_back(one);
+  }
+  return {{"story", TicksOf(Compose({reference::InTicks(run(e.p), e.ticks), reference::InTicks(run(e.q), e.ticks)}, related))},
+          {"ends_in_r", TicksOf(ends_in_r, e.ticks)},
+          {"held", TicksOf(While(Hold(e.p, e.q), e.ticks, 1), e.ticks)},
           {"in_time", TicksOf(in_time, e.ticks)},
           {"timely", TicksOf(FromTo(Ends(bridged, n), q_begins, Not(e.r), true, e.ticks, 5), e.ticks)},
           {"missed", TicksOf(missed)},
@@ -116,6 +130,7 @@ std::vector<std::pair<std::string, Runs>> Expected(const Episode& e) {
           {"tangled", While(tangled, e.ticks, 1)},
           {"confirmed_one", ConfirmedBy(UntilSince(begins(e.p), e.q, e.ticks, 20), run(e.r), in_bridged)},
           {"plain_r", run(e.r)},
+          {"plain_q", run(e.q)},
           {"cut_by_later", FromTo(ends(e.r), Or(Begins(approach, n), begins(e.r)), Not(e.p), false, e.ticks)},
           {"anywhere", run(Or(mixed, Truth(late, n)))}};
 }

@@ -64,7 +64,7 @@ TEST_F(LoadGrammarFiles, WarnsOfClassesThatNobodyHas) {
   ASSERT_TRUE(loaded.program) << Format(loaded.diagnostics);
   const grammar::Cast cast{.entities = {{.name = "hand", .classes = {"Hand", "Entity"}},
                                         {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}}}};
-  EXPECT_EQ(Format(ClassWarnings(*loaded.program, cast)),
+  EXPECT_EQ(Format(Warnings(*loaded.program, cast)),
             file + ":2:24: warning: nobody in this episode is a 'Cupp'\n"
                    "  event near(h: Hand, c: Cupp) while distance(h, c) < 1 cm\n"
                    "                      ^\n  hint: did you mean 'Cup'?\n" +

@@ -21,8 +21,8 @@ TEST_P(OracleAgreement, WithinTwoFrames) {
   const RunRequest request{.scenario_file = GetParam().path};
   const ReadResult<PreparedRun> prepared = PrepareRun(request, PREHEND_SOURCE_DIR);
   ASSERT_TRUE(prepared.value) << grammar::Format(prepared.diagnostics);
-  const Scenario& scenario = prepared.value->scenario;
-  const RunResult run = RunScenario(scenario, prepared.value->program, {.record = true});
+  const auto& [scenario, program] = *prepared.value;
+  const RunResult run = RunScenario(scenario, program, {.record = true});
   ASSERT_EQ(run.status.kind, physics::RunStatus::Kind::kCompleted) << run.status.reason;
   const grammar::Timeline truth = TrueTimeline(scenario, run.recording, run.ticks + 1);
   EXPECT_GE(truth.events.size(), 1u);
