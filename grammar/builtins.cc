@@ -2,6 +2,11 @@
 #include "grammar/builtins.h"
 
 namespace prehend::grammar {
+namespace {
+
+constexpr Dimension kRadiansPerSecond{.time = -1, .angle = 1};
+
+}  // namespace
 
 std::span<const Builtin> Builtins() {
   using A = Argument;
@@ -38,6 +43,8 @@ std::span<const Builtin> Builtins() {
       {"drift_along", Op::kDriftAlong, T::kNumber, kMetresPerSecond, {A::kEntity, A::kEntity, A::kWindow},
        "(a, b, window): how far a gets horizontally, as seen from b, from half the window before to half of it after, "
        "per time"},
+      {"turn_rate", Op::kTurnRate, T::kNumber, kRadiansPerSecond, {A::kEntity, A::kEntity, A::kWindow},
+       "(a, b, window): how fast the direction in which a moves horizontally, as seen from b, turns to the left"},
       {"tilt", Op::kTilt, T::kNumber, kRadians, {A::kEntity}, "angle between the entity's own z axis and up"},
       {"joint_fraction", Op::kJointFraction, T::kNumber, kPlain, {A::kThing}, "of a moving part, 0 closed .. 1 open"},
       {"joint_angle", Op::kJointAngle, T::kNumber, kRadians, {A::kThing}, "of a part on a hinge"},

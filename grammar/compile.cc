@@ -2,6 +2,8 @@
 // Grammar files -> Program: reads includes, collects parameters and heads, lowers every definition, orders the
 // rules so that each follows those it refers to, and picks each rule's guard.
 // Tested by tests/grammar/compile_test.cc
+#include "grammar/compile.h"
+
 #include <algorithm>
 #include <deque>
 #include <set>
@@ -9,7 +11,6 @@
 #include "grammar/guard.h"
 #include "grammar/lower.h"
 #include "grammar/lower_definition.h"
-#include "grammar/monitor.h"
 #include "grammar/parser.h"
 
 namespace prehend::grammar {
@@ -27,8 +28,9 @@ struct Source {
 
 class Compiler {
  public:
-  Compiler(const GrammarText& grammar, const Includer& includer, const Overrides& overrides)
-      : includer_(includer), overrides_(overrides) {
+  Compiler(const GrammarText& grammar, const Includer& includer, const Overrides& overrides,
+           const std::vector<std::string>& known)
+      : includer_(includer), overrides_(overrides), known_(known) {
     Read(grammar);
   }
 
@@ -43,6 +45,7 @@ class Compiler {
     if (!diagnostics_.empty()) return {.program = nullptr, .diagnostics = std::move(diagnostics_), .warnings = {}};
     ChooseGuards(program_);
     WarnOfUnused();
+    program_.warnings = warnings_;
     return {.program = std::make_shared<const Program>(std::move(program_)),
             .diagnostics = {},
             .warnings = std::move(warnings_)};
@@ -63,7 +66,7 @@ class Compiler {
 
   void ReadFile(const GrammarText& grammar, std::set<std::string, std::less<>>& seen) {
     Source source{grammar, Parse(grammar, diagnostics_)};
-    seen.insert(source.file.name);
+    seen.insert({source.file.name, grammar.file});
     for (const ast::Use& use : source.file.uses) {
       if (use.is_path && !CheckPath(source, use)) continue;
       const std::string name = use.is_path ? Beside(grammar.file, use.name) : use.name;
@@ -74,7 +77,8 @@ class Compiler {
       }
       const std::optional<GrammarText> used = includer_ ? includer_(name) : std::nullopt;
       if (!used) {
-        Complain(source, use.place, "there is no grammar '" + use.name + "' to use", use.is_path ? "looked for " + name : "");
+        Complain(source, use.place, "there is no grammar '" + use.name + "' to use",
+                 use.is_path ? "looked for " + name : Suggest(use.name, known_));
       } else {
         ReadFile(*used, seen);
       }
@@ -93,7 +97,7 @@ class Compiler {
 
   static std::string Beside(const std::string& file, const std::string& path) {
     const std::size_t slash = file.rfind('/');
-    return (slash == std::string::npos ? "./" : file.substr(0, slash + 1)) + path;
+    return file.substr(0, slash == std::string::npos ? 0 : slash + 1) + path.substr(path.starts_with("./") ? 2 : 0);
   }
 
   void CollectParams() {
@@ -174,6 +178,7 @@ class Compiler {
     Rule rule{.name = definition.name, .file = source.text.file, .place = definition.place};
     rule.printed = definition.is_event;
     rule.symmetric = definition.symmetric;
+    if (definition.form == Definition::Form::kCompose) rule.form = Form::kCompose;  // others must know before it is lowered
     CheckRoles(source, definition);
     for (const ast::Role& role : definition.roles) rule.roles.push_back({role.name, role.class_name});
     program_.events.push_back(std::move(rule));
@@ -205,7 +210,10 @@ class Compiler {
       if (symbols_.params.contains(parameter.name)) {
         Complain(source, parameter.place, "'" + parameter.name + "' is a parameter of the grammar already");
       }
-      if (parameter.class_name != "number" && parameter.class_name != "position") CheckClassName(source, parameter);
+      if (parameter.class_name == "number" || parameter.class_name == "position") continue;
+      std::vector<std::string> others = UnitNames();
+      others.insert(others.end(), {"number", "position"});
+      CheckClassName(source, parameter, others);
     }
   }
 
@@ -248,11 +256,12 @@ class Compiler {
   }
 
   // `hand: hand` is meant to be `hand: Hand`; other unknown names may be classes of a scenario.
-  void CheckClassName(const Source& source, const ast::Role& role) {
-    static const std::vector<std::string> kRoots = {"Entity", "Hand", "Thing", "Movable", "Fixed"};
-    if (std::find(kRoots.begin(), kRoots.end(), role.class_name) != kRoots.end()) return;
-    const std::string near = NearestName(role.class_name, kRoots);
-    if (!StartsWithCapital(role.class_name)) {
+  void CheckClassName(const Source& source, const ast::Role& role, std::vector<std::string> known = {}) {
+    if (StartsWithCapital(role.class_name)) {
+      NoteClass(program_, role.class_name, source.text.file, role.place);
+    } else {
+      known.insert(known.end(), BuiltinClasses().begin(), BuiltinClasses().end());
+      const std::string near = NearestName(role.class_name, known);
       Complain(source, role.place, "'" + role.class_name + "' is not a class; classes start with a capital letter",
                near.empty() ? "" : "did you mean '" + near + "'?");
     }
@@ -343,6 +352,7 @@ class Compiler {
 
   const Includer& includer_;
   const Overrides& overrides_;
+  const std::vector<std::string>& known_;
   Diagnostics diagnostics_;
   Diagnostics warnings_;
   std::deque<Source> sources_;
@@ -358,7 +368,12 @@ class Compiler {
 }  // namespace
 
 CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides) {
-  return Compiler(grammar, includer, overrides).Run();
+  return Compile(grammar, includer, overrides, {});
+}
+
+CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides,
+                      const std::vector<std::string>& known) {
+  return Compiler(grammar, includer, overrides, known).Run();
 }
 
 }  // namespace prehend::grammar

@@ -61,6 +61,12 @@ std::string Watched(const Program& program, const Rule& rule) {
   return guard.form == Form::kTouching ? "pairs that touch" : "while " + guard.name;
 }
 
+// A composition remembers so many intervals of each part.
+std::size_t BytesPerBinding(const Rule& rule) {
+  return sizeof(Lane) + rule.references.size() * sizeof(int) + rule.anchors.size() * 3 * sizeof(double) +
+         rule.composition.parts.size() * kRememberedSpans * sizeof(Span);
+}
+
 std::string Head(const Rule& rule) {
   std::string text = rule.symmetric ? "symmetric event " : rule.printed ? "event " : "condition ";
   text += rule.name + "(";
@@ -101,8 +107,7 @@ GrammarDescription Describe(const Program& program) {
   GrammarDescription description{.name = program.name,
                                  .params = program.params,
                                  .bytes_per_pose = sizeof(FrameNumber) + sizeof(EntityLook),
-                                 .bytes_per_feeler = sizeof(Feeler),
-                                 .bytes_per_binding = sizeof(Lane)};
+                                 .bytes_per_feeler = sizeof(Feeler)};
   const Waits waits(program);
   for (std::size_t i = 0; i < program.events.size(); ++i) {
     const Rule& rule = program.events[i];
@@ -111,7 +116,9 @@ GrammarDescription Describe(const Program& program) {
     description.rules.push_back({.head = Head(rule),
                                  .printed = rule.printed,
                                  .latency = waits.OfEnd(static_cast<int>(i)),
-                                 .watched = Watched(program, rule)});
+                                 .watched = Watched(program, rule),
+                                 .bytes_per_binding = BytesPerBinding(rule),
+                                 .bytes_per_interval = rule.referenced ? sizeof(Span) : 0});
   }
   return description;
 }
@@ -119,14 +126,17 @@ GrammarDescription Describe(const Program& program) {
 std::string Text(const GrammarDescription& description) {
   std::string text = "grammar " + description.name + "\n\n";
   for (const RuleDescription& rule : description.rules) {
-    text += rule.head + "\n    decided: " + Text(rule.latency) + "; watched: " + rule.watched + "\n";
+    text += rule.head + "\n    decided: " + Text(rule.latency) + "; watched: " + rule.watched + "\n    memory: at most " +
+            std::to_string(rule.bytes_per_binding) + " bytes per binding";
+    if (rule.bytes_per_interval > 0) text += ", and " + std::to_string(rule.bytes_per_interval) + " for each of its recent intervals";
+    text += "\n";
   }
   text += "\n";
   text += ParamsText(description.params);
   text += "\nmemory: poses of the last " + QuantityText({description.history_s, kSeconds}) + ", " +
           std::to_string(description.bytes_per_pose) + " bytes per frame and moving entity, " +
-          std::to_string(description.bytes_per_feeler) + " per frame and feeler of a hand; about " +
-          std::to_string(description.bytes_per_binding) + " bytes per binding\n";
+          std::to_string(description.bytes_per_feeler) + " per frame and feeler of a hand; intervals are recent as long as " +
+          "their poses are kept\n";
   return text;
 }
 

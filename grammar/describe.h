@@ -23,6 +23,8 @@ struct RuleDescription {
   bool printed = false;
   Wait latency;      ///< from an interval's end to its decision, besides a frame for each of the waits
   std::string watched;  ///< which bindings cost time: "pairs that touch", "every hand and object"
+  std::size_t bytes_per_binding = 0;   ///< at most, besides its intervals
+  std::size_t bytes_per_interval = 0;  ///< kept for as long as poses are, if others ask for them
 };
 
 struct GrammarDescription {
@@ -32,7 +34,6 @@ struct GrammarDescription {
   double history_s = 0;                ///< how long poses are kept
   std::size_t bytes_per_pose = 0;      ///< kept per frame and entity that is awake
   std::size_t bytes_per_feeler = 0;    ///< kept per frame and feeler of a hand
-  std::size_t bytes_per_binding = 0;   ///< about
 };
 
 GrammarDescription Describe(const Program& program);

@@ -184,8 +184,17 @@ bool Engine::CanBeFreed(const Lane& lane) const {
   // Compositions remember; and whoever asks about this lane must be woken by it, unless it is made to be.
   const auto remembers = [](const std::vector<Span>& spans) { return !spans.empty(); };
   const auto depends = [&](int watcher) { return RuleOf(lanes_[watcher]).form != Form::kAny; };
-  return std::none_of(lane.parts.begin(), lane.parts.end(), remembers) &&
+  return std::none_of(lane.parts.begin(), lane.parts.end(), remembers) && !MayOverlap(lane) &&
          std::none_of(lane.watchers.begin(), lane.watchers.end(), depends);
+}
+
+// A first part is on its way that may begin before the end of the last composition, which has to be remembered then.
+bool Engine::MayOverlap(const Lane& lane) const {
+  if (RuleOf(lane).form != Form::kCompose) return false;
+  const int index = lanes_.Find(lane, RuleOf(lane).composition.parts.front());
+  if (index == kNone) return false;
+  const Lane& first = lanes_[index];
+  return first.open || first.awake || !first.pending.empty() || RuleOf(first).form == Form::kCompose;
 }
 
 }  // namespace prehend::grammar

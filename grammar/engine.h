@@ -96,6 +96,7 @@ class Engine {
   void ForgetThePast();
   void FreeLanes();
   bool CanBeFreed(const Lane& lane) const;
+  bool MayOverlap(const Lane& lane) const;
 
   // The forms; each looks at one frame and says whether it could decide it.
   void StepLane(Lane& lane);

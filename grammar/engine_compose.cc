@@ -2,21 +2,20 @@
 // Compositions: events made of finished events by Allen's relations.
 //
 // Needs: per composition and binding the combinations, one interval of each part, whose relations hold; each reaches
-// from the begin of the first part to the end of the last. They do not overlap: the one that ends first is taken, of
-// those that end together the one that begins last.
+// from the begin of the first part to the end of the last. They do not overlap: the one that is complete first is taken,
+// that is, whose last interval ends first; of those the one that ends first, then the one that begins last.
 // Algorithm: parts deliver their intervals; a combination is judged as soon as no interval can still come that ends
-// before it does. An interval that nothing to come can complete is forgotten, and of the others only the last
-// kRemembered of a part are kept.
+// before it is complete. An interval that nothing to come can complete is forgotten, and of the others only the last
+// kRememberedSpans of a part are kept.
 // Tested by tests/grammar/compose_test.cc
 #include <algorithm>
+#include <tuple>
 
 #include "grammar/allen.h"
 #include "grammar/engine.h"
 
 namespace prehend::grammar {
 namespace {
-
-constexpr std::size_t kRemembered = 64;
 
 Interval TicksOf(const Span& span) { return {span.begin.tick, span.end.tick}; }
 
@@ -32,14 +31,18 @@ constexpr AllenSet kToEarlier =
 constexpr AllenSet kToLater = Bits({Allen::kBefore, Allen::kMeets, Allen::kOverlaps, Allen::kStarts, Allen::kDuring});
 
 // Some relation to another part holds to none of the remembered intervals, nor to one that ends later than all of them.
-bool IsHopeless(const Composition& composition, const Lane& lane, int part, const Span& span) {
+// Compositions come in the order in which they are complete, not in that of their ends, so all may still be hoped of them.
+bool IsHopeless(const Program& program, const Rule& rule, const Lane& lane, int part, const Span& span) {
+  const Composition& composition = rule.composition;
   return std::any_of(composition.clauses.begin(), composition.clauses.end(), [&](const Composition::Clause& clause) {
     if (clause.left == clause.right || (clause.left != part && clause.right != part)) return false;
     const bool is_left = clause.left == part;
+    const int other = is_left ? clause.right : clause.left;
+    if (program.events[rule.references[composition.parts[other]].rule].form == Form::kCompose) return false;
     if ((clause.relations & (is_left ? kToLater : kToEarlier)) != 0) return false;
-    const std::vector<Span>& others = lane.parts[is_left ? clause.right : clause.left];
-    return std::none_of(others.begin(), others.end(), [&](const Span& other) {
-      const Allen relation = is_left ? Relate(TicksOf(span), TicksOf(other)) : Relate(TicksOf(other), TicksOf(span));
+    const std::vector<Span>& others = lane.parts[other];
+    return std::none_of(others.begin(), others.end(), [&](const Span& one) {
+      const Allen relation = is_left ? Relate(TicksOf(span), TicksOf(one)) : Relate(TicksOf(one), TicksOf(span));
       return (Bit(relation) & clause.relations) != 0;
     });
   });
@@ -58,7 +61,7 @@ class Combinations {
   void Choose(std::size_t part) {
     if (part == lane_.parts.size()) return Judge();
     for (const Span& span : lane_.parts[part]) {
-      if (span.end.frame > settled_) continue;
+      if (span.Complete().frame > settled_) continue;
       chosen_[part] = &span;
       if (RelationsHoldUpTo(static_cast<int>(part))) Choose(part + 1);
     }
@@ -73,11 +76,17 @@ class Combinations {
 
   void Judge() {
     const Span& last = *chosen_[lane_.parts.size() - 1];
-    const Span whole{chosen_[0]->begin, last.end, last.open_end};
+    Span whole{chosen_[0]->begin, last.end, last.open_end, last.Complete()};
+    for (std::size_t part = 0; part < lane_.parts.size(); ++part) {
+      const Moment complete = chosen_[part]->Complete();
+      if (complete.tick > whole.completed.tick) whole.completed = complete;
+    }
     if (whole.begin.frame >= whole.end.frame || whole.begin.frame < lane_.last_end) return;
-    const bool better = !found_ || whole.end.frame < best_.end.frame ||
-                        (whole.end.frame == best_.end.frame && whole.begin.frame > best_.begin.frame);
-    if (better) best_ = whole;
+    const auto order = [](const Span& span) {
+      return std::tuple(span.completed.tick, span.end.tick, -span.begin.tick);
+    };
+    if (found_ && order(whole) >= order(best_)) return;
+    best_ = whole;
     found_ = true;
   }
 
@@ -104,7 +113,7 @@ void Engine::TellCompositions(const Lane& part, const Span& span) {
       const int index = lanes_.Ensure(part_of.rule, entities);
       if (index == kNone) continue;
       std::vector<Span>& spans = lanes_[index].parts[part_of.part];
-      if (spans.size() == kRemembered) spans.erase(spans.begin());
+      if (spans.size() == kRememberedSpans) spans.erase(spans.begin());
       spans.push_back(span);
       Wake(index);
     }
@@ -131,16 +140,16 @@ void Engine::StepCompose(Lane& lane) {
     if (combinations.best() == nullptr) break;
     const Span whole = *combinations.best();
     lane.last_end = whole.end.frame;
-    for (std::vector<Span>& spans : lane.parts) {
-      std::erase_if(spans, [&](const Span& span) { return span.begin.frame < whole.begin.frame; });
-    }
+    // The next one begins with a first part that begins, and ends with a last part that ends, later than this ends.
+    std::erase_if(lane.parts.front(), [&](const Span& span) { return span.begin.frame < lane.last_end; });
+    std::erase_if(lane.parts.back(), [&](const Span& span) { return span.end.frame <= lane.last_end; });
     Conclude(lane, whole);
   }
   for (bool again = true; again;) {
     again = false;
     for (std::size_t part = 0; part < lane.parts.size(); ++part) {
       again |= std::erase_if(lane.parts[part], [&](const Span& span) {
-                 return span.end.frame <= settled && IsHopeless(rule.composition, lane, static_cast<int>(part), span);
+                 return span.Complete().frame <= settled && IsHopeless(*program_, rule, lane, static_cast<int>(part), span);
                }) > 0;
     }
   }

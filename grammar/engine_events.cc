@@ -137,7 +137,6 @@ void Engine::UpdateKnown(Lane& lane) {
 
 // The last frames are decided, then what is open ends with the episode.
 void Engine::FinishLane(Lane& lane, Moment end) {
-  if (RuleOf(lane).form == Form::kCompose) return StepCompose(lane);
   StepLane(lane);
   if (lane.open && TicksOf(lane).within >= 0) MeetDeadline(lane, end);
   if (lane.open && lane.in_gap) {
@@ -147,6 +146,7 @@ void Engine::FinishLane(Lane& lane, Moment end) {
   } else if (lane.open) {
     Note(lane, Fate::Kind::kUnfinished, {lane.begin, end});
   }
+  ResolvePending(lane);  // a gap that nothing bridges any more ends an interval that others may have confirmed
   for (const Pending& pending : lane.pending) Note(lane, Fate::Kind::kUnconfirmed, pending.span, end.frame);
   lane.open = lane.in_gap = lane.awake = false;
   lane.pending.clear();

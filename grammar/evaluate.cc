@@ -8,6 +8,7 @@
 namespace prehend::grammar {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
@@ -85,6 +86,7 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
   const Kleene now = Truth(node.args[0], view);
   const Kleene wanted = begins ? now : Not(now);
   if (wanted == Kleene::kFalse) return wanted;
+  restless_ = restless_ || now == Kleene::kUnknown;  // even if there is no change here, the next frame looks back at it
   const bool is_first = view.frame == 0;
   Kleene before = Kleene::kFalse;
   if (!is_first) before = Truth(node.args[0], {.lane = view.lane, .frame = view.frame - 1, .end = view.end});
@@ -166,6 +168,7 @@ std::optional<double> Evaluator::Number(int index, const View& view) const {
     case Op::kAdd: case Op::kSubtract: case Op::kMultiply: case Op::kDivide: case Op::kNegate: case Op::kAbs:
       return Arithmetic(node, view);
     case Op::kDriftAlong: return DriftAlong(node, view);
+    case Op::kTurnRate: return TurnRate(node, view);
     case Op::kRate: return Rate(node, view);
     default: return SignalOf(node, view);
   }
@@ -278,35 +281,56 @@ double Evaluator::SurfaceSpeed(int hand, int object, FrameNumber frame) const {
   return farthest / history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
 }
 
-// Like DriftAlong, of any value: the window is cut off at the episode's begin and end.
-std::optional<double> Evaluator::Rate(const Node& node, const View& view) const {
+// From the last frame that is half the window earlier to the first one that is half the window later; at the episode's
+// begin and end it is cut off. Nothing while the later frame is still to come.
+std::optional<Evaluator::Window> Evaluator::WindowAround(FrameNumber frame, double seconds) const {
   restless_ = true;
-  const Tick now = history_.At(view.frame).tick;
-  const Tick half = history_.AtLeastTicks(node.number / 2);
-  const FrameNumber early = history_.LastNotAfter(now - half);
-  const FrameNumber late = std::min(history_.FirstNotBefore(now + half), history_.now());
-  if (history_.At(late).tick < now + half && !history_.complete()) return std::nullopt;
-  if (early == late) return 0;
-  const std::optional<double> before = Number(node.args[0], {.lane = view.lane, .frame = early, .end = view.end});
-  const std::optional<double> after = Number(node.args[0], {.lane = view.lane, .frame = late, .end = view.end});
-  if (!before || !after) return std::nullopt;
-  return (*after - *before) / history_.Seconds(history_.At(late).tick - history_.At(early).tick);
+  const Tick now = history_.At(frame).tick;
+  const Tick half = history_.AtLeastTicks(seconds / 2);
+  const Window window{history_.LastNotAfter(now - half), std::min(history_.FirstNotBefore(now + half), history_.now())};
+  if (history_.At(window.late).tick < now + half && !history_.complete()) return std::nullopt;
+  return window;
 }
 
-// The way of a as seen from b, turned to where b is now, from the last frame that is half the window earlier to the
-// first one that is half the window later; at the episode's begin and end the window is cut off.
-std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) const {
-  restless_ = true;
-  const Tick now = history_.At(view.frame).tick;
-  const Tick half = history_.AtLeastTicks(node.number / 2);
-  const FrameNumber early = history_.LastNotAfter(now - half);
-  const FrameNumber late = std::min(history_.FirstNotBefore(now + half), history_.now());
-  if (history_.At(late).tick < now + half && !history_.complete()) return std::nullopt;
-  if (early == late) return 0;
+double Evaluator::SecondsBetween(FrameNumber early, FrameNumber late) const {
+  return history_.Seconds(history_.At(late).tick - history_.At(early).tick);
+}
+
+std::optional<double> Evaluator::Rate(const Node& node, const View& view) const {
+  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  if (!window) return std::nullopt;
+  if (window->early == window->late) return 0;
+  const std::optional<double> before = Number(node.args[0], {.lane = view.lane, .frame = window->early, .end = view.end});
+  const std::optional<double> after = Number(node.args[0], {.lane = view.lane, .frame = window->late, .end = view.end});
+  if (!before || !after) return std::nullopt;
+  return (*after - *before) / SecondsBetween(window->early, window->late);
+}
+
+// The way of a as seen from b between two frames, turned to where b is now, without its upright part.
+Vector2d Evaluator::WayOn(const Node& node, const View& view, FrameNumber early, FrameNumber late) const {
   const int a = Entity(node, view, 0);
   const int b = Entity(node, view, 1);
   const Vector3d way_W = history_.Look(b, view.frame).q_WB * (PositionOn(a, b, late) - PositionOn(a, b, early));
-  return way_W.head<2>().norm() / history_.Seconds(history_.At(late).tick - history_.At(early).tick);
+  return way_W.head<2>();
+}
+
+std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) const {
+  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  if (!window) return std::nullopt;
+  if (window->early == window->late) return 0;
+  return WayOn(node, view, window->early, window->late).norm() / SecondsBetween(window->early, window->late);
+}
+
+// The angle between the way in the first and the way in the second half of the window, per time between their middles.
+std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) const {
+  constexpr double kShortest_m = 0.001;  // less has no direction
+  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  if (!window) return std::nullopt;
+  const Vector2d before = WayOn(node, view, window->early, view.frame);
+  const Vector2d after = WayOn(node, view, view.frame, window->late);
+  if (before.norm() < kShortest_m || after.norm() < kShortest_m) return 0;
+  const double left_rad = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
+  return left_rad / (SecondsBetween(window->early, window->late) / 2);
 }
 
 Vector3d Evaluator::PositionOn(int a, int b, FrameNumber frame) const {

@@ -65,8 +65,16 @@ class Evaluator {
   double SurfaceSpeed(int hand, int object, FrameNumber frame) const;
   bool SensorSet(const Node& node, const View& view) const;
   double Weight(int entity) const;
+  struct Window {
+    FrameNumber early = 0;
+    FrameNumber late = 0;
+  };
+  std::optional<Window> WindowAround(FrameNumber frame, double seconds) const;
+  double SecondsBetween(FrameNumber early, FrameNumber late) const;
+  Eigen::Vector2d WayOn(const Node& node, const View& view, FrameNumber early, FrameNumber late) const;
   std::optional<double> Rate(const Node& node, const View& view) const;
   std::optional<double> DriftAlong(const Node& node, const View& view) const;
+  std::optional<double> TurnRate(const Node& node, const View& view) const;
   Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;
   Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;
   const TouchSample* Touch(const Node& node, const View& view, bool& swapped) const;

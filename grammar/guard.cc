@@ -84,7 +84,7 @@ bool IsLook(Op op) {
     case Op::kInSphere: case Op::kBoxInSphere: case Op::kInCylinder:
     case Op::kTrigger: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kGap: case Op::kClosingSpeed: case Op::kSurfaceSpeed:
     case Op::kDistance: case Op::kHeight: case Op::kSpeed: case Op::kVerticalSpeed: case Op::kRelativeVerticalSpeed:
-    case Op::kSpeedAlong: case Op::kDriftAlong: case Op::kTilt: case Op::kSensorSet: case Op::kGazed:
+    case Op::kSpeedAlong: case Op::kDriftAlong: case Op::kTurnRate: case Op::kTilt: case Op::kSensorSet: case Op::kGazed:
     case Op::kJointFraction: case Op::kJointAngle: case Op::kJointTravel: case Op::kRate: case Op::kPosition: case Op::kPositionOn: case Op::kAhead: return true;
     default: return false;
   }
@@ -102,7 +102,7 @@ double LooksAround(const Program& program, int index) {
   const Node& node = program.nodes[index];
   double seconds = 0;
   for (const int arg : node.args) seconds = std::max(seconds, LooksAround(program, arg));
-  return node.op == Op::kDriftAlong || node.op == Op::kRate ? seconds + node.number / 2 : seconds;
+  return node.op == Op::kDriftAlong || node.op == Op::kTurnRate || node.op == Op::kRate ? seconds + node.number / 2 : seconds;
 }
 
 // A value where the interval begins or ends is not asked for at every frame.

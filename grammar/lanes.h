@@ -27,7 +27,14 @@ struct Span {
   Moment begin;
   Moment end;
   bool open_end = false;
+  Moment completed = {};  ///< of a composition: where its last part ends, if that is later
+
+  /// From here on it is known.
+  Moment Complete() const { return completed.tick > end.tick && completed.frame > 0 ? completed : end; }
 };
+
+/// Of each part of a composition only the last ones are kept.
+inline constexpr std::size_t kRememberedSpans = 64;
 
 /// What one frame says about two entities that touch; `up` in the order of the lane's roles.
 struct TouchSample {

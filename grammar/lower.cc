@@ -45,10 +45,28 @@ std::string Suggest(std::string_view name, const std::vector<std::string>& known
   return near.empty() ? std::string() : "did you mean " + Quoted(near) + "?";
 }
 
+const std::vector<std::string>& BuiltinClasses() {
+  static const std::vector<std::string> kClasses = {"Entity", "Hand", "Thing", "Movable", "Fixed", "Jointed"};
+  return kClasses;
+}
+
+bool IsBuiltinClass(std::string_view name) {
+  return std::find(BuiltinClasses().begin(), BuiltinClasses().end(), name) != BuiltinClasses().end();
+}
+
+void NoteClass(Program& program, std::string_view name, const std::string& file, Place place) {
+  const auto same = [&](const NamedClass& named) { return named.name == name && named.file == file; };
+  if (IsBuiltinClass(name) || std::ranges::any_of(program.named_classes, same)) return;
+  program.named_classes.push_back({std::string(name), file, place});
+}
+
 bool ClassesMeet(std::string_view a, std::string_view b) {
   if (a == b || a == "Entity" || b == "Entity") return true;
   if (a == "Hand" || b == "Hand") return false;
-  return !(a == "Movable" && b == "Fixed") && !(a == "Fixed" && b == "Movable");
+  const auto says_how_it_moves = [](std::string_view name) {
+    return name == "Movable" || name == "Fixed" || name == "Jointed";
+  };
+  return !says_how_it_moves(a) || !says_how_it_moves(b);
 }
 
 bool IsOverInterval(std::string_view name) {
@@ -99,6 +117,13 @@ int Lowering::RuleCall(const Expr& expr) {
   if (node.op == Op::kHolds) return node.slot;
   Complain(expr.place, "an event or condition is needed here, " + Quoted(expr.text) + " is none", "define it as a condition: condition near(..) while ..");
   return kNone;
+}
+
+int Lowering::PartCall(const Expr& expr) {
+  part_ = true;
+  const int reference = RuleCall(expr);
+  part_ = false;
+  return reference;
 }
 
 int Lowering::Signal(const Expr& expr, Anchors anchors, Dimension& dimension) {

@@ -38,6 +38,12 @@ struct Symbols {
 /// True if some entity can be of both classes. Names other than the built-in ones are taken to be Things.
 bool ClassesMeet(std::string_view a, std::string_view b);
 
+bool IsBuiltinClass(std::string_view name);
+const std::vector<std::string>& BuiltinClasses();
+
+/// Remembers a class that stands at a place of a file, once per name and file.
+void NoteClass(Program& program, std::string_view name, const std::string& file, Place place);
+
 inline bool StartsWithCapital(std::string_view name) { return !name.empty() && name[0] >= 'A' && name[0] <= 'Z'; }
 
 /// The signals that are measured over an interval: displacement, rise, drop.
@@ -64,6 +70,8 @@ class Lowering {
   int Instant(const ast::Expr& expr, Anchors anchors);
   /// A call of an event or condition, as a reference of the rule.
   int RuleCall(const ast::Expr& expr);
+  /// Likewise, of a part of a composition: that may be a composition, too.
+  int PartCall(const ast::Expr& expr);
   /// A number; its dimension is written to `dimension`.
   int Signal(const ast::Expr& expr, Anchors anchors, Dimension& dimension);
   /// A number to be asked for where the interval ends: signals as they were at its begin, `x@end` as they are.
@@ -152,6 +160,7 @@ class Lowering {
   const GrammarText* source_;
   Diagnostics& diagnostics_;
   Anchors anchors_;
+  bool part_ = false;       ///< a part of a composition is lowered
   bool attribute_ = false;  ///< signals are taken where the interval begins
   bool full_ = false;       ///< the grammar has too many expressions
   bool checking_ = false;   ///< numbers of parameters are stand-ins

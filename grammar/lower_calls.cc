@@ -82,6 +82,7 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
       if (!StartsWithCapital(classes[i])) {
         return Bad(expr.args[i].args[0].place, Quoted(classes[i]) + " is not a class; classes start with a capital letter");
       }
+      NoteClass(symbols_.program, classes[i], source_->file, expr.args[i].args[0].place);
       if (ClassesMeet(classes[i], wanted[i].class_name)) continue;
       return Bad(expr.args[i].args[0].place, Quoted(expr.text) + " takes a " + wanted[i].class_name + " here, and no " +
                                                  classes[i] + " is one");
@@ -92,6 +93,12 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
     reference.roles[count++] = *role;
   }
   if (kept.empty()) return Bad(expr.place, "at least one role must be named; all are 'any'");
+  // It may begin long before it is complete, so nobody can be told in time where it holds.
+  const bool composed = symbols_.program.events[rule].form == Form::kCompose;
+  if (composed && (!part_ || narrowed || kept.size() < wanted.size())) {
+    return Bad(expr.place, Quoted(expr.text) + " is a composition; only another composition can use it, with all its roles named",
+               "use its parts instead");
+  }
   if (narrowed) reference.rule = NarrowedRule(rule, classes);
   if (kept.size() < wanted.size()) reference.rule = AnyRule(reference.rule, kept);
   return {.node = Add({.op = Op::kHolds, .slot = AddReference(reference)}), .type = Type::kTruth};
@@ -222,6 +229,7 @@ Lowering::Typed Lowering::LowerIs(const Expr& expr) {
   }
   const std::optional<int> role = RoleArgument(expr.args[0], "Entity", "is");
   if (!role) return {.bad = true};
+  NoteClass(symbols_.program, expr.args[1].text, source_->file, expr.args[1].place);
   symbols_.program.class_names.push_back(expr.args[1].text);
   const int slot = static_cast<int>(symbols_.program.class_names.size()) - 1;
   return {.node = Add({.op = Op::kIsA, .roles = {*role, kNone}, .slot = slot}), .type = Type::kTruth};

@@ -113,7 +113,7 @@ class DefinitionLowering {
         lowering_.Complain(part.place, "the label '" + part.label + "' is used twice");
       }
       labels.push_back(part.label);
-      const int reference = lowering_.RuleCall(part.call);
+      const int reference = lowering_.PartCall(part.call);
       if (reference == kNone) continue;
       CheckPart(part, reference);
       Here().composition.parts.push_back(reference);
@@ -171,7 +171,7 @@ class DefinitionLowering {
       Here().lasting_s = lasting_s;
       CheckLasting(*d_.lasting);
     }
-    if (d_.form == Definition::Form::kCompose && (d_.requirement || d_.confirmed || !d_.attributes.empty())) {
+    if (d_.form == Definition::Form::kCompose && (d_.requirement || d_.confirmed || d_.style || !d_.attributes.empty())) {
       lowering_.Complain(d_.place, "a composition takes no 'requires', no 'confirmed by' and no attributes of its own",
                          "put it into one of the parts");
     }

@@ -80,7 +80,7 @@ class Parser : public ExpressionParser {
     file.uses.push_back({Take().text, true, place});
   }
 
-  // define above(a, b: Thing, by: cm) = height(a) > height(b) + by
+  // define above(a, b: Thing, gap: cm) = height(a) > height(b) + gap
   ast::Define ParseDefine() {
     ast::Define define;
     define.place = Peek().place;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "grammar/allen.h"
+#include "grammar/diagnostic.h"
 #include "grammar/monitor.h"
 #include "grammar/quantity.h"
 
@@ -33,6 +34,7 @@ enum class Op : std::uint8_t {
   kDriftAlong,  ///< over `number` seconds around the frame
   kTilt,
   kJointFraction, kJointAngle, kJointTravel, kWeight, kStrength,
+  kTurnRate,  ///< over `number` seconds around the frame
   kRate,  ///< of args[0], over `number` seconds around the frame
   // Positions in metres.
   kPosition, kPositionOn, kAhead,
@@ -47,7 +49,7 @@ struct Node {
   std::array<int, 2> roles = {kNone, kNone};               ///< roles of the rule
   int slot = kNone;       ///< reference, anchor or class name
   int name = kNone;       ///< kSensorSet: index into Program::set_names
-  double number = 0;      ///< kNumber, kDriftAlong, kRate, kSensorSet
+  double number = 0;      ///< kNumber, kSensorSet, and the windows of kDriftAlong, kTurnRate, kRate
 };
 
 /// One number per role.
@@ -154,6 +156,13 @@ struct NodeNote {
   Place place;
 };
 
+/// A class that the text of a grammar names, where it first does in its file.
+struct NamedClass {
+  std::string name;
+  std::string file;
+  Place place;
+};
+
 struct ProgramParam {
   std::string name;
   Quantity value;
@@ -171,6 +180,8 @@ struct Program {
   std::vector<NodeNote> notes;  ///< of the first so many nodes
   std::vector<std::string> class_names;  ///< for kIsA
   std::vector<std::string> set_names;    ///< for kSensorSet
+  std::vector<NamedClass> named_classes; ///< all but the built-in ones
+  Diagnostics warnings;                  ///< what Compile() warned of
   std::vector<ProgramParam> params;
 };
 

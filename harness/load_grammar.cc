@@ -3,7 +3,10 @@
 #include "harness/load_grammar.h"
 
 #include <filesystem>
+#include <set>
 
+#include "grammar/compile.h"
+#include "grammar/program.h"
 #include "harness/library_paths.h"
 #include "harness/text_file.h"
 
@@ -27,17 +30,34 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
   note(file);
   ReadResult<std::string> text = ReadTextFile(file);
   if (!text.value) return {nullptr, std::move(text.diagnostics)};
-  const auto include = [&](std::string_view name) -> std::optional<grammar::GrammarText> {
-    const std::string beside =
-        (fs::path(file).parent_path() / (std::string(name) + ".grammar")).string();
-    for (const std::string& candidate : {beside, GrammarPath(root, std::string(name))}) {
+  const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
+    const std::string name(used);
+    const std::string beside = (fs::path(file).parent_path() / (name + ".grammar")).string();
+    const std::vector<std::string> candidates =
+        name.ends_with(".grammar") ? std::vector{name} : std::vector{beside, GrammarPath(root, name)};
+    for (const std::string& candidate : candidates) {
       note(candidate);
-      ReadResult<std::string> used = ReadTextFile(candidate);
-      if (used.value) return grammar::GrammarText{candidate, std::move(*used.value)};
+      ReadResult<std::string> found = ReadTextFile(candidate);
+      if (found.value) return grammar::GrammarText{candidate, std::move(*found.value)};
     }
     return std::nullopt;
   };
-  return grammar::Compile({file, std::move(*text.value)}, include, overrides);
+  return grammar::Compile({file, std::move(*text.value)}, include, overrides, ProjectLibrary(root).grammars);
+}
+
+grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Cast& cast) {
+  std::set<std::string> known;
+  for (const grammar::CastMember& member : cast.entities) known.insert(member.classes.begin(), member.classes.end());
+  grammar::Diagnostics warnings = program.warnings;
+  for (const grammar::NamedClass& named : program.named_classes) {
+    if (known.contains(named.name)) continue;
+    const std::string near = grammar::NearestName(named.name, {known.begin(), known.end()});
+    warnings.push_back(grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value.value_or(""), named.place,
+                                             "nobody in this episode is a '" + named.name + "'",
+                                             near.empty() ? "" : "did you mean '" + near + "'?"));
+    warnings.back().is_warning = true;
+  }
+  return warnings;
 }
 
 }  // namespace prehend::harness

@@ -6,6 +6,7 @@
 
 #include "grammar/program.h"
 #include "harness/commands/command.h"
+#include "harness/commands/warn.h"
 #include "harness/episode_file.h"
 #include "harness/load_grammar.h"
 #include "harness/run_output.h"
@@ -37,6 +38,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!compiled.program) return Complain(context, compiled.diagnostics);
 
   const grammar::Cast& cast = episode.value->header.cast;
+  WarnOf(*compiled.program, cast, context);
   grammar::Monitor monitor(compiled.program, cast);
   std::vector<grammar::Event> events;
   for (EpisodeFrame& frame : episode.value->frames) monitor.Advance(frame.View(), events);

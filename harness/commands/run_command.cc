@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "harness/commands/command.h"
+#include "harness/commands/warn.h"
 #include "harness/episode_file.h"
 #include "harness/run_output.h"
 #include "harness/run_trials.h"
@@ -77,6 +78,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
   const ReadResult<PreparedRun> prepared = PrepareRun(request, context.root);
   if (!prepared.value) return Complain(context, prepared.diagnostics);
+  WarnOf(*prepared.value->program, MakeCast(prepared.value->scenario), context);
 
   const bool measure = IsGiven(options, "--measure");
   RunOptions how{.measure = measure};

@@ -5,6 +5,7 @@
 
 #include "grammar/describe.h"
 #include "harness/commands/command.h"
+#include "harness/commands/warn.h"
 #include "harness/golden.h"
 #include "harness/load_grammar.h"
 #include "harness/text_file.h"
@@ -15,7 +16,8 @@ namespace {
 struct Validated {
   std::string file;
   grammar::Diagnostics diagnostics;
-  std::string description;  ///< of a grammar without errors
+  std::string description = {};  ///< of a grammar without errors
+  grammar::Diagnostics warnings = {};
 };
 
 void Declare(CLI::App& options) {
@@ -36,32 +38,39 @@ grammar::Diagnostics ReadGoldenFile(const std::string& path) {
 Validated ValidateGrammar(const std::string& name_or_path, const std::string& root) {
   grammar::CompileResult compiled = LoadGrammar(root, name_or_path);
   return {GrammarFile(root, name_or_path), std::move(compiled.diagnostics),
-          compiled.program ? Text(Describe(*compiled.program)) : ""};
+          compiled.program ? Text(Describe(*compiled.program)) : "", std::move(compiled.warnings)};
 }
 
 /// Nothing when it is the name of no scenario.
 std::optional<Validated> Validate(const std::string& typed, const CLI::App& options,
                                   const CommandContext& context) {
   if (typed.ends_with(".grammar")) return ValidateGrammar(typed, context.root);
-  if (typed.ends_with(".timeline")) return Validated{typed, ReadGoldenFile(typed), {}};
+  if (typed.ends_with(".timeline")) return Validated{typed, ReadGoldenFile(typed)};
   const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return std::nullopt;
-  return Validated{
-      file->path, PrepareRun(RequestOf(options, file->path), context.root).diagnostics, {}};
+  ReadResult<PreparedRun> prepared = PrepareRun(RequestOf(options, file->path), context.root);
+  Validated validated{file->path, std::move(prepared.diagnostics)};
+  if (prepared.value) validated.warnings = Warnings(*prepared.value->program, MakeCast(prepared.value->scenario));
+  return validated;
+}
+
+nlohmann::ordered_json ToJson(const grammar::Diagnostics& diagnostics) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const grammar::Diagnostic& diagnostic : diagnostics) {
+    all.push_back({{"file", diagnostic.file},
+                   {"line", diagnostic.place.line},
+                   {"column", diagnostic.place.column},
+                   {"message", diagnostic.message},
+                   {"hint", diagnostic.hint}});
+  }
+  return all;
 }
 
 nlohmann::ordered_json ToJson(const Validated& validated) {
-  nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();
-  for (const grammar::Diagnostic& diagnostic : validated.diagnostics) {
-    diagnostics.push_back({{"file", diagnostic.file},
-                           {"line", diagnostic.place.line},
-                           {"column", diagnostic.place.column},
-                           {"message", diagnostic.message},
-                           {"hint", diagnostic.hint}});
-  }
   return {{"file", validated.file},
           {"ok", validated.diagnostics.empty()},
-          {"diagnostics", std::move(diagnostics)}};
+          {"diagnostics", ToJson(validated.diagnostics)},
+          {"warnings", ToJson(validated.warnings)}};
 }
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
@@ -87,6 +96,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     json.push_back(ToJson(validated));
     diagnostics.insert(diagnostics.end(), validated.diagnostics.begin(),
                        validated.diagnostics.end());
+    Warn(context, validated.warnings);
     if (!IsGiven(options, "--json") && validated.diagnostics.empty())
       context.out << "ok: " << validated.file << "\n" << validated.description;
   }

@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "grammar/monitor.h"
+#include "grammar/compile.h"
 #include "grammar/program.h"
 #include "tests/grammar/corpus.h"
 
@@ -38,7 +38,7 @@ TEST(Compile, SaysExactlyWhatIsWrong) {
   const std::vector<ErrorCase> cases = ReadErrorCases();
   EXPECT_GE(cases.size(), 25u);
   for (const ErrorCase& c : cases) {
-    const CompileResult result = Compile({"g", c.grammar}, testing::LibraryIncluder());
+    const CompileResult result = Compile({"g", c.grammar}, testing::LibraryIncluder(), {}, {"contact", "grasp", "pick_and_place"});
     EXPECT_EQ(result.program, nullptr);
     EXPECT_EQ(Format(result.diagnostics), c.expected) << c.title;
   }

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <sstream>
 
 #include "grammar/program.h"
@@ -14,9 +15,9 @@
 namespace prehend::grammar::testing {
 namespace {
 
-constexpr Tick kTicksPerSecond = 1000;
-constexpr Tick kColumnTicks = 50;
-constexpr Tick kFrameTicks = 10;
+constexpr Tick kTicksPerSecond = kCorpusTicksPerSecond;
+constexpr Tick kColumnTicks = kCorpusColumnTicks;
+constexpr int kUsualFramesPerSecond = 100;
 
 [[noreturn]] void Abort(const std::string& message) {
   std::fprintf(stderr, "%s\n", message.c_str());
@@ -31,19 +32,34 @@ std::string Trim(const std::string& text) {
 
 CastMember Member(const std::string& name, const std::string& class_name) {
   CastMember member{.name = name, .classes = {class_name}};
-  if (class_name == "Movable" || class_name == "Fixed") member.classes.emplace_back("Thing");
+  if (class_name == "Movable" || class_name == "Fixed" || class_name == "Jointed") member.classes.emplace_back("Thing");
   if (class_name == "Hand") member.sensor_sets = {"fingers", "thumb", "palm"};
   member.classes.emplace_back("Entity");
   return member;
+}
+
+// "8kg", "50N" or "thumb+index+middle".
+void ApplyDetail(CastMember& member, const std::string& detail) {
+  if (detail.ends_with("kg")) {
+    member.mass_kg = std::stod(detail);
+  } else if (detail.ends_with("N")) {
+    member.strength_n = std::stod(detail);
+  } else {
+    std::istringstream sets(detail);
+    member.sensor_sets.clear();
+    for (std::string set; std::getline(sets, set, '+');) member.sensor_sets.push_back(set);
+  }
 }
 
 std::vector<CastMember> ParseCast(const std::string& text) {
   std::vector<CastMember> cast;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
-    const auto colon = word.find(':');
-    if (colon == std::string::npos) Abort("cast wants NAME:CLASS, found " + word);
-    cast.push_back(Member(word.substr(0, colon), word.substr(colon + 1)));
+    std::istringstream parts(word);
+    std::string name, class_name;
+    if (!std::getline(parts, name, ':') || !std::getline(parts, class_name, ':')) Abort("cast wants NAME:CLASS, found " + word);
+    cast.push_back(Member(name, class_name));
+    for (std::string detail; std::getline(parts, detail, ':');) ApplyDetail(cast.back(), detail);
   }
   return cast;
 }
@@ -114,9 +130,51 @@ class Stage {
       for (HandLook& hand : hands_) {
         if (hand.entity == Id(who)) hand.trigger = cell == '#' ? 1 : Digit(cell) / 10.0;
       }
+    } else if (what == "joint") {
+      looks_[Id(who)].joint_fraction = Interpolate(row.cells, tick) / 20;
+    } else if (what == "tilt") {
+      const double rad = Interpolate(row.cells, tick) * 5 * std::numbers::pi / 180;
+      looks_[Id(who)].q_WB = Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitX());
+    } else if (what == "circles") {
+      Circle(looks_[Id(who)], looks_[Id(whom)].p_WB_m, row.cells, tick);
     } else if (cell != '.') {
-      AddTouch(Id(who), Id(whom), what, cell);
+      ApplyPair(Id(who), Id(whom), what, cell);
     }
+  }
+
+  // Two centimetres around the other's origin; each column says by how many sixteenths of a turn it goes on.
+  static void Circle(EntityLook& look, const Eigen::Vector3d& centre, const std::string& cells, Tick tick) {
+    constexpr double kRadius_m = 0.02;
+    const auto full = static_cast<std::size_t>(tick / kColumnTicks);
+    double sixteenths = static_cast<double>(tick % kColumnTicks) / kColumnTicks * Steps(cells[std::min(full, cells.size() - 1)]);
+    for (std::size_t i = 0; i < full; ++i) sixteenths += Steps(cells[std::min(i, cells.size() - 1)]);
+    const double rad = sixteenths * std::numbers::pi / 8;
+    look.p_WB_m = centre + kRadius_m * Eigen::Vector3d(std::cos(rad), std::sin(rad), 0);
+  }
+  // 1..9 to the left, a..i as far to the right, . not at all.
+  static int Steps(char cell) { return cell >= 'a' ? -(cell - 'a' + 1) : Digit(cell); }
+
+  void ApplyPair(int a, int b, const std::string& what, char cell) {
+    const std::vector<std::string>& sets = case_.cast[a].sensor_sets;
+    const auto set = std::find(sets.begin(), sets.end(), what);
+    if (what == "looks") {
+      looks_[a].gazes_at = b;
+    } else if (what == "presses") {
+      TouchOf(a, b).normal_force_n = Digit(cell);
+    } else if (set != sets.end()) {
+      TouchOf(a, b).sensor_sets |= 1U << (set - sets.begin());
+    } else {
+      AddTouch(a, b, what, cell);
+    }
+  }
+
+  // The touch of two, made if there is none.
+  Touch& TouchOf(int a, int b) {
+    if (a > b) std::swap(a, b);
+    const auto found = std::find_if(touches_.begin(), touches_.end(), [&](const Touch& t) { return t.a == a && t.b == b; });
+    if (found != touches_.end()) return *found;
+    touches_.push_back({.a = a, .b = b, .up_on_a = 0, .up_on_b = 0, .normal_force_n = 1});
+    return touches_.back();
   }
 
   static void Shake(EntityLook& look, double seconds) {
@@ -151,10 +209,10 @@ class Stage {
   std::vector<Touch> touches_;
 };
 
-// Steps of a jittered camera, in ticks; the mean is the regular frame.
-Tick NextFrame(const CorpusCase& c, int index) {
-  static constexpr std::array<Tick, 7> kJitter = {10, 7, 13, 4, 16, 9, 11};
-  return c.jittered ? kJitter[static_cast<std::size_t>(index) % kJitter.size()] : kFrameTicks;
+// Steps of a jittered camera, in ticks; the mean is the usual frame.
+Tick NextFrame(const CorpusCase& c, int index, int frames_per_second) {
+  static constexpr std::array<Tick, 7> kJitter = {36, 25, 47, 14, 58, 32, 40};
+  return c.jittered ? kJitter[static_cast<std::size_t>(index) % kJitter.size()] : kTicksPerSecond / frames_per_second;
 }
 
 std::string EventName(const std::string& label) { return label.substr(0, label.find('(')); }
@@ -171,7 +229,7 @@ std::string ReadFile(const std::string& path) {
 
 Includer LibraryIncluder() {
   return [](std::string_view name) -> std::optional<GrammarText> {
-    const std::string file = "grammar/library/" + std::string(name) + ".grammar";
+    const std::string file = name.ends_with(".grammar") ? std::string(name) : "grammar/library/" + std::string(name) + ".grammar";
     if (!std::ifstream(std::string(PREHEND_SOURCE_DIR) + "/" + file)) return std::nullopt;
     return GrammarText{file, ReadFile(std::string(PREHEND_SOURCE_DIR) + "/" + file)};
   };
@@ -185,9 +243,11 @@ std::shared_ptr<const Program> CompileLibrary(const std::string& name, const Ove
   return result.program;
 }
 
-std::vector<CorpusCase> ReadCorpus(const std::string& path) {
+std::vector<CorpusCase> ReadCorpus(const std::string& path) { return ReadCorpusText(path, ReadFile(path)); }
+
+std::vector<CorpusCase> ReadCorpusText(const std::string& path, const std::string& text) {
   std::vector<CorpusCase> cases;
-  std::istringstream lines(ReadFile(path));
+  std::istringstream lines(text);
   bool in_expected = false;
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -201,6 +261,8 @@ std::vector<CorpusCase> ReadCorpus(const std::string& path) {
       Abort(path + ": a case starts with '== TITLE'");
     } else if (line == "--") {
       in_expected = true;
+    } else if (line == "rates") {
+      cases.back().rates = {30, 60, 90, kUsualFramesPerSecond, 240};
     } else if (line == "jittered") {
       cases.back().jittered = true;
     } else if (line.starts_with("grammar ")) {
@@ -220,17 +282,21 @@ std::vector<CorpusCase> ReadCorpus(const std::string& path) {
   return cases;
 }
 
-CorpusRun RunCase(const CorpusCase& c) {
+CorpusRun RunCase(const CorpusCase& c, int frames_per_second) {
   static std::map<std::string, std::shared_ptr<const Program>> programs;
   std::shared_ptr<const Program>& program = programs[c.grammar];
   if (!program) program = CompileLibrary(c.grammar);
+  return RunCase(c, program, frames_per_second);
+}
+
+CorpusRun RunCase(const CorpusCase& c, const std::shared_ptr<const Program>& program, int frames_per_second) {
   const Cast cast{.ticks_per_second = kTicksPerSecond, .entities = c.cast, .styles = {"wrap"}};
   Monitor monitor(program, cast);
   Stage stage(c);
   std::vector<Event> events;
   const Tick end = kColumnTicks * static_cast<Tick>(c.facts.front().cells.size());
   int index = 0;
-  for (Tick tick = 0; tick < end; tick += NextFrame(c, index++)) monitor.Advance(stage.Look(tick), events);
+  for (Tick tick = 0; tick < end; tick += NextFrame(c, index++, frames_per_second)) monitor.Advance(stage.Look(tick), events);
   monitor.Finish(end, events);
   return {monitor.error(), NameEvents(*program, cast, events)};
 }

@@ -11,6 +11,9 @@
 
 namespace prehend::grammar::testing {
 
+inline constexpr Tick kCorpusTicksPerSecond = 3600;
+inline constexpr Tick kCorpusColumnTicks = kCorpusTicksPerSecond / 20;
+
 struct Row {
   std::string name;   ///< "cup on table", "hand grip", "grasping(hand, cup)"
   std::string cells;  ///< one character per column
@@ -21,6 +24,7 @@ struct CorpusCase {
   int line = 0;
   std::string grammar = "pick_and_place";
   bool jittered = false;
+  std::vector<int> rates;  ///< frames per second, if several are to give the same
   std::vector<CastMember> cast;
   std::vector<Row> facts;
   std::vector<Row> expected;
@@ -28,13 +32,16 @@ struct CorpusCase {
 
 /// Reads a corpus file; aborts with a message on malformed ones.
 std::vector<CorpusCase> ReadCorpus(const std::string& path);
+std::vector<CorpusCase> ReadCorpusText(const std::string& path, const std::string& text);
 
 /// What the engine makes of a case.
 struct CorpusRun {
   std::string error;
   Timeline timeline;
 };
-CorpusRun RunCase(const CorpusCase& corpus_case);
+CorpusRun RunCase(const CorpusCase& corpus_case, int frames_per_second = 100);
+/// The same with another grammar than the case names.
+CorpusRun RunCase(const CorpusCase& corpus_case, const std::shared_ptr<const Program>& program, int frames_per_second = 100);
 
 /// Events of the kinds that the case is about, drawn as rows, sorted by first begin.
 std::vector<Row> DrawEvents(const CorpusCase& corpus_case, const Timeline& timeline);

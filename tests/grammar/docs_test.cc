@@ -1,29 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every example of docs/grammar-language.md compiles as it stands.
+// The examples of docs/grammar-language.md: each is a whole grammar, and recognises in the drawing below it what it says.
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "tests/grammar/corpus.h"
 
-namespace prehend::grammar {
+namespace prehend::grammar::testing {
 namespace {
 
-TEST(Docs, ExamplesCompile) {
-  const std::string docs = testing::ReadFile(PREHEND_SOURCE_DIR "/docs/grammar-language.md");
-  int examples = 0;
+// Texts between ``` and ```.
+std::vector<std::string> Blocks(const std::string& docs) {
+  std::vector<std::string> blocks;
   std::size_t at = 0;
   for (std::size_t open; (open = docs.find("```\n", at)) != std::string::npos;) {
     const std::size_t begin = open + 4;
     const std::size_t end = docs.find("```", begin);
-    ASSERT_NE(end, std::string::npos);
-    const std::string block = docs.substr(begin, end - begin);
+    if (end == std::string::npos) break;
+    blocks.push_back(docs.substr(begin, end - begin));
     at = end + 3;
-    if (!block.starts_with("grammar ")) continue;
-    const CompileResult result = Compile({"docs", block}, testing::LibraryIncluder());
-    EXPECT_TRUE(result.program) << Format(result.diagnostics);
+  }
+  return blocks;
+}
+
+std::vector<Row> Sorted(std::vector<Row> rows) {
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.name < b.name; });
+  return rows;
+}
+
+TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
+  const std::vector<std::string> blocks = Blocks(ReadFile(PREHEND_SOURCE_DIR "/docs/grammar-language.md"));
+  int examples = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!blocks[i].starts_with("grammar ")) continue;
+    const CompileResult compiled = Compile({"docs", blocks[i]}, LibraryIncluder());
+    ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
+    EXPECT_EQ(Format(compiled.warnings), "");
+    ASSERT_TRUE(i + 1 < blocks.size() && blocks[i + 1].starts_with("cast ")) << "nothing is drawn below\n" << blocks[i];
+    const CorpusCase drawn = ReadCorpusText("docs", "== example\n" + blocks[i + 1]).front();
+    const CorpusRun run = RunCase(drawn, compiled.program);
+    EXPECT_EQ(run.error, "");
+    EXPECT_FALSE(run.timeline.events.empty());
+    EXPECT_EQ(Text(Sorted(drawn.expected)), Text(Sorted(DrawEvents(drawn, run.timeline)))) << blocks[i];
     ++examples;
   }
-  EXPECT_GE(examples, 8);
+  EXPECT_GE(examples, 13);
 }
 
 }  // namespace
-}  // namespace prehend::grammar
+}  // namespace prehend::grammar::testing

@@ -138,6 +138,23 @@ TEST_F(CommandLine, ValidateReadsScenariosGrammarsAndGoldens) {
   EXPECT_FALSE(files[1]["ok"]);
 }
 
+TEST_F(CommandLine, WarningsOfAGrammarStopNothing) {
+  WriteFile(root_ / "odd.grammar", "grammar odd\nparam unused = 1 cm\nevent high(c: Cartoon) while height(c) > 1 m\n");
+  const std::string file = (root_ / "odd.grammar").string();
+  const std::string unused = file + ":2:7: warning: the parameter 'unused' is not used\n";
+  const std::string nobody = file + ":3:12: warning: nobody in this episode is a 'Cartoon'\n";
+  const Said validated = Do("validate " + file);
+  EXPECT_EQ(validated.exit_code, 0);
+  EXPECT_NE(validated.err.find(unused), std::string::npos) << validated.err;
+  EXPECT_EQ(validated.err.find("nobody"), std::string::npos) << "no scenario is asked about";
+  for (const std::string command : {"validate carton_rests --grammar ", "run carton_rests --grammar "}) {
+    const Said said = Do(command + file);
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_NE(said.err.find(unused), std::string::npos) << said.err;
+    EXPECT_NE(said.err.find(nobody), std::string::npos) << said.err;
+  }
+}
+
 TEST_F(CommandLine, RunPrintsATableOrAnObject) {
   const Said table = Do("run carton_rests");
   EXPECT_EQ(table.exit_code, 0) << table.err;

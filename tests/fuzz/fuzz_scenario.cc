@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// libFuzzer target: any bytes as a scenario. How to run it is in CONTRIBUTING.md.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "harness/library_paths.h"
+#include "harness/read_scenario.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace prehend::harness;
+  static const ScenarioLibrary library = ProjectLibrary(PREHEND_SOURCE_DIR);
+  const auto read = ReadScenarioText("fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size), {}, library);
+  if (!read.value && read.diagnostics.empty()) std::abort();  // refused without a word
+  (void)Format(read.diagnostics);
+  return 0;
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// libFuzzer target: any bytes as YAML, up to the tree in which every key and value knows its place.
+// How to run it is in CONTRIBUTING.md.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "harness/located_yaml.h"
+
+namespace {
+
+// Every place is in the text.
+void CheckPlaces(const prehend::harness::YamlNode& node, int lines) {
+  if (node.where.place.line < 0 || node.where.place.line > lines + 1) std::abort();
+  for (const prehend::harness::YamlNode& child : node.children) CheckPlaces(child, lines);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  const auto read = prehend::harness::ParseYaml("fuzz.yaml", text);
+  if (read.value.has_value() != read.diagnostics.empty()) std::abort();  // a tree or errors, never both
+  (void)Format(read.diagnostics);
+  if (read.value) CheckPlaces(read.value->root, static_cast<int>(std::count(text.begin(), text.end(), '\n')));
+  return 0;
+}
