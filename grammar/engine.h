@@ -85,6 +85,7 @@ class Engine {
   void Wake(int lane);
   void WakeWatchers(const std::vector<Watch>& watchers);
   bool MayStir(const Lane& lane) const;
+  bool MayBegin(const Lane& lane) const;
   void Tell(Lane& lane);
   void TellIfChanged(Lane& lane);
   void WakeAt(Tick tick, int lane);
@@ -99,6 +100,8 @@ class Engine {
 
   // The forms; each looks at one frame and says whether it could decide it.
   void StepLane(Lane& lane);
+  bool StepFrame(Lane& lane);
+  bool LooksTheSame(Lane& lane);
   bool StepWhile(Lane& lane, FrameNumber frame);
   bool StepAny(Lane& lane, FrameNumber frame);
   bool StepRun(Lane& lane, FrameNumber frame, Kleene truth);
@@ -137,6 +140,7 @@ class Engine {
   Lanes lanes_;
   Evaluator evaluator_;
   std::vector<RuleTicks> rule_ticks_;
+  ThresholdSet watched_press_ = 0;  // by any rule
   Tick longest_look_back_ = 0;
   std::vector<std::vector<int>> awake_;  // by rule
   std::vector<int> touching_;            // the pairs that touch now

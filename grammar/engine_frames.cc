@@ -2,6 +2,7 @@
 // What a frame says, and the end of the episode. A whole frame is compared with the one before it; from there on there
 // are only changes.
 #include <algorithm>
+#include <bit>
 #include <tuple>
 
 #include "grammar/engine.h"
@@ -24,6 +25,26 @@ bool SamePose(const HandLook& a, const HandSample& b) {
   const auto same = [](const Feeler& x, const Feeler& y) { return x.p_W_m == y.p_W_m && x.radius_m == y.radius_m; };
   return a.style == b.look.style && a.ahead_W == b.look.ahead_W &&
          std::equal(a.feelers.begin(), a.feelers.end(), b.feelers.begin(), b.feelers.end(), same);
+}
+
+// By Threshold::Value; what is not given is nowhere beyond a threshold that it was not beyond before.
+using Measured = std::array<double, kThresholdValues>;
+
+Measured ValuesOf(const TouchSample& touch) {
+  return {static_cast<double>(std::popcount(touch.sensor_sets)), touch.up[0], touch.up[1], touch.force_n, 0};
+}
+
+// The thresholds that lie between the two.
+ThresholdSet Crossed(const std::vector<Threshold>& thresholds, const Measured& before, const Measured& now) {
+  ThresholdSet crossed = 0;
+  for (std::size_t i = 0; i < thresholds.size(); ++i) {
+    const auto& [value, strict, number] = thresholds[i];
+    const double a = before[static_cast<std::size_t>(value)];
+    const double b = now[static_cast<std::size_t>(value)];
+    const bool differ = strict ? (a > number) != (b > number) : (a >= number) != (b >= number);
+    crossed |= ThresholdSet{differ} << i;
+  }
+  return crossed | kAnyChange;
 }
 
 bool Same(const TouchSample& a, const TouchSample& b) {
@@ -123,9 +144,11 @@ void Engine::EndFrame() {
 }
 
 void Engine::SortNewEvents() {
-  std::sort(out_->begin() + static_cast<std::ptrdiff_t>(first_new_), out_->end(), [](const Event& a, const Event& b) {
+  const auto before = [](const Event& a, const Event& b) {
     return std::tie(a.decided, a.interval.begin, a.rule, a.roles) < std::tie(b.decided, b.interval.begin, b.rule, b.roles);
-  });
+  };
+  const auto first = out_->begin() + static_cast<std::ptrdiff_t>(first_new_);
+  if (!std::is_sorted(first, out_->end(), before)) std::sort(first, out_->end(), before);
   out_ = nullptr;
 }
 
@@ -163,8 +186,14 @@ void Engine::Look(const HandLook& hand) {
   const bool same_grip = before != nullptr && before->look.trigger == hand.trigger;
   const bool same_pose = before != nullptr && SamePose(hand, *before);
   if (same_grip && same_pose) return;
+  const ThresholdSet crossed =
+      before == nullptr ? ~ThresholdSet{0}
+                        : Crossed(program_->thresholds, {0, 0, 0, 0, before->look.trigger}, {0, 0, 0, 0, hand.trigger});
   history_.SetHand(hand);
-  if (!same_grip) WakeWatchers(lanes_.GripWatchers(hand.entity));
+  for (const Watch& watch : lanes_.GripWatchers(hand.entity)) {
+    if (same_grip || (RuleOf(lanes_[watch.lane]).watches_grips & crossed) == 0) continue;
+    if (MayStir(lanes_[watch.lane])) Wake(watch.lane);
+  }
   WakeWatchers(lanes_.PoseWatchers(hand.entity));
 }
 
@@ -180,11 +209,14 @@ void Engine::Press(const Touch& touch) {
                            .force_n = touch.normal_force_n,
                            .sensor_sets = touch.sensor_sets};
   if (lane.open && Same(lane.touches.back(), sample)) return;
+  ThresholdSet crossed = 0;
+  if (lane.open) crossed = Crossed(program_->thresholds, ValuesOf(lane.touches.back()), ValuesOf(sample));
   ForgetSamples(lane.touches, history_.first_look());
   lane.touches.PushBack() = sample;
   if (lane.open) {
+    if ((crossed & watched_press_) == 0) return;
     for (const int watcher : lane.watchers) {
-      if (RuleOf(lanes_[watcher]).watches_press && MayStir(lanes_[watcher])) Wake(watcher);
+      if ((RuleOf(lanes_[watcher]).watches_press & crossed) != 0 && MayStir(lanes_[watcher])) Wake(watcher);
     }
     return;
   }

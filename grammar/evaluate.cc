@@ -93,8 +93,9 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
 
 Kleene Evaluator::Compare(const Node& node, const View& view) const {
   const std::optional<double> left = Number(node.args[0], view);
+  if (!left) return Kleene::kUnknown;
   const std::optional<double> right = Number(node.args[1], view);
-  if (!left || !right) return Kleene::kUnknown;
+  if (!right) return Kleene::kUnknown;
   switch (node.op) {
     case Op::kLess: return Known(*left < *right);
     case Op::kLessEqual: return Known(*left <= *right);

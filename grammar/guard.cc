@@ -79,6 +79,18 @@ int ChooseGuard(const Program& program, const Rule& rule) {
   return MostSpecific(rule, candidates);
 }
 
+// A moment that must be there when something begins, if it is the begin or the end of an event.
+int Opening(const Program& program, int index) {
+  if (index == kNone) return kNone;
+  const Node& node = program.nodes[index];
+  if (node.op == Op::kAnd) {
+    const int left = Opening(program, node.args[0]);
+    return left != kNone ? left : Opening(program, node.args[1]);
+  }
+  const bool instant = node.op == Op::kBegins || node.op == Op::kEnds;
+  return instant && program.nodes[node.args[0]].op == Op::kHolds ? index : kNone;
+}
+
 bool IsLook(Op op) {
   switch (op) {
     case Op::kInSphere: case Op::kBoxInSphere: case Op::kInCylinder:
@@ -105,13 +117,66 @@ double LooksAround(const Program& program, int index) {
   return node.op == Op::kDriftAlong || node.op == Op::kRate ? seconds + node.number / 2 : seconds;
 }
 
+// The bit of a threshold, entered if it is new; all that may change if there are too many.
+ThresholdSet BitOf(Program& program, const Threshold& threshold) {
+  const auto found = std::find(program.thresholds.begin(), program.thresholds.end(), threshold);
+  const auto place = found - program.thresholds.begin();
+  if (place == kMaxThresholds) return kAnyChange;
+  if (found == program.thresholds.end()) program.thresholds.push_back(threshold);
+  return ThresholdSet{1} << place;
+}
+
+// What must be watched of a value for `value op number`, on either side.
+ThresholdSet Sides(Program& program, Threshold::Value value, Op op, double number) {
+  ThresholdSet bits = 0;
+  const bool equality = op == Op::kEqual || op == Op::kNotEqual;
+  if (equality || op == Op::kGreater || op == Op::kLessEqual) bits |= BitOf(program, {value, true, number});
+  if (equality || op == Op::kLess || op == Op::kGreaterEqual) bits |= BitOf(program, {value, false, number});
+  return bits;
+}
+
+Op Mirrored(Op op) {
+  switch (op) {
+    case Op::kLess: return Op::kGreater;
+    case Op::kLessEqual: return Op::kGreaterEqual;
+    case Op::kGreater: return Op::kLess;
+    case Op::kGreaterEqual: return Op::kLessEqual;
+    default: return op;
+  }
+}
+
+// Of a comparison of what a touch or a grip says with a number, the thresholds are all that matters.
+bool WatchThresholds(Program& program, Rule& rule, const Node& node) {
+  if (node.op < Op::kLess || node.op > Op::kNotEqual) return false;
+  const bool mirrored = program.nodes[node.args[0]].op == Op::kNumber;
+  const Op op = mirrored ? Mirrored(node.op) : node.op;
+  const Node& value = program.nodes[node.args[mirrored ? 1 : 0]];
+  const Node& number = program.nodes[node.args[mirrored ? 0 : 1]];
+  if (number.op != Op::kNumber) return false;
+  const auto sides = [&](Threshold::Value of) { return Sides(program, of, op, number.number); };
+  switch (value.op) {
+    case Op::kSensorSets: rule.watches_press |= sides(Threshold::Value::kSensorSets); return true;
+    case Op::kForceBetween: rule.watches_press |= sides(Threshold::Value::kForce); return true;
+    case Op::kUp:
+      rule.watches_press |= sides(Threshold::Value::kUpOnFirst) | sides(Threshold::Value::kUpOnSecond);
+      return true;
+    case Op::kTrigger:
+      rule.watches_grip[value.roles[0]] = true;
+      rule.watches_grips |= sides(Threshold::Value::kTrigger);
+      return true;
+    default: return false;
+  }
+}
+
 // A value where the interval begins or ends is not asked for at every frame.
-void WatchEntities(const Program& program, Rule& rule, int index) {
+void WatchEntities(Program& program, Rule& rule, int index) {
   if (index == kNone) return;
   const Node& node = program.nodes[index];
+  if (WatchThresholds(program, rule, node)) return;
   switch (node.op) {
     case Op::kHolds: case Op::kPartOf: case Op::kIsA: case Op::kWeight: case Op::kStrength: case Op::kAtBegin: case Op::kAtEnd: return;
-    case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kSensorSet: rule.watches_press = true; return;
+    case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kSensorSet: rule.watches_press |= kAnyChange; return;
+    case Op::kTrigger: rule.watches_grips |= kAnyChange; break;
     default: break;
   }
   for (const int role : node.roles) {
@@ -139,6 +204,9 @@ void ChooseGuards(Program& program) {
   for (std::size_t i = 0; i < program.events.size(); ++i) MarkReferenced(program, static_cast<int>(i));
   for (Rule& rule : program.events) {
     rule.guard = ChooseGuard(program, rule);
+    // An `until` that others ask about must know at all times how far back a later one can reach.
+    const bool waits = rule.form == Form::kFromTo || (rule.form == Form::kUntilSince && !rule.referenced);
+    if (waits) rule.opening = Opening(program, rule.first);
     rule.uses_looks = rule.style_role != kNone || rule.approach != kNone || !rule.anchors.empty() ||
                       (rule.form != Form::kRestOf && UsesLooks(program, rule.first)) || UsesLooks(program, rule.second) ||
                       UsesLooks(program, rule.during) || UsesLooks(program, rule.requirement) ||

@@ -92,6 +92,21 @@ struct RuleAttribute {
   Dimension dimension;
 };
 
+/// A number that a measured value is compared with. While a value stays on the same side of every threshold, whatever is
+/// said by comparing it stays as it is.
+struct Threshold {
+  enum class Value : std::uint8_t { kSensorSets, kUpOnFirst, kUpOnSecond, kForce, kTrigger };
+  Value value = Value::kSensorSets;
+  bool strict = false;  ///< the sides are `<=` and `>`, not `<` and `>=`
+  double number = 0;
+  friend bool operator==(const Threshold&, const Threshold&) = default;
+};
+inline constexpr int kThresholdValues = 5;
+/// A set of thresholds, bit i for Program::thresholds[i], or of anything else that may change.
+using ThresholdSet = std::uint64_t;
+inline constexpr int kMaxThresholds = 63;
+inline constexpr ThresholdSet kAnyChange = ThresholdSet{1} << kMaxThresholds;
+
 /// A rule is part `part` of the composition `rule`.
 struct PartOf {
   int rule = kNone;
@@ -136,13 +151,16 @@ struct Rule {
 
   /// While this reference is false and known, nothing of this rule begins. kNone: watch every binding.
   int guard = kNone;
+  /// Node, kBegins or kEnds of a reference: nothing of this rule begins at another moment. kNone: it may.
+  int opening = kNone;
   std::vector<PartOf> part_of;  ///< compositions that collect its intervals
   bool referenced = false;   ///< another rule asks for its truth
   bool uses_looks = false;   ///< asks for poses, hands or touches of the frames it looks at
   // What its condition asks at every frame, by role: an entity's pose; nothing but a hand's grip.
   std::array<bool, kMaxRoles> watches_pose = {};
   std::array<bool, kMaxRoles> watches_grip = {};
-  bool watches_press = false;  ///< how entities touch, not only whether
+  ThresholdSet watches_press = 0;  ///< what matters of how entities touch, apart from whether they do
+  ThresholdSet watches_grips = 0;  ///< what matters of how far hands are closed
   double looks_around_s = 0; ///< its signals ask for poses so long before and after the frames it looks at
 };
 
@@ -172,6 +190,7 @@ struct Program {
   std::vector<std::string> class_names;  ///< for kIsA
   std::vector<std::string> set_names;    ///< for kSensorSet
   std::vector<ProgramParam> params;
+  std::vector<Threshold> thresholds;     ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
 };
 
 inline constexpr int kTouchingRule = 0;
