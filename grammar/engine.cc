@@ -13,6 +13,7 @@ bool Later(const auto& a, const auto& b) { return a.tick > b.tick; }
 Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
     : program_(std::move(program)),
       cast_(std::move(cast)),
+      entity_count_(static_cast<int>(cast_.entities.size())),
       history_(cast_),
       lanes_(*program_, cast_),
       evaluator_(*program_, cast_, history_, lanes_),
@@ -50,18 +51,17 @@ void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
 }
 
 // What is not open does not begin while its guard rests, whatever else happens.
-bool Engine::MayStir(const Lane& lane) const { return lane.open || (!lanes_.GuardRests(lane) && MayBegin(lane)); }
+bool Engine::MayStir(const Lane& lane) const { return lane.open || (MayBegin(lane) && !lanes_.GuardRests(lane)); }
 
 // What begins with a moment does not begin at others. That moment may be told of later in this frame; whoever tells of
 // it asks again.
 bool Engine::MayBegin(const Lane& lane) const {
-  const int opening = RuleOf(lane).opening;
-  if (opening == kNone) return true;
-  const Node& moment = program_->nodes[opening];
-  const int event = lane.references[program_->nodes[moment.args[0]].slot];
+  const Rule& rule = RuleOf(lane);
+  if (rule.opened_by == kNone) return true;
+  const int event = lane.references[rule.opened_by];
   if (event == kNone) return true;  // nobody would wake this lane, as it has not asked yet
   const FrameNumber now = history_.now();
-  return (moment.op == Op::kBegins ? lanes_.BeginsAt(event, now) : lanes_.EndsAt(event, now)) != Kleene::kFalse;
+  return (rule.opened_by_end ? lanes_.EndsAt(event, now) : lanes_.BeginsAt(event, now)) != Kleene::kFalse;
 }
 
 // The truth of this lane is another one than in the frame before.
@@ -73,11 +73,11 @@ void Engine::Tell(Lane& lane) {
   }
   for (const int watcher : lane.watchers) {
     Lane& watching = lanes_[watcher];
-    const bool guards = lanes_.Guards(lane.index, watching);
-    if (guards ? watching.open || MayBegin(watching) : MayStir(watching)) {
-      Wake(watcher);
-    } else if (guards && !watching.awake) {
-      watching.resting_since = history_.now();  // if the guard has ended, it may be freed some time
+    if (watching.awake) continue;
+    if (watching.open || MayBegin(watching)) {
+      if (watching.open || lanes_.Guards(lane.index, watching) || !lanes_.GuardRests(watching)) Wake(watcher);
+    } else if (!lane.open && lanes_.Guards(lane.index, watching)) {
+      watching.resting_since = history_.now();  // it may be freed some time
       Retire(watching);
     }
   }

@@ -70,7 +70,7 @@ class Engine {
   std::string_view WhyNotWatchable(const Frame& frame) const;
   std::string_view WhyNotWatchable(const FrameChanges& changes) const;
   std::string_view WhyNoTouches(std::span<const Touch> touches) const;
-  bool IsEntity(int entity) const { return entity >= 0 && entity < static_cast<int>(cast_.entities.size()); }
+  bool IsEntity(int entity) const { return entity >= 0 && entity < entity_count_; }
   template <typename AnyFrame>
   bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);
   void EndFrame();
@@ -136,6 +136,7 @@ class Engine {
 
   std::shared_ptr<const Program> program_;
   Cast cast_;
+  int entity_count_ = 0;
   History history_;
   Lanes lanes_;
   Evaluator evaluator_;

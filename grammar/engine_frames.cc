@@ -27,28 +27,9 @@ bool SamePose(const HandLook& a, const HandSample& b) {
          std::equal(a.feelers.begin(), a.feelers.end(), b.feelers.begin(), b.feelers.end(), same);
 }
 
-// By Threshold::Value; what is not given is nowhere beyond a threshold that it was not beyond before.
-using Measured = std::array<double, kThresholdValues>;
-
-Measured ValuesOf(const TouchSample& touch) {
-  return {static_cast<double>(std::popcount(touch.sensor_sets)), touch.up[0], touch.up[1], touch.force_n, 0};
-}
-
-// The thresholds that lie between the two.
-ThresholdSet Crossed(const std::vector<Threshold>& thresholds, const Measured& before, const Measured& now) {
-  ThresholdSet crossed = 0;
-  for (std::size_t i = 0; i < thresholds.size(); ++i) {
-    const auto& [value, strict, number] = thresholds[i];
-    const double a = before[static_cast<std::size_t>(value)];
-    const double b = now[static_cast<std::size_t>(value)];
-    const bool differ = strict ? (a > number) != (b > number) : (a >= number) != (b >= number);
-    crossed |= ThresholdSet{differ} << i;
-  }
-  return crossed | kAnyChange;
-}
-
-bool Same(const TouchSample& a, const TouchSample& b) {
-  return a.up == b.up && a.force_n == b.force_n && a.sensor_sets == b.sensor_sets;
+bool Same(const Touch& a, bool swapped, const TouchSample& b) {
+  return a.up_on_a == b.up[swapped ? 1 : 0] && a.up_on_b == b.up[swapped ? 0 : 1] && a.normal_force_n == b.force_n &&
+         a.sensor_sets == b.sensor_sets;
 }
 
 }  // namespace
@@ -60,7 +41,7 @@ std::string_view Engine::WhyNoTick(Tick tick) const {
 }
 
 std::string_view Engine::WhyNotWatchable(const Frame& frame) const {
-  if (frame.entities.size() != cast_.entities.size()) return "a frame shows another number of entities than the cast";
+  if (static_cast<int>(frame.entities.size()) != entity_count_) return "a frame shows another number of entities than the cast";
   int last_hand = kNobody;
   for (const HandLook& hand : frame.hands) {
     if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the cast";
@@ -186,10 +167,11 @@ void Engine::Look(const HandLook& hand) {
   const bool same_grip = before != nullptr && before->look.trigger == hand.trigger;
   const bool same_pose = before != nullptr && SamePose(hand, *before);
   if (same_grip && same_pose) return;
-  const ThresholdSet crossed =
-      before == nullptr ? ~ThresholdSet{0}
-                        : Crossed(program_->thresholds, {0, 0, 0, 0, before->look.trigger}, {0, 0, 0, 0, hand.trigger});
-  history_.SetHand(hand);
+  Measured measured = kNothingMeasured;
+  measured[static_cast<std::size_t>(Threshold::Value::kTrigger)] = hand.trigger;
+  const ThresholdSet beyond = Beyond(program_->thresholds, measured);
+  const ThresholdSet crossed = before == nullptr ? ~ThresholdSet{0} : kAnyChange | (beyond ^ before->beyond);
+  history_.SetHand(hand, beyond);
   for (const Watch& watch : lanes_.GripWatchers(hand.entity)) {
     if (same_grip || (RuleOf(lanes_[watch.lane]).watches_grips & crossed) == 0) continue;
     if (MayStir(lanes_[watch.lane])) Wake(watch.lane);
@@ -204,15 +186,19 @@ void Engine::Press(const Touch& touch) {
   if (lane.touched == history_.now()) return;  // said twice
   lane.touched = history_.now();
   const bool swapped = lane.entities[0] != touch.a;
-  const TouchSample sample{.frame = history_.now(),
-                           .up = {swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b},
-                           .force_n = touch.normal_force_n,
-                           .sensor_sets = touch.sensor_sets};
-  if (lane.open && Same(lane.touches.back(), sample)) return;
-  ThresholdSet crossed = 0;
-  if (lane.open) crossed = Crossed(program_->thresholds, ValuesOf(lane.touches.back()), ValuesOf(sample));
+  if (lane.open && Same(touch, swapped, lane.touches.back())) return;
+  const ThresholdSet before = lane.open ? lane.touches.back().beyond : 0;
   ForgetSamples(lane.touches, history_.first_look());
-  lane.touches.PushBack() = sample;
+  // Filled in place: what is written in parts and copied at once has to wait for itself.
+  TouchSample& sample = lane.touches.PushBack();
+  sample.frame = history_.now();
+  sample.up[swapped ? 1 : 0] = touch.up_on_a;
+  sample.up[swapped ? 0 : 1] = touch.up_on_b;
+  sample.force_n = touch.normal_force_n;
+  sample.sensor_sets = touch.sensor_sets;
+  const double sets = std::popcount(sample.sensor_sets);
+  sample.beyond = Beyond(program_->thresholds, {sets, sample.up[0], sample.up[1], sample.force_n, 0});
+  const ThresholdSet crossed = kAnyChange | (sample.beyond ^ before);
   if (lane.open) {
     if ((crossed & watched_press_) == 0) return;
     for (const int watcher : lane.watchers) {

@@ -2,6 +2,7 @@
 #include "grammar/guard.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace prehend::grammar {
 namespace {
@@ -80,15 +81,15 @@ int ChooseGuard(const Program& program, const Rule& rule) {
 }
 
 // A moment that must be there when something begins, if it is the begin or the end of an event.
-int Opening(const Program& program, int index) {
-  if (index == kNone) return kNone;
+void FindOpening(const Program& program, Rule& rule, int index) {
   const Node& node = program.nodes[index];
   if (node.op == Op::kAnd) {
-    const int left = Opening(program, node.args[0]);
-    return left != kNone ? left : Opening(program, node.args[1]);
+    FindOpening(program, rule, node.args[0]);
+    FindOpening(program, rule, node.args[1]);
+  } else if ((node.op == Op::kBegins || node.op == Op::kEnds) && program.nodes[node.args[0]].op == Op::kHolds) {
+    rule.opened_by = program.nodes[node.args[0]].slot;
+    rule.opened_by_end = node.op == Op::kEnds;
   }
-  const bool instant = node.op == Op::kBegins || node.op == Op::kEnds;
-  return instant && program.nodes[node.args[0]].op == Op::kHolds ? index : kNone;
 }
 
 bool IsLook(Op op) {
@@ -117,22 +118,13 @@ double LooksAround(const Program& program, int index) {
   return node.op == Op::kDriftAlong || node.op == Op::kRate ? seconds + node.number / 2 : seconds;
 }
 
-// The bit of a threshold, entered if it is new; all that may change if there are too many.
-ThresholdSet BitOf(Program& program, const Threshold& threshold) {
+// The number of a threshold, entered if it is new; kNone if there are too many.
+int Enter(Program& program, const Threshold& threshold) {
   const auto found = std::find(program.thresholds.begin(), program.thresholds.end(), threshold);
-  const auto place = found - program.thresholds.begin();
-  if (place == kMaxThresholds) return kAnyChange;
+  const auto place = static_cast<int>(found - program.thresholds.begin());
+  if (place == kMaxThresholds) return kNone;
   if (found == program.thresholds.end()) program.thresholds.push_back(threshold);
-  return ThresholdSet{1} << place;
-}
-
-// What must be watched of a value for `value op number`, on either side.
-ThresholdSet Sides(Program& program, Threshold::Value value, Op op, double number) {
-  ThresholdSet bits = 0;
-  const bool equality = op == Op::kEqual || op == Op::kNotEqual;
-  if (equality || op == Op::kGreater || op == Op::kLessEqual) bits |= BitOf(program, {value, true, number});
-  if (equality || op == Op::kLess || op == Op::kGreaterEqual) bits |= BitOf(program, {value, false, number});
-  return bits;
+  return place;
 }
 
 Op Mirrored(Op op) {
@@ -140,39 +132,51 @@ Op Mirrored(Op op) {
     case Op::kLess: return Op::kGreater;
     case Op::kLessEqual: return Op::kGreaterEqual;
     case Op::kGreater: return Op::kLess;
-    case Op::kGreaterEqual: return Op::kLessEqual;
-    default: return op;
+    default: return Op::kLessEqual;
   }
 }
 
-// Of a comparison of what a touch or a grip says with a number, the thresholds are all that matters.
-bool WatchThresholds(Program& program, Rule& rule, const Node& node) {
-  if (node.op < Op::kLess || node.op > Op::kNotEqual) return false;
+// What a touch or a grip measures, as it names its entities and the other way round.
+std::optional<std::array<Threshold::Value, 2>> MeasuredBy(Op op) {
+  using enum Threshold::Value;
+  switch (op) {
+    case Op::kSensorSets: return {{kSensorSets, kSensorSets}};
+    case Op::kForceBetween: return {{kForce, kForce}};
+    case Op::kUp: return {{kUpOnFirst, kUpOnSecond}};
+    case Op::kTrigger: return {{kTrigger, kTrigger}};
+    default: return std::nullopt;
+  }
+}
+
+// `value >= number`, or another order or the other way round, is answered when the value is measured.
+void FindThreshold(Program& program, Node& node) {
+  if (node.op < Op::kLess || node.op > Op::kGreaterEqual) return;
   const bool mirrored = program.nodes[node.args[0]].op == Op::kNumber;
   const Op op = mirrored ? Mirrored(node.op) : node.op;
-  const Node& value = program.nodes[node.args[mirrored ? 1 : 0]];
+  const int value = node.args[mirrored ? 1 : 0];
   const Node& number = program.nodes[node.args[mirrored ? 0 : 1]];
-  if (number.op != Op::kNumber) return false;
-  const auto sides = [&](Threshold::Value of) { return Sides(program, of, op, number.number); };
-  switch (value.op) {
-    case Op::kSensorSets: rule.watches_press |= sides(Threshold::Value::kSensorSets); return true;
-    case Op::kForceBetween: rule.watches_press |= sides(Threshold::Value::kForce); return true;
-    case Op::kUp:
-      rule.watches_press |= sides(Threshold::Value::kUpOnFirst) | sides(Threshold::Value::kUpOnSecond);
-      return true;
-    case Op::kTrigger:
-      rule.watches_grip[value.roles[0]] = true;
-      rule.watches_grips |= sides(Threshold::Value::kTrigger);
-      return true;
-    default: return false;
-  }
+  const auto measured = MeasuredBy(program.nodes[value].op);
+  if (number.op != Op::kNumber || !measured) return;
+  const bool strict = op == Op::kGreater || op == Op::kLessEqual;
+  const bool beyond = op == Op::kGreater || op == Op::kGreaterEqual;
+  const int as_named = Enter(program, {(*measured)[0], strict, number.number});
+  const int swapped = Enter(program, {(*measured)[1], strict, number.number});
+  if (as_named != kNone && swapped != kNone) node.by_threshold = {value, {as_named, swapped}, beyond};
+}
+
+// Only these thresholds matter of what is measured.
+void WatchThresholds(const Program& program, Rule& rule, const ByThreshold& by) {
+  const ThresholdSet both = ThresholdSet{1} << by.thresholds[0] | ThresholdSet{1} << by.thresholds[1];
+  const Node& value = program.nodes[by.value];
+  if (value.op == Op::kTrigger) rule.watches_grip[value.roles[0]] = true;
+  (value.op == Op::kTrigger ? rule.watches_grips : rule.watches_press) |= both;
 }
 
 // A value where the interval begins or ends is not asked for at every frame.
-void WatchEntities(Program& program, Rule& rule, int index) {
+void WatchEntities(const Program& program, Rule& rule, int index) {
   if (index == kNone) return;
   const Node& node = program.nodes[index];
-  if (WatchThresholds(program, rule, node)) return;
+  if (node.by_threshold.value != kNone) return WatchThresholds(program, rule, node.by_threshold);
   switch (node.op) {
     case Op::kHolds: case Op::kPartOf: case Op::kIsA: case Op::kWeight: case Op::kStrength: case Op::kAtBegin: case Op::kAtEnd: return;
     case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kSensorSet: rule.watches_press |= kAnyChange; return;
@@ -201,12 +205,13 @@ void MarkReferenced(Program& program, int index) {
 }  // namespace
 
 void ChooseGuards(Program& program) {
+  for (Node& node : program.nodes) FindThreshold(program, node);
   for (std::size_t i = 0; i < program.events.size(); ++i) MarkReferenced(program, static_cast<int>(i));
   for (Rule& rule : program.events) {
     rule.guard = ChooseGuard(program, rule);
     // An `until` that others ask about must know at all times how far back a later one can reach.
     const bool waits = rule.form == Form::kFromTo || (rule.form == Form::kUntilSince && !rule.referenced);
-    if (waits) rule.opening = Opening(program, rule.first);
+    if (waits) FindOpening(program, rule, rule.first);
     rule.uses_looks = rule.style_role != kNone || rule.approach != kNone || !rule.anchors.empty() ||
                       (rule.form != Form::kRestOf && UsesLooks(program, rule.first)) || UsesLooks(program, rule.second) ||
                       UsesLooks(program, rule.during) || UsesLooks(program, rule.requirement) ||

@@ -245,21 +245,4 @@ int Lanes::Resolve(Lane& lane, int slot) {
   return lane.references[slot] = target;
 }
 
-Kleene Lanes::BeginsAt(int index, FrameNumber frame) const {
-  if (index == kNone) return Kleene::kFalse;
-  const Lane& lane = lanes_[index];
-  if (frame >= lane.known) return Kleene::kUnknown;
-  if (lane.open && lane.certain && frame == lane.begin.frame) return Kleene::kTrue;
-  return Known(std::any_of(lane.past.rbegin(), lane.past.rend(),
-                           [&](const Span& span) { return span.begin.frame == frame; }));
-}
-
-Kleene Lanes::EndsAt(int index, FrameNumber frame) const {
-  if (index == kNone) return Kleene::kFalse;
-  const Lane& lane = lanes_[index];
-  if (frame >= lane.known) return Kleene::kUnknown;
-  return Known(std::any_of(lane.past.rbegin(), lane.past.rend(),
-                           [&](const Span& span) { return span.end.frame == frame; }));
-}
-
 }  // namespace prehend::grammar

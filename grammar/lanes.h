@@ -36,6 +36,7 @@ struct TouchSample {
   std::array<double, 2> up = {-1, -1};
   double force_n = 0;
   std::uint32_t sensor_sets = 0;
+  ThresholdSet beyond = 0;  ///< kept from when it was measured
 };
 
 /// A finished interval that waits for its confirmation.
@@ -120,10 +121,22 @@ class Lanes {
     if (index == kNone) return Kleene::kFalse;
     const Lane& lane = lanes_[index];
     if (frame >= lane.known) return Kleene::kUnknown;
-    return Known((lane.open && lane.certain && frame >= lane.begin.frame) || HeldAt(lane, frame));
+    if (lane.open && lane.certain && frame >= lane.begin.frame) return Kleene::kTrue;
+    return AnyPast(lane, [frame](const Span& past) { return frame >= past.begin.frame && frame < past.end.frame; });
   }
-  Kleene BeginsAt(int lane, FrameNumber frame) const;
-  Kleene EndsAt(int lane, FrameNumber frame) const;
+  Kleene BeginsAt(int index, FrameNumber frame) const {
+    if (index == kNone) return Kleene::kFalse;
+    const Lane& lane = lanes_[index];
+    if (frame >= lane.known) return Kleene::kUnknown;
+    if (lane.open && lane.certain && frame == lane.begin.frame) return Kleene::kTrue;
+    return AnyPast(lane, [frame](const Span& past) { return past.begin.frame == frame; });
+  }
+  Kleene EndsAt(int index, FrameNumber frame) const {
+    if (index == kNone) return Kleene::kFalse;
+    const Lane& lane = lanes_[index];
+    if (frame >= lane.known) return Kleene::kUnknown;
+    return AnyPast(lane, [frame](const Span& past) { return past.end.frame == frame; });
+  }
 
   bool IsA(int entity, const std::string& class_name) const;
 
@@ -139,9 +152,9 @@ class Lanes {
   void LinkToGuard(int lane, int guard);
   void WatchEntities(Lane& lane);
   void UnwatchEntities(const Lane& lane);
-  static bool HeldAt(const Lane& lane, FrameNumber frame) {
-    return std::any_of(lane.past.rbegin(), lane.past.rend(),
-                       [&](const Span& past) { return frame >= past.begin.frame && frame < past.end.frame; });
+  template <typename Which>
+  static Kleene AnyPast(const Lane& lane, const Which& which) {
+    return Known(std::any_of(lane.past.rbegin(), lane.past.rend(), which));
   }
   void Unlink(int lane, int watcher, std::vector<int>& orphans);
   const Program& program_;
