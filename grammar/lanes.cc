@@ -7,7 +7,7 @@
 namespace prehend::grammar {
 namespace {
 
-// More bindings than this are a mistake in the grammar or need another machine: see LaneBytes in bench/.
+// More bindings than this are a mistake in the grammar or need another machine: see docs/speed.md.
 constexpr int kMaxLanes = 1'000'000;
 
 }  // namespace
