@@ -13,6 +13,7 @@ bool Later(const auto& a, const auto& b) { return a.tick > b.tick; }
 Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
     : program_(std::move(program)),
       cast_(std::move(cast)),
+      entity_count_(static_cast<int>(cast_.entities.size())),
       history_(cast_),
       lanes_(*program_, cast_),
       evaluator_(*program_, cast_, history_, lanes_),
@@ -23,6 +24,7 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
                            .idle = history_.AtMostTicks(rule.idle_s),
                            .back = history_.AtMostTicks(rule.back_s),
                            .within = rule.within_s < 0 ? -1 : history_.AtMostTicks(rule.within_s)});
+    watched_press_ |= rule.watches_press;
     // A requirement or an attribute is asked for where the run ended, when its gap is too long.
     const double waits_s = rule.requirement == kNone && rule.attributes.empty() ? 0 : rule.bridging_s;
     longest_look_back_ =
@@ -49,7 +51,18 @@ void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
 }
 
 // What is not open does not begin while its guard rests, whatever else happens.
-bool Engine::MayStir(const Lane& lane) const { return lane.open || !lanes_.GuardRests(lane); }
+bool Engine::MayStir(const Lane& lane) const { return lane.open || (MayBegin(lane) && !lanes_.GuardRests(lane)); }
+
+// What begins with a moment does not begin at others. That moment may be told of later in this frame; whoever tells of
+// it asks again.
+bool Engine::MayBegin(const Lane& lane) const {
+  const Rule& rule = RuleOf(lane);
+  if (rule.opened_by == kNone) return true;
+  const int event = lane.references[rule.opened_by];
+  if (event == kNone) return true;  // nobody would wake this lane, as it has not asked yet
+  const FrameNumber now = history_.now();
+  return (rule.opened_by_end ? lanes_.EndsAt(event, now) : lanes_.BeginsAt(event, now)) != Kleene::kFalse;
+}
 
 // The truth of this lane is another one than in the frame before.
 void Engine::Tell(Lane& lane) {
@@ -59,7 +72,14 @@ void Engine::Tell(Lane& lane) {
     for (const int dependent : scratch_) Wake(dependent);
   }
   for (const int watcher : lane.watchers) {
-    if (lanes_.Guards(lane.index, lanes_[watcher]) || MayStir(lanes_[watcher])) Wake(watcher);
+    Lane& watching = lanes_[watcher];
+    if (watching.awake) continue;
+    if (watching.open || MayBegin(watching)) {
+      if (watching.open || lanes_.Guards(lane.index, watching) || !lanes_.GuardRests(watching)) Wake(watcher);
+    } else if (!lane.open && lanes_.Guards(lane.index, watching)) {
+      watching.resting_since = history_.now();  // it may be freed some time
+      Retire(watching);
+    }
   }
 }
 
@@ -132,7 +152,11 @@ void Engine::StepRule(int rule) {
   if (awake_[rule].empty()) return;
   std::erase_if(awake_[rule], [&](int index) {
     Lane& lane = lanes_[index];
-    if (lane.next <= history_.now() || !lane.pending.empty()) StepLane(lane);
+    if (LooksTheSame(lane)) {
+      Rest(lane);
+      return true;
+    }
+    StepLane(lane);
     TellIfChanged(lane);
     if (MayRest(lane)) {
       Rest(lane);

@@ -70,7 +70,7 @@ class Engine {
   std::string_view WhyNotWatchable(const Frame& frame) const;
   std::string_view WhyNotWatchable(const FrameChanges& changes) const;
   std::string_view WhyNoTouches(std::span<const Touch> touches) const;
-  bool IsEntity(int entity) const { return entity >= 0 && entity < static_cast<int>(cast_.entities.size()); }
+  bool IsEntity(int entity) const { return entity >= 0 && entity < entity_count_; }
   template <typename AnyFrame>
   bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);
   void EndFrame();
@@ -85,6 +85,7 @@ class Engine {
   void Wake(int lane);
   void WakeWatchers(const std::vector<Watch>& watchers);
   bool MayStir(const Lane& lane) const;
+  bool MayBegin(const Lane& lane) const;
   void Tell(Lane& lane);
   void TellIfChanged(Lane& lane);
   void WakeAt(Tick tick, int lane);
@@ -100,6 +101,8 @@ class Engine {
 
   // The forms; each looks at one frame and says whether it could decide it.
   void StepLane(Lane& lane);
+  bool StepFrame(Lane& lane);
+  bool LooksTheSame(Lane& lane);
   bool StepWhile(Lane& lane, FrameNumber frame);
   bool StepAny(Lane& lane, FrameNumber frame);
   bool StepRun(Lane& lane, FrameNumber frame, Kleene truth);
@@ -134,10 +137,12 @@ class Engine {
 
   std::shared_ptr<const Program> program_;
   Cast cast_;
+  int entity_count_ = 0;
   History history_;
   Lanes lanes_;
   Evaluator evaluator_;
   std::vector<RuleTicks> rule_ticks_;
+  ThresholdSet watched_press_ = 0;  // by any rule
   Tick longest_look_back_ = 0;
   std::vector<std::vector<int>> awake_;  // by rule
   std::vector<int> touching_;            // the pairs that touch now

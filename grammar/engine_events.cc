@@ -90,13 +90,14 @@ void Engine::Emit(Lane& lane, const Pending& finished) {
   }
   if (!rule.part_of.empty()) TellCompositions(lane, span);
   if (!rule.printed) return;
-  out_->push_back({.rule = lane.rule,
-                   .roles = lane.entities,
-                   .interval = {span.begin.tick, span.end.tick},
-                   .decided = DecidedAt(lane, span),
-                   .style = finished.style,
-                   .open_end = span.open_end,
-                   .attributes = finished.attributes});
+  Event& event = out_->emplace_back();
+  event.rule = lane.rule;
+  event.roles = lane.entities;
+  event.interval = {span.begin.tick, span.end.tick};
+  event.decided = DecidedAt(lane, span);
+  event.style = finished.style;
+  event.open_end = span.open_end;
+  event.attributes = finished.attributes;
 }
 
 void Engine::Note(const Lane& lane, Fate::Kind kind, const Span& span, FrameNumber cause, const WalkBack& walk) {

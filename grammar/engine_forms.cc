@@ -7,22 +7,41 @@
 namespace prehend::grammar {
 
 void Engine::StepLane(Lane& lane) {
-  for (; lane.next <= history_.now(); ++lane.next) {
-    bool decided = false;
-    evaluator_.CalmDown();
-    switch (RuleOf(lane).form) {
-      case Form::kTouching: return;
-      case Form::kCompose: return StepCompose(lane);
-      case Form::kWhile: decided = StepWhile(lane, lane.next); break;
-      case Form::kAny: decided = StepAny(lane, lane.next); break;
-      case Form::kFromTo: decided = StepFromTo(lane, lane.next); break;
-      case Form::kUntilSince: decided = StepUntil(lane, lane.next); break;
-      case Form::kRestOf: decided = StepRest(lane, lane.next); break;
-    }
-    if (!decided) break;
+  if (RuleOf(lane).form == Form::kCompose) return StepCompose(lane);
+  while (lane.next <= history_.now() && StepFrame(lane)) {
   }
   ResolvePending(lane);
   UpdateKnown(lane);
+}
+
+// One frame, if it can be decided.
+bool Engine::StepFrame(Lane& lane) {
+  bool decided = false;
+  evaluator_.CalmDown();
+  switch (RuleOf(lane).form) {
+    case Form::kTouching:
+    case Form::kCompose: break;
+    case Form::kWhile: decided = StepWhile(lane, lane.next); break;
+    case Form::kAny: decided = StepAny(lane, lane.next); break;
+    case Form::kFromTo: decided = StepFromTo(lane, lane.next); break;
+    case Form::kUntilSince: decided = StepUntil(lane, lane.next); break;
+    case Form::kRestOf: decided = StepRest(lane, lane.next); break;
+  }
+  if (decided) ++lane.next;
+  return decided;
+}
+
+// Most looks find everything as it was: the lane rests on, and there is nothing to tell and nothing to wait for. If
+// something is new, the frame may have been stepped, and the rest is left to StepLane.
+bool Engine::LooksTheSame(Lane& lane) {
+  const Rule& rule = RuleOf(lane);
+  const FrameNumber now = history_.now();
+  const auto settled = [&] { return lane.pending.empty() && (!lane.open || (lane.certain && !lane.in_gap)); };
+  const bool waits = rule.form == Form::kCompose || (rule.form == Form::kUntilSince && rule.referenced) || rule.within_s >= 0;
+  if (lane.next != now || waits || !settled() || (rule.referenced && lane.told != Known(lane.open))) return false;
+  const bool was_open = lane.open;
+  if (!StepFrame(lane) || evaluator_.restless()) return false;
+  return lane.open == was_open && settled() && (!lane.open || lane.begin.frame != now) && lane.last_end != now;
 }
 
 bool Engine::StepWhile(Lane& lane, FrameNumber frame) {

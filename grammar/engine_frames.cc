@@ -2,6 +2,7 @@
 // What a frame says, and the end of the episode. A whole frame is compared with the one before it; from there on there
 // are only changes.
 #include <algorithm>
+#include <bit>
 #include <tuple>
 
 #include "grammar/engine.h"
@@ -26,8 +27,9 @@ bool SamePose(const HandLook& a, const HandSample& b) {
          std::equal(a.feelers.begin(), a.feelers.end(), b.feelers.begin(), b.feelers.end(), same);
 }
 
-bool Same(const TouchSample& a, const TouchSample& b) {
-  return a.up == b.up && a.force_n == b.force_n && a.sensor_sets == b.sensor_sets;
+bool Same(const Touch& a, bool swapped, const TouchSample& b) {
+  return a.up_on_a == b.up[swapped ? 1 : 0] && a.up_on_b == b.up[swapped ? 0 : 1] && a.normal_force_n == b.force_n &&
+         a.sensor_sets == b.sensor_sets;
 }
 
 }  // namespace
@@ -39,7 +41,7 @@ std::string_view Engine::WhyNoTick(Tick tick) const {
 }
 
 std::string_view Engine::WhyNotWatchable(const Frame& frame) const {
-  if (frame.entities.size() != cast_.entities.size()) return "a frame shows another number of entities than the cast";
+  if (static_cast<int>(frame.entities.size()) != entity_count_) return "a frame shows another number of entities than the cast";
   int last_hand = kNobody;
   for (const HandLook& hand : frame.hands) {
     if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the cast";
@@ -123,9 +125,11 @@ void Engine::EndFrame() {
 }
 
 void Engine::SortNewEvents() {
-  std::sort(out_->begin() + static_cast<std::ptrdiff_t>(first_new_), out_->end(), [](const Event& a, const Event& b) {
+  const auto before = [](const Event& a, const Event& b) {
     return std::tie(a.decided, a.interval.begin, a.rule, a.roles) < std::tie(b.decided, b.interval.begin, b.rule, b.roles);
-  });
+  };
+  const auto first = out_->begin() + static_cast<std::ptrdiff_t>(first_new_);
+  if (!std::is_sorted(first, out_->end(), before)) std::sort(first, out_->end(), before);
   out_ = nullptr;
 }
 
@@ -163,8 +167,15 @@ void Engine::Look(const HandLook& hand) {
   const bool same_grip = before != nullptr && before->look.trigger == hand.trigger;
   const bool same_pose = before != nullptr && SamePose(hand, *before);
   if (same_grip && same_pose) return;
-  history_.SetHand(hand);
-  if (!same_grip) WakeWatchers(lanes_.GripWatchers(hand.entity));
+  Measured measured = kNothingMeasured;
+  measured[static_cast<std::size_t>(Threshold::Value::kTrigger)] = hand.trigger;
+  const ThresholdSet beyond = Beyond(program_->thresholds, measured);
+  const ThresholdSet crossed = before == nullptr ? ~ThresholdSet{0} : kAnyChange | (beyond ^ before->beyond);
+  history_.SetHand(hand, beyond);
+  for (const Watch& watch : lanes_.GripWatchers(hand.entity)) {
+    if (same_grip || (RuleOf(lanes_[watch.lane]).watches_grips & crossed) == 0) continue;
+    if (MayStir(lanes_[watch.lane])) Wake(watch.lane);
+  }
   WakeWatchers(lanes_.PoseWatchers(hand.entity));
 }
 
@@ -175,16 +186,23 @@ void Engine::Press(const Touch& touch) {
   if (lane.touched == history_.now()) return;  // said twice
   lane.touched = history_.now();
   const bool swapped = lane.entities[0] != touch.a;
-  const TouchSample sample{.frame = history_.now(),
-                           .up = {swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b},
-                           .force_n = touch.normal_force_n,
-                           .sensor_sets = touch.sensor_sets};
-  if (lane.open && Same(lane.touches.back(), sample)) return;
+  if (lane.open && Same(touch, swapped, lane.touches.back())) return;
+  const ThresholdSet before = lane.open ? lane.touches.back().beyond : 0;
   ForgetSamples(lane.touches, history_.first_look());
-  lane.touches.PushBack() = sample;
+  // Filled in place: what is written in parts and copied at once has to wait for itself.
+  TouchSample& sample = lane.touches.PushBack();
+  sample.frame = history_.now();
+  sample.up[swapped ? 1 : 0] = touch.up_on_a;
+  sample.up[swapped ? 0 : 1] = touch.up_on_b;
+  sample.force_n = touch.normal_force_n;
+  sample.sensor_sets = touch.sensor_sets;
+  const double sets = std::popcount(sample.sensor_sets);
+  sample.beyond = Beyond(program_->thresholds, {sets, sample.up[0], sample.up[1], sample.force_n, 0});
+  const ThresholdSet crossed = kAnyChange | (sample.beyond ^ before);
   if (lane.open) {
+    if ((crossed & watched_press_) == 0) return;
     for (const int watcher : lane.watchers) {
-      if (RuleOf(lanes_[watcher]).watches_press && MayStir(lanes_[watcher])) Wake(watcher);
+      if ((RuleOf(lanes_[watcher]).watches_press & crossed) != 0 && MayStir(lanes_[watcher])) Wake(watcher);
     }
     return;
   }

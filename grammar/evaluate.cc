@@ -93,10 +93,27 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
   return AtAnInstant(And(wanted, begins ? Not(before) : before));
 }
 
+// What is measured was compared when it was seen.
+Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const {
+  const Node& value = program_.nodes[by.value];
+  bool swapped = false;
+  ThresholdSet beyond = beyond_when_nothing_;
+  if (value.op == Op::kTrigger) {
+    const HandSample* hand = history_.Hand(Entity(value, view, 0), view.frame);
+    if (hand != nullptr) beyond = hand->beyond;
+  } else {
+    const TouchSample* touch = Touch(value, view, swapped);
+    if (touch != nullptr) beyond = touch->beyond;
+  }
+  return Known((((beyond >> by.thresholds[swapped ? 1 : 0]) & 1) != 0) == by.beyond);
+}
+
 Kleene Evaluator::Compare(const Node& node, const View& view) const {
+  if (node.by_threshold.value != kNone) return CompareMeasured(node.by_threshold, view);
   const std::optional<double> left = Number(node.args[0], view);
+  if (!left) return Kleene::kUnknown;
   const std::optional<double> right = Number(node.args[1], view);
-  if (!left || !right) return Kleene::kUnknown;
+  if (!right) return Kleene::kUnknown;
   switch (node.op) {
     case Op::kLess: return Known(*left < *right);
     case Op::kLessEqual: return Known(*left <= *right);

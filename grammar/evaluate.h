@@ -12,7 +12,11 @@ namespace prehend::grammar {
 class Evaluator {
  public:
   Evaluator(const Program& program, const Cast& cast, const History& history, Lanes& lanes)
-      : program_(program), cast_(cast), history_(history), lanes_(lanes) {}
+      : program_(program),
+        cast_(cast),
+        history_(history),
+        lanes_(lanes),
+        beyond_when_nothing_(Beyond(program.thresholds, kNothingMeasured)) {}
 
   /// Whose roles, at which frame, and at which frame the interval ends, if that is known.
   struct View {
@@ -58,6 +62,7 @@ class Evaluator {
   Kleene AtAnInstant(Kleene truth) const;
   Kleene Edge(const Node& node, const View& view) const;
   Kleene Compare(const Node& node, const View& view) const;
+  Kleene CompareMeasured(const ByThreshold& by, const View& view) const;
   std::optional<double> Arithmetic(const Node& node, const View& view) const;
   double SignalOf(const Node& node, const View& view) const;
   double Gap(int hand, int object, FrameNumber frame) const;
@@ -84,6 +89,7 @@ class Evaluator {
   const Cast& cast_;
   const History& history_;
   Lanes& lanes_;
+  ThresholdSet beyond_when_nothing_;
   mutable bool restless_ = false;
 };
 

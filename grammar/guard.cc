@@ -2,6 +2,7 @@
 #include "grammar/guard.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace prehend::grammar {
 namespace {
@@ -79,6 +80,18 @@ int ChooseGuard(const Program& program, const Rule& rule) {
   return MostSpecific(rule, candidates);
 }
 
+// A moment that must be there when something begins, if it is the begin or the end of an event.
+void FindOpening(const Program& program, Rule& rule, int index) {
+  const Node& node = program.nodes[index];
+  if (node.op == Op::kAnd) {
+    FindOpening(program, rule, node.args[0]);
+    FindOpening(program, rule, node.args[1]);
+  } else if ((node.op == Op::kBegins || node.op == Op::kEnds) && program.nodes[node.args[0]].op == Op::kHolds) {
+    rule.opened_by = program.nodes[node.args[0]].slot;
+    rule.opened_by_end = node.op == Op::kEnds;
+  }
+}
+
 bool IsLook(Op op) {
   switch (op) {
     case Op::kInSphere: case Op::kBoxInSphere: case Op::kInCylinder:
@@ -105,13 +118,69 @@ double LooksAround(const Program& program, int index) {
   return node.op == Op::kDriftAlong || node.op == Op::kTurnRate || node.op == Op::kRate ? seconds + node.number / 2 : seconds;
 }
 
+// The number of a threshold, entered if it is new; kNone if there are too many.
+int Enter(Program& program, const Threshold& threshold) {
+  const auto found = std::find(program.thresholds.begin(), program.thresholds.end(), threshold);
+  const auto place = static_cast<int>(found - program.thresholds.begin());
+  if (place == kMaxThresholds) return kNone;
+  if (found == program.thresholds.end()) program.thresholds.push_back(threshold);
+  return place;
+}
+
+Op Mirrored(Op op) {
+  switch (op) {
+    case Op::kLess: return Op::kGreater;
+    case Op::kLessEqual: return Op::kGreaterEqual;
+    case Op::kGreater: return Op::kLess;
+    default: return Op::kLessEqual;
+  }
+}
+
+// What a touch or a grip measures, as it names its entities and the other way round.
+std::optional<std::array<Threshold::Value, 2>> MeasuredBy(Op op) {
+  using enum Threshold::Value;
+  switch (op) {
+    case Op::kSensorSets: return {{kSensorSets, kSensorSets}};
+    case Op::kForceBetween: return {{kForce, kForce}};
+    case Op::kUp: return {{kUpOnFirst, kUpOnSecond}};
+    case Op::kTrigger: return {{kTrigger, kTrigger}};
+    default: return std::nullopt;
+  }
+}
+
+// `value >= number`, or another order or the other way round, is answered when the value is measured.
+void FindThreshold(Program& program, Node& node) {
+  if (node.op < Op::kLess || node.op > Op::kGreaterEqual) return;
+  const bool mirrored = program.nodes[node.args[0]].op == Op::kNumber;
+  const Op op = mirrored ? Mirrored(node.op) : node.op;
+  const int value = node.args[mirrored ? 1 : 0];
+  const Node& number = program.nodes[node.args[mirrored ? 0 : 1]];
+  const auto measured = MeasuredBy(program.nodes[value].op);
+  if (number.op != Op::kNumber || !measured) return;
+  const bool strict = op == Op::kGreater || op == Op::kLessEqual;
+  const bool beyond = op == Op::kGreater || op == Op::kGreaterEqual;
+  const int as_named = Enter(program, {(*measured)[0], strict, number.number});
+  const int swapped = Enter(program, {(*measured)[1], strict, number.number});
+  if (as_named != kNone && swapped != kNone) node.by_threshold = {value, {as_named, swapped}, beyond};
+}
+
+// Only these thresholds matter of what is measured.
+void WatchThresholds(const Program& program, Rule& rule, const ByThreshold& by) {
+  const ThresholdSet both = ThresholdSet{1} << by.thresholds[0] | ThresholdSet{1} << by.thresholds[1];
+  const Node& value = program.nodes[by.value];
+  if (value.op == Op::kTrigger) rule.watches_grip[value.roles[0]] = true;
+  (value.op == Op::kTrigger ? rule.watches_grips : rule.watches_press) |= both;
+}
+
 // A value where the interval begins or ends is not asked for at every frame.
 void WatchEntities(const Program& program, Rule& rule, int index) {
   if (index == kNone) return;
   const Node& node = program.nodes[index];
+  if (node.by_threshold.value != kNone) return WatchThresholds(program, rule, node.by_threshold);
   switch (node.op) {
     case Op::kHolds: case Op::kPartOf: case Op::kIsA: case Op::kWeight: case Op::kStrength: case Op::kAtBegin: case Op::kAtEnd: return;
-    case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kSensorSet: rule.watches_press = true; return;
+    case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kSensorSet: rule.watches_press |= kAnyChange; return;
+    case Op::kTrigger: rule.watches_grips |= kAnyChange; break;
     default: break;
   }
   for (const int role : node.roles) {
@@ -136,9 +205,13 @@ void MarkReferenced(Program& program, int index) {
 }  // namespace
 
 void ChooseGuards(Program& program) {
+  for (Node& node : program.nodes) FindThreshold(program, node);
   for (std::size_t i = 0; i < program.events.size(); ++i) MarkReferenced(program, static_cast<int>(i));
   for (Rule& rule : program.events) {
     rule.guard = ChooseGuard(program, rule);
+    // An `until` that others ask about must know at all times how far back a later one can reach.
+    const bool waits = rule.form == Form::kFromTo || (rule.form == Form::kUntilSince && !rule.referenced);
+    if (waits) FindOpening(program, rule, rule.first);
     rule.uses_looks = rule.style_role != kNone || rule.approach != kNone || !rule.anchors.empty() ||
                       (rule.form != Form::kRestOf && UsesLooks(program, rule.first)) || UsesLooks(program, rule.second) ||
                       UsesLooks(program, rule.during) || UsesLooks(program, rule.requirement) ||

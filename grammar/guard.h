@@ -8,7 +8,7 @@
 
 namespace prehend::grammar {
 
-/// Fills in Rule::guard, Rule::part_of, Rule::referenced, Rule::uses_looks and Rule::looks_around_s.
+/// Fills in what the engine derives from the rules: Program::thresholds, and of each Rule everything from `guard` on.
 void ChooseGuards(Program& program);
 
 }  // namespace prehend::grammar

@@ -26,10 +26,12 @@ void History::SetLook(int entity, const EntityLook& look) {
   Ring<LookSample>& samples = looks_[entity];
   ForgetSamples(samples, first_look_);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
-  samples.PushBack() = {now(), look};
+  LookSample& sample = samples.PushBack();
+  sample.frame = now();
+  sample.look = look;
 }
 
-void History::SetHand(const HandLook& look) {
+void History::SetHand(const HandLook& look, std::uint64_t beyond) {
   int& index = hand_of_entity_[look.entity];
   if (index < 0) {
     index = static_cast<int>(hand_samples_.size());
@@ -41,6 +43,7 @@ void History::SetHand(const HandLook& look) {
   sample.look = look;
   sample.feelers.assign(look.feelers.begin(), look.feelers.end());
   sample.look.feelers = {};
+  sample.beyond = beyond;
 }
 
 void History::Forget(FrameNumber ticks, FrameNumber looks) {
@@ -74,16 +77,6 @@ Tick History::AtMostTicks(double seconds) const {
 
 Tick History::AtLeastTicks(double seconds) const {
   return static_cast<Tick>(std::ceil(std::min(seconds * ticks_per_second_, kMostTicks) - kRounding));
-}
-
-const EntityLook& History::Look(int entity, FrameNumber frame) const {
-  static const EntityLook kNotSeenYet;
-  return looks_[entity].empty() ? kNotSeenYet : SampleAt(looks_[entity], frame).look;
-}
-
-const HandSample* History::Hand(int entity, FrameNumber frame) const {
-  const int index = hand_of_entity_[entity];
-  return index < 0 ? nullptr : &SampleAt(hand_samples_[index], frame);
 }
 
 }  // namespace prehend::grammar

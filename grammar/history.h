@@ -26,6 +26,7 @@ struct HandSample {
   FrameNumber frame = 0;
   HandLook look;  ///< its own span is empty, see `feelers`
   std::vector<Feeler> feelers;
+  std::uint64_t beyond = 0;  ///< thresholds of the grammar that its grip is beyond
 };
 
 /// The last sample at or before `frame`, or the first one; the newest is asked for most. Samples are sorted by frame,
@@ -55,7 +56,7 @@ class History {
   /// A new frame in which everything looks as before, until it is said otherwise.
   void BeginFrame(Tick tick);
   void SetLook(int entity, const EntityLook& look);
-  void SetHand(const HandLook& look);
+  void SetHand(const HandLook& look, std::uint64_t beyond = 0);
 
   /// Forgets ticks of frames before `ticks` and looks that only frames before `looks` need; of an entity, when its
   /// next look comes.
@@ -75,9 +76,15 @@ class History {
   /// The last remembered frame at or before `tick`; the first one if there is none.
   FrameNumber LastNotAfter(Tick tick) const;
 
-  const EntityLook& Look(int entity, FrameNumber frame) const;
+  const EntityLook& Look(int entity, FrameNumber frame) const {
+    static const EntityLook kNotSeenYet;
+    return looks_[entity].empty() ? kNotSeenYet : SampleAt(looks_[entity], frame).look;
+  }
   /// Null if this entity is no hand.
-  const HandSample* Hand(int entity, FrameNumber frame) const;
+  const HandSample* Hand(int entity, FrameNumber frame) const {
+    const int index = hand_of_entity_[entity];
+    return index < 0 ? nullptr : &SampleAt(hand_samples_[index], frame);
+  }
   bool Shows(int hand) const { return hand_of_entity_[hand] >= 0; }
   double Seconds(Tick ticks) const { return static_cast<double>(ticks) / ticks_per_second_; }
   /// Whole ticks such that comparing differences of ticks gives the same as comparing seconds.

@@ -17,65 +17,74 @@ namespace prehend::grammar {
 struct LaneKey {
   int rule = kNone;
   Binding entities = kUnbound;
-  friend bool operator==(const LaneKey&, const LaneKey&) = default;
+  // Number by number: what was just written so is not ready to be read as one block.
+  friend bool operator==(const LaneKey& a, const LaneKey& b) {
+    return a.rule == b.rule && a.entities[0] == b.entities[0] && a.entities[1] == b.entities[1] &&
+           a.entities[2] == b.entities[2] && a.entities[3] == b.entities[3];
+  }
 };
 
 class LaneIndex {
  public:
-  /// kNone if there is none. `key_of(lane)` gives the key of a lane in the table, here and below.
+  /// kNone if there is none. `key_of(lane)` gives the key of a lane in the table.
   template <typename KeyOf>
   int Find(const LaneKey& key, const KeyOf& key_of) const {
-    for (std::size_t slot = Home(key); slots_[slot] != kNone; slot = Next(slot)) {
-      if (key_of(slots_[slot]) == key) return slots_[slot];
+    const std::uint32_t hash = Hash(key);
+    for (std::size_t at = Home(hash); slots_[at].lane != kNone; at = Next(at)) {
+      if (slots_[at].hash == hash && key_of(slots_[at].lane) == key) return slots_[at].lane;
     }
     return kNone;
   }
 
-  /// The lane's key is not in the table yet.
-  template <typename KeyOf>
-  void Insert(int lane, const KeyOf& key_of) {
+  /// The key is not in the table yet.
+  void Insert(int lane, const LaneKey& key) {
     if (2 * ++count_ > slots_.size()) {
-      std::vector<int> old(2 * slots_.size(), kNone);
+      std::vector<Slot> old(2 * slots_.size());
       old.swap(slots_);
-      for (const int other : old) {
-        if (other != kNone) Put(other, key_of(other));
+      for (const Slot& slot : old) {
+        if (slot.lane != kNone) Put(slot);
       }
     }
-    Put(lane, key_of(lane));
+    Put({Hash(key), lane});
   }
 
-  /// The lane is in the table.
-  template <typename KeyOf>
-  void Erase(int lane, const KeyOf& key_of) {
-    std::size_t hole = Home(key_of(lane));
-    while (slots_[hole] != lane) hole = Next(hole);
-    slots_[hole] = kNone;
+  /// The lane is in the table, with this key.
+  void Erase(int lane, const LaneKey& key) {
+    std::size_t hole = Home(Hash(key));
+    while (slots_[hole].lane != lane) hole = Next(hole);
+    slots_[hole] = {};
     --count_;
-    for (std::size_t slot = Next(hole); slots_[slot] != kNone; slot = Next(slot)) {
-      const std::size_t way_from_home = (slot - Home(key_of(slots_[slot]))) & (slots_.size() - 1);
-      if (way_from_home < ((slot - hole) & (slots_.size() - 1))) continue;
-      slots_[hole] = std::exchange(slots_[slot], kNone);
-      hole = slot;
+    for (std::size_t at = Next(hole); slots_[at].lane != kNone; at = Next(at)) {
+      const std::size_t way_from_home = (at - Home(slots_[at].hash)) & (slots_.size() - 1);
+      if (way_from_home < ((at - hole) & (slots_.size() - 1))) continue;
+      slots_[hole] = std::exchange(slots_[at], {});
+      hole = at;
     }
   }
 
  private:
-  std::size_t Home(const LaneKey& key) const {
-    std::uint64_t hash = static_cast<std::uint64_t>(key.rule) + 1;
-    for (const int entity : key.entities) {
-      hash = (hash ^ static_cast<std::uint32_t>(entity)) * 0x9E3779B97F4A7C15ULL;
-      hash ^= hash >> 32;
-    }
-    return static_cast<std::size_t>(hash) & (slots_.size() - 1);
+  struct Slot {
+    std::uint32_t hash = 0;
+    int lane = kNone;
+  };
+
+  static std::uint32_t Hash(const LaneKey& key) {
+    const auto pair = [&](int i) {
+      return std::uint64_t{static_cast<std::uint32_t>(key.entities[i])} << 32 | static_cast<std::uint32_t>(key.entities[i + 1]);
+    };
+    std::uint64_t hash = (pair(0) ^ (static_cast<std::uint64_t>(key.rule) << 20)) * 0x9E3779B97F4A7C15ULL;
+    hash = (hash ^ (hash >> 32) ^ pair(2)) * 0xD6E8FEB86659FD93ULL;
+    return static_cast<std::uint32_t>(hash >> 32);
   }
-  std::size_t Next(std::size_t slot) const { return (slot + 1) & (slots_.size() - 1); }
-  void Put(int lane, const LaneKey& key) {
-    std::size_t slot = Home(key);
-    while (slots_[slot] != kNone) slot = Next(slot);
-    slots_[slot] = lane;
+  std::size_t Home(std::uint32_t hash) const { return hash & (slots_.size() - 1); }
+  std::size_t Next(std::size_t at) const { return (at + 1) & (slots_.size() - 1); }
+  void Put(const Slot& slot) {
+    std::size_t at = Home(slot.hash);
+    while (slots_[at].lane != kNone) at = Next(at);
+    slots_[at] = slot;
   }
 
-  std::vector<int> slots_ = std::vector<int>(16, kNone);  // a power of two, at most half full
+  std::vector<Slot> slots_ = std::vector<Slot>(16);  // a power of two, at most half full
   std::size_t count_ = 0;
 };
 

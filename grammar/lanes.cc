@@ -7,7 +7,7 @@
 namespace prehend::grammar {
 namespace {
 
-// More bindings than this are a mistake in the grammar or need another machine: see LaneBytes in bench/.
+// More bindings than this are a mistake in the grammar or need another machine: see docs/speed.md.
 constexpr int kMaxLanes = 1'000'000;
 
 }  // namespace
@@ -121,7 +121,7 @@ int Lanes::Ensure(int rule, const Binding& entities) {
   lane.references.assign(r.references.size(), kNone);
   lane.anchors.assign(3 * r.anchors.size(), 0);
   lane.parts.resize(r.composition.parts.size());
-  index_.Insert(lane.index, KeyOf());
+  index_.Insert(lane.index, lane);
   WatchEntities(lane);
   return lane.index;
 }
@@ -195,7 +195,7 @@ void Lanes::Unlink(int index, int watcher, std::vector<int>& orphans) {
 void Lanes::Free(int index, std::vector<int>& orphans) {
   Lane& lane = lanes_[index];
   UnwatchEntities(lane);
-  index_.Erase(index, KeyOf());
+  index_.Erase(index, lane);
   for (const int reference : lane.references) {
     if (reference != kNone) Unlink(reference, index, orphans);
   }
@@ -243,34 +243,6 @@ int Lanes::Resolve(Lane& lane, int slot) {
   const int target = Ensure(key.rule, key.entities);
   if (target != kNone) lanes_[target].watchers.push_back(lane.index);
   return lane.references[slot] = target;
-}
-
-Kleene Lanes::TruthAt(int index, FrameNumber frame) const {
-  if (index == kNone) return Kleene::kFalse;
-  const Lane& lane = lanes_[index];
-  if (frame >= lane.known) return Kleene::kUnknown;
-  if (lane.open && lane.certain && frame >= lane.begin.frame) return Kleene::kTrue;
-  for (auto span = lane.past.rbegin(); span != lane.past.rend(); ++span) {
-    if (frame >= span->begin.frame && frame < span->end.frame) return Kleene::kTrue;
-  }
-  return Kleene::kFalse;
-}
-
-Kleene Lanes::BeginsAt(int index, FrameNumber frame) const {
-  if (index == kNone) return Kleene::kFalse;
-  const Lane& lane = lanes_[index];
-  if (frame >= lane.known) return Kleene::kUnknown;
-  if (lane.open && lane.certain && frame == lane.begin.frame) return Kleene::kTrue;
-  return Known(std::any_of(lane.past.rbegin(), lane.past.rend(),
-                           [&](const Span& span) { return span.begin.frame == frame; }));
-}
-
-Kleene Lanes::EndsAt(int index, FrameNumber frame) const {
-  if (index == kNone) return Kleene::kFalse;
-  const Lane& lane = lanes_[index];
-  if (frame >= lane.known) return Kleene::kUnknown;
-  return Known(std::any_of(lane.past.rbegin(), lane.past.rend(),
-                           [&](const Span& span) { return span.end.frame == frame; }));
 }
 
 }  // namespace prehend::grammar

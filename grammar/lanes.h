@@ -9,6 +9,7 @@
 // Tested by tests/grammar/monitor_test.cc and tests/grammar/restless_test.cc
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -42,6 +43,7 @@ struct TouchSample {
   std::array<double, 2> up = {-1, -1};
   double force_n = 0;
   std::uint32_t sensor_sets = 0;
+  ThresholdSet beyond = 0;  ///< kept from when it was measured
 };
 
 /// A finished interval that waits for its confirmation.
@@ -52,36 +54,35 @@ struct Pending {
   std::array<double, kMaxAttributes> attributes = {};
 };
 
+/// What every look at a lane needs comes first, so that it shares a line of the cache or two.
 struct Lane : LaneKey {  // rule kNone: the lane is free
   int index = kNone;
-  std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not asked for yet
-  std::vector<int> watchers;    ///< lanes to wake when the truth of this one changes
-  std::vector<int> members;     ///< kAny only: the lanes of which one must hold
-  std::array<int, kMaxRoles> watch_places = kUnbound;  ///< by role: where in the list of the entity's watchers
-
   bool awake = false;
+  bool open = false;     ///< a run has begun
+  bool certain = false;  ///< the open run will be an interval whatever comes
+  bool in_gap = false;   ///< the run may have ended at `gap`
   bool dependents_made = false;  ///< the lanes that this one guards are there
   bool retiring = false;         ///< waits to be freed
   Kleene told = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
   FrameNumber next = 0;          ///< first frame not yet looked at; nothing while at rest
   FrameNumber known = kNever;    ///< truth is final before this frame
-  FrameNumber resting_since = 0;
-
-  bool open = false;     ///< a run has begun
-  bool certain = false;  ///< the open run will be an interval whatever comes
-  bool in_gap = false;   ///< the run may have ended at `gap`
   Moment begin;
+  FrameNumber touched = -1;              ///< kTouching only: the last frame that said so
+  std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not asked for yet
+  std::vector<int> watchers;    ///< lanes to wake when the truth of this one changes
+  std::vector<Span> past;       ///< intervals, as long as somebody may ask
+  std::vector<Pending> pending;
+  FrameNumber resting_since = 0;
+  Ring<TouchSample> touches;        ///< kTouching only, where they change
+  std::size_t touching_place = 0;   ///< kTouching only: where among those that touch now
   Moment gap;
-  int style = kNobody;
   std::vector<double> anchors;  ///< three numbers per Rule::anchors
+  int style = kNobody;
+  std::array<int, kMaxRoles> watch_places = kUnbound;  ///< by role: where in the list of the entity's watchers
   FrameNumber approach_from = 0;  ///< kUntilSince: no later interval reaches back before this frame
   FrameNumber last_end = 0;       ///< kUntilSince: frame of the previous `until`; kCompose: end of the previous one
-  std::vector<Span> past;         ///< intervals, as long as somebody may ask
-  std::vector<Pending> pending;
+  std::vector<int> members;       ///< kAny only: the lanes of which one must hold
   std::vector<std::vector<Span>> parts;  ///< kCompose: finished intervals of each part
-  Ring<TouchSample> touches;             ///< kTouching only, where they change
-  FrameNumber touched = -1;              ///< kTouching only: the last frame that said so
-  std::size_t touching_place = 0;        ///< kTouching only: where among those that touch now
 };
 
 /// A lane that looks at an entity in one of its roles.
@@ -123,9 +124,26 @@ class Lanes {
   bool GuardRests(const Lane& lane) const;
   bool Guards(int guard, const Lane& lane) const;
 
-  Kleene TruthAt(int lane, FrameNumber frame) const;
-  Kleene BeginsAt(int lane, FrameNumber frame) const;
-  Kleene EndsAt(int lane, FrameNumber frame) const;
+  Kleene TruthAt(int index, FrameNumber frame) const {
+    if (index == kNone) return Kleene::kFalse;
+    const Lane& lane = lanes_[index];
+    if (frame >= lane.known) return Kleene::kUnknown;
+    if (lane.open && lane.certain && frame >= lane.begin.frame) return Kleene::kTrue;
+    return AnyPast(lane, [frame](const Span& past) { return frame >= past.begin.frame && frame < past.end.frame; });
+  }
+  Kleene BeginsAt(int index, FrameNumber frame) const {
+    if (index == kNone) return Kleene::kFalse;
+    const Lane& lane = lanes_[index];
+    if (frame >= lane.known) return Kleene::kUnknown;
+    if (lane.open && lane.certain && frame == lane.begin.frame) return Kleene::kTrue;
+    return AnyPast(lane, [frame](const Span& past) { return past.begin.frame == frame; });
+  }
+  Kleene EndsAt(int index, FrameNumber frame) const {
+    if (index == kNone) return Kleene::kFalse;
+    const Lane& lane = lanes_[index];
+    if (frame >= lane.known) return Kleene::kUnknown;
+    return AnyPast(lane, [frame](const Span& past) { return past.end.frame == frame; });
+  }
 
   bool IsA(int entity, const std::string& class_name) const;
 
@@ -141,6 +159,10 @@ class Lanes {
   void LinkToGuard(int lane, int guard);
   void WatchEntities(Lane& lane);
   void UnwatchEntities(const Lane& lane);
+  template <typename Which>
+  static Kleene AnyPast(const Lane& lane, const Which& which) {
+    return Known(std::any_of(lane.past.rbegin(), lane.past.rend(), which));
+  }
   void Unlink(int lane, int watcher, std::vector<int>& orphans);
   const Program& program_;
   const Cast& cast_;

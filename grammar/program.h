@@ -43,6 +43,41 @@ enum class Op : std::uint8_t {
   kAtEnd,    ///< args[0] where the interval ends
 };
 
+/// A number that a measured value is compared with. While a value stays on the same side of every threshold, whatever is
+/// said by comparing it stays as it is.
+struct Threshold {
+  enum class Value : std::uint8_t { kSensorSets, kUpOnFirst, kUpOnSecond, kForce, kTrigger };
+  Value value = Value::kSensorSets;
+  bool strict = false;  ///< beyond it is `>`, not `>=`
+  double number = 0;
+  friend bool operator==(const Threshold&, const Threshold&) = default;
+};
+/// What a touch or a grip measures, by Threshold::Value; here: what a touch that is not there measures.
+using Measured = std::array<double, 5>;
+inline constexpr Measured kNothingMeasured = {0, -1, -1, 0, 0};
+/// A set of thresholds, bit i for Program::thresholds[i], and of anything else that may change.
+using ThresholdSet = std::uint64_t;
+inline constexpr int kMaxThresholds = 63;
+inline constexpr ThresholdSet kAnyChange = ThresholdSet{1} << kMaxThresholds;
+
+/// The thresholds that the values are beyond.
+inline ThresholdSet Beyond(const std::vector<Threshold>& thresholds, const Measured& measured) {
+  ThresholdSet beyond = 0;
+  for (std::size_t i = 0; i < thresholds.size(); ++i) {
+    const Threshold& t = thresholds[i];
+    const double value = measured[static_cast<std::size_t>(t.value)];
+    beyond |= ThresholdSet{t.strict ? value > t.number : value >= t.number} << i;
+  }
+  return beyond;
+}
+
+/// A comparison that is answered by thresholds, when its value is measured.
+struct ByThreshold {
+  int value = kNone;  ///< node that is compared; kNone: it is not that simple
+  std::array<int, 2> thresholds = {kNone, kNone};  ///< of a touch between its first and second role, and of one named the other way
+  bool beyond = false;  ///< true there, and not on the near side
+};
+
 struct Node {
   Op op = Op::kNumber;
   std::array<int, 4> args = {kNone, kNone, kNone, kNone};  ///< nodes
@@ -50,6 +85,7 @@ struct Node {
   int slot = kNone;       ///< reference, anchor or class name
   int name = kNone;       ///< kSensorSet: index into Program::set_names
   double number = 0;      ///< kNumber, kSensorSet, and the windows of kDriftAlong, kTurnRate, kRate
+  ByThreshold by_threshold = {};
 };
 
 /// One number per role.
@@ -138,13 +174,16 @@ struct Rule {
 
   /// While this reference is false and known, nothing of this rule begins. kNone: watch every binding.
   int guard = kNone;
+  int opened_by = kNone;       ///< reference: nothing of this rule begins but where that begins; kNone: it may
+  bool opened_by_end = false;  ///< where it ends
   std::vector<PartOf> part_of;  ///< compositions that collect its intervals
   bool referenced = false;   ///< another rule asks for its truth
   bool uses_looks = false;   ///< asks for poses, hands or touches of the frames it looks at
   // What its condition asks at every frame, by role: an entity's pose; nothing but a hand's grip.
   std::array<bool, kMaxRoles> watches_pose = {};
   std::array<bool, kMaxRoles> watches_grip = {};
-  bool watches_press = false;  ///< how entities touch, not only whether
+  ThresholdSet watches_press = 0;  ///< what matters of how entities touch, apart from whether they do
+  ThresholdSet watches_grips = 0;  ///< what matters of how far hands are closed
   double looks_around_s = 0; ///< its signals ask for poses so long before and after the frames it looks at
 };
 
@@ -183,6 +222,7 @@ struct Program {
   std::vector<NamedClass> named_classes; ///< all but the built-in ones
   Diagnostics warnings;                  ///< what Compile() warned of
   std::vector<ProgramParam> params;
+  std::vector<Threshold> thresholds;     ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
 };
 
 inline constexpr int kTouchingRule = 0;

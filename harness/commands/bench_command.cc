@@ -38,7 +38,7 @@ std::vector<std::string> Cells(const SpeedFigure& f) {
           OrDash(f.events > 0, Large(f.events / f.seconds)),
           OrDash(f.simulated_s > 0, Large(f.simulated_s / f.seconds)),
           OrDash(f.physics_s > 0, fmt::format("{:.2f} %", 100 * f.seconds / f.physics_s)),
-          OrDash(f.hash != 0, f.agrees ? HashText(f.hash) : "DIFFERS")};
+          OrDash(f.by_hand_s > 0, f.agrees ? HashText(f.hash) : "DIFFERS")};
 }
 
 OrderedJson Json(const SpeedFigure& f) {
@@ -56,7 +56,7 @@ OrderedJson Json(const SpeedFigure& f) {
   if (f.events > 0) json["events_per_s"] = f.events / f.seconds;
   if (f.simulated_s > 0) json["times_real_time"] = f.simulated_s / f.seconds;
   if (f.physics_s > 0) json["share_of_physics"] = f.seconds / f.physics_s;
-  if (f.hash != 0) json["hash"] = HashText(f.hash);
+  if (f.by_hand_s > 0) json["hash"] = HashText(f.hash);
   return json;
 }
 

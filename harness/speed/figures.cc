@@ -2,15 +2,16 @@
 #include "harness/speed/figures.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
-#include <ctime>
 #include <limits>
 #include <utility>
 
 #include "harness/prepare_run.h"
 #include "harness/run_scenario.h"
 #include "harness/speed/four_rules.h"
+#include "harness/speed/stopwatch.h"
 
 namespace prehend::harness {
 namespace {
@@ -18,51 +19,51 @@ namespace {
 constexpr double kFrameRate_hz = 240;
 constexpr int kRuns = 5;
 
-// Of the processor, not of the wall: others may use this machine, too.
-template <typename Work>
-double Seconds(Work&& work) {
-  const std::clock_t begin = std::clock();
-  work();
-  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-}
-
 class Measuring {
  public:
   explicit Measuring(bool quick) : quick_(quick), program_(CompileFourRules()) {}
 
   int Frames(int frames) const { return quick_ ? std::max(2, frames / 50) : frames; }
 
-  /// The four rules on a log, in turns by grammar and by hand.
-  SpeedFigure Watch(std::string what, std::string unit, double operations, const ChangeLog& log) const {
-    SpeedFigure figure{.what = std::move(what), .unit = std::move(unit), .operations = operations};
+  /// The four rules on a log, in turns by grammar and by hand; an operation is what the unit names, in one frame.
+  SpeedFigure Watch(std::string what, std::string unit, double operations, const ChangeLog& log, int warm_up) const {
+    const double frames = static_cast<double>(log.size()) - warm_up;
+    SpeedFigure figure{.what = std::move(what), .unit = std::move(unit), .operations = operations * frames};
     figure.seconds = figure.by_hand_s = std::numeric_limits<double>::infinity();
     for (int run = 0; run < (quick_ ? 1 : kRuns); ++run) {
       grammar::Monitor monitor(program_, log.cast);
-      Recognised by_grammar, by_hand;
-      figure.seconds = std::min(figure.seconds, Seconds([&] { by_grammar = WatchByGrammar(log, monitor); }));
-      figure.by_hand_s = std::min(figure.by_hand_s, Seconds([&] { by_hand = WatchByHand(log); }));
-      figure.agrees = figure.agrees && by_grammar == by_hand;
-      figure.hash = by_grammar.hash;
+      const Watched by_grammar = WatchByGrammar(log, monitor, static_cast<std::size_t>(warm_up));
+      const Watched by_hand = WatchByHand(log, static_cast<std::size_t>(warm_up));
+      figure.seconds = std::min(figure.seconds, by_grammar.seconds);
+      figure.by_hand_s = std::min(figure.by_hand_s, by_hand.seconds);
+      figure.agrees = figure.agrees && by_grammar.recognised == by_hand.recognised;
+      figure.hash = by_grammar.recognised.hash;
       figure.events = static_cast<double>(by_grammar.events);
     }
-    return figure;
-  }
-
-  SpeedFigure Stations(int objects, int frames, double period_s) const {
-    frames = Frames(frames);
-    SpeedFigure figure =
-        Watch(fmt::format("four rules, {} object{}, each used every {} s", objects, objects == 1 ? "" : "s", period_s),
-              "object-rule-frame", 1.0 * kFourRules * objects * frames, MakeStations(objects, frames, period_s));
     figure.simulated_s = frames / kFrameRate_hz;
     return figure;
   }
 
-  SpeedFigure Flicker(bool grasps) const {
+  SpeedFigure Stations(int objects, int frames, int warm_up, double period_s) const {
+    warm_up = Frames(warm_up);
+    return Watch(fmt::format("four rules, {} object{}, each used every {} s", objects, objects == 1 ? "" : "s", period_s),
+                 "object-rule-frame", 1.0 * kFourRules * objects,
+                 MakeStations(objects, Frames(frames) + warm_up, period_s), warm_up);
+  }
+
+  /// All facts about all objects change, each once in so many frames.
+  SpeedFigure Dense(int objects, int every) const {
+    return Watch(fmt::format("four rules, {} objects, a fact of each changes every {} frames", objects, every),
+                 "object-rule-frame", 1.0 * kFourRules * objects,
+                 MakeFlicker(objects, Frames(4000), objects / every, Flicker::kFact), 1);
+  }
+
+  SpeedFigure Touches(std::string what, std::string unit, Flicker flicker) const {
     constexpr int kObjects = 64, kPerFrame = 64;
-    const int frames = Frames(20'000);
-    return Watch(grasps ? "a touch that begins or ends a grasp" : "a touch that changes nothing",
-                 grasps ? "event boundary" : "fact edge", 1.0 * kPerFrame * (frames - 1),
-                 MakeFlicker(kObjects, frames, kPerFrame, grasps));
+    SpeedFigure figure = Watch(std::move(what), std::move(unit), kPerFrame,
+                               MakeFlicker(kObjects, Frames(20'000), kPerFrame, flicker), 1);
+    figure.simulated_s = 0;
+    return figure;
   }
 
   SpeedFigure Idle(int objects) const {
@@ -73,29 +74,31 @@ class Measuring {
     monitor.AdvanceBy(log[0], events);
     grammar::Tick tick = 1;
     for (; tick < 1000; ++tick) monitor.AdvanceBy({.tick = tick}, events);  // what is new comes to rest
-    const double seconds = Seconds([&] {
-      for (int i = 0; i < frames; ++i) monitor.AdvanceBy({.tick = tick++}, events);
-    });
+    const Stopwatch watch;
+    for (int i = 0; i < frames; ++i) monitor.AdvanceBy({.tick = tick++}, events);
     return {.what = fmt::format("nothing happens, {} objects stand on a table", objects),
             .unit = "idle tick",
             .operations = static_cast<double>(frames),
-            .seconds = seconds,
+            .seconds = watch.seconds(),
             .simulated_s = frames / kFrameRate_hz};
   }
 
   SpeedFigure Binding() const {
     const ChangeLog log = MakeStations(Frames(16'000), 1, 10);
-    double best = std::numeric_limits<double>::infinity();
-    double bindings = 0;
+    SpeedFigure figure{.unit = "binding", .seconds = std::numeric_limits<double>::infinity()};
+    std::size_t bytes = 0;
     for (int run = 0; run < kRuns; ++run) {
       std::vector<grammar::Event> events;
-      best = std::min(best, Seconds([&] {
-                        grammar::Monitor monitor(program_, log.cast);
-                        monitor.AdvanceBy(log[0], events);
-                        bindings = monitor.lanes_in_use();
-                      }));
+      const std::size_t bytes_before = mallinfo2().uordblks;
+      const Stopwatch watch;
+      grammar::Monitor monitor(program_, log.cast);
+      monitor.AdvanceBy(log[0], events);
+      figure.seconds = std::min(figure.seconds, watch.seconds());
+      figure.operations = monitor.lanes_in_use();
+      bytes = mallinfo2().uordblks - bytes_before;
     }
-    return {.what = "rules are bound to objects", .unit = "binding", .operations = bindings, .seconds = best};
+    figure.what = fmt::format("rules are bound to objects, {:.0f} bytes each", static_cast<double>(bytes) / figure.operations);
+    return figure;
   }
 
  private:
@@ -125,11 +128,19 @@ ReadResult<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool 
       PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root);
   if (!carton.value) return {.value = std::nullopt, .diagnostics = std::move(carton.diagnostics)};
   const Measuring measuring(quick);
-  std::vector<SpeedFigure> figures = {measuring.Stations(1, 1'000'000, 10), measuring.Stations(1024, 4800, 10),
-                                      measuring.Stations(1024, 4800, 60),   measuring.Stations(4096, 2400, 60),
-                                      measuring.Stations(65'536, 480, 60),  measuring.Idle(65'536),
-                                      measuring.Flicker(false),             measuring.Flicker(true),
-                                      measuring.Binding(),                  WatchCarton(*carton.value, quick)};
+  std::vector<SpeedFigure> figures = {
+      measuring.Stations(1, 1'000'000, 2400, 10),
+      measuring.Stations(1024, 4800, 2400, 10),
+      measuring.Stations(1024, 14'400, 14'400, 60),
+      measuring.Stations(4096, 4800, 14'400, 60),
+      measuring.Stations(65'536, 480, 100, 60),
+      measuring.Dense(1024, 8),
+      measuring.Idle(65'536),
+      measuring.Touches("a touch that no rule can tell from before", "change", Flicker::kPressure),
+      measuring.Touches("a touch that makes a condition true or false", "fact edge", Flicker::kFact),
+      measuring.Touches("a touch that begins or ends a grasp", "event boundary", Flicker::kGrasp),
+      measuring.Binding(),
+      WatchCarton(*carton.value, quick)};
   return {.value = std::move(figures), .diagnostics = {}};
 }
 

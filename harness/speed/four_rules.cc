@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grammar/program.h"
+#include "harness/speed/stopwatch.h"
 
 namespace prehend::harness {
 namespace {
@@ -222,7 +223,7 @@ ChangeLog MakeStations(int objects, int frames, double period_s, std::uint64_t s
   return std::move(stations.log);
 }
 
-ChangeLog MakeFlicker(int objects, int frames, int per_frame, bool grasps) {
+ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker) {
   ChangeLog log;
   log.cast = MakeCast(objects);
   int next = 0;
@@ -230,13 +231,13 @@ ChangeLog MakeFlicker(int objects, int frames, int per_frame, bool grasps) {
   for (int frame = 0; frame < frames; ++frame) {
     log.Begin(frame);
     for (int i = 0; frame == 0 && i < objects; ++i) {
-      log.Add(grammar::HandLook{.entity = i, .trigger = 1});
+      log.Add(grammar::HandLook{.entity = i, .trigger = flicker == Flicker::kFact ? 0.0 : 1.0});
       log.Add(grammar::Touch{.a = i, .b = objects + i, .sensor_sets = 1});
     }
     for (int k = 0; frame > 0 && k < per_frame; ++k, next = (next + 1) % objects) {
       const auto i = static_cast<std::size_t>(next);
       pressed[i] = !pressed[i];
-      const std::uint32_t sets = pressed[i] ? (grasps ? 3 : 2) : 1;
+      const std::uint32_t sets = !pressed[i] ? 1 : flicker == Flicker::kPressure ? 2 : 3;
       log.Add(grammar::Touch{.a = next, .b = objects + next, .sensor_sets = sets});
     }
   }
@@ -253,8 +254,11 @@ void Recognised::Add(int rule, int hand, int object, grammar::Interval interval)
   hash += mixed;
 }
 
-Recognised WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor) {
-  Recognised recognised;
+Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::size_t warm_up) {
+  Watched watched;
+  Recognised& recognised = watched.recognised;
+  Stopwatch watch;
+  std::uint64_t events_before = 0;
   std::vector<grammar::Event> events;
   const auto take = [&] {
     for (const grammar::Event& event : events) {
@@ -266,20 +270,33 @@ Recognised WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor) {
     events.clear();
   };
   for (std::size_t i = 0; i < log.size(); ++i) {
+    if (i == warm_up) {
+      events_before = recognised.events;
+      watch.Restart();
+    }
     monitor.AdvanceBy(log[i], events);
     if (!events.empty()) take();
   }
+  watched.seconds = watch.seconds();
+  watched.events = recognised.events - events_before;
   monitor.Finish(log.end_tick(), events);
   take();
-  return recognised;
+  return watched;
 }
 
-Recognised WatchByHand(const ChangeLog& log) {
+Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
   const int objects = static_cast<int>(log.cast.entities.size() / 2);
   std::vector<Automaton> automata(static_cast<std::size_t>(objects));
   const auto of = [&](int entity) -> Automaton& { return automata[static_cast<std::size_t>(entity)]; };
-  Recognised recognised;
+  Watched watched;
+  Recognised& recognised = watched.recognised;
+  Stopwatch watch;
+  std::uint64_t events_before = 0;
   for (std::size_t i = 0; i < log.size(); ++i) {
+    if (i == warm_up) {
+      events_before = recognised.events;
+      watch.Restart();
+    }
     const grammar::FrameChanges frame = log[i];
     for (const grammar::EntityChange& change : frame.entities) of(change.entity - objects).p_m = change.look.p_WB_m;
     for (const grammar::HandLook& hand : frame.hands) of(hand.entity).trigger = hand.trigger;
@@ -297,8 +314,10 @@ Recognised WatchByHand(const ChangeLog& log) {
     }
     for (int k = 0; k < objects; ++k) of(k).Step(k, objects + k, frame.tick, recognised);
   }
+  watched.seconds = watch.seconds();
+  watched.events = recognised.events - events_before;
   for (int k = 0; k < objects; ++k) of(k).Finish(k, objects + k, log.end_tick(), recognised);
-  return recognised;
+  return watched;
 }
 
 }  // namespace prehend::harness

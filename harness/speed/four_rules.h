@@ -20,8 +20,13 @@ std::shared_ptr<const grammar::Program> CompileFourRules();
 /// down again once in `period_s`; in between both rest. Entities: hands, objects, the table.
 ChangeLog MakeStations(int objects, int frames, double period_s, std::uint64_t seed = 1);
 
-/// Touches that flicker, `per_frame` a frame: with every flicker a grasp begins or ends, or none ever does.
-ChangeLog MakeFlicker(int objects, int frames, int per_frame, bool grasps);
+/// Touches that flicker, `per_frame` a frame, one object after the other.
+enum class Flicker {
+  kPressure,  ///< from one sensor set to another one: no rule can tell
+  kFact,      ///< from one sensor set to two and back, by a hand that is open: `sensor_sets >= 2` changes, nothing begins
+  kGrasp,     ///< likewise, by a hand that is closed: each is the begin or the end of a grasp
+};
+ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker);
 
 /// What was recognised: order does not matter, everything else does.
 struct Recognised {
@@ -31,8 +36,15 @@ struct Recognised {
   friend bool operator==(const Recognised&, const Recognised&) = default;
 };
 
-/// Plays the log to a monitor, or to the automata by hand, which look at each object in each frame.
-Recognised WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor);
-Recognised WatchByHand(const ChangeLog& log);
+struct Watched {
+  Recognised recognised;     ///< all of it
+  std::uint64_t events = 0;  ///< among them, those after the warm-up
+  double seconds = 0;        ///< that the frames after the warm-up took
+};
+
+/// Plays the log to a monitor, or to the automata by hand, which look at each object in each frame. The first frames are
+/// `warm_up`: what is new is bound, and memory is taken.
+Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::size_t warm_up = 0);
+Watched WatchByHand(const ChangeLog& log, std::size_t warm_up = 0);
 
 }  // namespace prehend::harness

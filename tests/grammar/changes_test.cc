@@ -94,6 +94,43 @@ TEST(Changes, SayTheSameAsWholeFrames) {
   EXPECT_GT(count, 10000u);
 }
 
+// Without thresholds and opening moments everything that changes wakes everybody who asks about it.
+TEST(Changes, WhoeverIsNotWokenHasNothingToSay) {
+  const CompileResult compiled =
+      Compile({"both", std::string("grammar both\n") + testing::kRestlessRules}, testing::LibraryIncluder());
+  ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
+  const auto plain = std::make_shared<Program>(*compiled.program);
+  int opened = 0, compared = 0;
+  for (Rule& rule : plain->events) {
+    opened += rule.opened_by != kNone ? 1 : 0;
+    rule.opened_by = kNone;
+    rule.watches_press = rule.watches_grips = ~ThresholdSet{0};
+  }
+  for (Node& node : plain->nodes) {
+    compared += node.by_threshold.value != kNone ? 1 : 0;
+    node.by_threshold = {};
+  }
+  EXPECT_GE(opened, 5);
+  EXPECT_GE(compared, 5);
+  std::size_t count = 0, object_frames = 0;
+  for (int round = 0; round < 100; ++round) {
+    RandomWorld world(7000 + round);
+    Monitor quick(compiled.program, world.cast), thorough(plain, world.cast);
+    std::vector<Event> a, b;
+    for (int i = 0; i < 1200; ++i, object_frames += world.looks.size()) {
+      const Frame frame = world.Next();
+      quick.Advance(frame, a);
+      thorough.Advance(frame, b);
+    }
+    quick.Finish(world.tick + 5, a);
+    thorough.Finish(world.tick + 5, b);
+    ASSERT_EQ(Lines(a, *plain), Lines(b, *plain)) << "round " << round;
+    count += a.size();
+  }
+  EXPECT_GT(count, 50000u);
+  EXPECT_GT(object_frames, 1000000u);
+}
+
 // A hand feels its way along many things; what it has left behind is forgotten, and found again.
 TEST(Changes, WhatRestsForLongIsFreed) {
   constexpr int kThings = 500;

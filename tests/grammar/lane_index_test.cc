@@ -22,7 +22,7 @@ TEST(LaneIndex, BehavesAsAMap) {
     // Fills and empties in turns, so that long runs of neighbours come and go.
     const bool insert = random() % 100 < (step / 5000 % 2 == 0 ? 80u : 20u);
     if (insert == inside[lane]) continue;
-    insert ? index.Insert(lane, key_of) : index.Erase(lane, key_of);
+    insert ? index.Insert(lane, keys[lane]) : index.Erase(lane, keys[lane]);
     inside[lane] = insert;
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
