@@ -18,7 +18,8 @@ struct CheckRequest {
   std::string root;           ///< the project's
   std::string report_folder;  ///< pictures go to its folder `pictures`
   bool pictures = true;
-  bool write_pending = true;
+  bool is_trial = false;  ///< leave nothing behind: neither a pending golden nor a trace
+  std::string program;    ///< ProgramHash(), for the blame
   SharedTicks::Tick* last_tick = nullptr;  ///< told how far the run came; may be null
 };
 

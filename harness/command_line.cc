@@ -19,7 +19,7 @@ namespace {
 
 std::vector<Command> Commands() {
   return {ListCommand(),   ValidateCommand(), RunCommand(), CheckCommand(),
-          AcceptCommand(), RenderCommand(),   NewCommand(), SchemaCommand(), BenchCommand(),
+          AcceptCommand(), ReviewCommand(), RenderCommand(),   NewCommand(), SchemaCommand(), BenchCommand(),
           ResegmentCommand(), ScoreCommand()};
 }
 

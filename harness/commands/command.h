@@ -46,6 +46,7 @@ Command ValidateCommand();
 Command RunCommand();
 Command CheckCommand();
 Command AcceptCommand();
+Command ReviewCommand();
 Command RenderCommand();
 Command NewCommand();
 Command ResegmentCommand();
