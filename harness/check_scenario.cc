@@ -214,7 +214,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
 
   if (plain.status.kind != physics::RunStatus::Kind::kCompleted) {
     Fail(verdict, ExitCode::kFailure, "the simulation failed", StatusText(plain) + "\n");
-    verdict.command = ExplainCommand(request.id, request.run);
+    verdict.command = "prehend run " + request.id + ChangesText(request.run);
     return verdict;
   }
   JudgeInvariants(*prepared.value, watched, plain, verdict);
@@ -225,7 +225,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
 }
 
 std::string ExplainCommand(const std::string& id, const RunRequest& changes) {
-  return "prehend run " + id + ChangesText(changes);
+  return "prehend explain " + id + ChangesText(changes);
 }
 
 std::string RepeatCommand(const std::string& id, const RunRequest& changes) {

@@ -26,8 +26,8 @@ struct CheckRequest {
 /// Never fails: what goes wrong is the verdict.
 ScenarioVerdict CheckScenario(const CheckRequest& request);
 
-/// The command that shows a scenario's run again, with the grammar and settings of `changes`; every
-/// difference ends with it.
+/// The command that asks about a scenario's events, with the grammar and settings of `changes`;
+/// every difference ends with it and a question.
 std::string ExplainCommand(const std::string& id, const RunRequest& changes);
 
 /// The command that repeats a verdict.

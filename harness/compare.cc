@@ -319,9 +319,9 @@ Tick Pairing::DivergenceTick() const {
   const Interval was = expected->interval, is = actual->interval;
   if (agreement == LineVerdict::kFragmented || agreement == LineVerdict::kMerged)
     return pieces.front().end;
-  if (agreement != LineVerdict::kShifted || std::abs(begin_offset) > tolerance)
-    return std::min(was.begin, is.begin);
-  return std::min(was.end, is.end);
+  const bool only_the_end = expected->Label() == actual->Label() &&
+                            std::abs(begin_offset) <= tolerance && std::abs(end_offset) > tolerance;
+  return only_the_end ? std::min(was.end, is.end) : std::min(was.begin, is.begin);
 }
 
 const Headroom* Comparison::Tightest() const {

@@ -92,9 +92,9 @@ grammar::Tick DefaultTolerance(int rate_hz, int sensing_hz);
 /// Two numbers of an event agree within 5 % of the expected one, or 0.001 of its unit.
 bool ValuesAgree(double expected, double actual);
 
-/// The differences as text, first divergence first, each with both intervals, the signed offsets in
-/// milliseconds and `command`, which shows it again; `facts` stand below the first. Empty when all
-/// agree.
+/// The differences as text, first divergence first, each with both intervals, signed offsets in
+/// milliseconds, and what of `command`, "prehend explain ..", tells why; `facts` are of the first.
+/// Empty when all agree.
 std::string DifferenceText(const Comparison& comparison, std::string_view command,
                            std::string_view facts = {});
 

@@ -7,6 +7,7 @@
 
 #include "harness/compare.h"
 #include "harness/event_text.h"
+#include "harness/shell_word.h"
 
 namespace prehend::harness {
 namespace {
@@ -29,6 +30,17 @@ std::string PiecesText(const std::vector<grammar::Interval>& pieces, Tick ticks_
   return fmt::format("{} pieces: {}", pieces.size(), fmt::join(texts, ", "));
 }
 
+/// What `prehend explain` is to be asked: why it is as it is, or why it is missing.
+std::string Question(const Pairing& pairing, Tick ticks_per_second) {
+  const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
+  std::string question = event.event;
+  for (const grammar::Role& role : event.roles) {
+    if (!IsAttribute(role)) question += " " + role.value;
+  }
+  question += " @" + SecondsText(event.interval.begin, ticks_per_second) + "s";
+  return (pairing.actual ? "--event " : "--expected ") + ShellWord(question);
+}
+
 std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::string_view command,
                         std::string_view facts) {
   const auto side = [&](const std::optional<grammar::NamedEvent>& event) {
@@ -44,7 +56,8 @@ std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::stri
   if (pairing.expected && pairing.actual && pairing.pieces.empty())
     text += fmt::format("  {}\n", OffsetText(pairing, ticks_per_second));
   if (!pairing.changes.empty()) text += fmt::format("  {}\n", fmt::join(pairing.changes, ", "));
-  return text + fmt::format("{}  see: {}\n", facts, command);
+  return text +
+         fmt::format("{}  why: {} {}\n", facts, command, Question(pairing, ticks_per_second));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -70,15 +71,18 @@ std::vector<Touching> TouchesIn(Interval window, const std::set<int>& participan
   return touches;
 }
 
+/// To millimetres, without a sign before a zero.
+double Rounded(double value) { return std::round(1000 * value) / 1000 + 0.0; }
+
 std::string StateText(const grammar::Frame& frame, const std::set<int>& participants,
                       const grammar::Cast& cast) {
   std::string text;
   for (const int id : participants) {
     const grammar::EntityLook& look = frame.entities[static_cast<std::size_t>(id)];
     text += fmt::format("    {} at ({:.3f}, {:.3f}, {:.3f}) m, {:.3f} m/s, rising {:.3f} m/s",
-                        cast.entities[static_cast<std::size_t>(id)].name, look.p_WB_m.x(),
-                        look.p_WB_m.y(), look.p_WB_m.z(), look.v_WB_m_per_s.norm(),
-                        look.v_WB_m_per_s.z());
+                        cast.entities[static_cast<std::size_t>(id)].name, Rounded(look.p_WB_m.x()),
+                        Rounded(look.p_WB_m.y()), Rounded(look.p_WB_m.z()),
+                        look.v_WB_m_per_s.norm(), Rounded(look.v_WB_m_per_s.z()));
     for (const grammar::HandLook& hand : frame.hands) {
       if (hand.entity == id) text += fmt::format(", grip {:.2f}", hand.trigger);
     }

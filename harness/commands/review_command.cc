@@ -60,7 +60,7 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
   const Comparison comparison = Compare(*golden.value, ToTimeline(*pending.value),
                                         DefaultTolerance(world.rate_hz, world.sensing_hz));
   review.kind = comparison.Agrees() ? "same" : "changed";
-  review.text = DifferenceText(comparison, "prehend run " + review.id);
+  review.text = DifferenceText(comparison, "prehend explain " + review.id);
   return review;
 }
 

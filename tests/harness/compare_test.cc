@@ -158,19 +158,19 @@ TEST(Compare, TheTextSaysWhatWhenHowMuchAndHowToSeeIt) {
   const Comparison comparison =
       CompareEvents({Event("grasping", "cup", 100, 200), Event("sliding", "cup", 150, 180)},
                     {Event("grasping", "cup", 150, 198), Event("transporting", "cup", 160, 180)});
-  EXPECT_EQ(DifferenceText(comparison, "prehend run x"),
+  EXPECT_EQ(DifferenceText(comparison, "explain x"),
             "shifted grasping(hand, cup)\n"
             "  expected 0.1000..0.2000 s, recognised 0.1500..0.1980 s\n"
             "  begin +50.0 ms, end -2.0 ms (tolerance 8.0 ms)\n"
-            "  see: prehend run x\n"
+            "  why: explain x --event 'grasping hand cup @0.1500s'\n"
             "relabelled sliding(hand, cup)\n"
             "  expected 0.1500..0.1800 s, recognised 0.1600..0.1800 s\n"
             "  begin +10.0 ms, end +0.0 ms (tolerance 8.0 ms)\n"
             "  event: sliding -> transporting\n"
-            "  see: prehend run x\n");
+            "  why: explain x --event 'transporting hand cup @0.1600s'\n");
   const Comparison agrees =
       CompareEvents({Event("grasping", "cup", 100, 200)}, {Event("grasping", "cup", 100, 200)});
-  EXPECT_EQ(DifferenceText(agrees, "prehend run x"), "");
+  EXPECT_EQ(DifferenceText(agrees, "explain x"), "");
   EXPECT_EQ(HeadroomText(agrees), "headroom: every boundary is exact");
 }
 
@@ -180,15 +180,15 @@ TEST(Compare, PiecesAreToldTogetherAndTheFirstDivergenceFirst) {
                      Event("sliding", "mug", 620, 700)},
                     {Event("grasping", "cup", 100, 140), Event("grasping", "cup", 150, 300),
                      Event("grasping", "cup", 310, 400), Event("sliding", "mug", 500, 700)});
-  EXPECT_EQ(DifferenceText(comparison, "run", "  facts\n"),
+  EXPECT_EQ(DifferenceText(comparison, "explain x", "  facts\n"),
             "fragmented grasping(hand, cup)\n"
             "  expected 0.1000..0.4000 s, recognised 3 pieces: 0.1000..0.1400 s, 0.1500..0.3000 s, "
             "0.3100..0.4000 s\n"
             "  facts\n"
-            "  see: run\n"
+            "  why: explain x --event 'grasping hand cup @0.1500s'\n"
             "merged sliding(hand, mug)\n"
             "  expected 2 pieces: 0.5000..0.6000 s, 0.6200..0.7000 s, recognised 0.5000..0.7000 s\n"
-            "  see: run\n");
+            "  why: explain x --event 'sliding hand mug @0.5000s'\n");
   ASSERT_NE(comparison.FirstDivergence(), nullptr);
   EXPECT_EQ(comparison.FirstDivergence()->DivergenceTick(), 140);
 }
@@ -200,6 +200,14 @@ TEST(Compare, ALateEndDivergesAtTheEnd) {
   EXPECT_EQ(comparison.FirstDivergence()->DivergenceTick(), 400);
 }
 
+TEST(Compare, AMissingEventIsAskedForAsExpected) {
+  const Comparison missing = CompareEvents({Event("grasping", "cup", 100, 400, "wrap")}, {});
+  EXPECT_EQ(DifferenceText(missing, "explain x"),
+            "missing grasping(hand, cup)\n"
+            "  expected 0.1000..0.4000 s, recognised nothing\n"
+            "  why: explain x --expected 'grasping hand cup @0.1000s'\n");
+}
+
 TEST(Compare, ARelationThatClearlyChangedIsTold) {
   const Events expected = {Event("reaching", "cup", 100, 200), Event("grasping", "cup", 200, 400),
                            Event("grasping", "mug", 200, 400)};
@@ -207,7 +215,7 @@ TEST(Compare, ARelationThatClearlyChangedIsTold) {
   actual[0].interval.end = 150;
   const Comparison gap = CompareEvents(expected, actual);
   ASSERT_EQ(gap.relations.size(), 1u);
-  EXPECT_NE(DifferenceText(gap, "run")
+  EXPECT_NE(DifferenceText(gap, "explain x")
                 .find("relation reaching(hand, cup) meets grasping(hand, cup): now before\n"),
             std::string::npos);
   actual[0].interval.end = 204;  // overlaps now, but within the tolerance: nothing worth telling
