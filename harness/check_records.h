@@ -35,6 +35,11 @@ class CheckRecords {
   /// Returns "" or what went wrong.
   std::string Write(const CheckRecord& record) const;
 
+  /// Where the physics trace of that pass is kept.
+  std::filesystem::path TracePath(const std::string& scenario) const {
+    return folder_ / (scenario + ".trace");
+  }
+
   using Costs = std::map<std::string, double>;  ///< id -> seconds
   Costs ReadCosts() const;
   std::string WriteCosts(const Costs& costs) const;

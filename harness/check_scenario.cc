@@ -8,9 +8,14 @@
 #include <filesystem>
 
 #include "harness/accept_golden.h"
+#include "harness/blame.h"
+#include "harness/check_records.h"
 #include "harness/compare.h"
+#include "harness/event_text.h"
+#include "harness/facts_around.h"
 #include "harness/golden_files.h"
 #include "harness/invariants.h"
+#include "harness/physics_trace.h"
 #include "harness/pictures.h"
 #include "harness/run_output.h"
 #include "harness/run_scenario.h"
@@ -56,6 +61,24 @@ void Draw(const CheckRequest& request, const Scenario& scenario, const RunResult
     Fail(verdict, ExitCode::kFailure, "no picture", "no picture: " + drawn.error + "\n");
 }
 
+/// A gate of its own: events may agree while a picture does not, and the other way round.
+void JudgePictures(const CheckRequest& request, ScenarioVerdict& verdict) {
+  for (const ReportedPicture& picture : verdict.pictures) {
+    const fs::path drawn = fs::path(request.report_folder) / picture.file;
+    const std::string golden =
+        GoldenFiles(request.root).PicturePath(request.id, drawn.filename().string()).string();
+    std::error_code ignored;
+    if (!fs::exists(golden, ignored)) continue;
+    const std::string difference = PictureDifference(golden, drawn.string());
+    if (difference.empty()) continue;
+    Fail(
+        verdict, ExitCode::kDiffers, "a picture differs from its golden",
+        fmt::format("picture {}: {}\n  expected {}\n  accept it with: prehend accept {} --pictures "
+                    "--reason \"...\"\n",
+                    drawn.string(), difference, golden, request.id));
+  }
+}
+
 /// A rule's head is "event NAME(...)", or "symmetric event NAME(...)".
 std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& program) {
   std::map<std::string, grammar::Wait> latency;
@@ -85,7 +108,7 @@ void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, cons
 
 void LeavePending(const CheckRequest& request, const PreparedRun& prepared,
                   const std::optional<Golden>& golden, const RunResult& run) {
-  if (!request.write_pending) return;
+  if (request.is_trial) return;
   const Proposal proposal = {.scenario = request.id,
                              .grammar = prepared.scenario.grammar,
                              .derived = {},
@@ -94,8 +117,37 @@ void LeavePending(const CheckRequest& request, const PreparedRun& prepared,
   (void)GoldenFiles(request.root).WritePending(ProposeGolden(golden, run.timeline, proposal));
 }
 
+std::vector<BoundaryRoom> Boundaries(const Comparison& comparison) {
+  std::vector<BoundaryRoom> boundaries;
+  for (const Headroom& room : comparison.headroom) {
+    boundaries.push_back({room.boundary, MillisecondsOf(room.offset, comparison.ticks_per_second),
+                          MillisecondsOf(room.tolerance, comparison.ticks_per_second)});
+  }
+  return boundaries;
+}
+
+/// Remembers how a run that passed moved, for the blame of later ones.
+void LeaveTrace(const CheckRequest& request, const Scenario& scenario, const RunResult& watched) {
+  if (request.is_trial) return;
+  // Losing it only costs the blame of the next difference its answer.
+  (void)WriteTrace(CheckRecords(request.root).TracePath(request.id),
+                   TraceOf(scenario.scene, watched.recording));
+}
+
+std::string Blame(const CheckRequest& request, const Scenario& scenario, const RunResult& watched,
+                  const FileHashes& inputs) {
+  const CheckRecords records(request.root);
+  return BlameText(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
+                   {.program = request.program,
+                    .inputs = inputs,
+                    .trace = TraceOf(scenario.scene, watched.recording),
+                    .ticks_per_second = static_cast<double>(watched.timeline.ticks_per_second)},
+                   request.root);
+}
+
+/// Compares the plain run; the watched one has the recording.
 void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared,
-                        const RunResult& run, ScenarioVerdict& verdict) {
+                        const RunResult& watched, const RunResult& run, ScenarioVerdict& verdict) {
   const ReadResult<Golden> golden = GoldenFiles(request.root).ReadGoldenOf(request.id);
   if (!golden.diagnostics.empty()) {
     return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read",
@@ -116,14 +168,19 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
     return;
   }
   verdict.headroom = HeadroomText(comparison);
-  if (comparison.Agrees()) return GoldenFiles(request.root).RemovePending(request.id);
+  verdict.boundaries = Boundaries(comparison);
+  const Pairing* first = comparison.FirstDivergence();
+  if (!first) return GoldenFiles(request.root).RemovePending(request.id);
   LeavePending(request, prepared, golden.value, run);
-  const auto differing = std::count_if(
-      comparison.pairings.begin(), comparison.pairings.end(),
-      [](const Pairing& pairing) { return pairing.agreement != LineVerdict::kMatched; });
+  verdict.blame = Blame(request, prepared.scenario, watched, verdict.inputs);
+  const std::string facts =
+      FactsAround(prepared.scenario, watched.recording, first->event(), first->DivergenceTick());
+  const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
+    return pairing.agreement != LineVerdict::kMatched;
+  });
   Fail(verdict, ExitCode::kDiffers,
        fmt::format("{} of {} events differ from the golden", differing, comparison.pairings.size()),
-       DifferenceText(comparison, ExplainCommand(request.id, request.run)));
+       DifferenceText(comparison, ExplainCommand(request.id, request.run), facts) + verdict.blame);
 }
 
 }  // namespace
@@ -133,6 +190,8 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.command = RepeatCommand(request.id, request.run);
   std::vector<std::string> files = {GoldenFiles(request.root).GoldenPath(request.id).string()};
   const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root, &files);
+  for (const fs::path& picture : GoldenFiles(request.root).PicturesOf(request.id))
+    files.push_back(picture.string());
   verdict.inputs = HashFiles(files);
   if (!prepared.value) {
     Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(prepared.diagnostics));
@@ -155,16 +214,18 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
 
   if (plain.status.kind != physics::RunStatus::Kind::kCompleted) {
     Fail(verdict, ExitCode::kFailure, "the simulation failed", StatusText(plain) + "\n");
-    verdict.command = ExplainCommand(request.id, request.run);
+    verdict.command = "prehend run " + request.id + ChangesText(request.run);
     return verdict;
   }
   JudgeInvariants(*prepared.value, watched, plain, verdict);
-  JudgeAgainstGolden(request, *prepared.value, plain, verdict);
+  JudgeAgainstGolden(request, *prepared.value, watched, plain, verdict);
+  JudgePictures(request, verdict);
+  if (verdict.verdict == Verdict::kPassed) LeaveTrace(request, scenario, watched);
   return verdict;
 }
 
 std::string ExplainCommand(const std::string& id, const RunRequest& changes) {
-  return "prehend run " + id + ChangesText(changes);
+  return "prehend explain " + id + ChangesText(changes);
 }
 
 std::string RepeatCommand(const std::string& id, const RunRequest& changes) {

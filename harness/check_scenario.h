@@ -18,15 +18,16 @@ struct CheckRequest {
   std::string root;           ///< the project's
   std::string report_folder;  ///< pictures go to its folder `pictures`
   bool pictures = true;
-  bool write_pending = true;
+  bool is_trial = false;  ///< leave nothing behind: neither a pending golden nor a trace
+  std::string program;    ///< ProgramHash(), for the blame
   SharedTicks::Tick* last_tick = nullptr;  ///< told how far the run came; may be null
 };
 
 /// Never fails: what goes wrong is the verdict.
 ScenarioVerdict CheckScenario(const CheckRequest& request);
 
-/// The command that shows a scenario's run again, with the grammar and settings of `changes`; every
-/// difference ends with it.
+/// The command that asks about a scenario's events, with the grammar and settings of `changes`;
+/// every difference ends with it and a question.
 std::string ExplainCommand(const std::string& id, const RunRequest& changes);
 
 /// The command that repeats a verdict.

@@ -19,9 +19,8 @@ namespace {
 
 std::vector<Command> Commands() {
   return {ListCommand(),   ValidateCommand(), RunCommand(), CheckCommand(),
-          AcceptCommand(), RenderCommand(),   NewCommand(), SchemaCommand(), BenchCommand(),
-          ResegmentCommand(), ScoreCommand(),    ExplainCommand(),
-          TracksCommand()};
+          AcceptCommand(), ReviewCommand(),   RenderCommand(), NewCommand(), SchemaCommand(), BenchCommand(),
+          ResegmentCommand(), ScoreCommand(), ExplainCommand(), TracksCommand()};
 }
 
 bool IsSet(const char* variable) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <tuple>
 
+#include "harness/changed_relations.h"
 #include "harness/event_text.h"
 
 namespace prehend::harness {
@@ -25,6 +26,11 @@ constexpr double kMaxGapBetweenPartners_s = 0.25;
 constexpr double kMinSharedSpan = 0.5;
 
 Tick Overlap(Interval a, Interval b) { return std::min(a.end, b.end) - std::max(a.begin, b.begin); }
+
+bool AtTheSameTime(Interval a, Interval b) {
+  const Tick span = std::max(a.end, b.end) - std::min(a.begin, b.begin);
+  return static_cast<double>(Overlap(a, b)) >= kMinSharedSpan * static_cast<double>(span);
+}
 
 Tick Distance(Interval a, Interval b) {
   return std::abs(a.begin - b.begin) + std::abs(a.end - b.end);
@@ -86,6 +92,18 @@ std::vector<std::string> Changes(const NamedEvent& expected, const NamedEvent& a
   for (const auto& role : actual.roles) {
     if (RoleValue(expected, role.name).empty()) add(role.name, "", role.value);
   }
+  if (expected.event != actual.event) add("event", expected.event, actual.event);
+  for (const auto& value : expected.values) {
+    const auto same_name = [&](const grammar::NamedValue& other) {
+      return other.name == value.name;
+    };
+    const auto found = std::ranges::find_if(actual.values, same_name);
+    if (found == actual.values.end()) {
+      add(value.name, ValueText(value), "");
+    } else if (found->unit != value.unit || !ValuesAgree(value.value, found->value)) {
+      add(value.name, ValueText(value), ValueText(*found));
+    }
+  }
   const auto ending = [](const NamedEvent& event) {
     return event.open_end ? "of the episode" : "of its own";
   };
@@ -102,6 +120,26 @@ std::pair<int, bool> RoleDifference(const NamedEvent& expected, const NamedEvent
     (RoleValue(actual, role.name) == role.value ? some_equal = true : ++different != 0);
   }
   return {different, some_equal};
+}
+
+bool SameRoles(const NamedEvent& a, const NamedEvent& b) {
+  const auto roles = [](const NamedEvent& event) {
+    std::vector<grammar::Role> kept = event.roles;
+    std::erase_if(kept, [](const auto& role) { return IsAttribute(role); });
+    std::ranges::sort(kept);
+    return kept;
+  };
+  return roles(a) == roles(b);
+}
+
+/// How unlike two events of the same time are: the number of roles that differ, more than any such
+/// number when it is another event of the same roles; nothing when they have nothing in common.
+std::optional<int> Unlikeness(const NamedEvent& expected, const NamedEvent& actual) {
+  constexpr int kOtherEvent = 1000;
+  if (expected.event != actual.event)
+    return SameRoles(expected, actual) ? std::optional(kOtherEvent) : std::nullopt;
+  const auto [different, some_equal] = RoleDifference(expected, actual);
+  return some_equal ? std::optional(different) : std::nullopt;
 }
 
 class Pairer {
@@ -122,7 +160,7 @@ class Pairer {
 
   Comparison Pair() {
     PairEqualLabels();
-    PairChangedRoles();
+    PairAcrossLabels();
     for (std::size_t i = 0; i < expected_.size(); ++i) {
       if (expected_taken_[i]) continue;
       AddAlone(LineVerdict::kMissing, expected_[i].event);
@@ -135,6 +173,12 @@ class Pairer {
         comparison_.pairings.begin(), comparison_.pairings.end(),
         [](const Pairing& a, const Pairing& b) { return ComesBefore(a.event(), b.event()); });
     comparison_.ticks_per_second = ticks_per_second_;
+    comparison_.relations = ChangedRelations(comparison_.pairings);
+    for (const Pairing& pairing : comparison_.pairings) {
+      if (pairing.agreement != LineVerdict::kMatched) continue;
+      NoteHeadroom("begin of ", pairing, pairing.begin_offset);
+      NoteHeadroom("end of ", pairing, pairing.end_offset);
+    }
     return std::move(comparison_);
   }
 
@@ -153,34 +197,69 @@ class Pairer {
       groups[expected_[i].event.Label()].expected.push_back(i);
     for (std::size_t j = 0; j < actual_.size(); ++j) groups[actual_[j].Label()].actual.push_back(j);
     for (const auto& [label, group] : groups) {
+      const std::size_t first_pair = comparison_.pairings.size();
       std::vector<Interval> expected, actual;
       for (const std::size_t i : group.expected) expected.push_back(expected_[i].event.interval);
       for (const std::size_t j : group.actual) actual.push_back(actual_[j].interval);
       const Tick max_gap = TickAt(kMaxGapBetweenPartners_s, ticks_per_second_);
       for (const auto& [i, j] : Align(expected, actual, max_gap))
         AddPair(group.expected[i], group.actual[j]);
+      const std::size_t end_of_pairs = comparison_.pairings.size();
+      for (const std::size_t j : group.actual) {
+        if (!actual_taken_[j]) AddFragment(j, first_pair, end_of_pairs);
+      }
+      for (const std::size_t i : group.expected) {
+        if (!expected_taken_[i]) AddMerged(i, first_pair, end_of_pairs);
+      }
     }
   }
 
+  /// A recognised event that overlaps the expected one of a pair of its label is a piece of it.
+  void AddFragment(std::size_t j, std::size_t first_pair, std::size_t end_of_pairs) {
+    const Interval interval = actual_[j].interval;
+    for (std::size_t pair = first_pair; pair < end_of_pairs; ++pair) {
+      if (Overlap(comparison_.pairings[pair].expected->interval, interval) <= 0) continue;
+      AddAlone(LineVerdict::kFragmented, actual_[j]);
+      actual_taken_[j] = true;
+      return AddPiece(comparison_.pairings[pair], LineVerdict::kFragmented,
+                      comparison_.pairings[pair].actual->interval, interval);
+    }
+  }
+
+  /// An expected event that overlaps the recognised one of a pair of its label is merged into it.
+  void AddMerged(std::size_t i, std::size_t first_pair, std::size_t end_of_pairs) {
+    const Interval interval = expected_[i].event.interval;
+    for (std::size_t pair = first_pair; pair < end_of_pairs; ++pair) {
+      if (Overlap(comparison_.pairings[pair].actual->interval, interval) <= 0) continue;
+      AddAlone(LineVerdict::kMerged, expected_[i].event);
+      comparison_.pairings.back().golden_line = i;
+      expected_taken_[i] = true;
+      return AddPiece(comparison_.pairings[pair], LineVerdict::kMerged,
+                      comparison_.pairings[pair].expected->interval, interval);
+    }
+  }
+
+  static void AddPiece(Pairing& pairing, LineVerdict agreement, Interval own, Interval piece) {
+    if (pairing.pieces.empty()) pairing.pieces.push_back(own);
+    pairing.pieces.push_back(piece);
+    std::ranges::sort(pairing.pieces, {}, &Interval::begin);
+    pairing.agreement = agreement;
+  }
+
   /// What is left over, nearest first: fewest roles changed, then closest in time.
-  void PairChangedRoles() {
+  void PairAcrossLabels() {
     std::vector<std::tuple<int, Tick, std::size_t, std::size_t>> candidates;
     for (std::size_t i = 0; i < expected_.size(); ++i) {
       for (std::size_t j = 0; j < actual_.size(); ++j) {
+        if (expected_taken_[i] || actual_taken_[j]) continue;
         const NamedEvent& expected = expected_[i].event;
-        if (expected_taken_[i] || actual_taken_[j] || expected.event != actual_[j].event) continue;
-        const auto [different, some_equal] = RoleDifference(expected, actual_[j]);
-        const Tick span = std::max(expected.interval.end, actual_[j].interval.end) -
-                          std::min(expected.interval.begin, actual_[j].interval.begin);
-        const bool same_time =
-            static_cast<double>(Overlap(expected.interval, actual_[j].interval)) >=
-            kMinSharedSpan * static_cast<double>(span);
-        if (!some_equal || !same_time) continue;
-        candidates.emplace_back(different, Distance(expected.interval, actual_[j].interval), i, j);
+        const std::optional<int> unlike = Unlikeness(expected, actual_[j]);
+        if (!unlike || !AtTheSameTime(expected.interval, actual_[j].interval)) continue;
+        candidates.emplace_back(*unlike, Distance(expected.interval, actual_[j].interval), i, j);
       }
     }
     std::sort(candidates.begin(), candidates.end());
-    for (const auto& [different, distance, i, j] : candidates) {
+    for (const auto& [unlike, distance, i, j] : candidates) {
       if (!expected_taken_[i] && !actual_taken_[j]) AddPair(i, j);
     }
   }
@@ -197,30 +276,26 @@ class Pairer {
     pairing.tolerance =
         line.tolerance_ms ? *line.tolerance_ms * ticks_per_second_ / 1000 : default_tolerance_;
     pairing.changes = Changes(line.event, actual);
-    if (!pairing.changes.empty()) {
+    if (line.event.event != actual.event) {
+      pairing.agreement = LineVerdict::kRelabelled;
+    } else if (!pairing.changes.empty()) {
       pairing.agreement = LineVerdict::kChanged;
     } else if (std::max(std::abs(pairing.begin_offset), std::abs(pairing.end_offset)) >
                pairing.tolerance) {
       pairing.agreement = LineVerdict::kShifted;
-    } else {
-      NoteHeadroom("begin of ", pairing, pairing.begin_offset);
-      NoteHeadroom("end of ", pairing, pairing.end_offset);
     }
     expected_taken_[i] = actual_taken_[j] = true;
     comparison_.pairings.push_back(std::move(pairing));
   }
 
   void NoteHeadroom(const char* boundary, const Pairing& pairing, Tick offset) {
-    const auto left = [](Tick tolerance, Tick used) { return tolerance - std::abs(used); };
-    std::optional<Headroom>& tightest = comparison_.tightest;
-    if (tightest && left(tightest->tolerance, tightest->offset) <= left(pairing.tolerance, offset))
-      return;
-    tightest = Headroom{boundary + pairing.event().Label(), offset, pairing.tolerance};
+    comparison_.headroom.push_back({boundary + pairing.event().Label(), offset, pairing.tolerance});
   }
 
   void AddAlone(LineVerdict agreement, const NamedEvent& event) {
     Pairing pairing{.agreement = agreement, .expected = {}, .actual = {}};
-    (agreement == LineVerdict::kMissing ? pairing.expected : pairing.actual) = event;
+    const bool of_golden = agreement == LineVerdict::kMissing || agreement == LineVerdict::kMerged;
+    (of_golden ? pairing.expected : pairing.actual) = event;
     comparison_.pairings.push_back(std::move(pairing));
   }
 
@@ -233,6 +308,40 @@ class Pairer {
 };
 
 }  // namespace
+
+bool Pairing::IsFurtherPiece() const {
+  return pieces.empty() &&
+         (agreement == LineVerdict::kFragmented || agreement == LineVerdict::kMerged);
+}
+
+Tick Pairing::DivergenceTick() const {
+  if (!expected || !actual) return event().interval.begin;
+  const Interval was = expected->interval, is = actual->interval;
+  if (agreement == LineVerdict::kFragmented || agreement == LineVerdict::kMerged)
+    return pieces.front().end;
+  const bool only_the_end = expected->Label() == actual->Label() &&
+                            std::abs(begin_offset) <= tolerance && std::abs(end_offset) > tolerance;
+  return only_the_end ? std::min(was.end, is.end) : std::min(was.begin, is.begin);
+}
+
+const Headroom* Comparison::Tightest() const {
+  const auto found = std::ranges::min_element(headroom, {}, &Headroom::Left);
+  return found == headroom.end() ? nullptr : &*found;
+}
+
+const Pairing* Comparison::FirstDivergence() const {
+  const Pairing* first = nullptr;
+  for (const Pairing& pairing : pairings) {
+    if (pairing.agreement == LineVerdict::kMatched || pairing.IsFurtherPiece()) continue;
+    if (!first || pairing.DivergenceTick() < first->DivergenceTick()) first = &pairing;
+  }
+  return first;
+}
+
+bool ValuesAgree(double expected, double actual) {
+  constexpr double kRelative = 0.05, kAbsolute = 0.001;
+  return std::abs(actual - expected) <= std::max(kRelative * std::abs(expected), kAbsolute);
+}
 
 bool Comparison::Agrees() const {
   return Count(LineVerdict::kMatched) == static_cast<int>(pairings.size());

@@ -3,37 +3,61 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "harness/compare.h"
 #include "harness/event_text.h"
+#include "harness/shell_word.h"
 
 namespace prehend::harness {
 namespace {
 
 using grammar::Tick;
 
-double Milliseconds(Tick ticks, Tick ticks_per_second) {
-  return 1000.0 * static_cast<double>(ticks) / static_cast<double>(ticks_per_second);
-}
-
 /// "begin +50.0 ms, end -2.1 ms (tolerance 8.3 ms)"
 std::string OffsetText(const Pairing& pairing, Tick ticks_per_second) {
   return fmt::format("begin {:+.1f} ms, end {:+.1f} ms (tolerance {:.1f} ms)",
-                     Milliseconds(pairing.begin_offset, ticks_per_second),
-                     Milliseconds(pairing.end_offset, ticks_per_second),
-                     Milliseconds(pairing.tolerance, ticks_per_second));
+                     MillisecondsOf(pairing.begin_offset, ticks_per_second),
+                     MillisecondsOf(pairing.end_offset, ticks_per_second),
+                     MillisecondsOf(pairing.tolerance, ticks_per_second));
 }
 
-std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::string_view command) {
+/// "3 pieces: 1.0000..1.2000 s, .."
+std::string PiecesText(const std::vector<grammar::Interval>& pieces, Tick ticks_per_second) {
+  std::vector<std::string> texts;
+  for (const grammar::Interval& piece : pieces)
+    texts.push_back(IntervalText(piece, ticks_per_second));
+  return fmt::format("{} pieces: {}", pieces.size(), fmt::join(texts, ", "));
+}
+
+/// What `prehend explain` is to be asked: why it is as it is, or why it is missing.
+std::string Question(const Pairing& pairing, Tick ticks_per_second) {
+  const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
+  std::string question = event.event;
+  for (const grammar::Role& role : event.roles) {
+    if (!IsAttribute(role)) question += " " + role.value;
+  }
+  question += " @" + SecondsText(event.interval.begin, ticks_per_second) + "s";
+  return (pairing.actual ? "--event " : "--expected ") + ShellWord(question);
+}
+
+std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::string_view command,
+                        std::string_view facts) {
   const auto side = [&](const std::optional<grammar::NamedEvent>& event) {
+    const bool is_actual = &event == &pairing.actual;
+    const bool in_pieces =
+        !pairing.pieces.empty() && is_actual == (pairing.agreement == LineVerdict::kFragmented);
+    if (in_pieces) return PiecesText(pairing.pieces, ticks_per_second);
     return event ? IntervalText(event->interval, ticks_per_second) : std::string("nothing");
   };
   std::string text = fmt::format("{} {}\n", Name(pairing.agreement), pairing.event().Label());
   text +=
       fmt::format("  expected {}, recognised {}\n", side(pairing.expected), side(pairing.actual));
-  if (pairing.expected && pairing.actual)
+  if (pairing.expected && pairing.actual && pairing.pieces.empty())
     text += fmt::format("  {}\n", OffsetText(pairing, ticks_per_second));
   if (!pairing.changes.empty()) text += fmt::format("  {}\n", fmt::join(pairing.changes, ", "));
-  return text + fmt::format("  see: {}\n", command);
+  return text +
+         fmt::format("{}  why: {} {}\n", facts, command, Question(pairing, ticks_per_second));
 }
 
 }  // namespace
@@ -46,6 +70,12 @@ std::string_view Name(LineVerdict agreement) {
       return "shifted";
     case LineVerdict::kChanged:
       return "changed";
+    case LineVerdict::kRelabelled:
+      return "relabelled";
+    case LineVerdict::kFragmented:
+      return "fragmented";
+    case LineVerdict::kMerged:
+      return "merged";
     case LineVerdict::kMissing:
       return "missing";
     case LineVerdict::kExtra:
@@ -54,23 +84,34 @@ std::string_view Name(LineVerdict agreement) {
   return "";
 }
 
-std::string DifferenceText(const Comparison& comparison, std::string_view command) {
-  std::string text;
+std::string DifferenceText(const Comparison& comparison, std::string_view command,
+                           std::string_view facts) {
+  std::vector<const Pairing*> differing;
   for (const Pairing& pairing : comparison.pairings) {
-    if (pairing.agreement == LineVerdict::kMatched) continue;
-    text += PairingText(pairing, comparison.ticks_per_second, command);
+    if (pairing.agreement != LineVerdict::kMatched && !pairing.IsFurtherPiece())
+      differing.push_back(&pairing);
+  }
+  std::ranges::stable_sort(differing, {}, &Pairing::DivergenceTick);
+  std::string text;
+  for (const Pairing* pairing : differing) {
+    text += PairingText(*pairing, comparison.ticks_per_second, command,
+                        pairing == differing.front() ? facts : std::string_view());
+  }
+  for (const RelationChange& change : comparison.relations) {
+    text += fmt::format("relation {} {} {}: now {}\n", change.first, change.expected, change.second,
+                        change.actual);
   }
   return text;
 }
 
 std::string HeadroomText(const Comparison& comparison) {
-  if (!comparison.tightest) return "";
-  const Headroom& tightest = *comparison.tightest;
-  const Tick left = tightest.tolerance - std::abs(tightest.offset);
+  const Headroom* tightest = comparison.Tightest();
+  if (!tightest) return "";
+  if (tightest->Left() == tightest->tolerance) return "headroom: every boundary is exact";
   return fmt::format("headroom: {:.1f} of {:.1f} ms are left at {}",
-                     Milliseconds(left, comparison.ticks_per_second),
-                     Milliseconds(tightest.tolerance, comparison.ticks_per_second),
-                     tightest.boundary);
+                     MillisecondsOf(tightest->Left(), comparison.ticks_per_second),
+                     MillisecondsOf(tightest->tolerance, comparison.ticks_per_second),
+                     tightest->boundary);
 }
 
 }  // namespace prehend::harness

@@ -30,6 +30,14 @@ std::string IntervalText(grammar::Interval interval, Tick ticks_per_second) {
                      SecondsText(interval.end, ticks_per_second));
 }
 
+double MillisecondsOf(Tick ticks, Tick ticks_per_second) {
+  return 1000.0 * static_cast<double>(ticks) / static_cast<double>(ticks_per_second);
+}
+
+std::string ValueText(const grammar::NamedValue& value) {
+  return fmt::format("{:.4g}{}{}", value.value, value.unit.empty() ? "" : " ", value.unit);
+}
+
 bool IsAttribute(const Role& role) { return role.name == "style"; }
 
 std::string RoleText(const NamedEvent& event, std::size_t column) {

@@ -20,6 +20,12 @@ grammar::Tick TickAt(double seconds, grammar::Tick ticks_per_second);
 /// "1.2000..1.8125 s"
 std::string IntervalText(grammar::Interval interval, grammar::Tick ticks_per_second);
 
+/// In milliseconds.
+double MillisecondsOf(grammar::Tick ticks, grammar::Tick ticks_per_second);
+
+/// "12.5 N", "0.3"
+std::string ValueText(const grammar::NamedValue& value);
+
 /// True for what qualifies an event (the grasp's style) instead of saying who takes part.
 bool IsAttribute(const grammar::Role& role);
 

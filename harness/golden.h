@@ -12,7 +12,10 @@
 //   supported_by  0.0000   2.0125  object=milk      support=table
 //   grasping      1.9021   4.3000  hand=right_hand  object=milk    style=wrap  tolerance=20ms
 //   because "..."
+//   grasping      5.1000  6.2000  hand=right_hand  object=milk    force~12.5N  accepted=2
 //
+// NAME~NUMBER is a value of the event, which agrees within 5 % or 0.001; accepted=2 says that this
+// line is as the second of the accepted lines made it (otherwise the first).
 // Tested by tests/harness/golden_test.cc
 #pragma once
 
@@ -31,6 +34,7 @@ struct GoldenEvent {
   std::optional<int> tolerance_ms;    ///< instead of the default of two sensing frames
   std::string because;                ///< why this line needs it; never empty beside a tolerance
   std::vector<std::string> comments;  ///< lines above it, without "# "
+  int accepted = 1;  ///< which acceptance made it so, from 1; one more than there are: the next
   friend bool operator==(const GoldenEvent& a, const GoldenEvent& b);
 };
 

@@ -21,16 +21,25 @@ class GoldenFiles {
   std::filesystem::path GoldenPath(const std::string& scenario) const;
   std::filesystem::path PendingPath(const std::string& scenario) const;
 
-  /// No value and no diagnostics: there is no golden yet.
+  /// No value and no diagnostics: there is no golden yet, or nothing pending.
   ReadResult<Golden> ReadGoldenOf(const std::string& scenario) const;
+  ReadResult<Golden> ReadPendingOf(const std::string& scenario) const;
 
   /// Both return "" or what went wrong. Writing a golden removes what was pending.
   std::string WritePending(const Golden& golden) const;
   std::string WriteAccepted(const Golden& golden) const;
   void RemovePending(const std::string& scenario) const;
 
-  /// Ids of all goldens, sorted.
+  /// Ids of all goldens, and of all that is pending, sorted.
   std::vector<std::string> List() const;
+  std::vector<std::string> ListPending() const;
+
+  /// Where the golden of a picture is kept; `file` is its name, as in golden/slide/NAME-2.png.
+  std::filesystem::path PicturePath(const std::string& scenario, const std::string& file) const {
+    return GoldenPath(scenario).parent_path() / file;
+  }
+  /// The goldens of a scenario's pictures, sorted: NAME.png, NAME-2.png, ..
+  std::vector<std::filesystem::path> PicturesOf(const std::string& scenario) const;
 
  private:
   std::filesystem::path root_;

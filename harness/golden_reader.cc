@@ -184,10 +184,14 @@ class GoldenReader {
         line.event.open_end = true;
       } else if (key == "because") {
         if (!ReadReason(line, word_column)) return false;
+      } else if (!AtEnd() && line_[column_] == '~') {
+        if (!ReadValue(line, key, word_column)) return false;
       } else if (AtEnd() || line_[column_] != '=') {
         return Fail(fmt::format("expected '=' after '{}'", key));
       } else if (++column_; key == "tolerance") {
         if (!ReadTolerance(line)) return false;
+      } else if (key == "accepted") {
+        if (!ReadAcceptedBy(line)) return false;
       } else if (!ReadRole(line, key, word_column)) {
         return false;
       }
@@ -206,6 +210,36 @@ class GoldenReader {
       return FailAt(word_column, fmt::format("second '{}'", key));
     if (line.event.roles.size() == kMaxRolesInText) return FailAt(word_column, "too many roles");
     line.event.roles.push_back({key, value});
+    return true;
+  }
+
+  /// NAME~NUMBER with the unit at once behind it.
+  bool ReadValue(GoldenEvent& line, const std::string& name, std::size_t word_column) {
+    ++column_;
+    const std::size_t value_column = column_;
+    const std::string_view word = Word();
+    grammar::NamedValue value{.name = name, .unit = {}};
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value.value);
+    if (error != std::errc() || !std::isfinite(value.value))
+      return FailAt(value_column, fmt::format("expected a number after '{}~', like 12.5N", name));
+    value.unit = std::string(end, word.data() + word.size());
+    const auto same = [&](const grammar::NamedValue& other) { return other.name == name; };
+    if (std::ranges::any_of(line.event.values, same))
+      return FailAt(word_column, fmt::format("second '{}'", name));
+    if (line.event.values.size() == kMaxRolesInText) return FailAt(word_column, "too many values");
+    line.event.values.push_back(std::move(value));
+    return true;
+  }
+
+  bool ReadAcceptedBy(GoldenEvent& line) {
+    const std::size_t value_column = column_;
+    const auto number = ParseNumber<int>(Word());
+    const int next = static_cast<int>(golden_.accepted.size()) + 1;
+    if (!number || *number < 1 || *number > next) {
+      return FailAt(value_column,
+                    fmt::format("expected which of the {} 'accepted' lines it is from", next - 1));
+    }
+    line.accepted = *number;
     return true;
   }
 

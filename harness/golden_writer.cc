@@ -33,11 +33,14 @@ std::vector<std::string> TableLines(const Golden& golden) {
   std::vector<std::vector<std::string>> rows = {{"# event", "begin_s", "end_s", "roles"}};
   for (const GoldenEvent& line : golden.events) {
     auto cells = EventCells(line.event, golden.ticks_per_second, role_columns);
-    if (line.tolerance_ms) {
-      if (!cells.back().empty()) cells.back() += "  ";
-      cells.back() +=
-          fmt::format("tolerance={}ms because {}", *line.tolerance_ms, Quoted(line.because));
-    }
+    const auto add = [&](const std::string& words) {
+      cells.back() += (cells.back().empty() ? "" : "  ") + words;
+    };
+    for (const grammar::NamedValue& value : line.event.values)
+      add(fmt::format("{}~{:.4g}{}", value.name, value.value, value.unit));
+    if (line.accepted > 1) add(fmt::format("accepted={}", line.accepted));
+    if (line.tolerance_ms)
+      add(fmt::format("tolerance={}ms because {}", *line.tolerance_ms, Quoted(line.because)));
     rows.push_back(std::move(cells));
   }
   return AlignColumns(rows);
@@ -47,8 +50,9 @@ std::vector<std::string> TableLines(const Golden& golden) {
 
 bool operator==(const GoldenEvent& a, const GoldenEvent& b) {
   return a.event.event == b.event.event && a.event.roles == b.event.roles &&
-         a.event.interval == b.event.interval && a.event.open_end == b.event.open_end &&
-         a.tolerance_ms == b.tolerance_ms && a.because == b.because && a.comments == b.comments;
+         a.event.interval == b.event.interval && a.event.values == b.event.values &&
+         a.event.open_end == b.event.open_end && a.tolerance_ms == b.tolerance_ms &&
+         a.because == b.because && a.comments == b.comments && a.accepted == b.accepted;
 }
 
 std::string WriteGolden(const Golden& golden) {

@@ -194,6 +194,28 @@ Diagnostics CheckTabs(const std::string& file, const std::string& text) {
                        "indent and separate with spaces")};
 }
 
+/// What yaml-cpp says of a syntax error, as message and hint for people who don't write parsers.
+std::pair<std::string, std::string> InPlainWords(const std::string& message) {
+  struct Words {
+    const char *said, *message, *hint;
+  };
+  constexpr const char* kBrackets = "each '[' needs its ']', each '{' its '}'";
+  constexpr const char* kIndent = "what belongs together begins in the same column";
+  constexpr Words kWords[] = {
+      {"illegal flow end", "this bracket is not the one that closes the open one", kBrackets},
+      {"end of sequence flow not found", "a '[' before this is not closed", kBrackets},
+      {"end of map flow not found", "a '{' before this is not closed", kBrackets},
+      {"end of map not found", "this line is indented otherwise than those it belongs to", kIndent},
+      {"end of sequence not found", "this line is indented otherwise than those it belongs to", kIndent},
+      {"illegal map value", "no ':' is expected here", "a key begins a line, or stands in '{}'; text with ': ' goes in quotes"},
+      {"unknown token", "no YAML begins with this character", "text with special characters goes in quotes"},
+  };
+  for (const Words& words : kWords) {
+    if (message == words.said) return {std::string("not valid YAML: ") + words.message, words.hint};
+  }
+  return {"not valid YAML: " + message, ""};
+}
+
 }  // namespace
 
 const YamlNode* YamlNode::Find(std::string_view name) const {
@@ -219,7 +241,8 @@ ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
   } catch (const YAML::Exception& error) {
     builder.diagnostics.clear();  // they may be consequences
     const Place place = error.mark.is_null() ? Place{} : Place{error.mark.line + 1, error.mark.column + 1};
-    builder.Complain(place, "not valid YAML: " + error.msg, "");
+    const auto [message, hint] = InPlainWords(error.msg);
+    builder.Complain(place, message, hint);
   }
   if (!builder.diagnostics.empty()) return {std::nullopt, std::move(builder.diagnostics)};
   return {YamlDocument{{{file, std::move(text)}}, std::move(builder.root)}, {}};

@@ -35,4 +35,8 @@ PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
 PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureEntry& entry,
                           const std::string& file);
 
+/// Whether a picture is as its golden: at most 1 % of the pixels may differ, by more than 24 of 255
+/// in some colour (smoothed edges and another rasteriser do less). "" or what is different.
+std::string PictureDifference(const std::string& golden_file, const std::string& drawn_file);
+
 }  // namespace prehend::harness

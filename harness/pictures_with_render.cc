@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <cstdlib>
+
 #include "harness/compose_picture_with_render.h"
 #include "harness/moment.h"
 #include "harness/pictures.h"
@@ -48,6 +50,27 @@ PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const 
   render::Painter painter;
   result.error = DrawOne(painter, scenario, run, entry, file, result.pictures);
   return result;
+}
+
+std::string PictureDifference(const std::string& golden_file, const std::string& drawn_file) {
+  constexpr int kMostColour = 24;
+  constexpr double kMostPixels = 0.01;
+  const render::Image golden = render::ReadPng(golden_file), drawn = render::ReadPng(drawn_file);
+  if (golden.rgb.empty()) return golden_file + " cannot be read";
+  if (golden.width_px != drawn.width_px || golden.height_px != drawn.height_px)
+    return "it has another size";
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < golden.rgb.size(); i += 3) {
+    const auto differs = [&](std::size_t k) {
+      return std::abs(int{golden.rgb[i + k]} - int{drawn.rgb[i + k]}) > kMostColour;
+    };
+    differing += differs(0) || differs(1) || differs(2);
+  }
+  const double share =
+      static_cast<double>(differing) / (static_cast<double>(golden.rgb.size()) / 3);
+  if (share <= kMostPixels) return "";
+  return fmt::format("{:.1f} % of its pixels differ, at most {:g} % may", 100 * share,
+                     100 * kMostPixels);
 }
 
 }  // namespace prehend::harness

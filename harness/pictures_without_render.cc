@@ -18,4 +18,6 @@ PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureEntry&
   return NoRenderRoom();
 }
 
+std::string PictureDifference(const std::string&, const std::string&) { return ""; }
+
 }  // namespace prehend::harness

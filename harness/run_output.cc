@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/event_text.h"
+#include "harness/prepare_run.h"
 #include "harness/timeline_json.h"
 
 namespace prehend::harness {
@@ -48,7 +49,7 @@ std::string RunTable(const RunResult& run) {
   for (const NamedEvent& event : run.timeline.events) {
     rows.push_back(EventCells(event, run.timeline.ticks_per_second, role_columns));
     for (const grammar::NamedValue& value : event.values) {
-      rows.back().push_back(fmt::format("{}={:.4g}{}{}", value.name, value.value, value.unit.empty() ? "" : " ", value.unit));
+      rows.back().push_back(value.name + "=" + ValueText(value));
     }
   }
   std::string table;
@@ -60,6 +61,7 @@ std::string HashText(std::uint64_t hash) { return fmt::format("0x{:016x}", hash)
 
 OrderedJson RunJson(const Scenario& scenario, const RunResult& run) {
   OrderedJson json = {{"scenario", scenario.name},
+                      {"id", ScenarioId(scenario.skill, scenario.name)},
                       {"status", Completed(run) ? "completed" : "failed"},
                       {"ticks_per_second", run.timeline.ticks_per_second},
                       {"ticks", run.ticks},

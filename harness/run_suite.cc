@@ -103,7 +103,8 @@ class Suite {
                              .root = request_.root,
                              .report_folder = request_.report_folder,
                              .pictures = request_.pictures && turn.repetition == 0,
-                             .write_pending = !Changed() && turn.repetition == 0,
+                             .is_trial = Changed() || turn.repetition > 0,
+                             .program = program_,
                              .last_tick = &last_tick};
     return [check] { return ToJson(CheckScenario(check)).dump(); };
   }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -36,12 +37,20 @@ Json ToJson(const ScenarioVerdict& verdict) {
   for (const ReportedPicture& picture : verdict.pictures) {
     pictures.push_back({{"file", picture.file}, {"caption", picture.caption}});
   }
+  Json boundaries = Json::array();
+  for (const BoundaryRoom& room : verdict.boundaries) {
+    boundaries.push_back({{"boundary", room.boundary},
+                          {"offset_ms", room.offset_ms},
+                          {"tolerance_ms", room.tolerance_ms}});
+  }
   return {{"scenario", verdict.scenario},
           {"verdict", Name(verdict.verdict)},
           {"exit_code", static_cast<int>(verdict.exit_code)},
           {"reason", verdict.reason},
           {"details", verdict.details},
+          {"blame", verdict.blame},
           {"headroom", verdict.headroom},
+          {"boundaries", std::move(boundaries)},
           {"command", verdict.command},
           {"shows", verdict.shows},
           {"state_hash", verdict.state_hash},
@@ -62,7 +71,12 @@ ScenarioVerdict VerdictFromJson(const Json& json) {
   verdict.exit_code = static_cast<ExitCode>(json.at("exit_code").get<int>());
   verdict.reason = json.at("reason");
   verdict.details = json.at("details");
+  verdict.blame = json.at("blame");
   verdict.headroom = json.at("headroom");
+  for (const Json& room : json.at("boundaries")) {
+    verdict.boundaries.push_back(
+        {room.at("boundary"), room.at("offset_ms"), room.at("tolerance_ms")});
+  }
   verdict.command = json.at("command");
   verdict.state_hash = json.at("state_hash");
   verdict.ticks = json.at("ticks");
@@ -132,6 +146,24 @@ Tally Count(const std::vector<ScenarioVerdict>& verdicts) {
           .failed = count(Verdict::kFailed) + count(Verdict::kFlaky),
           .pending = count(Verdict::kPending),
           .unchanged = count(Verdict::kUnchanged)};
+}
+
+std::string LeastHeadroomText(const std::vector<ScenarioVerdict>& verdicts) {
+  const auto left = [](const BoundaryRoom& room) {
+    return room.tolerance_ms - std::abs(room.offset_ms);
+  };
+  const ScenarioVerdict* whose = nullptr;
+  const BoundaryRoom* least = nullptr;
+  for (const ScenarioVerdict& verdict : verdicts) {
+    for (const BoundaryRoom& room : verdict.boundaries) {
+      if (room.offset_ms == 0 || (least && left(*least) <= left(room))) continue;
+      whose = &verdict;
+      least = &room;
+    }
+  }
+  if (!least) return "";
+  return fmt::format("least headroom: {:.1f} of {:.1f} ms are left at {} of {}", left(*least),
+                     least->tolerance_ms, least->boundary, whose->scenario);
 }
 
 ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts) {

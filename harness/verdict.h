@@ -29,6 +29,13 @@ struct ReportedPicture {
   std::string caption;
 };
 
+/// How near a boundary comes to its tolerance.
+struct BoundaryRoom {
+  std::string boundary;  ///< "begin of reaching(right_hand, milk)"
+  double offset_ms = 0;  ///< recognised - expected
+  double tolerance_ms = 0;
+};
+
 struct ScenarioVerdict {
   std::string scenario;  ///< skill/name
   std::string shows;
@@ -36,8 +43,10 @@ struct ScenarioVerdict {
   ExitCode exit_code = ExitCode::kAgrees;  ///< what a check of this scenario alone ends with
   std::string reason;                      ///< one line; empty when passed
   std::string details;   ///< differences, violations, diagnostics; several lines or empty
+  std::string blame;     ///< BlameText(): whose doing the differences are; or empty
   std::string headroom;  ///< HeadroomText()
-  std::string command;   ///< shows it again
+  std::vector<BoundaryRoom> boundaries;  ///< of all matched events
+  std::string command;                   ///< shows it again
   std::string state_hash;
   std::int64_t ticks = 0;
   double seconds = 0;                ///< wall time in its worker
@@ -59,6 +68,10 @@ struct Tally {
   int passed = 0, failed = 0, pending = 0, unchanged = 0;  ///< `failed` has the flaky ones, too
 };
 Tally Count(const std::vector<ScenarioVerdict>& verdicts);
+
+/// The boundary that is nearest to its tolerance, of those that are off at all:
+/// "least headroom: 4.2 of 8.3 ms are left at .. of SCENARIO"; "" when none is.
+std::string LeastHeadroomText(const std::vector<ScenarioVerdict>& verdicts);
 
 /// How the whole check ends: the worst of its scenarios.
 ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts);

@@ -2,11 +2,10 @@
 // Tested by tests/physics/simulation_test.cc
 #include "physics/simulation.h"
 
-#include <cstring>
-
 #include "physics/bullet_world.h"
 #include "physics/run_checks.h"
 #include "physics/script_player.h"
+#include "physics/state_hash.h"
 
 namespace prehend::physics {
 namespace {
@@ -14,36 +13,6 @@ namespace {
 /// Longer runs are a mistake in a script: half an hour of simulated time takes minutes and fills
 /// memory.
 constexpr double kLongestRun_s = 1800;
-
-/// FNV-1a, 64 bit.
-class StateHash {
- public:
-  void Add(const double* values, Eigen::Index count) {
-    unsigned char bytes[sizeof(double)];
-    for (Eigen::Index i = 0; i < count; ++i) {
-      std::memcpy(bytes, values + i, sizeof(double));
-      for (const unsigned char byte : bytes) value_ = (value_ ^ byte) * 1099511628211ULL;
-    }
-  }
-  void Add(const BodyState& state) {
-    Add(state.X_WB.p_m.data(), 3);
-    Add(state.X_WB.q.coeffs().data(), 4);
-    Add(state.v_WB_m_per_s.data(), 3);
-    Add(state.w_WB_rad_per_s.data(), 3);
-  }
-  void Add(const Snapshot& snapshot) {
-    for (const BodyState& body : snapshot.bodies) Add(body);
-    for (const JointState& joint : snapshot.joints) Add(&joint.position, 1);
-    for (const HandState& hand : snapshot.hands) {
-      Add(hand.palm);
-      Add(hand.joints_rad.data(), static_cast<Eigen::Index>(hand.joints_rad.size()));
-    }
-  }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 1469598103934665603ULL;
-};
 
 }  // namespace
 

@@ -2,17 +2,22 @@
 // prehend accept: the only thing that writes goldens. It runs the scenario itself, so that what is
 // accepted is what this build recognises now. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "harness/accept_golden.h"
 #include "harness/check_scenario.h"
 #include "harness/commands/command.h"
 #include "harness/compare.h"
+#include "harness/content_hash.h"
 #include "harness/derivation.h"
 #include "harness/golden_files.h"
+#include "harness/pictures.h"
 #include "harness/run_output.h"
 
 namespace prehend::harness {
 namespace {
+
+namespace fs = std::filesystem;
 
 void Declare(CLI::App& options) {
   options.add_option("scenario", "a name or skill/name")->required()->expected(1);
@@ -20,12 +25,13 @@ void Declare(CLI::App& options) {
       ->type_name("TEXT")
       ->expected(1);
   options
-      .add_option(
-          "--derived",
-          "how it follows from the definitions, one line each; what the physical oracle says is added")
+      .add_option("--derived",
+                  "how it follows from the definitions, one line each; what the physical oracle "
+                  "says is added")
       ->type_name("TEXT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  DeclareFlag(options, "--pictures", "its pictures become goldens, too, kept beside the timeline");
 }
 
 /// "" or why the command line alone is enough to refuse.
@@ -56,9 +62,44 @@ void ShowDifference(const std::optional<Golden>& old, const Scenario& scenario,
   context.out << (text.empty() ? "differs within tolerance only\n" : text);
 }
 
+/// Draws the pictures and moves those that are not as their goldens, to the byte, into their place.
+/// How many these were; nothing after a complaint.
+std::optional<int> AcceptPictures(const CommandContext& context, const std::string& id,
+                                  const Scenario& scenario, const RunResult& run) {
+  const fs::path folder = fs::path(context.root) / "build/pending-pictures" / scenario.skill;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  const PictureResult drawn = DrawPictures(scenario, run, folder.string());
+  if (!drawn.error.empty()) {
+    Complain(context, ExitCode::kFailure, "no picture: " + drawn.error);
+    return std::nullopt;
+  }
+  int changed = 0;
+  for (const WrittenPicture& picture : drawn.pictures) {
+    const fs::path golden =
+        GoldenFiles(context.root).PicturePath(id, fs::path(picture.file).filename().string());
+    if (FileHash(golden.string()) == FileHash(picture.file)) continue;
+    fs::create_directories(golden.parent_path(), error);
+    fs::rename(picture.file, golden, error);
+    if (error) {
+      Complain(context, ExitCode::kFailure, "cannot write " + golden.string());
+      return std::nullopt;
+    }
+    context.out << "accepted: " << golden.string() << "\n";
+    ++changed;
+  }
+  return changed;
+}
+
 ExitCode Write(const CLI::App& options, const CommandContext& context, const std::string& id,
                const std::optional<Golden>& old, const PreparedRun& prepared,
                const RunResult& run) {
+  int new_pictures = 0;
+  if (IsGiven(options, "--pictures")) {
+    const auto changed = AcceptPictures(context, id, prepared.scenario, run);
+    if (!changed) return ExitCode::kFailure;
+    new_pictures = *changed;
+  }
   const GoldenFiles files(context.root);
   Proposal proposal{.scenario = id,
                     .grammar = prepared.scenario.grammar,
@@ -69,7 +110,7 @@ ExitCode Write(const CLI::App& options, const CommandContext& context, const std
   if (!from_people && old) proposal.derived = old->derived;
   proposal.derived = RenewedDerivation(proposal.derived, derivation);
   const bool tells_derivation = from_people && (!old || old->derived != proposal.derived);
-  if (old && SaysTheSame(*old, run.timeline) && !tells_derivation) {
+  if (old && SaysTheSame(*old, run.timeline) && !tells_derivation && new_pictures == 0) {
     files.RemovePending(id);
     context.out << "nothing to accept: " << files.GoldenPath(id).string()
                 << " says the same already\n";
@@ -90,7 +131,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!file) return ExitCode::kNothing;
   if (!file->in_project) {
     return Complain(context, ExitCode::kBadInput,
-                    "goldens are kept of scenarios in scenarios/ only; put the file there and accept it by name");
+                    "goldens are kept of scenarios in scenarios/ only; put the file there and "
+                    "accept it by name");
   }
   const std::string id = ScenarioId(file->skill, file->name);
   const ReadResult<PreparedRun> prepared = PrepareRun({.scenario_file = file->path}, context.root);
@@ -98,7 +140,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const ReadResult<Golden> old = GoldenFiles(context.root).ReadGoldenOf(id);
   if (!old.diagnostics.empty()) return Complain(context, old.diagnostics);
 
-  const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, {.record = true});
+  const RunResult run =
+      RunScenario(prepared.value->scenario, prepared.value->program, {.record = true});
   if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
     return Complain(context, ExitCode::kFailure,
                     "a run that did not complete is not accepted: " + StatusText(run));
@@ -115,7 +158,8 @@ Command AcceptCommand() {
       .examples =
           "prehend accept milk_carton_wrap --reason \"first golden, checked against the picture\"\n"
           "prehend accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the "
-          "hand's first motion\"",
+          "hand's first motion\"\n"
+          "prehend accept milk_carton_wrap --pictures --reason \"the carton is seen in the hand\"",
       .declare = Declare,
       .run = Run};
 }

@@ -154,6 +154,8 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, const std::string& 
     context.out << "    again: " << verdict.command << "\n";
   }
   const Tally tally = Count(verdicts);
+  const std::string least = LeastHeadroomText(verdicts);
+  if (!least.empty()) context.out << least << "\n";
   context.out << "report: " << page << "\n";
   if (tally.pending > 0)
     context.out << fmt::format("{} pending: accept with a reason, or mend\n", tally.pending);

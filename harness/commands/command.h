@@ -47,6 +47,7 @@ Command ValidateCommand();
 Command RunCommand();
 Command CheckCommand();
 Command AcceptCommand();
+Command ReviewCommand();
 Command RenderCommand();
 Command NewCommand();
 Command ResegmentCommand();

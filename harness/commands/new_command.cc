@@ -6,8 +6,8 @@
 #include <regex>
 
 #include "harness/commands/command.h"
-#include "harness/golden_files.h"
 #include "harness/text_file.h"
+#include "harness/whole_file.h"
 
 namespace prehend::harness {
 namespace {
@@ -56,10 +56,14 @@ void Declare(CLI::App& options) {
       ->expected(1);
 }
 
-/// The text with its `scenario:` line naming the new one.
+constexpr std::string_view kModeline = "# yaml-language-server: $schema=../scenario.schema.json\n";
+
+/// The text with its `scenario:` line naming the new one, and with the line that editors look for.
 std::string Renamed(const std::string& text, const std::string& name) {
   static const std::regex name_line("(^|\n)scenario:[^\n]*");
-  return std::regex_replace(text, name_line, "$1scenario: " + name,
+  const bool has_modeline = text.find("yaml-language-server:") != std::string::npos;
+  return (has_modeline ? "" : std::string(kModeline)) +
+         std::regex_replace(text, name_line, "$1scenario: " + name,
                             std::regex_constants::format_first_only);
 }
 
@@ -101,6 +105,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
               << "  prehend validate " << id << "\n"
               << "  prehend run " << id << "\n"
               << "  prehend render " << id << "\n"
+              << "  prehend check " << id << "\n"
+              << "  prehend review " << id << "\n"
               << "  prehend accept " << id << " --reason \"...\"\n";
   return ExitCode::kAgrees;
 }

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend validate: reads, never runs. Tested by tests/house/command_line_test.cc
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "grammar/describe.h"
 #include "harness/commands/command.h"
 #include "harness/commands/warn.h"
+#include "harness/content_hash.h"
 #include "harness/golden.h"
 #include "harness/load_grammar.h"
 #include "harness/text_file.h"
@@ -16,8 +21,9 @@ namespace {
 struct Validated {
   std::string file;
   grammar::Diagnostics diagnostics;
-  std::string description = {};  ///< of a grammar without errors
+  std::string description = {};          ///< of a grammar without errors
   grammar::Diagnostics warnings = {};
+  std::vector<std::string> inputs = {};  ///< every file that was looked at
 };
 
 void Declare(CLI::App& options) {
@@ -28,6 +34,7 @@ void Declare(CLI::App& options) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   DeclareRunOptions(options);
   DeclareFlag(options, "--json", "one JSON object");
+  DeclareFlag(options, "--watch", "go on until interrupted: read again what a save affects");
 }
 
 grammar::Diagnostics ReadGoldenFile(const std::string& path) {
@@ -36,21 +43,28 @@ grammar::Diagnostics ReadGoldenFile(const std::string& path) {
 }
 
 Validated ValidateGrammar(const std::string& name_or_path, const std::string& root) {
-  grammar::CompileResult compiled = LoadGrammar(root, name_or_path);
-  return {GrammarFile(root, name_or_path), std::move(compiled.diagnostics),
-          compiled.program ? Text(Describe(*compiled.program)) : "", std::move(compiled.warnings)};
+  Validated validated{.file = GrammarFile(root, name_or_path)};
+  grammar::CompileResult compiled = LoadGrammar(root, name_or_path, {}, &validated.inputs);
+  validated.diagnostics = std::move(compiled.diagnostics);
+  if (compiled.program) validated.description = Text(Describe(*compiled.program));
+  validated.warnings = std::move(compiled.warnings);
+  return validated;
 }
 
 /// Nothing when it is the name of no scenario.
 std::optional<Validated> Validate(const std::string& typed, const CLI::App& options,
                                   const CommandContext& context) {
   if (typed.ends_with(".grammar")) return ValidateGrammar(typed, context.root);
-  if (typed.ends_with(".timeline")) return Validated{typed, ReadGoldenFile(typed)};
+  if (typed.ends_with(".timeline"))
+    return Validated{.file = typed, .diagnostics = ReadGoldenFile(typed), .inputs = {typed}};
   const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return std::nullopt;
-  ReadResult<PreparedRun> prepared = PrepareRun(RequestOf(options, file->path), context.root);
-  Validated validated{file->path, std::move(prepared.diagnostics)};
-  if (prepared.value) validated.warnings = Warnings(*prepared.value->program, MakeCast(prepared.value->scenario));
+  Validated validated{.file = file->path};
+  ReadResult<PreparedRun> prepared =
+      PrepareRun(RequestOf(options, file->path), context.root, &validated.inputs);
+  validated.diagnostics = std::move(prepared.diagnostics);
+  if (prepared.value)
+    validated.warnings = Warnings(*prepared.value->program, MakeCast(prepared.value->scenario));
   return validated;
 }
 
@@ -73,18 +87,47 @@ nlohmann::ordered_json ToJson(const Validated& validated) {
           {"warnings", ToJson(validated.warnings)}};
 }
 
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  std::vector<std::string> typed = ValuesOf(options, "files");
-  if (typed.empty() && !IsGiven(options, "--grammar")) {
-    for (const ScenarioFile& file : ListScenarios(context.root))
-      typed.push_back(ScenarioId(file.skill, file.name));
-    if (typed.empty())
-      return Complain(context, ExitCode::kNothing,
-                      "no scenarios below " + context.root + "/scenarios");
+/// What was typed; nothing typed is every scenario, or the grammar of --grammar alone.
+std::vector<std::string> Names(const CLI::App& options, const CommandContext& context) {
+  std::vector<std::string> names = ValuesOf(options, "files");
+  if (!names.empty()) return names;
+  if (IsGiven(options, "--grammar"))
+    return {GrammarFile(context.root, ValueOf(options, "--grammar"))};
+  for (const ScenarioFile& file : ListScenarios(context.root))
+    names.push_back(ScenarioId(file.skill, file.name));
+  return names;
+}
+
+/// Reads everything; after each save again what it affects, and scenarios that are new.
+[[noreturn]] void Watch(const CLI::App& options, const CommandContext& context) {
+  constexpr auto kPeriod = std::chrono::milliseconds(300);
+  std::map<std::string, FileHashes> seen;
+  for (;; std::this_thread::sleep_for(kPeriod)) {
+    for (const std::string& name : Names(options, context)) {
+      const auto known = seen.find(name);
+      const bool affected =
+          known == seen.end() || std::ranges::any_of(known->second, [](const auto& file) {
+            return FileHash(file.first) != file.second;
+          });
+      if (!affected) continue;
+      const auto validated = Validate(name, options, context);
+      seen[name] = validated ? HashFiles(validated->inputs) : FileHashes{};
+      if (!validated) continue;
+      context.out << (validated->diagnostics.empty() ? "ok: " : "wrong: ") << validated->file
+                  << "\n"
+                  << Format(validated->diagnostics) << std::flush;
+    }
   }
+}
+
+ExitCode Run(const CLI::App& options, const CommandContext& context) {
+  if (IsGiven(options, "--watch")) Watch(options, context);
+  const std::vector<std::string> names = Names(options, context);
+  if (names.empty())
+    return Complain(context, ExitCode::kNothing,
+                    "no scenarios below " + context.root + "/scenarios");
   std::vector<Validated> all;
-  if (typed.empty()) all.push_back(ValidateGrammar(ValueOf(options, "--grammar"), context.root));
-  for (const std::string& name : typed) {
+  for (const std::string& name : names) {
     auto validated = Validate(name, options, context);
     if (!validated) return ExitCode::kNothing;
     all.push_back(std::move(*validated));
@@ -114,7 +157,8 @@ Command ValidateCommand() {
               "prehend validate\n"
               "prehend validate milk_carton_wrap my/scenario.yaml\n"
               "prehend validate my/rules.grammar\n"
-              "prehend validate --grammar pick_and_place",
+              "prehend validate --grammar pick_and_place\n"
+              "prehend validate --watch",
           .declare = Declare,
           .run = Run};
 }

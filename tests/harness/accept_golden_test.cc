@@ -54,12 +54,29 @@ TEST(ProposeGolden, KeepsWhatPeopleWrote) {
 # in the header
 # event   begin_s  end_s   roles
 # above the reach
-reaching  0.5208   1.0417  hand=hand  object=cup  tolerance=20ms because "soft start"
+reaching  0.5208   1.0417  hand=hand  object=cup  accepted=2  tolerance=20ms because "soft start"
 # above the fixation
 # above the grasp
-grasping  1.0417   3.0000  hand=hand  object=cup
+grasping  1.0417   3.0000  hand=hand  object=cup  accepted=2
 # below
 )");
+}
+
+TEST(ProposeGolden, AnEventKeepsTheAcceptanceThatMadeItSo) {
+  const auto recognised = Recognised({{.event = "reaching", .interval = {240, 480}},
+                                      {.event = "fixation", .interval = {480, 720}},
+                                      {.event = "grasping", .interval = {720, 1500}}});
+  const Proposal proposal{.scenario = "slide/x",
+                          .grammar = "pick_and_place",
+                          .derived = {},
+                          .acceptance = Acceptance{"2026-02-01", "a longer grasp"}};
+  const Golden golden = ProposeGolden(Old(), recognised, proposal);
+  ASSERT_EQ(golden.events.size(), 3u);
+  EXPECT_EQ(golden.events[0].accepted, 1);
+  EXPECT_EQ(golden.events[1].accepted, 1);
+  EXPECT_EQ(golden.events[2].accepted, 2);
+  const Golden again = ProposeGolden(golden, recognised, proposal);
+  EXPECT_EQ(again.events[2].accepted, 2);
 }
 
 TEST(ProposeGolden, StartsFromNothing) {

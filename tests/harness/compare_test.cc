@@ -88,7 +88,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"fragmented",
                          {Event("grasping", "cup", 100, 400)},
                          {Event("grasping", "cup", 100, 140), Event("grasping", "cup", 150, 400)},
-                         "extra -:100 shifted 100:150 "},
+                         "fragmented -:100 fragmented 100:150 "},
+                    Case{"merged",
+                         {Event("grasping", "cup", 100, 140), Event("grasping", "cup", 150, 400)},
+                         {Event("grasping", "cup", 100, 400)},
+                         "merged 100:- merged 150:100 "},
                     Case{"changed_role",
                          {Event("grasping", "cup", 100, 200)},
                          {Event("grasping", "mug", 104, 210)},
@@ -104,6 +108,14 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"another_event",
                          {Event("sliding", "cup", 100, 200)},
                          {Event("transporting", "cup", 100, 200)},
+                         "relabelled 100:100 "},
+                    Case{"another_event_at_another_time",
+                         {Event("sliding", "cup", 100, 200)},
+                         {Event("transporting", "cup", 180, 300)},
+                         "missing 100:- extra -:180 "},
+                    Case{"another_event_of_another_thing",
+                         {Event("sliding", "cup", 100, 200)},
+                         {Event("transporting", "mug", 100, 200)},
                          "missing 100:- extra -:100 "}),
     NameOf);
 
@@ -146,20 +158,88 @@ TEST(Compare, TheTextSaysWhatWhenHowMuchAndHowToSeeIt) {
   const Comparison comparison =
       CompareEvents({Event("grasping", "cup", 100, 200), Event("sliding", "cup", 150, 180)},
                     {Event("grasping", "cup", 150, 198), Event("transporting", "cup", 160, 180)});
-  EXPECT_EQ(DifferenceText(comparison, "prehend run x"),
+  EXPECT_EQ(DifferenceText(comparison, "explain x"),
             "shifted grasping(hand, cup)\n"
             "  expected 0.1000..0.2000 s, recognised 0.1500..0.1980 s\n"
             "  begin +50.0 ms, end -2.0 ms (tolerance 8.0 ms)\n"
-            "  see: prehend run x\n"
-            "missing sliding(hand, cup)\n"
-            "  expected 0.1500..0.1800 s, recognised nothing\n"
-            "  see: prehend run x\n"
-            "extra transporting(hand, cup)\n"
-            "  expected nothing, recognised 0.1600..0.1800 s\n"
-            "  see: prehend run x\n");
+            "  why: explain x --event 'grasping hand cup @0.1500s'\n"
+            "relabelled sliding(hand, cup)\n"
+            "  expected 0.1500..0.1800 s, recognised 0.1600..0.1800 s\n"
+            "  begin +10.0 ms, end +0.0 ms (tolerance 8.0 ms)\n"
+            "  event: sliding -> transporting\n"
+            "  why: explain x --event 'transporting hand cup @0.1600s'\n");
   const Comparison agrees =
       CompareEvents({Event("grasping", "cup", 100, 200)}, {Event("grasping", "cup", 100, 200)});
-  EXPECT_EQ(DifferenceText(agrees, "prehend run x"), "");
+  EXPECT_EQ(DifferenceText(agrees, "explain x"), "");
+  EXPECT_EQ(HeadroomText(agrees), "headroom: every boundary is exact");
+}
+
+TEST(Compare, PiecesAreToldTogetherAndTheFirstDivergenceFirst) {
+  const Comparison comparison =
+      CompareEvents({Event("grasping", "cup", 100, 400), Event("sliding", "mug", 500, 600),
+                     Event("sliding", "mug", 620, 700)},
+                    {Event("grasping", "cup", 100, 140), Event("grasping", "cup", 150, 300),
+                     Event("grasping", "cup", 310, 400), Event("sliding", "mug", 500, 700)});
+  EXPECT_EQ(DifferenceText(comparison, "explain x", "  facts\n"),
+            "fragmented grasping(hand, cup)\n"
+            "  expected 0.1000..0.4000 s, recognised 3 pieces: 0.1000..0.1400 s, 0.1500..0.3000 s, "
+            "0.3100..0.4000 s\n"
+            "  facts\n"
+            "  why: explain x --event 'grasping hand cup @0.1500s'\n"
+            "merged sliding(hand, mug)\n"
+            "  expected 2 pieces: 0.5000..0.6000 s, 0.6200..0.7000 s, recognised 0.5000..0.7000 s\n"
+            "  why: explain x --event 'sliding hand mug @0.5000s'\n");
+  ASSERT_NE(comparison.FirstDivergence(), nullptr);
+  EXPECT_EQ(comparison.FirstDivergence()->DivergenceTick(), 140);
+}
+
+TEST(Compare, ALateEndDivergesAtTheEnd) {
+  const Comparison comparison =
+      CompareEvents({Event("grasping", "cup", 100, 400)}, {Event("grasping", "cup", 104, 450)});
+  ASSERT_NE(comparison.FirstDivergence(), nullptr);
+  EXPECT_EQ(comparison.FirstDivergence()->DivergenceTick(), 400);
+}
+
+TEST(Compare, AMissingEventIsAskedForAsExpected) {
+  const Comparison missing = CompareEvents({Event("grasping", "cup", 100, 400, "wrap")}, {});
+  EXPECT_EQ(DifferenceText(missing, "explain x"),
+            "missing grasping(hand, cup)\n"
+            "  expected 0.1000..0.4000 s, recognised nothing\n"
+            "  why: explain x --expected 'grasping hand cup @0.1000s'\n");
+}
+
+TEST(Compare, ARelationThatClearlyChangedIsTold) {
+  const Events expected = {Event("reaching", "cup", 100, 200), Event("grasping", "cup", 200, 400),
+                           Event("grasping", "mug", 200, 400)};
+  Events actual = expected;
+  actual[0].interval.end = 150;
+  const Comparison gap = CompareEvents(expected, actual);
+  ASSERT_EQ(gap.relations.size(), 1u);
+  EXPECT_NE(DifferenceText(gap, "explain x")
+                .find("relation reaching(hand, cup) meets grasping(hand, cup): now before\n"),
+            std::string::npos);
+  actual[0].interval.end = 204;  // overlaps now, but within the tolerance: nothing worth telling
+  actual[0].interval.begin = 50;
+  const Comparison jitter = CompareEvents(expected, actual);
+  EXPECT_EQ(jitter.Count(LineVerdict::kShifted), 1);
+  EXPECT_TRUE(jitter.relations.empty());
+}
+
+TEST(Compare, ValuesMayDifferALittle) {
+  const auto with_force = [](double force_n, const char* unit = "N") {
+    grammar::NamedEvent event = Event("grasping", "cup", 100, 200);
+    event.values = {{"force", force_n, unit}};
+    return Events{event};
+  };
+  EXPECT_TRUE(CompareEvents(with_force(10), with_force(10.4)).Agrees());
+  EXPECT_FALSE(CompareEvents(with_force(10), with_force(10.6)).Agrees());
+  EXPECT_TRUE(CompareEvents(with_force(0), with_force(0.0009)).Agrees());
+  EXPECT_FALSE(CompareEvents(with_force(10), with_force(10, "kN")).Agrees());
+  const Comparison gone = CompareEvents(with_force(10), {Event("grasping", "cup", 100, 200)});
+  ASSERT_EQ(gone.Count(LineVerdict::kChanged), 1);
+  EXPECT_EQ(gone.pairings[0].changes, std::vector<std::string>{"force: 10 N -> none"});
+  EXPECT_TRUE(CompareEvents({Event("grasping", "cup", 100, 200)}, with_force(10)).Agrees())
+      << "a golden that says nothing of a value demands none";
 }
 
 TEST(Compare, DefaultToleranceIsTwoFrames) {

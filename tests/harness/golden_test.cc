@@ -24,7 +24,7 @@ constexpr const char* kCanonical =
 supported_by  0.0000   2.0125  object=milk      support=table
 # the hand starts to move after half a second
 reaching      0.5000   1.2000  hand=right_hand  object=milk                tolerance=20ms because "soft start"
-grasping      1.2021   4.3000  hand=right_hand  object=milk    style=wrap
+grasping      1.2021   4.3000  hand=right_hand  object=milk    style=wrap  force~12.5N  share~0.25  accepted=2
 contact       2.0000   5.0000  a=milk           b=table                    open_end  tolerance=0ms because "exact"
 # the end
 )";
@@ -50,6 +50,10 @@ TEST(Golden, IsReadAsWritten) {
   EXPECT_EQ(golden.events[1].comments,
             std::vector<std::string>{"the hand starts to move after half a second"});
   EXPECT_EQ(RoleValue(golden.events[2].event, "style"), "wrap");
+  EXPECT_EQ(golden.events[2].event.values,
+            (std::vector<grammar::NamedValue>{{"force", 12.5, "N"}, {"share", 0.25, ""}}));
+  EXPECT_EQ(golden.events[1].accepted, 1);
+  EXPECT_EQ(golden.events[2].accepted, 2);
   EXPECT_TRUE(golden.events[3].event.open_end);
   EXPECT_EQ(golden.closing_comments, std::vector<std::string>{"the end"});
 }
@@ -115,6 +119,11 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"no_roles", "contact 1 2", "4:12: an event needs at least one role=value"},
         Mistake{"no_equals", "contact 1 2 cup", "4:16: expected '=' after 'cup'"},
         Mistake{"no_value", "contact 1 2 a= b=cup", "4:15: expected a value for 'a'"},
+        Mistake{"no_number", "contact 1 2 a=cup force~much",
+                "4:25: expected a number after 'force~', like 12.5N"},
+        Mistake{"value_twice", "contact 1 2 a=cup force~1N force~2N", "4:28: second 'force'"},
+        Mistake{"accepted_by_nobody", "contact 1 2 a=cup accepted=2",
+                "4:28: expected which of the 0 'accepted' lines it is from"},
         Mistake{"role_twice", "contact 1 2 a=cup a=cup", "4:19: second 'a'"},
         Mistake{"comment_behind", "contact 1 2 a=cup # why",
                 "4:19: comments stand on lines of their own"},

@@ -82,8 +82,8 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
       {"~: 3\n", "1:1: a key is missing here\n"},
       {"# nothing\n", "0:0: the file is empty but for comments\n"},
       {"", "0:0: the file is empty\n"},
-      {"a: {b: 1\n", "2:1: not valid YAML: end of map flow not found\n"},
-      {"a: 1\n b: 2\n", "2:3: not valid YAML: illegal map value\n"},
+      {"a: {b: 1\n", "2:1: not valid YAML: a '{' before this is not closed | each '[' needs its ']', each '{' its '}'\n"},
+      {"a: 1\n b: 2\n", "2:3: not valid YAML: no ':' is expected here | a key begins a line, or stands in '{}'; text with ': ' goes in quotes\n"},
   };
   for (const Refused& refused : table) EXPECT_EQ(Complaints(refused.text), refused.complaints) << refused.text;
 }

@@ -185,7 +185,7 @@ const Case kCases[] = {
       {"tab", "a carton on", "a\tcarton on", kCannotRead,
        "2:9: tab character | indent and separate with spaces\n"},
       {"unclosed", "at_m: [0, 0, 0.74]}", "at_m: [0, 0, 0.74]", kCannotRead,
-       "7:3: not valid YAML: end of map flow not found\n"},
+       "7:3: not valid YAML: a '{' before this is not closed | each '[' needs its ']', each '{' its '}'\n"},
 };
 // clang-format on
 

@@ -16,7 +16,9 @@ TEST(Verdict, TravelsAsJson) {
                                 .exit_code = ExitCode::kPending,
                                 .reason = "no golden yet",
                                 .details = "a\nb\n",
+                                .blame = "blame: physics\n",
                                 .headroom = "h",
+                                .boundaries = {{"begin of x", -1.5, 8.25}},
                                 .command = "prehend accept slide/x",
                                 .state_hash = "0x1",
                                 .ticks = 5,
@@ -58,6 +60,18 @@ TEST(Verdict, AreCounted) {
   EXPECT_EQ(tally.passed, 2);
   EXPECT_EQ(tally.failed, 1);
   EXPECT_EQ(tally.pending, 0);
+}
+
+TEST(Verdict, TheLeastHeadroomOfAllIsTold) {
+  ScenarioVerdict exact{.scenario = "a/exact", .shows = {}}, near = exact, nearer = exact;
+  EXPECT_EQ(LeastHeadroomText({exact}), "");
+  exact.boundaries = {{"begin of x", 0, 1}};
+  EXPECT_EQ(LeastHeadroomText({exact}), "") << "what is exact needs no headroom";
+  near.boundaries = {{"begin of x", 0, 8}, {"end of x", -2, 8}};
+  nearer.scenario = "b/near";
+  nearer.boundaries = {{"end of y", 5, 10}};
+  EXPECT_EQ(LeastHeadroomText({exact, near, nearer}),
+            "least headroom: 5.0 of 10.0 ms are left at end of y of b/near");
 }
 
 TEST(Verdict, RepeatsThatAgreeAreOneVerdict) {

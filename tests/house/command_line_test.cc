@@ -229,7 +229,8 @@ TEST_F(CommandLine, ADifferenceNamesTheEventTheIntervalsAndTheCommand) {
   EXPECT_EQ(ended.exit_code, 1);
   for (const char* part :
        {"missing sliding(right_hand, carton)", "expected 0.1000..0.2000 s, recognised nothing",
-        "see: prehend run rest/carton_rests", "again: prehend check rest/carton_rests",
+        "why: prehend explain rest/carton_rests --expected 'sliding right_hand carton @0.1000s'\n",
+        "again: prehend check rest/carton_rests",
         "0 passed, 1 failed"}) {
     EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\n" << ended.out;
   }
@@ -280,7 +281,8 @@ TEST_F(CommandLine, NewWritesAScenarioThatRuns) {
       << Do("validate lift/carton_is_lifted").err;
   EXPECT_EQ(Do("new carton_still_rests --like carton_rests").exit_code, 0);
   EXPECT_TRUE(ReadFile(root_ / "scenarios/rest/carton_still_rests.yaml")
-                  .starts_with("scenario: carton_still_rests\nshows: a carton stands"));
+                  .starts_with("# yaml-language-server: $schema=../scenario.schema.json\n"
+                               "scenario: carton_still_rests\nshows: a carton stands"));
   EXPECT_EQ(Do("run carton_still_rests").exit_code, 0);
 }
 

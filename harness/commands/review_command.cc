@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend review: what waits to be accepted. Reads files only; `check` left the pending ones
+// behind. Tested by tests/house/golden_workflow_test.cc
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "harness/commands/command.h"
+#include "harness/compare.h"
+#include "harness/event_text.h"
+#include "harness/golden_files.h"
+#include "harness/select_scenarios.h"
+
+namespace prehend::harness {
+namespace {
+
+/// One pending golden, in words.
+struct Review {
+  std::string id;
+  std::string kind;  ///< "new", "changed", "same", "unreadable", "orphan"
+  std::string text;  ///< events of a new one, differences, complaints; several lines or empty
+};
+
+void Declare(CLI::App& options) {
+  options.add_option("names", "names, skill/name or globs; nothing: all that is pending")
+      ->expected(-1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  DeclareFlag(options, "--json", "one JSON object instead of text");
+}
+
+std::string EventLines(const Golden& golden) {
+  std::vector<std::vector<std::string>> rows;
+  std::size_t role_columns = 1;
+  for (const GoldenEvent& line : golden.events)
+    role_columns = std::max(role_columns, line.event.roles.size());
+  for (const GoldenEvent& line : golden.events)
+    rows.push_back(EventCells(line.event, golden.ticks_per_second, role_columns));
+  std::string text;
+  for (const std::string& line : AlignColumns(rows)) text += line + "\n";
+  return text;
+}
+
+Review ReviewOf(const ScenarioFile& file, const std::string& root) {
+  const GoldenFiles files(root);
+  Review review{.id = ScenarioId(file.skill, file.name), .kind = "unreadable", .text = {}};
+  const ReadResult<Golden> pending = files.ReadPendingOf(review.id);
+  const ReadResult<Golden> golden = files.ReadGoldenOf(review.id);
+  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
+  review.text =
+      Format(pending.diagnostics) + Format(golden.diagnostics) + Format(scenario.diagnostics);
+  if (!pending.value || !scenario.value || !golden.diagnostics.empty()) return review;
+  if (!golden.value) {
+    review.kind = "new";
+    review.text = EventLines(*pending.value);
+    return review;
+  }
+  const WorldEntry& world = scenario.value->world;
+  const Comparison comparison = Compare(*golden.value, ToTimeline(*pending.value),
+                                        DefaultTolerance(world.rate_hz, world.sensing_hz));
+  review.kind = comparison.Agrees() ? "same" : "changed";
+  review.text = DifferenceText(comparison, "prehend explain " + review.id);
+  return review;
+}
+
+/// Nothing after a complaint.
+std::optional<std::vector<Review>> Reviews(const CLI::App& options, const CommandContext& context) {
+  const std::vector<std::string> patterns = ValuesOf(options, "names");
+  std::string problem;
+  const auto selection = SelectScenarios(patterns, {}, context.root, problem);
+  if (!selection && !patterns.empty()) {
+    Complain(context, ExitCode::kNothing, problem);
+    return std::nullopt;
+  }
+  std::vector<std::string> pending = GoldenFiles(context.root).ListPending();
+  std::vector<Review> reviews;
+  for (const ScenarioFile& file : selection ? selection->scenarios : std::vector<ScenarioFile>()) {
+    if (std::erase(pending, ScenarioId(file.skill, file.name)) > 0)
+      reviews.push_back(ReviewOf(file, context.root));
+  }
+  if (!patterns.empty()) return reviews;
+  for (const std::string& id : pending)
+    reviews.push_back({id, "orphan", "pending, but there is no such scenario\n"});
+  for (const std::string& id : selection ? selection->orphans : std::vector<std::string>())
+    reviews.push_back({id, "orphan", "a golden, but there is no such scenario\n"});
+  return reviews;
+}
+
+void Print(const std::vector<Review>& reviews, const CommandContext& context) {
+  for (const Review& review : reviews) {
+    context.out << fmt::format("{}  {}\n", review.kind, review.id);
+    for (std::size_t begin = 0; begin < review.text.size();) {
+      const std::size_t end = review.text.find('\n', begin);
+      context.out << "    " << review.text.substr(begin, end - begin) << "\n";
+      begin = end + 1;
+    }
+    if (review.kind == "new" || review.kind == "changed")
+      context.out << fmt::format("    if right: prehend accept {} --reason \"...\"\n", review.id);
+  }
+  if (reviews.empty())
+    context.out << "nothing is pending ('prehend check' finds out what should be)\n";
+}
+
+ExitCode Run(const CLI::App& options, const CommandContext& context) {
+  const auto reviews = Reviews(options, context);
+  if (!reviews) return ExitCode::kNothing;
+  if (IsGiven(options, "--json")) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Review& review : *reviews)
+      list.push_back({{"scenario", review.id}, {"kind", review.kind}, {"text", review.text}});
+    context.out << nlohmann::ordered_json{{"pending", list}}.dump(2) << "\n";
+  } else {
+    Print(*reviews, context);
+  }
+  return reviews->empty() ? ExitCode::kAgrees : ExitCode::kPending;
+}
+
+}  // namespace
+
+Command ReviewCommand() {
+  return {.name = "review",
+          .summary = "Show what waits to be accepted, and how it differs from the goldens",
+          .examples =
+              "prehend review\n"
+              "prehend review milk_carton_wrap 'slide/*'",
+          .declare = Declare,
+          .run = Run};
+}
+
+}  // namespace prehend::harness
