@@ -90,33 +90,48 @@ Format<JointDriver> DriverFormat() {
   using D = JointDriver;
   return Record<D>("the joint driver")
       .Optional("stiffness", &D::stiffness, Number(0, 1),
-                "Share of the angle error that it tries to remove per tick.")
+                "Share of the error that it tries to remove per tick.")
       .Optional("damping", &D::damping, Number(0, 1), "How firmly it holds the speed it wants.")
       .Optional("max_speed_rad_per_s", &D::max_speed_rad_per_s, Number(0.1, 100),
                 "Fastest that a joint turns.")
+      .Optional("max_slide_m_per_s", &D::max_slide_m_per_s, Number(0.001, 10),
+                "Fastest that a jaw slides.")
       .format();
+}
+
+/// `record` with what a phalanx and a jaw have in common; the units are those of its joint.
+template <class Link>
+Record<Link> LinkRecord(Record<Link> record, const char* strength, double strongest,
+                        const char* range, double farthest) {
+  return record
+      .Required("length_m", &Link::length_m, PartLength(), "From its joint to the next one.")
+      .Required("half_width_m", &Link::half_width_m, PartLength(), "Half of its size across.")
+      .Required("half_thickness_m", &Link::half_thickness_m, PartLength(),
+                "Half of its size from back to pad.")
+      .Required("mass_kg", &Link::mass_kg, PartMass(), "Mass.")
+      .Required(strength, &Link::strength, Number(0, strongest),
+                "Largest torque or force of its joint at effort 1.")
+      .Required(range, &Link::range, Vector<2>(-farthest, farthest), "Joint limits [least, most].")
+      .Check([key = std::string(range)](const YamlNode&, const Link& link, Complaints& complaints) {
+        if (link.range.value[0] >= link.range.value[1])
+          complaints.Add(link.range.where, key + ": expected [least, most]");
+      });
 }
 
 Format<PhalanxEntry> PhalanxFormat() {
   using P = PhalanxEntry;
-  return Record<P>("a phalanx")
-      .Required("name", &P::name, Identifier(), "Its name after the digit's: index_proximal.")
+  Record<P> record("a phalanx");
+  record.Required("name", &P::name, Identifier(), "Its name after the digit's: index_proximal.")
       .Optional("joint_axis", &P::joint_axis, Direction(),
-                "Of the joint at its base, in H; positive angles close.")
-      .Required("length_m", &P::length_m, PartLength(), "From its joint to the next one.")
-      .Required("half_width_m", &P::half_width_m, PartLength(), "Half of its size across.")
-      .Required("half_thickness_m", &P::half_thickness_m, PartLength(),
-                "Half of its size from back to pad.")
-      .Required("mass_kg", &P::mass_kg, PartMass(), "Mass.")
-      .Required("strength_nm", &P::strength_nm, Number(0, 100),
-                "Largest torque of its joint at effort 1.")
-      .Required("range_deg", &P::range_deg, Vector<2>(-180, 180), "Joint limits [least, most].")
-      .Check([](const YamlNode&, const P& phalanx, Complaints& complaints) {
-        const Eigen::Vector2d& range = phalanx.range_deg.value;
-        if (range[0] >= range[1])
-          complaints.Add(phalanx.range_deg.where, "range_deg: expected [least, most]");
-      })
-      .format();
+                "Of the joint at its base, in H; positive angles close.");
+  return LinkRecord(record, "strength_nm", 100, "range_deg", 180).format();
+}
+
+Format<JawEntry> JawFormat() {
+  Record<JawEntry> record("a jaw");
+  record.Required("slides", &JawEntry::slides, Direction(),
+                  "In H: the way it slides; positive values close.");
+  return LinkRecord(record, "strength_n", 1000, "range_m", 0.5).format();
 }
 
 Format<DigitEntry> DigitFormat() {
@@ -128,8 +143,10 @@ Format<DigitEntry> DigitFormat() {
       .Required("base_m", &D::base_m, InHand(), "Its first joint, in H.")
       .Required("direction", &D::direction, Direction(),
                 "Where it points with all joints at 0, in H.")
-      .Required("phalanges", &D::phalanges, ListOf(PhalanxFormat(), 1, 8),
+      .Optional("phalanges", &D::phalanges, ListOf(PhalanxFormat(), 1, 8),
                 "From the palm to the tip.")
+      .Optional("jaw", &D::jaw, JawFormat(), "One stiff part that slides, instead of phalanges.")
+      .ExactlyOneOf({"phalanges", "jaw"})
       .format();
 }
 
@@ -174,8 +191,10 @@ Format<StyleEntry> StyleFormat() {
       .Required(
           "effort", &S::effort, PerDigitFormat(0, 10),
           "For each digit the share of its strength: one number for all joints, or one for each.")
-      .Required("frames_deg", &S::frames_deg, ListOf(WithPlace(PerDigitFormat(-180, 180)), 2, 16),
+      .Optional("frames_deg", &S::frames_deg, ListOf(WithPlace(PerDigitFormat(-180, 180)), 2, 16),
                 "Joint angles from open to closed: for each digit one number for each joint.")
+      .Optional("frames_m", &S::frames_m, ListOf(WithPlace(PerDigitFormat(-0.5, 0.5)), 2, 16),
+                "Where jaws stand from open to closed: for each jaw one number.")
       .Check([](const YamlNode& node, const S& style, Complaints& complaints) {
         if (style.above || style.side) return;
         complaints.Add(node.key_where, "style '" + node.key + "' has no approach",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hand file as it is written: digits are straight chains of phalanges, angles are in degrees.
+// A hand file as it is written: digits are straight chains of phalanges, or jaws that slide; angles
+// are in degrees.
 // Every key is declared once, in harness/hand_fields.cc; harness/read_hand_model.h makes a
 // physics::HandModel of it. Tested by tests/harness/read_hand_model_test.cc
 #pragma once
@@ -20,20 +21,31 @@ struct PalmEntry {
   Located<std::string> sensor_set;
 };
 
-struct PhalanxEntry {
-  std::string name;
-  Eigen::Vector3d joint_axis = Eigen::Vector3d::UnitY();
+/// What a phalanx and a jaw have in common.
+struct LinkEntry {
   double length_m = 0, half_width_m = 0, half_thickness_m = 0;
   double mass_kg = 0;
-  double strength_nm = 0;
-  Located<Eigen::Vector2d> range_deg;
+  double strength = 0;             ///< newton metres of a phalanx, newtons of a jaw
+  Located<Eigen::Vector2d> range;  ///< degrees of a phalanx, metres of a jaw
 };
 
+struct PhalanxEntry : LinkEntry {
+  std::string name;
+  Eigen::Vector3d joint_axis = Eigen::Vector3d::UnitY();
+};
+
+/// Slides straight, as those of a gripper do.
+struct JawEntry : LinkEntry {
+  Eigen::Vector3d slides = Eigen::Vector3d::UnitX();
+};
+
+/// Has either phalanges or a jaw.
 struct DigitEntry {
   Located<std::string> sensor_set;
   Eigen::Vector3d base_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
   std::vector<PhalanxEntry> phalanges;
+  std::optional<JawEntry> jaw;
 };
 
 /// Numbers for the joints of digits, by the digit's name.
@@ -49,7 +61,8 @@ struct StyleEntry {
   GripEntry grip;
   std::optional<physics::GraspApproach> above, side;
   Located<PerDigit> effort;
-  std::vector<Located<PerDigit>> frames_deg;
+  std::vector<Located<PerDigit>> frames_deg;  ///< of digits with phalanges
+  std::vector<Located<PerDigit>> frames_m;    ///< of jaws
 };
 
 struct GainsEntry {

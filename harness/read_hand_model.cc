@@ -19,6 +19,10 @@ using physics::HandModel;
 constexpr double kRadPerDeg = std::numbers::pi / 180;
 constexpr const char* kEnding = ".hand.yaml";
 
+bool HasJaw(const DigitEntry& digit) { return digit.jaw.has_value(); }
+bool HasPhalanges(const DigitEntry& digit) { return !HasJaw(digit); }
+std::size_t JointsOf(const DigitEntry& digit) { return HasJaw(digit) ? 1 : digit.phalanges.size(); }
+
 /// Turns an entry into a model and complains about names and counts that do not fit together.
 class HandBuilder {
  public:
@@ -48,7 +52,10 @@ class HandBuilder {
   int SensorSet(const Located<std::string>& name);
   void AddDigit(const Named<DigitEntry>& digit, std::vector<physics::HandLink>& links);
   physics::GraspStyle BuildStyle(const Named<StyleEntry>& style);
-  std::vector<double> JointNumbers(const Located<PerDigit>& numbers, bool one_is_enough);
+  using Concerned = bool (*)(const DigitEntry&);
+  std::vector<std::vector<double>> JointNumbers(const Located<PerDigit>& numbers,
+                                                bool one_is_enough, Concerned concerned);
+  std::vector<std::vector<double>> FramesOf(const Named<StyleEntry>& style);
   /// False after complaining about a digit that the hand does not have.
   bool CheckDigitNames(const Located<PerDigit>& numbers);
 
@@ -66,27 +73,39 @@ int HandBuilder::SensorSet(const Located<std::string>& name) {
   return 0;
 }
 
+/// Everything but its name, its place and its joint's axis.
+physics::HandLink LinkOf(const LinkEntry& link, double joint_unit, int sensor_set) {
+  return {.length_m = link.length_m,
+          .half_width_m = link.half_width_m,
+          .half_thickness_m = link.half_thickness_m,
+          .mass_kg = link.mass_kg,
+          .strength = link.strength,
+          .lower = link.range.value[0] * joint_unit,
+          .upper = link.range.value[1] * joint_unit,
+          .sensor_set = sensor_set};
+}
+
 void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::HandLink>& links) {
   const int sensor_set = SensorSet(digit.value.sensor_set);
   Eigen::Vector3d pivot_m = digit.value.base_m;
   int parent = -1;
-  for (const PhalanxEntry& phalanx : digit.value.phalanges) {
-    links.push_back({.name = digit.name + "_" + phalanx.name,
-                     .parent = parent,
-                     .pivot_m = pivot_m,
-                     .direction = digit.value.direction,
-                     .joint_axis = phalanx.joint_axis,
-                     .length_m = phalanx.length_m,
-                     .half_width_m = phalanx.half_width_m,
-                     .half_thickness_m = phalanx.half_thickness_m,
-                     .mass_kg = phalanx.mass_kg,
-                     .strength_nm = phalanx.strength_nm,
-                     .lower_rad = phalanx.range_deg.value[0] * kRadPerDeg,
-                     .upper_rad = phalanx.range_deg.value[1] * kRadPerDeg,
-                     .sensor_set = sensor_set});
+  const auto add = [&](physics::HandLink link, const std::string& name,
+                       const Eigen::Vector3d& joint_axis) {
+    link.name = name;
+    link.parent = parent;
+    link.pivot_m = pivot_m;
+    link.direction = digit.value.direction;
+    link.joint_axis = joint_axis;
+    links.push_back(std::move(link));
     parent = static_cast<int>(links.size()) - 1;
-    pivot_m += digit.value.direction * phalanx.length_m;
-  }
+    pivot_m += digit.value.direction * links.back().length_m;
+  };
+  for (const PhalanxEntry& phalanx : digit.value.phalanges)
+    add(LinkOf(phalanx, kRadPerDeg, sensor_set), digit.name + "_" + phalanx.name,
+        phalanx.joint_axis);
+  if (!digit.value.jaw) return;
+  add(LinkOf(*digit.value.jaw, 1, sensor_set), digit.name, digit.value.jaw->slides);
+  links.back().slides = true;
 }
 
 bool HandBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
@@ -102,47 +121,85 @@ bool HandBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
   return good;
 }
 
-/// One number per joint of the hand, in the order of its links.
-std::vector<double> HandBuilder::JointNumbers(const Located<PerDigit>& numbers,
-                                              bool one_is_enough) {
+/// One number per joint of every concerned digit; the others stay empty.
+std::vector<std::vector<double>> HandBuilder::JointNumbers(const Located<PerDigit>& numbers,
+                                                           bool one_is_enough,
+                                                           Concerned concerned) {
   const bool names_are_right = CheckDigitNames(numbers);
-  std::vector<double> all;
-  for (const auto& digit : entry_.digits) {
-    const std::size_t joints = digit.value.phalanges.size();
+  std::vector<std::vector<double>> all(entry_.digits.size());
+  for (std::size_t i = 0; i < entry_.digits.size(); ++i) {
+    const auto& digit = entry_.digits[i];
     const auto given =
         std::find_if(numbers.value.begin(), numbers.value.end(),
                      [&](const auto& candidate) { return candidate.name == digit.name; });
+    if (!concerned(digit.value)) {
+      if (given != numbers.value.end())
+        complaints_.Add(
+            given->name_where,
+            fmt::format("{}: phalanges belong into frames_deg, jaws into frames_m", digit.name));
+      continue;
+    }
     if (given == numbers.value.end()) {
       if (names_are_right)
         complaints_.Add(numbers.where, fmt::format("there is nothing for digit '{}'", digit.name));
       continue;
     }
+    const std::size_t joints = JointsOf(digit.value);
     std::vector<double> values = given->value.value;
     if (values.size() == 1 && one_is_enough) values.resize(joints, values.front());
     if (values.size() != joints) {
       complaints_.Add(given->value.where,
-                      fmt::format("{}: expected {} numbers, one for each joint, found {}",
-                                  digit.name, joints, values.size()));
+                      fmt::format("{}: expected {} {}, one for each joint, found {}", digit.name,
+                                  joints, joints == 1 ? "number" : "numbers", values.size()));
     }
     values.resize(joints);
-    all.insert(all.end(), values.begin(), values.end());
+    all[i] = std::move(values);
   }
   return all;
 }
 
+/// From open to closed, one number per link; empty after complaining.
+std::vector<std::vector<double>> HandBuilder::FramesOf(const Named<StyleEntry>& style) {
+  const auto& angles = style.value.frames_deg;
+  const auto& ways = style.value.frames_m;
+  const auto any = [&](Concerned of) {
+    return std::any_of(entry_.digits.begin(), entry_.digits.end(),
+                       [&](const auto& digit) { return of(digit.value); });
+  };
+  const auto missing = [&](const char* key) {
+    complaints_.Add(style.name_where, fmt::format("style '{}' has no '{}'", style.name, key));
+  };
+  if (angles.empty() && any(HasPhalanges)) missing("frames_deg");
+  if (ways.empty() && any(HasJaw)) missing("frames_m");
+  if (!angles.empty() && !ways.empty() && angles.size() != ways.size()) {
+    complaints_.Add(ways.front().where, fmt::format("frames_m: {} frames, but frames_deg has {}",
+                                                    ways.size(), angles.size()));
+    return {};
+  }
+  std::vector<std::vector<double>> frames(std::max(angles.size(), ways.size()));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    std::vector<std::vector<double>> turned(entry_.digits.size()), slid = turned;
+    if (!angles.empty()) turned = JointNumbers(angles[i], false, HasPhalanges);
+    if (!ways.empty()) slid = JointNumbers(ways[i], false, HasJaw);
+    for (std::size_t k = 0; k < turned.size(); ++k) {
+      for (const double angle : turned[k]) frames[i].push_back(angle * kRadPerDeg);
+      frames[i].insert(frames[i].end(), slid[k].begin(), slid[k].end());
+    }
+  }
+  return frames;
+}
+
 physics::GraspStyle HandBuilder::BuildStyle(const Named<StyleEntry>& style) {
   physics::GraspStyle built{.name = style.name,
-                            .effort = JointNumbers(style.value.effort, true),
+                            .frames = FramesOf(style),
                             .grip_axis = style.value.grip.axis,
                             .post_m = style.value.grip.post_m,
                             .opening_m = style.value.grip.opening_m,
                             .above = style.value.above,
                             .side = style.value.side};
-  for (const auto& frame_deg : style.value.frames_deg) {
-    std::vector<double> frame = JointNumbers(frame_deg, false);
-    for (double& angle : frame) angle *= kRadPerDeg;
-    built.frames_rad.push_back(std::move(frame));
-  }
+  const auto all = [](const DigitEntry&) { return true; };
+  for (const auto& effort : JointNumbers(style.value.effort, true, all))
+    built.effort.insert(built.effort.end(), effort.begin(), effort.end());
   return built;
 }
 

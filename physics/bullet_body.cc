@@ -3,9 +3,9 @@
 #include "physics/bullet_body.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "physics/bullet_convert.h"
+#include "physics/rigid_groups.h"
 
 namespace prehend::physics {
 namespace {
@@ -38,48 +38,7 @@ struct MakeShapeOf {
   }
 };
 
-struct VolumeOf {
-  static constexpr double kPi = std::numbers::pi;
-
-  double operator()(const Box& s) const { return s.size_m.prod(); }
-  double operator()(const Sphere& s) const {
-    return 4.0 / 3 * kPi * s.radius_m * s.radius_m * s.radius_m;
-  }
-  double operator()(const Cylinder& s) const { return kPi * s.radius_m * s.radius_m * s.length_m; }
-  double operator()(const Capsule& s) const {
-    return (*this)(Sphere{s.radius_m}) + (*this)(Cylinder{s.radius_m, s.length_m});
-  }
-};
-
-/// A shape of one of the bodies that make up a rigid body, in the root's frame R.
-struct Member {
-  const PlacedShape* placed;
-  Pose X_RS;
-  btScalar mass_kg;
-};
-
-/// The mass of a body is spread evenly over its shapes' volumes.
-std::vector<Member> MembersOf(const std::vector<const Body*>& bodies,
-                              std::vector<std::size_t>& owners) {
-  std::vector<Member> members;
-  const Pose X_RW = bodies.front()->X_WB.inverse();
-  const bool fixed = bodies.front()->fixed;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = *bodies[i];
-    double volume = 0;
-    for (const PlacedShape& placed : body.shapes) volume += std::visit(VolumeOf{}, placed.shape);
-    const double density = (fixed ? 1.0 : body.mass_kg) / volume;
-    for (const PlacedShape& placed : body.shapes) {
-      // The root's own shapes keep their pose to the last bit.
-      const Pose X_RS = i == 0 ? placed.X_BS : X_RW * body.X_WB * placed.X_BS;
-      members.push_back({&placed, X_RS, density * std::visit(VolumeOf{}, placed.shape)});
-      owners.push_back(i);
-    }
-  }
-  return members;
-}
-
-bool IsSimple(const std::vector<Member>& members) {
+bool IsSimple(const std::vector<RigidMember>& members) {
   const Pose& X_RS = members.front().X_RS;
   return members.size() == 1 && X_RS.p_m.isZero() && X_RS.q.vec().isZero();
 }
@@ -95,11 +54,12 @@ std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape) {
 
 BulletBody::BulletBody(const std::vector<const Body*>& bodies) {
   const Body& root = *bodies.front();
-  const std::vector<Member> members = MembersOf(bodies, owners_);
+  const std::vector<RigidMember> members = MembersOf(bodies);
+  for (const RigidMember& member : members) owners_.push_back(member.owner);
   btScalar mass = 0;
   for (const Body* body : bodies) mass += root.fixed ? 0 : body->mass_kg;
   btVector3 inertia(0, 0, 0);
-  for (const Member& member : members) shapes_.push_back(MakeShape(member.placed->shape));
+  for (const RigidMember& member : members) shapes_.push_back(MakeShape(member.placed->shape));
   btCollisionShape* whole = shapes_.front().get();
   Pose X_CR;
   if (IsSimple(members)) {
@@ -134,6 +94,11 @@ BulletBody::BulletBody(const std::vector<const Body*>& bodies) {
   info.m_linearSleepingThreshold = kSleepSpeed_m_per_s;
   info.m_angularSleepingThreshold = kSleepTurn_rad_per_s;
   rigid_ = std::make_unique<btRigidBody>(info);
+}
+
+void BulletBody::KeepInPlane() {
+  rigid_->setLinearFactor({1, 0, 1});
+  rigid_->setAngularFactor({0, 1, 0});
 }
 
 BodyState BulletBody::State(std::size_t i) const {

@@ -25,6 +25,9 @@ class BulletBody {
   /// `bodies`: the root, then those tied to it. Friction, restitution and damping are the root's.
   explicit BulletBody(const std::vector<const Body*>& bodies);
 
+  /// From now on it moves in the plane y = 0 and turns about y only.
+  void KeepInPlane();
+
   btRigidBody& rigid() { return *rigid_; }
   /// Of the i-th of the bodies.
   BodyState State(std::size_t i) const;

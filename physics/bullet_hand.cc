@@ -26,8 +26,7 @@ std::unique_ptr<btCollisionShape> LinkShape(const HandLink& link) {
 BulletHand::BulletHand(const Hand& hand, int style, int group, btMultiBodyDynamicsWorld& world)
     : model_(hand.model),
       world_(world),
-      translation_(hand.model.translation),
-      rotation_(hand.model.rotation),
+      pids_(hand.model),
       command_{.target = {.X_WH = hand.X_WH}, .style = style} {
   MakeLinks();
   multibody_->setBaseWorldTransform(ToBullet(hand.X_WH));
@@ -64,12 +63,18 @@ void BulletHand::MakeLinks() {
     const Pose& X_HL = rest[static_cast<std::size_t>(i)];
     const Pose X_HP = link.parent < 0 ? Pose{} : rest[static_cast<std::size_t>(link.parent)];
     LinkShape(link)->calculateLocalInertia(link.mass_kg, inertia);
-    multibody_->setupRevolute(
-        i, link.mass_kg, inertia, link.parent,
-        ToBullet(Eigen::Quaterniond(X_HL.q.conjugate() * X_HP.q)),
-        ToBullet(Eigen::Vector3d(X_HL.q.conjugate() * link.joint_axis)),
-        ToBullet(Eigen::Vector3d(X_HP.q.conjugate() * (link.pivot_m - X_HP.p_m))),
-        ToBullet(Eigen::Vector3d(X_HL.q.conjugate() * (X_HL.p_m - link.pivot_m))), true);
+    const btQuaternion turn = ToBullet(Eigen::Quaterniond(X_HL.q.conjugate() * X_HP.q));
+    const btVector3 axis = ToBullet(Eigen::Vector3d(X_HL.q.conjugate() * link.joint_axis));
+    const btVector3 pivot =
+        ToBullet(Eigen::Vector3d(X_HP.q.conjugate() * (link.pivot_m - X_HP.p_m)));
+    const btVector3 centre =
+        ToBullet(Eigen::Vector3d(X_HL.q.conjugate() * (X_HL.p_m - link.pivot_m)));
+    if (link.slides)
+      multibody_->setupPrismatic(i, link.mass_kg, inertia, link.parent, turn, axis, pivot, centre,
+                                 true);
+    else
+      multibody_->setupRevolute(i, link.mass_kg, inertia, link.parent, turn, axis, pivot, centre,
+                                true);
   }
   multibody_->finalizeMultiDof();
 }
@@ -95,16 +100,16 @@ void BulletHand::MakeMotors() {
     const HandLink& link = model_.links[i];
     const int index = static_cast<int>(i);
     motors_.push_back(std::make_unique<btMultiBodyJointMotor>(multibody_.get(), index, 0, 0, 0));
-    limits_.push_back(std::make_unique<btMultiBodyJointLimitConstraint>(
-        multibody_.get(), index, link.lower_rad, link.upper_rad));
+    limits_.push_back(std::make_unique<btMultiBodyJointLimitConstraint>(multibody_.get(), index,
+                                                                        link.lower, link.upper));
     world_.addMultiBodyConstraint(motors_.back().get());
     world_.addMultiBodyConstraint(limits_.back().get());
   }
 }
 
-void BulletHand::SetJoints(const std::vector<double>& joints_rad) {
-  for (std::size_t i = 0; i < joints_rad.size(); ++i)
-    multibody_->setJointPos(static_cast<int>(i), joints_rad[i]);
+void BulletHand::SetJoints(const std::vector<double>& joints) {
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    multibody_->setJointPos(static_cast<int>(i), joints[i]);
   btAlignedObjectArray<btQuaternion> rotations;
   btAlignedObjectArray<btVector3> origins;
   multibody_->forwardKinematics(rotations, origins);
@@ -119,17 +124,11 @@ void BulletHand::Drive(const HandCommand& command, double dt_s, double gravity_m
 }
 
 void BulletHand::DrivePalm(const TargetState& target, double dt_s, double gravity_m_per_s2) {
-  const Pose X_WH = FromBullet(multibody_->getBaseWorldTransform());
-  const Eigen::Vector3d v = FromBullet(multibody_->getBaseVel());
-  const Eigen::Vector3d w = FromBullet(multibody_->getBaseOmega());
-  const Eigen::Vector3d force =
-      translation_.Output(target.X_WH.p_m - X_WH.p_m, target.v_m_per_s - v, dt_s);
-  const Eigen::Vector3d torque = rotation_.Output(
-      RotationVector(target.X_WH.q * X_WH.q.conjugate()), target.w_rad_per_s - w, dt_s);
+  const Wrench wrench = pids_.Output(PalmState(), target, dt_s);
   // The arm carries the hand's own weight, so that the PIDs feel only what the hand holds.
   const Eigen::Vector3d up(0, 0, gravity_m_per_s2);
-  multibody_->addBaseForce(ToBullet(Eigen::Vector3d(force + up * model_.palm_mass_kg)));
-  multibody_->addBaseTorque(ToBullet(torque));
+  multibody_->addBaseForce(ToBullet(Eigen::Vector3d(wrench.force_n + up * model_.palm_mass_kg)));
+  multibody_->addBaseTorque(ToBullet(wrench.torque_nm));
   for (std::size_t i = 0; i < model_.links.size(); ++i)
     multibody_->addLinkForce(static_cast<int>(i),
                              ToBullet(Eigen::Vector3d(up * model_.links[i].mass_kg)));
@@ -139,24 +138,27 @@ void BulletHand::DriveJoints(const GraspStyle& style, double trigger, double dt_
   const JointDriver& driver = model_.driver;
   const std::vector<double> targets = JointTargets(style, trigger);
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    const double error = targets[i] - multibody_->getJointPos(static_cast<int>(i));
-    const double speed = std::clamp(driver.stiffness * error / dt_s, -driver.max_speed_rad_per_s,
-                                    driver.max_speed_rad_per_s);
+    const double joint = multibody_->getJointPos(static_cast<int>(i));
     motors_[i]->setPositionTarget(0, 0);
-    motors_[i]->setVelocityTarget(speed, driver.damping);
-    motors_[i]->setMaxAppliedImpulse(model_.links[i].strength_nm * style.effort[i] * dt_s);
+    motors_[i]->setVelocityTarget(WantedSpeed(driver, model_.links[i], targets[i], joint, dt_s),
+                                  driver.damping);
+    motors_[i]->setMaxAppliedImpulse(model_.links[i].strength * style.effort[i] * dt_s);
   }
 }
 
+BodyState BulletHand::PalmState() const {
+  return {.X_WB = FromBullet(multibody_->getBaseWorldTransform()),
+          .v_WB_m_per_s = FromBullet(multibody_->getBaseVel()),
+          .w_WB_rad_per_s = FromBullet(multibody_->getBaseOmega())};
+}
+
 void BulletHand::Describe(HandState& state) const {
-  state.palm = {.X_WB = FromBullet(multibody_->getBaseWorldTransform()),
-                .v_WB_m_per_s = FromBullet(multibody_->getBaseVel()),
-                .w_WB_rad_per_s = FromBullet(multibody_->getBaseOmega())};
+  state.palm = PalmState();
   state.X_WL.resize(model_.links.size());
-  state.joints_rad.resize(model_.links.size());
+  state.joints.resize(model_.links.size());
   for (std::size_t i = 0; i < model_.links.size(); ++i) {
     state.X_WL[i] = FromBullet(colliders_[i + 1]->getWorldTransform());
-    state.joints_rad[i] = multibody_->getJointPos(static_cast<int>(i));
+    state.joints[i] = multibody_->getJointPos(static_cast<int>(i));
   }
   state.X_WTarget = command_.target.X_WH;
   state.trigger = command_.target.trigger;

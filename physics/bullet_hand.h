@@ -42,8 +42,9 @@ class BulletHand {
   void MakeLinks();
   void MakeCollider(int link, std::unique_ptr<btCollisionShape> shape, int group);
   void MakeMotors();
-  void SetJoints(const std::vector<double>& joints_rad);
+  void SetJoints(const std::vector<double>& joints);
   void DrivePalm(const TargetState& target, double dt_s, double gravity_m_per_s2);
+  BodyState PalmState() const;
   void DriveJoints(const GraspStyle& style, double trigger, double dt_s);
 
   HandModel model_;
@@ -53,7 +54,7 @@ class BulletHand {
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;  ///< palm first, then the links
   std::vector<std::unique_ptr<btMultiBodyJointMotor>> motors_;
   std::vector<std::unique_ptr<btMultiBodyConstraint>> limits_;
-  VectorPid translation_, rotation_;
+  PalmPids pids_;
   HandCommand command_;
 };
 

@@ -14,6 +14,7 @@
 #include "physics/bullet_hand.h"
 #include "physics/bullet_joint.h"
 #include "physics/joint.h"
+#include "physics/rigid_groups.h"
 
 // The only process-wide setting of Bullet that is touched. Every world sets the same constant.
 extern btScalar gDbvtMargin;
@@ -74,7 +75,7 @@ class BulletWorld final : public World {
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;
   std::vector<std::unique_ptr<BulletHand>> hands_;
   ContactSides sides_;
-  BulletContacts contacts_{{}};
+  TouchingPairs touching_;
 };
 
 BulletWorld::BulletWorld(const Scene& scene, const std::vector<int>& styles)
@@ -83,7 +84,6 @@ BulletWorld::BulletWorld(const Scene& scene, const std::vector<int>& styles)
   AddBodies();
   AddJoints();
   AddHands(scene.hands, styles);
-  contacts_ = BulletContacts(sides_);
 }
 
 BulletWorld::~BulletWorld() {
@@ -113,19 +113,8 @@ void BulletWorld::Configure() {
 }
 
 void BulletWorld::AddBodies() {
-  const std::size_t count = scene_.bodies.size();
-  places_.resize(count);
-  std::vector<std::vector<std::size_t>> tied(count);  // by root, the root itself first
-  for (std::size_t i = 0; i < count; ++i) tied[i].push_back(i);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto root = static_cast<std::size_t>(RootOf(scene_, static_cast<int>(i)));
-    if (root == i) continue;
-    tied[root].push_back(i);
-    tied[i].clear();
-  }
-  for (const auto& group : tied) {
-    if (!group.empty()) AddRigid(group);
-  }
+  places_.resize(scene_.bodies.size());
+  for (const auto& group : RigidGroups(scene_)) AddRigid(group);
 }
 
 void BulletWorld::AddRigid(const std::vector<std::size_t>& group) {
@@ -139,6 +128,7 @@ void BulletWorld::AddRigid(const std::vector<std::size_t>& group) {
   std::vector<ContactSide>& sides = sides_.emplace_back();
   for (const std::size_t owner : made->owners())
     sides.push_back({.body = static_cast<int>(group[owner])});
+  if (scene_.world.planar) made->KeepInPlane();
   if (bodies.front()->fixed)
     world_.addRigidBody(&made->rigid(), kFixedGroup, ~kFixedGroup);
   else
@@ -172,7 +162,7 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
   for (std::size_t i = 0; i < hands_.size(); ++i)
     hands_[i]->Drive(commands[i], dt_s_, scene_.world.gravity_m_per_s2);
   world_.stepSimulation(dt_s_, 0);
-  contacts_.Read(dispatcher_);
+  ReadContacts(dispatcher_, sides_, touching_);
   ++tick_;
 }
 
@@ -181,16 +171,10 @@ void BulletWorld::Describe(Snapshot& snapshot) const {
   snapshot.bodies.resize(places_.size());
   for (std::size_t i = 0; i < places_.size(); ++i)
     snapshot.bodies[i] = rigids_[places_[i].rigid]->State(places_[i].member);
-  snapshot.joints.resize(scene_.joints.size());
-  for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
-    const Joint& joint = scene_.joints[i];
-    snapshot.joints[i] =
-        StateOf(scene_, joint, snapshot.bodies[static_cast<std::size_t>(joint.base)].X_WB,
-                snapshot.bodies[static_cast<std::size_t>(joint.body)].X_WB);
-  }
+  DescribeJoints(scene_, snapshot);
   snapshot.hands.resize(hands_.size());
   for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i]->Describe(snapshot.hands[i]);
-  contacts_.Describe(snapshot.contacts);
+  touching_.Describe(snapshot.contacts);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace prehend::physics {
 namespace {
@@ -31,6 +32,19 @@ struct HalfExtentsIn {
   }
   Eigen::Vector3d operator()(const Capsule& s) const {
     return R.col(2).cwiseAbs() * (s.length_m / 2) + Eigen::Vector3d::Constant(s.radius_m);
+  }
+};
+
+struct VolumeOfShape {
+  static constexpr double kPi = std::numbers::pi;
+
+  double operator()(const Box& s) const { return s.size_m.prod(); }
+  double operator()(const Sphere& s) const {
+    return 4.0 / 3 * kPi * s.radius_m * s.radius_m * s.radius_m;
+  }
+  double operator()(const Cylinder& s) const { return kPi * s.radius_m * s.radius_m * s.length_m; }
+  double operator()(const Capsule& s) const {
+    return (*this)(Sphere{s.radius_m}) + (*this)(Cylinder{s.radius_m, s.length_m});
   }
 };
 
@@ -114,6 +128,8 @@ const PlacedShape& PartAt(const Body& body, const Eigen::Vector3d& p_B_m) {
 double DistanceTo(const Body& body, const Eigen::Vector3d& p_B_m) {
   return DistanceTo(PartAt(body, p_B_m), p_B_m);
 }
+
+double VolumeOf(const Shape& shape) { return std::visit(VolumeOfShape{}, shape); }
 
 bool IsRoundAboutVertical(const Body& body, const Pose& X_WB) {
   if (body.shapes.size() != 1) return false;

@@ -31,6 +31,9 @@ const PlacedShape& PartAt(const Body& body, const Eigen::Vector3d& p_B_m);
 /// Distance of a point, in the body's frame, from the nearest surface: negative inside. Metres.
 double DistanceTo(const Body& body, const Eigen::Vector3d& p_B_m);
 
+/// Cubic metres.
+double VolumeOf(const Shape& shape);
+
 /// Do all horizontal directions look the same? True for spheres and for upright cylinders and
 /// capsules.
 bool IsRoundAboutVertical(const Body& body, const Pose& X_WB);

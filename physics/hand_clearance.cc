@@ -3,6 +3,7 @@
 #include "physics/hand_clearance.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "physics/geometry.h"
 
@@ -10,7 +11,9 @@ namespace prehend::physics {
 namespace {
 
 constexpr int kBallsPerPalmEdge = 5;
-constexpr int kBallsPerLink = 3;
+constexpr int kLeastBallsPerLink = 3;
+/// Balls on a link are at most this many radii apart.
+constexpr double kBallsApart_radii = 4;
 /// At 1.5 m/s, the peak of a long reach, this looks every centimetre.
 constexpr int kLooks = 120;
 /// Farther than this nothing matters; distances are cut off here.
@@ -18,7 +21,7 @@ constexpr double kFar_m = 0.1;
 
 }  // namespace
 
-HandClearance::HandClearance(const HandModel& model, const std::vector<double>& joints_rad) {
+HandClearance::HandClearance(const HandModel& model, const std::vector<double>& joints) {
   const Eigen::Vector3d half = model.palm_size_m / 2;
   const double palm_radius = half.z();
   for (int i = 0; i < kBallsPerPalmEdge; ++i) {
@@ -29,13 +32,15 @@ HandClearance::HandClearance(const HandModel& model, const std::vector<double>& 
           {{x * (half.x() - palm_radius), y * (half.y() - palm_radius), 0}, palm_radius});
     }
   }
-  const std::vector<Pose> X_HL = LinkPoses(model, joints_rad);
+  const std::vector<Pose> X_HL = LinkPoses(model, joints);
   for (std::size_t i = 0; i < X_HL.size(); ++i) {
     const HandLink& link = model.links[i];
     const double radius = link.half_thickness_m;
     const double half_length = std::max(link.length_m / 2 - radius, 0.0);
-    for (int k = 0; k < kBallsPerLink; ++k) {
-      const double x = half_length * (2.0 * k / (kBallsPerLink - 1) - 1);
+    const int gaps = static_cast<int>(std::ceil(2 * half_length / (kBallsApart_radii * radius)));
+    const int last = std::max(gaps, kLeastBallsPerLink - 1);
+    for (int k = 0; k <= last; ++k) {
+      const double x = half_length * (2.0 * k / last - 1);
       balls_.push_back({X_HL[i] * Eigen::Vector3d(x, 0, 0), radius});
     }
   }

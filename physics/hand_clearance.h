@@ -13,7 +13,7 @@ namespace prehend::physics {
 
 class HandClearance {
  public:
-  HandClearance(const HandModel& model, const std::vector<double>& joints_rad);
+  HandClearance(const HandModel& model, const std::vector<double>& joints);
 
   /// Least distance to any body of a hand that stands at X_WH, metres; negative inside.
   double At(const Pose& X_WH, const Scene& scene, const Snapshot& now) const;

@@ -42,19 +42,20 @@ struct Inertia {
 
 std::string NotPositive(const Inertia& inertia, const PidGains& gains) {
   char text[160];
-  for (const auto& [name, gain] : {std::pair{"proportional gain", gains.proportional},
-                                   std::pair{"derivative gain", gains.derivative},
-                                   std::pair{"limit", gains.limit}}) {
+  for (const auto& [name, gain] :
+       {std::pair{"proportional gain", gains.proportional},
+        std::pair{"derivative gain", gains.derivative}, std::pair{"limit", gains.limit}}) {
     if (gain > 0) continue;
-    std::snprintf(text, sizeof text, "the %s %s is %g; without it the hand cannot follow its target",
-                  inertia.of, name, gain);
+    std::snprintf(text, sizeof text,
+                  "the %s %s is %g; without it the hand cannot follow its target", inertia.of, name,
+                  gain);
     return text;
   }
   return "";
 }
 
-/// Of a mass m under F = -kp x - kd v, stepped by semi-implicit Euler: kp dt^2/m + 2 kd dt/m < 4 (Jury). Of the same with
-/// an integral in continuous time: ki m < kp kd (Routh and Hurwitz).
+/// Of a mass m under F = -kp x - kd v, stepped by semi-implicit Euler: kp dt^2/m + 2 kd dt/m < 4
+/// (Jury). Of the same with an integral in continuous time: ki m < kp kd (Routh and Hurwitz).
 std::string Diverges(const Inertia& inertia, const PidGains& gains, int rate_hz) {
   char text[256];
   const double dt_s = 1.0 / rate_hz;
@@ -62,7 +63,8 @@ std::string Diverges(const Inertia& inertia, const PidGains& gains, int rate_hz)
   const double most_proportional = room * inertia.least / (dt_s * dt_s);
   if (gains.proportional >= most_proportional) {
     std::snprintf(text, sizeof text,
-                  "the %s proportional gain %g cannot be stable: it overshoots more with every 1/%d s; it must stay below "
+                  "the %s proportional gain %g cannot be stable: it overshoots more with every "
+                  "1/%d s; it must stay below "
                   "%.4g here",
                   inertia.of, gains.proportional, rate_hz, most_proportional);
     return text;
@@ -70,7 +72,8 @@ std::string Diverges(const Inertia& inertia, const PidGains& gains, int rate_hz)
   const double most_integral = gains.proportional * gains.derivative / inertia.most;
   if (gains.integral >= most_integral) {
     std::snprintf(text, sizeof text,
-                  "the %s integral gain %g cannot be stable: it must stay below proportional * derivative / inertia = %.4g",
+                  "the %s integral gain %g cannot be stable: it must stay below proportional * "
+                  "derivative / inertia = %.4g",
                   inertia.of, gains.integral, most_integral);
     return text;
   }
@@ -86,8 +89,8 @@ std::string TooStiff(const Inertia& inertia, const PidGains& gains, int rate_hz)
                 "the %s derivative gain %g cannot be stable: gain * dt / inertia = %g * (1/%d s) / "
                 "%.4g %s = %.2f, "
                 "which must stay below 1 (at most %.4g here)",
-                inertia.of, gains.derivative, gains.derivative, rate_hz, inertia.least, inertia.unit, ratio,
-                0.99 * rate_hz * inertia.least);
+                inertia.of, gains.derivative, gains.derivative, rate_hz, inertia.least,
+                inertia.unit, ratio, 0.99 * rate_hz * inertia.least);
   return text;
 }
 
@@ -99,28 +102,40 @@ std::string WhyUnstable(const Inertia& inertia, const PidGains& gains, int rate_
   return problem;
 }
 
+/// What a joint does to points of H, its parents standing at zero.
+Pose JointMotion(const HandLink& link, double value) {
+  if (link.slides) return {link.joint_axis * value};
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(value, link.joint_axis));
+  return {link.pivot_m - turn * link.pivot_m, turn};
+}
+
 void MirrorVector(Eigen::Vector3d& v) { v.y() = -v.y(); }
 
 }  // namespace
 
+double WantedSpeed(const JointDriver& driver, const HandLink& link, double target, double joint,
+                   double dt_s) {
+  const double limit = link.slides ? driver.max_slide_m_per_s : driver.max_speed_rad_per_s;
+  return std::clamp(driver.stiffness * (target - joint) / dt_s, -limit, limit);
+}
+
 std::vector<double> JointTargets(const GraspStyle& style, double trigger) {
-  const double last = static_cast<double>(style.frames_rad.size() - 1);
+  const double last = static_cast<double>(style.frames.size() - 1);
   const double x = std::clamp(trigger, 0.0, 1.0) * last;
   const auto frame = static_cast<std::size_t>(std::min(x, last - 1));
   const double share = x - static_cast<double>(frame);
-  std::vector<double> targets = style.frames_rad[frame];
+  std::vector<double> targets = style.frames[frame];
   for (std::size_t i = 0; i < targets.size(); ++i)
-    targets[i] += share * (style.frames_rad[frame + 1][i] - targets[i]);
+    targets[i] += share * (style.frames[frame + 1][i] - targets[i]);
   return targets;
 }
 
-std::vector<Pose> LinkPoses(const HandModel& model, const std::vector<double>& joints_rad) {
+std::vector<Pose> LinkPoses(const HandModel& model, const std::vector<double>& joints) {
   std::vector<Pose> moved(model.links.size());  // what the joints up to this link do to points of H
   std::vector<Pose> centres(model.links.size());
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const HandLink& link = model.links[i];
-    const Eigen::Quaterniond turn(Eigen::AngleAxisd(joints_rad[i], link.joint_axis));
-    const Pose joint{link.pivot_m - turn * link.pivot_m, turn};
+    const Pose joint = JointMotion(link, joints[i]);
     moved[i] = link.parent < 0 ? joint : moved[static_cast<std::size_t>(link.parent)] * joint;
     const Pose rest{link.pivot_m + link.direction * (link.length_m / 2),
                     Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), link.direction)};
@@ -135,9 +150,10 @@ HandModel Mirrored(HandModel model) {
   for (HandLink& link : model.links) {
     MirrorVector(link.pivot_m);
     MirrorVector(link.direction);
+    MirrorVector(link.joint_axis);
     // An axis of rotation is a pseudo-vector: its components in the mirror's plane flip, the normal
     // one stays.
-    link.joint_axis = {-link.joint_axis.x(), link.joint_axis.y(), -link.joint_axis.z()};
+    if (!link.slides) link.joint_axis = -link.joint_axis;
   }
   for (GraspStyle& style : model.styles) {
     MirrorVector(style.grip_axis);

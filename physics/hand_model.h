@@ -19,15 +19,16 @@ struct HandLink {
   Eigen::Vector3d pivot_m = Eigen::Vector3d::Zero();  ///< joint, in H, all joints at zero
   Eigen::Vector3d direction =
       Eigen::Vector3d::UnitX();  ///< from the pivot along the link, unit, in H
-  Eigen::Vector3d joint_axis = Eigen::Vector3d::UnitY();  ///< unit, in H; positive angles close
+  bool slides = false;           ///< along the joint's axis; else it turns about it
+  Eigen::Vector3d joint_axis = Eigen::Vector3d::UnitY();  ///< unit, in H; positive values close
   double length_m = 0.03;
   double half_width_m = 0.008;
   double half_thickness_m = 0.007;
   double mass_kg = 0.01;
-  double strength_nm = 1.0;  ///< torque limit of the joint driver at effort 1
-  double lower_rad = -0.2;
-  double upper_rad = 1.6;
-  int sensor_set = 0;  ///< index into HandModel::sensor_sets
+  double strength = 1.0;  ///< limit of the joint driver at effort 1: newton metres, or newtons
+  double lower = -0.2;    ///< radians, or metres of a link that slides
+  double upper = 1.6;     ///< the same
+  int sensor_set = 0;     ///< index into HandModel::sensor_sets
 };
 
 /// Force- or torque-limited PID that makes the palm follow the tracked target.
@@ -41,9 +42,10 @@ struct PidGains {
 
 /// Torque-limited velocity servo of a joint.
 struct JointDriver {
-  double stiffness = 0.2;  ///< share of the angle error removed per tick
+  double stiffness = 0.2;  ///< share of the error removed per tick
   double damping = 1.0;    ///< 0..1, how firmly the target velocity is enforced
   double max_speed_rad_per_s = 12;
+  double max_slide_m_per_s = 0.3;  ///< the same for links that slide
 };
 
 /// How the hand comes to an object, from above or from the side. The object's centre ends on a line
@@ -63,8 +65,8 @@ struct GraspApproach {
 /// object's face goes to the post.
 struct GraspStyle {
   std::string name;
-  std::vector<std::vector<double>> frames_rad;  ///< at least 2; one angle per link
-  std::vector<double> effort;                   ///< one per link, share of strength_nm
+  std::vector<std::vector<double>> frames;  ///< at least 2; one joint target per link
+  std::vector<double> effort;               ///< one per link, share of HandLink::strength
   Eigen::Vector3d grip_axis =
       Eigen::Vector3d::UnitX();  ///< unit, in H: from the post to the limited side
   Eigen::Vector3d post_m =
@@ -91,12 +93,16 @@ struct HandModel {
   std::vector<GraspStyle> styles;
 };
 
+/// The speed that the joint's driver wants, per second: towards `target`, within its limit.
+double WantedSpeed(const JointDriver& driver, const HandLink& link, double target, double joint,
+                   double dt_s);
+
 /// Joint targets of a style at a trigger value, 0 (open) .. 1 (closed): linear between neighbouring
 /// frames.
 std::vector<double> JointTargets(const GraspStyle& style, double trigger);
 
-/// Centres of all links in H, x along the link, for the given joint angles (one per link).
-std::vector<Pose> LinkPoses(const HandModel& model, const std::vector<double>& joints_rad);
+/// Centres of all links in H, x along the link, for the given joints (one angle or way per link).
+std::vector<Pose> LinkPoses(const HandModel& model, const std::vector<double>& joints);
 
 /// The other hand: mirrored in the xz-plane, `left` toggled.
 HandModel Mirrored(HandModel model);

@@ -40,6 +40,15 @@ JointState StateOf(const Scene& scene, const Joint& joint, const Pose& X_WBase, 
   return {position, range > 0 ? std::clamp((position - joint.lower) / range, 0.0, 1.0) : 0};
 }
 
+void DescribeJoints(const Scene& scene, Snapshot& snapshot) {
+  const auto X_WB = [&](int body) { return snapshot.bodies[static_cast<std::size_t>(body)].X_WB; };
+  snapshot.joints.resize(scene.joints.size());
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    const Joint& joint = scene.joints[i];
+    snapshot.joints[i] = StateOf(scene, joint, X_WB(joint.base), X_WB(joint.body));
+  }
+}
+
 Pose MotionAlong(const Scene& scene, const Joint& joint, const Pose& X_WBase, double change) {
   const Pose since_placed = X_WBase * BodyAt(scene, joint.base).X_WB.inverse();
   const Eigen::Vector3d axis_W = since_placed.q * joint.axis_W;

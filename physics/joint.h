@@ -11,6 +11,9 @@ namespace prehend::physics {
 /// Where the joint stands when its base and its body stand at these poses.
 JointState StateOf(const Scene& scene, const Joint& joint, const Pose& X_WBase, const Pose& X_WB);
 
+/// Where all joints stand, from the poses of the bodies in the snapshot.
+void DescribeJoints(const Scene& scene, Snapshot& snapshot);
+
 /// The motion in the world that takes the joint's body by `change` (metres or radians) along the
 /// joint's free way, with its base at X_WBase. The identity for joints that have no such way.
 Pose MotionAlong(const Scene& scene, const Joint& joint, const Pose& X_WBase, double change);

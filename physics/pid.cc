@@ -17,4 +17,12 @@ Eigen::Vector3d VectorPid::Output(const Eigen::Vector3d& error, const Eigen::Vec
   return output;
 }
 
+Wrench PalmPids::Output(const BodyState& palm, const TargetState& target, double dt_s) {
+  const Pose& X_WH = palm.X_WB;
+  return {
+      translation_.Output(target.X_WH.p_m - X_WH.p_m, target.v_m_per_s - palm.v_WB_m_per_s, dt_s),
+      rotation_.Output(RotationVector(target.X_WH.q * X_WH.q.conjugate()),
+                       target.w_rad_per_s - palm.w_WB_rad_per_s, dt_s)};
+}
+
 }  // namespace prehend::physics

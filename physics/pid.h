@@ -6,6 +6,8 @@
 #pragma once
 
 #include "physics/hand_model.h"
+#include "physics/snapshot.h"
+#include "physics/trajectory.h"
 
 namespace prehend::physics {
 
@@ -21,6 +23,23 @@ class VectorPid {
  private:
   PidGains gains_;
   Eigen::Vector3d integral_ = Eigen::Vector3d::Zero();
+};
+
+struct Wrench {
+  Eigen::Vector3d force_n = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque_nm = Eigen::Vector3d::Zero();
+};
+
+/// The two PIDs of a palm; what they give acts at the palm's centre, in world axes.
+class PalmPids {
+ public:
+  explicit PalmPids(const HandModel& model)
+      : translation_(model.translation), rotation_(model.rotation) {}
+
+  Wrench Output(const BodyState& palm, const TargetState& target, double dt_s);
+
+ private:
+  VectorPid translation_, rotation_;
 };
 
 }  // namespace prehend::physics

@@ -64,8 +64,9 @@ Eigen::Vector3d Horizontal(double yaw_rad) { return {std::cos(yaw_rad), std::sin
 double YawOf(const Eigen::Vector3d& v) { return std::atan2(v.y(), v.x()); }
 
 /// Horizontal directions in which the object may be gripped or approached: its faces, or all
-/// around.
-std::vector<double> YawsOf(const Body& body, const Pose& X_WB, double hand_yaw_rad) {
+/// around; in a plane the two ways along it.
+std::vector<double> YawsOf(const Body& body, const Pose& X_WB, double hand_yaw_rad, bool planar) {
+  if (planar) return {0, kPi};
   std::vector<double> yaws;
   if (IsRoundAboutVertical(body, X_WB)) {
     for (int i = 0; i < kRoundDirections; ++i)
@@ -104,6 +105,7 @@ class CandidateList {
  public:
   CandidateList(const Scene& scene, const Snapshot& now, const ReachQuery& query)
       : query_(query),
+        planar_(scene.world.planar),
         style_(scene.hands[static_cast<std::size_t>(query.hand)]
                    .model.styles[static_cast<std::size_t>(query.style)]),
         target_(scene.bodies[static_cast<std::size_t>(query.object)],
@@ -121,11 +123,12 @@ class CandidateList {
  private:
   Candidate Make(const GraspApproach& approach, const Eigen::Quaterniond& q) const;
 
-  const ReachQuery& query_;
   double HalfWidth(const Eigen::Vector3d& direction_W) const {
     return HalfWidthAlong(target_.box, target_.X_WB, direction_W);
   }
 
+  const ReachQuery& query_;
+  const bool planar_;
   const GraspStyle& style_;
   const Target target_;
   const double lowest_m_;
@@ -159,7 +162,7 @@ std::vector<Candidate> CandidateList::FromAbove() const {
   std::vector<Candidate> candidates;
   if (!style_.above) return candidates;
   const double hand_yaw = YawOf(query_.from.X_WH.q * style_.grip_axis);
-  for (const double yaw : YawsOf(target_.body, target_.X_WB, hand_yaw)) {
+  for (const double yaw : YawsOf(target_.body, target_.X_WB, hand_yaw, planar_)) {
     const Eigen::Quaterniond q = RotationFromPairs(style_.above->toward, style_.grip_axis,
                                                    -Eigen::Vector3d::UnitZ(), Horizontal(yaw));
     candidates.push_back(Make(*style_.above, q));
@@ -183,7 +186,8 @@ std::vector<Candidate> CandidateList::FromSide() const {
   Eigen::Vector3d inwards = target_.centre_W_m - target_.point_W_m;
   inwards.z() = 0;
   const bool at_rim = inwards.norm() > kDeepEnough_m;
-  for (const double yaw : YawsOf(target_.body, target_.X_WB, YawOf(at_rim ? inwards : way))) {
+  for (const double yaw :
+       YawsOf(target_.body, target_.X_WB, YawOf(at_rim ? inwards : way), planar_)) {
     const Eigen::Vector3d toward_W = Horizontal(yaw);
     const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(toward_W);
     // Coming from the far side means going around the object.
@@ -191,7 +195,7 @@ std::vector<Candidate> CandidateList::FromSide() const {
         above_it ? 0 : std::acos(std::clamp(toward_W.dot(way.normalized()), -1.0, 1.0));
     add(toward_W, Eigen::Vector3d::UnitZ(), around);
     // A thing that is lower than wide can also be gripped from above and below.
-    if (half_height >= HalfWidth(across_W)) continue;
+    if (!planar_ && half_height >= HalfWidth(across_W)) continue;
     add(toward_W, across_W, around + kRolled);
     add(toward_W, -across_W, around + kRolled);
   }
@@ -207,6 +211,15 @@ std::vector<Candidate> Candidates(const Scene& scene, const Snapshot& now,
                                   const ReachQuery& query) {
   const CandidateList list(scene, now, query);
   std::vector<Candidate> above = list.FromAbove(), side = list.FromSide();
+  if (scene.world.planar) {
+    // A hand cannot turn over in its plane: its y axis stays where it is.
+    const Eigen::Vector3d y_W = query.from.X_WH.q * Eigen::Vector3d::UnitY();
+    const auto turned_over = [&](const Candidate& candidate) {
+      return y_W.dot(candidate.X_WH.q * Eigen::Vector3d::UnitY()) < 0.5;
+    };
+    std::erase_if(above, turned_over);
+    std::erase_if(side, turned_over);
+  }
   const auto by_cost = [](const Candidate& l, const Candidate& r) { return l.cost < r.cost; };
   std::stable_sort(above.begin(), above.end(), by_cost);
   std::stable_sort(side.begin(), side.end(), by_cost);

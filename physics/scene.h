@@ -80,7 +80,13 @@ struct Hand {
   Pose X_WH;
 };
 
+enum class Engine { kBullet, kBox2d };
+
 struct WorldSettings {
+  Engine engine = Engine::kBullet;
+  /// Everything stays in the plane y = 0 and turns about y alone; all that takes part lies in it
+  /// (physics/planar.h). Box2D needs it.
+  bool planar = false;
   int rate_hz = 480;
   std::uint64_t seed = 1;
   double gravity_m_per_s2 = 9.81;

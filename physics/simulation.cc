@@ -2,6 +2,7 @@
 // Tested by tests/physics/simulation_test.cc
 #include "physics/simulation.h"
 
+#include "physics/box2d_world.h"
 #include "physics/bullet_world.h"
 #include "physics/run_checks.h"
 #include "physics/script_player.h"
@@ -14,13 +15,18 @@ namespace {
 /// memory.
 constexpr double kLongestRun_s = 1800;
 
+std::unique_ptr<World> MakeWorld(const Scene& scene, const std::vector<int>& styles) {
+  return scene.world.engine == Engine::kBox2d ? MakeBox2dWorld(scene, styles)
+                                              : MakeBulletWorld(scene, styles);
+}
+
 }  // namespace
 
 struct Simulation::State {
   State(Scene s, Script t)
       : scene(std::move(s)),
         too_long(DurationOf(t) > kLongestRun_s),
-        world(MakeBulletWorld(scene, ScriptPlayer::FirstStyles(scene, t))),
+        world(MakeWorld(scene, ScriptPlayer::FirstStyles(scene, t))),
         player(scene, std::move(t)) {
     world->Describe(snapshot);
     if (too_long)

@@ -27,8 +27,8 @@ struct HandState {
   BodyState palm;  ///< never asleep
   std::vector<Pose>
       X_WL;  ///< box centre of every link, local x along it; order of HandModel::links
-  std::vector<double> joints_rad;
-  Pose X_WTarget;  ///< where the tracked target is
+  std::vector<double> joints;  ///< radians, or metres of links that slide
+  Pose X_WTarget;              ///< where the tracked target is
   double trigger = 0;
   int style = 0;  ///< index into HandModel::styles
 };

@@ -28,7 +28,7 @@ class StateHash {
   }
   void Add(const HandState& hand) {
     Add(hand.palm);
-    Add(hand.joints_rad.data(), static_cast<Eigen::Index>(hand.joints_rad.size()));
+    Add(hand.joints.data(), static_cast<Eigen::Index>(hand.joints.size()));
   }
   void Add(const Snapshot& snapshot) {
     for (std::size_t i = 0; i < snapshot.bodies.size(); ++i) {

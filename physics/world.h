@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The border to a physics engine: a world takes hand commands, steps, and tells its state as a
-// Snapshot. One world per run, never reset. Implementations: physics/bullet_world.h. Tested by
-// tests/physics/world_test.cc
+// Snapshot. One world per run, never reset. Implementations: physics/bullet_world.h and, for planar
+// scenes, physics/box2d_world.h. Tested by tests/physics/world_test.cc
 #pragma once
 
 #include <vector>

@@ -32,9 +32,9 @@ ScenarioLibrary ProbeLibrary() {
             model.name = name;
             model.translation = {.proportional = 2500, .derivative = 120, .integral = 2000, .limit = 80};
             model.rotation = {.proportional = 20, .derivative = 0.5, .integral = 20, .limit = 8};
-            model.styles.push_back({.name = "wrap", .frames_rad = {{}, {}}, .above = physics::GraspApproach{},
+            model.styles.push_back({.name = "wrap", .frames = {{}, {}}, .above = physics::GraspApproach{},
                                     .side = physics::GraspApproach{}});
-            model.styles.push_back({.name = "pinch", .frames_rad = {{}, {}}, .above = physics::GraspApproach{}});
+            model.styles.push_back({.name = "pinch", .frames = {{}, {}}, .above = physics::GraspApproach{}});
             return {model, {}};
           }};
 }

@@ -9,7 +9,7 @@ namespace prehend::physics {
 namespace {
 
 TEST(HandModelTest, JointTargetsRunThroughTheFrames) {
-  const GraspStyle style{.frames_rad = {{0, 1}, {1, 1}, {1, 3}}};
+  const GraspStyle style{.frames = {{0, 1}, {1, 1}, {1, 3}}};
   EXPECT_EQ(JointTargets(style, -1), (std::vector<double>{0, 1}));
   EXPECT_EQ(JointTargets(style, 0.25), (std::vector<double>{0.5, 1}));
   EXPECT_EQ(JointTargets(style, 0.75), (std::vector<double>{1, 2}));

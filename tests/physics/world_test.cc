@@ -107,9 +107,9 @@ TEST(BulletWorldTest, AHandHoversAtItsTarget) {
   EXPECT_LT(hand.palm.X_WB.q.angularDistance(X_WH.q), 0.01);
   const std::vector<double> wanted = JointTargets(model.styles[0], 1);
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    EXPECT_NEAR(hand.joints_rad[i], wanted[i], 0.02) << model.links[i].name;
+    EXPECT_NEAR(hand.joints[i], wanted[i], 0.02) << model.links[i].name;
   // What the engine says and what our own kinematics says is the same.
-  const std::vector<Pose> X_HL = LinkPoses(model, hand.joints_rad);
+  const std::vector<Pose> X_HL = LinkPoses(model, hand.joints);
   for (std::size_t i = 0; i < X_HL.size(); ++i)
     EXPECT_LT((hand.X_WL[i].p_m - (hand.palm.X_WB * X_HL[i]).p_m).norm(), 0.001)
         << model.links[i].name;

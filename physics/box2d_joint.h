@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// A slider or a hinge of a planar scene in Box2D. Only for box2d_*.cc. Tested by
+// tests/physics/box2d_world_test.cc
+#pragma once
+
+#include "physics/box2d_convert.h"
+#include "physics/scene.h"
+
+namespace prehend::physics {
+
+class Box2dJoint {
+ public:
+  /// A ball joint is a hinge without limits here. The two sides never touch each other.
+  Box2dJoint(const Joint& joint, b2Body& base, b2Body& body, b2World& world);
+
+  /// Spring and damping of the coming tick; friction and limits are Box2D's own.
+  void Pull(double dt_s);
+
+ private:
+  /// Our coordinate and its rate, in metres or radians.
+  double Position() const;
+  double Rate() const;
+  /// What a force along the joint's way has to move, kg or kg m^2.
+  double Inertia() const;
+
+  Joint joint_;
+  double sign_;                         ///< of Box2D's coordinate against ours
+  b2PrismaticJoint* slider_ = nullptr;  ///< the world's; one of the two
+  b2RevoluteJoint* hinge_ = nullptr;
+};
+
+}  // namespace prehend::physics
