@@ -28,11 +28,7 @@ std::vector<std::string> NamesOf(const std::vector<Named<T>>& entries) {
 physics::TimedPose TimedPoseOf(const PoseEntry& pose) {
   physics::TimedPose timed;
   timed.t_s = pose.t_s;
-  timed.X_WH.p_m = pose.at_m;
-  if (pose.rpy_deg) timed.X_WH.q = FromRollPitchYaw(*pose.rpy_deg);
-  if (const auto& q = pose.quat_wxyz) {
-    timed.X_WH.q = Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]).normalized();
-  }
+  timed.X_WH = PoseOf(pose);
   timed.trigger = pose.trigger;
   return timed;
 }
@@ -48,7 +44,7 @@ struct StepMaker {
     CheckEntity("reach", e.reach);
     CheckStyle(e);
     CheckPoint(e);
-    physics::ReachStep reach{e.reach.value, e.style.value, e.from, e.offset_m, {}};
+    physics::ReachStep reach{e.reach.value, e.style.value, e.from, e.offset_m.value, {}};
     if (e.point_m) reach.point_m = e.point_m->value;
     return {0, std::move(reach), e.over_s};
   }
@@ -62,10 +58,10 @@ struct StepMaker {
     return {0, physics::MoveStep{{0, 0, e.lift_by_m}}, e.over_s};
   }
   physics::Step operator()(const MoveEntry& e) const {
-    return {0, physics::MoveStep{e.move_by_m}, e.over_s};
+    return {0, physics::MoveStep{e.move_by_m.value}, e.over_s};
   }
   physics::Step operator()(const CarryEntry& e) const {
-    return {0, physics::CarryStep{e.carry_to_m}, e.over_s};
+    return {0, physics::CarryStep{e.carry_to_m.value}, e.over_s};
   }
   physics::Step operator()(const PlaceEntry& e) const {
     CheckEntity("place_on", e.place_on);
@@ -175,7 +171,8 @@ struct HandSoFar {
 /// Steps about the held thing need a hand that may hold something.
 void CheckOrder(const std::vector<BeatEntry>& script, Complaints& complaints) {
   std::map<std::string, HandSoFar> hands;
-  const auto check_holds = [&](const std::string& key, const Named<StepEntry>& step, const Where& where) {
+  const auto check_holds = [&](const std::string& key, const Named<StepEntry>& step,
+                               const Where& where) {
     const HandSoFar& hand = hands[step.name];
     if (!hand.reached.empty() || hand.closed) return;
     complaints.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
@@ -184,8 +181,10 @@ void CheckOrder(const std::vector<BeatEntry>& script, Complaints& complaints) {
   for (const BeatEntry& beat : script) {
     for (const Named<StepEntry>& step : beat) {
       HandSoFar& hand = hands[step.name];
-      if (const auto* reach = std::get_if<ReachEntry>(&step.value)) hand.reached = reach->reach.value;
-      if (const auto* close = std::get_if<CloseEntry>(&step.value)) hand.closed |= close->close_to > 0;
+      if (const auto* reach = std::get_if<ReachEntry>(&step.value))
+        hand.reached = reach->reach.value;
+      if (const auto* close = std::get_if<CloseEntry>(&step.value))
+        hand.closed |= close->close_to > 0;
       if (const auto* poses = std::get_if<PosesEntry>(&step.value)) {
         for (const PoseEntry& pose : poses->poses) hand.closed |= pose.trigger.value_or(0) > 0;
       }
@@ -204,6 +203,14 @@ void CheckOrder(const std::vector<BeatEntry>& script, Complaints& complaints) {
 }
 
 }  // namespace
+
+physics::Pose PoseOf(const PoseEntry& pose) {
+  physics::Pose X_WH{pose.at_m};
+  if (pose.rpy_deg) X_WH.q = FromRollPitchYaw(*pose.rpy_deg);
+  if (const auto& q = pose.quat_wxyz)
+    X_WH.q = Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]).normalized();
+  return X_WH;
+}
 
 physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene,
                             Complaints& complaints) {

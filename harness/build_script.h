@@ -14,4 +14,7 @@ namespace prehend::harness {
 /// for theirs.
 physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints);
 
+/// A way-point as the hand's pose.
+physics::Pose PoseOf(const PoseEntry& pose);
+
 }  // namespace prehend::harness

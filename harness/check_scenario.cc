@@ -11,6 +11,7 @@
 #include "harness/blame.h"
 #include "harness/check_records.h"
 #include "harness/compare.h"
+#include "harness/cross_engine.h"
 #include "harness/event_text.h"
 #include "harness/facts_around.h"
 #include "harness/golden_files.h"
@@ -183,6 +184,24 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
        DifferenceText(comparison, ExplainCommand(request.id, request.run), facts) + verdict.blame);
 }
 
+/// A planar scenario has the same events in both engines.
+void JudgeOtherEngine(const CheckRequest& request, const PreparedRun& prepared,
+                      const RunResult& run, ScenarioVerdict& verdict) {
+  const auto compared = CompareEngines(prepared.scenario, prepared.program, run.timeline);
+  if (!compared) return;
+  const std::string engine = NameOf(compared->other);
+  const std::string again =
+      ExplainCommand(request.id, request.run) + " --set world.engine=" + engine;
+  if (compared->run.status.kind != physics::RunStatus::Kind::kCompleted)
+    return Fail(verdict, ExitCode::kFailure, "the simulation failed in " + engine,
+                StatusText(compared->run) + "\nsee: " + again + "\n");
+  if (!compared->comparison.Agrees())
+    Fail(verdict, ExitCode::kDiffers, engine + " does not lead to the same events",
+         "recognised in " + engine + ", expected as recognised in " +
+             NameOf(prepared.scenario.scene.world.engine) + ":\n" +
+             DifferenceText(compared->comparison, again));
+}
+
 }  // namespace
 
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
@@ -219,6 +238,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   }
   JudgeInvariants(*prepared.value, watched, plain, verdict);
   JudgeAgainstGolden(request, *prepared.value, watched, plain, verdict);
+  JudgeOtherEngine(request, *prepared.value, plain, verdict);
   JudgePictures(request, verdict);
   if (verdict.verdict == Verdict::kPassed) LeaveTrace(request, scenario, watched);
   return verdict;

@@ -10,6 +10,7 @@
 #include "harness/build_joints.h"
 #include "harness/build_scene.h"
 #include "harness/build_script.h"
+#include "harness/check_planar.h"
 #include "harness/scenario_fields.h"
 #include "harness/trial_fields.h"
 #include "harness/text_file.h"
@@ -84,6 +85,9 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   physics::Scene& scene = scenario.scene;
   scene.world.rate_hz = entry.world.rate_hz;
   scene.world.seed = entry.world.seed;
+  scene.world.engine = entry.world.engine;
+  scene.world.planar = entry.world.planar ? entry.world.planar->value
+                                          : entry.world.engine == physics::Engine::kBox2d;
   scene.bodies = PlaceBodies(entry, complaints);
   scene.joints = BuildJoints(entry, complaints);
   scenario.body_part_of = PartsOf(entry, complaints);
@@ -97,6 +101,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scenario.script = BuildScript(entry, scene, complaints);
   scenario.outcomes = BuildOutcomes(entry.outcomes, scene, complaints);
   CheckVariations(document, entry.vary, complaints);
+  if (scene.world.planar) CheckPlanar(entry, scene, complaints);
   if (complaints.empty()) CheckOverlaps(entry, scene, complaints);
   if (!complaints.empty()) {
     Diagnostics diagnostics = complaints.Sorted();

@@ -17,7 +17,8 @@
 namespace prehend::harness {
 
 struct WorldEntry {
-  std::string engine = "bullet";
+  physics::Engine engine = physics::Engine::kBullet;
+  std::optional<Located<bool>> planar;  ///< default: as the engine needs it
   int rate_hz = 480;
   int sensing_hz = 240;
   std::uint64_t seed = 1;

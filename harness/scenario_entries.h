@@ -89,7 +89,7 @@ struct ReachEntry {
   Located<std::string> reach;
   Located<std::string> style{"wrap", {}};
   physics::Approach from = physics::Approach::kAuto;
-  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  Located<Eigen::Vector3d> offset_m{Eigen::Vector3d::Zero(), {}};
   std::optional<Located<Eigen::Vector3d>> point_m;
   double over_s = 0.8;
 };
@@ -106,12 +106,12 @@ struct LiftEntry {
   double over_s = 0.6;
 };
 struct MoveEntry {
-  Eigen::Vector3d move_by_m = Eigen::Vector3d::Zero();
+  Located<Eigen::Vector3d> move_by_m{Eigen::Vector3d::Zero(), {}};
   double over_s = 0.8;
 };
 struct CarryEntry {
   Where where;
-  Eigen::Vector2d carry_to_m = Eigen::Vector2d::Zero();
+  Located<Eigen::Vector2d> carry_to_m{Eigen::Vector2d::Zero(), {}};
   double over_s = 1.0;
 };
 struct PlaceEntry {

@@ -57,23 +57,34 @@ Format<ActorEntry> ActorFormat() {
 
 Format<WorldEntry> WorldFormat() {
   using W = WorldEntry;
+  using physics::Engine;
   return Record<W>("the world")
-      .Optional("engine", &W::engine, Choice(std::vector<std::string>{"bullet"}),
-                "The physics engine.")
+      .Optional("engine", &W::engine,
+                Choice<Engine>({{"bullet", Engine::kBullet}, {"box2d", Engine::kBox2d}}),
+                "The physics engine; box2d is planar.")
+      .Optional("planar", &W::planar, Flag(),
+                "Everything stays in the plane y = 0; always so with box2d, else not unless given.")
       .Optional("rate_hz", &W::rate_hz, Integer<int>(60, 4800), "Physics steps per second.")
       .Optional("sensing_hz", &W::sensing_hz, Integer<int>(1, 4800),
                 "Looks of the grammar per second, at most rate_hz.")
       .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
                 "Seed of all randomness.")
+      .Check([](const YamlNode&, const W& world, Complaints& complaints) {
+        if (world.engine != Engine::kBox2d || !world.planar || world.planar->value) return;
+        complaints.Add(world.planar->where, "planar: engine box2d knows nothing but the plane",
+                       "planar: true, or engine: bullet");
+      })
       .Check([](const YamlNode& node, const W& world, Complaints& complaints) {
         if (world.sensing_hz <= world.rate_hz) return;
-        const std::string sensing = std::to_string(world.sensing_hz), rate = std::to_string(world.rate_hz);
+        const std::string sensing = std::to_string(world.sensing_hz),
+                          rate = std::to_string(world.rate_hz);
         if (const YamlNode* written = node.Find("sensing_hz")) {
           complaints.Add(written->where, "sensing_hz " + sensing + " is above rate_hz " + rate);
         } else {
-          complaints.Add(node.Find("rate_hz")->where,
-                         "rate_hz " + rate + " is below sensing_hz, which is " + sensing + " unless given",
-                         "add sensing_hz: " + rate);
+          complaints.Add(
+              node.Find("rate_hz")->where,
+              "rate_hz " + rate + " is below sensing_hz, which is " + sensing + " unless given",
+              "add sensing_hz: " + rate);
         }
       })
       .format();
@@ -100,8 +111,7 @@ Format<PictureEntry> PictureFormat() {
   return Record<PictureEntry>("a picture")
       .Required("at", &PictureEntry::at, MomentFormat(),
                 "When: an event's 'begin' or 'end', or seconds.")
-      .Optional("camera", &PictureEntry::camera,
-                Choice(CameraWords()), "From where.")
+      .Optional("camera", &PictureEntry::camera, Choice(CameraWords()), "From where.")
       .format();
 }
 

@@ -47,11 +47,16 @@ void AddSection(const Shape& shape, const Pose& X_PS, const Surface& surface, b2
     table.push_back(surface.facts);
   };
   const Outline outline = OutlineOf(shape, X_PS);
-  const Eigen::Vector2d half = outline.half_size_m * kLengthScale;
-  const double radius = outline.radius_m * kLengthScale;
+  Eigen::Vector2d half = outline.half_size_m * kLengthScale;
+  double radius = outline.radius_m * kLengthScale;
+  const bool round = radius > 0;
+  if (round)
+    radius += kSink / 2;
+  else
+    half.array() += kSink / 2;
   const b2Vec2 centre = ToBox2d({outline.centre_m.x(), 0, outline.centre_m.y()});
   if (half.isZero()) return add(Circle(centre, radius));
-  if (radius == 0) return add(Rectangle(half, centre, outline.angle_rad));
+  if (!round) return add(Rectangle(half, centre, outline.angle_rad));
   // A capsule: Box2D has none, so it is a rectangle between two discs.
   const b2Vec2 to_end(static_cast<float>(half.x() * std::cos(outline.angle_rad)),
                       static_cast<float>(half.x() * std::sin(outline.angle_rad)));

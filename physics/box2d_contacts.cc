@@ -37,7 +37,7 @@ void ReadContacts(const b2World& world, const FixtureTable& table, TouchingPairs
                  .b = FactsOf(*contact->GetFixtureB(), table).side,
                  .p_W_m = FromBox2d(at.points[k]),
                  .nhat_BA_W = -nhat_AB_W,
-                 .distance_m = at.separations[k] / kLengthScale,
+                 .distance_m = (at.separations[k] + kSink) / kLengthScale,
                  .normal_impulse_n_s = manifold.points[k].normalImpulse / kLengthScale});
     }
   }

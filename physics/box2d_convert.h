@@ -14,6 +14,10 @@ namespace prehend::physics {
 inline constexpr double kLengthScale = 10;
 inline constexpr double kTorqueScale = kLengthScale * kLengthScale;
 
+/// Box2D rests things this deep in each other, 0.5 mm for us. Every section is larger by half of it,
+/// so that things rest where they should.
+inline constexpr float kSink = b2_linearSlop;
+
 /// Of a point, a velocity or a force.
 inline b2Vec2 ToBox2d(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x() * kLengthScale), static_cast<float>(v.z() * kLengthScale)};

@@ -45,15 +45,26 @@ Scene Flap(Joint joint) {
   return {.bodies = {Frame(), Block({0.3, 0, 1})}, .joints = {joint}};
 }
 
-Snapshot After(const Scene& scene, double seconds) {
-  Simulation simulation(scene, {.settle_s = seconds});
-  while (simulation.Step()) {
+/// What holds in every engine; all of it happens in a plane.
+class JointInEveryEngine : public testing::TestWithParam<Engine> {
+ protected:
+  static Snapshot After(Scene scene, double seconds) {
+    scene.world.engine = GetParam();
+    scene.world.planar = GetParam() == Engine::kBox2d;
+    Simulation simulation(scene, {.settle_s = seconds});
+    while (simulation.Step()) {
+    }
+    EXPECT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;
+    return simulation.snapshot();
   }
-  EXPECT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;
-  return simulation.snapshot();
-}
+};
 
-TEST(JointTest, ASliderFallsToItsLimitAndNowhereElse) {
+INSTANTIATE_TEST_SUITE_P(Joints, JointInEveryEngine,
+                         testing::Values(Engine::kBullet, Engine::kBox2d), [](const auto& engine) {
+                           return engine.param == Engine::kBox2d ? "box2d" : "bullet";
+                         });
+
+TEST_P(JointInEveryEngine, ASliderFallsToItsLimitAndNowhereElse) {
   const Snapshot end = After(Lift({.upper = 0.3}), 1);
   EXPECT_NEAR(end.joints[0].position, 0.3, 0.001);
   EXPECT_NEAR(end.joints[0].fraction, 1, 0.004);
@@ -62,14 +73,14 @@ TEST(JointTest, ASliderFallsToItsLimitAndNowhereElse) {
   EXPECT_LT(end.bodies[1].X_WB.q.vec().norm(), 1e-4);
 }
 
-TEST(JointTest, AHingeTurnsThePositiveWayToItsLimit) {
+TEST_P(JointInEveryEngine, AHingeTurnsThePositiveWayToItsLimit) {
   const Snapshot end = After(Flap({.lower = -0.2, .upper = 0.8}), 2);
   EXPECT_NEAR(end.joints[0].position, 0.8, 0.005);
   EXPECT_NEAR(end.bodies[1].X_WB.p_m.x(), 0.3 * std::cos(0.8), 0.003);
   EXPECT_NEAR(end.bodies[1].X_WB.p_m.z(), 1 - 0.3 * std::sin(0.8), 0.003);
 }
 
-TEST(JointTest, AHingeStopsAtItsLowerLimit) {
+TEST_P(JointInEveryEngine, AHingeStopsAtItsLowerLimit) {
   Scene scene = Flap({.lower = -0.4, .upper = 0});
   scene.joints[0].axis_W = -Vector3d::UnitY();
   const Snapshot end = After(scene, 2);
@@ -77,7 +88,7 @@ TEST(JointTest, AHingeStopsAtItsLowerLimit) {
   EXPECT_NEAR(end.joints[0].fraction, 0, 0.01);
 }
 
-TEST(JointTest, FrictionHoldsUpToItsSize) {
+TEST_P(JointInEveryEngine, FrictionHoldsUpToItsSize) {
   const double weight_n = 2 * 9.81;
   EXPECT_NEAR(After(Lift({.upper = 0.3, .friction = 1.1 * weight_n}), 1).joints[0].position, 0,
               0.001);
@@ -88,13 +99,13 @@ TEST(JointTest, FrictionHoldsUpToItsSize) {
   EXPECT_GT(After(Flap({.upper = 1, .friction = 0.7 * torque_nm}), 1).joints[0].position, 0.1);
 }
 
-TEST(JointTest, DampingSetsTheSpeedOfAFall) {
+TEST_P(JointInEveryEngine, DampingSetsTheSpeedOfAFall) {
   // Weight and damping balance at m g / d.
   const Snapshot slider = After(Lift({.upper = 2, .damping = 100}), 1);
   EXPECT_NEAR(slider.bodies[1].v_WB_m_per_s.z(), -2 * 9.81 / 100, 0.002);
 }
 
-TEST(JointTest, ASpringCarriesTheWeight) {
+TEST_P(JointInEveryEngine, ASpringCarriesTheWeight) {
   const Snapshot slider =
       After(Lift({.lower = -0.3, .upper = 0.3, .damping = 20, .spring = 200}), 4);
   EXPECT_NEAR(slider.joints[0].position, 2 * 9.81 / 200, 0.002);
@@ -120,7 +131,7 @@ TEST(JointTest, ABallJointSwingsAnyWayAboutItsPivot) {
   EXPECT_NEAR(lowest, 1 - 0.2 * std::sqrt(2), 0.01);
 }
 
-TEST(JointTest, FixedJointsMakeOneBodyThatIsTouchedApart) {
+TEST_P(JointInEveryEngine, FixedJointsMakeOneBodyThatIsTouchedApart) {
   // A plate with a peg below it: the peg touches the floor, the plate does not.
   const Scene scene{.bodies = {{.name = "floor", .shapes = {{Box{{2, 2, 0.1}}, {}}}, .fixed = true},
                                {.name = "plate",
@@ -145,7 +156,7 @@ TEST(JointTest, FixedJointsMakeOneBodyThatIsTouchedApart) {
   EXPECT_NEAR(impulse * 480, 1.5 * 9.81, 0.2);
 }
 
-TEST(JointTest, BodiesOfAJointDoNotTouchEachOther) {
+TEST_P(JointInEveryEngine, BodiesOfAJointDoNotTouchEachOther) {
   const Snapshot end = After(Lift({.upper = 0.3, .friction = 100}), 0.2);
   EXPECT_TRUE(end.contacts.empty());
 }
@@ -177,7 +188,7 @@ TEST(JointTest, AHandleIsMovedByTheJointOfWhatItIsFixedTo) {
   for (const int body : {0, 1, 2}) EXPECT_FALSE(MovesFreely(scene, body)) << body;
 }
 
-TEST(JointTest, DampedBodiesSlowDown) {
+TEST_P(JointInEveryEngine, DampedBodiesSlowDown) {
   Body block = Block({0, 0, 10});
   block.linear_damping_per_s = 5;
   // Weight and damping balance at g / c.

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// A planar scenario in the other engine: what is recognised does not depend on who computed the
+// physics. Tested by tests/harness/cross_engine_test.cc
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "harness/compare.h"
+#include "harness/run_scenario.h"
+
+namespace prehend::harness {
+
+/// Boundaries may differ by this much between engines: they place contacts and share out friction
+/// differently.
+inline constexpr double kEngineTolerance_s = 0.05;
+
+/// As the scenario format calls it.
+const char* NameOf(physics::Engine engine);
+
+struct EngineComparison {
+  physics::Engine other = physics::Engine::kBullet;
+  RunResult run;          ///< in the other engine
+  Comparison comparison;  ///< of the other engine's timeline with the one given; empty if it failed
+};
+
+/// Plays the scenario in the engine that it does not name. Empty when it is not planar.
+std::optional<EngineComparison> CompareEngines(const Scenario& scenario,
+                                               std::shared_ptr<const grammar::Program> program,
+                                               const grammar::Timeline& timeline);
+
+}  // namespace prehend::harness
