@@ -7,6 +7,8 @@
 
 #include <box2d/box2d.h>
 
+#include <algorithm>
+
 #include "physics/pose.h"
 
 namespace prehend::physics {
@@ -14,8 +16,8 @@ namespace prehend::physics {
 inline constexpr double kLengthScale = 10;
 inline constexpr double kTorqueScale = kLengthScale * kLengthScale;
 
-/// Box2D rests things this deep in each other, 0.5 mm for us. Every section is larger by half of it,
-/// so that things rest where they should.
+/// Box2D rests things this deep in each other, 0.5 mm for us. Every section is larger by half of
+/// it, so that things rest where they should.
 inline constexpr float kSink = b2_linearSlop;
 
 /// Of a point, a velocity or a force.
@@ -29,6 +31,13 @@ inline b2Vec2 DirectionToBox2d(const Eigen::Vector3d& unit) {
 
 inline Eigen::Vector3d FromBox2d(const b2Vec2& v) {
   return {v.x / kLengthScale, 0, v.y / kLengthScale};
+}
+
+/// The limits of a joint in Box2D's coordinate: `scale` times ours, the other way round when it is
+/// negative.
+inline void SetLimits(double lower, double upper, double scale, float& least, float& most) {
+  least = static_cast<float>(std::min(scale * lower, scale * upper));
+  most = static_cast<float>(std::max(scale * lower, scale * upper));
 }
 
 /// In Box2D's units; its own GetInertia() is about the body's origin.

@@ -2,8 +2,6 @@
 // Tested by tests/physics/box2d_world_test.cc
 #include "physics/box2d_hand.h"
 
-#include <algorithm>
-
 #include "physics/planar.h"
 
 namespace prehend::physics {
@@ -68,18 +66,16 @@ Box2dHand::Motor Box2dHand::MakeMotor(const HandLink& link, const Eigen::Vector3
     b2PrismaticJointDef def;
     def.Initialize(&parent, &body, ToBox2d(pivot_W_m), DirectionToBox2d(axis_W));
     def.enableLimit = true;
-    def.lowerTranslation = static_cast<float>((link.lower - start) * kLengthScale);
-    def.upperTranslation = static_cast<float>((link.upper - start) * kLengthScale);
+    SetLimits(link.lower - start, link.upper - start, kLengthScale, def.lowerTranslation,
+              def.upperTranslation);
     def.enableMotor = true;
     return {1, start, static_cast<b2PrismaticJoint*>(world.CreateJoint(&def)), nullptr};
   }
   const double sign = axis_W.y() > 0 ? -1 : 1;
-  const auto [lower, upper] = std::minmax(sign * (link.lower - start), sign * (link.upper - start));
   b2RevoluteJointDef def;
   def.Initialize(&parent, &body, ToBox2d(pivot_W_m));
   def.enableLimit = true;
-  def.lowerAngle = static_cast<float>(lower);
-  def.upperAngle = static_cast<float>(upper);
+  SetLimits(link.lower - start, link.upper - start, sign, def.lowerAngle, def.upperAngle);
   def.enableMotor = true;
   return {sign, start, nullptr, static_cast<b2RevoluteJoint*>(world.CreateJoint(&def))};
 }

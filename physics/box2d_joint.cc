@@ -18,15 +18,6 @@ double InverseMass(const b2Body& body) {
   return body.GetType() == b2_dynamicBody ? 1.0 / body.GetMass() : 0;
 }
 
-/// Box2D's limits for ours, which count the other way when `sign` is negative.
-template <class Def>
-void SetLimits(double lower, double upper, double sign, double scale, Def& def, float Def::*least,
-               float Def::*most) {
-  def.enableLimit = true;
-  def.*least = static_cast<float>(std::min(sign * lower, sign * upper) * scale);
-  def.*most = static_cast<float>(std::max(sign * lower, sign * upper) * scale);
-}
-
 }  // namespace
 
 Box2dJoint::Box2dJoint(const Joint& joint, b2Body& base, b2Body& body, b2World& world)
@@ -35,17 +26,16 @@ Box2dJoint::Box2dJoint(const Joint& joint, b2Body& base, b2Body& body, b2World& 
   if (joint.kind == JointKind::kSlider) {
     b2PrismaticJointDef def;
     def.Initialize(&base, &body, body.GetPosition(), DirectionToBox2d(joint.axis_W));
-    SetLimits(joint.lower, joint.upper, sign_, kLengthScale, def,
-              &b2PrismaticJointDef::lowerTranslation, &b2PrismaticJointDef::upperTranslation);
+    def.enableLimit = true;
+    SetLimits(joint.lower, joint.upper, kLengthScale, def.lowerTranslation, def.upperTranslation);
     def.enableMotor = joint.friction > 0;
     def.maxMotorForce = friction * static_cast<float>(kLengthScale);
     slider_ = static_cast<b2PrismaticJoint*>(world.CreateJoint(&def));
   } else {
     b2RevoluteJointDef def;
     def.Initialize(&base, &body, ToBox2d(joint.pivot_W_m));
-    if (joint.kind == JointKind::kHinge)
-      SetLimits(joint.lower, joint.upper, sign_, 1, def, &b2RevoluteJointDef::lowerAngle,
-                &b2RevoluteJointDef::upperAngle);
+    def.enableLimit = joint.kind == JointKind::kHinge;
+    SetLimits(joint.lower, joint.upper, sign_, def.lowerAngle, def.upperAngle);
     def.enableMotor = joint.friction > 0;
     def.maxMotorTorque = friction * static_cast<float>(kTorqueScale);
     hinge_ = static_cast<b2RevoluteJoint*>(world.CreateJoint(&def));
@@ -70,10 +60,11 @@ double Box2dJoint::Inertia() const {
 
 void Box2dJoint::Pull(double dt_s) {
   if (joint_.spring == 0 && joint_.damping == 0) return;
-  // Implicit in the coming speed, so that no stiffness explodes.
+  // As if at the end of the tick, and never more than what stops the joint there: no stiffness
+  // explodes.
   const double resistance = joint_.damping + joint_.spring * dt_s;
-  const double force = -(joint_.spring * (Position() - joint_.rest) + resistance * Rate()) /
-                       (1 + resistance * dt_s / Inertia());
+  const double share = std::min(1.0, Inertia() / (resistance * dt_s));
+  const double force = -share * (joint_.spring * (Position() - joint_.rest) + resistance * Rate());
   if (hinge_) {
     const auto torque = static_cast<float>(sign_ * force * kTorqueScale);
     hinge_->GetBodyA()->ApplyTorque(-torque, false);

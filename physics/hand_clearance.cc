@@ -14,6 +14,8 @@ constexpr int kBallsPerPalmEdge = 5;
 constexpr int kLeastBallsPerLink = 3;
 /// Balls on a link are at most this many radii apart.
 constexpr double kBallsApart_radii = 4;
+/// Radius of the balls at the corners of a jaw's end: unlike a fingertip's it is not round.
+constexpr double kCorner_m = 0.001;
 /// At 1.5 m/s, the peak of a long reach, this looks every centimetre.
 constexpr int kLooks = 120;
 /// Farther than this nothing matters; distances are cut off here.
@@ -42,6 +44,12 @@ HandClearance::HandClearance(const HandModel& model, const std::vector<double>& 
     for (int k = 0; k <= last; ++k) {
       const double x = half_length * (2.0 * k / last - 1);
       balls_.push_back({X_HL[i] * Eigen::Vector3d(x, 0, 0), radius});
+    }
+    if (!link.slides) continue;
+    for (const double side : {-1.0, 1.0}) {
+      const Eigen::Vector3d corner(link.length_m / 2 - kCorner_m, 0,
+                                   side * (link.half_thickness_m - kCorner_m));
+      balls_.push_back({X_HL[i] * corner, kCorner_m});
     }
   }
   for (const Ball& ball : balls_) reach_m_ = std::max(reach_m_, ball.p_H_m.norm() + ball.radius_m);
