@@ -99,19 +99,28 @@ Format<JointDriver> DriverFormat() {
       .format();
 }
 
+/// A member that a phalanx or a jaw has as a link.
+template <class Link, class Member>
+Member Link::*Of(Member LinkEntry::*member) {
+  return member;
+}
+
 /// `record` with what a phalanx and a jaw have in common; the units are those of its joint.
 template <class Link>
 Record<Link> LinkRecord(Record<Link> record, const char* strength, double strongest,
                         const char* range, double farthest) {
   return record
-      .Required("length_m", &Link::length_m, PartLength(), "From its joint to the next one.")
-      .Required("half_width_m", &Link::half_width_m, PartLength(), "Half of its size across.")
-      .Required("half_thickness_m", &Link::half_thickness_m, PartLength(),
+      .Required("length_m", Of<Link>(&LinkEntry::length_m), PartLength(),
+                "From its joint to the next one.")
+      .Required("half_width_m", Of<Link>(&LinkEntry::half_width_m), PartLength(),
+                "Half of its size across.")
+      .Required("half_thickness_m", Of<Link>(&LinkEntry::half_thickness_m), PartLength(),
                 "Half of its size from back to pad.")
-      .Required("mass_kg", &Link::mass_kg, PartMass(), "Mass.")
-      .Required(strength, &Link::strength, Number(0, strongest),
+      .Required("mass_kg", Of<Link>(&LinkEntry::mass_kg), PartMass(), "Mass.")
+      .Required(strength, Of<Link>(&LinkEntry::strength), Number(0, strongest),
                 "Largest torque or force of its joint at effort 1.")
-      .Required(range, &Link::range, Vector<2>(-farthest, farthest), "Joint limits [least, most].")
+      .Required(range, Of<Link>(&LinkEntry::range), Vector<2>(-farthest, farthest),
+                "Joint limits [least, most].")
       .Check([key = std::string(range)](const YamlNode&, const Link& link, Complaints& complaints) {
         if (link.range.value[0] >= link.range.value[1])
           complaints.Add(link.range.where, key + ": expected [least, most]");
