@@ -182,7 +182,7 @@ std::vector<physics::Body> PlaceBodies(const ScenarioEntry& entry, Complaints& c
   return std::move(stacking.bodies);
 }
 
-physics::Hand PlaceHand(const Named<ActorEntry>& actor, physics::HandModel model, int rate_hz,
+physics::Hand PlaceHand(const Named<HandActor>& actor, physics::HandModel model, int rate_hz,
                         Complaints& complaints) {
   if (actor.value.gains) {
     Override(actor.value.gains->value.translation, model.translation);
@@ -192,9 +192,18 @@ physics::Hand PlaceHand(const Named<ActorEntry>& actor, physics::HandModel model
     complaints.Add(actor.value.gains ? actor.value.gains->where : actor.value.hand.where,
                    fmt::format("actor '{}' cannot be stable: {}", actor.name, unstable));
   }
-  return {actor.name,
-          std::move(model),
-          {actor.value.at_m.value, FromRollPitchYaw(actor.value.rpy_deg)}};
+  physics::Hand hand{.name = actor.name,
+                     .model = std::move(model),
+                     .X_WH = {actor.value.at_m.value, FromRollPitchYaw(actor.value.rpy_deg)},
+                     .tracking = {}};
+  if (const auto& tracking = actor.value.tracking) {
+    hand.tracking = tracking->value;
+    if (tracking->value.tracker_hz > rate_hz) {
+      complaints.Add(tracking->where, fmt::format("tracker_hz {} is above rate_hz {}",
+                                                  tracking->value.tracker_hz, rate_hz));
+    }
+  }
+  return hand;
 }
 
 }  // namespace prehend::harness

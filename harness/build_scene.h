@@ -14,7 +14,7 @@ namespace prehend::harness {
 std::vector<physics::Body> PlaceBodies(const ScenarioEntry& entry, Complaints& complaints);
 
 /// One hand of this model, as the actor says. Complains about gains that cannot be stable at the rate.
-physics::Hand PlaceHand(const Named<ActorEntry>& actor, physics::HandModel model, int rate_hz, Complaints& complaints);
+physics::Hand PlaceHand(const Named<HandActor>& actor, physics::HandModel model, int rate_hz, Complaints& complaints);
 
 /// Complains about things that stand in each other by more than a millimetre: bodies, and hands that start in one.
 void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 
+#include "harness/build_person_steps.h"
 #include "harness/build_scene.h"
 #include "harness/scenario_fields.h"
 #include "physics/geometry.h"
@@ -25,6 +26,11 @@ std::vector<std::string> NamesOf(const std::vector<Named<T>>& entries) {
   return names;
 }
 
+int IndexOf(const std::string& name, const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
 physics::TimedPose TimedPoseOf(const PoseEntry& pose) {
   physics::TimedPose timed;
   timed.t_s = pose.t_s;
@@ -38,11 +44,14 @@ struct StepMaker {
   const std::vector<std::string>& entities;
   const physics::Scene& scene;
   const physics::HandModel* model;  ///< null when the hand is not known
+  const Named<StepEntry>& step;
   Complaints& complaints;
 
   physics::Step operator()(const ReachEntry& e) const {
     CheckEntity("reach", e.reach);
-    CheckStyle(e);
+    const Where where =
+        e.style.where.place.line > 0 ? e.style.where : e.reach.where;  // the default has no place
+    if (const physics::GraspStyle* style = FindStyle(e.style.value, where)) CheckApproach(e, *style);
     CheckPoint(e);
     physics::ReachStep reach{e.reach.value, e.style.value, e.from, e.offset_m.value, {}};
     if (e.point_m) reach.point_m = e.point_m->value;
@@ -79,8 +88,16 @@ struct StepMaker {
   physics::Step operator()(const PosesEntry& e) const {
     physics::PosesStep step;
     for (const PoseEntry& pose : e.poses) step.poses.push_back(TimedPoseOf(pose));
-    const double over_s = step.poses.empty() ? 0 : step.poses.back().t_s;
-    return {0, std::move(step), over_s};
+    return Follow(std::move(step), e.style);
+  }
+  physics::Step operator()(const RecordingEntry& e) const {
+    return Follow(physics::PosesStep{e.poses}, e.style);
+  }
+  template <class PersonEntry>
+  physics::Step operator()(const PersonEntry&) const {
+    complaints.Add(step.name_where, fmt::format("'{}' is a hand, and this step is for persons", step.name),
+                   "hands reach, close, move; persons look, walk, lean");
+    return {};
   }
 
  private:
@@ -116,20 +133,26 @@ struct StepMaker {
                    "give it one, or move the hand by 'move_by_m'");
   }
 
-  void CheckStyle(const ReachEntry& e) const {
-    if (!model || model->styles.empty()) return;
-    const Where where =
-        e.style.where.place.line > 0 ? e.style.where : e.reach.where;  // the default has no place
-    const int style = physics::FindStyle(*model, e.style.value);
-    if (style < 0) {
-      std::vector<std::string> known;
-      for (const auto& candidate : model->styles) known.push_back(candidate.name);
-      complaints.AddUnknownName(
-          where, fmt::format("style: hand '{}' has no style '{}'", model->name, e.style.value),
-          e.style.value, known);
-      return;
-    }
-    const physics::GraspStyle& chosen = model->styles[static_cast<std::size_t>(style)];
+  physics::Step Follow(physics::PosesStep step, const Located<std::string>& style) const {
+    if (!style.value.empty()) FindStyle(style.value, style.where);
+    step.style = style.value;
+    const double over_s = step.poses.empty() ? 0 : step.poses.back().t_s;
+    return {0, std::move(step), over_s};
+  }
+
+  /// Null after complaining, and when the hand is not known.
+  const physics::GraspStyle* FindStyle(const std::string& name, const Where& where) const {
+    if (!model || model->styles.empty()) return nullptr;
+    const int style = physics::FindStyle(*model, name);
+    if (style >= 0) return &model->styles[static_cast<std::size_t>(style)];
+    std::vector<std::string> known;
+    for (const auto& candidate : model->styles) known.push_back(candidate.name);
+    complaints.AddUnknownName(
+        where, fmt::format("style: hand '{}' has no style '{}'", model->name, name), name, known);
+    return nullptr;
+  }
+
+  void CheckApproach(const ReachEntry& e, const physics::GraspStyle& chosen) const {
     const bool above_missing = e.from == physics::Approach::kAbove && !chosen.above;
     const bool side_missing = e.from == physics::Approach::kSide && !chosen.side;
     if (above_missing || side_missing) {
@@ -148,9 +171,11 @@ void CheckLength(const ScenarioEntry& entry, const physics::Script& script,
     double beat_s = 0;
     for (const physics::Step& step : script.beats[i].steps) {
       beat_s = std::max(beat_s, step.over_s);
-      if (const auto* step_poses = std::get_if<physics::PosesStep>(&step.action))
-        poses += step_poses->poses.size();
     }
+    for (const Named<StepEntry>& step : entry.script[i]) {
+      if (const auto* written = std::get_if<PosesEntry>(&step.value)) poses += written->poses.size();
+    }
+    for (const physics::PersonStep& step : script.beats[i].person_steps) beat_s = std::max(beat_s, step.over_s);
     total_s += beat_s;
     const Where where = entry.script[i].front().name_where;
     if (total_s > kMaxDurationS) {
@@ -188,6 +213,9 @@ void CheckOrder(const std::vector<BeatEntry>& script, Complaints& complaints) {
       if (const auto* poses = std::get_if<PosesEntry>(&step.value)) {
         for (const PoseEntry& pose : poses->poses) hand.closed |= pose.trigger.value_or(0) > 0;
       }
+      if (const auto* recording = std::get_if<RecordingEntry>(&step.value)) {
+        for (const physics::TimedPose& pose : recording->poses) hand.closed |= pose.trigger.value_or(0) > 0;
+      }
       if (const auto* carry = std::get_if<CarryEntry>(&step.value)) {
         check_holds("carry_to_m", step, carry->where);
       }
@@ -214,23 +242,27 @@ physics::Pose PoseOf(const PoseEntry& pose) {
 
 physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene,
                             Complaints& complaints) {
-  const std::vector<std::string> entities = NamesOf(entry.entities), actors = NamesOf(entry.actors);
+  const std::vector<std::string> entities = NamesOf(entry.entities), hands = NamesOf(entry.hands),
+                                 persons = NamesOf(entry.persons);
   physics::Script script;
   script.settle_s = entry.settle_s;
   for (const BeatEntry& beat_entry : entry.script) {
     physics::Beat& beat = script.beats.emplace_back();
     for (const Named<StepEntry>& named : beat_entry) {
-      const auto actor = std::find(actors.begin(), actors.end(), named.name);
-      if (actor == actors.end()) {
+      const int hand = IndexOf(named.name, hands), person = IndexOf(named.name, persons);
+      if (person >= 0) {
+        beat.person_steps.push_back(MakePersonStep(named, person, scene, complaints));
+        continue;
+      }
+      if (hand < 0) {
         complaints.AddUnknownName(named.name_where,
                                   fmt::format("no actor is called '{}'", named.name), named.name,
-                                  actors);
+                                  NamesOf(entry.actors));
       }
-      const auto hand = static_cast<std::size_t>(actor - actors.begin());
-      const physics::HandModel* model =
-          hand < scene.hands.size() ? &scene.hands[hand].model : nullptr;
-      physics::Step step = std::visit(StepMaker{entities, scene, model, complaints}, named.value);
-      step.hand = static_cast<int>(hand);
+      const bool known = hand >= 0 && hand < static_cast<int>(scene.hands.size());
+      const physics::HandModel* model = known ? &scene.hands[static_cast<std::size_t>(hand)].model : nullptr;
+      physics::Step step = std::visit(StepMaker{entities, scene, model, named, complaints}, named.value);
+      step.hand = hand;
       beat.steps.push_back(std::move(step));
     }
   }

@@ -10,7 +10,7 @@
 namespace prehend::harness {
 
 /// Complains about unknown actors, entities and styles, about approaches a style does not have, and about a script
-/// that is too long. `scene` has the hands of `entry.actors`, in that order; hands without styles are not checked
+/// that is too long. `scene` has the hands and persons of `entry`, in that order; hands without styles are not checked
 /// for theirs.
 physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints);
 

@@ -22,6 +22,8 @@ struct Occupant {
   std::string name;
   Where where;
   bool hand = false;
+  bool fixed = false;
+  bool person = false;
   std::vector<PlacedSolid> solids;
   Eigen::AlignedBox3d bounds;
 };
@@ -32,7 +34,12 @@ void AddSolid(const physics::Shape& shape, const physics::Pose& X_WS, Occupant& 
 }
 
 Occupant OccupantOf(const physics::Body& body, Where where) {
-  Occupant occupant{.name = body.name, .where = where, .hand = false, .solids = {}, .bounds = {}};
+  Occupant occupant{.name = body.name,
+                    .where = where,
+                    .fixed = body.fixed,
+                    .person = body.kinematic,
+                    .solids = {},
+                    .bounds = {}};
   for (const auto& placed : body.shapes) AddSolid(placed.shape, body.X_WB * placed.X_BS, occupant);
   return occupant;
 }
@@ -70,10 +77,20 @@ bool Joined(const physics::Scene& scene, std::size_t a, std::size_t b) {
   return physics::NeverTouch(scene, static_cast<int>(a), static_cast<int>(b));
 }
 
+/// A person goes through what is fixed, through hands and other persons.
+bool MayOverlap(const Occupant& a, const Occupant& b) {
+  if (!a.person) return b.person && MayOverlap(b, a);
+  return b.person || b.hand || b.fixed;
+}
+
 void Complain(const Occupant& later, const Occupant& earlier, double depth_m,
               Complaints& complaints) {
   const double depth_mm = depth_m * 1000;
-  if (later.hand) {
+  if (later.person) {
+    complaints.Add(later.where,
+                   fmt::format("'{}' starts inside '{}', {:.0f} mm deep", later.name, earlier.name, depth_mm),
+                   "let her stand elsewhere");
+  } else if (later.hand) {
     complaints.Add(later.where,
                    fmt::format("actor '{}' starts inside '{}', {:.0f} mm deep", later.name,
                                earlier.name, depth_mm),
@@ -86,16 +103,26 @@ void Complain(const Occupant& later, const Occupant& earlier, double depth_m,
   }
 }
 
+/// Of a body's place. After the entities come the parts of the persons.
+Where WhereOf(const ScenarioEntry& entry, const physics::Scene& scene, std::size_t body) {
+  if (body < entry.entities.size()) return entry.entities[body].value.at_m.where;
+  Where where;
+  for (std::size_t i = 0; i < scene.persons.size(); ++i) {
+    if (static_cast<std::size_t>(scene.persons[i].head) <= body) where = entry.persons[i].value.at_m.where;
+  }
+  return where;
+}
+
 }  // namespace
 
 void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene,
                    Complaints& complaints) {
   std::vector<Occupant> occupants;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    occupants.push_back(OccupantOf(scene.bodies[i], entry.entities[i].value.at_m.where));
+    occupants.push_back(OccupantOf(scene.bodies[i], WhereOf(entry, scene, i)));
   }
   for (std::size_t i = 0; i < scene.hands.size(); ++i) {
-    occupants.push_back(OccupantOf(scene.hands[i], entry.actors[i].value.at_m.where));
+    occupants.push_back(OccupantOf(scene.hands[i], entry.hands[i].value.at_m.where));
   }
   std::vector<std::size_t> by_x(occupants.size());
   for (std::size_t i = 0; i < by_x.size(); ++i) by_x[i] = i;
@@ -112,6 +139,7 @@ void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene,
       if (complained.contains(later)) continue;
       const double depth_m = Depth(occupants[earlier], occupants[later]);
       if (depth_m <= kAllowedM || Joined(scene, earlier, later)) continue;
+      if (MayOverlap(occupants[earlier], occupants[later])) continue;
       Complain(occupants[later], occupants[earlier], depth_m, complaints);
       complained.insert(later);
     }

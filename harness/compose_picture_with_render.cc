@@ -26,6 +26,7 @@ render::Color ColorOf(std::uint32_t rgb) {
 /// Calm, distinguishable colours for bodies; fixed ones are wood.
 render::Color BodyColor(const physics::Body& body, int index) {
   if (body.fixed) return ColorOf(0xC8A27C);
+  if (body.kinematic) return ColorOf(0xA9B4BE);  // a person, who is not what it is about
   constexpr std::array<std::uint32_t, 6> palette = {0xE9EEF2, 0xE07A3F, 0x3F6E8C,
                                                     0xC0392B, 0x8FB339, 0x8C6BB1};
   return ColorOf(palette[index % palette.size()]);
@@ -192,7 +193,7 @@ render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& ru
         [&](const auto& e) { return *RoleValue(e, "object"); });
   }
   for (const physics::Body& body : scenario.scene.bodies) {
-    if (body.fixed || strip.rows.size() >= 6) continue;
+    if (body.fixed || body.kinematic || strip.rows.size() >= 6) continue;
     add_row(
         body.name + " on",
         [&](const auto& e) {

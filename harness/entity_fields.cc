@@ -85,7 +85,8 @@ Format<JointEntry> BallJointFormat() {
 }
 
 void CheckClass(const EntityEntry& entity, Complaints& complaints) {
-  for (const char* reserved : {"Entity", "Thing", "Movable", "Fixed", "Jointed", "Hand"}) {
+  for (const char* reserved : {"Entity", "Thing", "Movable", "Fixed", "Jointed", "Hand", "Person",
+                               "BodyPart"}) {
     if (entity.class_name.value != reserved) continue;
     complaints.Add(entity.class_name.where,
                    "class: '" + entity.class_name.value + "' is built in and given anyway",

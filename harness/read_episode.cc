@@ -27,6 +27,7 @@ struct MemberEntry {
   std::string class_name = "Object";
   bool fixed = false;
   bool jointed = false;
+  bool person = false;
   bool hand = false;
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
@@ -95,6 +96,7 @@ Format<HeaderEntry> HeaderFormat() {
                                .Optional("class", &M::class_name, Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"), "")
                                .Optional("fixed", &M::fixed, Flag(), "")
                                .Optional("jointed", &M::jointed, Flag(), "")
+                               .Optional("person", &M::person, Flag(), "")
                                .Optional("hand", &M::hand, Flag(), "")
                                .Optional("centre_m", &M::centre_m, Position(), "")
                                .Required("size_m", &M::size_m, Vector<3>(0, kFarthestM), "")
@@ -225,6 +227,8 @@ class EpisodeReader {
         member.classes = {"Hand", "Entity"};
         member.sensor_sets = m.sensor_sets;
         hands_.push_back(static_cast<int>(cast.entities.size()) - 1);
+      } else if (m.person) {
+        member.classes = {m.class_name, "Entity"};
       } else {
         member.classes = {m.class_name, m.fixed ? "Fixed" : m.jointed ? "Jointed" : "Movable", "Thing", "Entity"};
       }

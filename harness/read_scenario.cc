@@ -8,9 +8,11 @@
 #include <filesystem>
 
 #include "harness/build_joints.h"
+#include "harness/build_persons.h"
 #include "harness/build_scene.h"
 #include "harness/build_script.h"
 #include "harness/check_planar.h"
+#include "harness/recorded_input.h"
 #include "harness/scenario_fields.h"
 #include "harness/trial_fields.h"
 #include "harness/text_file.h"
@@ -72,6 +74,19 @@ std::string SkillOf(const std::string& file) {
   return folder.parent_path().filename() == "scenarios" ? folder.filename().string() : "";
 }
 
+/// A person is her head; her other parts are part of it.
+void AddPersonClasses(Scenario& scenario) {
+  for (std::size_t i = scenario.body_classes.size(); i < scenario.scene.bodies.size(); ++i) {
+    const auto& persons = scenario.scene.persons;
+    const auto owner = std::find_if(persons.rbegin(), persons.rend(), [&](const physics::Person& person) {
+      return static_cast<std::size_t>(person.head) <= i;
+    });
+    const bool is_head = static_cast<std::size_t>(owner->head) == i;
+    scenario.body_classes.push_back(is_head ? "Person" : "BodyPart");
+    scenario.body_part_of.push_back(is_head ? grammar::kNobody : owner->head);
+  }
+}
+
 ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& document,
                              const ScenarioLibrary& library) {
   Complaints complaints(document);
@@ -79,8 +94,10 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   if (!ScenarioFormat().read(document.root, complaints, entry))
     return {std::nullopt, complaints.Sorted()};
 
+  SortActors(entry);
   CheckNames(file, entry, library, complaints);
-  Diagnostics in_hand_files;
+  Diagnostics in_other_files;
+  ReadRecordings(file, entry, complaints, in_other_files);
   Scenario scenario;
   physics::Scene& scene = scenario.scene;
   scene.world.rate_hz = entry.world.rate_hz;
@@ -91,13 +108,14 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scene.bodies = PlaceBodies(entry, complaints);
   scene.joints = BuildJoints(entry, complaints);
   scenario.body_part_of = PartsOf(entry, complaints);
-  for (const auto& actor : entry.actors) {
-    physics::HandModel model = FindHand(file, actor.value.hand, library, complaints, in_hand_files);
+  for (const auto& actor : entry.hands) {
+    physics::HandModel model = FindHand(file, actor.value.hand, library, complaints, in_other_files);
     const bool known = !model.name.empty();
     scene.hands.push_back(known
                               ? PlaceHand(actor, std::move(model), entry.world.rate_hz, complaints)
                               : physics::Hand{actor.name, {}, {}});
   }
+  AddPersons(entry, scene, complaints);
   scenario.script = BuildScript(entry, scene, complaints);
   scenario.outcomes = BuildOutcomes(entry.outcomes, scene, complaints);
   CheckVariations(document, entry.vary, complaints);
@@ -105,7 +123,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   if (complaints.empty()) CheckOverlaps(entry, scene, complaints);
   if (!complaints.empty()) {
     Diagnostics diagnostics = complaints.Sorted();
-    diagnostics.insert(diagnostics.end(), in_hand_files.begin(), in_hand_files.end());
+    diagnostics.insert(diagnostics.end(), in_other_files.begin(), in_other_files.end());
     return {std::nullopt, std::move(diagnostics)};
   }
 
@@ -118,8 +136,10 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scenario.world = entry.world;
   for (const auto& entity : entry.entities)
     scenario.body_classes.push_back(entity.value.class_name.value);
+  AddPersonClasses(scenario);
   scenario.variations = std::move(entry.vary);
   scenario.pictures = std::move(entry.pictures);
+  scenario.warnings = std::move(in_other_files);
   return {std::move(scenario), {}};
 }
 

@@ -29,8 +29,11 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     const physics::LocalBox box = physics::BoundingBox(body);
     grammar::CastMember& member = cast.entities.emplace_back();
     member.name = body.name;
-    member.classes = {scenario.body_classes[i], MobilityOf(scenario.scene, static_cast<int>(i)),
-                      "Thing", "Entity"};
+    member.classes = body.kinematic
+                         ? std::vector<std::string>{scenario.body_classes[i], "Entity"}
+                         : std::vector<std::string>{scenario.body_classes[i],
+                                                    MobilityOf(scenario.scene, static_cast<int>(i)),
+                                                    "Thing", "Entity"};
     member.part_of = scenario.body_part_of[i];
     member.p_BC_m = box.p_BC_m;
     member.half_size_m = box.half_size_m;

@@ -47,6 +47,7 @@ struct Scenario {
   std::vector<VariationEntry> variations;
   std::vector<Outcome> outcomes;
   std::vector<PictureEntry> pictures;
+  grammar::Diagnostics warnings;  ///< about what can be used, but is odd
 };
 
 /// Who can be bound to roles: the scene's bodies first (same index), then its hands.

@@ -76,13 +76,27 @@ struct GainsOverride {
   PidOverride translation, rotation;
 };
 
-struct ActorEntry {
+struct HandActor {
   Where where;
   Located<std::string> hand;
   Located<Eigen::Vector3d> at_m;
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
   std::optional<Located<GainsOverride>> gains;
+  std::optional<Located<physics::Tracking>> tracking;
 };
+
+enum class PersonKind { kHead, kBody };
+
+struct PersonActor {
+  Where where;
+  PersonKind person = PersonKind::kBody;
+  Located<Eigen::Vector3d> at_m;
+  double yaw_deg = 0;
+  double height_m = physics::Person{}.height_m;
+  physics::Eyes eyes = physics::Eyes::kLead;
+  std::optional<Located<std::string>> right_hand, left_hand;
+};
+using ActorEntry = std::variant<HandActor, PersonActor>;
 
 // The steps of the script. Default durations are human-like (docs/scenario-format.md).
 struct ReachEntry {
@@ -141,9 +155,60 @@ struct PoseEntry {
 };
 struct PosesEntry {
   std::vector<PoseEntry> poses;
+  Located<std::string> style;  ///< "": stays
 };
+struct RecordingEntry {
+  Located<std::string> recording;
+  std::optional<Located<std::string>> device;
+  std::optional<Located<int>> button;
+  double press_s = 0.25;
+  Located<std::string> style;
+  Located<double> from_s;
+  std::optional<Located<double>> to_s;
+  std::optional<Eigen::Vector3d> start_at_m;
+  double yaw_deg = 0;
+  Eigen::Vector3d palm_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d palm_rpy_deg = Eigen::Vector3d::Zero();
+  double join_s = 0.5;
+  double most_gap_s = 0.25;
+  double most_jump_m = 0.1;
+  std::vector<physics::TimedPose> poses;  ///< of the palm in the world; see harness/recorded_input.h
+};
+// Steps of persons.
+struct LookAtEntry {
+  Located<std::string> look_at;
+  double over_s = 0.5;
+};
+struct LookAtPointEntry {
+  Eigen::Vector3d look_at_m = Eigen::Vector3d::Zero();
+  double over_s = 0.5;
+};
+struct EyesEntry {
+  physics::Eyes eyes = physics::Eyes::kLead;
+  double over_s = 0.5;
+};
+struct WalkEntry {
+  Eigen::Vector2d walk_to_m = Eigen::Vector2d::Zero();
+  double over_s = 1.0;
+};
+struct TurnEntry {
+  double turn_to_deg = 0;
+  double over_s = 0.8;
+};
+struct LeanEntry {
+  double lean_deg = 0;
+  double over_s = 0.8;
+};
+struct MoveLimbEntry {
+  Located<physics::LimbEnd> move_limb;
+  std::optional<Eigen::Vector3d> to_m;
+  double over_s = 0.8;
+};
+
 using StepEntry = std::variant<WaitEntry, ReachEntry, CloseEntry, OpenEntry, LiftEntry, MoveEntry,
-                               CarryEntry, PlaceEntry, RetreatEntry, FollowJointEntry, PosesEntry>;
+                               CarryEntry, PlaceEntry, RetreatEntry, FollowJointEntry, PosesEntry,
+                               RecordingEntry, LookAtEntry, LookAtPointEntry, EyesEntry, WalkEntry, TurnEntry,
+                               LeanEntry, MoveLimbEntry>;
 
 /// One item of the script: what each named actor does at the same time.
 using BeatEntry = std::vector<Named<StepEntry>>;
@@ -157,11 +222,16 @@ struct ScenarioEntry {
   WorldEntry world;
   std::vector<Named<EntityEntry>> entities;
   std::vector<Named<ActorEntry>> actors;
+  std::vector<Named<HandActor>> hands;      ///< those of the actors; see SortActors()
+  std::vector<Named<PersonActor>> persons;  ///< the others
   std::vector<BeatEntry> script;
   double settle_s = physics::Script{}.settle_s;
   std::vector<VariationEntry> vary;
   std::vector<Named<std::vector<ConditionEntry>>> outcomes;
   std::vector<PictureEntry> pictures;
 };
+
+/// Fills in `hands` and `persons`, in the order of the actors.
+void SortActors(ScenarioEntry& entry);
 
 }  // namespace prehend::harness

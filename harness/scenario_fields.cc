@@ -2,6 +2,7 @@
 // Tested by tests/harness/scenario_fields_test.cc
 #include "harness/scenario_fields.h"
 
+#include "harness/actor_fields.h"
 #include "harness/entity_fields.h"
 #include "harness/record.h"
 #include "harness/step_fields.h"
@@ -10,50 +11,6 @@
 
 namespace prehend::harness {
 namespace {
-
-constexpr double kFarthestM = 100;  // of anything from the origin
-
-Format<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)[4]) {
-  return Record<PidOverride>(noun)
-      .Optional(keys[0], &PidOverride::proportional, Number(0, 1e6), "Force or torque per error.")
-      .Optional(keys[1], &PidOverride::derivative, Number(0, 1e5),
-                "Force or torque per speed of the error.")
-      .Optional(keys[2], &PidOverride::integral, Number(0, 1e6),
-                "Force or torque per error and second.")
-      .Optional(keys[3], &PidOverride::limit, Number(0, 1e4), "Largest force or torque.")
-      .format();
-}
-
-Format<GainsOverride> GainsFormat() {
-  return Record<GainsOverride>("the gains")
-      .Optional("translation", &GainsOverride::translation,
-                PidFormat("the translation gains", {"proportional_n_per_m", "derivative_n_s_per_m",
-                                                    "integral_n_per_m_s", "limit_n"}),
-                "How the palm follows the position of its tracked target.")
-      .Optional(
-          "rotation", &GainsOverride::rotation,
-          PidFormat("the rotation gains", {"proportional_nm_per_rad", "derivative_nm_s_per_rad",
-                                           "integral_nm_per_rad_s", "limit_nm"}),
-          "How the palm follows the orientation of its tracked target.")
-      .format();
-}
-
-Format<ActorEntry> ActorFormat() {
-  using A = ActorEntry;
-  return Record<A>("actor")
-      .NamedByKey()
-      .Required("hand", &A::hand,
-                Word("[A-Za-z0-9_./-]+", "a hand like 'human_right', or a .hand.yaml file", 255),
-                "A hand of the library, or a .hand.yaml file beside the scenario.")
-      .Required("at_m", &A::at_m, Vector<3>(-kFarthestM, kFarthestM),
-                "World coordinates of the palm's centre at the start.")
-      .Optional("rpy_deg", &A::rpy_deg, Vector<3>(-360, 360),
-                "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis. "
-                "At 0 fingers point along x, the palm looks down.")
-      .Optional("gains", &A::gains, GainsFormat(),
-                "Replaces gains of the hand file; what is not given stays.")
-      .format();
-}
 
 Format<WorldEntry> WorldFormat() {
   using W = WorldEntry;

@@ -81,6 +81,7 @@ Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
                          StyleIndices(hand.model, styles)});
     feelers_.emplace_back(geometry_.back().palm.size() + geometry_.back().links.size());
   }
+  for (const physics::Person& person : scene.persons) heads_.push_back(person.head);
   for (const physics::Joint& joint : scene.joints) jointed_.push_back(joint.body);
   entities_.resize(scene.bodies.size() + scene.hands.size());
   hands_.resize(scene.hands.size());
@@ -93,6 +94,11 @@ grammar::Frame Sensing::Sense(const physics::Snapshot& snapshot) {
     grammar::EntityLook& look = entities_[static_cast<std::size_t>(jointed_[i])];
     look.joint_position = snapshot.joints[i].position;
     look.joint_fraction = snapshot.joints[i].fraction;
+  }
+  for (std::size_t i = 0; i < snapshot.gazes.size(); ++i) {
+    const physics::GazeState& gaze = snapshot.gazes[i];
+    entities_[static_cast<std::size_t>(heads_[i])].gazes_at =
+        gaze.hand >= 0 ? body_count_ + gaze.hand : gaze.body >= 0 ? gaze.body : grammar::kNobody;
   }
   SenseHands(snapshot);
   SenseTouches(snapshot);

@@ -59,6 +59,7 @@ class Sensing {
   std::int64_t rate_hz_ = 480;
   std::int64_t sensing_hz_ = 240;
   int body_count_ = 0;
+  std::vector<int> heads_;    ///< for every person the body that is her head
   std::vector<int> jointed_;  ///< for every joint the body that hangs on it
   std::vector<HandGeometry> geometry_;
   std::vector<grammar::EntityLook> entities_;

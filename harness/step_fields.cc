@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "harness/actor_fields.h"
 #include "harness/record.h"
 #include "harness/scenario_fields.h"
 
@@ -17,6 +18,7 @@ constexpr double kLongestS = 600;
 
 Format<double> Duration() { return Number(kShortestS, kLongestS); }
 const std::string kOverDoc = "Duration in seconds.";
+const std::string kStyleDoc = "The grasp style that the hand takes; default: it keeps its own.";
 
 /// A record with one number, list or name and a duration; most steps are of this kind.
 template <class Entry, class M, class F>
@@ -97,6 +99,7 @@ Format<StepEntry> PosesFormat() {
           .Required("poses", &PosesEntry::poses, ListOf(PoseFormat(), 1, kMaxPoses),
                     "Way-points of the tracked target, as a tracker would give them; the last one "
                     "ends the step.")
+          .Optional("style", &PosesEntry::style, Identifier(), kStyleDoc)
           .Check([](const YamlNode& node, const PosesEntry& step, Complaints& complaints) {
             for (std::size_t i = 1; i < step.poses.size(); ++i) {
               if (step.poses[i].t_s > step.poses[i - 1].t_s) continue;
@@ -104,6 +107,56 @@ Format<StepEntry> PosesFormat() {
                              "t_s must increase from pose to pose");
             }
           })
+          .format());
+}
+
+Format<StepEntry> RecordingFormat() {
+  using R = RecordingEntry;
+  const auto seconds = Number(0, kMaxDurationS);
+  return AsAlternative<StepEntry>(
+      Record<R>("a recording step")
+          .Required("recording", &R::recording,
+                    Word("[A-Za-z0-9_./-]+\\.(csv|json)", "a .csv or .json file", 255),
+                    "A recorded motion: a CSV file, or JSON of aframe-motion-capture-components.")
+          .Optional("device", &R::device, Word("[A-Za-z0-9_-]+", "a name like 'right'"),
+                    "Which device of a JSON file moves the hand; required there.")
+          .Optional("button", &R::button, Integer<int>(0, 31),
+                    "Which button of that device is the trigger; default 1.")
+          .Optional("press_s", &R::press_s, Number(0, 5),
+                    "How long a press takes whose recording only knows pressed and released.")
+          .Optional("style", &R::style, Identifier(), kStyleDoc)
+          .Optional("from_s", &R::from_s, seconds, "What came before is left out.")
+          .Optional("to_s", &R::to_s, seconds, "What comes after is left out; default: nothing.")
+          .Optional("start_at_m", &R::start_at_m, Vector<3>(-kFarthestM, kFarthestM),
+                    "The motion is shifted so that the palm starts here; default: not shifted.")
+          .Optional("yaw_deg", &R::yaw_deg, Number(-360, 360),
+                    "The motion is turned by this about the vertical, before it is shifted.")
+          .Optional("palm_m", &R::palm_m, Vector<3>(-1, 1), "The palm's centre, in the device's axes.")
+          .Optional("palm_rpy_deg", &R::palm_rpy_deg, Vector<3>(-360, 360),
+                    "How the palm is turned against the device.")
+          .Optional("join_s", &R::join_s, Number(0, 60),
+                    "Time to get from where the target is to where the recording starts.")
+          .Optional("most_gap_s", &R::most_gap_s, Number(0, 60), "Longer gaps are refused.")
+          .Optional("most_jump_m", &R::most_jump_m, Number(0, 100), "Larger jumps are refused.")
+          .format());
+}
+
+Format<StepEntry> MoveLimbFormat() {
+  using M = MoveLimbEntry;
+  using physics::LimbEnd;
+  return AsAlternative<StepEntry>(
+      Record<M>("a move_limb step")
+          .Required("move_limb", &M::move_limb,
+                    Choice<LimbEnd>({{"right_elbow", LimbEnd::kRightElbow},
+                                     {"left_elbow", LimbEnd::kLeftElbow},
+                                     {"right_wrist", LimbEnd::kRightWrist},
+                                     {"left_wrist", LimbEnd::kLeftWrist},
+                                     {"right_foot", LimbEnd::kRightFoot},
+                                     {"left_foot", LimbEnd::kLeftFoot}}),
+                    "Which part of a person goes there; the rest of the limb follows.")
+          .Optional("to_m", &M::to_m, Vector<3>(-kFarthestM, kFarthestM),
+                    "World coordinates; without it the limb goes back to where it hangs or stands.")
+          .Optional("over_s", &M::over_s, Duration(), kOverDoc)
           .format());
 }
 
@@ -134,7 +187,23 @@ Format<StepEntry> StepFormat() {
                   "Back by this much, along the way the hand came.")},
        {"follow_joint", FollowJointFormat()},
        {"wait_s", WaitFormat()},
-       {"poses", PosesFormat()}});
+       {"poses", PosesFormat()},
+       {"recording", RecordingFormat()},
+       {"look_at", TimedStep("look_at", &LookAtEntry::look_at, Identifier(),
+                             "The entity or hand that a person looks at from now on.")},
+       {"look_at_m", TimedStep("look_at_m", &LookAtPointEntry::look_at_m,
+                               Vector<3>(-kFarthestM, kFarthestM),
+                               "The place that a person looks at from now on.")},
+       {"eyes", TimedStep("eyes", &EyesEntry::eyes, EyesFormat(),
+                          "A person's eyes lead her hands again, or look ahead.")},
+       {"walk_to_m", TimedStep("walk_to_m", &WalkEntry::walk_to_m,
+                               Vector<2>(-kFarthestM, kFarthestM),
+                               "The place between a person's feet goes to this [x, y].")},
+       {"turn_to_deg", TimedStep("turn_to_deg", &TurnEntry::turn_to_deg, Number(-360, 360),
+                                 "A person turns to this yaw.")},
+       {"lean_deg", TimedStep("lean_deg", &LeanEntry::lean_deg, Number(-30, 90),
+                              "A person's trunk leans forwards by this.")},
+       {"move_limb", MoveLimbFormat()}});
 }
 
 }  // namespace prehend::harness

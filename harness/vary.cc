@@ -4,42 +4,15 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numbers>
-
 #include "harness/format.h"
+#include "physics/random.h"
 
 namespace prehend::harness {
 namespace {
 
 constexpr double kLargest = 1e6;
 
-/// SplitMix64 (Steele, Lea & Flood 2014): small, and the same everywhere.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-
-  std::uint64_t Next() {
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
-  /// In [0, 1).
-  double Share() { return static_cast<double>(Next() >> 11) * 0x1p-53; }
-  double Between(const Eigen::Vector2d& range) {
-    return range[0] + (range[1] - range[0]) * Share();
-  }
-  /// Box & Muller 1958.
-  double Normal(const Eigen::Vector2d& mean_and_deviation) {
-    const double radius = std::sqrt(-2 * std::log(1 - Share()));
-    return mean_and_deviation[0] +
-           mean_and_deviation[1] * radius * std::cos(2 * std::numbers::pi * Share());
-  }
-
- private:
-  std::uint64_t state_;
-};
+using physics::Random;
 
 /// Every variation of every trial has a generator of its own: adding one leaves the others as they
 /// were.
@@ -52,10 +25,10 @@ Random GeneratorFor(std::uint64_t seed, int trial, std::size_t variation) {
 std::string DrawValue(const VariationEntry& variation, double written, Random& random) {
   if (variation.choose) return (*variation.choose)[random.Next() % variation.choose->size()];
   double value = written;
-  if (variation.uniform) value = random.Between(*variation.uniform);
-  if (variation.normal) value = random.Normal(*variation.normal);
-  if (variation.plus) value = written + random.Between(*variation.plus);
-  if (variation.times) value = written * random.Between(*variation.times);
+  if (variation.uniform) value = random.Between((*variation.uniform)[0], (*variation.uniform)[1]);
+  if (variation.normal) value = random.Normal((*variation.normal)[0], (*variation.normal)[1]);
+  if (variation.plus) value = written + random.Between((*variation.plus)[0], (*variation.plus)[1]);
+  if (variation.times) value = written * random.Between((*variation.times)[0], (*variation.times)[1]);
   return fmt::format("{:.6f}", value);
 }
 

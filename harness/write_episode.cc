@@ -26,6 +26,7 @@ Json MemberJson(const grammar::CastMember& member, const grammar::Cast& cast) {
     json["class"] = member.classes.front();
     json["fixed"] = member.classes[1] == "Fixed";
     if (member.classes[1] == "Jointed") json["jointed"] = true;
+    if (member.classes[1] == "Entity") json["person"] = true;
   }
   return json;
 }

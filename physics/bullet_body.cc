@@ -94,6 +94,9 @@ BulletBody::BulletBody(const std::vector<const Body*>& bodies) {
   info.m_linearSleepingThreshold = kSleepSpeed_m_per_s;
   info.m_angularSleepingThreshold = kSleepTurn_rad_per_s;
   rigid_ = std::make_unique<btRigidBody>(info);
+  if (!root.kinematic) return;
+  rigid_->setCollisionFlags(rigid_->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+  rigid_->setActivationState(DISABLE_DEACTIVATION);
 }
 
 void BulletBody::KeepInPlane() {

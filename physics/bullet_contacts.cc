@@ -5,15 +5,10 @@
 #include "physics/bullet_convert.h"
 
 namespace prehend::physics {
-namespace {
-
-/// `shape` is the index that Bullet gives to a compound's shape at a point.
 const ContactSide& SideOf(const ContactSides& sides, const btCollisionObject& object, int shape) {
   const auto& of_object = sides[static_cast<std::size_t>(object.getUserIndex())];
   return of_object[of_object.size() == 1 ? 0 : static_cast<std::size_t>(shape)];
 }
-
-}  // namespace
 
 void ReadContacts(const btDispatcher& const_dispatcher, const ContactSides& sides,
                   TouchingPairs& pairs) {

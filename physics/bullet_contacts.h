@@ -15,6 +15,9 @@ namespace prehend::physics {
 /// its shapes is. The world gives every object its index here as Bullet's user index.
 using ContactSides = std::vector<std::vector<ContactSide>>;
 
+/// Whose shape this is; `shape` is the index that Bullet gives to a compound's shape.
+const ContactSide& SideOf(const ContactSides& sides, const btCollisionObject& object, int shape);
+
 /// After every step.
 void ReadContacts(const btDispatcher& dispatcher, const ContactSides& sides, TouchingPairs& pairs);
 

@@ -12,6 +12,7 @@
 #include "physics/bullet_contacts.h"
 #include "physics/bullet_convert.h"
 #include "physics/bullet_hand.h"
+#include "physics/bullet_sight.h"
 #include "physics/bullet_joint.h"
 #include "physics/joint.h"
 #include "physics/rigid_groups.h"
@@ -41,6 +42,8 @@ constexpr int kSolverBatch = 2;
 constexpr int kFixedGroup = 1;
 constexpr int kMovingGroup = 2;
 constexpr int kFirstHandGroup = 4;
+// Persons push what moves, and nothing else: they go through what is fixed, and through hands.
+constexpr int kPersonGroup = 1 << 30;
 
 class BulletWorld final : public World {
  public:
@@ -49,6 +52,8 @@ class BulletWorld final : public World {
 
   void Step(const std::vector<HandCommand>& commands) override;
   void Describe(Snapshot& snapshot) const override;
+  void MoveKinematic(int body, const Pose& X_WB) override;
+  Sight Look(const SightLine& line) const override;
 
  private:
   void Configure();
@@ -129,7 +134,9 @@ void BulletWorld::AddRigid(const std::vector<std::size_t>& group) {
   for (const std::size_t owner : made->owners())
     sides.push_back({.body = static_cast<int>(group[owner])});
   if (scene_.world.planar) made->KeepInPlane();
-  if (bodies.front()->fixed)
+  if (bodies.front()->kinematic)
+    world_.addRigidBody(&made->rigid(), kPersonGroup, kMovingGroup);
+  else if (bodies.front()->fixed)
     world_.addRigidBody(&made->rigid(), kFixedGroup, ~kFixedGroup);
   else
     world_.addRigidBody(&made->rigid(), kMovingGroup, -1);
@@ -165,6 +172,14 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
   ReadContacts(dispatcher_, sides_, touching_);
   ++tick_;
 }
+
+void BulletWorld::MoveKinematic(int body, const Pose& X_WB) {
+  // Bullet takes its velocity from the last place and this one when it steps.
+  const Place& place = places_[static_cast<std::size_t>(body)];
+  rigids_[place.rigid]->rigid().setWorldTransform(ToBullet(X_WB));
+}
+
+Sight BulletWorld::Look(const SightLine& line) const { return FirstInSight(world_, sides_, line); }
 
 void BulletWorld::Describe(Snapshot& snapshot) const {
   snapshot.tick = tick_;

@@ -9,6 +9,9 @@
 
 namespace prehend::physics {
 
+/// Index into Scene::bodies; -1: there is none.
+int FindBody(const Scene& scene, const std::string& name);
+
 /// How far the body reaches from its bounding box' centre in a world direction (unit), metres.
 double HalfWidthAlong(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& direction_W);
 

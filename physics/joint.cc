@@ -31,7 +31,8 @@ double Position(const Scene& scene, const Joint& joint, const Pose& X_WBase, con
 }  // namespace
 
 bool MovesFreely(const Scene& scene, int body) {
-  return !BodyAt(scene, body).fixed && JointOf(scene, body) < 0;
+  const Body& moved = BodyAt(scene, body);
+  return !moved.fixed && !moved.kinematic && JointOf(scene, body) < 0;
 }
 
 JointState StateOf(const Scene& scene, const Joint& joint, const Pose& X_WBase, const Pose& X_WB) {

@@ -5,12 +5,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "physics/hand_model.h"
 #include "physics/pose.h"
+#include "physics/tracking.h"
 
 namespace prehend::physics {
 
@@ -39,7 +41,8 @@ struct Body {
   std::string name;
   std::vector<PlacedShape> shapes;  ///< one, or several for a compound
   bool fixed = false;
-  double mass_kg = 0;  ///< 0 only for fixed bodies
+  bool kinematic = false;  ///< moves as a Person's motion says: pushes, and is never pushed
+  double mass_kg = 0;      ///< 0 only for fixed and kinematic bodies
   double friction = 0.8;
   double rolling_friction = 0;
   double restitution = 0;
@@ -78,6 +81,26 @@ struct Hand {
   std::string name;
   HandModel model;
   Pose X_WH;
+  std::optional<Tracking> tracking = std::nullopt;  ///< none: the tracked target is where the script wants it
+};
+
+/// Where a person looks when nobody tells her to.
+enum class Eyes {
+  kLead,  ///< where her hands go next (Johansson et al. 2001)
+  kAhead  ///< straight ahead
+};
+
+/// A human: a head that looks about, and perhaps a body. Her parts are kinematic bodies of the
+/// scene, one after another from `head` on; their order is in physics/skeleton.h.
+struct Person {
+  std::string name;
+  int head = 0;            ///< index into Scene::bodies
+  bool has_body = false;   ///< else she is only a head
+  double height_m = 1.75;  ///< standing, from the floor to the crown
+  Pose X_WS;               ///< where she stands: between her feet on the floor, x ahead, z up
+  Eyes eyes = Eyes::kLead;
+  int right_hand = -1;     ///< index into Scene::hands: the hand that her arm follows; -1: none
+  int left_hand = -1;
 };
 
 enum class Engine { kBullet, kBox2d };
@@ -97,9 +120,11 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Joint> joints;
   std::vector<Hand> hands;
+  std::vector<Person> persons;
 };
 
-/// Can it be picked up? Not when it is fixed, nor when a joint ties it to something.
+/// Can it be picked up? Not when it is fixed or part of a person, nor when a joint ties it to
+/// something.
 bool MovesFreely(const Scene& scene, int body);
 
 /// Tight oriented bounding box of a body, in its own frame B: centre and half sizes, metres.

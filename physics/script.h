@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "physics/pose.h"
+#include "physics/scene.h"
 
 namespace prehend::physics {
 
@@ -51,6 +52,7 @@ struct TimedPose {
 };
 struct PosesStep {  ///< raw 6D way-points
   std::vector<TimedPose> poses;
+  std::string style = {};  ///< the hand takes this grasp style; empty: it keeps its own
 };
 using StepAction = std::variant<WaitStep, ReachStep, TriggerStep, MoveStep, CarryStep, PlaceStep,
                                 RetreatStep, FollowJointStep, PosesStep>;
@@ -61,8 +63,42 @@ struct Step {
   double over_s = 0.5;
 };
 
+struct LookAtStep {
+  std::variant<std::string, Eigen::Vector3d> target;  ///< an entity, or a point of the world
+};
+struct EyesStep {  ///< no longer at what a LookAtStep said
+  Eyes eyes = Eyes::kLead;
+};
+struct WalkStep {  ///< her stand glides there
+  Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
+};
+struct TurnStep {
+  double to_rad = 0;  ///< yaw of her stand
+};
+struct LeanStep {
+  double to_rad = 0;  ///< of the trunk, forwards
+};
+/// What of a body can be sent to a place.
+enum class LimbEnd { kRightElbow, kLeftElbow, kRightWrist, kLeftWrist, kRightFoot, kLeftFoot };
+struct MoveLimbStep {
+  LimbEnd limb = LimbEnd::kRightFoot;
+  std::optional<Eigen::Vector3d> to_m = std::nullopt;  ///< none: back to where it hangs or stands
+};
+struct HeadPosesStep {  ///< recorded head: x of it is where the eyes look
+  std::vector<TimedPose> poses;
+};
+using PersonAction = std::variant<WaitStep, LookAtStep, EyesStep, WalkStep, TurnStep, LeanStep,
+                                  MoveLimbStep, HeadPosesStep>;
+
+struct PersonStep {
+  int person = 0;  ///< index into Scene::persons
+  PersonAction action;
+  double over_s = 0.5;
+};
+
 struct Beat {
   std::vector<Step> steps;  ///< at most one per hand
+  std::vector<PersonStep> person_steps = {};  ///< at most one per person
 };
 
 struct Script {

@@ -29,16 +29,16 @@ double DurationOf(const Step& step) {
   return poses && !poses->poses.empty() ? poses->poses.back().t_s : step.over_s;
 }
 
+double DurationOf(const PersonStep& step) {
+  const auto* head = std::get_if<HeadPosesStep>(&step.action);
+  return head && !head->poses.empty() ? head->poses.back().t_s : step.over_s;
+}
+
 double DurationOf(const Beat& beat) {
   double longest = 0;
   for (const Step& step : beat.steps) longest = std::max(longest, DurationOf(step));
+  for (const PersonStep& step : beat.person_steps) longest = std::max(longest, DurationOf(step));
   return longest;
-}
-
-int FindBody(const Scene& scene, const std::string& name) {
-  const auto it = std::find_if(scene.bodies.begin(), scene.bodies.end(),
-                               [&](const Body& body) { return body.name == name; });
-  return it == scene.bodies.end() ? -1 : static_cast<int>(it - scene.bodies.begin());
 }
 
 /// Hands that touch a body, at least one.
@@ -187,7 +187,12 @@ void ScriptPlayer::Resolver::operator()(const RetreatStep& retreat) {
 }
 
 void ScriptPlayer::Resolver::operator()(const PosesStep& poses) {
-  if (!poses.poses.empty()) Follow(poses.poses);
+  if (!poses.style.empty()) {
+    const HandModel& model = scene_.hands[static_cast<std::size_t>(step_.hand)].model;
+    hand_.style = FindStyle(model, poses.style);
+    if (hand_.style < 0) problem_ = "poses: hand '" + model.name + "' has no style '" + poses.style + "'";
+  }
+  if (problem_.empty() && !poses.poses.empty()) Follow(poses.poses);
 }
 
 void ScriptPlayer::Resolver::operator()(const FollowJointStep& follow) {
@@ -226,9 +231,11 @@ std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& scr
   for (const Beat& beat : script.beats) {
     for (const Step& step : beat.steps) {
       const auto* reach = std::get_if<ReachStep>(&step.action);
+      const auto* poses = std::get_if<PosesStep>(&step.action);
+      const std::string style = reach ? reach->style : poses ? poses->style : std::string();
       const auto hand = static_cast<std::size_t>(step.hand);
-      if (reach && styles[hand] < 0)
-        styles[hand] = FindStyle(scene.hands[hand].model, reach->style);
+      if (!style.empty() && styles[hand] < 0)
+        styles[hand] = FindStyle(scene.hands[hand].model, style);
     }
   }
   for (int& style : styles) style = std::max(style, 0);
@@ -244,6 +251,7 @@ void ScriptPlayer::StartBeat(const Snapshot& now) {
     beat_ticks_ = std::llround(script_.settle_s * rate_hz);
     return;
   }
+  begun_.push_back(beat_);
   const Beat& beat = script_.beats[beat_++];
   beat_ticks_ = std::llround(DurationOf(beat) * rate_hz);
   for (const Step& step : beat.steps) {
@@ -255,6 +263,7 @@ void ScriptPlayer::StartBeat(const Snapshot& now) {
 
 const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   commands_.clear();
+  begun_.clear();
   while (tick_in_beat_ == beat_ticks_ && !settling_ && problem_.empty()) StartBeat(now);
   if (!problem_.empty() || tick_in_beat_ == beat_ticks_) return nullptr;
   ++tick_in_beat_;

@@ -28,6 +28,10 @@ class ScriptPlayer {
   /// (see problem()).
   const std::vector<HandCommand>* Advance(const Snapshot& now);
 
+  /// The beats that began with the last Advance(), as indices into Script::beats.
+  const std::vector<std::size_t>& begun() const { return begun_; }
+  const Script& script() const { return script_; }
+
   /// Why the script cannot go on; empty if it can.
   const std::string& problem() const { return problem_; }
   /// The hand that has the problem.
@@ -52,6 +56,7 @@ class ScriptPlayer {
   std::size_t beat_ = 0;  ///< the next one to start
   std::int64_t tick_in_beat_ = 0;
   std::int64_t beat_ticks_ = 0;
+  std::vector<std::size_t> begun_;
   bool settling_ = false;
   std::string problem_;
   int problem_hand_ = -1;

@@ -4,9 +4,11 @@
 
 #include "physics/box2d_world.h"
 #include "physics/bullet_world.h"
+#include "physics/person_player.h"
 #include "physics/run_checks.h"
 #include "physics/script_player.h"
 #include "physics/state_hash.h"
+#include "physics/tracking.h"
 
 namespace prehend::physics {
 namespace {
@@ -28,7 +30,11 @@ struct Simulation::State {
         too_long(DurationOf(t) > kLongestRun_s),
         world(MakeWorld(scene, ScriptPlayer::FirstStyles(scene, t))),
         player(scene, std::move(t)) {
+    AddTrackers();
+    for (std::size_t i = 0; i < scene.persons.size(); ++i)
+      persons.emplace_back(scene, player.script(), static_cast<int>(i));
     world->Describe(snapshot);
+    See();
     if (too_long)
       Fail("", "the script is longer than half an hour",
            "split it, or shorten over_s and settle_s");
@@ -39,15 +45,51 @@ struct Simulation::State {
               std::move(advice)};
   }
   bool Step();
+  void AddTrackers();
+  std::vector<HandCommand> Tracked(std::vector<HandCommand> commands);
+  void MovePersons();
+  void See();
 
   const Scene scene;
   const bool too_long;
   std::unique_ptr<World> world;
   ScriptPlayer player;
+  std::vector<std::optional<Tracker>> trackers;  ///< per hand
+  std::vector<PersonPlayer> persons;
   Snapshot snapshot;
   RunStatus status;
   StateHash hash;
 };
+
+void Simulation::State::AddTrackers() {
+  for (std::size_t i = 0; i < scene.hands.size(); ++i) {
+    const Hand& hand = scene.hands[i];
+    std::optional<Tracker>& tracker = trackers.emplace_back();
+    if (!hand.tracking) continue;
+    // Hands differ, and the next seed must not give one hand the noise that another one has now.
+    const std::uint64_t seed = Random(scene.world.seed ^ Random(i).Next()).Next();
+    tracker.emplace(*hand.tracking, scene.world.rate_hz, seed, TargetState{.X_WH = hand.X_WH});
+  }
+}
+
+std::vector<HandCommand> Simulation::State::Tracked(std::vector<HandCommand> commands) {
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (trackers[i]) commands[i].target = trackers[i]->Follow(commands[i].target);
+  }
+  return commands;
+}
+
+void Simulation::State::MovePersons() {
+  for (PersonPlayer& person : persons) {
+    for (const std::size_t beat : player.begun()) person.Begin(beat, snapshot);
+    person.Advance(snapshot, *world);
+  }
+}
+
+void Simulation::State::See() {
+  snapshot.gazes.clear();
+  for (const PersonPlayer& person : persons) snapshot.gazes.push_back(person.See(*world));
+}
 
 bool Simulation::State::Step() {
   if (status.kind != RunStatus::Kind::kRunning) return false;
@@ -62,8 +104,10 @@ bool Simulation::State::Step() {
     status = {.kind = RunStatus::Kind::kCompleted, .tick = snapshot.tick};
     return false;
   }
-  world->Step(*commands);
+  MovePersons();
+  world->Step(Tracked(*commands));
   world->Describe(snapshot);
+  See();
   hash.Add(snapshot);
   if (auto problem = CheckSnapshot(scene, snapshot))
     Fail(problem->entity, problem->reason, problem->advice);

@@ -50,11 +50,21 @@ struct ContactPoint {
   double normal_impulse_n_s = 0;                         ///< over this tick
 };
 
+/// Where a person looks, in the order of Scene::persons.
+struct GazeState {
+  Eigen::Vector3d p_WE_m = Eigen::Vector3d::Zero();    ///< between the eyes
+  Eigen::Vector3d toward_W = Eigen::Vector3d::UnitX();  ///< unit
+  int body = -1;                                       ///< what she sees there; -1: no body
+  int hand = -1;                                       ///< or no hand
+  double distance_m = 0;                               ///< to what she sees
+};
+
 struct Snapshot {
   std::int64_t tick = 0;  ///< physics steps done; 0 is the scene as placed
   std::vector<BodyState> bodies;
   std::vector<JointState> joints;
   std::vector<HandState> hands;
+  std::vector<GazeState> gazes;
   std::vector<ContactPoint> contacts;  ///< sorted by (a, b, point); a < b
 };
 

@@ -37,6 +37,7 @@ class StateHash {
       Add(snapshot.bodies[i]);
     }
     for (const JointState& joint : snapshot.joints) Add(&joint.position, 1);
+    for (const GazeState& gaze : snapshot.gazes) Add(gaze.toward_W.data(), 3);
     for (const HandState& hand : snapshot.hands) Add(hand);
   }
   std::uint64_t value() const { return value_; }

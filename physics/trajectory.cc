@@ -62,17 +62,17 @@ void Trajectory::Append(const Segment& segment) {
   if (segment.duration_s > 0) {
     segments_.push_back(segment);
     duration_s_ += segment.duration_s;
+    ends_s_.push_back(duration_s_);
   }
   rest_ = {.X_WH = {segment.curve_m[3], segment.q_end}, .trigger = segment.trigger_end};
 }
 
 TargetState Trajectory::At(double t_s) const {
-  double begin_s = 0;
-  for (const Segment& segment : segments_) {
-    if (t_s < begin_s + segment.duration_s) return SegmentAt(segment, std::max(t_s - begin_s, 0.0));
-    begin_s += segment.duration_s;
-  }
-  return rest_;
+  const auto end = std::upper_bound(ends_s_.begin(), ends_s_.end(), t_s);
+  if (end == ends_s_.end()) return rest_;
+  const double begin_s = end == ends_s_.begin() ? 0 : *std::prev(end);
+  const Segment& segment = segments_[static_cast<std::size_t>(end - ends_s_.begin())];
+  return SegmentAt(segment, std::max(t_s - begin_s, 0.0));
 }
 
 Segment StraightSegment(const TargetState& from, const Pose& to, double duration_s) {

@@ -10,16 +10,9 @@
 #include <vector>
 
 #include "physics/script.h"
+#include "physics/target.h"
 
 namespace prehend::physics {
-
-/// The tracked target at one moment. Velocities are in world axes, of the target's origin.
-struct TargetState {
-  Pose X_WH;
-  Eigen::Vector3d v_m_per_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d w_rad_per_s = Eigen::Vector3d::Zero();
-  double trigger = 0;
-};
 
 struct Segment {
   double duration_s = 0;
@@ -45,6 +38,7 @@ class Trajectory {
  private:
   TargetState rest_;
   std::vector<Segment> segments_;
+  std::vector<double> ends_s_;  ///< of the segments
   double duration_s_ = 0;
 };
 

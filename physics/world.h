@@ -17,6 +17,20 @@ struct HandCommand {
   int style = 0;  ///< index into HandModel::styles
 };
 
+/// The way of a ball.
+struct SightLine {
+  Eigen::Vector3d from_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d toward_W = Eigen::Vector3d::UnitX();  ///< unit
+  double radius_m = 0.015;
+  double length_m = 10;
+  int ignore_from = 0, ignore_to = 0;  ///< these bodies are not met: [from, to)
+};
+struct Sight {
+  int body = -1;
+  int hand = -1;
+  double distance_m = 0;
+};
+
 class World {
  public:
   virtual ~World() = default;
@@ -25,6 +39,11 @@ class World {
   virtual void Step(const std::vector<HandCommand>& commands) = 0;
   /// Writes the present state, reusing the vectors of `snapshot`.
   virtual void Describe(Snapshot& snapshot) const = 0;
+
+  /// During the next step the kinematic body goes there. Only for scenes with persons.
+  virtual void MoveKinematic(int body, const Pose& X_WB);
+  /// The first thing that a ball meets on a straight way. Only for scenes with persons.
+  virtual Sight Look(const SightLine& line) const;
 };
 
 }  // namespace prehend::physics

@@ -72,7 +72,9 @@ TEST(ScenarioFormatDocument, ItsExamplesAreReadAndValid) {
       text += block;
     }
     const std::string name = text.substr(10, text.find('\n') - 10);
-    const auto read = ReadScenarioText(name + ".yaml", text, {}, ProjectLibrary(kRoot));
+    // The files that examples name are there.
+    const std::string file = kRoot + "/scenarios/recorded/" + name + ".yaml";
+    const auto read = ReadScenarioText(file, text, {}, ProjectLibrary(kRoot));
     EXPECT_TRUE(read.value) << grammar::Format(read.diagnostics) << text;
     validator.Add("example" + std::to_string(scenarios++), text);
   }

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// From actors to persons: their parts become bodies, their hands are found by name.
+// Tested by tests/harness/build_persons_test.cc
+#pragma once
+
+#include "harness/complaints.h"
+#include "harness/scenario_entries.h"
+#include "physics/scene.h"
+
+namespace prehend::harness {
+
+/// Adds the persons and, after all other bodies, their parts to a scene that has its hands. Complains about hands
+/// that are not there or belong to two arms, and about parts whose names are taken.
+void AddPersons(const ScenarioEntry& entry, physics::Scene& scene, Complaints& complaints);
+
+}  // namespace prehend::harness

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plays what a script tells its persons: where they stand, lean, put their limbs, and look. Arms follow the hands of
+// the scene. Nothing pushes back: a person is kinematic. Tested by tests/physics/person_player_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "physics/gaze.h"
+#include "physics/skeleton.h"
+#include "physics/trajectory.h"
+#include "physics/world.h"
+
+namespace prehend::physics {
+
+class PersonPlayer {
+ public:
+  /// `scene` and `script` must outlive it. `person` is an index into Scene::persons.
+  PersonPlayer(const Scene& scene, const Script& script, int person);
+
+  /// This beat of the script begins with the tick that follows `now`.
+  void Begin(std::size_t beat, const Snapshot& now);
+  /// Moves her parts for the tick that follows `now`.
+  void Advance(const Snapshot& now, World& world);
+  /// What she sees, in a world whose last tick she has been moved for.
+  GazeState See(const World& world) const;
+
+  const Posture& posture() const { return posture_; }
+
+ private:
+  /// From where something is to where it shall be, with minimum jerk.
+  struct Motion {
+    double from = 0, to = 0;
+    double begin_s = 0, duration_s = 0;
+    double At(double t_s) const;
+  };
+  struct LimbMotion {
+    LimbEnd end = LimbEnd::kRightWrist;
+    Eigen::Vector3d from_S_m = Eigen::Vector3d::Zero();  ///< in the frame of her stand
+    Eigen::Vector3d to_S_m = Eigen::Vector3d::Zero();
+    bool to_rest = true;
+    Motion progress;
+  };
+  class Resolver;
+
+  Posture::Limb LimbAt(int limb, const Snapshot& now) const;
+  void TurnHead(const Snapshot& now);
+
+  const Scene& scene_;
+  const Script& script_;
+  const Person& person_;
+  int index_ = 0;
+  double t_s_ = 0;  ///< since the first tick
+  std::int64_t tick_ = 0;
+  Motion x_, y_, yaw_, lean_;
+  std::array<LimbMotion, 4> limbs_;
+  Posture posture_;
+  std::vector<Pose> places_;
+  GazeLeader leader_;
+  Eyes eyes_;
+  std::optional<GazeTarget> told_;  ///< a script's target goes before her own
+  std::optional<std::pair<Trajectory, double>> head_;  ///< recorded, and when it began
+  EyesAndHead gaze_;
+};
+
+}  // namespace prehend::physics

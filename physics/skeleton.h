@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A human body as capsules: which parts there are, how long and thick they are, and where they
+// stand in a posture. Proportions are shares of the height (Drillis & Contini 1966, in Winter,
+// Biomechanics and Motor Control of Human Movement, 2009). Tested by tests/physics/skeleton_test.cc
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "physics/scene.h"
+#include "physics/script.h"
+
+namespace prehend::physics {
+
+/// What a person does with her body, apart from looking.
+struct Posture {
+  Pose X_WS;           ///< her stand
+  double lean_rad = 0;  ///< of the trunk, forwards
+  /// Where the arms and legs go; see Limb.
+  struct Limb {
+    LimbEnd end = LimbEnd::kRightWrist;  ///< what `p_W_m` is about
+    Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  };
+  std::array<Limb, 4> limbs;  ///< right arm, left arm, right leg, left leg
+  Pose X_WHead;               ///< its x is where the face looks
+};
+
+/// Index into Posture::limbs.
+int LimbOf(LimbEnd end);
+
+/// Where a limb hangs or stands when nobody moves it: wrists, and the middle of the feet.
+Posture::Limb RestOf(int limb, const Person& person, const Pose& X_WS, double lean_rad);
+/// Where this end of a limb is in a posture.
+Eigen::Vector3d PlaceOf(LimbEnd end, const Person& person, const Posture& posture);
+/// Between the neck and the head, which turns about it.
+Eigen::Vector3d NeckTop(const Person& person, const Pose& X_WS, double lean_rad);
+/// The head that looks this way from its neck.
+Pose HeadToward(const Person& person, const Eigen::Vector3d& p_W_neck, const Eigen::Vector3d& toward_W);
+/// Between the eyes.
+Eigen::Vector3d EyesOf(const Person& person, const Pose& X_WHead);
+/// Where the wrist is in the frame of a hand's palm.
+Eigen::Vector3d WristInHand(const HandModel& model);
+
+/// Standing, arms hanging or at the hands of the scene, looking ahead.
+Posture Standing(const Scene& scene, const Person& person);
+
+/// The parts as kinematic bodies, the head first, without their places: "anna", "anna_neck", ...
+std::vector<Body> PartsOf(const Person& person);
+/// Where they are, in that order. A part turns about its axis as little as it can from `before`, which are their last
+/// places, or nothing.
+std::vector<Pose> PlacesOf(const Person& person, const Posture& posture, const std::vector<Pose>& before);
+
+}  // namespace prehend::physics

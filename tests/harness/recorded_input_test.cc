@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recording steps in a scenario: what becomes of the file, and what is refused.
+#include "harness/recorded_input.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "physics/simulation.h"
+#include "tests/harness/scenario_fixture.h"
+
+namespace prehend::harness {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A folder with a recording of 2 s: half a metre along x, the grip closes in the second half.
+class RecordedInputTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) / "recorded_input_test";
+    std::filesystem::create_directories(folder_);
+    std::ofstream csv(folder_ / "line.csv");
+    csv << "t_s,x_m,y_m,z_m,trigger\n";
+    for (int i = 0; i <= 180; ++i) {
+      const double t_s = i / 90.0;
+      csv << t_s << "," << t_s / 4 << ",0,1.2," << (t_s > 1 ? 1 : 0) << "\n";
+    }
+  }
+
+  /// The probe, with this step for its reach.
+  ReadResult<Scenario> Read(const std::string& step) {
+    return ReadScenarioText((folder_ / "probe.yaml").string(),
+                            ProbeWith("{reach: milk, style: wrap, over_s: 0.8}", "{" + step + "}"), {}, ProbeLibrary());
+  }
+  std::string ComplaintsAbout(const std::string& step) {
+    std::string text = Brief(Read(step).diagnostics);
+    const std::string folder = folder_.string() + "/";
+    for (std::size_t at; (at = text.find(folder)) != std::string::npos;) text.erase(at, folder.size());
+    return text;
+  }
+  std::vector<physics::TimedPose> Poses(const std::string& step) {
+    const auto read = Read(step);
+    EXPECT_TRUE(read.value) << Brief(read.diagnostics);
+    return read.value ? std::get<physics::PosesStep>(read.value->script.beats[0].steps[0].action).poses
+                      : std::vector<physics::TimedPose>{};
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(RecordedInputTest, PosesAndTriggerAreTheFiles) {
+  const auto poses = Poses("recording: line.csv, join_s: 0.4");
+  ASSERT_EQ(poses.size(), 181u);
+  EXPECT_DOUBLE_EQ(poses.front().t_s, 0.4);
+  EXPECT_NEAR(poses.back().t_s, 2.4, 1e-5);
+  EXPECT_LT((poses.back().X_WH.p_m - Vector3d(0.5, 0, 1.2)).norm(), 1e-5);
+  EXPECT_EQ(poses.front().trigger, 0.0);
+  EXPECT_EQ(poses.back().trigger, 1.0);
+}
+
+TEST_F(RecordedInputTest, IsCutTurnedAndShifted) {
+  const auto poses = Poses("recording: line.csv, join_s: 0.5, from_s: 0.5, to_s: 1.5, yaw_deg: 90, start_at_m: [0.1, 0.2, 1.0], palm_m: [0, 0, 0.1], palm_rpy_deg: [0, 0, 180]");
+  EXPECT_NEAR(static_cast<double>(poses.size()), 91, 1);
+  EXPECT_NEAR(poses.front().t_s, 0.5, 0.012);
+  EXPECT_LT((poses.front().X_WH.p_m - Vector3d(0.1, 0.2, 1.0)).norm(), 1e-9);
+  EXPECT_LT((poses.back().X_WH.p_m - Vector3d(0.1, 0.45, 1.0)).norm(), 0.005);
+  EXPECT_LT((poses.front().X_WH.q * Vector3d::UnitX() + Vector3d::UnitY()).norm(), 1e-9);
+}
+
+TEST_F(RecordedInputTest, FollowsTheRecordingWithoutDriftAtAnyRate) {
+  for (const int rate_hz : {477, 960}) {
+    const auto read = ReadScenarioText(
+        (folder_ / "probe.yaml").string(), ProbeWith("{reach: milk, style: wrap, over_s: 0.8}", "{recording: line.csv, join_s: 0.5}"),
+        {"world.rate_hz=" + std::to_string(rate_hz)}, ProbeLibrary());
+    ASSERT_TRUE(read.value) << Brief(read.diagnostics);
+    const auto& poses = std::get<physics::PosesStep>(read.value->script.beats[0].steps[0].action).poses;
+    const physics::Trajectory motion = physics::WaypointTrajectory({}, poses);
+    for (int tick = rate_hz; tick <= 5 * rate_hz / 2; ++tick) {
+      const double t_s = static_cast<double>(tick) / rate_hz;
+      ASSERT_NEAR(motion.At(t_s).X_WH.p_m.x(), (t_s - 0.5) / 4, 1e-5) << tick;
+    }
+  }
+}
+
+TEST_F(RecordedInputTest, Refuses) {
+  EXPECT_EQ(ComplaintsAbout("recording: lime.csv"),
+            "probe.yaml:11:28: recording: 'lime.csv' cannot be used, see below\nlime.csv:0:0: no such file\n");
+  EXPECT_EQ(ComplaintsAbout("recording: line.txt"),
+            "probe.yaml:11:28: recording: expected a .csv or .json file, found 'line.txt'\n");
+  EXPECT_EQ(ComplaintsAbout("recording: line.json"),
+            "probe.yaml:11:28: recording: this file has several devices: which one? | add device: right\n");
+  EXPECT_EQ(ComplaintsAbout("recording: line.csv, device: right"),
+            "probe.yaml:11:46: device: a CSV file has only one\n");
+  EXPECT_EQ(ComplaintsAbout("recording: line.csv, button: 1"),
+            "probe.yaml:11:46: button: a CSV file has a trigger, no buttons\n");
+  EXPECT_EQ(ComplaintsAbout("recording: line.csv, from_s: 1.9, to_s: 1.905"),
+            "probe.yaml:11:57: between 1.9 and 1.905 s the recording has 1 samples, of at least 2 | it takes 2.000 s\n");
+  EXPECT_EQ(ComplaintsAbout("recording: line.csv, style: warp"),
+            "probe.yaml:11:45: style: hand 'human_right' has no style 'warp' | did you mean 'wrap'?\n");
+}
+
+TEST_F(RecordedInputTest, OddRecordingsAreUsedWithAWarning) {
+  std::ofstream csv(folder_ / "gap.csv");
+  csv << "t_s,x_m,y_m,z_m\n0,0,0,1\n0.01,0,0,1\n0.02,0,0,1\n0.22,0,0,1\n";
+  csv.close();
+  const auto read = Read("recording: gap.csv");
+  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
+  ASSERT_EQ(read.value->warnings.size(), 1u);
+  EXPECT_EQ(read.value->warnings[0].message, "gap: no sample for 0.200 s before this one, at 0.220 s; it is bridged");
+  EXPECT_TRUE(read.value->warnings[0].is_warning);
+  EXPECT_EQ(ComplaintsAbout("recording: gap.csv, most_gap_s: 0.1"),
+            "probe.yaml:11:28: recording: 'gap.csv' cannot be used, see below\n"
+            "gap.csv:5:1: gap: no sample for 0.200 s before this one, at 0.220 s; at most 0.1 s are bridged | cut the "
+            "recording with from_s and to_s, or raise most_gap_s\n");
+  // What is cut off does not matter.
+  EXPECT_TRUE(Read("recording: gap.csv, most_gap_s: 0.1, to_s: 0.02").value);
+}
+
+}  // namespace
+}  // namespace prehend::harness
