@@ -44,7 +44,7 @@ struct StepMaker {
   const std::vector<std::string>& entities;
   const physics::Scene& scene;
   const physics::HandModel* model;  ///< null when the hand is not known
-  const Named<StepEntry>& step;
+  const Named<StepEntry>& written;
   Complaints& complaints;
 
   physics::Step operator()(const ReachEntry& e) const {
@@ -95,7 +95,7 @@ struct StepMaker {
   }
   template <class PersonEntry>
   physics::Step operator()(const PersonEntry&) const {
-    complaints.Add(step.name_where, fmt::format("'{}' is a hand, and this step is for persons", step.name),
+    complaints.Add(written.name_where, fmt::format("'{}' is a hand, and this step is for persons", written.name),
                    "hands reach, close, move; persons look, walk, lean");
     return {};
   }
@@ -173,7 +173,7 @@ void CheckLength(const ScenarioEntry& entry, const physics::Script& script,
       beat_s = std::max(beat_s, step.over_s);
     }
     for (const Named<StepEntry>& step : entry.script[i]) {
-      if (const auto* written = std::get_if<PosesEntry>(&step.value)) poses += written->poses.size();
+      if (const auto* given = std::get_if<PosesEntry>(&step.value)) poses += given->poses.size();
     }
     for (const physics::PersonStep& step : script.beats[i].person_steps) beat_s = std::max(beat_s, step.over_s);
     total_s += beat_s;

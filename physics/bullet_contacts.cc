@@ -5,6 +5,7 @@
 #include "physics/bullet_convert.h"
 
 namespace prehend::physics {
+
 const ContactSide& SideOf(const ContactSides& sides, const btCollisionObject& object, int shape) {
   const auto& of_object = sides[static_cast<std::size_t>(object.getUserIndex())];
   return of_object[of_object.size() == 1 ? 0 : static_cast<std::size_t>(shape)];
