@@ -118,6 +118,9 @@ ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>
             const std::string path = is_path ? name_or_path : HandPath(root, name_or_path);
             if (files) files->push_back(path);
             return ReadHandModel(path);
+          },
+          .reads_recording = [files](const std::string& path) {
+            if (files) files->push_back(path);
           }};
 }
 

@@ -2,7 +2,9 @@
 // See prepare_run.h. Tested by tests/house/command_line_test.cc
 #include "harness/prepare_run.h"
 
+#include <algorithm>
 #include <functional>
+#include <iterator>
 
 #include "grammar/program.h"
 #include "harness/library_paths.h"
@@ -80,7 +82,11 @@ ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string&
     if (!pictures.empty()) return {std::nullopt, std::move(pictures)};
   }
   scenario.value->grammar = compiled.program->name;
-  return {PreparedRun{std::move(*scenario.value), std::move(compiled.program)}, {}};
+  grammar::Diagnostics warnings = scenario.value->warnings;
+  std::ranges::move(Warnings(*compiled.program, MakeCast(*scenario.value)),
+                    std::back_inserter(warnings));
+  return {PreparedRun{std::move(*scenario.value), std::move(compiled.program), std::move(warnings)},
+          {}};
 }
 
 ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings) {

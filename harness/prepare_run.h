@@ -24,6 +24,7 @@ struct RunRequest {
 struct PreparedRun {
   Scenario scenario;  ///< its `grammar` is what the one that is used calls itself
   std::shared_ptr<const grammar::Program> program;
+  grammar::Diagnostics warnings;  ///< of scenario and grammar: what is allowed and yet looks like a mistake
 };
 
 /// `files` gets every path that was looked at, also when the result is no run.

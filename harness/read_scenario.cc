@@ -97,7 +97,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   SortActors(entry);
   CheckNames(file, entry, library, complaints);
   Diagnostics in_other_files;
-  ReadRecordings(file, entry, complaints, in_other_files);
+  ReadRecordings(file, entry, library, complaints, in_other_files);
   Scenario scenario;
   physics::Scene& scene = scenario.scene;
   scene.world.rate_hz = entry.world.rate_hz;

@@ -18,6 +18,8 @@ struct ScenarioLibrary {
   std::vector<std::string> hands;
   /// The model for one of `hands`, or for the path of a .hand.yaml file.
   std::function<ReadResult<physics::HandModel>(const std::string& name_or_path)> read_hand;
+  /// Told of every recording before it is read; may be empty.
+  std::function<void(const std::string& path)> reads_recording = {};
 };
 
 /// `overrides` are applied before anything is checked: "entities.milk.mass_kg=8". The scenario's name must be that

@@ -17,8 +17,7 @@ using grammar::Diagnostic;
 
 bool IsCapture(const RecordingEntry& entry) { return entry.recording.value.ends_with(".json"); }
 
-ReadResult<MotionTrack> ReadTrack(const std::string& folder, const RecordingEntry& entry) {
-  const std::string path = (std::filesystem::path(folder) / entry.recording.value).string();
+ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingEntry& entry) {
   if (!IsCapture(entry)) return ReadMotionCsv(path);
   return ReadMotionCapture(path, {entry.device->value, entry.button.value_or(Located<int>{1, {}}).value, entry.press_s});
 }
@@ -51,14 +50,18 @@ std::vector<physics::TimedPose> Place(const RecordingEntry& entry, const MotionT
 
 class RecordingReader {
  public:
-  RecordingReader(const std::string& scenario_file, Complaints& complaints, grammar::Diagnostics& in_recordings)
+  RecordingReader(const std::string& scenario_file, const ScenarioLibrary& library, Complaints& complaints,
+                  grammar::Diagnostics& in_recordings)
       : folder_(std::filesystem::path(scenario_file).parent_path().string()),
+        library_(library),
         complaints_(complaints),
         in_recordings_(in_recordings) {}
 
   void Fill(RecordingEntry& entry) {
     if (!CheckKind(entry)) return;
-    ReadResult<MotionTrack> track = ReadTrack(folder_, entry);
+    const std::string path = (std::filesystem::path(folder_) / entry.recording.value).string();
+    if (library_.reads_recording) library_.reads_recording(path);
+    ReadResult<MotionTrack> track = ReadTrack(path, entry);
     if (!track.value) return Refuse(entry, std::move(track.diagnostics));
     Cut(entry, *track.value, complaints_);
     if (track.value->samples.size() < 2) return;
@@ -89,15 +92,17 @@ class RecordingReader {
   }
 
   std::string folder_;
+  const ScenarioLibrary& library_;
   Complaints& complaints_;
   grammar::Diagnostics& in_recordings_;
 };
 
 }  // namespace
 
-void ReadRecordings(const std::string& scenario_file, ScenarioEntry& entry, Complaints& complaints,
+void ReadRecordings(const std::string& scenario_file, ScenarioEntry& entry,
+                    const ScenarioLibrary& library, Complaints& complaints,
                     grammar::Diagnostics& in_recordings) {
-  RecordingReader reader(scenario_file, complaints, in_recordings);
+  RecordingReader reader(scenario_file, library, complaints, in_recordings);
   for (BeatEntry& beat : entry.script) {
     for (Named<StepEntry>& step : beat) {
       if (auto* recording = std::get_if<RecordingEntry>(&step.value)) reader.Fill(*recording);

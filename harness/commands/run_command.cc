@@ -78,7 +78,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
   const ReadResult<PreparedRun> prepared = PrepareRun(request, context.root);
   if (!prepared.value) return Complain(context, prepared.diagnostics);
-  WarnOf(*prepared.value->program, MakeCast(prepared.value->scenario), context);
+  Warn(context, prepared.value->warnings);
 
   const bool measure = IsGiven(options, "--measure");
   RunOptions how{.measure = measure};

@@ -63,8 +63,7 @@ std::optional<Validated> Validate(const std::string& typed, const CLI::App& opti
   ReadResult<PreparedRun> prepared =
       PrepareRun(RequestOf(options, file->path), context.root, &validated.inputs);
   validated.diagnostics = std::move(prepared.diagnostics);
-  if (prepared.value)
-    validated.warnings = Warnings(*prepared.value->program, MakeCast(prepared.value->scenario));
+  if (prepared.value) validated.warnings = std::move(prepared.value->warnings);
   return validated;
 }
 
