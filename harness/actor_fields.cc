@@ -100,8 +100,7 @@ Format<PersonActor> PersonActorFormat() {
                 "How much of a human takes part: a head that looks, or a whole body.")
       .Required("at_m", &P::at_m, Position(),
                 "World coordinates of the place between the feet, on the floor.")
-      .Optional("yaw_deg", &P::yaw_deg, Number(-360, 360),
-                "Where she faces; at 0 along x.")
+      .Optional("yaw_deg", &P::yaw_deg, Number(-360, 360), "Where she faces; at 0 along x.")
       .Optional("height_m", &P::height_m, Number(1, 2.3), "From the floor to the crown.")
       .Optional("eyes", &P::eyes, EyesFormat(),
                 "Where she looks when no step says so: where her hands go next, or ahead.")
@@ -117,8 +116,9 @@ Format<physics::Eyes> EyesFormat() {
 }
 
 Format<ActorEntry> ActorFormat() {
-  return ByKey<ActorEntry>("an actor", {{"hand", AsAlternative<ActorEntry>(HandActorFormat())},
-                                        {"person", AsAlternative<ActorEntry>(PersonActorFormat())}});
+  return ByKey<ActorEntry>("an actor",
+                           {{"hand", AsAlternative<ActorEntry>(HandActorFormat())},
+                            {"person", AsAlternative<ActorEntry>(PersonActorFormat())}});
 }
 
 void SortActors(ScenarioEntry& entry) {

@@ -18,7 +18,9 @@ struct PersonStepMaker {
   const physics::Scene& scene;
   Complaints& complaints;
 
-  physics::PersonStep operator()(const WaitEntry& e) const { return {0, physics::WaitStep{}, e.wait_s}; }
+  physics::PersonStep operator()(const WaitEntry& e) const {
+    return {0, physics::WaitStep{}, e.wait_s};
+  }
   physics::PersonStep operator()(const LookAtEntry& e) const {
     CheckSeen(e.look_at);
     return {0, physics::LookAtStep{e.look_at.value}, e.over_s};
@@ -26,8 +28,12 @@ struct PersonStepMaker {
   physics::PersonStep operator()(const LookAtPointEntry& e) const {
     return {0, physics::LookAtStep{e.look_at_m}, e.over_s};
   }
-  physics::PersonStep operator()(const EyesEntry& e) const { return {0, physics::EyesStep{e.eyes}, e.over_s}; }
-  physics::PersonStep operator()(const WalkEntry& e) const { return {0, physics::WalkStep{e.walk_to_m}, e.over_s}; }
+  physics::PersonStep operator()(const EyesEntry& e) const {
+    return {0, physics::EyesStep{e.eyes}, e.over_s};
+  }
+  physics::PersonStep operator()(const WalkEntry& e) const {
+    return {0, physics::WalkStep{e.walk_to_m}, e.over_s};
+  }
   physics::PersonStep operator()(const TurnEntry& e) const {
     return {0, physics::TurnStep{e.turn_to_deg * kRadPerDeg}, e.over_s};
   }
@@ -39,14 +45,16 @@ struct PersonStepMaker {
     return {0, physics::MoveLimbStep{e.move_limb.value, e.to_m}, e.over_s};
   }
   physics::PersonStep operator()(const RecordingEntry& e) const {
-    if (!e.style.value.empty()) complaints.Add(e.style.where, "style: a person's recording moves her head, no hand");
+    if (!e.style.value.empty())
+      complaints.Add(e.style.where, "style: a person's recording moves her head, no hand");
     const double over_s = e.poses.empty() ? 0 : e.poses.back().t_s;
     return {0, physics::HeadPosesStep{e.poses}, over_s};
   }
   template <class HandEntry>
   physics::PersonStep operator()(const HandEntry&) const {
-    complaints.Add(step.name_where, fmt::format("'{}' is a person, and this step is for hands", step.name),
-                   "persons look, walk, turn, lean, move a limb; their hands are actors of their own");
+    complaints.Add(
+        step.name_where, fmt::format("'{}' is a person, and this step is for hands", step.name),
+        "persons look, walk, turn, lean, move a limb; their hands are actors of their own");
     return {};
   }
 
@@ -56,27 +64,31 @@ struct PersonStepMaker {
     for (const physics::Body& body : scene.bodies) names.push_back(body.name);
     for (const physics::Hand& hand : scene.hands) names.push_back(hand.name);
     if (std::find(names.begin(), names.end(), name.value) != names.end()) return;
-    complaints.AddUnknownName(name.where, fmt::format("look_at: no entity is called '{}'", name.value), name.value, names);
+    complaints.AddUnknownName(name.where,
+                              fmt::format("look_at: no entity is called '{}'", name.value),
+                              name.value, names);
   }
 
   void CheckFree(const Located<physics::LimbEnd>& limb) const {
     using physics::LimbEnd;
     if (!person.has_body)
-      return complaints.Add(limb.where, fmt::format("move_limb: '{}' is only a head", person.name), "write 'person: body'");
+      return complaints.Add(limb.where, fmt::format("move_limb: '{}' is only a head", person.name),
+                            "write 'person: body'");
     const bool right = limb.value == LimbEnd::kRightElbow || limb.value == LimbEnd::kRightWrist;
     const bool left = limb.value == LimbEnd::kLeftElbow || limb.value == LimbEnd::kLeftWrist;
     const int hand = right ? person.right_hand : left ? person.left_hand : -1;
     if (hand < 0) return;
-    complaints.Add(limb.where, fmt::format("move_limb: this arm follows the hand '{}'",
-                                           scene.hands[static_cast<std::size_t>(hand)].name),
+    complaints.Add(limb.where,
+                   fmt::format("move_limb: this arm follows the hand '{}'",
+                               scene.hands[static_cast<std::size_t>(hand)].name),
                    "move the hand instead");
   }
 };
 
 }  // namespace
 
-physics::PersonStep MakePersonStep(const Named<StepEntry>& step, int person, const physics::Scene& scene,
-                                   Complaints& complaints) {
+physics::PersonStep MakePersonStep(const Named<StepEntry>& step, int person,
+                                   const physics::Scene& scene, Complaints& complaints) {
   const physics::Person& who = scene.persons[static_cast<std::size_t>(person)];
   physics::PersonStep made = std::visit(PersonStepMaker{step, who, scene, complaints}, step.value);
   made.person = person;

@@ -8,9 +8,9 @@
 
 namespace prehend::harness {
 
-/// Complains about a step that is for hands, about things to look at that are not there, and about limbs that are not
-/// free to go.
-physics::PersonStep MakePersonStep(const Named<StepEntry>& step, int person, const physics::Scene& scene,
-                                   Complaints& complaints);
+/// Complains about a step that is for hands, about things to look at that are not there, and about
+/// limbs that are not free to go.
+physics::PersonStep MakePersonStep(const Named<StepEntry>& step, int person,
+                                   const physics::Scene& scene, Complaints& complaints);
 
 }  // namespace prehend::harness

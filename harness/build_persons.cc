@@ -40,20 +40,26 @@ class PersonBuilder {
   int FindHand(const char* key, const Located<std::string>& name) {
     const auto found = std::find(hands_.begin(), hands_.end(), name.value);
     if (found == hands_.end()) {
-      complaints_.AddUnknownName(name.where, fmt::format("{}: no hand is called '{}'", key, name.value), name.value, hands_);
+      complaints_.AddUnknownName(name.where,
+                                 fmt::format("{}: no hand is called '{}'", key, name.value),
+                                 name.value, hands_);
       return -1;
     }
     if (!used_.insert(name.value).second)
-      complaints_.Add(name.where, fmt::format("{}: '{}' is already on another arm", key, name.value));
+      complaints_.Add(name.where,
+                      fmt::format("{}: '{}' is already on another arm", key, name.value));
     return static_cast<int>(found - hands_.begin());
   }
 
   void AddParts(const physics::Person& person, const Where& where) {
     std::vector<physics::Body> parts = physics::PartsOf(person);
-    const std::vector<physics::Pose> places = physics::PlacesOf(person, physics::Standing(scene_, person), {});
+    const std::vector<physics::Pose> places =
+        physics::PlacesOf(person, physics::Standing(scene_, person), {});
     for (std::size_t i = 0; i < parts.size(); ++i) {
       if (i > 0 && !taken_.insert(parts[i].name).second)
-        complaints_.Add(where, fmt::format("'{}' is the name of a part of '{}' and of something else", parts[i].name, person.name));
+        complaints_.Add(where,
+                        fmt::format("'{}' is the name of a part of '{}' and of something else",
+                                    parts[i].name, person.name));
       parts[i].X_WB = places[i];
       scene_.bodies.push_back(std::move(parts[i]));
     }

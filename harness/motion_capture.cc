@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The format of aframe-motion-capture-components 0.2.7 (src/components/motion-capture-recorder.js): metres, y up, z
-// towards the viewer, Euler angles in degrees applied in the order y, x, z, milliseconds. JSON is YAML, so the
-// located YAML reader reads it. Tested by tests/harness/motion_track_test.cc
+// The format of aframe-motion-capture-components 0.2.7 (src/components/motion-capture-recorder.js):
+// metres, y up, z towards the viewer, Euler angles in degrees applied in the order y, x, z,
+// milliseconds. JSON is YAML, so the located YAML reader reads it. Tested by
+// tests/harness/motion_track_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +43,8 @@ Format<std::vector<CapturedPose>> PosesFormat() {
                 2, kMaxTrackSamples);
 }
 
-/// From A-Frame's axes (x right, y up, z back) to ours (x ahead, y left, z up), of the world and of devices alike.
+/// From A-Frame's axes (x right, y up, z back) to ours (x ahead, y left, z up), of the world and of
+/// devices alike.
 physics::Pose ToOurAxes(const CapturedPose& pose) {
   constexpr double kRadPerDeg = std::numbers::pi / 180;
   using Eigen::AngleAxisd, Eigen::Vector3d;
@@ -83,7 +85,9 @@ class CaptureReader {
     }
     std::vector<CapturedPose> poses;
     if (!PosesFormat().read(*written, complaints_, poses)) return {};
-    MotionTrack track{.samples = {}, .file = document_.sources.front().name, .text = document_.sources.front().text};
+    MotionTrack track{.samples = {},
+                      .file = document_.sources.front().name,
+                      .text = document_.sources.front().text};
     const double begin_ms = poses.front().timestamp.value;
     for (const CapturedPose& pose : poses) {
       const double t_s = (pose.timestamp.value - begin_ms) * kSPerMs;
@@ -112,7 +116,8 @@ class CaptureReader {
     std::vector<std::string> names;
     for (const YamlNode& child : document_.root.children) names.push_back(child.key);
     complaints_.AddUnknownName(document_.root.where,
-                               fmt::format("no device is called '{}'", device_.name), device_.name, names);
+                               fmt::format("no device is called '{}'", device_.name), device_.name,
+                               names);
     return nullptr;
   }
 
@@ -125,8 +130,8 @@ class CaptureReader {
     return value;
   }
 
-  /// Events of other buttons and kinds are none of our business. Changes without a value are skipped when the
-  /// button's ups and downs are there.
+  /// Events of other buttons and kinds are none of our business. Changes without a value are
+  /// skipped when the button's ups and downs are there.
   std::vector<Press> ReadPresses(const YamlNode& device, double begin_ms) {
     std::vector<Press> presses;
     const YamlNode* events = device.Find("events");
@@ -146,7 +151,8 @@ class CaptureReader {
         presses.push_back({t_s, name->text == "buttondown" ? 1.0 : 0.0, true});
       }
     }
-    std::stable_sort(presses.begin(), presses.end(), [](const Press& a, const Press& b) { return a.t_s < b.t_s; });
+    std::stable_sort(presses.begin(), presses.end(),
+                     [](const Press& a, const Press& b) { return a.t_s < b.t_s; });
     return presses;
   }
 
@@ -156,7 +162,8 @@ class CaptureReader {
     double begin_s = 0;
     bool ramp = false;
     const auto value_at = [&](double t_s) {
-      const double x = ramp && device_.press_s > 0 ? std::clamp((t_s - begin_s) / device_.press_s, 0.0, 1.0) : 1;
+      const double x =
+          ramp && device_.press_s > 0 ? std::clamp((t_s - begin_s) / device_.press_s, 0.0, 1.0) : 1;
       return before + x * (now - before);
     };
     for (TrackSample& sample : track.samples) {

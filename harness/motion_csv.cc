@@ -30,18 +30,28 @@ struct Column {
 
 const std::map<std::string, Column>& KnownColumns() {
   constexpr double kDegPerRad = 180 / std::numbers::pi;
-  static const std::map<std::string, Column> columns = {
-      {"t_s", {"t", 1}},           {"t_ms", {"t", 1e-3}},
-      {"x_m", {"x", 1}},           {"x_cm", {"x", 1e-2}},
-      {"x_mm", {"x", 1e-3}},       {"y_m", {"y", 1}},
-      {"y_cm", {"y", 1e-2}},       {"y_mm", {"y", 1e-3}},
-      {"z_m", {"z", 1}},           {"z_cm", {"z", 1e-2}},
-      {"z_mm", {"z", 1e-3}},       {"qw", {"qw", 1}},
-      {"qx", {"qx", 1}},           {"qy", {"qy", 1}},
-      {"qz", {"qz", 1}},           {"roll_deg", {"roll", 1}},
-      {"roll_rad", {"roll", kDegPerRad}},   {"pitch_deg", {"pitch", 1}},
-      {"pitch_rad", {"pitch", kDegPerRad}}, {"yaw_deg", {"yaw", 1}},
-      {"yaw_rad", {"yaw", kDegPerRad}},     {"trigger", {"trigger", 1}}};
+  static const std::map<std::string, Column> columns = {{"t_s", {"t", 1}},
+                                                        {"t_ms", {"t", 1e-3}},
+                                                        {"x_m", {"x", 1}},
+                                                        {"x_cm", {"x", 1e-2}},
+                                                        {"x_mm", {"x", 1e-3}},
+                                                        {"y_m", {"y", 1}},
+                                                        {"y_cm", {"y", 1e-2}},
+                                                        {"y_mm", {"y", 1e-3}},
+                                                        {"z_m", {"z", 1}},
+                                                        {"z_cm", {"z", 1e-2}},
+                                                        {"z_mm", {"z", 1e-3}},
+                                                        {"qw", {"qw", 1}},
+                                                        {"qx", {"qx", 1}},
+                                                        {"qy", {"qy", 1}},
+                                                        {"qz", {"qz", 1}},
+                                                        {"roll_deg", {"roll", 1}},
+                                                        {"roll_rad", {"roll", kDegPerRad}},
+                                                        {"pitch_deg", {"pitch", 1}},
+                                                        {"pitch_rad", {"pitch", kDegPerRad}},
+                                                        {"yaw_deg", {"yaw", 1}},
+                                                        {"yaw_rad", {"yaw", kDegPerRad}},
+                                                        {"trigger", {"trigger", 1}}};
   return columns;
 }
 
@@ -128,9 +138,11 @@ class CsvReader {
 
   void CheckColumns(const std::map<std::string, int>& seen) {
     const auto count = [&](std::initializer_list<const char*> names) {
-      return std::count_if(names.begin(), names.end(), [&](const char* n) { return seen.contains(n); });
+      return std::count_if(names.begin(), names.end(),
+                           [&](const char* n) { return seen.contains(n); });
     };
-    const auto quaternion = count({"qw", "qx", "qy", "qz"}), angles = count({"roll", "pitch", "yaw"});
+    const auto quaternion = count({"qw", "qx", "qy", "qz"}),
+               angles = count({"roll", "pitch", "yaw"});
     if (count({"t", "x", "y", "z"}) < 4)
       Complain({line_, 1}, "the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm)");
     if (quaternion > 0 && angles > 0)
@@ -170,7 +182,10 @@ class CsvReader {
                                    [&](const Column& c) { return c.quantity == quantity; });
       return Place{line_, cells[static_cast<std::size_t>(it - columns_.begin())].column};
     };
-    TrackSample sample{.t_s = row["t"], .X_RD = {{row["x"], row["y"], row["z"]}}, .trigger = {}, .place = {line_, 1}};
+    TrackSample sample{.t_s = row["t"],
+                       .X_RD = {{row["x"], row["y"], row["z"]}},
+                       .trigger = {},
+                       .place = {line_, 1}};
     if (track.samples.empty()) first_t_s_ = sample.t_s;
     sample.t_s -= first_t_s_;
     if (!track.samples.empty() && sample.t_s <= track.samples.back().t_s)

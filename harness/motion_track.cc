@@ -12,8 +12,8 @@ namespace {
 /// Unevenness of a tracker is no gap, nor is a single look that is missing at 90 Hz.
 constexpr double kLeastGap_s = 0.05;
 constexpr double kGapOfMedian = 4;
-/// A hand is slower than this, and noise moves it less far (thrown balls leave the hand at 40 m/s, but nobody
-/// throws with a tracker).
+/// A hand is slower than this, and noise moves it less far (thrown balls leave the hand at 40 m/s,
+/// but nobody throws with a tracker).
 constexpr double kJumpSpeed_m_per_s = 8;
 constexpr double kLeastJump_m = 0.03;
 constexpr std::size_t kMostComplaints = 12;
@@ -29,7 +29,8 @@ double MedianInterval(const std::vector<TrackSample>& samples) {
 
 class TrackChecker {
  public:
-  TrackChecker(const MotionTrack& track, const TrackLimits& limits) : track_(track), limits_(limits) {}
+  TrackChecker(const MotionTrack& track, const TrackLimits& limits)
+      : track_(track), limits_(limits) {}
 
   grammar::Diagnostics Check() {
     const double gap_s = std::max(kLeastGap_s, kGapOfMedian * MedianInterval(track_.samples));
@@ -38,15 +39,19 @@ class TrackChecker {
       const double dt_s = sample.t_s - before.t_s;
       const double way_m = (sample.X_RD.p_m - before.X_RD.p_m).norm();
       if (dt_s > limits_.gap_s) {
-        Add(sample, false, fmt::format("gap: no sample for {:.3f} s before this one, at {:.3f} s; at most {} s are bridged",
-                                dt_s, sample.t_s, limits_.gap_s),
+        Add(sample, false,
+            fmt::format("gap: no sample for {:.3f} s before this one, at {:.3f} s; at most {} s "
+                        "are bridged",
+                        dt_s, sample.t_s, limits_.gap_s),
             "cut the recording with from_s and to_s, or raise most_gap_s");
       } else if (dt_s > gap_s) {
-        Add(sample, true, fmt::format("gap: no sample for {:.3f} s before this one, at {:.3f} s; it is bridged", dt_s,
-                                      sample.t_s));
+        Add(sample, true,
+            fmt::format("gap: no sample for {:.3f} s before this one, at {:.3f} s; it is bridged",
+                        dt_s, sample.t_s));
       }
       if (way_m <= kLeastJump_m || way_m <= kJumpSpeed_m_per_s * dt_s) continue;
-      const std::string jump = fmt::format("jump: {:.3f} m within {:.3f} s, at {:.3f} s", way_m, dt_s, sample.t_s);
+      const std::string jump =
+          fmt::format("jump: {:.3f} m within {:.3f} s, at {:.3f} s", way_m, dt_s, sample.t_s);
       if (way_m > limits_.jump_m) {
         Add(sample, false, jump + fmt::format("; at most {} m are followed", limits_.jump_m),
             "cut the recording with from_s and to_s, or raise most_jump_m");
@@ -60,8 +65,8 @@ class TrackChecker {
  private:
   void Add(const TrackSample& sample, bool is_warning, std::string message, std::string hint = {}) {
     if (found_.size() == kMostComplaints) return;
-    found_.push_back(
-        grammar::DiagnosticAt(track_.file, track_.text, sample.place, std::move(message), std::move(hint)));
+    found_.push_back(grammar::DiagnosticAt(track_.file, track_.text, sample.place,
+                                           std::move(message), std::move(hint)));
     found_.back().is_warning = is_warning;
   }
 

@@ -18,7 +18,8 @@ inline constexpr double kFarthestTrackM = 100;  ///< from the recording's origin
 
 struct TrackSample {
   double t_s = 0;  ///< since the first sample; increasing
-  physics::Pose X_RD;  ///< the device in the recording's frame, z up; x ahead, y left, z up of the device
+  physics::Pose
+      X_RD;  ///< the device in the recording's frame, z up; x ahead, y left, z up of the device
   std::optional<double> trigger;  ///< 0..1
   grammar::Place place;           ///< in the file
 };
@@ -32,8 +33,8 @@ struct MotionTrack {
 /// Columns with their units in the header: `t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger`.
 ReadResult<MotionTrack> ReadMotionCsv(const std::string& path);
 
-/// One device of a recording by aframe-motion-capture-components. A press of `button` that tells no value is a
-/// trigger that rises within `press_s`; its release the same way down.
+/// One device of a recording by aframe-motion-capture-components. A press of `button` that tells no
+/// value is a trigger that rises within `press_s`; its release the same way down.
 struct CapturedDevice {
   std::string name;  ///< its key in the file: "camera", "left", "right"
   int button = 1;
@@ -41,8 +42,8 @@ struct CapturedDevice {
 };
 ReadResult<MotionTrack> ReadMotionCapture(const std::string& path, const CapturedDevice& device);
 
-/// What is odd about the times and places of the samples: gaps and jumps. Errors where they are larger
-/// than the limits, else warnings; at most a dozen.
+/// What is odd about the times and places of the samples: gaps and jumps. Errors where they are
+/// larger than the limits, else warnings; at most a dozen.
 struct TrackLimits {
   double gap_s = 0.25;
   double jump_m = 0.1;

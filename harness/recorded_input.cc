@@ -19,7 +19,8 @@ bool IsCapture(const RecordingEntry& entry) { return entry.recording.value.ends_
 
 ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingEntry& entry) {
   if (!IsCapture(entry)) return ReadMotionCsv(path);
-  return ReadMotionCapture(path, {entry.device->value, entry.button.value_or(Located<int>{1, {}}).value, entry.press_s});
+  return ReadMotionCapture(
+      path, {entry.device->value, entry.button.value_or(Located<int>{1, {}}).value, entry.press_s});
 }
 
 /// Only the samples from from_s to to_s, with times since from_s.
@@ -27,12 +28,14 @@ void Cut(const RecordingEntry& entry, MotionTrack& track, Complaints& complaints
   std::vector<TrackSample>& samples = track.samples;
   const double last_s = samples.back().t_s;
   const double to_s = entry.to_s ? entry.to_s->value : last_s;
-  std::erase_if(samples, [&](const TrackSample& s) { return s.t_s < entry.from_s.value || s.t_s > to_s; });
+  std::erase_if(samples,
+                [&](const TrackSample& s) { return s.t_s < entry.from_s.value || s.t_s > to_s; });
   for (TrackSample& sample : samples) sample.t_s -= entry.from_s.value;
   if (samples.size() >= 2) return;
   const Where where = entry.to_s ? entry.to_s->where : entry.from_s.where;
-  complaints.Add(where, fmt::format("between {} and {} s the recording has {} samples, of at least 2", entry.from_s.value,
-                                    to_s, samples.size()),
+  complaints.Add(where,
+                 fmt::format("between {} and {} s the recording has {} samples, of at least 2",
+                             entry.from_s.value, to_s, samples.size()),
                  fmt::format("it takes {:.3f} s", last_s));
 }
 
@@ -50,8 +53,8 @@ std::vector<physics::TimedPose> Place(const RecordingEntry& entry, const MotionT
 
 class RecordingReader {
  public:
-  RecordingReader(const std::string& scenario_file, const ScenarioLibrary& library, Complaints& complaints,
-                  grammar::Diagnostics& in_recordings)
+  RecordingReader(const std::string& scenario_file, const ScenarioLibrary& library,
+                  Complaints& complaints, grammar::Diagnostics& in_recordings)
       : folder_(std::filesystem::path(scenario_file).parent_path().string()),
         library_(library),
         complaints_(complaints),
@@ -66,7 +69,8 @@ class RecordingReader {
     Cut(entry, *track.value, complaints_);
     if (track.value->samples.size() < 2) return;
     grammar::Diagnostics odd = CheckTrack(*track.value, {entry.most_gap_s, entry.most_jump_m});
-    const bool refused = std::any_of(odd.begin(), odd.end(), [](const Diagnostic& d) { return !d.is_warning; });
+    const bool refused =
+        std::any_of(odd.begin(), odd.end(), [](const Diagnostic& d) { return !d.is_warning; });
     if (refused) return Refuse(entry, std::move(odd));
     in_recordings_.insert(in_recordings_.end(), odd.begin(), odd.end());
     entry.poses = Place(entry, *track.value);
@@ -80,14 +84,16 @@ class RecordingReader {
                       "add device: right");
       return false;
     }
-    if (!capture && entry.device) complaints_.Add(entry.device->where, "device: a CSV file has only one");
-    if (!capture && entry.button) complaints_.Add(entry.button->where, "button: a CSV file has a trigger, no buttons");
+    if (!capture && entry.device)
+      complaints_.Add(entry.device->where, "device: a CSV file has only one");
+    if (!capture && entry.button)
+      complaints_.Add(entry.button->where, "button: a CSV file has a trigger, no buttons");
     return capture || (!entry.device && !entry.button);
   }
 
   void Refuse(const RecordingEntry& entry, grammar::Diagnostics diagnostics) {
-    complaints_.Add(entry.recording.where,
-                    fmt::format("recording: '{}' cannot be used, see below", entry.recording.value));
+    complaints_.Add(entry.recording.where, fmt::format("recording: '{}' cannot be used, see below",
+                                                       entry.recording.value));
     in_recordings_.insert(in_recordings_.end(), diagnostics.begin(), diagnostics.end());
   }
 

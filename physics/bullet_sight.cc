@@ -9,13 +9,15 @@ namespace {
 
 class SightCallback final : public btCollisionWorld::ClosestConvexResultCallback {
  public:
-  SightCallback(const ContactSides& sides, const SightLine& line, const btVector3& from, const btVector3& to)
+  SightCallback(const ContactSides& sides, const SightLine& line, const btVector3& from,
+                const btVector3& to)
       : ClosestConvexResultCallback(from, to), sides_(sides), line_(line) {
     m_collisionFilterGroup = -1;  // everything is seen, persons too
     m_collisionFilterMask = -1;
   }
 
-  btScalar addSingleResult(btCollisionWorld::LocalConvexResult& result, bool normal_in_world) override {
+  btScalar addSingleResult(btCollisionWorld::LocalConvexResult& result,
+                           bool normal_in_world) override {
     const int shape = result.m_localShapeInfo ? result.m_localShapeInfo->m_triangleIndex : 0;
     const ContactSide& side = SideOf(sides_, *result.m_hitCollisionObject, shape);
     if (side.body >= line_.ignore_from && side.body < line_.ignore_to) return m_closestHitFraction;
@@ -33,14 +35,17 @@ class SightCallback final : public btCollisionWorld::ClosestConvexResultCallback
 
 }  // namespace
 
-Sight FirstInSight(const btCollisionWorld& world, const ContactSides& sides, const SightLine& line) {
-  const btVector3 from = ToBullet(line.from_W_m), to = ToBullet(Eigen::Vector3d(line.from_W_m + line.length_m * line.toward_W));
+Sight FirstInSight(const btCollisionWorld& world, const ContactSides& sides,
+                   const SightLine& line) {
+  const btVector3 from = ToBullet(line.from_W_m),
+                  to = ToBullet(Eigen::Vector3d(line.from_W_m + line.length_m * line.toward_W));
   const btSphereShape ball(line.radius_m);
   SightCallback callback(sides, line, from, to);
-  world.convexSweepTest(&ball, btTransform(btQuaternion::getIdentity(), from), btTransform(btQuaternion::getIdentity(), to),
-                        callback);
+  world.convexSweepTest(&ball, btTransform(btQuaternion::getIdentity(), from),
+                        btTransform(btQuaternion::getIdentity(), to), callback);
   if (!callback.hasHit()) return {};
-  return {callback.side().body, callback.side().hand, callback.m_closestHitFraction * line.length_m};
+  return {callback.side().body, callback.side().hand,
+          callback.m_closestHitFraction * line.length_m};
 }
 
 }  // namespace prehend::physics

@@ -64,9 +64,12 @@ void GazeLeader::Begin(std::size_t beat, const Snapshot& now) {
 }
 
 /// Nothing when the step does not say where to look: then the eyes stay.
-std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t beat, const Snapshot& now) {
+std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t beat,
+                                               const Snapshot& now) {
   int& reached = reached_[static_cast<std::size_t>(step.hand)];
-  const auto body = [](int index) { return GazeTarget{.kind = GazeTarget::Kind::kBody, .index = index}; };
+  const auto body = [](int index) {
+    return GazeTarget{.kind = GazeTarget::Kind::kBody, .index = index};
+  };
   if (const auto* reach = std::get_if<ReachStep>(&step.action)) {
     reached = FindBody(scene_, reach->object);
     return body(reached);
@@ -76,7 +79,8 @@ std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t bea
       return GazeTarget{.kind = GazeTarget::Kind::kPoint, .p_W_m = *place};
   }
   if (std::holds_alternative<RetreatStep>(step.action)) return GazeTarget{};
-  const bool moves = !std::holds_alternative<WaitStep>(step.action) && !std::holds_alternative<PlaceStep>(step.action);
+  const bool moves = !std::holds_alternative<WaitStep>(step.action) &&
+                     !std::holds_alternative<PlaceStep>(step.action);
   if (!moves) return std::nullopt;
   if (reached >= 0) return body(reached);
   return GazeTarget{.kind = GazeTarget::Kind::kHand, .index = step.hand};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a person looks: what she wants to see, and how eyes and head get there. Left alone, her eyes
-// lead her hands: they go to a thing when a hand starts for it, and to the place where it will be put
-// down when it is carried (Johansson, Westling, Bäckström & Flanagan 2001). Tested by
+// Where a person looks: what she wants to see, and how eyes and head get there. Left alone, her
+// eyes lead her hands: they go to a thing when a hand starts for it, and to the place where it will
+// be put down when it is carried (Johansson, Westling, Bäckström & Flanagan 2001). Tested by
 // tests/physics/gaze_test.cc
 #pragma once
 
@@ -24,7 +24,8 @@ struct GazeTarget {
 };
 
 /// The middle of what is looked at; nothing for what is ahead.
-std::optional<Eigen::Vector3d> PointOf(const GazeTarget& target, const Scene& scene, const Snapshot& now);
+std::optional<Eigen::Vector3d> PointOf(const GazeTarget& target, const Scene& scene,
+                                       const Snapshot& now);
 
 /// Chooses for a person whose eyes lead her hands.
 class GazeLeader {
@@ -48,11 +49,12 @@ class GazeLeader {
   GazeTarget target_;
 };
 
-/// Moves eyes and head. Eyes jump to a new target: a saccade of 21 ms and 2.2 ms per degree (Carpenter 1988); a target
-/// that moves is followed. The head comes after.
+/// Moves eyes and head. Eyes jump to a new target: a saccade of 21 ms and 2.2 ms per degree
+/// (Carpenter 1988); a target that moves is followed. The head comes after.
 class EyesAndHead {
  public:
-  explicit EyesAndHead(const Eigen::Vector3d& ahead_W) : eyes_W_(ahead_W), head_W_(ahead_W), from_W_(ahead_W) {}
+  explicit EyesAndHead(const Eigen::Vector3d& ahead_W)
+      : eyes_W_(ahead_W), head_W_(ahead_W), from_W_(ahead_W) {}
 
   /// One tick towards this direction.
   void Turn(const Eigen::Vector3d& wanted_W, double dt_s);

@@ -31,7 +31,8 @@ class PersonPlayer::Resolver {
           player_.told_ = GazeTarget{.kind = GazeTarget::Kind::kHand, .index = static_cast<int>(i)};
       }
     } else {
-      player_.told_ = GazeTarget{.kind = GazeTarget::Kind::kPoint, .p_W_m = std::get<Vector3d>(look.target)};
+      player_.told_ =
+          GazeTarget{.kind = GazeTarget::Kind::kPoint, .p_W_m = std::get<Vector3d>(look.target)};
     }
   }
   void operator()(const EyesStep& step) {
@@ -59,7 +60,9 @@ class PersonPlayer::Resolver {
   }
 
  private:
-  void Start(Motion& motion, double to) { motion = {motion.At(player_.t_s_), to, player_.t_s_, over_s_}; }
+  void Start(Motion& motion, double to) {
+    motion = {motion.At(player_.t_s_), to, player_.t_s_, over_s_};
+  }
 
   PersonPlayer& player_;
   double over_s_;
@@ -135,10 +138,12 @@ void PersonPlayer::Advance(const Snapshot& now, World& world) {
   posture_.X_WS = {{x_.At(t_s_), y_.At(t_s_), person_.X_WS.p_m.z()},
                    Eigen::Quaterniond(Eigen::AngleAxisd(yaw_.At(t_s_), Vector3d::UnitZ()))};
   posture_.lean_rad = lean_.At(t_s_);
-  for (int limb = 0; limb < 4; ++limb) posture_.limbs[static_cast<std::size_t>(limb)] = LimbAt(limb, now);
+  for (int limb = 0; limb < 4; ++limb)
+    posture_.limbs[static_cast<std::size_t>(limb)] = LimbAt(limb, now);
   TurnHead(now);
   places_ = PlacesOf(person_, posture_, places_);
-  for (std::size_t i = 0; i < places_.size(); ++i) world.MoveKinematic(person_.head + static_cast<int>(i), places_[i]);
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    world.MoveKinematic(person_.head + static_cast<int>(i), places_[i]);
 }
 
 GazeState PersonPlayer::See(const World& world) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays what a script tells its persons: where they stand, lean, put their limbs, and look. Arms follow the hands of
-// the scene. Nothing pushes back: a person is kinematic. Tested by tests/physics/person_player_test.cc
+// Plays what a script tells its persons: where they stand, lean, put their limbs, and look. Arms
+// follow the hands of the scene. Nothing pushes back: a person is kinematic. Tested by
+// tests/physics/person_player_test.cc
 #pragma once
 
 #include <string>
@@ -58,7 +59,7 @@ class PersonPlayer {
   std::vector<Pose> places_;
   GazeLeader leader_;
   Eyes eyes_;
-  std::optional<GazeTarget> told_;  ///< a script's target goes before her own
+  std::optional<GazeTarget> told_;                     ///< a script's target goes before her own
   std::optional<std::pair<Trajectory, double>> head_;  ///< recorded, and when it began
   EyesAndHead gaze_;
 };

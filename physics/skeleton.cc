@@ -17,7 +17,7 @@ constexpr double kHalfShoulders = 0.129, kHalfHips = 0.050;
 constexpr double kHeadCentre = 0.065;  // above the top of the neck
 constexpr double kHeadRadius = 0.050, kHeadLength = 0.030, kEyesAhead = 0.045, kEyesUp = 0.005;
 constexpr double kFootLength = 0.090, kToesLength = 0.035, kHeel = 0.035;  // heel: behind the ankle
-constexpr double kSole = 0.020;                                            // axis of the foot over the floor
+constexpr double kSole = 0.020;  // axis of the foot over the floor
 
 /// A capsule between two points, by name.
 struct Bone {
@@ -43,17 +43,21 @@ Vector3d HipOf(const Person& person, const Pose& X_WS, bool right) {
   return X_WS * (person.height_m * Vector3d(0, Side(right) * kHalfHips, kHip));
 }
 
-/// The joint between two bones that lead from `from` toward `to`, on the side of `hint`; and where they really end.
+/// The joint between two bones that lead from `from` toward `to`, on the side of `hint`; and where
+/// they really end.
 struct TwoBones {
   Vector3d joint, end;
 };
-TwoBones Reach(const Vector3d& from, const Vector3d& to, double first_m, double second_m, const Vector3d& hint) {
+TwoBones Reach(const Vector3d& from, const Vector3d& to, double first_m, double second_m,
+               const Vector3d& hint) {
   constexpr double kStraight = 0.999;  // fully stretched the joint would have no side
   const Vector3d way = to - from;
-  const Vector3d toward = way.norm() > 1e-6 ? Vector3d(way.normalized()) : Vector3d(-Vector3d::UnitZ());
+  const Vector3d toward =
+      way.norm() > 1e-6 ? Vector3d(way.normalized()) : Vector3d(-Vector3d::UnitZ());
   const double least = std::abs(first_m - second_m) + 0.01, most = kStraight * (first_m + second_m);
   const double distance = std::clamp(way.norm(), least, most);
-  const double along = (first_m * first_m - second_m * second_m + distance * distance) / (2 * distance);
+  const double along =
+      (first_m * first_m - second_m * second_m + distance * distance) / (2 * distance);
   const double aside = std::sqrt(std::max(0.0, first_m * first_m - along * along));
   Vector3d side = hint - hint.dot(toward) * toward;
   side = side.norm() > 1e-6 ? side.normalized() : toward.unitOrthogonal();
@@ -67,14 +71,21 @@ Arm ArmOf(const Person& person, const Posture& posture, bool right) {
   const double h = person.height_m;
   const Eigen::Quaterniond& q = posture.X_WS.q;
   const Posture::Limb& limb = posture.limbs[right ? 0 : 1];
-  Arm arm{.shoulder = ShoulderOf(person, posture.X_WS, posture.lean_rad, right), .elbow = {}, .wrist = {}, .palm_toward = {}};
+  Arm arm{.shoulder = ShoulderOf(person, posture.X_WS, posture.lean_rad, right),
+          .elbow = {},
+          .wrist = {},
+          .palm_toward = {}};
   if (limb.end == LimbEnd::kRightElbow || limb.end == LimbEnd::kLeftElbow) {
     const Vector3d way = limb.p_W_m - arm.shoulder;
-    arm.elbow = arm.shoulder + kUpperArm * h * (way.norm() > 1e-6 ? Vector3d(way.normalized()) : Vector3d(-Vector3d::UnitZ()));
-    const Vector3d folded = q * Vector3d(-0.1, -0.5 * Side(right), 0.85).normalized();  // to the other shoulder
+    arm.elbow = arm.shoulder +
+                kUpperArm * h *
+                    (way.norm() > 1e-6 ? Vector3d(way.normalized()) : Vector3d(-Vector3d::UnitZ()));
+    const Vector3d folded =
+        q * Vector3d(-0.1, -0.5 * Side(right), 0.85).normalized();  // to the other shoulder
     arm.wrist = arm.elbow + kForearm * h * folded;
   } else {
-    const Vector3d hint = q * Vector3d(-0.3, 0.5 * Side(right), -1);  // elbows hang, a little outwards
+    const Vector3d hint =
+        q * Vector3d(-0.3, 0.5 * Side(right), -1);  // elbows hang, a little outwards
     const TwoBones bones = Reach(arm.shoulder, limb.p_W_m, kUpperArm * h, kForearm * h, hint);
     arm.elbow = bones.joint;
     arm.wrist = bones.end;
@@ -84,7 +95,9 @@ Arm ArmOf(const Person& person, const Posture& posture, bool right) {
 }
 
 /// From the ankle to the middle of the foot, along the foot and up.
-Vector3d FootFromAnkle(double height_m) { return height_m * Vector3d(kFootLength / 2 - kHeel, 0, kSole - kAnkle); }
+Vector3d FootFromAnkle(double height_m) {
+  return height_m * Vector3d(kFootLength / 2 - kHeel, 0, kSole - kAnkle);
+}
 
 struct Leg {
   Vector3d hip, knee, ankle;
@@ -94,7 +107,8 @@ Leg LegOf(const Person& person, const Posture& posture, bool right) {
   const Eigen::Quaterniond& q = posture.X_WS.q;
   Leg leg{.hip = HipOf(person, posture.X_WS, right), .knee = {}, .ankle = {}};
   const Vector3d wanted = posture.limbs[right ? 2 : 3].p_W_m - q * FootFromAnkle(h);
-  const TwoBones bones = Reach(leg.hip, wanted, kThigh * h, kShank * h, q * Vector3d(1, 0.1 * Side(right), 0.2));
+  const TwoBones bones =
+      Reach(leg.hip, wanted, kThigh * h, kShank * h, q * Vector3d(1, 0.1 * Side(right), 0.2));
   leg.knee = bones.joint;
   leg.ankle = bones.end;
   return leg;
@@ -105,8 +119,8 @@ void AddArm(const Person& person, const Posture& posture, bool right, std::vecto
   bones.push_back({right ? "right_upper_arm" : "left_upper_arm", 0.026, arm.elbow, arm.shoulder});
   bones.push_back({right ? "right_forearm" : "left_forearm", 0.020, arm.wrist, arm.elbow});
   if ((right ? person.right_hand : person.left_hand) >= 0) return;  // the scene has a better one
-  bones.push_back({right ? "right_hand" : "left_hand", 0.018, arm.wrist + kPalm * person.height_m * arm.palm_toward,
-                   arm.wrist});
+  bones.push_back({right ? "right_hand" : "left_hand", 0.018,
+                   arm.wrist + kPalm * person.height_m * arm.palm_toward, arm.wrist});
 }
 
 void AddLeg(const Person& person, const Posture& posture, bool right, std::vector<Bone>& bones) {
@@ -118,7 +132,8 @@ void AddLeg(const Person& person, const Posture& posture, bool right, std::vecto
   bones.push_back({right ? "right_thigh" : "left_thigh", 0.045, leg.knee, leg.hip});
   bones.push_back({right ? "right_shank" : "left_shank", 0.030, leg.ankle, leg.knee});
   bones.push_back({right ? "right_foot" : "left_foot", kSole, heel, ball});
-  bones.push_back({right ? "right_toes" : "left_toes", 0.014, ball, ball + kToesLength * h * ahead});
+  bones.push_back(
+      {right ? "right_toes" : "left_toes", 0.014, ball, ball + kToesLength * h * ahead});
 }
 
 /// All but the head.
@@ -184,7 +199,8 @@ Posture::Limb RestOf(int limb, const Person& person, const Pose& X_WS, double le
 Eigen::Vector3d PlaceOf(LimbEnd end, const Person& person, const Posture& posture) {
   const int limb = LimbOf(end);
   const bool right = limb % 2 == 0;
-  if (limb >= 2) return LegOf(person, posture, right).ankle + posture.X_WS.q * FootFromAnkle(person.height_m);
+  if (limb >= 2)
+    return LegOf(person, posture, right).ankle + posture.X_WS.q * FootFromAnkle(person.height_m);
   const Arm arm = ArmOf(person, posture, right);
   return end == LimbEnd::kRightElbow || end == LimbEnd::kLeftElbow ? arm.elbow : arm.wrist;
 }
@@ -199,7 +215,8 @@ Pose HeadToward(const Person& person, const Vector3d& p_W_neck, const Vector3d& 
   const double level = std::hypot(toward_W.x(), toward_W.y());
   const double yaw = level > 1e-9 ? std::atan2(toward_W.y(), toward_W.x()) : 0;
   const double pitch = -std::asin(std::clamp(toward_W.z(), -kMostNod, kMostNod));
-  const Eigen::Quaterniond q = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY());
+  const Eigen::Quaterniond q =
+      Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY());
   return {p_W_neck + q * Vector3d(0, 0, kHeadCentre * person.height_m), q};
 }
 
@@ -213,12 +230,15 @@ Posture Standing(const Scene& scene, const Person& person) {
   Posture posture{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}};
   for (int limb = 0; limb < 4; ++limb)
     posture.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, person.X_WS, 0);
-  for (const auto& [hand, limb] : {std::pair(person.right_hand, 0), std::pair(person.left_hand, 1)}) {
+  for (const auto& [hand, limb] :
+       {std::pair(person.right_hand, 0), std::pair(person.left_hand, 1)}) {
     if (hand < 0) continue;
     const Hand& of_scene = scene.hands[static_cast<std::size_t>(hand)];
-    posture.limbs[static_cast<std::size_t>(limb)].p_W_m = of_scene.X_WH * WristInHand(of_scene.model);
+    posture.limbs[static_cast<std::size_t>(limb)].p_W_m =
+        of_scene.X_WH * WristInHand(of_scene.model);
   }
-  posture.X_WHead = HeadToward(person, NeckTop(person, person.X_WS, 0), person.X_WS.q * Vector3d::UnitX());
+  posture.X_WHead =
+      HeadToward(person, NeckTop(person, person.X_WS, 0), person.X_WS.q * Vector3d::UnitX());
   return posture;
 }
 
@@ -230,11 +250,13 @@ std::vector<Body> PartsOf(const Person& person) {
   for (int limb = 0; limb < 4; ++limb)
     posture.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, person.X_WS, 0);
   for (const Bone& bone : BonesOf(person, posture))
-    parts.push_back(PartOf(person.name + "_" + bone.name, bone.radius * h, (bone.upper_W_m - bone.lower_W_m).norm()));
+    parts.push_back(PartOf(person.name + "_" + bone.name, bone.radius * h,
+                           (bone.upper_W_m - bone.lower_W_m).norm()));
   return parts;
 }
 
-std::vector<Pose> PlacesOf(const Person& person, const Posture& posture, const std::vector<Pose>& before) {
+std::vector<Pose> PlacesOf(const Person& person, const Posture& posture,
+                           const std::vector<Pose>& before) {
   std::vector<Pose> places = {posture.X_WHead};
   if (!person.has_body) return places;
   for (const Bone& bone : BonesOf(person, posture))

@@ -15,7 +15,7 @@ namespace prehend::physics {
 
 /// What a person does with her body, apart from looking.
 struct Posture {
-  Pose X_WS;           ///< her stand
+  Pose X_WS;            ///< her stand
   double lean_rad = 0;  ///< of the trunk, forwards
   /// Where the arms and legs go; see Limb.
   struct Limb {
@@ -36,7 +36,8 @@ Eigen::Vector3d PlaceOf(LimbEnd end, const Person& person, const Posture& postur
 /// Between the neck and the head, which turns about it.
 Eigen::Vector3d NeckTop(const Person& person, const Pose& X_WS, double lean_rad);
 /// The head that looks this way from its neck.
-Pose HeadToward(const Person& person, const Eigen::Vector3d& p_W_neck, const Eigen::Vector3d& toward_W);
+Pose HeadToward(const Person& person, const Eigen::Vector3d& p_W_neck,
+                const Eigen::Vector3d& toward_W);
 /// Between the eyes.
 Eigen::Vector3d EyesOf(const Person& person, const Pose& X_WHead);
 /// Where the wrist is in the frame of a hand's palm.
@@ -47,8 +48,9 @@ Posture Standing(const Scene& scene, const Person& person);
 
 /// The parts as kinematic bodies, the head first, without their places: "anna", "anna_neck", ...
 std::vector<Body> PartsOf(const Person& person);
-/// Where they are, in that order. A part turns about its axis as little as it can from `before`, which are their last
-/// places, or nothing.
-std::vector<Pose> PlacesOf(const Person& person, const Posture& posture, const std::vector<Pose>& before);
+/// Where they are, in that order. A part turns about its axis as little as it can from `before`,
+/// which are their last places, or nothing.
+std::vector<Pose> PlacesOf(const Person& person, const Posture& posture,
+                           const std::vector<Pose>& before);
 
 }  // namespace prehend::physics

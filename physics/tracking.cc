@@ -76,7 +76,8 @@ Tracker::Look Tracker::LookAt(const TargetState& truth) {
     look.X_WH.p_m[axis] +=
         tracking_.tremor_mm * kMPerMm * std::sin(turn_rad + tremor_phase_rad_[axis]);
   look.X_WH.p_m += Noise(tracking_.jitter_mm * kMPerMm, random_);
-  look.X_WH.q = (Turn(Noise(tracking_.jitter_deg * kRadPerDeg, random_)) * truth.X_WH.q).normalized();
+  look.X_WH.q =
+      (Turn(Noise(tracking_.jitter_deg * kRadPerDeg, random_)) * truth.X_WH.q).normalized();
   return look;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an imperfect tracker makes of a hand's motion: it looks at the hand now and then, with noise, loses
-// looks, and tells them late. Between looks the tracked target goes evenly to the newest one, and
-// then waits there. All of it follows from a seed. Tested by tests/physics/tracking_test.cc
+// What an imperfect tracker makes of a hand's motion: it looks at the hand now and then, with
+// noise, loses looks, and tells them late. Between looks the tracked target goes evenly to the
+// newest one, and then waits there. All of it follows from a seed. Tested by
+// tests/physics/tracking_test.cc
 #pragma once
 
 #include <Eigen/Core>

@@ -15,7 +15,11 @@ using Eigen::Vector3d;
 /// The tabletop and, behind it at x = -0.7, a head that faces it.
 Scene WithPerson(Eyes eyes = Eyes::kAhead) {
   Scene scene = MakeScene({});
-  Person person{.name = "anna", .head = static_cast<int>(scene.bodies.size()), .X_WS = {{-0.7, 0, 0}}, .eyes = eyes, .right_hand = 0};
+  Person person{.name = "anna",
+                .head = static_cast<int>(scene.bodies.size()),
+                .X_WS = {{-0.7, 0, 0}},
+                .eyes = eyes,
+                .right_hand = 0};
   for (Body& part : PartsOf(person)) scene.bodies.push_back(part);
   scene.bodies.back().X_WB = PlacesOf(person, Standing(scene, person), {}).front();
   scene.persons.push_back(person);
@@ -47,7 +51,8 @@ TEST(GazeTest, SheSeesWhatSheLooksAt) {
   const auto gazes = GazesOf(WithPerson(), Told(LookAtStep{"object"}));
   EXPECT_EQ(gazes.back().body, kObject);
   EXPECT_NEAR(gazes.back().distance_m, 1.1, 0.15);
-  EXPECT_EQ(GazesOf(WithPerson(), Told(LookAtStep{Vector3d(0.4, -0.2, kTop_m)})).back().body, kTable);
+  EXPECT_EQ(GazesOf(WithPerson(), Told(LookAtStep{Vector3d(0.4, -0.2, kTop_m)})).back().body,
+            kTable);
   const auto at_hand = GazesOf(WithPerson(), Told(LookAtStep{"hand"}));
   EXPECT_EQ(at_hand.back().hand, 0);
   EXPECT_EQ(at_hand.back().body, -1);
@@ -102,10 +107,11 @@ TEST(GazeTest, EyesLeadTheHand) {
     const Snapshot& now = simulation.snapshot();
     const int tick = static_cast<int>(now.tick);
     for (const ContactPoint& contact : now.contacts) {
-      if (touched < 0 && contact.a.hand >= 0 != (contact.b.hand >= 0)) touched = tick;
+      if (touched < 0 && (contact.a.hand >= 0) != (contact.b.hand >= 0)) touched = tick;
     }
     if (seen < 0 && now.gazes[0].body == kObject) seen = tick;
-    if (seen >= 0 && tick > 480 * 2.0 && saw_table < 0 && now.gazes[0].body == kTable) saw_table = tick;
+    if (seen >= 0 && tick > 480 * 2.0 && saw_table < 0 && now.gazes[0].body == kTable)
+      saw_table = tick;
   }
   ASSERT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;
   EXPECT_GT(seen, 0);

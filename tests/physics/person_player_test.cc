@@ -17,8 +17,15 @@ constexpr int kTable = 0, kBlock = 1, kHead = 2;
 Scene Before(const Vector3d& block_at_m) {
   Scene scene;
   const double top = block_at_m.z() - 0.1;
-  scene.bodies.push_back({.name = "table", .shapes = {PlacedShape{Box{{1, 1, 0.04}}, {}}}, .fixed = true, .X_WB = {{0.75, 0, top - 0.02}}});
-  scene.bodies.push_back({.name = "block", .shapes = {PlacedShape{Box{{0.2, 0.2, 0.2}}, {}}}, .mass_kg = 2, .friction = 0.4, .X_WB = {block_at_m}});
+  scene.bodies.push_back({.name = "table",
+                          .shapes = {PlacedShape{Box{{1, 1, 0.04}}, {}}},
+                          .fixed = true,
+                          .X_WB = {{0.75, 0, top - 0.02}}});
+  scene.bodies.push_back({.name = "block",
+                          .shapes = {PlacedShape{Box{{0.2, 0.2, 0.2}}, {}}},
+                          .mass_kg = 2,
+                          .friction = 0.4,
+                          .X_WB = {block_at_m}});
   Person person{.name = "anna", .head = kHead, .has_body = true, .eyes = Eyes::kAhead};
   const std::vector<Pose> places = PlacesOf(person, Standing(scene, person), {});
   for (Body& part : PartsOf(person)) {
@@ -58,20 +65,29 @@ Played Play(const Scene& scene, std::vector<PersonStep> steps, const std::string
   return played;
 }
 
+/// The right foot is lifted, then goes there.
+std::vector<PersonStep> Kick(const Vector3d& there) {
+  const Vector3d lifted(0.05, there.y(), there.z());
+  return {{0, MoveLimbStep{LimbEnd::kRightFoot, lifted}, 0.5},
+          {0, MoveLimbStep{LimbEnd::kRightFoot, there}, 0.8}};
+}
+
 TEST(PersonPlayerTest, AFootPushesABlockAndStaysWhereItIsSent) {
   const Scene scene = Before({0.45, -0.09, 0.4});
   const Vector3d there(0.35, -0.09, 0.4);
-  const Played played = Play(scene, {{0, MoveLimbStep{LimbEnd::kRightFoot, there}, 0.8}}, "anna_right_toes");
+  const Played played = Play(scene, Kick(there), "anna_right_toes");
   EXPECT_TRUE(played.touched);
   EXPECT_GT(played.end.bodies[kBlock].X_WB.p_m.x(), 0.55);
-  const Pose& foot = played.end.bodies[static_cast<std::size_t>(PartNamed(scene, "anna_right_foot"))].X_WB;
+  const Pose& foot =
+      played.end.bodies[static_cast<std::size_t>(PartNamed(scene, "anna_right_foot"))].X_WB;
   EXPECT_LT((foot.p_m - there).norm(), 0.02);
 }
 
 TEST(PersonPlayerTest, ALimbGoesBack) {
   const Scene scene = Before({0.6, 0.3, 0.4});
-  const Played played = Play(scene, {{0, MoveLimbStep{LimbEnd::kRightFoot, Vector3d(0.3, -0.09, 0.4)}, 0.6},
-                                     {0, MoveLimbStep{LimbEnd::kRightFoot, std::nullopt}, 0.6}});
+  const Played played =
+      Play(scene, {{0, MoveLimbStep{LimbEnd::kRightFoot, Vector3d(0.3, -0.09, 0.4)}, 0.6},
+                   {0, MoveLimbStep{LimbEnd::kRightFoot, std::nullopt}, 0.6}});
   const auto foot = static_cast<std::size_t>(PartNamed(scene, "anna_right_foot"));
   EXPECT_LT((played.end.bodies[foot].X_WB.p_m - scene.bodies[foot].X_WB.p_m).norm(), 1e-6);
 }
@@ -80,7 +96,10 @@ TEST(PersonPlayerTest, WalkingTurningAndLeaningMoveThePelvisAndTheHead) {
   const Scene scene = Before({0.9, 0.3, 0.4});
   const auto pelvis = static_cast<std::size_t>(PartNamed(scene, "anna_pelvis"));
   const Snapshot walked = Play(scene, {{0, WalkStep{{-0.5, 0.25}}, 0.6}}).end;
-  EXPECT_LT((walked.bodies[pelvis].X_WB.p_m - scene.bodies[pelvis].X_WB.p_m - Vector3d(-0.5, 0.25, 0)).norm(), 1e-6);
+  EXPECT_LT(
+      (walked.bodies[pelvis].X_WB.p_m - scene.bodies[pelvis].X_WB.p_m - Vector3d(-0.5, 0.25, 0))
+          .norm(),
+      1e-6);
   const Snapshot turned = Play(scene, {{0, TurnStep{1.5708}, 0.6}}).end;
   EXPECT_GT((turned.bodies[kHead].X_WB.q * Vector3d::UnitX()).y(), 0.9);
   const Snapshot leaned = Play(scene, {{0, LeanStep{0.5}, 0.6}}).end;
@@ -92,15 +111,15 @@ TEST(PersonPlayerTest, NothingPushesHer) {
   scene.bodies[kBlock].mass_kg = 500;
   scene.bodies[kBlock].friction = 0.05;
   const Vector3d there(0.35, -0.09, 0.4);
-  const Played played = Play(scene, {{0, MoveLimbStep{LimbEnd::kRightFoot, there}, 1.5}});
+  const Played played = Play(scene, Kick(there));
   const auto foot = static_cast<std::size_t>(PartNamed(scene, "anna_right_foot"));
   EXPECT_LT((played.end.bodies[foot].X_WB.p_m - there).norm(), 0.02);
 }
 
 TEST(PersonPlayerTest, TheSameStepsGiveTheSameHash) {
   const Scene scene = Before({0.45, -0.09, 0.4});
-  const std::vector<PersonStep> steps = {{0, MoveLimbStep{LimbEnd::kRightFoot, Vector3d(0.35, -0.09, 0.4)}, 0.8}};
-  EXPECT_EQ(Play(scene, steps).hash, Play(scene, steps).hash);
+  const Vector3d there(0.35, -0.09, 0.4);
+  EXPECT_EQ(Play(scene, Kick(there)).hash, Play(scene, Kick(there)).hash);
 }
 
 }  // namespace

@@ -97,7 +97,8 @@ TEST(SkeletonTest, ALimbThatCannotReachIsStretched) {
   posture.limbs[2] = {LimbEnd::kRightFoot, Vector3d(9, 1.9, 0.3)};
   const Vector3d foot = PlaceOf(LimbEnd::kRightFoot, person, posture);
   EXPECT_NEAR(foot.x(), 1.75, 0.2);
-  const Pose thigh = PlaceOf(person, posture, "anna_right_thigh"), shank = PlaceOf(person, posture, "anna_right_shank");
+  const Pose thigh = PlaceOf(person, posture, "anna_right_thigh"),
+             shank = PlaceOf(person, posture, "anna_right_shank");
   EXPECT_GT((thigh.q * Vector3d::UnitZ()).dot(shank.q * Vector3d::UnitZ()), 0.99);
 }
 
@@ -120,7 +121,8 @@ TEST(SkeletonTest, LeaningBringsTheHeadForwardAndLeavesTheFeet) {
 
 TEST(SkeletonTest, ArmsFollowTheHandsOfTheScene) {
   Scene scene;
-  scene.hands.push_back({.name = "hand", .model = LibraryHand("human_right"), .X_WH = {{1.4, 1.8, 1.1}}});
+  scene.hands.push_back(
+      {.name = "hand", .model = LibraryHand("human_right"), .X_WH = {{1.4, 1.8, 1.1}}});
   Person person = Anna();
   person.right_hand = 0;
   const Vector3d wrist = scene.hands[0].X_WH * WristInHand(scene.hands[0].model);

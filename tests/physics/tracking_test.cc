@@ -25,7 +25,8 @@ std::vector<TargetState> Follow(const Tracking& tracking, std::uint64_t seed = 7
                                 bool rest = false) {
   Tracker tracker(tracking, kRate_hz, seed, Truth(0));
   std::vector<TargetState> followed;
-  for (int tick = 1; tick <= ticks; ++tick) followed.push_back(tracker.Follow(Truth(rest ? 0 : tick)));
+  for (int tick = 1; tick <= ticks; ++tick)
+    followed.push_back(tracker.Follow(Truth(rest ? 0 : tick)));
   return followed;
 }
 
@@ -43,11 +44,14 @@ TEST(TrackingTest, APerfectTrackerIsLateByOneLook) {
 TEST(TrackingTest, ATrackerAsFastAsTheWorldLosesNothing) {
   const auto followed = Follow({.tracker_hz = kRate_hz});
   for (std::size_t i = 0; i < followed.size(); ++i)
-    ASSERT_NEAR(followed[i].X_WH.p_m.x(), Truth(static_cast<std::int64_t>(i) + 1).X_WH.p_m.x(), 1e-12) << i;
+    ASSERT_NEAR(followed[i].X_WH.p_m.x(), Truth(static_cast<std::int64_t>(i) + 1).X_WH.p_m.x(),
+                1e-12)
+        << i;
 }
 
 TEST(TrackingTest, LatencyDelaysPoseAndTriggerAlike) {
-  const auto late = Follow({.tracker_hz = 80, .latency_s = 0.2}), prompt = Follow({.tracker_hz = 80});
+  const auto late = Follow({.tracker_hz = 80, .latency_s = 0.2}),
+             prompt = Follow({.tracker_hz = 80});
   for (std::size_t i = 96; i < late.size(); ++i) {
     ASSERT_NEAR(late[i].X_WH.p_m.x(), prompt[i - 96].X_WH.p_m.x(), 1e-12) << i;
     ASSERT_NEAR(late[i].trigger, late[i].X_WH.p_m.x(), 1e-12) << i;
@@ -55,7 +59,8 @@ TEST(TrackingTest, LatencyDelaysPoseAndTriggerAlike) {
 }
 
 TEST(TrackingTest, JitterHasItsDeviation) {
-  const auto noisy = Follow({.tracker_hz = kRate_hz, .jitter_mm = 2, .jitter_deg = 1}, 7, 40000, true);
+  const auto noisy =
+      Follow({.tracker_hz = kRate_hz, .jitter_mm = 2, .jitter_deg = 1}, 7, 40000, true);
   double sum_m2 = 0, sum_rad2 = 0;
   for (const TargetState& state : noisy) {
     sum_m2 += state.X_WH.p_m.squaredNorm();
@@ -67,7 +72,8 @@ TEST(TrackingTest, JitterHasItsDeviation) {
 }
 
 TEST(TrackingTest, TremorHasItsAmplitudeAndFrequency) {
-  const auto trembling = Follow({.tracker_hz = kRate_hz, .tremor_mm = 3, .tremor_hz = 8}, 7, 4800, true);
+  const auto trembling =
+      Follow({.tracker_hz = kRate_hz, .tremor_mm = 3, .tremor_hz = 8}, 7, 4800, true);
   double most = 0;
   int upward = 0;  // crossings of zero
   for (std::size_t i = 1; i < trembling.size(); ++i) {
@@ -79,7 +85,8 @@ TEST(TrackingTest, TremorHasItsAmplitudeAndFrequency) {
   EXPECT_NEAR(upward, 80, 1);
 }
 
-/// Share of looks after which the target stands still although the hand moves on, and their mean number in a row.
+/// Share of looks after which the target stands still although the hand moves on, and their mean
+/// number in a row.
 struct Losses {
   double share = 0, run = 0;
 };
@@ -105,7 +112,8 @@ TEST(TrackingTest, LossesHaveTheirShareAndLength) {
   const Losses single = LossesOf({.tracker_hz = kRate_hz, .dropped_share = 0.3});
   EXPECT_NEAR(single.share, 0.3, 0.01);
   EXPECT_NEAR(single.run, 1 / 0.7, 0.05);
-  const Losses runs = LossesOf({.tracker_hz = kRate_hz, .dropped_share = 0.3, .dropped_run_s = 0.1});
+  const Losses runs =
+      LossesOf({.tracker_hz = kRate_hz, .dropped_share = 0.3, .dropped_run_s = 0.1});
   EXPECT_NEAR(runs.share, 0.3, 0.03);
   EXPECT_NEAR(runs.run, 48, 6);
 }
