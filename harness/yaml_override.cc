@@ -37,6 +37,20 @@ nlohmann::ordered_json FieldSchema(const nlohmann::ordered_json& schema, const s
   return others != schema.end() && others->is_object() ? *others : nlohmann::ordered_json();
 }
 
+/// Of a schema with alternatives (an actor is a hand or a person) the first that knows every key of the node.
+nlohmann::ordered_json Alternative(const nlohmann::ordered_json& schema, const YamlNode& node) {
+  const auto alternatives = schema.find("oneOf");
+  if (alternatives == schema.end()) return schema;
+  for (const nlohmann::ordered_json& alternative : *alternatives) {
+    const auto known = alternative.find("properties");
+    const bool fits = known != alternative.end() && std::ranges::all_of(node.children, [&](const YamlNode& child) {
+      return known->contains(child.key);
+    });
+    if (fits) return alternative;
+  }
+  return schema;
+}
+
 /// Whether a field of that name may be left out in the file, and is a mapping.
 bool IsOptionalMapping(const nlohmann::ordered_json& schema, const std::string& step) {
   const auto properties = schema.find("properties");
@@ -101,7 +115,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const nlohmann::ordered
       if (!last) child->kind = Kind::kMapping;
       child->where = child->key_where = {source, {1, static_cast<int>(begin) + 1}};
     }
-    known = FieldSchema(known, step);
+    known = Alternative(FieldSchema(known, step), *child);
     node = child;
     begin = end + 1;
   }

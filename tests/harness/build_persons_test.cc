@@ -103,6 +103,12 @@ TEST(TrackingOfAHandTest, IsReadWithItsDefaults) {
   EXPECT_FALSE(Read(kProbe).value->scene.hands[0].tracking);
 }
 
+TEST(TrackingOfAHandTest, IsSetFromTheCommandLine) {
+  const auto read = ReadScenarioText("probe.yaml", kProbe, {"actors.right_hand.tracking.latency_s=0.1"}, ProbeLibrary());
+  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
+  EXPECT_EQ(read.value->scene.hands[0].tracking->latency_s, 0.1);
+}
+
 TEST(TrackingOfAHandTest, Refuses) {
   EXPECT_EQ(ComplaintsAbout(WithTracking("{jitter_m: 1}")), "9:79: unknown key 'jitter_m' in the tracking | did you mean 'jitter_mm'?\n");
   EXPECT_EQ(ComplaintsAbout(WithTracking("{tracker_hz: 960}")), "9:78: tracker_hz 960 is above rate_hz 480\n");
