@@ -58,6 +58,10 @@ struct StepCheck {
                        "a hand turns about y only: rpy_deg: [0, pitch, 0]");
     }
   }
+  void operator()(const RecordingEntry& e) const {
+    complaints.Add(e.recording.where, "a recorded motion does not stay in the plane y = 0",
+                   "write its poses as a step of way-points: poses: [..]");
+  }
   template <class Other>
   void operator()(const Other&) const {}
 
@@ -69,7 +73,7 @@ struct StepCheck {
 };
 
 void CheckBodies(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints) {
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+  for (std::size_t i = 0; i < entry.entities.size(); ++i) {
     const physics::Body& body = scene.bodies[i];
     const std::string why = physics::WhyNotPlanar(body);
     if (why.empty()) continue;
@@ -94,7 +98,7 @@ void CheckJoints(const ScenarioEntry& entry, const physics::Scene& scene, Compla
   }
 }
 
-void CheckHand(const Named<ActorEntry>& actor, const physics::Hand& hand, Complaints& complaints) {
+void CheckHand(const Named<HandActor>& actor, const physics::Hand& hand, Complaints& complaints) {
   if (const std::string why = physics::WhyNotPlanar(hand.model); !why.empty())
     complaints.Add(actor.value.hand.where,
                    fmt::format("hand '{}' does not fit a planar world: {}", hand.model.name, why),
@@ -115,9 +119,12 @@ void CheckPlanar(const ScenarioEntry& entry, const physics::Scene& scene, Compla
   CheckJoints(entry, scene, complaints);
   std::map<std::string, const physics::Hand*> hands;
   for (std::size_t i = 0; i < scene.hands.size(); ++i) {
-    CheckHand(entry.actors[i], scene.hands[i], complaints);
-    hands[entry.actors[i].name] = &scene.hands[i];
+    CheckHand(entry.hands[i], scene.hands[i], complaints);
+    hands[entry.hands[i].name] = &scene.hands[i];
   }
+  for (const Named<PersonActor>& person : entry.persons)
+    complaints.Add(person.name_where, fmt::format("'{}' is a person, and a planar world has none", person.name),
+                   "play it without 'planar: true' and in the engine bullet");
   for (const BeatEntry& beat : entry.script) {
     for (const Named<StepEntry>& step : beat) {
       const auto hand = hands.find(step.name);
