@@ -101,11 +101,9 @@ class CaptureReader {
     return track;
   }
 
-  Diagnostics TakeDiagnostics() const { return complaints_.Sorted(); }
+  grammar::Diagnostics diagnostics() const { return complaints_.Sorted(); }
 
  private:
-  using Diagnostics = grammar::Diagnostics;
-
   const YamlNode* FindDevice() {
     if (document_.root.kind != YamlNode::Kind::kMapping) {
       complaints_.Add(document_.root.where, "expected an object with the devices of a recording",
@@ -189,7 +187,7 @@ ReadResult<MotionTrack> ReadMotionCapture(const std::string& path, const Capture
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
   CaptureReader reader(*document.value, device);
   MotionTrack track = reader.Read();
-  grammar::Diagnostics diagnostics = reader.TakeDiagnostics();
+  grammar::Diagnostics diagnostics = reader.diagnostics();
   if (!diagnostics.empty()) return {std::nullopt, std::move(diagnostics)};
   return {std::move(track), {}};
 }
