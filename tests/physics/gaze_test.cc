@@ -75,7 +75,9 @@ TEST(GazeTest, ASaccadeIsFasterThanTheHead) {
   for (; ticks < 480; ++ticks) {
     gaze.Turn(there, 1.0 / 480);
     if (eyes_s == 0 && (gaze.eyes_W() - there).norm() < 1e-3) eyes_s = (ticks + 1) / 480.0;
-    if (ticks == 48) EXPECT_GT((gaze.head_W() - there).norm(), (gaze.eyes_W() - there).norm());
+    if (ticks == 48) {
+      EXPECT_GT((gaze.head_W() - there).norm(), (gaze.eyes_W() - there).norm());
+    }
   }
   EXPECT_NEAR(eyes_s, 0.021 + 90 * 0.0022, 0.02);
   EXPECT_LT((gaze.head_W() - there).norm(), 0.02);
