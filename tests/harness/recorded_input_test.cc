@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "physics/simulation.h"
+#include "physics/trajectory.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {
