@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Files, PersonsRefused, testing::Values(
     Bad{"no_limbs", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foot}", "12:23: move_limb: 'anna' is only a head | write 'person: body'\n"},
     Bad{"limb", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foo}", "12:23: move_limb: expected one of 'right_elbow', 'left_elbow', 'right_wrist', 'left_wrist', 'right_foot', 'left_foot', found 'right_foo' | did you mean 'right_foot'?\n"},
     Bad{"arm_of_a_hand", "{person: body, at_m: [-0.9, 0, 0], right_hand: right_hand}", "anna: {move_limb: right_elbow, to_m: [0, 0, 1]}", "12:23: move_limb: this arm follows the hand 'right_hand' | move the hand instead\n"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& test) { return test.param.name; });
 // clang-format on
 
 TEST(PersonsTest, NamesOfPartsMustBeFree) {

@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
     BadCsv{"no_unit_quaternion", "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,1,0,0\n1,0,0,0,1,0,0,0\n", "m.csv:2:9: qw, qx, qy, qz: expected a unit quaternion\n"},
     BadCsv{"trigger", "t_s,x_m,y_m,z_m,trigger\n0,0,0,0,0\n1,0,0,0,1.5\n", "m.csv:3:9: trigger: expected a number from 0 to 1\n"},
     BadCsv{"one_row", "t_s,x_m,y_m,z_m\n0,0,0,0\n", "m.csv:2:1: 1 rows; a motion has at least 2\n"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& test) { return test.param.name; });
 // clang-format on
 
 TEST(MotionCsvTest, AMissingFileIsNamed) {
