@@ -21,7 +21,8 @@ TEST_P(OracleAgreement, WithinTwoFrames) {
   const RunRequest request{.scenario_file = GetParam().path};
   const ReadResult<PreparedRun> prepared = PrepareRun(request, PREHEND_SOURCE_DIR);
   ASSERT_TRUE(prepared.value) << grammar::Format(prepared.diagnostics);
-  const auto& [scenario, program] = *prepared.value;
+  const Scenario& scenario = prepared.value->scenario;
+  const auto& program = prepared.value->program;
   const RunResult run = RunScenario(scenario, program, {.record = true});
   ASSERT_EQ(run.status.kind, physics::RunStatus::Kind::kCompleted) << run.status.reason;
   const grammar::Timeline truth = TrueTimeline(scenario, run.recording, run.ticks + 1);
