@@ -32,7 +32,7 @@ TEST_P(OracleAgreement, WithinTwoFrames) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, OracleAgreement,
                          testing::ValuesIn(ListScenarios(PREHEND_SOURCE_DIR)),
-                         [](const auto& scenario) { return scenario.param.name; });
+                         [](const auto& scenario) { return scenario.param.skill + "_" + scenario.param.name; });
 
 }  // namespace
 }  // namespace prehend::harness
