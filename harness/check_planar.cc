@@ -102,7 +102,7 @@ void CheckHand(const Named<HandActor>& actor, const physics::Hand& hand, Complai
   if (const std::string why = physics::WhyNotPlanar(hand.model); !why.empty())
     complaints.Add(actor.value.hand.where,
                    fmt::format("hand '{}' does not fit a planar world: {}", hand.model.name, why),
-                   "the hand 'gripper' does");
+                   "the hand 'planar_gripper' does");
   if (std::abs(hand.X_WH.p_m.y()) > kOnPlane_m)
     complaints.Add(actor.value.at_m.where,
                    fmt::format("at_m: '{}' starts beside the plane y = 0", actor.name), kZeroY);

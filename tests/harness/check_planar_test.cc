@@ -17,7 +17,7 @@ entities:
   table: {fixed: true, box: {size_m: [1.2, 0.8, 0.04]}, at_m: [0, 0, 0.74]}
   box: {box: {size_m: [0.06, 0.06, 0.10]}, mass_kg: 0.3, on: table, at_m: [0.2, 0]}
 actors:
-  gripper: {hand: gripper, at_m: [-0.2, 0, 1.05]}
+  gripper: {hand: planar_gripper, at_m: [-0.2, 0, 1.05]}
 script:
   - gripper: {reach: box, style: parallel}
 )";
@@ -70,9 +70,9 @@ TEST(CheckPlanarTest, WhatDoesNotFitIsRefused) {
       {"at_m: [0.2, 0]", "at_m: [0.2, 0], ball_joint: {to: table, at_m: [0.2, 0, 0.9]}",
        "6:104: the joint of 'box' does not fit a planar world: a ball joint turns out of the plane "
        "| hinge with axis: [0, 1, 0]"},
-      {"hand: gripper", "hand: human_right",
+      {"hand: planar_gripper", "hand: human_right",
        "8:19: hand 'human_right' does not fit a planar world: its link 'index_proximal' lies "
-       "beside its plane y = 0 | the hand 'gripper' does"},
+       "beside its plane y = 0 | the hand 'planar_gripper' does"},
       {"at_m: [-0.2, 0, 1.05]", "at_m: [-0.2, 0.1, 1.05]",
        "8:34: at_m: 'gripper' starts beside the plane y = 0 | in a planar world y is 0"},
       {"at_m: [-0.2, 0, 1.05]", "at_m: [-0.2, 0, 1.05], rpy_deg: [0, 0, 90]",

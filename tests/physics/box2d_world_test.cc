@@ -39,7 +39,7 @@ Scene GripperScene(const Setting& setting) {
                           .mass_kg = setting.mass_kg,
                           .friction = setting.friction,
                           .X_WB = {{setting.at_m, 0, 0.76 + setting.height_m / 2}}});
-  scene.hands.push_back({"gripper", LibraryHand("gripper"), {{-0.3, 0, 1.1}}});
+  scene.hands.push_back({"gripper", LibraryHand("planar_gripper"), {{-0.3, 0, 1.1}}});
   return scene;
 }
 
@@ -258,7 +258,7 @@ TEST(Box2dTest, WhatIsTooFastEndsTheRun) {
 }
 
 TEST(Box2dTest, AFingerOfHingesClosesToItsTargets) {
-  HandModel model = LibraryHand("gripper");
+  HandModel model = LibraryHand("planar_gripper");
   for (HandLink& link : model.links) {
     const double side = link.name == "post" ? 1 : -1;
     link.slides = false;

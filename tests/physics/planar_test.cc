@@ -60,10 +60,10 @@ TEST(PlanarTest, JointsMoveInThePlaneOrSayWhyNot) {
 }
 
 TEST(PlanarTest, TheGripperIsPlanarAHumanHandIsNot) {
-  EXPECT_EQ(WhyNotPlanar(LibraryHand("gripper")), "");
+  EXPECT_EQ(WhyNotPlanar(LibraryHand("planar_gripper")), "");
   EXPECT_EQ(WhyNotPlanar(LibraryHand("human_right")),
             "its link 'index_proximal' lies beside its plane y = 0");
-  HandModel gripper = LibraryHand("gripper");
+  HandModel gripper = LibraryHand("planar_gripper");
   gripper.styles[0].grip_axis = Vector3d::UnitY();
   EXPECT_EQ(WhyNotPlanar(gripper), "its style 'parallel' does not grip in the plane");
   gripper.links[1].joint_axis = Vector3d::UnitY();

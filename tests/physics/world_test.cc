@@ -111,7 +111,7 @@ TEST_P(WorldTest, ACompoundTurnsAboutItsCentreOfMass) {
 
 TEST_P(WorldTest, AHandHoversAtItsTarget) {
   const bool planar = GetParam() == Engine::kBox2d;
-  const HandModel model = LibraryHand(planar ? "gripper" : "human_right");
+  const HandModel model = LibraryHand(planar ? "planar_gripper" : "human_right");
   const Eigen::Vector3d axis = planar ? Eigen::Vector3d(0, 1, 0) : Eigen::Vector3d(1, 2, 3);
   const Pose X_WH{{0, 0, 1}, Eigen::Quaterniond(Eigen::AngleAxisd(0.7, axis.normalized()))};
   const auto world = Make({.hands = {{"hand", model, X_WH}}}, {0});
