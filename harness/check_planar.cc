@@ -123,7 +123,8 @@ void CheckPlanar(const ScenarioEntry& entry, const physics::Scene& scene, Compla
     hands[entry.hands[i].name] = &scene.hands[i];
   }
   for (const Named<PersonActor>& person : entry.persons)
-    complaints.Add(person.name_where, fmt::format("'{}' is a person, and a planar world has none", person.name),
+    complaints.Add(person.name_where,
+                   fmt::format("'{}' is a person, and a planar world has none", person.name),
                    "play it without 'planar: true' and in the engine bullet");
   for (const BeatEntry& beat : entry.script) {
     for (const Named<StepEntry>& step : beat) {
