@@ -60,7 +60,10 @@ std::string Lowering::TextOf(const Expr& expr) {
     case Expr::Kind::kText: return '"' + expr.text + '"';
     case Expr::Kind::kCall: return expr.text + "(" + joined(", ", false) + ")";
     case Expr::Kind::kUnary: return expr.text + (expr.text == "not" ? " " : "") + Bracketed(expr.args[0]);
-    case Expr::Kind::kBinary:
+    case Expr::Kind::kBinary: {
+      const bool is_comparison = std::string_view("<>=!").find(expr.text[0]) != std::string_view::npos;
+      return joined(" " + expr.text + " ", !is_comparison);  // arithmetic binds tighter
+    }
     case Expr::Kind::kChain: return joined(" " + expr.text + " ", true);
     case Expr::Kind::kEdge: {
       const bool is_chain = expr.args[0].kind == Expr::Kind::kChain;

@@ -87,7 +87,8 @@ ExitCode Answer(const CLI::App& options, const CommandContext& context, const st
   } else {
     const std::vector<WhyEvent> events = explain::ExplainAll(past);
     json["events"] = ToJson(events, per_second);
-    if (!as_json) context.out << explain::Table(events, per_second);
+    if (!as_json && events.empty()) context.out << "nothing was recognised; --expected EVENT says why\n";
+    if (!as_json && !events.empty()) context.out << explain::Table(events, per_second);
   }
   if (as_json) context.out << json.dump(2) << "\n";
   return ExitCode::kAgrees;
