@@ -13,8 +13,9 @@ namespace {
 const std::string kLibrary = PREHEND_SOURCE_DIR "/physics/library/";
 
 /// The shipped hand with one text replaced, read from a file of the same name.
-ReadResult<physics::HandModel> ReadChanged(const std::string& what, const std::string& by) {
-  std::ifstream file(kLibrary + "human_right.hand.yaml");
+ReadResult<physics::HandModel> ReadChanged(const std::string& what, const std::string& by,
+                                           const std::string& hand = "human_right") {
+  std::ifstream file(kLibrary + hand + ".hand.yaml");
   std::stringstream stream;
   stream << file.rdbuf();
   std::string text = stream.str();
@@ -23,7 +24,7 @@ ReadResult<physics::HandModel> ReadChanged(const std::string& what, const std::s
   text.replace(at, what.size(), by);
   const auto folder = std::filesystem::temp_directory_path() / "prehend_read_hand_model_test";
   std::filesystem::create_directories(folder);
-  const std::string path = (folder / "human_right.hand.yaml").string();
+  const std::string path = (folder / (hand + ".hand.yaml")).string();
   std::ofstream(path) << text;
   auto result = ReadHandModel(path);
   std::filesystem::remove_all(folder);
@@ -66,6 +67,29 @@ TEST(ReadHandModelTest, MistakesAreNamedAtTheirPlace) {
     const std::string text = Format(result.diagnostics.front());
     EXPECT_NE(text.find(mistake.message), std::string::npos) << text;
     EXPECT_GT(result.diagnostics.front().place.line, 0) << text;
+  }
+}
+
+TEST(ReadHandModelTest, JawsSlideAndAreCheckedAlike) {
+  const auto hand = ReadHandModel(kLibrary + "planar_gripper.hand.yaml");
+  ASSERT_TRUE(hand.value.has_value()) << Format(hand.diagnostics.front());
+  EXPECT_EQ(physics::CheckGains(*hand.value, 240), "");
+  ASSERT_EQ(hand.value->links.size(), 2u);
+  EXPECT_TRUE(hand.value->links[1].slides);
+  EXPECT_EQ(hand.value->links[1].strength, 15);
+  EXPECT_EQ(hand.value->styles[0].frames[1][0], 0.012) << "metres";
+  const Mistake mistakes[] = {
+      {"- {post: [0], jaw: [0]}", "- {post: [0]}", "there is nothing for digit 'jaw'"},
+      {"range_m: [0, 0.045]", "range_m: [0.045, 0]", "range_m: expected [least, most]"},
+      {"    frames_m:", "    frames_deg:", "style 'parallel' has no 'frames_m'"},
+      {"strength_n: 45", "strength_nm: 45", "strength_n"},
+      {"slides: [1, 0, 0]", "slides: [0, 0, 0]", "a direction other than"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    const auto result = ReadChanged(mistake.what, mistake.by, "planar_gripper");
+    ASSERT_FALSE(result.value.has_value()) << mistake.by;
+    EXPECT_NE(Format(result.diagnostics).find(mistake.message), std::string::npos)
+        << Format(result.diagnostics);
   }
 }
 
