@@ -50,6 +50,8 @@ class PersonPlayer::Resolver {
     LimbMotion& limb = player_.limbs_[static_cast<std::size_t>(LimbOf(move.limb))];
     limb.end = move.limb;
     limb.from_S_m = X_SW * PlaceOf(move.limb, player_.person_, player_.posture_);
+    if (LimbOf(move.limb) < 2)
+      limb.forearm_S = X_SW.q * ForearmOf(move.limb, player_.person_, player_.posture_);
     limb.to_rest = !move.to_m;
     if (move.to_m) limb.to_S_m = X_SW * *move.to_m;
     limb.progress = {0, 1, player_.t_s_, over_s_};
@@ -107,13 +109,19 @@ Posture::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
   const double progress = motion.progress.duration_s > 0 ? motion.progress.At(t_s_) : 1;
   if (motion.to_rest && progress == 1) return rest;
   Vector3d to_W = posture_.X_WS * motion.to_S_m;
+  Vector3d forearm_W = FoldedForearm(motion.end, posture_.X_WS);
   if (motion.to_rest) {
     Posture resting = posture_;
     resting.limbs[static_cast<std::size_t>(limb)] = rest;
     to_W = PlaceOf(motion.end, person_, resting);
+    if (limb < 2) forearm_W = ForearmOf(motion.end, person_, resting);
   }
   const Vector3d from_W = posture_.X_WS * motion.from_S_m;
-  return {motion.end, from_W + progress * (to_W - from_W)};
+  const Eigen::Quaterniond turn =
+      Eigen::Quaterniond::FromTwoVectors(posture_.X_WS.q * motion.forearm_S, forearm_W);
+  const Eigen::Quaterniond turned = Eigen::Quaterniond::Identity().slerp(progress, turn);
+  return {motion.end, from_W + progress * (to_W - from_W),
+          turned * (posture_.X_WS.q * motion.forearm_S)};
 }
 
 void PersonPlayer::TurnHead(const Snapshot& now) {

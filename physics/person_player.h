@@ -39,6 +39,7 @@ class PersonPlayer {
     LimbEnd end = LimbEnd::kRightWrist;
     Eigen::Vector3d from_S_m = Eigen::Vector3d::Zero();  ///< in the frame of her stand
     Eigen::Vector3d to_S_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d forearm_S = Eigen::Vector3d::UnitZ();  ///< where it was when the step began
     bool to_rest = true;
     Motion progress;
   };

@@ -80,9 +80,7 @@ Arm ArmOf(const Person& person, const Posture& posture, bool right) {
     arm.elbow = arm.shoulder +
                 kUpperArm * h *
                     (way.norm() > 1e-6 ? Vector3d(way.normalized()) : Vector3d(-Vector3d::UnitZ()));
-    const Vector3d folded =
-        q * Vector3d(-0.1, -0.5 * Side(right), 0.85).normalized();  // to the other shoulder
-    arm.wrist = arm.elbow + kForearm * h * folded;
+    arm.wrist = arm.elbow + kForearm * h * limb.forearm_W;
   } else {
     const Vector3d hint =
         q * Vector3d(-0.3, 0.5 * Side(right), -1);  // elbows hang, a little outwards
@@ -203,6 +201,14 @@ Eigen::Vector3d PlaceOf(LimbEnd end, const Person& person, const Posture& postur
     return LegOf(person, posture, right).ankle + posture.X_WS.q * FootFromAnkle(person.height_m);
   const Arm arm = ArmOf(person, posture, right);
   return end == LimbEnd::kRightElbow || end == LimbEnd::kLeftElbow ? arm.elbow : arm.wrist;
+}
+
+Eigen::Vector3d ForearmOf(LimbEnd end, const Person& person, const Posture& posture) {
+  return ArmOf(person, posture, LimbOf(end) % 2 == 0).palm_toward;
+}
+
+Eigen::Vector3d FoldedForearm(LimbEnd end, const Pose& X_WS) {
+  return X_WS.q * Vector3d(-0.1, -0.5 * Side(LimbOf(end) % 2 == 0), 0.85).normalized();
 }
 
 Eigen::Vector3d NeckTop(const Person& person, const Pose& X_WS, double lean_rad) {

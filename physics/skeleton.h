@@ -21,6 +21,8 @@ struct Posture {
   struct Limb {
     LimbEnd end = LimbEnd::kRightWrist;  ///< what `p_W_m` is about
     Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+    /// From the elbow on, unit; only of a limb whose end is an elbow.
+    Eigen::Vector3d forearm_W = Eigen::Vector3d::UnitZ();
   };
   std::array<Limb, 4> limbs;  ///< right arm, left arm, right leg, left leg
   Pose X_WHead;               ///< its x is where the face looks
@@ -33,6 +35,10 @@ int LimbOf(LimbEnd end);
 Posture::Limb RestOf(int limb, const Person& person, const Pose& X_WS, double lean_rad);
 /// Where this end of a limb is in a posture.
 Eigen::Vector3d PlaceOf(LimbEnd end, const Person& person, const Posture& posture);
+/// Where the forearm of an arm goes from its elbow on, unit.
+Eigen::Vector3d ForearmOf(LimbEnd end, const Person& person, const Posture& posture);
+/// The same of an arm that pushes with its elbow: folded up, towards the other shoulder.
+Eigen::Vector3d FoldedForearm(LimbEnd end, const Pose& X_WS);
 /// Between the neck and the head, which turns about it.
 Eigen::Vector3d NeckTop(const Person& person, const Pose& X_WS, double lean_rad);
 /// The head that looks this way from its neck.
