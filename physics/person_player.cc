@@ -103,7 +103,7 @@ Posture::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
   const Posture::Limb rest = RestOf(limb, person_, posture_.X_WS, posture_.lean_rad);
   if (hand >= 0) {
     const auto h = static_cast<std::size_t>(hand);
-    return {rest.end, now.hands[h].palm.X_WB * WristInHand(scene_.hands[h].model)};
+    return {rest.end, now.hands[h].palm.X_WB * WristInHand(person_, scene_.hands[h].model)};
   }
   const LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
   const double progress = motion.progress.duration_s > 0 ? motion.progress.At(t_s_) : 1;

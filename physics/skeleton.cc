@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 constexpr double kAnkle = 0.039, kHip = 0.530, kShoulder = 0.818, kNeckTop = 0.870;
 constexpr double kThigh = 0.245, kShank = 0.246, kUpperArm = 0.186, kForearm = 0.146, kPalm = 0.108;
 constexpr double kHalfShoulders = 0.129, kHalfHips = 0.050;
+constexpr double kForearmRadius = 0.020;
 constexpr double kHeadCentre = 0.065;  // above the top of the neck
 constexpr double kHeadRadius = 0.050, kHeadLength = 0.030, kEyesAhead = 0.045, kEyesUp = 0.005;
 constexpr double kFootLength = 0.090, kToesLength = 0.035, kHeel = 0.035;  // heel: behind the ankle
@@ -115,7 +116,7 @@ Leg LegOf(const Person& person, const Posture& posture, bool right) {
 void AddArm(const Person& person, const Posture& posture, bool right, std::vector<Bone>& bones) {
   const Arm arm = ArmOf(person, posture, right);
   bones.push_back({right ? "right_upper_arm" : "left_upper_arm", 0.026, arm.elbow, arm.shoulder});
-  bones.push_back({right ? "right_forearm" : "left_forearm", 0.020, arm.wrist, arm.elbow});
+  bones.push_back({right ? "right_forearm" : "left_forearm", kForearmRadius, arm.wrist, arm.elbow});
   if ((right ? person.right_hand : person.left_hand) >= 0) return;  // the scene has a better one
   bones.push_back({right ? "right_hand" : "left_hand", 0.018,
                    arm.wrist + kPalm * person.height_m * arm.palm_toward, arm.wrist});
@@ -230,7 +231,9 @@ Eigen::Vector3d EyesOf(const Person& person, const Pose& X_WHead) {
   return X_WHead * (person.height_m * Vector3d(kEyesAhead, 0, kEyesUp));
 }
 
-Eigen::Vector3d WristInHand(const HandModel& model) { return {-model.palm_size_m.x() / 2, 0, 0}; }
+Eigen::Vector3d WristInHand(const Person& person, const HandModel& model) {
+  return {-model.palm_size_m.x() / 2 - kForearmRadius * person.height_m, 0, 0};
+}
 
 Posture Standing(const Scene& scene, const Person& person) {
   Posture posture{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}};
@@ -241,7 +244,7 @@ Posture Standing(const Scene& scene, const Person& person) {
     if (hand < 0) continue;
     const Hand& of_scene = scene.hands[static_cast<std::size_t>(hand)];
     posture.limbs[static_cast<std::size_t>(limb)].p_W_m =
-        of_scene.X_WH * WristInHand(of_scene.model);
+        of_scene.X_WH * WristInHand(person, of_scene.model);
   }
   posture.X_WHead =
       HeadToward(person, NeckTop(person, person.X_WS, 0), person.X_WS.q * Vector3d::UnitX());

@@ -46,8 +46,9 @@ Pose HeadToward(const Person& person, const Eigen::Vector3d& p_W_neck,
                 const Eigen::Vector3d& toward_W);
 /// Between the eyes.
 Eigen::Vector3d EyesOf(const Person& person, const Pose& X_WHead);
-/// Where the wrist is in the frame of a hand's palm.
-Eigen::Vector3d WristInHand(const HandModel& model);
+/// Where the wrist is in the frame of a hand's palm: so that the forearm's round end ends where the
+/// palm begins.
+Eigen::Vector3d WristInHand(const Person& person, const HandModel& model);
 
 /// Standing, arms hanging or at the hands of the scene, looking ahead.
 Posture Standing(const Scene& scene, const Person& person);

@@ -125,7 +125,7 @@ TEST(SkeletonTest, ArmsFollowTheHandsOfTheScene) {
       {.name = "hand", .model = LibraryHand("human_right"), .X_WH = {{1.4, 1.8, 1.1}}});
   Person person = Anna();
   person.right_hand = 0;
-  const Vector3d wrist = scene.hands[0].X_WH * WristInHand(scene.hands[0].model);
+  const Vector3d wrist = scene.hands[0].X_WH * WristInHand(person, scene.hands[0].model);
   EXPECT_LT((PlaceOf(LimbEnd::kRightWrist, person, Standing(scene, person)) - wrist).norm(), 1e-9);
 }
 
