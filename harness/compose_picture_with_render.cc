@@ -235,7 +235,9 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
   picture.snapshot = SnapshotAt(run, moment.tick);
   for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
     picture.body_colors.push_back(BodyColor(scenario.scene.bodies[i], static_cast<int>(i)));
-    picture.body_labels.push_back(scenario.scene.bodies[i].name);
+    // A person is named once, at her head: labels of eighteen parts would hide her.
+    const bool is_part = scenario.body_classes[i] == "BodyPart";
+    picture.body_labels.push_back(is_part ? "" : scenario.scene.bodies[i].name);
   }
   for (std::size_t h = 0; h < scenario.scene.hands.size(); ++h)
     AppendPath(scenario.scene, run, static_cast<int>(h), picture.path);
