@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 
+#include "harness/score/partition_metrics.h"
+
 namespace prehend::harness::score {
 namespace {
 
@@ -65,15 +67,6 @@ double AveragePrecision(const std::vector<bool>& correct, std::size_t truths) {
     area += (recall[i + 1] - recall[i]) * precision[i + 1];
   }
   return area;
-}
-
-/// Inner boundaries of the partition into segments and background.
-std::vector<Tick> InnerBoundaries(const Segments& segments, Tick ticks) {
-  std::set<Tick> boundaries;
-  for (const Segment& segment : segments) boundaries.insert({segment.interval.begin, segment.interval.end});
-  boundaries.erase(0);
-  boundaries.erase(ticks);
-  return {boundaries.begin(), boundaries.end()};
 }
 
 const std::string* LabelAt(const Segments& segments, Tick tick) {
@@ -172,6 +165,9 @@ double FrameCounts::AccuracyInTruth() const {
 double FrameCounts::ErrorRate() const {
   return Ratio(static_cast<double>(confused + missed + false_alarm), static_cast<double>(InTruth()),
                false_alarm == 0 ? 0 : 1);
+}
+double FrameCounts::DetectionErrorRate() const {
+  return Ratio(static_cast<double>(missed + false_alarm), static_cast<double>(InTruth()), false_alarm == 0 ? 0 : 1);
 }
 double FrameCounts::F1() const {
   const auto wrong = static_cast<double>(2 * confused + missed + false_alarm);

@@ -50,6 +50,8 @@ struct FrameCounts {
   double AccuracyInTruth() const;
   /// Identification error rate; the same as the segment-based error rate on the tick grid.
   double ErrorRate() const;
+  /// The same without labels: something or background (pyannote's detection error rate).
+  double DetectionErrorRate() const;
   /// F1 of labelled frames.
   double F1() const;
 };

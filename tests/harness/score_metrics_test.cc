@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The metrics give the numbers that their reference programs printed (tests/harness/segmentation_metrics.json): ms-tcn,
-// ActivityNet, mir_eval, sed_eval, pyannote-metrics and ward-metrics, on six toy episodes of 40 frames at 10 Hz.
+// ActivityNet, mir_eval, sed_eval, pyannote-metrics, psds_eval and ward-metrics, on six toy episodes of 40 frames at 10 Hz.
 // Where a reference prints nothing (NaN), ours is defined: see the comments.
 #include <gtest/gtest.h>
 
@@ -8,7 +8,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "harness/score/intersection_metrics.h"
 #include "harness/score/overlap_metrics.h"
+#include "harness/score/partition_metrics.h"
 #include "harness/score/ward.h"
 
 namespace prehend::harness::score {
@@ -133,6 +135,67 @@ TEST_P(ScoreMetrics, IdentificationErrors) {
     EXPECT_NEAR(counts.false_alarm / 10.0, printed[3], kPrinted) << key;
     EXPECT_NEAR(counts.correct / 10.0, printed[4], kPrinted) << key;
     EXPECT_NEAR(counts.InTruth() / 10.0, printed[5], kPrinted) << key;
+  }
+}
+
+TEST_P(ScoreMetrics, DetectionErrors) {
+  for (const auto& [key, collar] : {std::pair{"det_er collar=0", 0}, std::pair{"det_er collar=0.2", 1}}) {
+    const FrameCounts counts = CountFrames(episode_, collar);
+    const auto& printed = printed_[key];
+    EXPECT_NEAR(counts.DetectionErrorRate(), printed[0], kPrinted) << key;
+    EXPECT_NEAR(counts.missed / 10.0, printed[1], kPrinted) << key;
+    EXPECT_NEAR(counts.false_alarm / 10.0, printed[2], kPrinted) << key;
+    EXPECT_NEAR(counts.InTruth() / 10.0, printed[3], kPrinted) << key;
+  }
+}
+
+TEST_P(ScoreMetrics, DeviationOfBoundaries) {
+  const std::optional<Deviation> deviation = BoundaryDeviation(episode_);
+  const auto& printed = printed_["mir_dev_median_r2e_e2r"];
+  // The reference prints NaN where a side has no boundary; ours has no value.
+  ASSERT_EQ(deviation.has_value(), !printed[0].is_null());
+  if (!deviation) return;
+  EXPECT_NEAR(deviation->from_truth / 10, printed[0], kPrinted);
+  EXPECT_NEAR(deviation->from_prediction / 10, printed[1], kPrinted);
+}
+
+TEST_P(ScoreMetrics, PairsOfFrames) {
+  const PrecisionRecall pairs = PairwiseAgreement(episode_);
+  const auto& printed = printed_["mir_pairwise_PRF"];
+  EXPECT_NEAR(pairs.precision, printed[0], kPrinted);
+  EXPECT_NEAR(pairs.recall, printed[1], kPrinted);
+  EXPECT_NEAR(pairs.F1(), printed[2], kPrinted);
+}
+
+TEST_P(ScoreMetrics, PurityAndCoverageOfPieces) {
+  const PrecisionRecall pieces = PurityAndCoverage(episode_);
+  const auto& printed = printed_["purity_coverage_F"];
+  EXPECT_NEAR(pieces.precision, printed[0], kPrinted);
+  EXPECT_NEAR(pieces.recall, printed[1], kPrinted);
+  EXPECT_NEAR(pieces.F1(), printed[2], kPrinted);
+}
+
+TEST_P(ScoreMetrics, BoundariesAsPyannoteCountsThem) {
+  const Hits hits = BoundaryHits(episode_, 1.5);
+  const auto& printed = printed_["pyannote_seg_PR tol=.15"];
+  // Of no predicted boundary at all, the reference says that all are right; ours, like mir_eval's, that none is.
+  if (hits.correct + hits.extra > 0) EXPECT_NEAR(hits.Precision(), printed[0], kPrinted);
+  EXPECT_NEAR(hits.Recall(), printed[1], kPrinted);
+}
+
+TEST_P(ScoreMetrics, EventsByIntersection) {
+  const IntersectionScore score = ScoreByIntersection(episode_, 10);
+  const auto& printed = printed_["psds"];
+  if (printed.is_array()) {
+    EXPECT_NEAR(score.macro_f1, Printed("psds", 0, 0), kPrinted) << "nothing predicted: 0, not NaN";
+    EXPECT_NEAR(score.psds, Printed("psds", 1, 0), kPrinted);
+  } else if (GetParam() == "D_missing_sub") {
+    // The reference refuses labels that the truth does not have. Of reach, grasp, transport, put two are found; the reach is
+    // said too long, but 10 of its 15 frames are right.
+    EXPECT_NEAR(score.macro_f1, 0.5, kPrinted);
+    EXPECT_NEAR(score.psds, 0.5, kPrinted);
+  } else {
+    EXPECT_NEAR(score.macro_f1, 1, kPrinted) << "12 of 14 frames of the one reach are right and cover both true ones";
   }
 }
 
