@@ -162,6 +162,14 @@ TEST_P(ScoreMetrics, DeviationOfBoundaries) {
 TEST_P(ScoreMetrics, PairsOfFrames) {
   const PrecisionRecall pairs = PairwiseAgreement(episode_);
   const auto& printed = printed_["mir_pairwise_PRF"];
+  if (GetParam() == "B_late1") {
+    // The reference samples at 0.1 s in floating point, which puts frames at 1.6, 2.1 and 3.3 s into the wrong piece (its
+    // precision and recall differ, though both sides have pieces of the same lengths). By hand, on the exact grid: of 159
+    // pairs on each side 21 + 36 + 6 + 55 + 6 agree.
+    EXPECT_NEAR(pairs.precision, 124.0 / 159, kPrinted);
+    EXPECT_NEAR(pairs.recall, 124.0 / 159, kPrinted);
+    return;
+  }
   EXPECT_NEAR(pairs.precision, printed[0], kPrinted);
   EXPECT_NEAR(pairs.recall, printed[1], kPrinted);
   EXPECT_NEAR(pairs.F1(), printed[2], kPrinted);
@@ -179,7 +187,9 @@ TEST_P(ScoreMetrics, BoundariesAsPyannoteCountsThem) {
   const Hits hits = BoundaryHits(episode_, 1.5);
   const auto& printed = printed_["pyannote_seg_PR tol=.15"];
   // Of no predicted boundary at all, the reference says that all are right; ours, like mir_eval's, that none is.
-  if (hits.correct + hits.extra > 0) EXPECT_NEAR(hits.Precision(), printed[0], kPrinted);
+  if (hits.correct + hits.extra > 0) {
+    EXPECT_NEAR(hits.Precision(), printed[0], kPrinted);
+  }
   EXPECT_NEAR(hits.Recall(), printed[1], kPrinted);
 }
 
