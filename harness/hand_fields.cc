@@ -180,8 +180,8 @@ Record<GraspApproach> ApproachRecord(const std::string& noun) {
                 "H's origin stays this far from the nearest face.")
       .Required("pads_m", &A::pads_m, Number(0, 0.5),
                 "Wanted distance of the object's centre from H's origin.")
-      .Required("floor_m", &A::floor_m, Number(0, 0.5),
-                "H's origin stays this high above the object's lowest point.");
+      .Required("floor_m", &A::floor_m, Number(-0.5, 0.5),
+                "H's origin stays this high above the object's lowest point; negative: below it.");
 }
 
 Format<StyleEntry> StyleFormat() {

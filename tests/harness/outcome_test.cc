@@ -59,9 +59,9 @@ TEST(Outcome, AMomentIsLookedAtWhenItComes) {
 
 TEST(Outcome, RefusesWhatIsNotThere) {
   EXPECT_EQ(Brief(Read("  held: [{entity: mlik}]\n").diagnostics),
-            "14:10: entity: no entity is called 'mlik' | did you mean 'milk'?\n");
+            "16:10: entity: no entity is called 'mlik' | did you mean 'milk'?\n");
   EXPECT_EQ(Brief(Read("  open: [{entity: milk, joint_above: 0.5}]\n").diagnostics),
-            "14:10: entity: 'milk' hangs on no joint\n");
+            "16:10: entity: 'milk' hangs on no joint\n");
 }
 
 }  // namespace
