@@ -65,7 +65,7 @@ TEST_F(LoadGrammarFiles, WarnsOfClassesThatNobodyHas) {
   const grammar::Cast cast{.entities = {{.name = "hand", .classes = {"Hand", "Entity"}},
                                         {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}}}};
   EXPECT_EQ(Format(Warnings(*loaded.program, cast)),
-            file + ":2:24: warning: nobody in this episode is a 'Cupp'\n"
+            file + ":2:21: warning: nobody in this episode is a 'Cupp'\n"
                    "  event near(h: Hand, c: Cupp) while distance(h, c) < 1 cm\n"
                    "                      ^\n  hint: did you mean 'Cup'?\n" +
             file + ":3:52: warning: nobody in this episode is a 'Pot'\n"
