@@ -77,8 +77,7 @@ void Engine::Tell(Lane& lane) {
     if (watching.open || MayBegin(watching)) {
       if (watching.open || lanes_.Guards(lane.index, watching) || !lanes_.GuardRests(watching)) Wake(watcher);
     } else if (!lane.open && lanes_.Guards(lane.index, watching)) {
-      watching.resting_since = history_.now();  // it may be freed some time
-      Retire(watching);
+      Wake(watcher);  // the guard has held up to the frame before; a moment here may still be told of
     }
   }
 }
