@@ -19,19 +19,21 @@ bool ImpliesTouch(const Program& program, const Node& node) {
          (node.op == Op::kGreater && right.number >= when_apart);
 }
 
-// References that must be true whenever the node is.
-void CollectNecessary(const Program& program, int index, std::vector<int>& references) {
+// References that must be true whenever the node is; at a moment they may have been so up to there, if `at_moments`.
+void CollectNecessary(const Program& program, int index, std::vector<int>& references, bool at_moments = true) {
   if (index == kNone) return;
   const Node& node = program.nodes[index];
   switch (node.op) {
     case Op::kHolds:
     case Op::kSensorSet: references.push_back(node.slot); break;
     case Op::kAnd:
-      CollectNecessary(program, node.args[0], references);
-      CollectNecessary(program, node.args[1], references);
+      CollectNecessary(program, node.args[0], references, at_moments);
+      CollectNecessary(program, node.args[1], references, at_moments);
       break;
     case Op::kBegins:
-    case Op::kEnds: CollectNecessary(program, node.args[0], references); break;
+    case Op::kEnds:
+      if (at_moments) CollectNecessary(program, node.args[0], references);
+      break;
     case Op::kGreater:
     case Op::kGreaterEqual:
       if (ImpliesTouch(program, node)) references.push_back(program.nodes[node.args[0]].slot);
@@ -71,7 +73,8 @@ int ChooseGuard(const Program& program, const Rule& rule) {
       break;
     case Form::kUntilSince:
       // If nobody asks where it is not, it is enough to wake at its end; else its truth must be known at all times.
-      CollectNecessary(program, rule.second, candidates);
+      // It ends a frame later than that what leads to it holds.
+      CollectNecessary(program, rule.second, candidates, false);
       if (!rule.referenced) CollectNecessary(program, rule.first, candidates);
       break;
     case Form::kRestOf: candidates.push_back(rule.first); break;
