@@ -142,7 +142,7 @@ TEST(MotionCaptureTest, Refuses) {
   EXPECT_EQ(complaints(R"({"right": {}})", "right"), "m.json:1:2: 'right' has no 'poses'\n");
   std::string text = kCapture;
   text.replace(text.find("\"timestamp\": 1200"), 17, "\"timestamp\": 1100");
-  EXPECT_EQ(complaints(text, "right"), "m.json:4:103: the timestamps must increase from pose to pose\n");
+  EXPECT_EQ(complaints(text, "right"), "m.json:4:100: the timestamps must increase from pose to pose\n");
 }
 
 TEST(CheckTrackTest, GapsAndJumpsAreToldAndLimited) {

@@ -133,8 +133,8 @@ TEST(GazeTest, ToldGoesBeforeOwnWishes) {
 
 TEST(GazeTest, ARecordedHeadLooksWhereItFaces) {
   const Eigen::Quaterniond down(Eigen::AngleAxisd(0.6, Vector3d::UnitY()));
-  const HeadPosesStep recorded{{{.t_s = 0.5, .X_WH = {{-0.6, 0.1, 1.5}, down}, .trigger = {}},
-                                {.t_s = 1.0, .X_WH = {{-0.6, 0.1, 1.5}, down}, .trigger = {}}}};
+  const HeadPosesStep recorded{{{.t_s = 0.5, .X_WH = {{-0.6, -0.35, 1.5}, down}, .trigger = {}},
+                                {.t_s = 1.0, .X_WH = {{-0.6, -0.35, 1.5}, down}, .trigger = {}}}};
   const auto gazes = GazesOf(WithPerson(), Told(recorded));
   EXPECT_LT((gazes.back().toward_W - down * Vector3d::UnitX()).norm(), 1e-6);
   EXPECT_EQ(gazes.back().body, kTable);
