@@ -34,7 +34,7 @@ TEST(ScenarioSchema, EveryScenarioIsReadAndValid) {
     EXPECT_TRUE(read.value) << grammar::Format(read.diagnostics);
     const std::string text = TextOf(scenario.path);
     EXPECT_TRUE(text.starts_with("# yaml-language-server: $schema=../scenario.schema.json\n")) << scenario.path;
-    validator.Add(scenario.name, text);
+    validator.Add(scenario.skill + "-" + scenario.name, text);
   }
   for (const auto& [name, valid] : validator.Validate(ScenarioSchema())) EXPECT_TRUE(valid) << name;
   EXPECT_EQ(validator.Validate(ScenarioSchema()).size(), scenarios.size());
