@@ -13,16 +13,20 @@
 
 namespace prehend::harness {
 
-Derivation Derive(const Scenario& scenario, const grammar::Program& program, const RunResult& run) {
-  grammar::Timeline judged = run.timeline;
-  const auto others =
-      std::erase_if(judged.events, [](const auto& event) { return !OracleDefines(event.event); });
-  grammar::Timeline truth = TrueTimeline(scenario, run.recording, run.ticks + 1);
+Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program, const RunResult& run) {
+  Judged judged{.truth = TrueTimeline(scenario, run.recording, run.ticks + 1), .found = run.timeline};
+  std::erase_if(judged.found.events, [](const auto& event) { return !OracleDefines(event.event); });
   // A grammar is not blamed for events that it does not speak of.
-  std::erase_if(truth.events, [&](const auto& event) {
+  std::erase_if(judged.truth.events, [&](const auto& event) {
     return std::ranges::none_of(
         program.events, [&](const auto& rule) { return rule.printed && rule.name == event.event; });
   });
+  return judged;
+}
+
+Derivation Derive(const Scenario& scenario, const grammar::Program& program, const RunResult& run) {
+  const auto [truth, judged] = JudgedByOracle(scenario, program, run);
+  const std::size_t others = run.timeline.events.size() - judged.events.size();
   const grammar::Tick tolerance =
       DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz);
   const Agreement agreement = Agree(truth, judged, tolerance);

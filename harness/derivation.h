@@ -19,6 +19,13 @@ struct Derivation {
   std::vector<std::string> lines;  ///< each begins with kOracleLine
 };
 
+/// What the definitions and a grammar both speak of.
+struct Judged {
+  grammar::Timeline truth, found;
+};
+/// The run must have been recorded.
+Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program, const RunResult& run);
+
 /// The run must have been recorded. Events that the oracle has no definition for are not judged,
 /// and counted.
 Derivation Derive(const Scenario& scenario, const grammar::Program& program, const RunResult& run);

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "harness/format.h"
+#include <cmath>
+
+#include "harness/yaml_scalar.h"
 #include "physics/random.h"
 
 namespace prehend::harness {
@@ -45,11 +47,9 @@ const YamlNode* FindField(const YamlNode& root, const std::string& path) {
 }
 
 std::optional<double> NumberOf(const YamlNode& node) {
-  double number = 0;
-  YamlDocument nowhere;
-  Complaints ignored(nowhere);
-  if (!Number(-kLargest, kLargest).read(node, ignored, number)) return std::nullopt;
-  return number;
+  if (node.kind != YamlNode::Kind::kScalar) return std::nullopt;
+  const auto number = MeaningOf(node).number;
+  return number && std::abs(*number) <= kLargest ? number : std::nullopt;
 }
 
 std::vector<std::string> DrawTrial(const YamlDocument& document,

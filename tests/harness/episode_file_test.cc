@@ -2,6 +2,7 @@
 #include "harness/episode_file.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -20,7 +21,7 @@ constexpr const char* kHeader =
     "\n";
 
 ReadResult<Episode> ReadText(const std::string& text) {
-  const auto file = std::filesystem::temp_directory_path() / "prehend_episode_file_test.jsonl";
+  const auto file = std::filesystem::temp_directory_path() / ("prehend_episode_" + std::to_string(getpid()) + ".jsonl");
   std::ofstream(file, std::ios::binary) << text;
   return ReadEpisode(file.string());
 }

@@ -2,6 +2,7 @@
 #include "harness/motion_track.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,8 +13,15 @@
 namespace prehend::harness {
 namespace {
 
+/// Tests run beside each other: each process has its own.
+std::string Folder() {
+  const std::string folder = testing::TempDir() + "motion_track_" + std::to_string(getpid()) + "/";
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
 std::string Write(const std::string& name, const std::string& text) {
-  const std::string path = (std::filesystem::path(testing::TempDir()) / name).string();
+  const std::string path = Folder() + name;
   std::ofstream(path, std::ios::binary) << text;
   return path;
 }
@@ -21,7 +29,7 @@ std::string Write(const std::string& name, const std::string& text) {
 /// What is said about a file, its folder left out.
 std::string Complaints(const grammar::Diagnostics& diagnostics) {
   std::string text = Brief(diagnostics);
-  for (std::size_t at; (at = text.find(testing::TempDir())) != std::string::npos;) text.erase(at, testing::TempDir().size());
+  for (std::size_t at; (at = text.find(Folder())) != std::string::npos;) text.erase(at, Folder().size());
   return text;
 }
 
@@ -87,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
 // clang-format on
 
 TEST(MotionCsvTest, AMissingFileIsNamed) {
-  EXPECT_EQ(Complaints(ReadMotionCsv(testing::TempDir() + "none.csv").diagnostics), "none.csv:0:0: no such file\n");
+  EXPECT_EQ(Complaints(ReadMotionCsv(Folder() + "none.csv").diagnostics), "none.csv:0:0: no such file\n");
 }
 
 constexpr const char* kCapture = R"({"right": {"poses": [

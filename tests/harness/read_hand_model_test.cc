@@ -2,6 +2,7 @@
 #include "harness/read_hand_model.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -22,7 +23,7 @@ ReadResult<physics::HandModel> ReadChanged(const std::string& what, const std::s
   const std::size_t at = text.find(what);
   EXPECT_NE(at, std::string::npos) << what;
   text.replace(at, what.size(), by);
-  const auto folder = std::filesystem::temp_directory_path() / "prehend_read_hand_model_test";
+  const auto folder = std::filesystem::temp_directory_path() / ("prehend_read_hand_model_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   const std::string path = (folder / (hand + ".hand.yaml")).string();
   std::ofstream(path) << text;

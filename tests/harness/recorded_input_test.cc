@@ -3,6 +3,7 @@
 #include "harness/recorded_input.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -20,7 +21,7 @@ using Eigen::Vector3d;
 class RecordedInputTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) / "recorded_input_test";
+    folder_ = std::filesystem::path(testing::TempDir()) / ("recorded_input_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
     std::ofstream csv(folder_ / "line.csv");
     csv << "t_s,x_m,y_m,z_m,trigger\n";

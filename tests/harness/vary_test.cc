@@ -89,16 +89,16 @@ TEST(Vary, NormalAndChosenDraws) {
 TEST(Vary, RefusesFieldsThatAreNotThere) {
   const std::pair<const char*, const char*> cases[] = {
       {"- {fields: [entities.mlik.mass_kg], uniform: [0, 1]}",
-       "14:5: fields: the scenario has no 'entities.mlik.mass_kg'\n"},
+       "16:5: fields: the scenario has no 'entities.mlik.mass_kg'\n"},
       {"- {fields: [entities.milk.friction], times: [0.9, 1.1]}",
-       "14:5: fields: the scenario has no 'entities.milk.friction' | plus and times need a number "
+       "16:5: fields: the scenario has no 'entities.milk.friction' | plus and times need a number "
        "that is written\n"},
       {"- {fields: [entities.milk.on], plus: [0, 1]}",
-       "14:5: fields: 'entities.milk.on' is no number\n"},
+       "16:5: fields: 'entities.milk.on' is no number\n"},
       {"- {fields: [entities.milk.mass_kg], uniform: [1, 0]}",
-       "14:49: uniform: expected [least, most]\n"},
+       "16:48: uniform: expected [least, most]\n"},
       {"- {fields: [entities.milk.mass_kg]}",
-       "14:5: a variation needs one of the keys uniform, normal, plus, times, choose\n"}};
+       "16:5: a variation needs one of the keys uniform, normal, plus, times, choose\n"}};
   for (const auto& [line, complaint] : cases)
     EXPECT_EQ(Brief(Read("vary:\n  " + std::string(line) + "\n").diagnostics), complaint);
 }
