@@ -23,7 +23,10 @@ void Lowering::Note(const Expr& expr, const Typed& typed) {
   NodeNote& note = notes[typed.node];
   if (!note.text.empty()) return;
   std::string text = TextOf(expr);
-  if (text.size() > kMaxText) text = text.substr(0, kMaxText) + "..";
+  if (text.size() > kMaxText) {
+    text.resize(kMaxText);
+    text += "..";
+  }
   note = {.text = std::move(text), .dimension = typed.dimension, .file = source_->file, .place = expr.place};
 }
 

@@ -27,15 +27,18 @@ int Count(const Json& run, const std::string& event) {
   return count;
 }
 
-std::vector<std::string> ScenarioNames() {
+/// One of each kind; the whole library would be played for minutes.
+std::vector<std::string> SmokeScenarios() {
   const Json list = Json::parse(Prehend({"list", "--json"}).out);
   std::vector<std::string> names;
-  for (const Json& entry : list.at("scenarios")) names.push_back(entry.at("scenario"));
+  for (const Json& entry : list.at("scenarios")) {
+    if (std::ranges::count(entry.at("tags"), Json("smoke"))) names.push_back(entry.at("scenario"));
+  }
   return names;
 }
 
-TEST(Acceptance, EveryScenarioTwiceInBothOrdersIsTheSameRun) {
-  std::vector<std::string> names = ScenarioNames();
+TEST(Acceptance, ScenariosTwiceInBothOrdersAreTheSameRuns) {
+  std::vector<std::string> names = SmokeScenarios();
   ASSERT_GE(names.size(), 6u);
   std::map<std::string, Json> first;
   for (const std::string& name : names) first[name] = RunJson({name});
