@@ -5,36 +5,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+
+#include "harness/timeline_svg.h"
 
 namespace prehend::harness {
 namespace {
 
 /// For attributes and content; what XML 1.0 cannot hold is left out.
 std::string EscapeXml(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\n':
-      case '\t':
-        escaped += c;
-        break;
-      default:
-        if (static_cast<unsigned char>(c) >= 0x20) escaped += c;
-    }
-  }
-  return escaped;
+  std::string allowed;
+  std::ranges::copy_if(text, std::back_inserter(allowed), [](unsigned char c) {
+    return c >= 0x20 || c == '\n' || c == '\t';
+  });
+  return EscapeHtml(allowed);
 }
 
 /// What a case came to: "failure", "error", "skipped", or "" for a pass.
