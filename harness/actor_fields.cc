@@ -6,12 +6,11 @@
 
 #include <algorithm>
 
+#include "harness/farthest.h"
 #include "harness/record.h"
 
 namespace prehend::harness {
 namespace {
-
-constexpr double kFarthestM = 100;  // of anything from the origin
 
 Format<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)[4]) {
   return Record<PidOverride>(noun)

@@ -2,6 +2,7 @@
 // Tested by tests/harness/scenario_fields_test.cc
 #include "harness/entity_fields.h"
 
+#include "harness/farthest.h"
 #include "harness/record.h"
 #include "harness/scenario_fields.h"
 #include "harness/shape_fields.h"
@@ -9,7 +10,6 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kFarthestM = 100;  // of anything from the origin
 constexpr std::size_t kMostParts = 256;
 constexpr double kMostResistance = 1e5;
 constexpr double kFarthestSlideM = 10;

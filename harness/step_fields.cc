@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "harness/actor_fields.h"
+#include "harness/farthest.h"
 #include "harness/record.h"
 #include "harness/scenario_fields.h"
 
 namespace prehend::harness {
 namespace {
 
-constexpr double kFarthestM = 100;
 constexpr double kLongestMoveM = 10;
 constexpr double kShortestS = 0.01;  // below, no human hand moves
 constexpr double kLongestS = 600;

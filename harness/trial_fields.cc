@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "harness/farthest.h"
 #include "harness/record.h"
 #include "harness/scenario_fields.h"
 #include "harness/vary.h"
@@ -13,7 +14,6 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kFarthestM = 100;
 constexpr double kLargest = 1e6;
 
 Format<ConditionEntry> ConditionFormat() {
