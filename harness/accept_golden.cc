@@ -7,17 +7,13 @@
 #include <algorithm>
 
 #include "harness/compare.h"
+#include "harness/content_hash.h"
 #include "harness/event_text.h"
 
 namespace prehend::harness {
 namespace {
 
 using Lines = std::vector<std::string>;
-
-void MoveTo(Lines& to, Lines& from) {
-  to.insert(to.end(), from.begin(), from.end());
-  from.clear();
-}
 
 bool IsExactly(const Pairing& pairing) {
   return pairing.agreement == LineVerdict::kMatched && pairing.begin_offset == 0 &&
@@ -27,27 +23,53 @@ bool IsExactly(const Pairing& pairing) {
 /// With the digits that a golden keeps.
 double AsWritten(double value) { return std::stod(fmt::format("{:.4g}", value)); }
 
-/// The events of the comparison's actual side, in order of time; each takes its partner's comments
-/// and tolerance, and where nothing changed the acceptance it is from.
+void Append(Lines& to, const Lines& lines) { to.insert(to.end(), lines.begin(), lines.end()); }
+
+/// What people wrote above an event that is gone.
+Lines Farewell(const GoldenEvent& gone, grammar::Tick ticks_per_second) {
+  if (gone.comments.empty()) return {};
+  Lines lines = {fmt::format("was above {} {}, which is gone:", gone.event.Label(),
+                             IntervalText(gone.event.interval, ticks_per_second))};
+  Append(lines, gone.comments);
+  return lines;
+}
+
+/// What its partner in the old golden had; where nothing changed, the acceptance it is from, too.
+void Inherit(GoldenEvent& line, const GoldenEvent& old, bool exactly) {
+  if (exactly) line.accepted = old.accepted;
+  line.tolerance_ms = old.tolerance_ms;
+  line.because = old.because;
+  line.oracle = old.oracle;
+  line.oracle_because = old.oracle_because;
+  line.comments = old.comments;
+}
+
+/// The events of the comparison's actual side, in order of time; each inherits from its partner.
 void TakeOver(Golden& golden, const Golden& old, const grammar::Timeline& recognised) {
-  Lines homeless;
   for (const Pairing& pairing : Compare(old, recognised, 0).pairings) {
-    Lines comments = pairing.expected ? old.events[pairing.golden_line].comments : Lines{};
-    MoveTo(homeless, comments);
-    if (!pairing.actual) continue;
-    GoldenEvent line{.event = *pairing.actual, .tolerance_ms = {}, .because = {}, .comments = {}};
-    line.accepted = static_cast<int>(old.accepted.size()) + 1;
-    if (pairing.expected) {
-      if (IsExactly(pairing)) line.accepted = old.events[pairing.golden_line].accepted;
-      line.tolerance_ms = old.events[pairing.golden_line].tolerance_ms;
-      line.because = old.events[pairing.golden_line].because;
+    const GoldenEvent* partner = pairing.expected ? &old.events[pairing.golden_line] : nullptr;
+    if (!pairing.actual) {
+      if (partner) Append(golden.closing_comments, Farewell(*partner, old.ticks_per_second));
+      continue;
     }
-    if (pairing.expected) MoveTo(line.comments, homeless);
+    GoldenEvent line;
+    line.event = *pairing.actual;
+    line.accepted = static_cast<int>(old.accepted.size()) + 1;
+    if (partner) Inherit(line, *partner, IsExactly(pairing));
     golden.events.push_back(std::move(line));
   }
-  golden.closing_comments = std::move(homeless);
-  golden.closing_comments.insert(golden.closing_comments.end(), old.closing_comments.begin(),
-                                 old.closing_comments.end());
+}
+
+/// What the oracle says now.
+void NoteOracle(Golden& golden, const Proposal& proposal) {
+  for (GoldenEvent& line : golden.events) {
+    const auto note = std::ranges::find_if(proposal.notes, [&](const OracleNote& candidate) {
+      return candidate.event.interval == line.event.interval && candidate.event.Label() == line.event.Label();
+    });
+    line.oracle = note == proposal.notes.end() ? "" : note->text;
+    if (line.oracle.empty()) line.oracle_because.clear();
+    if (!line.oracle.empty() && line.oracle_because.empty()) line.oracle_because = proposal.acceptance->reason;
+  }
 }
 
 }  // namespace
@@ -59,12 +81,15 @@ Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& 
   if (old) {
     golden.derived = old->derived;
     golden.accepted = old->accepted;
+    golden.pictures = old->pictures;
     golden.comments = old->comments;
+    golden.closing_comments = old->closing_comments;
   }
   if (!proposal.derived.empty()) golden.derived = proposal.derived;
   if (proposal.acceptance) golden.accepted.push_back(*proposal.acceptance);
   TakeOver(golden, old.value_or(Golden{.ticks_per_second = recognised.ticks_per_second}),
            recognised);
+  if (proposal.acceptance) NoteOracle(golden, proposal);
   for (GoldenEvent& line : golden.events) {
     line.event.decided = 0;
     for (grammar::NamedValue& value : line.event.values) value.value = AsWritten(value.value);
@@ -74,6 +99,16 @@ Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& 
       [](const GoldenEvent& a, const GoldenEvent& b) { return ComesBefore(a.event, b.event); });
   return golden;
 }
+
+Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
+                     const std::string& scenario, const std::string& grammar) {
+  Proposal proposal;
+  proposal.scenario = scenario;
+  proposal.grammar = grammar;
+  return ProposeGolden(old, recognised, proposal);
+}
+
+std::string Fingerprint(const Golden& pending) { return ContentHash(WriteGolden(pending)).substr(0, 8); }
 
 bool SaysTheSame(const Golden& golden, const grammar::Timeline& recognised) {
   if (golden.ticks_per_second != recognised.ticks_per_second) return false;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grammar/timeline.h"
+#include "harness/derivation.h"
 #include "harness/golden.h"
 
 namespace prehend::harness {
@@ -18,12 +19,21 @@ struct Proposal {
   std::string grammar;
   std::vector<std::string> derived;      ///< empty: keep the old golden's
   std::optional<Acceptance> acceptance;  ///< empty for a pending file
+  std::vector<OracleNote> notes;         ///< of an acceptance: what the oracle sees otherwise
 };
 
 /// Comments and tolerances stay with the event they belong to; comments above events that are gone
-/// move down to the next one.
+/// stand at the end, below a line that says which event that was. What the oracle sees otherwise keeps
+/// the reason that people gave for it; a new one takes the acceptance's.
 Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
                      const Proposal& proposal);
+
+/// What a run leaves below build/pending, and `review` shows.
+Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
+                     const std::string& scenario, const std::string& grammar);
+
+/// Eight hexadecimal digits, which tell one pending golden from another.
+std::string Fingerprint(const Golden& pending);
 
 /// Whether the golden's events are exactly these, tolerances aside.
 bool SaysTheSame(const Golden& golden, const grammar::Timeline& recognised);

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "harness/check_records.h"
 #include "harness/physics_trace.h"
@@ -16,13 +17,15 @@ namespace prehend::harness {
 struct Suspect {
   std::string program;  ///< ProgramHash()
   FileHashes inputs;
+  std::vector<std::string> options;  ///< of its command line: "--grammar original_2020"
+  bool other_grammar = false;        ///< one of them chose the grammar
   PhysicsTrace trace;
   double ticks_per_second = 480;
 };
 
 /// One line that begins with "blame: " and ends with a line feed. `root` shortens paths; without a
-/// last pass the line says that there is nothing to compare with.
-std::string BlameText(const std::optional<CheckRecord>& last_pass,
+/// run that agreed the line says that there is nothing to compare with.
+std::string BlameText(const std::optional<CheckRecord>& last_agreed,
                       const std::optional<PhysicsTrace>& its_trace, const Suspect& now,
                       const std::string& root);
 

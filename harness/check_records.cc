@@ -35,6 +35,7 @@ std::optional<CheckRecord> CheckRecords::Read(const std::string& scenario) const
   if (json.is_discarded()) return std::nullopt;
   try {
     CheckRecord record{.program = json.at("program"),
+                       .passed = json.at("passed"),
                        .pictures = json.at("pictures"),
                        .verdict = VerdictFromJson(json.at("verdict"))};
     if (record.verdict.scenario != scenario || record.verdict.inputs.empty()) return std::nullopt;
@@ -46,6 +47,7 @@ std::optional<CheckRecord> CheckRecords::Read(const std::string& scenario) const
 
 std::string CheckRecords::Write(const CheckRecord& record) const {
   const Json json = {{"program", record.program},
+                     {"passed", record.passed},
                      {"pictures", record.pictures},
                      {"verdict", ToJson(record.verdict)}};
   return WriteTextFile(folder_ / (record.verdict.scenario + ".json"), json.dump(1) + "\n");

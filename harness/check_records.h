@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `prehend check` remembers below build/check/, and never in the tree: per scenario the last
-// verdict that was a pass, with what it depended on, and how long each one took. Losing it costs
-// time only. Tested by tests/harness/check_records_test.cc
+// time that it agreed with its golden, with what that depended on, and how long each one took.
+// Losing it costs time only. Tested by tests/harness/check_records_test.cc
 #pragma once
 
 #include <filesystem>
@@ -14,9 +14,10 @@
 
 namespace prehend::harness {
 
-/// The last pass of a scenario.
+/// The last time that a scenario agreed with its golden: it passed, or what it yielded was accepted.
 struct CheckRecord {
   std::string program;      ///< ProgramHash() of then
+  bool passed = true;       ///< checked; what was only accepted has to be checked yet
   bool pictures = false;    ///< whether pictures were drawn, too
   ScenarioVerdict verdict;  ///< its `inputs` are the files that decided it
 };
@@ -35,7 +36,7 @@ class CheckRecords {
   /// Returns "" or what went wrong.
   std::string Write(const CheckRecord& record) const;
 
-  /// Where the physics trace of that pass is kept.
+  /// Where the physics trace of that run is kept.
   std::filesystem::path TracePath(const std::string& scenario) const {
     return folder_ / (scenario + ".trace");
   }

@@ -29,10 +29,16 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The options of the command line that ask for these changes.
+std::vector<std::string> OptionsOf(const RunRequest& changes) {
+  std::vector<std::string> options;
+  if (!changes.grammar.empty()) options.push_back("--grammar " + ShellWord(changes.grammar));
+  for (const std::string& setting : changes.settings) options.push_back("--set " + ShellWord(setting));
+  return options;
+}
+
 std::string ChangesText(const RunRequest& changes) {
   std::string text;
-  if (!changes.grammar.empty()) text += " --grammar " + ShellWord(changes.grammar);
-  for (const std::string& setting : changes.settings) text += " --set " + ShellWord(setting);
+  for (const std::string& option : OptionsOf(changes)) text += " " + option;
   return text;
 }
 
@@ -110,12 +116,9 @@ void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, cons
 void LeavePending(const CheckRequest& request, const PreparedRun& prepared,
                   const std::optional<Golden>& golden, const RunResult& run) {
   if (request.is_trial) return;
-  const Proposal proposal = {.scenario = request.id,
-                             .grammar = prepared.scenario.grammar,
-                             .derived = {},
-                             .acceptance = {}};
   // Whether it could be written is only news to `accept`, which runs the scenario itself.
-  (void)GoldenFiles(request.root).WritePending(ProposeGolden(golden, run.timeline, proposal));
+  (void)GoldenFiles(request.root)
+      .WritePending(PendingGolden(golden, run.timeline, request.id, prepared.scenario.grammar));
 }
 
 std::vector<BoundaryRoom> Boundaries(const Comparison& comparison) {
@@ -127,7 +130,7 @@ std::vector<BoundaryRoom> Boundaries(const Comparison& comparison) {
   return boundaries;
 }
 
-/// Remembers how a run that passed moved, for the blame of later ones.
+/// Remembers how a run that agreed moved, for the blame of later ones.
 void LeaveTrace(const CheckRequest& request, const Scenario& scenario, const RunResult& watched) {
   if (request.is_trial) return;
   // Losing it only costs the blame of the next difference its answer.
@@ -141,6 +144,8 @@ std::string Blame(const CheckRequest& request, const Scenario& scenario, const R
   return BlameText(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
                    {.program = request.program,
                     .inputs = inputs,
+                    .options = OptionsOf(request.run),
+                    .other_grammar = !request.run.grammar.empty(),
                     .trace = TraceOf(scenario.scene, watched.recording),
                     .ticks_per_second = static_cast<double>(watched.timeline.ticks_per_second)},
                    request.root);

@@ -14,9 +14,16 @@ namespace prehend::harness {
 /// people's.
 inline constexpr const char* kOracleLine = "oracle: ";
 
+/// A recognised event that the oracle sees otherwise.
+struct OracleNote {
+  grammar::NamedEvent event;
+  std::string text;  ///< GoldenEvent::oracle
+};
+
 struct Derivation {
   bool agrees = false;  ///< no event missing or extra, every boundary within two sensing frames
   std::vector<std::string> lines;  ///< each begins with kOracleLine
+  std::vector<OracleNote> notes;   ///< of every recognised event that differs
 };
 
 /// What the definitions and a grammar both speak of.

@@ -15,7 +15,9 @@
 //   grasping      5.1000  6.2000  hand=right_hand  object=milk    force~12.5N  accepted=2
 //
 // NAME~NUMBER is a value of the event, which agrees within 5 % or 0.001; accepted=2 says that this
-// line is as the second of the accepted lines made it (otherwise the first).
+// line is as the second of the accepted lines made it (otherwise the first);
+// oracle=none because "..", or oracle=+29.2/+0.0ms because "..", that the physical oracle sees no such
+// event, or other boundaries, and why the line is right nevertheless.
 // Tested by tests/harness/golden_test.cc
 #pragma once
 
@@ -33,6 +35,8 @@ struct GoldenEvent {
   grammar::NamedEvent event;          ///< `decided` is not part of a golden: 0
   std::optional<int> tolerance_ms;    ///< instead of the default of two sensing frames
   std::string because;                ///< why this line needs it; never empty beside a tolerance
+  std::string oracle;                 ///< how it differs from the physical oracle's; or empty
+  std::string oracle_because;         ///< why it is right nevertheless; never empty beside `oracle`
   std::vector<std::string> comments;  ///< lines above it, without "# "
   int accepted = 1;  ///< which acceptance made it so, from 1; one more than there are: the next
   friend bool operator==(const GoldenEvent& a, const GoldenEvent& b);
@@ -49,6 +53,7 @@ struct Golden {
   std::string grammar;
   std::vector<std::string> derived;  ///< how it follows from the definitions, one entry per line
   std::vector<Acceptance> accepted;  ///< oldest first
+  std::vector<Acceptance> pictures;  ///< when its pictures were accepted, and why
   grammar::Tick ticks_per_second = 480;
   std::vector<std::string> comments;  ///< other lines of the header
   std::vector<GoldenEvent> events;    ///< in the order of ComesBefore()

@@ -62,8 +62,12 @@ std::string GoldenFiles::WritePending(const Golden& golden) const {
   return WriteTextFile(PendingPath(golden.scenario), WriteGolden(golden));
 }
 
+std::string GoldenFiles::WriteGoldenFile(const Golden& golden) const {
+  return WriteTextFile(GoldenPath(golden.scenario), WriteGolden(golden));
+}
+
 std::string GoldenFiles::WriteAccepted(const Golden& golden) const {
-  std::string problem = WriteTextFile(GoldenPath(golden.scenario), WriteGolden(golden));
+  std::string problem = WriteGoldenFile(golden);
   if (problem.empty()) RemovePending(golden.scenario);
   return problem;
 }

@@ -25,8 +25,9 @@ class GoldenFiles {
   ReadResult<Golden> ReadGoldenOf(const std::string& scenario) const;
   ReadResult<Golden> ReadPendingOf(const std::string& scenario) const;
 
-  /// Both return "" or what went wrong. Writing a golden removes what was pending.
+  /// All return "" or what went wrong. Accepting a golden removes what was pending.
   std::string WritePending(const Golden& golden) const;
+  std::string WriteGoldenFile(const Golden& golden) const;
   std::string WriteAccepted(const Golden& golden) const;
   void RemovePending(const std::string& scenario) const;
 

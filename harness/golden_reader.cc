@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "harness/event_text.h"
 #include "harness/golden.h"
@@ -41,6 +42,20 @@ std::optional<Number> ParseNumber(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+/// "+29.2/-4.2ms"
+bool AreOffsets(std::string_view text) {
+  if (!text.ends_with("ms")) return false;
+  text.remove_suffix(2);
+  const std::size_t slash = text.find('/');
+  if (slash == std::string_view::npos) return false;
+  for (std::string_view offset : {text.substr(0, slash), text.substr(slash + 1)}) {
+    if (!offset.starts_with('+') && !offset.starts_with('-')) return false;
+    const auto milliseconds = ParseNumber<double>(offset.substr(1));
+    if (!milliseconds || !std::isfinite(*milliseconds) || *milliseconds < 0) return false;
+  }
+  return true;
 }
 
 class GoldenReader {
@@ -107,7 +122,9 @@ class GoldenReader {
     } else if (key == "derived") {
       golden_.derived.push_back(value);
     } else if (key == "accepted") {
-      ReadAcceptance();
+      ReadAcceptance(golden_.accepted);
+    } else if (key == "pictures") {
+      ReadAcceptance(golden_.pictures);
     } else if (key == "ticks_per_second") {
       ReadTicksPerSecond(value);
     } else {
@@ -122,7 +139,7 @@ class GoldenReader {
     field = value;
   }
 
-  void ReadAcceptance() {
+  void ReadAcceptance(std::vector<Acceptance>& acceptances) {
     Acceptance acceptance{.date = std::string(Word()), .reason = {}};
     if (!IsDate(acceptance.date)) {
       column_ -= acceptance.date.size();
@@ -131,7 +148,7 @@ class GoldenReader {
     SkipBlanks();
     if (!ReadQuoted(acceptance.reason)) return;
     ExpectEnd();
-    golden_.accepted.push_back(std::move(acceptance));
+    acceptances.push_back(std::move(acceptance));
   }
 
   void ReadTicksPerSecond(const std::string& value) {
@@ -175,6 +192,7 @@ class GoldenReader {
   }
 
   bool ReadRolesAndFlags(GoldenEvent& line) {
+    std::string explained;  // what a reason that comes now belongs to
     for (SkipBlanks(); !AtEnd(); SkipBlanks()) {
       const std::size_t word_column = column_;
       if (line_[column_] == '#') return Fail("comments stand on lines of their own");
@@ -183,13 +201,17 @@ class GoldenReader {
       if (key == "open_end") {
         line.event.open_end = true;
       } else if (key == "because") {
-        if (!ReadReason(line, word_column)) return false;
+        if (!ReadReason(line, std::exchange(explained, ""), word_column)) return false;
       } else if (!AtEnd() && line_[column_] == '~') {
         if (!ReadValue(line, key, word_column)) return false;
       } else if (AtEnd() || line_[column_] != '=') {
         return Fail(fmt::format("expected '=' after '{}'", key));
       } else if (++column_; key == "tolerance") {
         if (!ReadTolerance(line)) return false;
+        explained = key;
+      } else if (key == "oracle") {
+        if (!ReadOracle(line, word_column)) return false;
+        explained = key;
       } else if (key == "accepted") {
         if (!ReadAcceptedBy(line)) return false;
       } else if (!ReadRole(line, key, word_column)) {
@@ -199,6 +221,9 @@ class GoldenReader {
     if (line.event.roles.empty()) return Fail("an event needs at least one role=value");
     if (line.tolerance_ms && line.because.empty()) {
       return Fail("a tolerance needs a reason", "tolerance=20ms because \"the reason\"");
+    }
+    if (!line.oracle.empty() && line.oracle_because.empty()) {
+      return Fail("what differs from the oracle needs a reason", "oracle=none because \"the reason\"");
     }
     return true;
   }
@@ -255,13 +280,32 @@ class GoldenReader {
     return true;
   }
 
-  bool ReadReason(GoldenEvent& line, std::size_t word_column) {
-    if (!line.tolerance_ms)
-      return FailAt(word_column, "'because' gives the reason of a tolerance, but there is none");
+  /// "none", or how much later begin and end are than the oracle's: "+29.2/-4.2ms".
+  bool ReadOracle(GoldenEvent& line, std::size_t word_column) {
+    if (!line.oracle.empty()) return FailAt(word_column, "second 'oracle'");
+    const std::size_t value_column = column_;
+    const std::string_view word = Word();
+    if (word != "none" && !AreOffsets(word)) {
+      return FailAt(value_column,
+                    "expected how it differs from the oracle's event: none, or its begin and end "
+                    "like +29.2/-4.2ms");
+    }
+    line.oracle = word;
+    return true;
+  }
+
+  /// `explained`: the word before it.
+  bool ReadReason(GoldenEvent& line, const std::string& explained, std::size_t word_column) {
+    if (explained.empty()) {
+      return FailAt(word_column,
+                    "'because' gives the reason of a tolerance or of what differs from the oracle, "
+                    "but there is none before it");
+    }
     SkipBlanks();
     const std::size_t reason_column = column_;
-    if (!ReadQuoted(line.because)) return false;
-    return !line.because.empty() || FailAt(reason_column, "the reason is empty");
+    std::string& reason = explained == "oracle" ? line.oracle_because : line.because;
+    if (!ReadQuoted(reason)) return false;
+    return !reason.empty() || FailAt(reason_column, "the reason is empty");
   }
 
   bool ReadName(std::string& name, std::string_view wanted) {

@@ -39,6 +39,8 @@ std::vector<std::string> TableLines(const Golden& golden) {
     for (const grammar::NamedValue& value : line.event.values)
       add(fmt::format("{}~{:.4g}{}", value.name, value.value, value.unit));
     if (line.accepted > 1) add(fmt::format("accepted={}", line.accepted));
+    if (!line.oracle.empty())
+      add(fmt::format("oracle={} because {}", line.oracle, Quoted(line.oracle_because)));
     if (line.tolerance_ms)
       add(fmt::format("tolerance={}ms because {}", *line.tolerance_ms, Quoted(line.because)));
     rows.push_back(std::move(cells));
@@ -52,15 +54,16 @@ bool operator==(const GoldenEvent& a, const GoldenEvent& b) {
   return a.event.event == b.event.event && a.event.roles == b.event.roles &&
          a.event.interval == b.event.interval && a.event.values == b.event.values &&
          a.event.open_end == b.event.open_end && a.tolerance_ms == b.tolerance_ms &&
-         a.because == b.because && a.comments == b.comments && a.accepted == b.accepted;
+         a.because == b.because && a.oracle == b.oracle && a.oracle_because == b.oracle_because && a.comments == b.comments && a.accepted == b.accepted;
 }
 
 std::string WriteGolden(const Golden& golden) {
   std::string out = fmt::format("# scenario: {}\n# grammar: {}\n", golden.scenario, golden.grammar);
   for (const std::string& line : golden.derived) out += fmt::format("# derived: {}\n", line);
-  for (const Acceptance& acceptance : golden.accepted) {
+  for (const Acceptance& acceptance : golden.accepted)
     out += fmt::format("# accepted: {} {}\n", acceptance.date, Quoted(acceptance.reason));
-  }
+  for (const Acceptance& acceptance : golden.pictures)
+    out += fmt::format("# pictures: {} {}\n", acceptance.date, Quoted(acceptance.reason));
   out += fmt::format("# ticks_per_second: {}\n", golden.ticks_per_second);
   AppendComments(golden.comments, out);
 

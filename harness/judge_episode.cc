@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "grammar/program.h"
 #include "harness/load_grammar.h"
 #include "harness/oracle/oracle.h"
 #include "harness/prepare_run.h"
@@ -13,9 +12,16 @@
 namespace prehend::harness {
 namespace {
 
-bool Prints(const grammar::Program& program, const std::string& event) {
-  return std::ranges::any_of(program.events,
-                             [&](const auto& rule) { return rule.printed && rule.name == event; });
+/// Leaves what is judged, and counts what nobody knows the truth of.
+void KeepJudged(const std::vector<std::string>& wanted, score::JudgedEpisode& episode) {
+  const auto is_left_out = [&](const grammar::NamedEvent& event) {
+    return !OracleDefines(event.event) || (!wanted.empty() && std::ranges::find(wanted, event.event) == wanted.end());
+  };
+  for (const grammar::NamedEvent& event : episode.found.events) {
+    if (!OracleDefines(event.event)) ++episode.not_judged[event.event];
+  }
+  std::erase_if(episode.truth.events, is_left_out);
+  std::erase_if(episode.found.events, is_left_out);
 }
 
 }  // namespace
@@ -39,9 +45,9 @@ ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& r
     episode = {.scenario = request.id,
                .ticks = end,
                .truth = truth,
-               .found = Resegment(scenario, run.recording, compiled.program, end)};
-    std::erase_if(episode.truth.events, [&](const auto& event) { return !Prints(*compiled.program, event.event); });
-    std::erase_if(episode.found.events, [](const auto& event) { return !OracleDefines(event.event); });
+               .found = Resegment(scenario, run.recording, compiled.program, end),
+               .not_judged = {}};
+    KeepJudged(request.events, episode);
   }
   return {std::move(episodes), {}};
 }

@@ -16,10 +16,11 @@ struct JudgeRequest {
   std::string id;
   std::string root;
   std::vector<std::string> grammars;  ///< names or paths
+  std::vector<std::string> events;    ///< only these are judged; none: all that the oracle defines
 };
 
-/// One judged episode per grammar, of the kinds of event that the oracle defines and the grammar prints: a grammar is
-/// not blamed for events it does not speak of. Without value: what cannot be read, or why the run did not complete.
+/// One judged episode per grammar, all with the same truth: a grammar that is silent about a kind of event, or misspells
+/// it, has missed what happened. Without value: what cannot be read, or why the run did not complete.
 ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request);
 
 }  // namespace prehend::harness

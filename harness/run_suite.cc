@@ -60,7 +60,7 @@ class Suite {
   /// The last pass, when nothing that it depended on changed since.
   std::optional<ScenarioVerdict> Unchanged(std::size_t scenario) const {
     const auto record = records_.Read(Id(scenario));
-    const bool holds = record && record->program == program_ &&
+    const bool holds = record && record->passed && record->program == program_ &&
                        record->pictures >= request_.pictures && ChangedInputs(*record).empty();
     if (!holds) return std::nullopt;
     ScenarioVerdict verdict = record->verdict;

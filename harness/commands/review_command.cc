@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "harness/accept_golden.h"
 #include "harness/commands/command.h"
 #include "harness/compare.h"
 #include "harness/event_text.h"
@@ -21,6 +22,7 @@ struct Review {
   std::string id;
   std::string kind;  ///< "new", "changed", "same", "unreadable", "orphan"
   std::string text;  ///< events of a new one, differences, complaints; several lines or empty
+  std::string fingerprint = {};  ///< of what is shown; with it `accept` takes nothing else
 };
 
 void Declare(CLI::App& options) {
@@ -51,6 +53,7 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
   review.text =
       Format(pending.diagnostics) + Format(golden.diagnostics) + Format(scenario.diagnostics);
   if (!pending.value || !scenario.value || !golden.diagnostics.empty()) return review;
+  review.fingerprint = Fingerprint(*pending.value);
   if (!golden.value) {
     review.kind = "new";
     review.text = EventLines(*pending.value);
@@ -96,7 +99,8 @@ void Print(const std::vector<Review>& reviews, const CommandContext& context) {
       begin = end + 1;
     }
     if (review.kind == "new" || review.kind == "changed")
-      context.out << fmt::format("    if right: prehend accept {} --reason \"...\"\n", review.id);
+      context.out << fmt::format("    if right: prehend accept {} --reviewed {} --reason \"...\"\n",
+                                 review.id, review.fingerprint);
   }
   if (reviews.empty())
     context.out << "nothing is pending ('prehend check' finds out what should be)\n";
@@ -108,7 +112,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (IsGiven(options, "--json")) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Review& review : *reviews)
-      list.push_back({{"scenario", review.id}, {"kind", review.kind}, {"text", review.text}});
+      list.push_back({{"scenario", review.id},
+                      {"kind", review.kind},
+                      {"fingerprint", review.fingerprint},
+                      {"text", review.text}});
     context.out << nlohmann::ordered_json{{"pending", list}}.dump(2) << "\n";
   } else {
     Print(*reviews, context);

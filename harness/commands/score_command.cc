@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend score: grammars against the physical oracle. Tested by tests/house/score_test.cc
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "grammar/program.h"
 #include "harness/commands/command.h"
 #include "harness/judge_episode.h"
 #include "harness/load_grammar.h"
-#include "harness/score/score.h"
+#include "harness/oracle/oracle.h"
+#include "harness/score/score_json.h"
 #include "harness/select_scenarios.h"
 #include "harness/timeline_json.h"
 #include "harness/worker_pool.h"
@@ -36,6 +40,12 @@ void Declare(CLI::App& options) {
       ->type_name("NAME|FILE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  options
+      .add_option("--events", "only these events, for every grammar; otherwise all that docs/events.md defines")
+      ->type_name("NAME,..")
+      ->delimiter(',')
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   options.add_option("--collar-ms", "how far off a boundary may be for the scores at a collar; otherwise 50")
       ->type_name("MS")
       ->expected(1)
@@ -43,7 +53,7 @@ void Declare(CLI::App& options) {
   DeclareFlag(options, "--json", "one JSON object instead of tables");
 }
 
-/// What a worker sends: {"problem"} or {"episodes": [{"ticks", "truth", "found"}, ..]}, one per grammar.
+/// What a worker sends: {"problem"} or {"episodes": [{"ticks", "truth", "found", "not_judged"}, ..]}, one per grammar.
 std::string Judged(const JudgeRequest& request) {
   const auto episodes = JudgeEpisode(request);
   if (!episodes.value) return Json{{"problem", Format(episodes.diagnostics)}}.dump();
@@ -51,7 +61,8 @@ std::string Judged(const JudgeRequest& request) {
   for (const JudgedEpisode& episode : *episodes.value) {
     sent.push_back({{"ticks", episode.ticks},
                     {"truth", TimelineJson(episode.truth)},
-                    {"found", TimelineJson(episode.found)}});
+                    {"found", TimelineJson(episode.found)},
+                    {"not_judged", episode.not_judged}});
   }
   return Json{{"episodes", std::move(sent)}}.dump();
 }
@@ -59,12 +70,13 @@ std::string Judged(const JudgeRequest& request) {
 /// Episodes by grammar; what could not be played is told on `context.err` and counted.
 std::vector<std::vector<JudgedEpisode>> JudgeAll(const ScenarioSelection& selection,
                                                  const std::vector<std::string>& grammars,
+                                                 const std::vector<std::string>& events,
                                                  const CommandContext& context, int& failed) {
   std::vector<WorkerJob> jobs;
   std::vector<std::string> ids;
   for (const ScenarioFile& file : selection.scenarios) {
     ids.push_back(ScenarioId(file.skill, file.name));
-    const JudgeRequest request{file.path, ids.back(), context.root, grammars};
+    const JudgeRequest request{file.path, ids.back(), context.root, grammars, events};
     jobs.push_back([request] { return Judged(request); });
   }
   const WorkerLimits limits{.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency())),
@@ -80,59 +92,58 @@ std::vector<std::vector<JudgedEpisode>> JudgeAll(const ScenarioSelection& select
     }
     for (std::size_t g = 0; g < grammars.size(); ++g) {
       const Json& episode = sent["episodes"][g];
-      by_grammar[g].push_back({ids[i], episode["ticks"], TimelineFromJson(episode["truth"]), TimelineFromJson(episode["found"])});
+      by_grammar[g].push_back({ids[i], episode["ticks"], TimelineFromJson(episode["truth"]),
+                               TimelineFromJson(episode["found"]), episode["not_judged"]});
     }
   }
   return by_grammar;
 }
 
-Json BoundaryJson(const score::BoundaryErrors& errors) {
-  return {{"median", errors.Median()}, {"p95", errors.AbsoluteQuantile(0.95)}, {"max", errors.AbsoluteQuantile(1)}};
-}
-
-Json EventScoreJson(const score::EventScore& s) {
-  const score::WardEvents& ward = s.ward.events;
-  return {{"event", s.event},
-          {"true", s.truths},
-          {"found", s.found},
-          {"ward",
-           {{"correct", ward.correct},
-            {"deleted", ward.deleted},
-            {"fragmented", ward.fragmented},
-            {"merged", ward.merged},
-            {"fragmented_and_merged", ward.fragmented_and_merged},
-            {"inserted", ward.inserted}}},
-          {"begin_s", BoundaryJson(s.begin)},
-          {"end_s", BoundaryJson(s.end)},
-          {"f1_10", s.overlap_10.F1()},
-          {"f1_25", s.overlap_25.F1()},
-          {"f1_50", s.overlap_50.F1()},
-          {"edit", s.edit},
-          {"frame_accuracy", s.frames.Accuracy()},
-          {"collar_f", s.within_collar.AsHits().F1()},
-          {"collar_error_rate", s.within_collar.ErrorRate()},
-          {"latency_s", {{"median", s.LatencyQuantile(0.5)}, {"max", s.LatencyQuantile(1)}}}};
-}
-
-Json ScoresJson(const std::vector<score::Score>& scores, double collar_s) {
-  Json grammars = Json::array();
-  for (const score::Score& s : scores) {
-    Json events = Json::array();
-    for (const score::EventScore& event : s.events) events.push_back(EventScoreJson(event));
-    grammars.push_back({{"grammar", s.grammar},
-                        {"episodes", s.episodes},
-                        {"total", EventScoreJson(s.total)},
-                        {"events", std::move(events)}});
+/// Why these events cannot be chosen, or "".
+std::string UnknownEvent(const std::vector<std::string>& events) {
+  const std::vector<std::string> known(OracleEvents().begin(), OracleEvents().end());
+  for (const std::string& event : events) {
+    if (OracleDefines(event)) continue;
+    const std::string near = grammar::NearestName(event, known);
+    return fmt::format("--events: docs/events.md defines no '{}'; {}", event,
+                       near.empty() ? fmt::format("it defines {}", fmt::join(known, ", "))
+                                    : fmt::format("did you mean '{}'?", near));
   }
-  return {{"collar_s", collar_s}, {"grammars", std::move(grammars)}};
+  return "";
+}
+
+/// Of the judged events those that no rule of the grammar prints.
+std::vector<std::string> NotSpokenOf(const grammar::Program& program, const std::vector<std::string>& events) {
+  std::vector<std::string> silent;
+  for (const std::string_view event : OracleEvents()) {
+    const bool judged = events.empty() || std::ranges::find(events, event) != events.end();
+    const bool spoken = std::ranges::any_of(program.events, [&](const grammar::Rule& rule) {
+      return rule.printed && rule.name == event;
+    });
+    if (judged && !spoken) silent.emplace_back(event);
+  }
+  return silent;
+}
+
+void Print(const std::vector<score::Score>& scores, double collar_s, std::ostream& out) {
+  for (const score::Score& one : scores) out << ScoreTable(one, collar_s) << "\n";
+  if (scores.size() > 1) out << SideBySide(scores, collar_s) << "\n";
+  out << "C correct, D deleted, F fragmented, M merged, FM both, I' inserted (Ward et al. 2011); boundary errors are\n"
+         "found - true: median / 95th percentile / largest, the last two by magnitude; late: from an event's end to its\n"
+         "decision, median / 95th percentile / largest. Every grammar is scored on the same true events.\n";
 }
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   std::vector<std::string> grammars = ValuesOf(options, "--grammar");
   if (grammars.empty()) grammars = {"pick_and_place", "original_2020"};
+  const std::vector<std::string> events = ValuesOf(options, "--events");
+  if (const std::string unknown = UnknownEvent(events); !unknown.empty())
+    return Complain(context, ExitCode::kBadInput, unknown);
+  std::vector<std::vector<std::string>> not_spoken_of;
   for (const std::string& name : grammars) {
     const grammar::CompileResult compiled = LoadGrammar(context.root, name);
     if (!compiled.program) return Complain(context, compiled.diagnostics);
+    not_spoken_of.push_back(NotSpokenOf(*compiled.program, events));
   }
   std::string problem;
   const auto selection =
@@ -140,19 +151,17 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!selection) return Complain(context, ExitCode::kNothing, problem);
 
   int failed = 0;
-  const auto by_grammar = JudgeAll(*selection, grammars, context, failed);
+  const auto by_grammar = JudgeAll(*selection, grammars, events, context, failed);
   const double collar_s = std::stod(ValueOf(options, "--collar-ms", std::to_string(kDefaultCollar_ms))) / 1000;
   std::vector<score::Score> scores;
-  for (std::size_t g = 0; g < grammars.size(); ++g) scores.push_back(ScoreOf(grammars[g], by_grammar[g], collar_s));
-  if (IsGiven(options, "--json")) {
-    context.out << ScoresJson(scores, collar_s).dump(2) << "\n";
-  } else {
-    for (const score::Score& one : scores) context.out << ScoreTable(one, collar_s) << "\n";
-    if (scores.size() > 1) context.out << SideBySide(scores, collar_s) << "\n";
-    context.out << "C correct, D deleted, F fragmented, M merged, FM both, I' inserted (Ward et al. 2011); boundary errors "
-                   "are\nfound - true: signed median / absolute 95th percentile / largest; late: from an event's end to its "
-                   "decision,\nmedian/largest.\n";
+  for (std::size_t g = 0; g < grammars.size(); ++g) {
+    scores.push_back(ScoreOf(grammars[g], by_grammar[g], collar_s));
+    scores.back().not_spoken_of = not_spoken_of[g];
   }
+  if (IsGiven(options, "--json"))
+    context.out << ScoresJson(scores, collar_s).dump(2) << "\n";
+  else
+    Print(scores, collar_s, context.out);
   return failed == 0 ? ExitCode::kAgrees : ExitCode::kFailure;
 }
 
@@ -164,6 +173,7 @@ Command ScoreCommand() {
           .examples =
               "prehend score\n"
               "prehend score --grammar pick_and_place --grammar my/rules.grammar\n"
+              "prehend score --grammar my/rules.grammar --events grasping,sliding\n"
               "prehend score 'slide/*' --collar-ms 20 --json",
           .declare = Declare,
           .run = Run};

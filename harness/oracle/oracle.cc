@@ -123,10 +123,15 @@ class TimelineBuilder {
 }  // namespace
 }  // namespace oracle
 
+std::span<const std::string_view> OracleEvents() {
+  static constexpr std::array<std::string_view, 10> kDefined = {
+      "contact", "supported_by", "grasping",     "reaching",     "fixation",
+      "sliding", "picking_up",   "transporting", "putting_down", "pick_and_place"};
+  return kDefined;
+}
+
 bool OracleDefines(std::string_view event) {
-  constexpr std::array kDefined = {"contact",      "supported_by", "grasping",     "reaching",     "fixation",
-                                   "sliding",      "picking_up",   "transporting", "putting_down", "pick_and_place"};
-  return std::ranges::find(kDefined, event) != kDefined.end();
+  return std::ranges::find(OracleEvents(), event) != OracleEvents().end();
 }
 
 grammar::Timeline TrueTimeline(const Scenario& scenario,

@@ -49,7 +49,9 @@ struct OracleSettings {
   double put_down_dead_band_m = 0.01;  ///< a held object trembles by less than this
 };
 
-/// Whether docs/events.md defines this event, so that the oracle can judge it.
+/// The events that docs/events.md defines, in its order.
+std::span<const std::string_view> OracleEvents();
+/// Whether this is one of them, so that the oracle can judge it.
 bool OracleDefines(std::string_view event);
 
 /// The true events of a run, sorted. `recording` has the sensed snapshots in the order of their

@@ -37,6 +37,10 @@ TEST_F(CheckRecordsTest, ARecordComesBackAndNoticesChanges) {
   ASSERT_TRUE(read);
   EXPECT_EQ(read->program, "p");
   EXPECT_TRUE(read->pictures);
+  EXPECT_TRUE(read->passed);
+  record.passed = false;
+  ASSERT_EQ(records_.Write(record), "");
+  EXPECT_FALSE(records_.Read("slide/x")->passed) << "accepted, but not checked yet";
   EXPECT_EQ(read->verdict.inputs, record.verdict.inputs);
   EXPECT_TRUE(ChangedInputs(*read).empty());
   File("b", "two!");

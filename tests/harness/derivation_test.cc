@@ -46,6 +46,9 @@ TEST_F(DerivationTest, AShiftedBoundaryDoesNot) {
   EXPECT_TRUE(derivation.lines[1].starts_with("oracle: disagrees: off")) << derivation.lines[1];
   EXPECT_NE(derivation.lines[1].find("picking_up(right_hand, milk)"), std::string::npos)
       << derivation.lines[1];
+  ASSERT_EQ(derivation.notes.size(), 1u);
+  EXPECT_EQ(derivation.notes[0].text, "+41.7/+0.0ms");
+  EXPECT_EQ(derivation.notes[0].event.interval, Find("picking_up").interval);
 }
 
 TEST_F(DerivationTest, AMissingAndAnInventedEventDoNot) {
@@ -53,6 +56,8 @@ TEST_F(DerivationTest, AMissingAndAnInventedEventDoNot) {
   const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
   EXPECT_FALSE(derivation.agrees);
   EXPECT_EQ(derivation.lines.size(), 3u);
+  ASSERT_EQ(derivation.notes.size(), 1u) << "what is missing has no line that could say so";
+  EXPECT_EQ(derivation.notes[0].text, "none");
 }
 
 TEST_F(DerivationTest, EventsWithoutADefinitionAreCountedNotJudged) {
@@ -65,7 +70,7 @@ TEST_F(DerivationTest, EventsWithoutADefinitionAreCountedNotJudged) {
 
 TEST(RenewedDerivation, KeepsWhatPeopleWrote) {
   EXPECT_EQ(RenewedDerivation({"seen in the picture", "oracle: old"},
-                              {.agrees = true, .lines = {"oracle: new"}}),
+                              {.agrees = true, .lines = {"oracle: new"}, .notes = {}}),
             (std::vector<std::string>{"seen in the picture", "oracle: new"}));
 }
 

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Timelines as the scores read them: labelled segments, all together and label by label.
+// Tested by tests/harness/score_test.cc
+#pragma once
+
+#include <vector>
+
+#include "grammar/timeline.h"
+#include "harness/score/segments.h"
+
+namespace prehend::harness::score {
+
+/// Labels are events with their roles. Of one label, segments never overlap within a side.
+struct LabelledEpisode {
+  double ticks_per_second = 480;
+  Episode whole;
+  std::vector<Episode> by_label;  ///< one for each label of either side, sorted
+};
+LabelledEpisode Labelled(const grammar::Timeline& truth, const grammar::Timeline& found, grammar::Tick ticks);
+
+std::vector<grammar::Interval> IntervalsOf(const Segments& segments);
+
+}  // namespace prehend::harness::score

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores as JSON. Tested by tests/house/score_test.cc
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "harness/score/score.h"
+
+namespace prehend::harness::score {
+
+/// {"collar_s", "grammars": [{"grammar", "episodes", "not_spoken_of", "not_judged", "total": {..}, "events": [{..}]}]};
+/// shares from 0 to 1, times in seconds; docs/regression-suite.md says what each is.
+nlohmann::ordered_json ScoresJson(const std::vector<Score>& scores, double collar_s);
+
+}  // namespace prehend::harness::score
