@@ -70,6 +70,7 @@ void Draw(const CheckRequest& request, const Scenario& scenario, const RunResult
 
 /// A gate of its own: events may agree while a picture does not, and the other way round.
 void JudgePictures(const CheckRequest& request, ScenarioVerdict& verdict) {
+  if (!request.has_golden) return;
   for (const ReportedPicture& picture : verdict.pictures) {
     const fs::path drawn = fs::path(request.report_folder) / picture.file;
     const std::string golden =
@@ -154,7 +155,7 @@ std::string Blame(const CheckRequest& request, const Scenario& scenario, const R
 /// Compares the plain run; the watched one has the recording.
 void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared,
                         const RunResult& watched, const RunResult& run, ScenarioVerdict& verdict) {
-  const ReadResult<Golden> golden = GoldenFiles(request.root).ReadGoldenOf(request.id);
+  const ReadResult<Golden> golden = request.has_golden ? GoldenFiles(request.root).ReadGoldenOf(request.id) : ReadResult<Golden>{};
   if (!golden.diagnostics.empty()) {
     return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read",
                 Format(golden.diagnostics));
@@ -169,8 +170,8 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
     if (verdict.verdict != Verdict::kPassed) return;
     verdict.verdict = Verdict::kPending;
     verdict.exit_code = ExitCode::kPending;
-    verdict.reason = "no golden yet";
-    verdict.command = fmt::format("prehend accept {} --reason \"...\"", request.id);
+    verdict.reason = request.has_golden ? "no golden yet" : "no golden: only scenarios below scenarios/ have one";
+    if (request.has_golden) verdict.command = fmt::format("prehend accept {} --reason \"...\"", request.id);
     return;
   }
   verdict.headroom = HeadroomText(comparison);
@@ -181,12 +182,21 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
   verdict.blame = Blame(request, prepared.scenario, watched, verdict.inputs);
   const std::string facts =
       FactsAround(prepared.scenario, watched.recording, first->event(), first->DivergenceTick());
+  verdict.differences = DifferencesJson(comparison, ExplainCommand(request.id, request.run));
+  verdict.relations = RelationsJson(comparison);
   const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
     return pairing.agreement != LineVerdict::kMatched;
   });
   Fail(verdict, ExitCode::kDiffers,
        fmt::format("{} of {} events differ from the golden", differing, comparison.pairings.size()),
        DifferenceText(comparison, ExplainCommand(request.id, request.run), facts) + verdict.blame);
+}
+
+std::vector<std::string> FilesOfGolden(const CheckRequest& request) {
+  const GoldenFiles goldens(request.root);
+  std::vector<std::string> files = {goldens.GoldenPath(request.id).string()};
+  for (const fs::path& picture : goldens.PicturesOf(request.id)) files.push_back(picture.string());
+  return files;
 }
 
 /// A planar scenario has the same events in both engines.
@@ -212,14 +222,12 @@ void JudgeOtherEngine(const CheckRequest& request, const PreparedRun& prepared,
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
   ScenarioVerdict verdict{.scenario = request.id, .shows = {}, .verdict = Verdict::kPassed};
   verdict.command = RepeatCommand(request.id, request.run);
-  std::vector<std::string> files = {GoldenFiles(request.root).GoldenPath(request.id).string()};
+  std::vector<std::string> files = request.has_golden ? FilesOfGolden(request) : std::vector<std::string>();
   const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root, &files);
-  for (const fs::path& picture : GoldenFiles(request.root).PicturesOf(request.id))
-    files.push_back(picture.string());
   verdict.inputs = HashFiles(files);
   if (!prepared.value) {
     Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(prepared.diagnostics));
-    verdict.command = "prehend validate " + request.id + ChangesText(request.run);
+    verdict.command = "prehend validate " + ShellWord(request.id) + ChangesText(request.run);
     return verdict;
   }
   const Scenario& scenario = prepared.value->scenario;
@@ -238,7 +246,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
 
   if (plain.status.kind != physics::RunStatus::Kind::kCompleted) {
     Fail(verdict, ExitCode::kFailure, "the simulation failed", StatusText(plain) + "\n");
-    verdict.command = "prehend run " + request.id + ChangesText(request.run);
+    verdict.command = "prehend run " + ShellWord(request.id) + ChangesText(request.run);
     return verdict;
   }
   JudgeInvariants(*prepared.value, watched, plain, verdict);
@@ -250,11 +258,11 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
 }
 
 std::string ExplainCommand(const std::string& id, const RunRequest& changes) {
-  return "prehend explain " + id + ChangesText(changes);
+  return "prehend explain " + ShellWord(id) + ChangesText(changes);
 }
 
 std::string RepeatCommand(const std::string& id, const RunRequest& changes) {
-  return "prehend check " + id + ChangesText(changes);
+  return "prehend check " + ShellWord(id) + ChangesText(changes);
 }
 
 }  // namespace prehend::harness

@@ -14,11 +14,12 @@ namespace prehend::harness {
 
 struct CheckRequest {
   RunRequest run;
-  std::string id;             ///< skill/name
+  std::string id;             ///< skill/name, or the path of a scenario without golden
   std::string root;           ///< the project's
   std::string report_folder;  ///< pictures go to its folder `pictures`
   bool pictures = true;
   bool is_trial = false;  ///< leave nothing behind: neither a pending golden nor a trace
+  bool has_golden = true;  ///< or may have one; false: it is not of the project
   std::string program;    ///< ProgramHash(), for the blame
   SharedTicks::Tick* last_tick = nullptr;  ///< told how far the run came; may be null
 };

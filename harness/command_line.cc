@@ -10,6 +10,7 @@
 #include <ctime>
 #include <exception>
 #include <iostream>
+#include <regex>
 
 #include "harness/commands/command.h"
 #include "harness/shell_word.h"
@@ -65,7 +66,8 @@ void Declare(CLI::App& app, const std::vector<Command>& commands) {
       "Simulated manipulation, segmented by activity grammars, compared with goldens, pictured.");
   app.footer(
       "Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 simulation or internal failure,\n"
-      "4 nothing selected or found, 5 goldens wait for acceptance.");
+      "4 nothing selected or found, 5 goldens wait for acceptance.\n"
+      "PREHEND_HOME names the project's folder; otherwise it is the one above the program, or the working folder.");
   app.allow_extras();
   for (const Command& command : commands) {
     CLI::App* options = app.add_subcommand(command.name, command.summary);
@@ -89,6 +91,22 @@ ExitCode ComplainAboutExtra(const CLI::App& app, const std::string& extra,
   const std::string name = extra.substr(0, extra.find('='));
   return UsageError(fmt::format("unknown option '{}'{}", name, Suggestion(name, LongOptions(app))),
                     command);
+}
+
+/// The first option, or name, that was given as an empty word; "" when none was.
+std::string GivenAsNothing(const CLI::App& options) {
+  for (const CLI::Option* option : options.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) return option->get_name();
+    }
+  }
+  return "";
+}
+
+/// "not in range 0.100000 to 5.000000" without the zeros.
+std::string WithShortNumbers(const std::string& message) {
+  static const std::regex zeros("(\\d\\.\\d*?[1-9])0+\\b|(\\d)\\.0+\\b");
+  return std::regex_replace(message, zeros, "$1$2");
 }
 
 ExitCode Dispatch(const CLI::App& app, const std::vector<Command>& commands,
@@ -115,11 +133,16 @@ ExitCode Dispatch(const CLI::App& app, const std::vector<Command>& commands,
   context.in_ci = IsSet("CI");
   context.colored = isatty(STDOUT_FILENO) && !IsSet("NO_COLOR");
   context.progress = isatty(STDERR_FILENO);
+  const std::string nothing = GivenAsNothing(options);
+  if (!nothing.empty())
+    return UsageError(nothing + ": an empty word is given for it", options.get_name());
   const auto root = FindProjectRoot();
   if (!root) {
+    const char* const home = std::getenv("PREHEND_HOME");
     return Complain(context, ExitCode::kBadInput,
-                    "the project's folder was not found (it has grammar/library); go there or set "
-                    "PREHEND_HOME");
+                    home && *home ? "PREHEND_HOME is " + ShellWord(home) + ", which has no grammar/library"
+                                  : std::string("the project's folder was not found (it has grammar/library); go there or "
+                                                "set PREHEND_HOME"));
   }
   context.root = *root;
   for (const Command& command : commands) {
@@ -147,7 +170,7 @@ ExitCode RunCommandLine(int argc, const char* const* argv) {
     return ExitCode::kAgrees;
   } catch (const CLI::ParseError& error) {
     const auto chosen = app.get_subcommands();
-    return UsageError(error.what(), chosen.empty() ? "" : chosen.front()->get_name());
+    return UsageError(WithShortNumbers(error.what()), chosen.empty() ? "" : chosen.front()->get_name());
   } catch (const std::exception& problem) {
     std::cerr << "prehend: internal error: " << problem.what() << "\n  again: " << command_line
               << "\n";

@@ -329,13 +329,19 @@ const Headroom* Comparison::Tightest() const {
   return found == headroom.end() ? nullptr : &*found;
 }
 
-const Pairing* Comparison::FirstDivergence() const {
-  const Pairing* first = nullptr;
+std::vector<const Pairing*> Comparison::Differing() const {
+  std::vector<const Pairing*> differing;
   for (const Pairing& pairing : pairings) {
-    if (pairing.agreement == LineVerdict::kMatched || pairing.IsFurtherPiece()) continue;
-    if (!first || pairing.DivergenceTick() < first->DivergenceTick()) first = &pairing;
+    if (pairing.agreement != LineVerdict::kMatched && !pairing.IsFurtherPiece())
+      differing.push_back(&pairing);
   }
-  return first;
+  std::ranges::stable_sort(differing, {}, &Pairing::DivergenceTick);
+  return differing;
+}
+
+const Pairing* Comparison::FirstDivergence() const {
+  const std::vector<const Pairing*> differing = Differing();
+  return differing.empty() ? nullptr : differing.front();
 }
 
 bool ValuesAgree(double expected, double actual) {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdlib>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -78,6 +79,7 @@ struct Comparison {
   int Count(LineVerdict agreement) const;
   const Headroom* Tightest() const;        ///< null without matched events
   const Pairing* FirstDivergence() const;  ///< null when all agree
+  std::vector<const Pairing*> Differing() const;  ///< first divergence first; pieces are told of by one
 };
 
 /// Compares in the ticks of `actual`; `default_tolerance` (ticks) is for golden lines without their
@@ -97,6 +99,13 @@ bool ValuesAgree(double expected, double actual);
 /// Empty when all agree.
 std::string DifferenceText(const Comparison& comparison, std::string_view command,
                            std::string_view facts = {});
+
+/// What `prehend explain` is to be asked about a difference: "--event 'sliding hand cup @0.1000s'".
+std::string QuestionAbout(const Pairing& pairing, grammar::Tick ticks_per_second);
+
+/// The same differences, and the relations that changed, as lists for programs: keys in docs/regression-suite.md.
+nlohmann::ordered_json DifferencesJson(const Comparison& comparison, std::string_view command);
+nlohmann::ordered_json RelationsJson(const Comparison& comparison);
 
 /// One line: "headroom: 4.2 of 8.3 ms are left at begin of reaching(right_hand, milk)", or "".
 std::string HeadroomText(const Comparison& comparison);

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 #include "harness/compare.h"
 #include "harness/event_text.h"
 #include "harness/shell_word.h"
@@ -30,17 +28,6 @@ std::string PiecesText(const std::vector<grammar::Interval>& pieces, Tick ticks_
   return fmt::format("{} pieces: {}", pieces.size(), fmt::join(texts, ", "));
 }
 
-/// What `prehend explain` is to be asked: why it is as it is, or why it is missing.
-std::string Question(const Pairing& pairing, Tick ticks_per_second) {
-  const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
-  std::string question = event.event;
-  for (const grammar::Role& role : event.roles) {
-    if (!IsAttribute(role)) question += " " + role.value;
-  }
-  question += " @" + SecondsText(event.interval.begin, ticks_per_second) + "s";
-  return (pairing.actual ? "--event " : "--expected ") + ShellWord(question);
-}
-
 std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::string_view command,
                         std::string_view facts) {
   const auto side = [&](const std::optional<grammar::NamedEvent>& event) {
@@ -57,7 +44,7 @@ std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::stri
     text += fmt::format("  {}\n", OffsetText(pairing, ticks_per_second));
   if (!pairing.changes.empty()) text += fmt::format("  {}\n", fmt::join(pairing.changes, ", "));
   return text +
-         fmt::format("{}  why: {} {}\n", facts, command, Question(pairing, ticks_per_second));
+         fmt::format("{}  why: {} {}\n", facts, command, QuestionAbout(pairing, ticks_per_second));
 }
 
 }  // namespace
@@ -84,14 +71,23 @@ std::string_view Name(LineVerdict agreement) {
   return "";
 }
 
+// Why it is as it is, or why it is missing. Of what is in pieces the first one is asked about, whose end is where it
+// broke.
+std::string QuestionAbout(const Pairing& pairing, Tick ticks_per_second) {
+  const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
+  const bool in_pieces = pairing.agreement == LineVerdict::kFragmented && !pairing.pieces.empty();
+  const Tick begin = in_pieces ? pairing.pieces.front().begin : event.interval.begin;
+  std::string question = event.event;
+  for (const grammar::Role& role : event.roles) {
+    if (!IsAttribute(role)) question += " " + role.value;
+  }
+  question += " @" + SecondsText(begin, ticks_per_second) + "s";
+  return (pairing.actual ? "--event " : "--expected ") + ShellWord(question);
+}
+
 std::string DifferenceText(const Comparison& comparison, std::string_view command,
                            std::string_view facts) {
-  std::vector<const Pairing*> differing;
-  for (const Pairing& pairing : comparison.pairings) {
-    if (pairing.agreement != LineVerdict::kMatched && !pairing.IsFurtherPiece())
-      differing.push_back(&pairing);
-  }
-  std::ranges::stable_sort(differing, {}, &Pairing::DivergenceTick);
+  const std::vector<const Pairing*> differing = comparison.Differing();
   std::string text;
   for (const Pairing* pairing : differing) {
     text += PairingText(*pairing, comparison.ticks_per_second, command,

@@ -7,7 +7,9 @@
 #include <regex.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <memory>
 
 #include "harness/yaml_scalar.h"
 
@@ -16,14 +18,19 @@ namespace {
 
 std::string LabelOf(const YamlNode& node) { return node.key.empty() ? "" : node.key + ": "; }
 
-/// POSIX, since std::regex recurses once per character, and since pattern and text are short. Characters below a
-/// blank can only come from escapes in quotes; a NUL would hide the rest of the text.
-bool Matches(const std::string& pattern, const std::string& text) {
-  regex_t compiled;
-  if (regcomp(&compiled, pattern.c_str(), REG_EXTENDED | REG_NOSUB) != 0) return false;
-  const bool matches = text.find('\0') == std::string::npos && regexec(&compiled, text.c_str(), 0, nullptr, 0) == 0;
-  regfree(&compiled);
-  return matches;
+/// POSIX, since std::regex recurses once per character, and since pattern and text are short. Null for no pattern.
+std::shared_ptr<const regex_t> Compiled(const std::string& pattern) {
+  auto compiled = std::make_unique<regex_t>();
+  if (regcomp(compiled.get(), pattern.c_str(), REG_EXTENDED | REG_NOSUB) != 0) return nullptr;
+  return {compiled.release(), [](regex_t* unused) {
+            regfree(unused);
+            delete unused;
+          }};
+}
+
+/// Characters below a blank can only come from escapes in quotes; a NUL would hide the rest of the text.
+bool Matches(const regex_t* pattern, const std::string& text) {
+  return pattern && text.find('\0') == std::string::npos && regexec(pattern, text.c_str(), 0, nullptr, 0) == 0;
 }
 
 /// From escapes like "\x1b" in quotes; they would garble a terminal.
@@ -58,6 +65,24 @@ std::optional<ScalarMeaning> NumberOf(const YamlNode& node) {
   ScalarMeaning meaning = MeaningOf(node);
   if (!meaning.number) return std::nullopt;
   return meaning;
+}
+
+/// What to do about a text where a number is wanted: "0.3kg", "0,3".
+std::string NumberRemedy(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kScalar || node.quoted) return "";
+  const std::string& text = node.text;
+  const std::size_t end = std::min(text.find_first_not_of("+-.0123456789eE"), text.size());
+  double ignored = 0;
+  const bool begins_with_number = end < text.size() && std::from_chars(text.data(), text.data() + end, ignored).ec == std::errc();
+  if (!begins_with_number) return "";
+  return text[end] == ',' ? "decimals have a point: 0.5" : "write the number alone; its unit is the last word of the key";
+}
+
+bool ComplainNumberWanted(const YamlNode& node, Complaints& complaints, const std::string& wanted) {
+  const std::string remedy = NumberRemedy(node);
+  if (remedy.empty() || !MeaningOf(node).string) return ComplainWanted(node, complaints, wanted);
+  complaints.Add(node.where, fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)), remedy);
+  return false;
 }
 
 bool HasSize(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
@@ -103,7 +128,7 @@ Format<double> Number(double lowest, double highest) {
               [=](const YamlNode& node, Complaints& complaints, double& value) {
                 const auto meaning = NumberOf(node);
                 if (!meaning || !(*meaning->number >= lowest && *meaning->number <= highest)) {
-                  return ComplainWanted(node, complaints, wanted);
+                  return ComplainNumberWanted(node, complaints, wanted);
                 }
                 value = *meaning->number;
                 return true;
@@ -160,13 +185,13 @@ Format<std::string> Word(const std::string& pattern, const std::string& wanted, 
   const std::string whole = "^(" + pattern + ")$";
   return {.schema = {{"type", "string"}, {"pattern", whole}, {"maxLength", max_length}},
           .read =
-              [=](const YamlNode& node, Complaints& complaints, std::string& value) {
+              [=, matcher = Compiled(whole)](const YamlNode& node, Complaints& complaints, std::string& value) {
                 auto text = StringOf(node, complaints, wanted);
                 if (!text) return false;
                 if (text->size() > max_length) {
                   return ComplainWanted(node, complaints, fmt::format("{} of at most {} bytes", wanted, max_length));
                 }
-                if (!Matches(whole, *text)) return ComplainWanted(node, complaints, wanted);
+                if (!Matches(matcher.get(), *text)) return ComplainWanted(node, complaints, wanted);
                 value = std::move(*text);
                 return true;
               },

@@ -221,9 +221,7 @@ Format<GainsEntry> GainsFormat() {
       .format();
 }
 
-}  // namespace
-
-Format<HandEntry> HandFormat() {
+Format<HandEntry> BuildHandFormat() {
   using H = HandEntry;
   return Record<H>("the hand")
       .Required("hand", &H::name, Identifier(), "Its name: that of the file without '.hand.yaml'.")
@@ -243,13 +241,25 @@ Format<HandEntry> HandFormat() {
       .format();
 }
 
-Format<MirrorEntry> MirrorFormat() {
+Format<MirrorEntry> BuildMirrorFormat() {
   return Record<MirrorEntry>("the hand")
       .Required("hand", &MirrorEntry::name, Identifier(),
                 "Its name: that of the file without '.hand.yaml'.")
       .Required("mirror_of", &MirrorEntry::mirror_of, Identifier(),
                 "The hand in the same folder that it mirrors.")
       .format();
+}
+
+}  // namespace
+
+const Format<HandEntry>& HandFormat() {
+  static const Format<HandEntry> format = BuildHandFormat();
+  return format;
+}
+
+const Format<MirrorEntry>& MirrorFormat() {
+  static const Format<MirrorEntry> format = BuildMirrorFormat();
+  return format;
 }
 
 }  // namespace prehend::harness

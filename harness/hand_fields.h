@@ -88,7 +88,8 @@ struct MirrorEntry {
   Located<std::string> mirror_of;
 };
 
-Format<HandEntry> HandFormat();
-Format<MirrorEntry> MirrorFormat();
+// Built once, since that takes longer than reading a hand.
+const Format<HandEntry>& HandFormat();
+const Format<MirrorEntry>& MirrorFormat();
 
 }  // namespace prehend::harness

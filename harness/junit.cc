@@ -40,7 +40,7 @@ std::string Outcome(const ScenarioVerdict& verdict) {
 }
 
 std::string Case(const ScenarioVerdict& verdict) {
-  const std::size_t slash = verdict.scenario.find('/');
+  const std::size_t slash = verdict.scenario.rfind('/');
   const std::string skill =
       slash == std::string::npos ? "scenarios" : verdict.scenario.substr(0, slash);
   const std::string name =

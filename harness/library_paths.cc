@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <tuple>
 
 #include "harness/read_hand_model.h"
@@ -44,10 +46,22 @@ std::vector<std::string> NamesIn(const fs::path& folder, std::string_view ending
   return names;
 }
 
+/// The shortest of the names that contain a part; "" when none does, or when the part is of nearly all names.
+std::string ShortestWith(const std::string& part, const std::vector<std::string>& names) {
+  constexpr std::size_t kShortestPart = 3;
+  std::string shortest;
+  if (part.size() < kShortestPart) return shortest;
+  for (const std::string& name : names) {
+    const bool is_shorter = shortest.empty() || name.size() < shortest.size();
+    if (is_shorter && name.find(part) != std::string::npos) shortest = name;
+  }
+  return shortest;
+}
+
 std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scenarios, const std::string& typed) {
   std::vector<const ScenarioFile*> matching;
   for (const ScenarioFile& scenario : scenarios) {
-    if (typed == scenario.name || typed == scenario.skill + "/" + scenario.name) matching.push_back(&scenario);
+    if (typed == scenario.name || typed == IdOf(scenario)) matching.push_back(&scenario);
   }
   return matching;
 }
@@ -55,8 +69,10 @@ std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scena
 }  // namespace
 
 std::optional<std::string> FindProjectRoot() {
-  if (const char* home = std::getenv("PREHEND_HOME"); home && *home) return home;
   std::error_code error;
+  if (const char* home = std::getenv("PREHEND_HOME"); home && *home) {
+    return fs::is_directory(GrammarFolder(home), error) ? std::optional<std::string>(home) : std::nullopt;
+  }
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   if (auto root = RootAbove(executable.parent_path())) return root;
   return RootAbove(fs::current_path(error));
@@ -74,7 +90,7 @@ std::vector<ScenarioFile> ListScenarios(const std::string& root) {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     const std::string skill = entry.path().filename().string();
-    if (entry.is_directory(error) && skill != "invalid") add(entry.path(), skill);
+    if (entry.is_directory(error) && skill != kShowsErrors) add(entry.path(), skill);
   }
   std::sort(scenarios.begin(), scenarios.end(), [](const ScenarioFile& a, const ScenarioFile& b) {
     return std::tie(a.skill, a.name) < std::tie(b.skill, b.name);
@@ -91,14 +107,29 @@ std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenari
   return std::nullopt;
 }
 
+ScenarioFile ScenarioAt(const std::vector<ScenarioFile>& scenarios, const std::string& path) {
+  for (const ScenarioFile& scenario : scenarios) {
+    std::error_code error;
+    if (scenario.path == path || fs::equivalent(scenario.path, path, error)) return scenario;
+  }
+  return {.skill = "", .name = fs::path(path).stem().string(), .path = path, .in_project = false};
+}
+
+std::string IdOf(const ScenarioFile& file) {
+  if (!file.in_project) return file.path;
+  return file.skill.empty() ? file.name : file.skill + "/" + file.name;
+}
+
 std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed) {
   std::vector<std::string> names, in_skills;
   for (const ScenarioFile& scenario : scenarios) names.push_back(scenario.name);
   for (const ScenarioFile* scenario : Matching(scenarios, typed)) {
-    in_skills.push_back(scenario->skill + "/" + scenario->name);
+    in_skills.push_back(IdOf(*scenario));
   }
   if (in_skills.size() > 1) return fmt::format("which one: {}?", fmt::join(in_skills, ", "));
-  const std::string near = grammar::NearestName(typed.substr(typed.rfind('/') + 1), names);
+  const std::string name = typed.substr(typed.rfind('/') + 1);
+  std::string near = grammar::NearestName(name, names);
+  if (near.empty()) near = ShortestWith(name, names);
   return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
 }
 
@@ -111,13 +142,17 @@ std::string HandPath(const std::string& root, const std::string& name) {
 }
 
 ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>* files) {
+  // Most scenarios have the same hand; its file is read once.
+  const auto known = std::make_shared<std::map<std::string, ReadResult<physics::HandModel>>>();
   return {.grammars = NamesIn(GrammarFolder(root), kGrammarEnding),
           .hands = NamesIn(HandFolder(root), kHandEnding),
-          .read_hand = [root, files](const std::string& name_or_path) {
+          .read_hand = [root, files, known](const std::string& name_or_path) {
             const bool is_path = name_or_path.ends_with(kScenarioEnding);
             const std::string path = is_path ? name_or_path : HandPath(root, name_or_path);
             if (files) files->push_back(path);
-            return ReadHandModel(path);
+            if (is_path) return ReadHandModel(path);
+            const auto found = known->find(path);
+            return found != known->end() ? found->second : known->emplace(path, ReadHandModel(path)).first->second;
           },
           .reads_recording = [files](const std::string& path) {
             if (files) files->push_back(path);

@@ -5,15 +5,19 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/read_scenario.h"
 
 namespace prehend::harness {
 
-/// The folder that holds grammar/library, scenarios/, ...: $PREHEND_HOME, or the nearest such ancestor of the
+/// The folder that holds grammar/library, scenarios/, ...: $PREHEND_HOME if that is set, else the nearest such ancestor of the
 /// executable, or of the working directory.
 std::optional<std::string> FindProjectRoot();
+
+/// The folder of scenarios/ whose files are not scenarios, but show what the reader refuses.
+inline constexpr std::string_view kShowsErrors = "invalid";
 
 struct ScenarioFile {
   std::string skill;  ///< its folder below scenarios/, or ""
@@ -28,6 +32,12 @@ std::vector<ScenarioFile> ListScenarios(const std::string& root);
 /// The file for what a user typed: a path, "name" or "skill/name". Nothing when there is none, or when a bare name is
 /// that of several skills.
 std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);
+
+/// The one of `scenarios` that is the file at `path`; for another file one that is not of the project.
+ScenarioFile ScenarioAt(const std::vector<ScenarioFile>& scenarios, const std::string& path);
+
+/// "skill/name", how goldens, reports and the command line call it; what is not of the project is called by its path.
+std::string IdOf(const ScenarioFile& file);
 
 /// "did you mean 'milk_carton_wrap'?", or which skills share the name, or "". For when FindScenario() found nothing.
 std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);

@@ -2,6 +2,7 @@
 // See load_grammar.h. Tested by tests/house/command_line_test.cc
 #include "harness/load_grammar.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -29,7 +30,15 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
   const std::string file = GrammarFile(root, name_or_path);
   note(file);
   ReadResult<std::string> text = ReadTextFile(file);
-  if (!text.value) return {nullptr, std::move(text.diagnostics)};
+  const std::vector<std::string> known = ProjectLibrary(root).grammars;
+  if (!text.value) {
+    const bool is_name = file != name_or_path;
+    if (is_name && std::ranges::count(known, name_or_path) == 0) {
+      const std::string near = grammar::NearestName(name_or_path, known);
+      text.diagnostics.front().hint = near.empty() ? "" : "did you mean '" + near + "'?";
+    }
+    return {nullptr, std::move(text.diagnostics)};
+  }
   const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
     const std::string name(used);
     const std::string beside = (fs::path(file).parent_path() / (name + ".grammar")).string();
@@ -42,7 +51,7 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
     }
     return std::nullopt;
   };
-  return grammar::Compile({file, std::move(*text.value)}, include, overrides, ProjectLibrary(root).grammars);
+  return grammar::Compile({file, std::move(*text.value)}, include, overrides, known);
 }
 
 grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Cast& cast) {

@@ -194,11 +194,25 @@ Diagnostics CheckTabs(const std::string& file, const std::string& text) {
                        "indent and separate with spaces")};
 }
 
+std::string_view LineOf(std::string_view text, int line) {
+  for (; line > 1 && !text.empty(); --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  return text.substr(0, text.find('\n'));
+}
+
 /// What yaml-cpp says of a syntax error, as message and hint for people who don't write parsers.
-std::pair<std::string, std::string> InPlainWords(const std::string& message) {
+std::pair<std::string, std::string> InPlainWords(const std::string& message, std::string_view text, Place place) {
   struct Words {
     const char *said, *message, *hint;
   };
+  const std::string_view line = LineOf(text, place.line);
+  const std::size_t column = std::min(line.size(), static_cast<std::size_t>(std::max(1, place.column)) - 1);
+  const std::string_view before = line.substr(0, column);
+  if (line.substr(column).starts_with(':') && before.find(": ") != std::string_view::npos) {
+    return {"not valid YAML: a second ':' in what is one text", "text with ': ' in it goes in quotes, like \"first: second\""};
+  }
+  if (message == "end of map not found" && before.find_first_not_of(' ') != std::string_view::npos) {
+    return {"not valid YAML: this cannot stand behind what is before it", "text that begins with a quote ends with it; put all of it in quotes"};
+  }
   constexpr const char* kBrackets = "each '[' needs its ']', each '{' its '}'";
   constexpr const char* kIndent = "what belongs together begins in the same column";
   constexpr Words kWords[] = {
@@ -208,6 +222,10 @@ std::pair<std::string, std::string> InPlainWords(const std::string& message) {
       {"end of map not found", "this line is indented otherwise than those it belongs to", kIndent},
       {"end of sequence not found", "this line is indented otherwise than those it belongs to", kIndent},
       {"illegal map value", "no ':' is expected here", "a key begins a line, or stands in '{}'; text with ': ' goes in quotes"},
+      {"alias not found after *", "no text begins with '*'", "text with special characters goes in quotes"},
+      {"anchor not found after &", "no text begins with '&'", "text with special characters goes in quotes"},
+      {"the referenced anchor is not defined", "aliases ('*name') are not supported",
+       "write the value out; text that begins with '*' goes in quotes"},
       {"unknown token", "no YAML begins with this character", "text with special characters goes in quotes"},
   };
   for (const Words& words : kWords) {
@@ -241,7 +259,7 @@ ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
   } catch (const YAML::Exception& error) {
     builder.diagnostics.clear();  // they may be consequences
     const Place place = error.mark.is_null() ? Place{} : Place{error.mark.line + 1, error.mark.column + 1};
-    const auto [message, hint] = InPlainWords(error.msg);
+    const auto [message, hint] = InPlainWords(error.msg, text, place);
     builder.Complain(place, message, hint);
   }
   if (!builder.diagnostics.empty()) return {std::nullopt, std::move(builder.diagnostics)};

@@ -61,11 +61,22 @@ grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Prog
   return diagnostics;
 }
 
+/// The grammar that a scenario asks for which cannot be read, so that all that is wrong is told at once; "" when that is
+/// not known, or when there is none of this name, which the reader has said.
+std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
+  const ReadResult<YamlDocument> document = ReadYamlFile(request.scenario_file);
+  const bool is_set = std::ranges::any_of(request.settings, [](const auto& set) { return set.starts_with("grammar="); });
+  if (!document.value || is_set) return "";
+  const YamlNode* node = document.value->root.Find("grammar");
+  const std::string name = node ? node->text : ScenarioEntry{}.grammar.value;
+  return std::ranges::count(ProjectLibrary(root).grammars, name) > 0 ? name : "";
+}
+
 }  // namespace
 
 ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root,
                                    std::vector<std::string>* files) {
-  const Json fields = ScenarioFormat().schema.at("properties");
+  const Json& fields = ScenarioFormat().schema.at("properties");
   Settings settings = Split(request.settings, [&](const std::string& name) {
     return name.find('.') != std::string::npos || fields.contains(name);
   });
@@ -73,10 +84,16 @@ ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string&
   if (files) files->push_back(request.scenario_file);
   ReadResult<Scenario> scenario =
       ReadScenario(request.scenario_file, settings.of_scenario, ProjectLibrary(root, files));
-  if (!scenario.value) return {std::nullopt, std::move(scenario.diagnostics)};
-  if (!request.grammar.empty()) scenario.value->grammar = request.grammar;
-  grammar::CompileResult compiled = LoadGrammar(root, scenario.value->grammar, settings.of_grammar, files);
-  if (!compiled.program) return {std::nullopt, std::move(compiled.diagnostics)};
+  const std::string grammar = !request.grammar.empty() ? request.grammar
+                              : scenario.value         ? scenario.value->grammar
+                                                       : GrammarNamedIn(request, root);
+  grammar::CompileResult compiled =
+      grammar.empty() ? grammar::CompileResult{} : LoadGrammar(root, grammar, settings.of_grammar, files);
+  if (!scenario.value || !compiled.program) {
+    grammar::Diagnostics diagnostics = std::move(scenario.diagnostics);
+    std::ranges::move(compiled.diagnostics, std::back_inserter(diagnostics));
+    return {std::nullopt, std::move(diagnostics)};
+  }
   if (request.grammar.empty()) {
     grammar::Diagnostics pictures = CheckPictures(*scenario.value, *compiled.program);
     if (!pictures.empty()) return {std::nullopt, std::move(pictures)};

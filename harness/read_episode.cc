@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -382,7 +384,12 @@ ReadResult<Episode> ReadEpisode(const std::string& path) {
     return {std::nullopt, std::move(reader.diagnostics)};
   }
   std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    reader.diagnostics.push_back({.file = path, .place = {}, .message = std::string("cannot be read: ") + std::strerror(errno), .source_line = {}, .hint = {}});
+    return {std::nullopt, std::move(reader.diagnostics)};
+  }
   for (std::string line; reader.diagnostics.empty() && std::getline(stream, line);) {
+    if (line.ends_with('\r')) line.pop_back();  // written on Windows
     if (line.size() > kMaxEpisodeLineBytes) {
       reader.TakeLine(" ");
       reader.Report(fmt::format("a line of {} bytes; at most {} are read", line.size(), kMaxEpisodeLineBytes), "one frame per line");

@@ -30,7 +30,7 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
 void CheckNames(const std::string& file, const ScenarioEntry& entry, const ScenarioLibrary& library,
                 Complaints& complaints) {
   const std::string stem = path(file).stem().string();
-  if (entry.name.value != stem) {
+  if (!entry.name.value.empty() && entry.name.value != stem) {
     complaints.Add(entry.name.where,
                    fmt::format("scenario: the name is '{}', but the file is called '{}'",
                                entry.name.value, path(file).filename().string()),
@@ -87,16 +87,27 @@ void AddPersonClasses(Scenario& scenario) {
   }
 }
 
+ReadResult<Scenario> AllOf(const Complaints& complaints, const Diagnostics& in_other_files) {
+  Diagnostics diagnostics = complaints.Sorted();
+  diagnostics.insert(diagnostics.end(), in_other_files.begin(), in_other_files.end());
+  return {std::nullopt, std::move(diagnostics)};
+}
+
 ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& document,
                              const ScenarioLibrary& library) {
   Complaints complaints(document);
   ScenarioEntry entry;
-  if (!ScenarioFormat().read(document.root, complaints, entry))
-    return {std::nullopt, complaints.Sorted()};
-
+  const bool well_formed = ScenarioFormat().read(document.root, complaints, entry);
   SortActors(entry);
   CheckNames(file, entry, library, complaints);
   Diagnostics in_other_files;
+  if (!well_formed) {
+    // Names can be looked up without the rest.
+    for (const auto& actor : entry.hands) {
+      if (!actor.value.hand.value.empty()) FindHand(file, actor.value.hand, library, complaints, in_other_files);
+    }
+    return AllOf(complaints, in_other_files);
+  }
   ReadRecordings(file, entry, library, complaints, in_other_files);
   Scenario scenario;
   physics::Scene& scene = scenario.scene;
@@ -121,11 +132,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   CheckVariations(document, entry.vary, complaints);
   if (scene.world.planar) CheckPlanar(entry, scene, complaints);
   if (complaints.empty()) CheckOverlaps(entry, scene, complaints);
-  if (!complaints.empty()) {
-    Diagnostics diagnostics = complaints.Sorted();
-    diagnostics.insert(diagnostics.end(), in_other_files.begin(), in_other_files.end());
-    return {std::nullopt, std::move(diagnostics)};
-  }
+  if (!complaints.empty()) return AllOf(complaints, in_other_files);
 
   scenario.name = entry.name.value;
   scenario.file = file;
@@ -147,9 +154,8 @@ ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocu
                                     const std::vector<std::string>& overrides,
                                     const ScenarioLibrary& library) {
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
-  const Json schema = overrides.empty() ? Json() : ScenarioFormat().schema;
-  for (const std::string& assignment : overrides) {
-    if (auto bad = ApplyOverride(assignment, schema, *document.value); !bad.empty()) return {std::nullopt, std::move(bad)};
+    for (const std::string& assignment : overrides) {
+    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema, *document.value); !bad.empty()) return {std::nullopt, std::move(bad)};
   }
   return Resolve(file, *document.value, library);
 }

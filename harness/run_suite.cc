@@ -50,8 +50,11 @@ class Suite {
 
  private:
   std::string Id(std::size_t scenario) const {
-    return ScenarioId(scenarios_[scenario].skill, scenarios_[scenario].name);
+    return IdOf(scenarios_[scenario]);
   }
+
+  /// Only these have goldens, and are remembered from one check to the next.
+  bool InProject(std::size_t scenario) const { return scenarios_[scenario].in_project; }
 
   bool Changed() const {
     return !request_.changes.grammar.empty() || !request_.changes.settings.empty();
@@ -59,6 +62,7 @@ class Suite {
 
   /// The last pass, when nothing that it depended on changed since.
   std::optional<ScenarioVerdict> Unchanged(std::size_t scenario) const {
+    if (!InProject(scenario)) return std::nullopt;
     const auto record = records_.Read(Id(scenario));
     const bool holds = record && record->passed && record->program == program_ &&
                        record->pictures >= request_.pictures && ChangedInputs(*record).empty();
@@ -103,7 +107,8 @@ class Suite {
                              .root = request_.root,
                              .report_folder = request_.report_folder,
                              .pictures = request_.pictures && turn.repetition == 0,
-                             .is_trial = Changed() || turn.repetition > 0,
+                             .is_trial = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
+                             .has_golden = InProject(turn.scenario),
                              .program = program_,
                              .last_tick = &last_tick};
     return [check] { return ToJson(CheckScenario(check)).dump(); };
@@ -121,6 +126,7 @@ class Suite {
           fmt::format("its process ended: {}, {}", result.reason,
                       last_tick == SharedTicks::kNone ? std::string("before the first tick")
                                                       : fmt::format("at tick {}", last_tick));
+      if (!result.said.empty()) verdict.details = "it said:\n" + result.said;
       verdict.ticks = std::max<std::int64_t>(0, last_tick);
       verdict.command = RepeatCommand(verdict.scenario, request_.changes) + LimitsText();
     }
@@ -136,10 +142,10 @@ class Suite {
 
   std::vector<ScenarioVerdict> Verdicts() {
     std::vector<ScenarioVerdict> verdicts;
-    for (const std::vector<ScenarioVerdict>& runs : runs_) {
-      verdicts.push_back(MergeRepeats(runs));
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      verdicts.push_back(MergeRepeats(runs_[i]));
       const ScenarioVerdict& merged = verdicts.back();
-      if (merged.verdict == Verdict::kUnchanged || Changed()) continue;
+      if (merged.verdict == Verdict::kUnchanged || Changed() || !InProject(i)) continue;
       costs_[merged.scenario] = merged.seconds;
       // Who can't write below build/ only loses time; the report, which is written there, too,
       // complains.

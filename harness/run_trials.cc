@@ -62,7 +62,7 @@ ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::stri
   if (!prepared.value) return {std::nullopt, prepared.diagnostics};
   ReadResult<YamlDocument> document = ReadYamlFile(request.scenario_file);
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
-  const Json schema = ScenarioFormat().schema;
+  const Json& schema = ScenarioFormat().schema;
   for (const std::string& setting : request.settings) {
     if (IsField(setting))
       (void)ApplyOverride(setting, schema, *document.value);  // PrepareRun() has accepted it

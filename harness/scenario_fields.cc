@@ -72,9 +72,7 @@ Format<PictureEntry> PictureFormat() {
       .format();
 }
 
-}  // namespace
-
-Format<ScenarioEntry> ScenarioFormat() {
+Format<ScenarioEntry> BuildScenarioFormat() {
   using S = ScenarioEntry;
   return Record<S>("the scenario")
       .Required("scenario", &S::name, Identifier(), "Its name: that of the file without '.yaml'.")
@@ -98,6 +96,13 @@ Format<ScenarioEntry> ScenarioFormat() {
       .Optional("pictures", &S::pictures, ListOf(PictureFormat(), 0, kMaxPictures),
                 "Which pictures are drawn.")
       .format();
+}
+
+}  // namespace
+
+const Format<ScenarioEntry>& ScenarioFormat() {
+  static const Format<ScenarioEntry> format = BuildScenarioFormat();
+  return format;
 }
 
 std::string ScenarioSchema() {

@@ -18,7 +18,8 @@ inline constexpr std::size_t kMaxPoses = 10'000;  ///< in all steps together
 inline constexpr std::size_t kMaxPictures = 32;
 inline constexpr double kMaxDurationS = 3'600;
 
-Format<ScenarioEntry> ScenarioFormat();
+/// Built once: its schemas take longer to build than most scenarios take to read.
+const Format<ScenarioEntry>& ScenarioFormat();
 
 /// The JSON Schema (2020-12) of scenario files, for editors and validators, with a newline at its end.
 std::string ScenarioSchema();

@@ -6,16 +6,15 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <iterator>
 #include <set>
+#include <tuple>
 
 #include "harness/golden_files.h"
-#include "harness/prepare_run.h"
 
 namespace prehend::harness {
 namespace {
-
-std::string IdOf(const ScenarioFile& file) { return ScenarioId(file.skill, file.name); }
 
 bool Matches(const std::string& pattern, const ScenarioFile& file) {
   return fnmatch(pattern.c_str(), file.name.c_str(), 0) == 0 ||
@@ -23,16 +22,37 @@ bool Matches(const std::string& pattern, const ScenarioFile& file) {
 }
 
 /// A file that cannot be read has no tags, but is checked when it is named.
-bool HasTag(const ScenarioFile& file, const std::string& tag, const std::string& root) {
-  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
+bool HasTag(const ScenarioFile& file, const std::string& tag, const ScenarioLibrary& library) {
+  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, library);
   return scenario.value &&
          std::count(scenario.value->tags.begin(), scenario.value->tags.end(), tag) > 0;
 }
 
-bool PassesFilter(const ScenarioFile& file, const std::string& filter, const std::string& root) {
-  if (filter.starts_with('!')) return !PassesFilter(file, filter.substr(1), root);
-  if (filter.starts_with("tag:")) return HasTag(file, filter.substr(4), root);
+bool PassesFilter(const ScenarioFile& file, const std::string& filter, const ScenarioLibrary& library) {
+  if (filter.starts_with('!')) return !PassesFilter(file, filter.substr(1), library);
+  if (filter.starts_with("tag:")) return HasTag(file, filter.substr(4), library);
   return Matches(filter, file);
+}
+
+bool IsFile(const std::string& typed) {
+  std::error_code error;
+  const bool is_there = std::filesystem::exists(typed, error) && !std::filesystem::is_directory(typed, error);
+  return is_there || typed.ends_with(".yaml") || typed.ends_with(".yml");
+}
+
+/// Scenarios that nobody's pattern matches, in words. A folder is not a pattern, but its scenarios have one.
+std::string WhyNoMatch(const std::string& typed, const std::vector<ScenarioFile>& all) {
+  std::string folder = typed.starts_with("scenarios/") ? typed.substr(10) : typed;
+  if (const std::size_t slash = folder.find('/'); slash != std::string::npos) folder.resize(slash);
+  const bool is_folder = folder == typed || typed.ends_with("/" + folder) || typed.ends_with('/');
+  std::vector<std::string> skills;
+  for (const ScenarioFile& file : all) skills.push_back(file.skill);
+  std::string hint = is_folder && std::ranges::count(skills, folder) > 0
+                         ? "did you mean '" + folder + "/*'?"
+                         : HintForScenario(all, typed);
+  const std::string near = grammar::NearestName(folder, skills);
+  if (hint.empty() && !near.empty()) hint = "did you mean '" + near + "/*'?";
+  return "no scenario matches '" + typed + "'" + (hint.empty() ? "" : "; " + hint) + " ('prehend list' shows all)";
 }
 
 std::vector<std::string> OrphanGoldens(const std::vector<ScenarioFile>& all,
@@ -52,26 +72,26 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
                                                  const std::vector<std::string>& filters,
                                                  const std::string& root, std::string& problem) {
   const std::vector<ScenarioFile> all = ListScenarios(root);
+  std::vector<ScenarioFile> named = patterns.empty() ? all : std::vector<ScenarioFile>();
   for (const std::string& pattern : patterns) {
-    if (std::any_of(all.begin(), all.end(),
-                    [&](const ScenarioFile& file) { return Matches(pattern, file); }))
-      continue;
-    const std::string hint = HintForScenario(all, pattern);
-    problem = "no scenario matches '" + pattern + "'" + (hint.empty() ? "" : "; " + hint) +
-              " ('prehend list' shows all)";
-    return std::nullopt;
+    const std::size_t before = named.size();
+    std::ranges::copy_if(all, std::back_inserter(named),
+                         [&](const ScenarioFile& file) { return Matches(pattern, file); });
+    if (named.size() > before) continue;
+    if (!IsFile(pattern)) {
+      problem = WhyNoMatch(pattern, all);
+      return std::nullopt;
+    }
+    named.push_back(ScenarioAt(all, pattern));
   }
+  std::ranges::sort(named, {}, [](const ScenarioFile& file) { return std::tuple(!file.in_project, file.skill, file.name, file.path); });
+  const auto repeated = std::ranges::unique(named, {}, &ScenarioFile::path);
+  named.erase(repeated.begin(), repeated.end());
+  const ScenarioLibrary library = ProjectLibrary(root);
   ScenarioSelection selection;
-  for (const ScenarioFile& file : all) {
-    const bool named = patterns.empty() || std::any_of(patterns.begin(), patterns.end(),
-                                                       [&](const std::string& pattern) {
-                                                         return Matches(pattern, file);
-                                                       });
-    const bool passes = std::all_of(filters.begin(), filters.end(), [&](const std::string& filter) {
-      return PassesFilter(file, filter, root);
-    });
-    if (named && passes) selection.scenarios.push_back(file);
-  }
+  std::ranges::copy_if(named, std::back_inserter(selection.scenarios), [&](const ScenarioFile& file) {
+    return std::ranges::all_of(filters, [&](const std::string& filter) { return PassesFilter(file, filter, library); });
+  });
   if (patterns.empty() && filters.empty()) selection.orphans = OrphanGoldens(all, root);
   if (!selection.scenarios.empty() || !selection.orphans.empty()) return selection;
   problem = "no scenario is selected ('prehend list' shows all)";

@@ -17,7 +17,7 @@ struct ScenarioSelection {
       orphans;  ///< goldens without scenario; looked for when nothing narrows the selection
 };
 
-/// `patterns` are globs over names and skill/name; none means all. A scenario must pass each of
+/// `patterns` are globs over names and skill/name, or files; none means all. A scenario must pass each of
 /// `filters`, which are globs, too, or tag:NAME; with a leading '!' it must not match. When a
 /// pattern matches nothing, or nothing is left, `problem` says so.
 std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,

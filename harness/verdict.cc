@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -48,6 +47,8 @@ Json ToJson(const ScenarioVerdict& verdict) {
           {"exit_code", static_cast<int>(verdict.exit_code)},
           {"reason", verdict.reason},
           {"details", verdict.details},
+          {"differences", verdict.differences},
+          {"relations", verdict.relations},
           {"blame", verdict.blame},
           {"headroom", verdict.headroom},
           {"boundaries", std::move(boundaries)},
@@ -71,6 +72,8 @@ ScenarioVerdict VerdictFromJson(const Json& json) {
   verdict.exit_code = static_cast<ExitCode>(json.at("exit_code").get<int>());
   verdict.reason = json.at("reason");
   verdict.details = json.at("details");
+  verdict.differences = json.at("differences");
+  verdict.relations = json.at("relations");
   verdict.blame = json.at("blame");
   verdict.headroom = json.at("headroom");
   for (const Json& room : json.at("boundaries")) {

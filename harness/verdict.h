@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -43,6 +43,8 @@ struct ScenarioVerdict {
   ExitCode exit_code = ExitCode::kAgrees;  ///< what a check of this scenario alone ends with
   std::string reason;                      ///< one line; empty when passed
   std::string details;   ///< differences, violations, diagnostics; several lines or empty
+  nlohmann::ordered_json differences = nlohmann::ordered_json::array();  ///< DifferencesJson()
+  nlohmann::ordered_json relations = nlohmann::ordered_json::array();    ///< RelationsJson()
   std::string blame;     ///< BlameText(): whose doing the differences are; or empty
   std::string headroom;  ///< HeadroomText()
   std::vector<BoundaryRoom> boundaries;  ///< of all matched events

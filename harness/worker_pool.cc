@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -13,9 +14,15 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstring>
+#include <fstream>
+#include <iostream>
 #include <new>
+#include <system_error>
+
+#include "harness/refused_memory.h"
 
 namespace prehend::harness {
 namespace {
@@ -24,7 +31,11 @@ using Clock = std::chrono::steady_clock;
 
 // Exit statuses of a child whose job did not return.
 constexpr int kJobThrew = 70;
-constexpr int kJobOutOfMemory = 71;
+constexpr int kJobOutOfMemory = kMemoryWasRefused;
+constexpr int kNoMemoryToStart = 72;
+
+/// As much of what a worker that failed wrote to standard error is told.
+constexpr off_t kMostSaid_bytes = 4000;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -39,11 +50,31 @@ void WriteAll(int file, std::string_view text) {
   }
 }
 
+/// Private memory of this process, what RLIMIT_DATA is about: "VmData:   1234 kB"; 0 if the system
+/// does not say.
+std::uint64_t PrivateMemory_bytes() {
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  std::uint64_t kib = 0;
+  while (status >> word) {
+    if (word == "VmData:" && status >> kib) return kib << 10;
+  }
+  return 0;
+}
+
+bool IsLackOfMemory(const std::system_error& problem) {
+  // A thread for which there is no stack: "try again".
+  return problem.code() == std::errc::not_enough_memory ||
+         problem.code() == std::errc::resource_unavailable_try_again;
+}
+
 /// The child's life. Leaves by _exit: the parent's buffers and destructors are not the child's to
 /// run.
 [[noreturn]] void Work(const WorkerJob& job, const WorkerLimits& limits, int pipe) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would read what an orphan finds out
+  ExitWhenMemoryIsRefused();
   if (limits.memory_limit_bytes > 0) {
+    if (PrivateMemory_bytes() > limits.memory_limit_bytes) _exit(kNoMemoryToStart);
     const rlimit limit{limits.memory_limit_bytes, limits.memory_limit_bytes};
     setrlimit(RLIMIT_DATA, &limit);
   }
@@ -53,6 +84,10 @@ void WriteAll(int file, std::string_view text) {
     WriteAll(pipe, job());
   } catch (const std::bad_alloc&) {
     _exit(kJobOutOfMemory);
+  } catch (const std::system_error& problem) {
+    if (IsLackOfMemory(problem)) _exit(kJobOutOfMemory);
+    WriteAll(pipe, problem.what());
+    _exit(kJobThrew);
   } catch (const std::exception& problem) {
     WriteAll(pipe, problem.what());
     _exit(kJobThrew);
@@ -64,6 +99,7 @@ struct Worker {
   std::size_t job = 0;
   pid_t process = 0;
   int pipe = -1;
+  int said = -1;  ///< a file without name, its standard error
   Clock::time_point start;
   bool killed = false;
   std::string output;
@@ -93,20 +129,24 @@ class Pool {
     if (pipe(ends) != 0)
       return Report(job, {.reason = "no pipe for the worker: " + std::string(std::strerror(errno))},
                     done);
+    const int said = memfd_create("said by a worker", MFD_CLOEXEC);
     const pid_t process = fork();
     if (process == 0) {
       close(ends[0]);
+      dup2(said, STDERR_FILENO);
       Work(jobs_[job], limits_, ends[1]);
     }
     close(ends[1]);
     if (process < 0) {
       close(ends[0]);
+      close(said);
       return Report(
           job, {.reason = "no process for the worker: " + std::string(std::strerror(errno))}, done);
     }
     workers_.push_back({.job = job,
                         .process = process,
                         .pipe = ends[0],
+                        .said = said,
                         .start = Clock::now(),
                         .killed = false,
                         .output = {}});
@@ -152,12 +192,26 @@ class Pool {
     WorkerResult result{.finished = WIFEXITED(status) && WEXITSTATUS(status) == 0};
     result.seconds = SecondsSince(worker.start);
     result.peak_memory_kib = usage.ru_maxrss;
+    const std::string said = WhatItSaid(worker);
     if (result.finished) {
       result.output = std::move(worker.output);
+      std::cerr << said;
     } else {
       result.reason = EndReason(worker, status);
+      // When memory ran out, all that libraries say are consequences.
+      if (!WIFEXITED(status) || WEXITSTATUS(status) != kJobOutOfMemory) result.said = said;
     }
     Report(worker.job, std::move(result), done);
+  }
+
+  /// The end of it, which is what a crash is about.
+  static std::string WhatItSaid(const Worker& worker) {
+    const off_t size = std::max<off_t>(0, lseek(worker.said, 0, SEEK_END));
+    std::string said(static_cast<std::size_t>(std::min(size, kMostSaid_bytes)), '\0');
+    const ssize_t count = pread(worker.said, said.data(), said.size(), size - static_cast<off_t>(said.size()));
+    said.resize(static_cast<std::size_t>(std::max<ssize_t>(0, count)));
+    close(worker.said);
+    return said;
   }
 
   std::string EndReason(const Worker& worker, int status) const {
@@ -167,7 +221,13 @@ class Pool {
     if (WEXITSTATUS(status) == kJobOutOfMemory) {
       return limits_.memory_limit_bytes == 0
                  ? "no memory is left"
-                 : fmt::format("more memory than {} MB", limits_.memory_limit_bytes / kMegabyte);
+                 : fmt::format("it needs more memory than {} MB",
+                               limits_.memory_limit_bytes / kMegabyte);
+    }
+    if (WEXITSTATUS(status) == kNoMemoryToStart) {
+      return fmt::format("{} MB of memory are too little for it to start, which takes {:.0f} MB",
+                         limits_.memory_limit_bytes / kMegabyte,
+                         std::ceil(static_cast<double>(PrivateMemory_bytes()) / kMegabyte));
     }
     if (WEXITSTATUS(status) == kJobThrew) return "exception: " + worker.output;
     return fmt::format("exit status {}", WEXITSTATUS(status));

@@ -26,7 +26,7 @@ constexpr int kMaxJobs = 256;
 constexpr int kMaxRepeats = 10'000;
 
 void DeclareSelection(CLI::App& options) {
-  options.add_option("names", "names, skill/name or globs; nothing: all")
+  options.add_option("names", "names, skill/name, globs or files; nothing: all")
       ->expected(-1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   options
@@ -193,6 +193,13 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
                       "this shard is empty: there are fewer scenarios");
   }
   const SuiteRequest request = RequestFrom(options, context, std::move(*selection));
+  const std::string page = (fs::path(request.report_folder) / "index.html").string();
+  const std::string junit = ValueOf(options, "--junit");
+  // Verdicts take long; what cannot be written is found before.
+  problem = WhyNotWritable(page);
+  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--report: " + problem);
+  if (IsGiven(options, "--junit")) problem = WhyNotWritable(junit);
+  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--junit: " + problem);
   SuiteProgress progress;
   if (context.progress) {
     progress = [&](std::size_t done, std::size_t all, const std::string& id) {
@@ -202,17 +209,15 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
   const std::vector<ScenarioVerdict> verdicts = RunSuite(request, progress);
 
-  const std::string page = (fs::path(request.report_folder) / "index.html").string();
-  problem = WriteTextFile(page, ReportHtml(verdicts));
-  if (problem.empty() && IsGiven(options, "--junit"))
-    problem = WriteTextFile(ValueOf(options, "--junit"), JunitXml(verdicts));
-  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   if (IsGiven(options, "--json")) {
     context.out << SummaryJson(verdicts, page).dump(2) << "\n";
   } else {
     PrintText(verdicts, page, context);
   }
-  return WorstOf(verdicts);
+  problem = WriteTextFile(page, ReportHtml(verdicts));
+  if (problem.empty() && IsGiven(options, "--junit"))
+    problem = WriteTextFile(junit, JunitXml(verdicts));
+  return problem.empty() ? WorstOf(verdicts) : Complain(context, ExitCode::kFailure, problem);
 }
 
 }  // namespace
@@ -222,7 +227,7 @@ Command CheckCommand() {
           .summary = "Run scenarios and compare them with their goldens: the regression suite",
           .examples =
               "prehend check\n"
-              "prehend check milk_carton_wrap 'slide/*'\n"
+              "prehend check milk_carton_wrap 'slide/*' my/scenario.yaml\n"
               "prehend check --filter tag:smoke --filter '!reach/*' --no-pictures --jobs 1\n"
               "prehend check --changed\n"
               "prehend check --shard 2/3 --junit verdicts.xml\n"

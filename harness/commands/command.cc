@@ -3,8 +3,6 @@
 #include "harness/commands/command.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <filesystem>
 
 namespace prehend::harness {
 
@@ -52,14 +50,7 @@ std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
     Complain(context, ExitCode::kNothing, message + " ('prehend list' shows all)");
     return std::nullopt;
   }
-  const auto known =
-      std::find_if(scenarios.begin(), scenarios.end(), [&](const ScenarioFile& scenario) {
-        std::error_code error;
-        return scenario.path == *path || std::filesystem::equivalent(scenario.path, *path, error);
-      });
-  if (known != scenarios.end()) return *known;
-  return ScenarioFile{
-      .skill = "", .name = std::filesystem::path(*path).stem().string(), .path = *path, .in_project = false};
+  return ScenarioAt(scenarios, *path);
 }
 
 OpenedEpisode OpenEpisodeOrComplain(const CLI::App& options, const CommandContext& context) {

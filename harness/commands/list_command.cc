@@ -20,8 +20,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   std::vector<std::vector<std::string>> rows = {{"scenario", "shows", "tags"}};
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   grammar::Diagnostics diagnostics;
+  const ScenarioLibrary library = ProjectLibrary(context.root);
   for (const ScenarioFile& file : ListScenarios(context.root)) {
-    ReadResult<Scenario> read = ReadScenario(file.path, {}, ProjectLibrary(context.root));
+    ReadResult<Scenario> read = ReadScenario(file.path, {}, library);
     diagnostics.insert(diagnostics.end(), read.diagnostics.begin(), read.diagnostics.end());
     const Scenario scenario = std::move(read.value).value_or(Scenario{.shows = "(cannot be read)"});
     const std::string id = ScenarioId(file.skill, file.name);

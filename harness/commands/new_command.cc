@@ -69,12 +69,12 @@ std::string Renamed(const std::string& text, const std::string& name) {
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const std::string typed = ValueOf(options, "name");
-  static const std::regex well_formed("([a-z][a-z0-9_]*/)?[a-z][a-z0-9_]*");
+  static const std::regex well_formed("([a-z][a-z0-9_]{0,63}/)?[a-z][a-z0-9_]{0,63}");
   if (!std::regex_match(typed, well_formed)) {
     return Complain(
         context, ExitCode::kBadInput,
         "'" + typed +
-            "' is no name; one looks like slide_then_transport or slide/slide_then_transport");
+            "' is no name of at most 64 letters; one looks like slide_then_transport or slide/slide_then_transport");
   }
   std::string text = kTemplate;
   std::string skill = kDefaultSkill;
@@ -90,6 +90,11 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (slash != std::string::npos) skill = typed.substr(0, slash);
   const std::string name = slash == std::string::npos ? typed : typed.substr(slash + 1);
 
+  if (skill == kShowsErrors) {
+    return Complain(context, ExitCode::kBadInput,
+                    "scenarios/invalid/ holds files that show errors, no command takes them for scenarios; choose another "
+                    "skill, like " + std::string(kDefaultSkill) + "/" + name);
+  }
   for (const ScenarioFile& scenario : ListScenarios(context.root)) {
     if (scenario.name == name)
       return Complain(context, ExitCode::kBadInput,

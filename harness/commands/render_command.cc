@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend render. Tested by tests/house/command_line_test.cc
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -10,6 +8,7 @@
 #include "harness/moment.h"
 #include "harness/pictures.h"
 #include "harness/run_output.h"
+#include "harness/whole_file.h"
 
 namespace prehend::harness {
 namespace {
@@ -42,16 +41,6 @@ std::optional<PictureEntry> AskedPicture(const CLI::App& options, const Scenario
   return entry;
 }
 
-/// "" or why no picture can be written to this file.
-std::string WhyNotWritable(const fs::path& file) {
-  std::error_code error;
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  if (!fs::is_directory(folder, error)) return "there is no folder " + folder.string();
-  if (fs::is_directory(file, error)) return file.string() + " is a folder";
-  const fs::path target = fs::exists(file, error) ? file : folder;
-  return access(target.c_str(), W_OK) == 0 ? "" : target.string() + " cannot be written to";
-}
-
 PictureResult Draw(const CLI::App& options, const ScenarioFile& file, const PreparedRun& prepared,
                    const RunResult& run, const std::string& root) {
   const std::string output = ValueOf(options, "--output");
@@ -81,7 +70,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
 
   if (IsGiven(options, "--output")) {
-    const std::string why = WhyNotWritable(ValueOf(options, "--output"));
+    const std::string why = WholeFile(ValueOf(options, "--output")).problem();
     if (!why.empty()) return Complain(context, ExitCode::kBadInput, "--output: " + why);
   }
 

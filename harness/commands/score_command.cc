@@ -28,7 +28,7 @@ constexpr double kDefaultCollar_ms = 50;
 constexpr double kTimeLimit_s = 300;
 
 void Declare(CLI::App& options) {
-  options.add_option("names", "names, skill/name or globs; nothing: all")
+  options.add_option("names", "names, skill/name, globs or files; nothing: all")
       ->expected(-1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   options
@@ -75,7 +75,7 @@ std::vector<std::vector<JudgedEpisode>> JudgeAll(const ScenarioSelection& select
   std::vector<WorkerJob> jobs;
   std::vector<std::string> ids;
   for (const ScenarioFile& file : selection.scenarios) {
-    ids.push_back(ScenarioId(file.skill, file.name));
+    ids.push_back(IdOf(file));
     const JudgeRequest request{file.path, ids.back(), context.root, grammars, events};
     jobs.push_back([request] { return Judged(request); });
   }

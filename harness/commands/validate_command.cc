@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -11,7 +12,7 @@
 #include "harness/commands/command.h"
 #include "harness/commands/warn.h"
 #include "harness/content_hash.h"
-#include "harness/golden.h"
+#include "harness/golden_files.h"
 #include "harness/load_grammar.h"
 #include "harness/text_file.h"
 
@@ -63,6 +64,11 @@ std::optional<Validated> Validate(const std::string& typed, const CLI::App& opti
   ReadResult<PreparedRun> prepared =
       PrepareRun(RequestOf(options, file->path), context.root, &validated.inputs);
   validated.diagnostics = std::move(prepared.diagnostics);
+  if (file->in_project) {
+    const GoldenFiles goldens(context.root);
+    validated.inputs.push_back(goldens.GoldenPath(IdOf(*file)).string());
+    std::ranges::move(goldens.ReadGoldenOf(IdOf(*file)).diagnostics, std::back_inserter(validated.diagnostics));
+  }
   if (prepared.value) validated.warnings = std::move(prepared.value->warnings);
   return validated;
 }
@@ -93,7 +99,7 @@ std::vector<std::string> Names(const CLI::App& options, const CommandContext& co
   if (IsGiven(options, "--grammar"))
     return {GrammarFile(context.root, ValueOf(options, "--grammar"))};
   for (const ScenarioFile& file : ListScenarios(context.root))
-    names.push_back(ScenarioId(file.skill, file.name));
+    names.push_back(IdOf(file));
   return names;
 }
 

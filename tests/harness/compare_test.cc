@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 namespace prehend::harness {
 namespace {
 
@@ -185,12 +187,39 @@ TEST(Compare, PiecesAreToldTogetherAndTheFirstDivergenceFirst) {
             "  expected 0.1000..0.4000 s, recognised 3 pieces: 0.1000..0.1400 s, 0.1500..0.3000 s, "
             "0.3100..0.4000 s\n"
             "  facts\n"
-            "  why: explain x --event 'grasping hand cup @0.1500s'\n"
+            "  why: explain x --event 'grasping hand cup @0.1000s'\n"
             "merged sliding(hand, mug)\n"
             "  expected 2 pieces: 0.5000..0.6000 s, 0.6200..0.7000 s, recognised 0.5000..0.7000 s\n"
             "  why: explain x --event 'sliding hand mug @0.5000s'\n");
   ASSERT_NE(comparison.FirstDivergence(), nullptr);
   EXPECT_EQ(comparison.FirstDivergence()->DivergenceTick(), 140);
+}
+
+TEST(Compare, ProgramsAreToldTheSame) {
+  const Comparison comparison = CompareEvents(
+      {Event("grasping", "cup", 100, 200), Event("reaching", "cup", 0, 100), Event("sliding", "mug", 300, 400)},
+      {Event("grasping", "cup", 150, 198), Event("reaching", "cup", 0, 50), Event("reaching", "cup", 60, 100)});
+  const auto differences = DifferencesJson(comparison, "explain x");
+  ASSERT_EQ(differences.size(), 3u);
+  EXPECT_EQ(differences[0]["kind"], "fragmented");
+  EXPECT_EQ(differences[0]["pieces"].size(), 2u);
+  EXPECT_EQ(differences[0]["pieces"][1]["begin_s"], 0.06);
+  EXPECT_EQ(differences[0]["why"], "explain x --event 'reaching hand cup @0.0000s'");
+  EXPECT_EQ(differences[1], nlohmann::ordered_json::parse(R"({
+    "kind": "shifted", "event": "grasping",
+    "expected": {"event": "grasping", "roles": {"hand": "hand", "object": "cup"}, "attributes": {},
+                 "begin_tick": 100, "end_tick": 200, "begin_s": 0.1, "end_s": 0.2, "open_end": false},
+    "recognised": {"event": "grasping", "roles": {"hand": "hand", "object": "cup"}, "attributes": {},
+                   "begin_tick": 150, "end_tick": 198, "begin_s": 0.15, "end_s": 0.198, "open_end": false},
+    "begin_ms": 50.0, "end_ms": -2.0, "tolerance_ms": 8.0, "changes": [], "pieces": [],
+    "why": "explain x --event 'grasping hand cup @0.1500s'"})"));
+  EXPECT_EQ(differences[2]["kind"], "missing");
+  EXPECT_TRUE(differences[2]["recognised"].is_null());
+  EXPECT_TRUE(differences[2]["begin_ms"].is_null());
+  const auto relations = RelationsJson(comparison);
+  ASSERT_EQ(relations.size(), comparison.relations.size());
+  EXPECT_FALSE(relations.empty());
+  EXPECT_EQ(relations[0]["first"], comparison.relations[0].first);
 }
 
 TEST(Compare, ALateEndDivergesAtTheEnd) {

@@ -50,6 +50,7 @@ TEST_F(LibraryPaths, HintsForNames) {
   const auto scenarios = ListScenarios(root_);
   EXPECT_EQ(HintForScenario(scenarios, "cup_is_liftd"), "did you mean 'cup_is_lifted'?");
   EXPECT_EQ(HintForScenario(scenarios, "slide/cup_is_lifted"), "did you mean 'cup_is_lifted'?");
+  EXPECT_EQ(HintForScenario(scenarios, "lifted"), "did you mean 'cup_is_lifted'?") << "a part of it";
   EXPECT_EQ(HintForScenario(scenarios, "both"), "which one: lift/both, slide/both?");
   EXPECT_EQ(HintForScenario(scenarios, "something_else_entirely"), "");
 }

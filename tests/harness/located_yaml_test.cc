@@ -83,6 +83,11 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
       {"# nothing\n", "0:0: the file is empty but for comments\n"},
       {"", "0:0: the file is empty\n"},
       {"a: {b: 1\n", "2:1: not valid YAML: a '{' before this is not closed | each '[' needs its ']', each '{' its '}'\n"},
+      {"a: b: c\n", "1:5: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in quotes, like \"first: second\"\n"},
+      {"x: 1\na: b c:\n", "2:7: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in quotes, like \"first: second\"\n"},
+      {"a: {b: c: d}\n", "1:9: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in quotes, like \"first: second\"\n"},
+      {"a: \"b\" c\n", "1:8: not valid YAML: this cannot stand behind what is before it | text that begins with a quote ends with it; put all of it in quotes\n"},
+      {"a: * b\n", "1:5: not valid YAML: no text begins with '*' | text with special characters goes in quotes\n"},
       {"a: 1\n b: 2\n", "2:3: not valid YAML: no ':' is expected here | a key begins a line, or stands in '{}'; text with ': ' goes in quotes\n"},
   };
   for (const Refused& refused : table) EXPECT_EQ(Complaints(refused.text), refused.complaints) << refused.text;

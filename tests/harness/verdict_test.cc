@@ -16,6 +16,8 @@ TEST(Verdict, TravelsAsJson) {
                                 .exit_code = ExitCode::kPending,
                                 .reason = "no golden yet",
                                 .details = "a\nb\n",
+                                .differences = {{{"kind", "missing"}, {"begin_ms", nullptr}}},
+                                .relations = {{{"first", "a"}}},
                                 .blame = "blame: physics\n",
                                 .headroom = "h",
                                 .boundaries = {{"begin of x", -1.5, 8.25}},

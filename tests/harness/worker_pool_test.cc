@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "harness/shared_ticks.h"
@@ -71,6 +73,17 @@ TEST_P(WorkerPoolMisbehaviour, IsAResult) {
   EXPECT_EQ(results[1].reason, GetParam().reason);
 }
 
+TEST(WorkerPool, WhatAJobSaysBeforeItCrashesIsKept) {
+  const WorkerJob talks = [] {
+    std::fputs("the sky is falling\n", stderr);
+    std::abort();
+    return Good();
+  };
+  const auto results = RunInWorkers({talks}, {});
+  EXPECT_EQ(results[0].reason, "signal 6 (Aborted)");
+  EXPECT_EQ(results[0].said, "the sky is falling\n");
+}
+
 std::string NameOf(const testing::TestParamInfo<Misbehaviour>& row) { return row.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -88,9 +101,45 @@ TEST(WorkerPool, MemoryHasALimit) {
   const WorkerJob greedy = [] { return std::string(1'000'000'000, 'x'); };
   const auto results = RunInWorkers(
       {greedy, Good}, {.jobs = 1, .time_limit_s = 10, .memory_limit_bytes = 500'000'000});
-  EXPECT_EQ(results[0].reason, "more memory than 500 MB");
+  EXPECT_EQ(results[0].reason, "it needs more memory than 500 MB");
   EXPECT_TRUE(results[1].finished);
 }
+
+std::string EndOf(const WorkerJob& job, std::uint64_t limit_mb) {
+  const WorkerLimits limits{.jobs = 1, .time_limit_s = 10, .memory_limit_bytes = limit_mb * kMegabyte};
+  const WorkerResult result = RunInWorkers({job}, limits).front();
+  EXPECT_EQ(result.said, "");
+  return result.finished ? "finished" : result.reason;
+}
+
+// Libraries in C do not look, or abort; C++ cannot throw out of what must not throw.
+TEST(WorkerPool, WhoeverIsRefusedMemoryTheReasonIsTheSame) {
+  const char* const reason = "it needs more memory than 500 MB";
+  constexpr std::size_t kTooMuch = 1'000'000'000;
+  const auto use = [](void* memory) {
+    static_cast<volatile char*>(memory)[0] = 1;  // a crash for who did not look
+    std::free(memory);
+    return Good();
+  };
+  EXPECT_EQ(EndOf([&] { return use(std::malloc(kTooMuch)); }, 500), reason);
+  EXPECT_EQ(EndOf([&] { return use(std::calloc(kTooMuch, 1)); }, 500), reason);
+  EXPECT_EQ(EndOf([&] { return use(std::realloc(std::malloc(1), kTooMuch)); }, 500), reason);
+  EXPECT_EQ(EndOf([&] { return use(std::aligned_alloc(64, kTooMuch - kTooMuch % 64)); }, 500), reason);
+  EXPECT_EQ(EndOf([&] {
+              void* memory = nullptr;
+              return posix_memalign(&memory, 64, kTooMuch) == 0 ? use(memory) : Good();
+            }, 500), reason);
+  const auto must_not_throw = []() noexcept { return std::string(kTooMuch, 'x'); };
+  EXPECT_EQ(EndOf(must_not_throw, 500), reason);
+  EXPECT_EQ(EndOf([&] { return use(std::malloc(1000)); }, 500), "finished");
+}
+
+TEST(WorkerPool, WhatHasTooLittleMemoryToStartIsTold) {
+  const std::string reason = EndOf(Good, 1);
+  EXPECT_TRUE(reason.starts_with("1 MB of memory are too little for it to start, which takes ")) << reason;
+}
+#else
+TEST(WorkerPool, MemoryHasALimit) { GTEST_SKIP() << "no limit under the address sanitizer"; }
 #endif
 
 }  // namespace

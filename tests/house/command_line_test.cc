@@ -66,6 +66,14 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
        "carton_rest\n"},
       {"check slide/*", 4,
        "prehend: no scenario matches 'slide/\\*'.*\n  again: prehend check 'slide/\\*'\n"},
+      {"check rest", 4, "prehend: no scenario matches 'rest'; did you mean 'rest/\\*'\\?[^]*"},
+      {"check scenarios/rest/", 4, "prehend: no scenario matches 'scenarios/rest/'; did you mean 'rest/\\*'\\?[^]*"},
+      {"check rset/*", 4, "prehend: no scenario matches 'rset/\\*'; did you mean 'rest/\\*'\\?[^]*"},
+      {"check carton_rets", 4, "[^]*; did you mean 'carton_rests'\\?[^]*"},
+      {"score carton", 4, "[^]*; did you mean 'carton_rests'\\?[^]*"},
+      {"run carton_rests --grammar pick_and_plac", 2,
+       "[^]*/pick_and_plac.grammar: error: no such file\n  hint: did you mean 'pick_and_place'\\?\n[^]*"},
+      {"new invalid/x", 2, "prehend: scenarios/invalid/ holds files that show errors, [^]*"},
       {"check --shard 0/2", 2, "prehend: --shard: '0/2' is no shard; the second of three is 2/3\n[^]*"},
       {"check --shard 2/2", 4, "prehend: this shard is empty[^]*"},
       {"check --repeat 0", 2, "prehend: [^]*"},
@@ -93,7 +101,8 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
       {"run carton_rests --grammar none.grammar", 2, "none.grammar: error: [^]*"},
       {"accept carton_rests", 2,
        "prehend: accepting needs a reason: [^]*\n  again: prehend accept carton_rests\n"},
-      {"new Wrong-Name", 2, "prehend: 'Wrong-Name' is no name; [^]*"},
+      {"new Wrong-Name", 2, "prehend: 'Wrong-Name' is no name of at most 64 letters; [^]*"},
+      {"check --time-limit-s 0", 2, "prehend: --time-limit-s: Value 0 not in range 0.1 to 86400\n[^]*"},
       {"new carton_rests", 2, "prehend: there is a scenario of this name: [^]*"},
   };
   for (const Slip& slip : slips) {
@@ -103,6 +112,18 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
     EXPECT_TRUE(std::regex_match(ended.err, std::regex(slip.err))) << slip.arguments << "\n"
                                                                    << ended.err;
   }
+}
+
+TEST_F(CommandLine, WhatIsGivenAsNothingIsRefused) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"run", ""}, {"run", "carton_rests", "--grammar", ""}, {"check", "--filter", ""}}) {
+    const Said said = Prehend(words, {"PREHEND_HOME=" + root_.string()});
+    EXPECT_EQ(said.exit_code, 2) << said.out;
+    EXPECT_NE(said.err.find("an empty word is given for it"), std::string::npos) << said.err;
+  }
+  const Said homeless = Prehend({"list"}, {"PREHEND_HOME=/nowhere"});
+  EXPECT_EQ(homeless.exit_code, 2);
+  EXPECT_NE(homeless.err.find("PREHEND_HOME is /nowhere, which has no grammar/library"), std::string::npos) << homeless.err;
 }
 
 TEST_F(CommandLine, ListAndSchema) {
@@ -136,6 +157,23 @@ TEST_F(CommandLine, ValidateReadsScenariosGrammarsAndGoldens) {
   EXPECT_FALSE(files[0]["ok"]);
   EXPECT_EQ(files[0]["diagnostics"][0]["line"], 6);
   EXPECT_FALSE(files[1]["ok"]);
+}
+
+TEST_F(CommandLine, ValidateTellsOfAllThatIsWrongAtOnce) {
+  Accept();
+  WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.2 0.1\n");
+  WriteFile(root_ / "grammar/library/odd.grammar", "grammar odd\nevent x(a: Thing\n");
+  const std::string wrong = std::regex_replace(std::string(kCartonRests), std::regex("mass_kg: 0.3"), "mass_kg: no");
+  WriteFile(Scenario(), std::regex_replace(wrong, std::regex("hand: human_right"), "hand: human_rigt") + "grammar: odd\n");
+  const Said said = Do("validate carton_rests");
+  EXPECT_EQ(said.exit_code, 2);
+  for (const char* part : {"mass_kg", "did you mean 'human_right'?", "odd.grammar:", "carton_rests.timeline:"}) {
+    EXPECT_NE(said.err.find(part), std::string::npos) << part << "\n" << said.err;
+  }
+  WriteFile(Scenario(), std::regex_replace(wrong, std::regex("tags:"), "grammar: pick_and_plac\ntags:"));
+  const std::string err = Do("validate carton_rests").err;
+  EXPECT_NE(err.find("did you mean 'pick_and_place'?"), std::string::npos) << err;
+  EXPECT_EQ(err.find("no such file"), std::string::npos) << "said once\n" << err;
 }
 
 TEST_F(CommandLine, WarningsOfAGrammarStopNothing) {
@@ -237,6 +275,8 @@ TEST_F(CommandLine, ADifferenceNamesTheEventTheIntervalsAndTheCommand) {
   const auto json = nlohmann::json::parse(Do("check --no-pictures --json").out);
   EXPECT_EQ(json["failed"], 1);
   EXPECT_EQ(json["scenarios"][0]["verdict"], "failed");
+  EXPECT_EQ(json["scenarios"][0]["differences"][0]["kind"], "missing");
+  EXPECT_EQ(json["scenarios"][0]["differences"][0]["expected"]["roles"]["object"], "carton");
   EXPECT_TRUE(fs::exists(Pending()));
 
   Accept();

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <thread>
 #include <vector>
@@ -112,10 +113,72 @@ TEST_F(Runner, AScenarioThatWantsMoreAndMoreMemoryIsStopped) {
   const auto verdicts = Check("--memory-limit-mb 20", 3);
   EXPECT_EQ(verdicts.at("rest/carton_rests").at("verdict"), "passed");
   const std::string reason = verdicts.at("long/takes_much").at("reason");
-  EXPECT_TRUE(reason.starts_with("its process ended: more memory than 20 MB, at tick ")) << reason;
+  EXPECT_TRUE(reason.starts_with("its process ended: it needs more memory than 20 MB, at tick ")) << reason;
+}
+
+TEST_F(Runner, TooLittleMemoryIsSaidHoweverLittleItIs) {
+  Accept();
+  const std::regex reason(
+      "its process ended: (it needs more memory than \\d+ MB|\\d+ MB of memory are too little for it to start, which takes "
+      "\\d+ MB), (before the first tick|at tick \\d+)");
+  bool some_passed = false;
+  for (const int limit_mb : {1, 3, 5, 8, 11, 15, 400}) {
+    const Said said = Do("check --json --memory-limit-mb " + std::to_string(limit_mb));
+    const Json verdict = Json::parse(said.out).at("scenarios")[0];
+    EXPECT_EQ(said.err, "");
+    if (verdict.at("verdict") == "passed") {
+      some_passed = true;
+    } else {
+      EXPECT_EQ(said.exit_code, 3);
+      EXPECT_TRUE(std::regex_match(std::string(verdict.at("reason")), reason)) << verdict.at("reason");
+      EXPECT_EQ(verdict.at("details"), "");
+    }
+  }
+  EXPECT_TRUE(some_passed);
 }
 
 #endif
+
+TEST_F(Runner, WhatCannotBeWrittenIsSaidBeforeAnythingRuns) {
+  WriteFile(root_ / "a_file", "");
+  for (const std::string options : {"--junit " + (root_ / "a_file/x.xml").string(), "--report " + (root_ / "a_file").string(),
+                                    "--junit " + root_.string()}) {
+    const Said said = Do("check --no-pictures " + options);
+    EXPECT_EQ(said.exit_code, 2) << options;
+    EXPECT_EQ(said.out, "");
+    EXPECT_FALSE(fs::exists(Pending())) << options;
+  }
+}
+
+TEST_F(Runner, VerdictsAreNotLostWithTheFileTheyWereToBeWrittenTo) {
+  Accept();
+  const Said said = Do("check --no-pictures --junit /dev/full");
+  EXPECT_EQ(said.exit_code, 3);
+  EXPECT_NE(said.out.find("1 passed, 0 failed"), std::string::npos) << said.out;
+  EXPECT_NE(said.err.find("cannot write /dev/full: No space left on device"), std::string::npos) << said.err;
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST_F(Runner, FilesAreCheckedToo) {
+  Accept();
+  const fs::path loose = root_ / "my own/carton_waits.yaml";
+  WriteFile(loose, std::regex_replace(std::string(kCartonRests), std::regex("carton_rests"), "carton_waits"));
+  const std::vector<std::string> environment = {"PREHEND_HOME=" + root_.string()};
+  const Said said =
+      Prehend({"check", "--no-pictures", "--json", loose.string(), Scenario().string(), "carton_rests"}, environment);
+  EXPECT_EQ(said.exit_code, 5) << said.err;
+  const Json scenarios = Json::parse(said.out).at("scenarios");
+  ASSERT_EQ(scenarios.size(), 2u) << "by name and by file it is the same";
+  EXPECT_EQ(scenarios[0].at("scenario"), "rest/carton_rests");
+  EXPECT_EQ(scenarios[0].at("verdict"), "passed");
+  EXPECT_EQ(scenarios[1].at("scenario"), loose.string());
+  EXPECT_EQ(scenarios[1].at("verdict"), "pending");
+  EXPECT_EQ(scenarios[1].at("reason"), "no golden: only scenarios below scenarios/ have one");
+  EXPECT_EQ(scenarios[1].at("command"), "prehend check '" + loose.string() + "'");
+  EXPECT_FALSE(fs::exists(root_ / "build/pending"));
+  EXPECT_EQ(Prehend({"score", loose.string()}, environment).exit_code, 0);
+  EXPECT_EQ(Prehend({"check", "missing.yaml"}, environment).exit_code, 2);
+}
 
 TEST_F(Runner, APhysicalCalamityIsAVerdict) {
   Accept();
