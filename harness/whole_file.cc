@@ -93,7 +93,10 @@ WholeFile::WholeFile(const fs::path& path)
     problem_ = named_.string() + " is a folder";
     return;
   }
-  if (!status && errno != ENOENT) return Fail(errno);  // links in a circle, a file for a folder
+  if (!status && errno != ENOENT) {  // links in a circle, a file for a folder
+    Fail(errno);
+    return;
+  }
   const auto own = status ? OwnOutput(*status) : std::nullopt;
   if (own) {
     std::cout.flush();
@@ -104,7 +107,10 @@ WholeFile::WholeFile(const fs::path& path)
     unfinished_ = path_.string() + "." + std::to_string(getpid()) + ".unfinished";
     descriptor = open(unfinished_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kReadAndWrite);
   }
-  if (descriptor < 0) return Fail(errno);
+  if (descriptor < 0) {
+    Fail(errno);
+    return;
+  }
   if (status && !unfinished_.empty()) fchmod(descriptor, status->st_mode & 07777);
   buffer_.Attach(descriptor);
 }

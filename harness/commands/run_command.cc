@@ -94,10 +94,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     how.watch = [&](const grammar::Frame& frame) { recorder->Write(frame); };
   }
   const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, how);
+  std::string not_recorded;
   if (recorder) {
     recorder->Finish(run.ticks + 1);
-    const std::string problem = record->Commit();
-    if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--record: " + problem);
+    not_recorded = record->Commit();
   }
   if (IsGiven(options, "--json")) {
     OrderedJson json = RunJson(prepared.value->scenario, run);
@@ -107,6 +107,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     context.out << RunTable(run);
     if (measure) context.out << MeasurementText(Measure(run));
   }
+  if (!not_recorded.empty()) return Complain(context, ExitCode::kFailure, "--record: " + not_recorded);
   if (run.status.kind == physics::RunStatus::Kind::kCompleted) return ExitCode::kAgrees;
   return Complain(context, ExitCode::kFailure, StatusText(run));
 }

@@ -96,7 +96,7 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
       {"render carton_rests --at soon", 2, "prehend: --at: 'soon' is no moment; write seconds[^]*"},
       {"render carton_rests --camera back", 2, "prehend: --camera: [^]*"},
       {"render carton_rests --at 0 -o no/such/folder/a.png", 2,
-       "prehend: --output: there is no folder no/such/folder\n[^]*"},
+       "prehend: --output: cannot write no/such/folder/a.png: No such file or directory\n[^]*"},
       {"run carton_rests --set entities.carton.mass=1", 2, "--set[^]*error: [^]*mass_kg[^]*"},
       {"run carton_rests --grammar none.grammar", 2, "none.grammar: error: [^]*"},
       {"accept carton_rests", 2,
