@@ -93,7 +93,7 @@ WholeFile::WholeFile(const fs::path& path)
     problem_ = named_.string() + " is a folder";
     return;
   }
-  if (!status && errno != ENOENT) {  // links in a circle, a file for a folder
+  if (!status && (errno != ENOENT || named_.empty())) {  // links in a circle, a file for a folder
     Fail(errno);
     return;
   }

@@ -141,7 +141,7 @@ TEST_F(Runner, TooLittleMemoryIsSaidHoweverLittleItIs) {
 
 TEST_F(Runner, WhatCannotBeWrittenIsSaidBeforeAnythingRuns) {
   WriteFile(root_ / "a_file", "");
-  for (const std::string options : {"--junit " + (root_ / "a_file/x.xml").string(), "--report " + (root_ / "a_file").string(),
+  for (const std::string& options : {"--junit " + (root_ / "a_file/x.xml").string(), "--report " + (root_ / "a_file").string(),
                                     "--junit " + root_.string()}) {
     const Said said = Do("check --no-pictures " + options);
     EXPECT_EQ(said.exit_code, 2) << options;
