@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/figure_track.h"
 #include "physics/gaze.h"
 #include "physics/skeleton.h"
 #include "physics/trajectory.h"
@@ -42,10 +43,26 @@ class PersonPlayer {
     Eigen::Vector3d forearm_S = Eigen::Vector3d::UnitZ();  ///< where it was when the step began
     bool to_rest = true;
     Motion progress;
+    std::optional<double> most_n;  ///< the limb yields to more than this
+    double pace = 1;               ///< share of its speed that what resists leaves to it
+    double behind_s = 0;           ///< how far it is behind its time, since it had to yield
+  };
+  struct RecordedBody {
+    FigureTrack track;
+    double begin_s = 0;
+  };
+  struct Leaving {  ///< from the end of a recording to what she does without
+    Figure from;
+    Motion progress;
   };
   class Resolver;
 
   Posture::Limb LimbAt(int limb, const Snapshot& now) const;
+  /// Slows a limb down that meets more resistance than it may, and lets it catch its pace again.
+  void Yield(int limb, const Snapshot& now);
+  double ResistanceTo(int limb, const Snapshot& now) const;
+  void HoldFigure();
+  void StandBelow(const Figure& figure);
   void TurnHead(const Snapshot& now);
 
   const Scene& scene_;
@@ -54,7 +71,7 @@ class PersonPlayer {
   int index_ = 0;
   double t_s_ = 0;  ///< since the first tick
   std::int64_t tick_ = 0;
-  Motion x_, y_, yaw_, lean_;
+  Motion x_, y_, yaw_, lean_, sway_ahead_, sway_left_;
   std::array<LimbMotion, 4> limbs_;
   Posture posture_;
   std::vector<Pose> places_;
@@ -62,6 +79,8 @@ class PersonPlayer {
   Eyes eyes_;
   std::optional<GazeTarget> told_;                     ///< a script's target goes before her own
   std::optional<std::pair<Trajectory, double>> head_;  ///< recorded, and when it began
+  std::optional<RecordedBody> body_;
+  std::optional<Leaving> leaving_;
   EyesAndHead gaze_;
 };
 

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "physics/figure.h"
 #include "physics/pose.h"
 #include "physics/scene.h"
 
@@ -22,7 +23,8 @@ struct ReachStep {  ///< move to where the style's closed grasp would hold the o
   std::string style = "wrap";
   Approach approach = Approach::kAuto;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< added to the grasp pose, world axes
-  std::optional<Eigen::Vector3d> point_m;  ///< what to grasp, in the object's frame; else its centre
+  std::optional<Eigen::Vector3d>
+      point_m;  ///< what to grasp, in the object's frame; else its centre
 };
 struct TriggerStep {  ///< close_to, open_to: the analog trigger goes linearly to this value, 0..1
   double trigger = 0;
@@ -78,17 +80,25 @@ struct TurnStep {
 struct LeanStep {
   double to_rad = 0;  ///< of the trunk, forwards
 };
+struct SwayStep {  ///< her hips go out from over her feet, which stay; ahead and to her left
+  Eigen::Vector2d by_m = Eigen::Vector2d::Zero();
+};
 /// What of a body can be sent to a place.
 enum class LimbEnd { kRightElbow, kLeftElbow, kRightWrist, kLeftWrist, kRightFoot, kLeftFoot };
 struct MoveLimbStep {
   LimbEnd limb = LimbEnd::kRightFoot;
   std::optional<Eigen::Vector3d> to_m = std::nullopt;  ///< none: back to where it hangs or stands
+  /// It yields: it slows down so that what resists it is pushed with no more than this, newtons.
+  std::optional<double> most_n = std::nullopt;
 };
 struct HeadPosesStep {  ///< recorded head: x of it is where the eyes look
   std::vector<TimedPose> poses;
 };
+struct BodyPosesStep {  ///< the whole body, recorded
+  std::vector<TimedFigure> figures;
+};
 using PersonAction = std::variant<WaitStep, LookAtStep, EyesStep, WalkStep, TurnStep, LeanStep,
-                                  MoveLimbStep, HeadPosesStep>;
+                                  SwayStep, MoveLimbStep, HeadPosesStep, BodyPosesStep>;
 
 struct PersonStep {
   int person = 0;  ///< index into Scene::persons
@@ -97,7 +107,7 @@ struct PersonStep {
 };
 
 struct Beat {
-  std::vector<Step> steps;  ///< at most one per hand
+  std::vector<Step> steps;                    ///< at most one per hand
   std::vector<PersonStep> person_steps = {};  ///< at most one per person
 };
 

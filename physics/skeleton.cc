@@ -29,19 +29,54 @@ struct Bone {
 
 double Side(bool right) { return right ? -1 : 1; }
 
-/// A point of the trunk, given as it is when she stands upright, in shares of the height.
-Vector3d OnTrunk(const Person& person, const Pose& X_WS, double lean_rad, const Vector3d& share) {
-  const Vector3d hips(0, 0, kHip);
-  const Eigen::AngleAxisd lean(lean_rad, Vector3d::UnitY());
-  return X_WS * (person.height_m * (hips + lean * (share - hips)));
+/// What limbs and head hang on.
+struct Torso {
+  Vector3d hips;      ///< midway between the hip joints
+  Vector3d trunk_up;  ///< from there to midway between the shoulders, unit
+  Vector3d neck_up, hips_left, shoulders_left;
+};
+
+/// Where her hips go: out from over her feet, and down as far as her legs, whose feet stay, need
+/// it.
+Vector3d SwayOf(const Person& person, const Pose& X_WS, const Eigen::Vector2d& sway_m) {
+  if (sway_m.isZero()) return Vector3d::Zero();
+  constexpr double kStretched = 0.998;  // of a leg that is straight
+  const double h = person.height_m, leg = kStretched * (kThigh + kShank) * h;
+  const double up = std::sqrt(std::max(0.0, leg * leg - sway_m.squaredNorm()));
+  const double sink = std::min(0.0, kAnkle * h + up - kHip * h);
+  return X_WS.q * Vector3d(sway_m.x(), sway_m.y(), sink);
 }
 
-Vector3d ShoulderOf(const Person& person, const Pose& X_WS, double lean_rad, bool right) {
-  return OnTrunk(person, X_WS, lean_rad, {0, Side(right) * kHalfShoulders, kShoulder});
+Torso TorsoOf(const Person& person, const Posture& posture) {
+  if (posture.figure) {
+    const Figure& figure = *posture.figure;
+    return {figure.hips_W_m, figure.ways_W[Figure::kTrunk], figure.ways_W[Figure::kNeck],
+            figure.ways_W[Figure::kAcrossHips], figure.ways_W[Figure::kAcrossShoulders]};
+  }
+  const double h = person.height_m;
+  const Eigen::Quaterniond& q = posture.X_WS.q;
+  const Vector3d over_feet = posture.X_WS * Vector3d(0, 0, kHip * h);
+  const Vector3d leaning =
+      q * (Eigen::AngleAxisd(posture.lean_rad, Vector3d::UnitY()) * Vector3d::UnitZ());
+  const Vector3d shoulders = over_feet + (kShoulder - kHip) * h * leaning;
+  const Vector3d hips = over_feet + SwayOf(person, posture.X_WS, posture.sway_m);
+  const Vector3d up = (shoulders - hips).normalized();
+  const Vector3d left = q * Vector3d::UnitY();
+  return {hips, up, up, left, left};
 }
 
-Vector3d HipOf(const Person& person, const Pose& X_WS, bool right) {
-  return X_WS * (person.height_m * Vector3d(0, Side(right) * kHalfHips, kHip));
+/// A point of the trunk: its level when she stands upright, and how far to her left, as shares.
+Vector3d OnTrunk(const Person& person, const Torso& torso, double level, double left = 0) {
+  return torso.hips +
+         person.height_m * ((level - kHip) * torso.trunk_up + left * torso.shoulders_left);
+}
+
+Vector3d ShoulderOf(const Person& person, const Torso& torso, bool right) {
+  return OnTrunk(person, torso, kShoulder, Side(right) * kHalfShoulders);
+}
+
+Vector3d HipOf(const Person& person, const Torso& torso, bool right) {
+  return torso.hips + Side(right) * kHalfHips * person.height_m * torso.hips_left;
 }
 
 /// The joint between two bones that lead from `from` toward `to`, on the side of `hint`; and where
@@ -68,14 +103,29 @@ TwoBones Reach(const Vector3d& from, const Vector3d& to, double first_m, double 
 struct Arm {
   Vector3d shoulder, elbow, wrist, palm_toward;
 };
+
+bool FollowsHand(const Person& person, bool right) {
+  return (right ? person.right_hand : person.left_hand) >= 0;
+}
+
+Vector3d WayOf(const Posture& posture, std::size_t way, bool right) {
+  return posture.figure->ways_W[way + (right ? 0 : 1)];
+}
+
 Arm ArmOf(const Person& person, const Posture& posture, bool right) {
   const double h = person.height_m;
   const Eigen::Quaterniond& q = posture.X_WS.q;
   const Posture::Limb& limb = posture.limbs[right ? 0 : 1];
-  Arm arm{.shoulder = ShoulderOf(person, posture.X_WS, posture.lean_rad, right),
+  Arm arm{.shoulder = ShoulderOf(person, TorsoOf(person, posture), right),
           .elbow = {},
           .wrist = {},
           .palm_toward = {}};
+  if (posture.figure && !FollowsHand(person, right)) {
+    arm.elbow = arm.shoulder + kUpperArm * h * WayOf(posture, Figure::kUpperArm, right);
+    arm.wrist = arm.elbow + kForearm * h * WayOf(posture, Figure::kForearm, right);
+    arm.palm_toward = WayOf(posture, Figure::kHand, right);
+    return arm;
+  }
   if (limb.end == LimbEnd::kRightElbow || limb.end == LimbEnd::kLeftElbow) {
     const Vector3d way = limb.p_W_m - arm.shoulder;
     arm.elbow = arm.shoulder +
@@ -100,24 +150,29 @@ Vector3d FootFromAnkle(double height_m) {
 
 struct Leg {
   Vector3d hip, knee, ankle;
+  Vector3d foot_ahead, sole_down;
 };
 Leg LegOf(const Person& person, const Posture& posture, bool right) {
   const double h = person.height_m;
   const Eigen::Quaterniond& q = posture.X_WS.q;
-  Leg leg{.hip = HipOf(person, posture.X_WS, right), .knee = {}, .ankle = {}};
+  const Vector3d hip = HipOf(person, TorsoOf(person, posture), right);
+  if (posture.figure) {
+    const Vector3d knee = hip + kThigh * h * WayOf(posture, Figure::kThigh, right);
+    const Vector3d ankle = knee + kShank * h * WayOf(posture, Figure::kShank, right);
+    return {hip, knee, ankle, WayOf(posture, Figure::kFoot, right),
+            WayOf(posture, Figure::kSole, right)};
+  }
   const Vector3d wanted = posture.limbs[right ? 2 : 3].p_W_m - q * FootFromAnkle(h);
   const TwoBones bones =
-      Reach(leg.hip, wanted, kThigh * h, kShank * h, q * Vector3d(1, 0.1 * Side(right), 0.2));
-  leg.knee = bones.joint;
-  leg.ankle = bones.end;
-  return leg;
+      Reach(hip, wanted, kThigh * h, kShank * h, q * Vector3d(1, 0.1 * Side(right), 0.2));
+  return {hip, bones.joint, bones.end, q * Vector3d::UnitX(), q * -Vector3d::UnitZ()};
 }
 
 void AddArm(const Person& person, const Posture& posture, bool right, std::vector<Bone>& bones) {
   const Arm arm = ArmOf(person, posture, right);
   bones.push_back({right ? "right_upper_arm" : "left_upper_arm", 0.026, arm.elbow, arm.shoulder});
   bones.push_back({right ? "right_forearm" : "left_forearm", kForearmRadius, arm.wrist, arm.elbow});
-  if ((right ? person.right_hand : person.left_hand) >= 0) return;  // the scene has a better one
+  if (FollowsHand(person, right)) return;  // the scene has a better one
   bones.push_back({right ? "right_hand" : "left_hand", 0.018,
                    arm.wrist + kPalm * person.height_m * arm.palm_toward, arm.wrist});
 }
@@ -125,25 +180,25 @@ void AddArm(const Person& person, const Posture& posture, bool right, std::vecto
 void AddLeg(const Person& person, const Posture& posture, bool right, std::vector<Bone>& bones) {
   const double h = person.height_m;
   const Leg leg = LegOf(person, posture, right);
-  const Vector3d ahead = posture.X_WS.q * Vector3d::UnitX();
-  const Vector3d heel = leg.ankle + posture.X_WS.q * (h * Vector3d(-kHeel, 0, kSole - kAnkle));
-  const Vector3d ball = heel + kFootLength * h * ahead;
+  const Vector3d heel =
+      leg.ankle + h * (-kHeel * leg.foot_ahead + (kAnkle - kSole) * leg.sole_down);
+  const Vector3d ball = heel + kFootLength * h * leg.foot_ahead;
   bones.push_back({right ? "right_thigh" : "left_thigh", 0.045, leg.knee, leg.hip});
   bones.push_back({right ? "right_shank" : "left_shank", 0.030, leg.ankle, leg.knee});
   bones.push_back({right ? "right_foot" : "left_foot", kSole, heel, ball});
   bones.push_back(
-      {right ? "right_toes" : "left_toes", 0.014, ball, ball + kToesLength * h * ahead});
+      {right ? "right_toes" : "left_toes", 0.014, ball, ball + kToesLength * h * leg.foot_ahead});
 }
 
 /// All but the head.
 std::vector<Bone> BonesOf(const Person& person, const Posture& posture) {
-  const auto trunk = [&](double y, double z) {
-    return OnTrunk(person, posture.X_WS, posture.lean_rad, {0, y, z});
-  };
-  std::vector<Bone> bones = {{"neck", 0.030, trunk(0, kShoulder), trunk(0, kNeckTop)},
-                             {"chest", 0.080, trunk(0, 0.690), trunk(0, 0.750)},
-                             {"abdomen", 0.070, trunk(0, 0.590), trunk(0, 0.660)},
-                             {"pelvis", 0.070, trunk(-kHalfHips, kHip), trunk(kHalfHips, kHip)}};
+  const Torso torso = TorsoOf(person, posture);
+  const auto trunk = [&](double level) { return OnTrunk(person, torso, level); };
+  std::vector<Bone> bones = {
+      {"neck", 0.030, trunk(kShoulder), NeckTop(person, posture)},
+      {"chest", 0.080, trunk(0.690), trunk(0.750)},
+      {"abdomen", 0.070, trunk(0.590), trunk(0.660)},
+      {"pelvis", 0.070, HipOf(person, torso, true), HipOf(person, torso, false)}};
   for (const bool right : {true, false}) AddArm(person, posture, right, bones);
   for (const bool right : {true, false}) AddLeg(person, posture, right, bones);
   return bones;
@@ -183,16 +238,30 @@ int LimbOf(LimbEnd end) {
   return 0;
 }
 
-Posture::Limb RestOf(int limb, const Person& person, const Pose& X_WS, double lean_rad) {
+PartRange PartsOfLimb(const Person& person, int limb) {
+  constexpr int kTrunkParts = 5, kLegParts = 4;  // head, neck, chest, abdomen, pelvis
+  const int right_arm = FollowsHand(person, true) ? 2 : 3,
+            left_arm = FollowsHand(person, false) ? 2 : 3;
+  const std::array<int, 4> sizes = {right_arm, left_arm, kLegParts, kLegParts};
+  PartRange range{kTrunkParts, kTrunkParts};
+  for (int i = 0; i <= limb; ++i) {
+    range.begin = range.end;
+    range.end += sizes[static_cast<std::size_t>(i)];
+  }
+  return range;
+}
+
+Posture::Limb RestOf(int limb, const Person& person, const Posture& posture) {
   const double h = person.height_m;
   const bool right = limb % 2 == 0;
   if (limb < 2) {
     const Vector3d hanging(0.05, Side(right) * 0.02, -0.95 * (kUpperArm + kForearm));
     return {right ? LimbEnd::kRightWrist : LimbEnd::kLeftWrist,
-            ShoulderOf(person, X_WS, lean_rad, right) + X_WS.q * (h * hanging)};
+            ShoulderOf(person, TorsoOf(person, posture), right) + posture.X_WS.q * (h * hanging)};
   }
   const Vector3d ankle = h * Vector3d(0, Side(right) * kHalfHips, kAnkle);
-  return {right ? LimbEnd::kRightFoot : LimbEnd::kLeftFoot, X_WS * (ankle + FootFromAnkle(h))};
+  return {right ? LimbEnd::kRightFoot : LimbEnd::kLeftFoot,
+          posture.X_WS * (ankle + FootFromAnkle(h))};
 }
 
 Eigen::Vector3d PlaceOf(LimbEnd end, const Person& person, const Posture& posture) {
@@ -212,8 +281,10 @@ Eigen::Vector3d FoldedForearm(LimbEnd end, const Pose& X_WS) {
   return X_WS.q * Vector3d(-0.1, -0.5 * Side(LimbOf(end) % 2 == 0), 0.85).normalized();
 }
 
-Eigen::Vector3d NeckTop(const Person& person, const Pose& X_WS, double lean_rad) {
-  return OnTrunk(person, X_WS, lean_rad, {0, 0, kNeckTop});
+Eigen::Vector3d NeckTop(const Person& person, const Posture& posture) {
+  const Torso torso = TorsoOf(person, posture);
+  return OnTrunk(person, torso, kShoulder) +
+         (kNeckTop - kShoulder) * person.height_m * torso.neck_up;
 }
 
 Pose HeadToward(const Person& person, const Vector3d& p_W_neck, const Vector3d& toward_W) {
@@ -227,6 +298,48 @@ Pose HeadToward(const Person& person, const Vector3d& p_W_neck, const Vector3d& 
   return {p_W_neck + q * Vector3d(0, 0, kHeadCentre * person.height_m), q};
 }
 
+Pose HeadOfFigure(const Person& person, const Posture& posture) {
+  const Vector3d& crown = posture.figure->ways_W[Figure::kCrown];
+  const Vector3d& face = posture.figure->ways_W[Figure::kFace];
+  const Vector3d level = face - face.dot(crown) * crown;
+  Eigen::Matrix3d axes;
+  axes.col(0) = level.norm() > 1e-6 ? Vector3d(level.normalized()) : crown.unitOrthogonal();
+  axes.col(2) = crown;
+  axes.col(1) = crown.cross(axes.col(0));
+  return {NeckTop(person, posture) + kHeadCentre * person.height_m * crown,
+          Eigen::Quaterniond(axes).normalized()};
+}
+
+Figure FigureOf(const Person& person, const Posture& posture) {
+  if (posture.figure) return *posture.figure;
+  const Torso torso = TorsoOf(person, posture);
+  Figure figure{.hips_W_m = torso.hips, .ways_W = {}};
+  auto& ways = figure.ways_W;
+  ways[Figure::kTrunk] = torso.trunk_up;
+  ways[Figure::kNeck] = torso.neck_up;
+  ways[Figure::kFace] = posture.X_WHead.q * Vector3d::UnitX();
+  ways[Figure::kCrown] = posture.X_WHead.q * Vector3d::UnitZ();
+  ways[Figure::kAcrossHips] = torso.hips_left;
+  ways[Figure::kAcrossShoulders] = torso.shoulders_left;
+  for (const bool right : {true, false}) {
+    const std::size_t side = right ? 0 : 1;
+    const Arm arm = ArmOf(person, posture, right);
+    ways[Figure::kUpperArm + side] = (arm.elbow - arm.shoulder).normalized();
+    ways[Figure::kForearm + side] = (arm.wrist - arm.elbow).normalized();
+    ways[Figure::kHand + side] = arm.palm_toward;
+    const Leg leg = LegOf(person, posture, right);
+    ways[Figure::kThigh + side] = (leg.knee - leg.hip).normalized();
+    ways[Figure::kShank + side] = (leg.ankle - leg.knee).normalized();
+    ways[Figure::kFoot + side] = leg.foot_ahead;
+    ways[Figure::kSole + side] = leg.sole_down;
+  }
+  return figure;
+}
+
+double LegLength(double height_m) { return (kThigh + kShank) * height_m; }
+
+double AnkleHeight(double height_m) { return kAnkle * height_m; }
+
 Eigen::Vector3d EyesOf(const Person& person, const Pose& X_WHead) {
   return X_WHead * (person.height_m * Vector3d(kEyesAhead, 0, kEyesUp));
 }
@@ -235,10 +348,20 @@ Eigen::Vector3d WristInHand(const Person& person, const HandModel& model) {
   return {-model.palm_size_m.x() / 2 - kForearmRadius * person.height_m, 0, 0};
 }
 
-Posture Standing(const Scene& scene, const Person& person) {
-  Posture posture{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}};
+namespace {
+
+/// Standing with hanging arms, without a head.
+Posture Resting(const Person& person) {
+  Posture posture{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}, .figure = {}};
   for (int limb = 0; limb < 4; ++limb)
-    posture.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, person.X_WS, 0);
+    posture.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, posture);
+  return posture;
+}
+
+}  // namespace
+
+Posture Standing(const Scene& scene, const Person& person) {
+  Posture posture = Resting(person);
   for (const auto& [hand, limb] :
        {std::pair(person.right_hand, 0), std::pair(person.left_hand, 1)}) {
     if (hand < 0) continue;
@@ -246,8 +369,7 @@ Posture Standing(const Scene& scene, const Person& person) {
     posture.limbs[static_cast<std::size_t>(limb)].p_W_m =
         of_scene.X_WH * WristInHand(person, of_scene.model);
   }
-  posture.X_WHead =
-      HeadToward(person, NeckTop(person, person.X_WS, 0), person.X_WS.q * Vector3d::UnitX());
+  posture.X_WHead = HeadToward(person, NeckTop(person, posture), person.X_WS.q * Vector3d::UnitX());
   return posture;
 }
 
@@ -255,10 +377,7 @@ std::vector<Body> PartsOf(const Person& person) {
   const double h = person.height_m;
   std::vector<Body> parts = {PartOf(person.name, kHeadRadius * h, kHeadLength * h)};
   if (!person.has_body) return parts;
-  Posture posture{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}};
-  for (int limb = 0; limb < 4; ++limb)
-    posture.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, person.X_WS, 0);
-  for (const Bone& bone : BonesOf(person, posture))
+  for (const Bone& bone : BonesOf(person, Resting(person)))
     parts.push_back(PartOf(person.name + "_" + bone.name, bone.radius * h,
                            (bone.upper_W_m - bone.lower_W_m).norm()));
   return parts;

@@ -5,9 +5,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "physics/figure.h"
 #include "physics/scene.h"
 #include "physics/script.h"
 
@@ -17,6 +19,8 @@ namespace prehend::physics {
 struct Posture {
   Pose X_WS;            ///< her stand
   double lean_rad = 0;  ///< of the trunk, forwards
+  /// How far her hips are ahead and to the left of over her feet. Her shoulders stay there.
+  Eigen::Vector2d sway_m = Eigen::Vector2d::Zero();
   /// Where the arms and legs go; see Limb.
   struct Limb {
     LimbEnd end = LimbEnd::kRightWrist;  ///< what `p_W_m` is about
@@ -26,13 +30,15 @@ struct Posture {
   };
   std::array<Limb, 4> limbs;  ///< right arm, left arm, right leg, left leg
   Pose X_WHead;               ///< its x is where the face looks
+  /// All of the above but the arms that follow hands of the scene and the head is as here.
+  std::optional<Figure> figure;
 };
 
 /// Index into Posture::limbs.
 int LimbOf(LimbEnd end);
 
 /// Where a limb hangs or stands when nobody moves it: wrists, and the middle of the feet.
-Posture::Limb RestOf(int limb, const Person& person, const Pose& X_WS, double lean_rad);
+Posture::Limb RestOf(int limb, const Person& person, const Posture& posture);
 /// Where this end of a limb is in a posture.
 Eigen::Vector3d PlaceOf(LimbEnd end, const Person& person, const Posture& posture);
 /// Where the forearm of an arm goes from its elbow on, unit.
@@ -40,10 +46,18 @@ Eigen::Vector3d ForearmOf(LimbEnd end, const Person& person, const Posture& post
 /// The same of an arm that pushes with its elbow: folded up, towards the other shoulder.
 Eigen::Vector3d FoldedForearm(LimbEnd end, const Pose& X_WS);
 /// Between the neck and the head, which turns about it.
-Eigen::Vector3d NeckTop(const Person& person, const Pose& X_WS, double lean_rad);
+Eigen::Vector3d NeckTop(const Person& person, const Posture& posture);
 /// The head that looks this way from its neck.
 Pose HeadToward(const Person& person, const Eigen::Vector3d& p_W_neck,
                 const Eigen::Vector3d& toward_W);
+/// The head of a posture that has a figure.
+Pose HeadOfFigure(const Person& person, const Posture& posture);
+/// A posture as a figure; its own, when it has one.
+Figure FigureOf(const Person& person, const Posture& posture);
+/// From the hip joint over the knee to the ankle, metres.
+double LegLength(double height_m);
+/// Of the ankles over the floor when she stands, metres.
+double AnkleHeight(double height_m);
 /// Between the eyes.
 Eigen::Vector3d EyesOf(const Person& person, const Pose& X_WHead);
 /// Where the wrist is in the frame of a hand's palm: so that the forearm's round end ends where the
@@ -52,6 +66,12 @@ Eigen::Vector3d WristInHand(const Person& person, const HandModel& model);
 
 /// Standing, arms hanging or at the hands of the scene, looking ahead.
 Posture Standing(const Scene& scene, const Person& person);
+
+/// Which of PartsOf() belong to a limb, the hand or foot included.
+struct PartRange {
+  int begin = 0, end = 0;
+};
+PartRange PartsOfLimb(const Person& person, int limb);
 
 /// The parts as kinematic bodies, the head first, without their places: "anna", "anna_neck", ...
 std::vector<Body> PartsOf(const Person& person);
