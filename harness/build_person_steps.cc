@@ -40,13 +40,21 @@ struct PersonStepMaker {
   physics::PersonStep operator()(const LeanEntry& e) const {
     return {0, physics::LeanStep{e.lean_deg * kRadPerDeg}, e.over_s};
   }
+  physics::PersonStep operator()(const SwayEntry& e) const {
+    CheckBody(e.sway_by_m.where, "sway_by_m");
+    return {0, physics::SwayStep{e.sway_by_m.value}, e.over_s};
+  }
   physics::PersonStep operator()(const MoveLimbEntry& e) const {
     CheckFree(e.move_limb);
-    return {0, physics::MoveLimbStep{e.move_limb.value, e.to_m}, e.over_s};
+    return {0, physics::MoveLimbStep{e.move_limb.value, e.to_m, e.most_n}, e.over_s};
   }
   physics::PersonStep operator()(const RecordingEntry& e) const {
     if (!e.style.value.empty())
       complaints.Add(e.style.where, "style: a person's recording moves her head, no hand");
+    if (!e.figures.empty()) {
+      CheckBody(e.recording.where, "recording");
+      return {0, physics::BodyPosesStep{e.figures}, e.figures.back().t_s};
+    }
     const double over_s = e.poses.empty() ? 0 : e.poses.back().t_s;
     return {0, physics::HeadPosesStep{e.poses}, over_s};
   }
@@ -69,11 +77,16 @@ struct PersonStepMaker {
                               name.value, names);
   }
 
+  bool CheckBody(const Where& where, const char* key) const {
+    if (!person.has_body)
+      complaints.Add(where, fmt::format("{}: '{}' is only a head", key, person.name),
+                     "write 'person: body'");
+    return person.has_body;
+  }
+
   void CheckFree(const Located<physics::LimbEnd>& limb) const {
     using physics::LimbEnd;
-    if (!person.has_body)
-      return complaints.Add(limb.where, fmt::format("move_limb: '{}' is only a head", person.name),
-                            "write 'person: body'");
+    if (!CheckBody(limb.where, "move_limb")) return;
     const bool right = limb.value == LimbEnd::kRightElbow || limb.value == LimbEnd::kRightWrist;
     const bool left = limb.value == LimbEnd::kLeftElbow || limb.value == LimbEnd::kLeftWrist;
     const int hand = right ? person.right_hand : left ? person.left_hand : -1;

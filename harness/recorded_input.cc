@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
+#include "harness/body_track.h"
 #include "harness/build_scene.h"
 #include "harness/motion_track.h"
+#include "physics/skeleton.h"
 
 namespace prehend::harness {
 namespace {
@@ -24,19 +27,20 @@ ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingEntry&
 }
 
 /// Only the samples from from_s to to_s, with times since from_s.
-void Cut(const RecordingEntry& entry, MotionTrack& track, Complaints& complaints) {
-  std::vector<TrackSample>& samples = track.samples;
+template <class Track>
+bool Cut(const RecordingEntry& entry, Track& track, Complaints& complaints) {
+  auto& samples = track.samples;
   const double last_s = samples.back().t_s;
   const double to_s = entry.to_s ? entry.to_s->value : last_s;
-  std::erase_if(samples,
-                [&](const TrackSample& s) { return s.t_s < entry.from_s.value || s.t_s > to_s; });
-  for (TrackSample& sample : samples) sample.t_s -= entry.from_s.value;
-  if (samples.size() >= 2) return;
+  std::erase_if(samples, [&](const auto& s) { return s.t_s < entry.from_s.value || s.t_s > to_s; });
+  for (auto& sample : samples) sample.t_s -= entry.from_s.value;
+  if (samples.size() >= 2) return true;
   const Where where = entry.to_s ? entry.to_s->where : entry.from_s.where;
   complaints.Add(where,
                  fmt::format("between {} and {} s the recording has {} samples, of at least 2",
                              entry.from_s.value, to_s, samples.size()),
                  fmt::format("it takes {:.3f} s", last_s));
+  return false;
 }
 
 /// The palm in the world, at every sample.
@@ -51,32 +55,129 @@ std::vector<physics::TimedPose> Place(const RecordingEntry& entry, const MotionT
   return poses;
 }
 
+/// The person in the world, at every frame: as tall as she is, and where she stands lowest, her
+/// ankle is as high as when she stands.
+std::vector<physics::TimedFigure> Place(const RecordingEntry& entry, const BodyTrack& track,
+                                        const PersonActor& person, double scale) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const BodySample& sample : track.samples)
+    lowest =
+        std::min({lowest, sample.points[kRightAnklePoint].z(), sample.points[kLeftAnklePoint].z()});
+  const double floor_m = entry.start_at_m ? entry.start_at_m->z() : person.at_m.value.z();
+  const Eigen::Quaterniond yaw = FromRollPitchYaw({0, 0, entry.yaw_deg});
+  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+  if (entry.start_at_m)
+    shift_m = *entry.start_at_m - yaw * (scale * track.samples.front().figure.hips_W_m);
+  shift_m.z() = floor_m + physics::AnkleHeight(person.height_m) - scale * lowest;
+  std::vector<physics::TimedFigure> figures;
+  for (const BodySample& sample : track.samples) {
+    physics::Figure figure = sample.figure;
+    figure.hips_W_m = yaw * (scale * figure.hips_W_m) + shift_m;
+    for (Eigen::Vector3d& way : figure.ways_W) way = yaw * way;
+    figures.push_back({entry.join_s + sample.t_s, figure});
+  }
+  return figures;
+}
+
+/// What is odd about how hips, hands and feet go, in metres.
+grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingEntry& entry,
+                                    double scale) {
+  const double frame_s = track.samples[1].t_s - track.samples[0].t_s;
+  if (frame_s > entry.most_gap_s) {
+    return {grammar::DiagnosticAt(
+        track.file, track.text, track.samples[1].place,
+        fmt::format("gap: frames are {:.3f} s apart; at most {} s are bridged", frame_s,
+                    entry.most_gap_s),
+        "raise most_gap_s")};
+  }
+  const TrackLimits limits{std::numeric_limits<double>::infinity(), entry.most_jump_m};
+  grammar::Diagnostics odd;
+  for (std::size_t i = 0; i < kWatchedPoints.size(); ++i) {
+    MotionTrack point{.samples = {}, .file = track.file, .text = track.text};
+    for (const BodySample& sample : track.samples)
+      point.samples.push_back({sample.t_s, {scale * sample.points[i]}, {}, sample.place});
+    for (Diagnostic& found : CheckTrack(point, limits)) {
+      found.message = fmt::format("{}: {}", kWatchedPoints[i], found.message);
+      odd.push_back(std::move(found));
+    }
+  }
+  return odd;
+}
+
 class RecordingReader {
  public:
-  RecordingReader(const std::string& scenario_file, const ScenarioLibrary& library,
-                  Complaints& complaints, grammar::Diagnostics& in_recordings)
-      : folder_(std::filesystem::path(scenario_file).parent_path().string()),
+  RecordingReader(const std::string& scenario_file, const std::vector<Named<PersonActor>>& persons,
+                  const ScenarioLibrary& library, Complaints& complaints,
+                  grammar::Diagnostics& in_recordings)
+      : persons_(persons),
+        folder_(std::filesystem::path(scenario_file).parent_path().string()),
         library_(library),
         complaints_(complaints),
         in_recordings_(in_recordings) {}
 
-  void Fill(RecordingEntry& entry) {
+  void Fill(const std::string& actor, RecordingEntry& entry) {
+    if (entry.recording.value.ends_with(".bvh")) return FillBody(actor, entry);
     if (!CheckKind(entry)) return;
-    const std::string path = (std::filesystem::path(folder_) / entry.recording.value).string();
-    if (library_.reads_recording) library_.reads_recording(path);
-    ReadResult<MotionTrack> track = ReadTrack(path, entry);
+    ReadResult<MotionTrack> track = ReadTrack(PathOf(entry), entry);
     if (!track.value) return Refuse(entry, std::move(track.diagnostics));
-    Cut(entry, *track.value, complaints_);
-    if (track.value->samples.size() < 2) return;
-    grammar::Diagnostics odd = CheckTrack(*track.value, {entry.most_gap_s, entry.most_jump_m});
-    const bool refused =
-        std::any_of(odd.begin(), odd.end(), [](const Diagnostic& d) { return !d.is_warning; });
-    if (refused) return Refuse(entry, std::move(odd));
-    in_recordings_.insert(in_recordings_.end(), odd.begin(), odd.end());
-    entry.poses = Place(entry, *track.value);
+    if (!Cut(entry, *track.value, complaints_)) return;
+    if (!Accept(entry, CheckTrack(*track.value, {entry.most_gap_s, entry.most_jump_m}))) return;
+    if (HasRoom(entry, track.value->samples.size())) entry.poses = Place(entry, *track.value);
   }
 
  private:
+  void FillBody(const std::string& actor, RecordingEntry& entry) {
+    const auto person = std::find_if(persons_.begin(), persons_.end(),
+                                     [&](const auto& p) { return p.name == actor; });
+    if (person == persons_.end()) {
+      return complaints_.Add(entry.recording.where,
+                             "recording: a BVH file moves a whole body, no hand",
+                             "give this step to a person; hands follow .csv and .json files");
+    }
+    ReadResult<BodyTrack> track = ReadBodyTrack(PathOf(entry));
+    if (!track.value) return Refuse(entry, std::move(track.diagnostics));
+    if (!Cut(entry, *track.value, complaints_)) return;
+    const double scale = entry.scale
+                             ? entry.scale->value
+                             : physics::LegLength(person->value.height_m) / track.value->leg_units;
+    if (!Accept(entry, CheckBodyTrack(*track.value, entry, scale))) return;
+    if (!HasRoom(entry, track.value->samples.size())) return;
+    entry.figures = Place(entry, *track.value, person->value, scale);
+    for (std::size_t i = 0; i < entry.figures.size(); ++i) {
+      if (entry.figures[i].figure.hips_W_m.cwiseAbs().maxCoeff() <= kFarthestTrackM) continue;
+      return Refuse(entry, {grammar::DiagnosticAt(
+                               track.value->file, track.value->text, track.value->samples[i].place,
+                               fmt::format("the hips are beyond {} m", kFarthestTrackM),
+                               "in which units is the file? Say so with scale: metres per unit")});
+    }
+  }
+
+  std::string PathOf(const RecordingEntry& entry) const {
+    const std::string path = (std::filesystem::path(folder_) / entry.recording.value).string();
+    if (library_.reads_recording) library_.reads_recording(path);
+    return path;
+  }
+
+  /// Keeps the warnings; false when there are errors.
+  bool Accept(const RecordingEntry& entry, grammar::Diagnostics odd) {
+    const bool refused =
+        std::any_of(odd.begin(), odd.end(), [](const Diagnostic& d) { return !d.is_warning; });
+    if (refused)
+      Refuse(entry, std::move(odd));
+    else
+      in_recordings_.insert(in_recordings_.end(), odd.begin(), odd.end());
+    return !refused;
+  }
+
+  /// The same file may be played often, but not without end.
+  bool HasRoom(const RecordingEntry& entry, std::size_t samples) {
+    samples_ += samples;
+    if (samples_ <= kMaxTrackSamples) return true;
+    complaints_.Add(entry.recording.where,
+                    fmt::format("recording: more than {} samples up to here", kMaxTrackSamples));
+    return false;
+  }
+
   bool CheckKind(const RecordingEntry& entry) {
     const bool capture = IsCapture(entry);
     if (capture && !entry.device) {
@@ -97,7 +198,9 @@ class RecordingReader {
     in_recordings_.insert(in_recordings_.end(), diagnostics.begin(), diagnostics.end());
   }
 
+  const std::vector<Named<PersonActor>>& persons_;
   std::string folder_;
+  std::size_t samples_ = 0;  ///< of all recordings so far
   const ScenarioLibrary& library_;
   Complaints& complaints_;
   grammar::Diagnostics& in_recordings_;
@@ -108,10 +211,11 @@ class RecordingReader {
 void ReadRecordings(const std::string& scenario_file, ScenarioEntry& entry,
                     const ScenarioLibrary& library, Complaints& complaints,
                     grammar::Diagnostics& in_recordings) {
-  RecordingReader reader(scenario_file, library, complaints, in_recordings);
+  RecordingReader reader(scenario_file, entry.persons, library, complaints, in_recordings);
   for (BeatEntry& beat : entry.script) {
     for (Named<StepEntry>& step : beat) {
-      if (auto* recording = std::get_if<RecordingEntry>(&step.value)) reader.Fill(*recording);
+      if (auto* recording = std::get_if<RecordingEntry>(&step.value))
+        reader.Fill(step.name, *recording);
     }
   }
 }

@@ -172,7 +172,10 @@ struct RecordingEntry {
   double join_s = 0.5;
   double most_gap_s = 0.25;
   double most_jump_m = 0.1;
-  std::vector<physics::TimedPose> poses;  ///< of the palm in the world; see harness/recorded_input.h
+  std::optional<Located<double>> scale;  ///< metres per unit of a .bvh file
+  // What harness/recorded_input.h makes of the file: poses of the palm or head, or figures of a body.
+  std::vector<physics::TimedPose> poses;
+  std::vector<physics::TimedFigure> figures;
 };
 // Steps of persons.
 struct LookAtEntry {
@@ -199,16 +202,21 @@ struct LeanEntry {
   double lean_deg = 0;
   double over_s = 0.8;
 };
+struct SwayEntry {
+  Located<Eigen::Vector2d> sway_by_m{Eigen::Vector2d::Zero(), {}};
+  double over_s = 0.8;
+};
 struct MoveLimbEntry {
   Located<physics::LimbEnd> move_limb;
   std::optional<Eigen::Vector3d> to_m;
+  std::optional<double> most_n;
   double over_s = 0.8;
 };
 
 using StepEntry = std::variant<WaitEntry, ReachEntry, CloseEntry, OpenEntry, LiftEntry, MoveEntry,
                                CarryEntry, PlaceEntry, RetreatEntry, FollowJointEntry, PosesEntry,
                                RecordingEntry, LookAtEntry, LookAtPointEntry, EyesEntry, WalkEntry, TurnEntry,
-                               LeanEntry, MoveLimbEntry>;
+                               LeanEntry, SwayEntry, MoveLimbEntry>;
 
 /// One item of the script: what each named actor does at the same time.
 using BeatEntry = std::vector<Named<StepEntry>>;

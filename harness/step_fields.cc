@@ -2,6 +2,8 @@
 // Tested by tests/harness/scenario_fields_test.cc
 #include "harness/step_fields.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "harness/actor_fields.h"
@@ -13,6 +15,7 @@ namespace prehend::harness {
 namespace {
 
 constexpr double kLongestMoveM = 10;
+constexpr double kMostSwayM = 0.4;  // farther, nobody stays on her feet
 constexpr double kShortestS = 0.01;  // below, no human hand moves
 constexpr double kLongestS = 600;
 
@@ -110,14 +113,28 @@ Format<StepEntry> PosesFormat() {
           .format());
 }
 
+/// What belongs to another kind of file.
+void CheckKindOfRecording(const YamlNode& node, const RecordingEntry& entry,
+                          Complaints& complaints) {
+  const bool body = entry.recording.value.ends_with(".bvh");
+  const auto refuse = [&](const char* key, const char* why) {
+    if (const YamlNode* found = node.Find(key))
+      complaints.Add(found->key_where, fmt::format("{}: {}", key, why));
+  };
+  if (!body) return refuse("scale", "only a BVH file has units of its own");
+  for (const char* key : {"device", "button", "press_s", "style", "palm_m", "palm_rpy_deg"})
+    refuse(key, "a BVH file moves a whole body, no hand");
+}
+
 Format<StepEntry> RecordingFormat() {
   using R = RecordingEntry;
   const auto seconds = Number(0, kMaxDurationS);
   return AsAlternative<StepEntry>(
       Record<R>("a recording step")
           .Required("recording", &R::recording,
-                    Word("[A-Za-z0-9_./-]+\\.(csv|json)", "a .csv or .json file", 255),
-                    "A recorded motion: a CSV file, or JSON of aframe-motion-capture-components.")
+                    Word("[A-Za-z0-9_./-]+\\.(csv|json|bvh)", "a .csv, .json or .bvh file", 255),
+                    "A recorded motion: a CSV file, JSON of aframe-motion-capture-components, or "
+                    "BVH of a whole body.")
           .Optional("device", &R::device, Word("[A-Za-z0-9_-]+", "a name like 'right'"),
                     "Which device of a JSON file moves the hand; required there.")
           .Optional("button", &R::button, Integer<int>(0, 31),
@@ -138,6 +155,9 @@ Format<StepEntry> RecordingFormat() {
                     "Time to get from where the target is to where the recording starts.")
           .Optional("most_gap_s", &R::most_gap_s, Number(0, 60), "Longer gaps are refused.")
           .Optional("most_jump_m", &R::most_jump_m, Number(0, 100), "Larger jumps are refused.")
+          .Optional("scale", &R::scale, Number(1e-4, 100),
+                    "Metres per unit of a BVH file; default: so that its legs are as long as hers.")
+          .Check(CheckKindOfRecording)
           .format());
 }
 
@@ -156,6 +176,8 @@ Format<StepEntry> MoveLimbFormat() {
                     "Which part of a person goes there; the rest of the limb follows.")
           .Optional("to_m", &M::to_m, Vector<3>(-kFarthestM, kFarthestM),
                     "World coordinates; without it the limb goes back to where it hangs or stands.")
+          .Optional("most_n", &M::most_n, Number(1, 10000),
+                    "The limb yields: it slows down so that it pushes with no more than this.")
           .Optional("over_s", &M::over_s, Duration(), kOverDoc)
           .format());
 }
@@ -203,6 +225,8 @@ Format<StepEntry> StepFormat() {
                                  "A person turns to this yaw.")},
        {"lean_deg", TimedStep("lean_deg", &LeanEntry::lean_deg, Number(-30, 90),
                               "A person's trunk leans forwards by this.")},
+       {"sway_by_m", TimedStep("sway_by_m", &SwayEntry::sway_by_m, Vector<2>(-kMostSwayM, kMostSwayM),
+                               "A person's hips go this far [ahead, left] of over her feet.")},
        {"move_limb", MoveLimbFormat()}});
 }
 

@@ -91,7 +91,7 @@ TEST_F(RecordedInputTest, Refuses) {
   EXPECT_EQ(ComplaintsAbout("recording: lime.csv"),
             "probe.yaml:11:29: recording: 'lime.csv' cannot be used, see below\nlime.csv:0:0: no such file\n");
   EXPECT_EQ(ComplaintsAbout("recording: line.txt"),
-            "probe.yaml:11:29: recording: expected a .csv or .json file, found 'line.txt'\n");
+            "probe.yaml:11:29: recording: expected a .csv, .json or .bvh file, found 'line.txt'\n");
   EXPECT_EQ(ComplaintsAbout("recording: line.json"),
             "probe.yaml:11:29: recording: this file has several devices: which one? | add device: right\n");
   EXPECT_EQ(ComplaintsAbout("recording: line.csv, device: right"),
@@ -119,6 +119,78 @@ TEST_F(RecordedInputTest, OddRecordingsAreUsedWithAWarning) {
             "recording with from_s and to_s, or raise most_gap_s\n");
   // What is cut off does not matter.
   EXPECT_TRUE(Read("recording: gap.csv, most_gap_s: 0.1, to_s: 0.02").value);
+}
+
+/// A person of sticks whose hips go up by 10 and ahead by 100 from the first frame to the third.
+const std::string kSticks =
+    "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n"
+    "JOINT Head\n{\nOFFSET 0 60 0\n}\n"
+    "JOINT RArm\n{\nOFFSET -20 50 0\nJOINT RForeArm\n{\nOFFSET 0 -30 0\nJOINT RHand\n{\nOFFSET 0 -25 0\n}\n}\n}\n"
+    "JOINT LArm\n{\nOFFSET 20 50 0\nJOINT LForeArm\n{\nOFFSET 0 -30 0\nJOINT LHand\n{\nOFFSET 0 -25 0\n}\n}\n}\n"
+    "JOINT RThigh\n{\nOFFSET -10 0 0\nJOINT RShin\n{\nOFFSET 0 -40 0\nJOINT RFoot\n{\nOFFSET 0 -40 0\n}\n}\n}\n"
+    "JOINT LThigh\n{\nOFFSET 10 0 0\nJOINT LShin\n{\nOFFSET 0 -40 0\nJOINT LFoot\n{\nOFFSET 0 -40 0\n}\n}\n}\n"
+    "}\nMOTION\nFrames: 3\nFrame Time: 0.2\n50 180 7\n50 185 57\n50 190 107\n";
+
+/// A person of 2 m stands at x = -0.9, on a floor at 0.1, and does this step.
+class RecordedBodyTest : public RecordedInputTest {
+ protected:
+  void SetUp() override {
+    RecordedInputTest::SetUp();
+    std::ofstream(folder_ / "sticks.bvh") << kSticks;
+  }
+  ReadResult<Scenario> ReadBody(const std::string& step, const std::string& actor = "anna") {
+    const std::string text = ProbeWith("script:\n", "  anna: {person: body, at_m: [-0.9, 0, 0.1], height_m: 2}\nscript:\n  - " + actor +
+                                      ": {" + step + "}\n");
+    return ReadScenarioText((folder_ / "probe.yaml").string(), text, {}, ProbeLibrary());
+  }
+  std::string Refused(const std::string& step, const std::string& actor = "anna") {
+    std::string text = Brief(ReadBody(step, actor).diagnostics);
+    const std::string folder = folder_.string() + "/";
+    for (std::size_t at; (at = text.find(folder)) != std::string::npos;) text.erase(at, folder.size());
+    return text;
+  }
+  std::vector<physics::TimedFigure> Figures(const std::string& step) {
+    const auto read = ReadBody(step);
+    EXPECT_TRUE(read.value) << Brief(read.diagnostics);
+    if (!read.value) return {};
+    return std::get<physics::BodyPosesStep>(read.value->script.beats[0].person_steps[0].action).figures;
+  }
+};
+
+TEST_F(RecordedBodyTest, IsScaledToHerLegsAndStandsOnHerFloor) {
+  const auto figures = Figures("recording: sticks.bvh, join_s: 0.3, most_jump_m: 9");
+  ASSERT_EQ(figures.size(), 3u);
+  EXPECT_NEAR(figures[1].t_s, 0.5, 1e-12);
+  // Her legs are 0.491 of 2 m, the file's 80: so 50 is 0.6138 m; x of the file is our y.
+  EXPECT_NEAR(figures[0].figure.hips_W_m.y(), 50 * 0.982 / 80, 1e-9);
+  // Hips over the ankles, and those as high over the floor as when she stands.
+  EXPECT_NEAR(figures[0].figure.hips_W_m.z(), 0.1 + 0.039 * 2 + 0.982, 1e-9);
+  EXPECT_NEAR(figures[2].figure.hips_W_m.x() - figures[0].figure.hips_W_m.x(), 100 * 0.982 / 80, 1e-9);
+}
+
+TEST_F(RecordedBodyTest, ScalePlaceAndYawAreTheScenarios) {
+  const auto figures = Figures(
+      "recording: sticks.bvh, scale: 0.01, start_at_m: [1, 2, 0.5], yaw_deg: 90, join_s: 0, most_jump_m: 9");
+  ASSERT_EQ(figures.size(), 3u);
+  EXPECT_NEAR(figures[0].figure.hips_W_m.x(), 1, 1e-9);
+  EXPECT_NEAR(figures[2].figure.hips_W_m.y(), 3, 1e-9);
+  EXPECT_NEAR(figures[0].figure.hips_W_m.z(), 0.5 + 0.078 + 0.8, 1e-9);
+  EXPECT_LT((figures[0].figure.ways_W[physics::Figure::kFace] - Vector3d::UnitY()).norm(), 1e-9);
+}
+
+TEST_F(RecordedBodyTest, Refuses) {
+  EXPECT_EQ(Refused("recording: sticks.bvh", "right_hand"),
+            "probe.yaml:11:29: recording: a BVH file moves a whole body, no hand | give this step to a person; hands "
+            "follow .csv and .json files\n");
+  EXPECT_NE(Refused("recording: sticks.bvh, palm_m: [0, 0, 0]").find("palm_m: a BVH file moves a whole body, no hand"),
+            std::string::npos);
+  EXPECT_NE(Refused("recording: line.csv, scale: 1").find("scale: only a BVH file has units of its own"), std::string::npos);
+  EXPECT_NE(Refused("recording: sticks.bvh, most_gap_s: 0.1")
+                .find("gap: frames are 0.200 s apart; at most 0.1 s are bridged | raise most_gap_s"),
+            std::string::npos);
+  EXPECT_NE(Refused("recording: sticks.bvh, scale: 0.04").find("hips: jump: 2.010 m within 0.200 s, at 0.200 s; at most 0.1 m"),
+            std::string::npos);
+  EXPECT_NE(Refused("recording: sticks.bvh, scale: 100, most_jump_m: 100").find("beyond"), std::string::npos);
 }
 
 }  // namespace

@@ -116,6 +116,56 @@ TEST(PersonPlayerTest, NothingPushesHer) {
   EXPECT_LT((played.end.bodies[foot].X_WB.p_m - there).norm(), 0.02);
 }
 
+/// How deep the toes stand in the block at the end, metres.
+double DepthIn(const Played& played, const Scene& scene) {
+  const Pose& toes =
+      played.end.bodies[static_cast<std::size_t>(PartNamed(scene, "anna_right_toes"))].X_WB;
+  const auto& capsule = std::get<Capsule>(
+      scene.bodies[static_cast<std::size_t>(PartNamed(scene, "anna_right_toes"))].shapes[0].shape);
+  const double tip = std::max((toes * Vector3d(0, 0, capsule.length_m / 2)).x(),
+                              (toes * Vector3d(0, 0, -capsule.length_m / 2)).x()) +
+                     capsule.radius_m;
+  return tip - (played.end.bodies[kBlock].X_WB.p_m.x() - 0.1);
+}
+
+TEST(PersonPlayerTest, ALimbYieldsToWhatResistsMoreThanItMayPush) {
+  Scene scene = Before({0.45, -0.09, 0.4});
+  scene.bodies[kBlock].mass_kg = 60;  // 60 kg * 9.81 * 0.4 * 0.8: it takes some 190 N to slide it
+  const Vector3d there(0.33, -0.09, 0.4);
+  std::vector<PersonStep> steps = Kick(there);
+  std::get<MoveLimbStep>(steps[1].action).most_n = 60;
+  const Played yielding = Play(scene, steps);
+  EXPECT_LT(std::abs(yielding.end.bodies[kBlock].X_WB.p_m.x() - 0.45), 0.005);
+  EXPECT_LT(DepthIn(yielding, scene), 0.004);
+  // One that does not yield moves the same block.
+  EXPECT_GT(Play(scene, Kick(there)).end.bodies[kBlock].X_WB.p_m.x(), 0.5);
+}
+
+TEST(PersonPlayerTest, ALimbThatMayYieldStillPushesWhatIsLight) {
+  const Scene scene = Before({0.45, -0.09, 0.4});
+  std::vector<PersonStep> steps = Kick({0.35, -0.09, 0.4});
+  std::get<MoveLimbStep>(steps[1].action).most_n = 60;
+  EXPECT_GT(Play(scene, steps).end.bodies[kBlock].X_WB.p_m.x(), 0.52);
+}
+
+TEST(PersonPlayerTest, ARecordedFigureIsTakenAndLeft) {
+  const Scene scene = Before({2, 2, 0.4});
+  const Person& anna = scene.persons.front();
+  Posture kneeling = Standing(scene, anna);
+  Figure figure = FigureOf(anna, kneeling);
+  figure.hips_W_m += Vector3d(0.4, 0, -0.2);
+  figure.ways_W[Figure::kThigh] = Vector3d(0.8, 0, -0.6);
+  const PersonStep recorded{0, BodyPosesStep{{{0.4, figure}, {0.8, figure}}}, 0.8};
+  const auto pelvis = static_cast<std::size_t>(PartNamed(scene, "anna_pelvis"));
+  const Snapshot held = Play(scene, {recorded}).end;
+  EXPECT_LT((held.bodies[pelvis].X_WB.p_m - figure.hips_W_m).norm(), 1e-9);
+  const auto thigh = static_cast<std::size_t>(PartNamed(scene, "anna_right_thigh"));
+  EXPECT_NEAR(std::abs((held.bodies[thigh].X_WB.q * Vector3d::UnitZ()).x()), 0.8, 1e-6);
+  // Afterwards she stands where her hips are.
+  const Snapshot left = Play(scene, {recorded, {0, WaitStep{}, 0.5}}).end;
+  EXPECT_LT((left.bodies[pelvis].X_WB.p_m - scene.bodies[pelvis].X_WB.p_m - Vector3d(0.4, 0, 0)).norm(), 1e-6);
+}
+
 TEST(PersonPlayerTest, TheSameStepsGiveTheSameHash) {
   const Scene scene = Before({0.45, -0.09, 0.4});
   const Vector3d there(0.35, -0.09, 0.4);

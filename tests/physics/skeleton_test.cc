@@ -105,7 +105,7 @@ TEST(SkeletonTest, ALimbThatCannotReachIsStretched) {
 TEST(SkeletonTest, TheElbowGoesWhereItIsSentAndTheForearmIsFoldedUp) {
   const Person person = Anna();
   Posture posture = Upright(person);
-  const Vector3d shoulder = RestOf(0, person, person.X_WS, 0).p_W_m;  // roughly below it
+  const Vector3d shoulder = RestOf(0, person, posture).p_W_m;  // roughly below it
   posture.limbs[0] = {LimbEnd::kRightElbow, shoulder + Vector3d(0.3, 0, 0.3)};
   const Vector3d elbow = PlaceOf(LimbEnd::kRightElbow, person, posture);
   EXPECT_GT(elbow.x(), 1.1);
@@ -114,9 +114,72 @@ TEST(SkeletonTest, TheElbowGoesWhereItIsSentAndTheForearmIsFoldedUp) {
 
 TEST(SkeletonTest, LeaningBringsTheHeadForwardAndLeavesTheFeet) {
   const Person person = Anna();
-  EXPECT_GT(NeckTop(person, person.X_WS, 0.5).x(), NeckTop(person, person.X_WS, 0).x() + 0.2);
-  EXPECT_LT(NeckTop(person, person.X_WS, 0.5).z(), NeckTop(person, person.X_WS, 0).z());
-  EXPECT_EQ(RestOf(2, person, person.X_WS, 0.5).p_W_m, RestOf(2, person, person.X_WS, 0).p_W_m);
+  const Posture upright = Upright(person);
+  Posture leaning = upright;
+  leaning.lean_rad = 0.5;
+  EXPECT_GT(NeckTop(person, leaning).x(), NeckTop(person, upright).x() + 0.2);
+  EXPECT_LT(NeckTop(person, leaning).z(), NeckTop(person, upright).z());
+  EXPECT_EQ(RestOf(2, person, leaning).p_W_m, RestOf(2, person, upright).p_W_m);
+}
+
+TEST(SkeletonTest, SwayingHipsLeaveTheFeetAndNearlyTheShoulders) {
+  const Person person = Anna();
+  const Posture upright = Upright(person);
+  Posture swayed = upright;
+  swayed.sway_m = {0, 0.2};  // to her left, which is y
+  const auto moved = [&](const char* part) -> Vector3d {
+    return PlaceOf(person, swayed, part).p_m - PlaceOf(person, upright, part).p_m;
+  };
+  EXPECT_NEAR(moved("anna_pelvis").y(), 0.2, 1e-9);
+  EXPECT_LT(moved("anna_pelvis").z(), -0.01);  // legs have their length
+  EXPECT_LT(moved("anna_right_foot").norm(), 1e-6);
+  EXPECT_LT(moved("anna_left_foot").norm(), 1e-6);
+  EXPECT_LT(std::abs(moved("anna_neck").y()), 0.02);
+}
+
+TEST(SkeletonTest, AFigureStandsAsThePostureThatItWasMadeOf) {
+  const Person person = Anna();
+  Posture posture = Upright(person);
+  posture.lean_rad = 0.4;
+  posture.limbs[0] = {LimbEnd::kRightWrist, Vector3d(1.35, 1.8, 1.2)};
+  posture.limbs[3] = {LimbEnd::kLeftFoot, Vector3d(1.3, 2.1, 0.4)};
+  posture.X_WHead = HeadToward(person, NeckTop(person, posture), {0.9, 0.3, -0.2});
+  Posture as_figure = Upright(person);
+  as_figure.figure = FigureOf(person, posture);
+  as_figure.X_WHead = HeadOfFigure(person, as_figure);
+  const std::vector<Pose> places = PlacesOf(person, posture, {}), again = PlacesOf(person, as_figure, {});
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LT((places[i].p_m - again[i].p_m).norm(), 1e-9) << i;
+}
+
+TEST(SkeletonTest, AFigureSuitsATallerPerson) {
+  Person person = Anna();
+  Posture posture = Upright(person);
+  posture.figure = FigureOf(person, posture);
+  person.height_m = 2.1;
+  EXPECT_NEAR((PlaceOf(LimbEnd::kRightElbow, person, posture) - PlaceOf(LimbEnd::kRightWrist, person, posture)).norm(),
+              LengthOf(person, "anna_right_forearm"), 1e-9);
+}
+
+TEST(SkeletonTest, PartsOfLimbsAreTheOnesOfTheirNames) {
+  Person person = Anna();
+  for (const int hand : {-1, 0}) {
+    person.right_hand = hand;
+    const std::vector<std::string> names = NamesOf(PartsOf(person));
+    const std::string words[4] = {"_right_", "_left_", "_right_", "_left_"};
+    int covered = 5;  // head and trunk
+    for (int limb = 0; limb < 4; ++limb) {
+      const PartRange range = PartsOfLimb(person, limb);
+      EXPECT_EQ(range.begin, covered);
+      for (int i = range.begin; i < range.end; ++i) {
+        const std::string& name = names[static_cast<std::size_t>(i)];
+        EXPECT_NE(name.find(words[limb]), std::string::npos) << name;
+        const bool of_arm = name.find("arm") != std::string::npos || name.find("hand") != std::string::npos;
+        EXPECT_EQ(of_arm, limb < 2) << name;
+      }
+      covered = range.end;
+    }
+    EXPECT_EQ(static_cast<std::size_t>(covered), names.size());
+  }
 }
 
 TEST(SkeletonTest, ArmsFollowTheHandsOfTheScene) {
