@@ -158,15 +158,16 @@ double PersonPlayer::ResistanceTo(int limb, const Snapshot& now) const {
 }
 
 void PersonPlayer::Yield(int limb, const Snapshot& now) {
-  // Resistance grows with the speed, so that speed is taken which keeps it at the limit; from there
-  // the limb takes up its pace again within this time.
-  constexpr double kRecover_s = 0.2;
+  // Resistance grows with the speed, so that speed is taken which keeps it at the limit. From there the
+  // limb takes up its pace again by equal shares: what resisted at a slow pace is met at a slow one.
+  constexpr double kGrow_s = 0.1, kLeastPace = 0.01;
   const double dt_s = 1.0 / scene_.world.rate_hz;
   LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
   if (!motion.most_n) return;
   const double resistance_n = ResistanceTo(limb, now);
-  motion.pace = resistance_n > *motion.most_n ? motion.pace * *motion.most_n / resistance_n
-                                              : std::min(1.0, motion.pace + dt_s / kRecover_s);
+  motion.pace = resistance_n > *motion.most_n
+                    ? motion.pace * *motion.most_n / resistance_n
+                    : std::min(1.0, std::max(motion.pace, kLeastPace) * (1 + dt_s / kGrow_s));
   motion.behind_s += (1 - motion.pace) * dt_s;
 }
 

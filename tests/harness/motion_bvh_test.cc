@@ -77,7 +77,7 @@ TEST(MotionBvhTest, SaysWhatIsWrongAndWhere) {
   const Bad bads[] = {
       {"HIERARCHY", "HIERARHCY", "1:1: expected 'HIERARCHY', found 'HIERARHCY'\n"},
       {"ROOT Hips", "JOINT Hips", "2:1: expected 'ROOT' and a name, found 'JOINT'\n"},
-      {"Zrotation", "Zrotatoin", "5:26: no channel is called 'Zrotatoin' | did you mean 'Zrotation'?\n"},
+      {"Zrotation", "Zrotatoin", "5:24: no channel is called 'Zrotatoin' | did you mean 'Zrotation'?\n"},
       {"Yposition Zrotation", "Zrotation Zrotation", "5:24: 'Zrotation' is given twice\n"},
       {"CHANNELS 2", "CHANNELS 3", "5:12: CHANNELS: 3 are announced, 2 follow\n"},
       {"OFFSET 1.5 -2 0", "OFFSET 1.5 -2", "7:5: expected 'OFFSET' and three numbers, found 'OFFSET'\n"},

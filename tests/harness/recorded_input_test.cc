@@ -180,7 +180,7 @@ TEST_F(RecordedBodyTest, ScalePlaceAndYawAreTheScenarios) {
 
 TEST_F(RecordedBodyTest, Refuses) {
   EXPECT_EQ(Refused("recording: sticks.bvh", "right_hand"),
-            "probe.yaml:11:29: recording: a BVH file moves a whole body, no hand | give this step to a person; hands "
+            "probe.yaml:12:29: recording: a BVH file moves a whole body, no hand | give this step to a person; hands "
             "follow .csv and .json files\n");
   EXPECT_NE(Refused("recording: sticks.bvh, palm_m: [0, 0, 0]").find("palm_m: a BVH file moves a whole body, no hand"),
             std::string::npos);
@@ -190,7 +190,7 @@ TEST_F(RecordedBodyTest, Refuses) {
             std::string::npos);
   EXPECT_NE(Refused("recording: sticks.bvh, scale: 0.04").find("hips: jump: 2.010 m within 0.200 s, at 0.200 s; at most 0.1 m"),
             std::string::npos);
-  EXPECT_NE(Refused("recording: sticks.bvh, scale: 100, most_jump_m: 100").find("beyond"), std::string::npos);
+  EXPECT_NE(Refused("recording: sticks.bvh, scale: 1, most_jump_m: 100").find("the hips are beyond 100 m"), std::string::npos);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ TEST(FigureTest, HalfWayBetweenTwoWaysIsTheirBisector) {
 }
 
 TEST(FigureTest, WaysStayUnitEvenWhenTheyTurnRound) {
-  const Figure mixed = Mix(AllWays(Vector3d::UnitX(), {}), AllWays(-Vector3d::UnitX(), {}), 0.3);
+  const Figure mixed = Mix(AllWays(Vector3d::UnitX(), Vector3d::Zero()), AllWays(-Vector3d::UnitX(), Vector3d::Zero()), 0.3);
   for (const Vector3d& way : mixed.ways_W) EXPECT_NEAR(way.norm(), 1, 1e-9);
 }
 
@@ -43,7 +43,7 @@ TEST(FigureTrackTest, PassesEveryFigureAtItsTime) {
 }
 
 TEST(FigureTrackTest, AFirstFigureAtZeroIsJumpedTo) {
-  const FigureTrack track(AllWays(Vector3d::UnitX(), {}), {{0, AllWays(Vector3d::UnitY(), {})}});
+  const FigureTrack track(AllWays(Vector3d::UnitX(), Vector3d::Zero()), {{0, AllWays(Vector3d::UnitY(), Vector3d::Zero())}});
   EXPECT_LT((track.At(0).ways_W[0] - Vector3d::UnitY()).norm(), 1e-12);
 }
 
