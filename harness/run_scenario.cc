@@ -48,11 +48,11 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
     clock.Lap(result.seconds.physics);
     const physics::Snapshot& snapshot = simulation.snapshot();
     if (!sensing.Due(snapshot.tick)) continue;
-    const grammar::Frame frame = sensing.Sense(snapshot);
+    const grammar::FrameChanges changes = sensing.SenseChanges(snapshot);
     clock.Lap(result.seconds.sensing);
-    monitor.Advance(frame, events);
+    monitor.AdvanceBy(changes, events);
     clock.Lap(result.seconds.grammar);
-    if (options.watch) options.watch(frame);
+    if (options.watch) options.watch(sensing.Whole());
     if (options.record) result.recording.push_back(snapshot);
   }
 
@@ -72,7 +72,8 @@ grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::S
   const grammar::Cast cast = MakeCast(scenario);
   grammar::Monitor monitor(program, cast);
   std::vector<grammar::Event> events;
-  for (const physics::Snapshot& snapshot : recording) monitor.Advance(sensing.Sense(snapshot), events);
+  for (const physics::Snapshot& snapshot : recording)
+    monitor.AdvanceBy(sensing.SenseChanges(snapshot), events);
   monitor.Finish(end, events);
   return grammar::NameEvents(*program, cast, events);
 }

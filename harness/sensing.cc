@@ -2,6 +2,7 @@
 #include "harness/sensing.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace prehend::harness {
 
@@ -59,6 +60,21 @@ grammar::EntityLook LookAt(const physics::BodyState& body) {
           .asleep = body.asleep};
 }
 
+/// No grammar can tell them apart.
+bool LookAlike(const grammar::EntityLook& a, const grammar::EntityLook& b) {
+  return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() &&
+         a.v_WB_m_per_s == b.v_WB_m_per_s && a.w_WB_rad_per_s == b.w_WB_rad_per_s &&
+         a.joint_position == b.joint_position && a.joint_fraction == b.joint_fraction &&
+         a.gazes_at == b.gazes_at;
+}
+
+std::pair<int, int> PairOf(const grammar::Touch& touch) { return {touch.a, touch.b}; }
+
+bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
+  return a.up_on_a == b.up_on_a && a.up_on_b == b.up_on_b && a.normal_force_n == b.normal_force_n &&
+         a.sensor_sets == b.sensor_sets;
+}
+
 }  // namespace
 
 std::vector<std::string> StyleNames(const physics::Scene& scene) {
@@ -87,22 +103,55 @@ Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
   hands_.resize(scene.hands.size());
 }
 
-grammar::Frame Sensing::Sense(const physics::Snapshot& snapshot) {
-  for (std::size_t i = 0; i < snapshot.bodies.size(); ++i)
-    entities_[i] = LookAt(snapshot.bodies[i]);
+grammar::FrameChanges Sensing::SenseChanges(const physics::Snapshot& snapshot) {
+  if (snapshot.tick <= tick_) tick_ = -1;  // an earlier moment: everybody may stand elsewhere
+  shown_.clear();
+  SenseBodies(snapshot);
+  SenseHands(snapshot);
+  SenseTouches(snapshot);
+  tick_ = snapshot.tick;
+
+  std::ranges::sort(shown_);
+  shown_.erase(std::ranges::unique(shown_).begin(), shown_.end());
+  entity_changes_.clear();
+  for (const int entity : shown_)
+    entity_changes_.push_back({entity, entities_[static_cast<std::size_t>(entity)]});
+  return {tick_, entity_changes_, hands_, touch_changes_, partings_};
+}
+
+grammar::Frame Sensing::Whole() {
+  touches_ = now_.All();
+  return {tick_, entities_, hands_, touches_};
+}
+
+void Sensing::Show(int entity, const grammar::EntityLook& look) {
+  grammar::EntityLook& before = entities_[static_cast<std::size_t>(entity)];
+  if (!LookAlike(look, before)) shown_.push_back(entity);
+  before = look;
+}
+
+void Sensing::SenseBodies(const physics::Snapshot& snapshot) {
+  for (std::size_t i = 0; i < snapshot.bodies.size(); ++i) {
+    if (!snapshot.MayHaveMoved(i, tick_)) continue;
+    grammar::EntityLook look = LookAt(snapshot.bodies[i]);
+    look.joint_position = entities_[i].joint_position;
+    look.joint_fraction = entities_[i].joint_fraction;
+    look.gazes_at = entities_[i].gazes_at;
+    Show(static_cast<int>(i), look);
+  }
   for (std::size_t i = 0; i < snapshot.joints.size(); ++i) {
-    grammar::EntityLook& look = entities_[static_cast<std::size_t>(jointed_[i])];
+    grammar::EntityLook look = entities_[static_cast<std::size_t>(jointed_[i])];
     look.joint_position = snapshot.joints[i].position;
     look.joint_fraction = snapshot.joints[i].fraction;
+    Show(jointed_[i], look);
   }
   for (std::size_t i = 0; i < snapshot.gazes.size(); ++i) {
     const physics::GazeState& gaze = snapshot.gazes[i];
-    entities_[static_cast<std::size_t>(heads_[i])].gazes_at =
+    grammar::EntityLook look = entities_[static_cast<std::size_t>(heads_[i])];
+    look.gazes_at =
         gaze.hand >= 0 ? body_count_ + gaze.hand : gaze.body >= 0 ? gaze.body : grammar::kNobody;
+    Show(heads_[i], look);
   }
-  SenseHands(snapshot);
-  SenseTouches(snapshot);
-  return {snapshot.tick, entities_, hands_, touches_};
 }
 
 void Sensing::SenseHands(const physics::Snapshot& snapshot) {
@@ -118,7 +167,7 @@ void Sensing::SenseHands(const physics::Snapshot& snapshot) {
       feelers[next++] = {hand.X_WL[i / kFeelersPerLink] * feeler.p_W_m, feeler.radius_m};
     }
     const int entity = body_count_ + static_cast<int>(h);
-    entities_[entity] = LookAt(hand.palm);
+    Show(entity, LookAt(hand.palm));
     const auto style = static_cast<std::size_t>(hand.style);
     const int named = style < geometry.styles.size() ? geometry.styles[style] : grammar::kNobody;
     hands_[h] = {entity, hand.trigger, named, hand.palm.X_WB.q * geometry.model.ahead,
@@ -127,8 +176,38 @@ void Sensing::SenseHands(const physics::Snapshot& snapshot) {
 }
 
 void Sensing::SenseTouches(const physics::Snapshot& snapshot) {
+  std::swap(now_.moving, before_.moving);
+  ReadTouches(snapshot.contacts, now_.moving);
+  touch_changes_.clear();
+  partings_.clear();
+  if (snapshot.resting == resting_points_) return CompareTouches(before_.moving, now_.moving);
+  std::swap(now_.resting, before_.resting);
+  resting_points_ = snapshot.resting;
+  ReadTouches(snapshot.AllContacts()[1], now_.resting);
+  CompareTouches(before_.All(), now_.All());
+}
+
+Sensing::Touches Sensing::SensedTouches::All() const {
+  Touches all;
+  std::ranges::merge(moving, resting, std::back_inserter(all), {}, PairOf, PairOf);
+  return all;
+}
+
+void Sensing::CompareTouches(const Touches& before, const Touches& now) {
+  auto old = before.begin();
+  for (const grammar::Touch& touch : now) {
+    for (; old != before.end() && PairOf(*old) < PairOf(touch); ++old)
+      partings_.push_back({old->a, old->b});
+    const bool touched = old != before.end() && PairOf(*old) == PairOf(touch);
+    if (!touched || !Alike(*old, touch)) touch_changes_.push_back(touch);
+    if (touched) ++old;
+  }
+  for (; old != before.end(); ++old) partings_.push_back({old->a, old->b});
+}
+
+void Sensing::ReadTouches(Points points, Touches& touches) {
   points_.clear();
-  for (const physics::ContactPoint& contact : snapshot.contacts) {
+  for (const physics::ContactPoint& contact : points) {
     const int a = EntityOf(contact.a), b = EntityOf(contact.b);
     if (a == b) continue;
     const double up = contact.nhat_BA_W.z();
@@ -137,7 +216,7 @@ void Sensing::SenseTouches(const physics::Snapshot& snapshot) {
   }
   std::ranges::stable_sort(points_, {}, &PairPoint::pair);
 
-  touches_.clear();
+  touches.clear();
   for (std::size_t first = 0; first < points_.size();) {
     std::size_t last = first;
     double load = 0;
@@ -152,7 +231,7 @@ void Sensing::SenseTouches(const physics::Snapshot& snapshot) {
       touch.up_on_b = std::max(touch.up_on_b, -points_[i].up_on_a);
     }
     touch.normal_force_n = load * static_cast<double>(rate_hz_);
-    touches_.push_back(touch);
+    touches.push_back(touch);
     first = last;
   }
 }

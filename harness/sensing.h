@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the grammar gets to see: Snapshot -> Frame. Points of contact become touches of pairs, links
-// become feelers and sensor sets. Knows geometry, knows nothing of events. Tested by
-// tests/harness/sensing_test.cc
+// What the grammar gets to see: Snapshot -> Frame, or what is new in it. Points of contact become
+// touches of pairs, links become feelers and sensor sets. Knows geometry, knows nothing of events.
+// Bodies asleep, and what touches between them, are not looked at again: they cost no time.
+// Tested by tests/harness/sensing_test.cc
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -31,13 +33,27 @@ class Sensing {
     return tick * sensing_hz_ / rate_hz_ > (tick - 1) * sensing_hz_ / rate_hz_;
   }
 
-  /// The frame lives until the next call. Allocates nothing once it has seen the largest number of
-  /// contacts.
-  grammar::Frame Sense(const physics::Snapshot& snapshot);
+  /// What differs from the snapshot of this run that was sensed before, at first from nothing at all.
+  /// Lives until the next call. Allocates nothing once it has seen the largest number of contacts,
+  /// while nobody falls asleep or wakes.
+  grammar::FrameChanges SenseChanges(const physics::Snapshot& snapshot);
+  /// Everything as sensed last. Lives until the next call.
+  grammar::Frame Whole();
+  grammar::Frame Sense(const physics::Snapshot& snapshot) {
+    SenseChanges(snapshot);
+    return Whole();
+  }
 
  private:
+  using Points = std::span<const physics::ContactPoint>;
+  using Touches = std::vector<grammar::Touch>;
+
+  void SenseBodies(const physics::Snapshot& snapshot);
+  void Show(int entity, const grammar::EntityLook& look);
   void SenseHands(const physics::Snapshot& snapshot);
   void SenseTouches(const physics::Snapshot& snapshot);
+  void ReadTouches(Points points, Touches& touches);
+  void CompareTouches(const Touches& before, const Touches& now);
   int EntityOf(const physics::ContactSide& side) const;
   std::uint32_t SensorSetOf(const physics::ContactSide& side) const;
 
@@ -66,7 +82,20 @@ class Sensing {
   std::vector<grammar::HandLook> hands_;
   std::vector<std::vector<grammar::Feeler>> feelers_;  ///< per hand, world frame
   std::vector<PairPoint> points_;
-  std::vector<grammar::Touch> touches_;
+  /// What touches, sorted: now and in the snapshot before, between what may move and what rests.
+  struct SensedTouches {
+    Touches moving, resting;
+    Touches All() const;
+  };
+  SensedTouches now_, before_;
+  std::shared_ptr<const std::vector<physics::ContactPoint>> resting_points_;
+  Touches touches_;  ///< all of them, when asked for
+  std::int64_t tick_ = -1;  ///< of the last snapshot
+
+  std::vector<int> shown_;  ///< entities that look different
+  std::vector<grammar::EntityChange> entity_changes_;
+  Touches touch_changes_;
+  std::vector<grammar::Parting> partings_;
 };
 
 }  // namespace prehend::harness

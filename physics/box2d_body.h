@@ -39,6 +39,8 @@ class Box2dBody {
             b2World& world, FixtureTable& table);
 
   b2Body& rigid() { return *rigid_; }
+  /// Nothing moves it: it is fixed or asleep.
+  bool rests() const { return rigid_->GetType() == b2_staticBody || !rigid_->IsAwake(); }
   /// Of the i-th of the bodies.
   BodyState State(std::size_t i) const;
 

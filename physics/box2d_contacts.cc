@@ -25,23 +25,23 @@ void Box2dMixing::PreSolve(b2Contact* contact, const b2Manifold*) {
 }
 
 void ReadContacts(const b2World& world, const FixtureTable& table, TouchingPairs& pairs) {
-  pairs.BeginTick();
   for (const b2Contact* contact = world.GetContactList(); contact; contact = contact->GetNext()) {
-    if (!contact->IsTouching()) continue;
+    const ContactSide &a = FactsOf(*contact->GetFixtureA(), table).side,
+                      &b = FactsOf(*contact->GetFixtureB(), table).side;
+    if (!contact->IsTouching() || pairs.Rest(a, b)) continue;
     b2WorldManifold at;
     contact->GetWorldManifold(&at);
     const b2Manifold& manifold = *contact->GetManifold();
     const Eigen::Vector3d nhat_AB_W(at.normal.x, 0, at.normal.y);
     for (int k = 0; k < manifold.pointCount; ++k) {
-      pairs.Add({.a = FactsOf(*contact->GetFixtureA(), table).side,
-                 .b = FactsOf(*contact->GetFixtureB(), table).side,
+      pairs.Add({.a = a,
+                 .b = b,
                  .p_W_m = FromBox2d(at.points[k]),
                  .nhat_BA_W = -nhat_AB_W,
                  .distance_m = (at.separations[k] + kSink) / kLengthScale,
                  .normal_impulse_n_s = manifold.points[k].normalImpulse / kLengthScale});
     }
   }
-  pairs.EndTick();
 }
 
 void ResistRolling(b2World& world, const FixtureTable& table) {

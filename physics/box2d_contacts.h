@@ -15,7 +15,7 @@ class Box2dMixing final : public b2ContactListener {
   void PreSolve(b2Contact* contact, const b2Manifold* before) override;
 };
 
-/// After every step.
+/// After every step, between the pairs' BeginTick() and EndTick().
 void ReadContacts(const b2World& world, const FixtureTable& table, TouchingPairs& pairs);
 
 /// Slows what rolls, by the forces of the last step: after every step.

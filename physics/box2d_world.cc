@@ -8,6 +8,7 @@
 #include "physics/box2d_joint.h"
 #include "physics/joint.h"
 #include "physics/rigid_groups.h"
+#include "physics/stillness.h"
 
 namespace prehend::physics {
 namespace {
@@ -40,13 +41,15 @@ class Box2dWorld final : public World {
   std::vector<Place> places_;  ///< one per body of the scene
   std::vector<Box2dJoint> joints_;
   std::vector<Box2dHand> hands_;
+  Stillness stillness_;
   TouchingPairs touching_;
 };
 
 Box2dWorld::Box2dWorld(const Scene& scene, const std::vector<int>& styles)
     : scene_(scene),
       dt_s_(1.0 / scene.world.rate_hz),
-      world_(ToBox2d({0, 0, -scene.world.gravity_m_per_s2})) {
+      world_(ToBox2d({0, 0, -scene.world.gravity_m_per_s2})),
+      stillness_(scene.bodies.size()) {
   // As in the other engine: what is too fast for its ticks is told by the checks of a run.
   world_.SetContinuousPhysics(false);
   world_.SetContactListener(&mixing_);
@@ -82,20 +85,22 @@ void Box2dWorld::Step(const std::vector<HandCommand>& commands) {
   for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i].Drive(commands[i], dt_s_);
   for (Box2dJoint& joint : joints_) joint.Pull(dt_s_);
   world_.Step(static_cast<float>(dt_s_), kVelocityIterations, kPositionIterations);
+  stillness_.Update(++tick_, [this](std::size_t i) { return rigids_[places_[i].rigid].rests(); });
+  touching_.BeginTick(stillness_.rests());
   ReadContacts(world_, table_, touching_);
+  touching_.EndTick();
   ResistRolling(world_, table_);
-  ++tick_;
 }
 
 void Box2dWorld::Describe(Snapshot& snapshot) const {
+  stillness_.Describe(snapshot, [this](std::size_t i) {
+    return rigids_[places_[i].rigid].State(places_[i].member);
+  });
   snapshot.tick = tick_;
-  snapshot.bodies.resize(places_.size());
-  for (std::size_t i = 0; i < places_.size(); ++i)
-    snapshot.bodies[i] = rigids_[places_[i].rigid].State(places_[i].member);
   DescribeJoints(scene_, snapshot);
   snapshot.hands.resize(hands_.size());
   for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i].Describe(snapshot.hands[i]);
-  touching_.Describe(snapshot.contacts);
+  touching_.Describe(snapshot);
 }
 
 }  // namespace

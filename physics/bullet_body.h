@@ -29,6 +29,10 @@ class BulletBody {
   void KeepInPlane();
 
   btRigidBody& rigid() { return *rigid_; }
+  /// Nothing moves it: it is fixed or asleep.
+  bool rests() const {
+    return !rigid_->isKinematicObject() && (rigid_->isStaticObject() || !rigid_->isActive());
+  }
   /// Of the i-th of the bodies.
   BodyState State(std::size_t i) const;
   /// Which of the bodies each of the rigid body's shapes belongs to.

@@ -15,9 +15,11 @@ void ReadContacts(const btDispatcher& const_dispatcher, const ContactSides& side
                   TouchingPairs& pairs) {
   // The manifold accessor is not const in Bullet, though it changes nothing.
   auto& dispatcher = const_cast<btDispatcher&>(const_dispatcher);
-  pairs.BeginTick();
   for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
     const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+    // What makes up one object rests or moves as one.
+    if (pairs.Rest(SideOf(sides, *manifold.getBody0(), 0), SideOf(sides, *manifold.getBody1(), 0)))
+      continue;
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
       const btManifoldPoint& point = manifold.getContactPoint(k);
       // Bullet's normal points from body 1 into body 0.
@@ -29,7 +31,6 @@ void ReadContacts(const btDispatcher& const_dispatcher, const ContactSides& side
                  .normal_impulse_n_s = point.getAppliedImpulse()});
     }
   }
-  pairs.EndTick();
 }
 
 }  // namespace prehend::physics

@@ -18,7 +18,7 @@ using ContactSides = std::vector<std::vector<ContactSide>>;
 /// Whose shape this is; `shape` is the index that Bullet gives to a compound's shape.
 const ContactSide& SideOf(const ContactSides& sides, const btCollisionObject& object, int shape);
 
-/// After every step.
+/// After every step, between the pairs' BeginTick() and EndTick().
 void ReadContacts(const btDispatcher& dispatcher, const ContactSides& sides, TouchingPairs& pairs);
 
 }  // namespace prehend::physics

@@ -16,6 +16,7 @@
 #include "physics/bullet_joint.h"
 #include "physics/joint.h"
 #include "physics/rigid_groups.h"
+#include "physics/stillness.h"
 
 // The only process-wide setting of Bullet that is touched. Every world sets the same constant.
 extern btScalar gDbvtMargin;
@@ -80,11 +81,12 @@ class BulletWorld final : public World {
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;
   std::vector<std::unique_ptr<BulletHand>> hands_;
   ContactSides sides_;
+  Stillness stillness_;
   TouchingPairs touching_;
 };
 
 BulletWorld::BulletWorld(const Scene& scene, const std::vector<int>& styles)
-    : scene_(scene), dt_s_(1.0 / scene.world.rate_hz) {
+    : scene_(scene), dt_s_(1.0 / scene.world.rate_hz), stillness_(scene.bodies.size()) {
   Configure();
   AddBodies();
   AddJoints();
@@ -169,8 +171,10 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
   for (std::size_t i = 0; i < hands_.size(); ++i)
     hands_[i]->Drive(commands[i], dt_s_, scene_.world.gravity_m_per_s2);
   world_.stepSimulation(dt_s_, 0);
+  stillness_.Update(++tick_, [this](std::size_t i) { return rigids_[places_[i].rigid]->rests(); });
+  touching_.BeginTick(stillness_.rests());
   ReadContacts(dispatcher_, sides_, touching_);
-  ++tick_;
+  touching_.EndTick();
 }
 
 void BulletWorld::MoveKinematic(int body, const Pose& X_WB) {
@@ -182,14 +186,14 @@ void BulletWorld::MoveKinematic(int body, const Pose& X_WB) {
 Sight BulletWorld::Look(const SightLine& line) const { return FirstInSight(world_, sides_, line); }
 
 void BulletWorld::Describe(Snapshot& snapshot) const {
+  stillness_.Describe(snapshot, [this](std::size_t i) {
+    return rigids_[places_[i].rigid]->State(places_[i].member);
+  });
   snapshot.tick = tick_;
-  snapshot.bodies.resize(places_.size());
-  for (std::size_t i = 0; i < places_.size(); ++i)
-    snapshot.bodies[i] = rigids_[places_[i].rigid]->State(places_[i].member);
   DescribeJoints(scene_, snapshot);
   snapshot.hands.resize(hands_.size());
   for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i]->Describe(snapshot.hands[i]);
-  touching_.Describe(snapshot.contacts);
+  touching_.Describe(snapshot);
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ const std::string& NameOf(const Scene& scene, const ContactSide& side) {
 
 std::optional<RunProblem> CheckSnapshot(const Scene& scene, const Snapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.bodies.size(); ++i) {
+    if (!snapshot.MayHaveMoved(i, snapshot.tick - 1)) continue;  // it was checked when it did
     if (auto problem = CheckState(scene.bodies[i].name, snapshot.bodies[i])) return problem;
   }
   for (std::size_t i = 0; i < snapshot.hands.size(); ++i) {

@@ -3,7 +3,10 @@
 // Scene.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "physics/pose.h"
@@ -65,7 +68,21 @@ struct Snapshot {
   std::vector<JointState> joints;
   std::vector<HandState> hands;
   std::vector<GazeState> gazes;
-  std::vector<ContactPoint> contacts;  ///< sorted by (a, b, point); a < b
+  std::vector<ContactPoint> contacts;  ///< of pairs that may move; sorted by (a, b, point); a < b
+  /// The points between what rests (fixed or asleep), sorted likewise: they stay as they are, so
+  /// snapshots share them until somebody falls asleep or wakes. Null: there are none.
+  std::shared_ptr<const std::vector<ContactPoint>> resting;
+  /// By body, the last tick at which it may have moved. Empty: nobody knows.
+  std::vector<std::int64_t> moved_tick;
+
+  /// False only if the body is for certain as it was after the tick `since`.
+  bool MayHaveMoved(std::size_t body, std::int64_t since) const {
+    return body >= moved_tick.size() || moved_tick[body] > since;
+  }
+  /// Where anything touches, in two parts.
+  std::array<std::span<const ContactPoint>, 2> AllContacts() const {
+    return {contacts, resting ? std::span(*resting) : std::span<const ContactPoint>()};
+  }
 };
 
 }  // namespace prehend::physics

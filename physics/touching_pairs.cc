@@ -21,7 +21,14 @@ bool PointLess(const ContactPoint& l, const ContactPoint& r) {
 
 }  // namespace
 
-void TouchingPairs::BeginTick() {
+void TouchingPairs::BeginTick(const std::vector<char>& rests) {
+  if (rests != rests_) {
+    rests_ = rests;
+    // Who has just fallen asleep was simulated in this tick: its last points are still to come.
+    rested_.resize(rests.size(), 0);
+    for (std::size_t i = 0; i < rests.size(); ++i) rested_[i] &= rests[i];
+    if (MovePairs(resting_, pairs_, false)) ShareResting();
+  }
   for (auto& [key, pair] : pairs_) pair.seen = false;
 }
 
@@ -46,12 +53,34 @@ void TouchingPairs::EndTick() {
     for (ContactPoint& point : pair.points) point.normal_impulse_n_s = 0;
   }
   std::erase_if(pairs_, [](const auto& entry) { return entry.second.quiet_ticks > kHoldTicks; });
+  if (rested_ == rests_) return;
+  rested_ = rests_;
+  if (MovePairs(pairs_, resting_, true)) ShareResting();
 }
 
-void TouchingPairs::Describe(std::vector<ContactPoint>& contacts) const {
-  contacts.clear();
+/// Whether there were any.
+bool TouchingPairs::MovePairs(Pairs& from, Pairs& to, bool that_rest) {
+  const std::size_t before = from.size();
+  for (auto it = from.begin(); it != from.end();) {
+    const auto next = std::next(it);
+    if (Rest(it->first.first, it->first.second) == that_rest) to.insert(from.extract(it));
+    it = next;
+  }
+  return from.size() != before;
+}
+
+void TouchingPairs::ShareResting() {
+  auto points = std::make_shared<std::vector<ContactPoint>>();
+  for (const auto& [key, pair] : resting_)
+    points->insert(points->end(), pair.points.begin(), pair.points.end());
+  shared_ = points->empty() ? nullptr : std::move(points);
+}
+
+void TouchingPairs::Describe(Snapshot& snapshot) const {
+  snapshot.contacts.clear();
   for (const auto& [key, pair] : pairs_)
-    contacts.insert(contacts.end(), pair.points.begin(), pair.points.end());
+    snapshot.contacts.insert(snapshot.contacts.end(), pair.points.begin(), pair.points.end());
+  snapshot.resting = shared_;
 }
 
 }  // namespace prehend::physics

@@ -44,18 +44,8 @@ class TouchReader {
   RawTouches Read() {
     for (int frame = 0; frame < recording_.size(); ++frame) {
       std::map<Pair, std::uint32_t> sensor_sets;  // of (hand, body)
-      for (const physics::ContactPoint& point : recording_.frames[frame].contacts) {
-        const int a = Entity(point.a), b = Entity(point.b);
-        if (a == b) continue;
-        Mark(raw_.touching, std::minmax(a, b), frame);
-        if (IsBody(a) && IsBody(b)) {
-          if (Holds(point.nhat_BA_W.z(), a, b, frame)) Mark(raw_.supported, {a, b}, frame);
-          if (Holds(-point.nhat_BA_W.z(), b, a, frame)) Mark(raw_.supported, {b, a}, frame);
-        } else if (IsBody(a) || IsBody(b)) {
-          const physics::ContactSide& hand = IsBody(a) ? point.b : point.a;
-          sensor_sets[{hand.hand, IsBody(a) ? a : b}] |= 1u << SensorSet(hand);
-        }
-      }
+      for (const auto& points : recording_.frames[frame].AllContacts())
+        for (const physics::ContactPoint& point : points) ReadPoint(point, frame, sensor_sets);
       for (const auto& [pair, sets] : sensor_sets)
         if (std::popcount(sets) >= settings_.grasp_sensor_sets) Mark(raw_.gripped, pair, frame);
     }
@@ -63,6 +53,19 @@ class TouchReader {
   }
 
  private:
+  void ReadPoint(const physics::ContactPoint& point, int frame,
+                 std::map<Pair, std::uint32_t>& sensor_sets) {
+    const int a = Entity(point.a), b = Entity(point.b);
+    if (a == b) return;
+    Mark(raw_.touching, std::minmax(a, b), frame);
+    if (IsBody(a) && IsBody(b)) {
+      if (Holds(point.nhat_BA_W.z(), a, b, frame)) Mark(raw_.supported, {a, b}, frame);
+      if (Holds(-point.nhat_BA_W.z(), b, a, frame)) Mark(raw_.supported, {b, a}, frame);
+    } else if (IsBody(a) || IsBody(b)) {
+      const physics::ContactSide& hand = IsBody(a) ? point.b : point.a;
+      sensor_sets[{hand.hand, IsBody(a) ? a : b}] |= 1u << SensorSet(hand);
+    }
+  }
   bool IsBody(int entity) const { return entity < recording_.body_count(); }
 
   int Entity(const physics::ContactSide& side) const {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace prehend::harness {
 namespace {
 
@@ -135,6 +137,60 @@ TEST(Sensing, FeelersFollowPalmAndLinks) {
   const physics::HandModel& model = scene.hands[0].model;
   EXPECT_NEAR(low, -model.palm_size_m.x() / 2, 1e-9);
   EXPECT_NEAR(high, 2 + model.links[1].length_m / 2, 1e-9);
+}
+
+/// All that a snapshot can say, from what rests and what moves, and back again.
+TEST(Sensing, ChangesAddUpToTheWhole) {
+  const physics::Scene scene = TwoBodiesAndAHand();
+  Sensing by_changes(scene, 480);
+  physics::Snapshot first = StillSnapshot(1);
+  first.moved_tick = {0, 1};
+  first.bodies[1].X_WB.p_m.z() = 0.1;
+  first.contacts = {Point(kTable, kBox, -1, 0.01)};
+  const grammar::FrameChanges all = by_changes.SenseChanges(first);
+  ASSERT_EQ(all.entities.size(), 1u) << "the rest stands at the origin";
+  EXPECT_EQ(all.entities[0].entity, 1);
+  EXPECT_EQ(all.touches.size(), 1u);
+
+  physics::Snapshot asleep = first;
+  asleep.tick = 2;
+  asleep.moved_tick = {0, 2};
+  asleep.resting =
+      std::make_shared<const std::vector<physics::ContactPoint>>(std::exchange(asleep.contacts, {}));
+  const grammar::FrameChanges nothing = by_changes.SenseChanges(asleep);
+  EXPECT_TRUE(nothing.entities.empty());
+  EXPECT_TRUE(nothing.touches.empty() && nothing.partings.empty()) << "only asleep now";
+  EXPECT_EQ(by_changes.Whole().touches.size(), 1u);
+
+  physics::Snapshot lifted = asleep;
+  lifted.tick = 3;
+  lifted.moved_tick = {0, 3};
+  lifted.bodies[1].X_WB.p_m.z() = 0.2;
+  lifted.resting = nullptr;
+  lifted.contacts = {Point(kBox, kFinger, 0, 0.1)};
+  const grammar::FrameChanges moved = by_changes.SenseChanges(lifted);
+  ASSERT_EQ(moved.entities.size(), 1u);
+  EXPECT_EQ(moved.entities[0].look.p_WB_m.z(), 0.2);
+  ASSERT_EQ(moved.touches.size(), 1u);
+  EXPECT_EQ(moved.touches[0].b, 2);
+  ASSERT_EQ(moved.partings.size(), 1u);
+  EXPECT_EQ(std::pair(moved.partings[0].a, moved.partings[0].b), std::pair(0, 1));
+
+  EXPECT_EQ(by_changes.Sense(first).entities[1].p_WB_m.z(), 0.1) << "an earlier moment";
+}
+
+TEST(Sensing, WhatHasNotMovedIsNotLookedAt) {
+  const physics::Scene scene = TwoBodiesAndAHand();
+  Sensing sensing(scene, 240);
+  physics::Snapshot snapshot = StillSnapshot(2);
+  snapshot.moved_tick = {0, 1};
+  sensing.SenseChanges(snapshot);
+  snapshot.tick = 4;
+  snapshot.bodies[1].X_WB.p_m.z() = 1;  // as no world would do it
+  EXPECT_TRUE(sensing.SenseChanges(snapshot).entities.empty());
+  snapshot.tick = 6;
+  snapshot.moved_tick = {0, 5};  // between two looks
+  EXPECT_EQ(sensing.SenseChanges(snapshot).entities.size(), 1u);
 }
 
 }  // namespace

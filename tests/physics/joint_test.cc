@@ -146,19 +146,20 @@ TEST_P(JointInEveryEngine, FixedJointsMakeOneBodyThatIsTouchedApart) {
   const Snapshot end = After(scene, 1);
   EXPECT_NEAR(end.bodies[2].X_WB.p_m.z(), 0.10, 0.001);
   EXPECT_NEAR((end.bodies[1].X_WB.p_m - end.bodies[2].X_WB.p_m).z(), 0.06, 1e-9);
-  ASSERT_FALSE(end.contacts.empty());
   double impulse = 0;
-  for (const ContactPoint& contact : end.contacts) {
-    EXPECT_EQ(contact.a.body, 0);
-    EXPECT_EQ(contact.b.body, 2);
-    impulse += contact.normal_impulse_n_s;
+  for (const auto& points : end.AllContacts()) {
+    for (const ContactPoint& contact : points) {
+      EXPECT_EQ(contact.a.body, 0);
+      EXPECT_EQ(contact.b.body, 2);
+      impulse += contact.normal_impulse_n_s;
+    }
   }
   EXPECT_NEAR(impulse * 480, 1.5 * 9.81, 0.2);
 }
 
 TEST_P(JointInEveryEngine, BodiesOfAJointDoNotTouchEachOther) {
   const Snapshot end = After(Lift({.upper = 0.3, .friction = 100}), 0.2);
-  EXPECT_TRUE(end.contacts.empty());
+  for (const auto& points : end.AllContacts()) EXPECT_TRUE(points.empty());
 }
 
 TEST(JointTest, TheWayAlongAHingeIsAnArcAboutItsPivot) {

@@ -123,8 +123,9 @@ TEST(SimulationTest, AnObjectTouchesItsSupportBeforeTheHandOpens) {
     while (simulation.snapshot().hands.empty() || simulation.snapshot().tick < 3.6 * 480) {
       ASSERT_TRUE(simulation.Step());
       stood = false;
-      for (const ContactPoint& contact : simulation.snapshot().contacts)
-        stood |= contact.a.body == kTable && contact.b.body == kObject;
+      for (const auto& points : simulation.snapshot().AllContacts())
+        for (const ContactPoint& contact : points)
+          stood |= contact.a.body == kTable && contact.b.body == kObject;
     }
     EXPECT_TRUE(stood);
     EXPECT_EQ(simulation.snapshot().hands[0].trigger, 1);

@@ -25,6 +25,12 @@ Snapshot After(World& world, int ticks, const std::vector<HandCommand>& commands
   return snapshot;
 }
 
+std::vector<ContactPoint> PointsOf(const Snapshot& snapshot) {
+  std::vector<ContactPoint> points;
+  for (const auto& part : snapshot.AllContacts()) points.insert(points.end(), part.begin(), part.end());
+  return points;
+}
+
 /// What holds in every engine; all of it happens in a plane.
 class WorldTest : public testing::TestWithParam<Engine> {
  protected:
@@ -53,11 +59,12 @@ TEST_P(WorldTest, EveryShapeRestsAtItsOwnHeight) {
     const auto world = Make(scene);
     const Snapshot snapshot = After(*world, 240);
     EXPECT_NEAR(snapshot.bodies[1].X_WB.p_m.z(), height, 0.0005);
-    ASSERT_FALSE(snapshot.contacts.empty());
-    EXPECT_EQ(snapshot.contacts[0].a.body, 0);
-    EXPECT_EQ(snapshot.contacts[0].b.body, 1);
+    const std::vector<ContactPoint> points = PointsOf(snapshot);
+    ASSERT_FALSE(points.empty());
+    EXPECT_EQ(points[0].a.body, 0);
+    EXPECT_EQ(points[0].b.body, 1);
     // From the thing (b) into the floor (a): down.
-    EXPECT_LT(snapshot.contacts[0].nhat_BA_W.z(), -0.99);
+    EXPECT_LT(points[0].nhat_BA_W.z(), -0.99);
   }
 }
 
@@ -69,7 +76,7 @@ TEST_P(WorldTest, ContactsCarryTheWeight) {
                                 .X_WB = {{0, 0, 0.05}}}}};
   const auto world = Make(scene);
   double impulse = 0;
-  for (const ContactPoint& contact : After(*world, 240).contacts)
+  for (const ContactPoint& contact : PointsOf(After(*world, 240)))
     impulse += contact.normal_impulse_n_s;
   EXPECT_NEAR(impulse * 480, 2 * 9.81, 0.2);
 }
@@ -81,7 +88,7 @@ TEST_P(WorldTest, TouchingNeedsAPush) {
         .name = name, .shapes = {{Box{{0.1, 0.1, 0.1}}, {}}}, .mass_kg = 1, .X_WB = {{x, 0, 0.05}}};
   };
   const auto world = Make({.bodies = {Floor(), block("left", 0), block("right", 0.101)}});
-  for (const ContactPoint& contact : After(*world, 240).contacts) EXPECT_EQ(contact.a.body, 0);
+  for (const ContactPoint& contact : PointsOf(After(*world, 240))) EXPECT_EQ(contact.a.body, 0);
 }
 
 TEST_P(WorldTest, ARestingContactNeverFlickers) {
@@ -92,8 +99,50 @@ TEST_P(WorldTest, ARestingContactNeverFlickers) {
                                 .X_WB = {{0, 0, 0.06}}}}};
   const auto world = Make(scene);
   After(*world, 48);
-  for (int i = 0; i < 1500; ++i) ASSERT_FALSE(After(*world, 1).contacts.empty()) << i;
+  for (int i = 0; i < 1500; ++i) ASSERT_FALSE(PointsOf(After(*world, 1)).empty()) << i;
   EXPECT_TRUE(After(*world, 1).bodies[1].asleep);
+}
+
+TEST_P(WorldTest, WhatSleepsIsTheSameFromTickToTickUntilItIsWoken) {
+  // A can stands on the floor; a ball falls on it when it has long been asleep.
+  const Scene scene{.bodies = {Floor(),
+                               {.name = "can",
+                                .shapes = {{Box{{0.06, 0.06, 0.12}}, {}}},
+                                .mass_kg = 0.3,
+                                .X_WB = {{0, 0, 0.06}}},
+                               {.name = "ball",
+                                .shapes = {{Sphere{0.03}, {}}},
+                                .mass_kg = 0.3,
+                                .X_WB = {{0, 0, 60}}}}};
+  const auto world = Make(scene);
+  Snapshot snapshot = After(*world, 1200);
+  ASSERT_TRUE(snapshot.bodies[1].asleep);
+  EXPECT_FALSE(snapshot.MayHaveMoved(1, 1199));
+  EXPECT_TRUE(snapshot.MayHaveMoved(2, 1199));
+  EXPECT_FALSE(snapshot.MayHaveMoved(0, 1)) << "what is fixed never moves";
+  const auto resting = snapshot.resting;
+  ASSERT_TRUE(resting);
+  EXPECT_TRUE(snapshot.contacts.empty());
+  while (true) {
+    EXPECT_EQ(snapshot.resting, resting);
+    const BodyState before = snapshot.bodies[1];
+    world->Step({});
+    world->Describe(snapshot);
+    ASSERT_LT(snapshot.tick, 3000);
+    if (!snapshot.bodies[1].asleep) break;
+    ASSERT_EQ(snapshot.bodies[1].X_WB.p_m, before.X_WB.p_m);
+  }
+  EXPECT_TRUE(snapshot.MayHaveMoved(1, snapshot.tick - 1));
+  EXPECT_EQ(snapshot.resting, nullptr);
+  EXPECT_FALSE(snapshot.contacts.empty());
+  // A snapshot that begins now says the same as one that was kept.
+  const Snapshot fresh = [&] {
+    Snapshot s;
+    world->Describe(s);
+    return s;
+  }();
+  for (std::size_t i = 0; i < fresh.bodies.size(); ++i)
+    EXPECT_EQ(fresh.bodies[i].X_WB.p_m, snapshot.bodies[i].X_WB.p_m);
 }
 
 TEST_P(WorldTest, ACompoundTurnsAboutItsCentreOfMass) {
