@@ -17,6 +17,8 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
       history_(cast_),
       lanes_(*program_, cast_),
       evaluator_(*program_, cast_, history_, lanes_),
+      beyond_when_nothing_(Beyond(program_->thresholds, kNothingMeasured)),
+      grips_(cast_.entities.size(), beyond_when_nothing_),
       awake_(program_->events.size()) {
   for (const Rule& rule : program_->events) {
     rule_ticks_.push_back({.bridging = history_.AtMostTicks(rule.bridging_s),
@@ -52,6 +54,31 @@ void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
 
 // What is not open does not begin while its guard rests, whatever else happens.
 bool Engine::MayStir(const Lane& lane) const { return lane.open || (MayBegin(lane) && !lanes_.GuardRests(lane)); }
+
+// Something must be measured where this lane begins, and it is known. At the end of the episode touches are over.
+bool Engine::CanMeasure(const Lane& lane) const {
+  const MeasuredPart& part = RuleOf(lane).measured;
+  return !part.is_empty() && !finishing_ && (part.touch == kNone || lane.references[part.touch] != kNone);
+}
+
+// What must be so of a touch and of a grip is so now.
+bool Engine::IsMeasured(const Lane& lane) const {
+  const MeasuredPart& part = RuleOf(lane).measured;
+  if (part.hand != kNone && !part.grip.Fit(grips_[lane.entities[part.hand]])) return false;
+  if (part.touch == kNone) return true;
+  const Lane& touch = lanes_[lane.references[part.touch]];
+  if (!touch.open) return !part.must_touch && part.press[0].Fit(beyond_when_nothing_);
+  const bool turned = part.first != kNone && touch.entities[0] != lane.entities[part.first];
+  return part.press[turned ? 1 : 0].Fit(touch.beyond);
+}
+
+// A resting lane would find what it found before: what must be measured for it to begin is not, or nothing else matters
+// and that is as it was.
+bool Engine::SaysTheSame(const Lane& lane) const {
+  if (!CanMeasure(lane)) return false;
+  if (lane.open) return RuleOf(lane).measured.whole && IsMeasured(lane) == !lane.in_gap;
+  return !IsMeasured(lane);
+}
 
 // What begins with a moment does not begin at others. That moment may be told of later in this frame; whoever tells of
 // it asks again.

@@ -67,9 +67,9 @@ class Engine {
 
   // What a frame says (engine_frames.cc).
   std::string_view WhyNoTick(Tick tick) const;
-  std::string_view WhyNotWatchable(const Frame& frame) const;
-  std::string_view WhyNotWatchable(const FrameChanges& changes) const;
-  std::string_view WhyNoTouches(std::span<const Touch> touches) const;
+  std::string_view WhyNotWatchable(const Frame& frame);
+  std::string_view WhyNotWatchable(const FrameChanges& changes);
+  std::string_view WhyNoTouches(std::span<const Touch> touches);
   bool IsEntity(int entity) const { return entity >= 0 && entity < entity_count_; }
   template <typename AnyFrame>
   bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);
@@ -77,7 +77,8 @@ class Engine {
   void SortNewEvents();
   void Look(int entity, const EntityLook& look);
   void Look(const HandLook& hand);
-  void Press(const Touch& touch);
+  void Press(std::span<const Touch> touches);
+  void Press(const Touch& touch, int touching);
   void Part(int touching);
   void CloseTouch(Lane& touching, Moment end);
 
@@ -85,6 +86,9 @@ class Engine {
   void Wake(int lane);
   void WakeWatchers(const std::vector<Watch>& watchers);
   bool MayStir(const Lane& lane) const;
+  bool CanMeasure(const Lane& lane) const;
+  bool IsMeasured(const Lane& lane) const;
+  bool SaysTheSame(const Lane& lane) const;
   bool MayBegin(const Lane& lane) const;
   void Tell(Lane& lane);
   void TellIfChanged(Lane& lane);
@@ -143,9 +147,12 @@ class Engine {
   Evaluator evaluator_;
   std::vector<RuleTicks> rule_ticks_;
   ThresholdSet watched_press_ = 0;  // by any rule
+  ThresholdSet beyond_when_nothing_ = 0;
+  std::vector<ThresholdSet> grips_;  // by entity: what its grip is beyond now
   Tick longest_look_back_ = 0;
   std::vector<std::vector<int>> awake_;  // by rule
   std::vector<int> touching_;            // the pairs that touch now
+  std::vector<int> pressed_;             // the lanes of the touches that a frame tells of, kNone: there is none yet
   std::vector<Alarm> alarms_;            // a heap, the next one first
   Ring<Retiree> retirees_;               // in the order in which they came to rest
   std::vector<int> scratch_;             // lanes; kept for its memory

@@ -47,6 +47,9 @@ bool Engine::LooksTheSame(Lane& lane) {
 bool Engine::StepWhile(Lane& lane, FrameNumber frame) {
   const Rule& rule = RuleOf(lane);
   const Evaluator::View view{lane, frame};
+  if (rule.measured.whole && frame == history_.now() && CanMeasure(lane)) {
+    return StepRun(lane, frame, Known(IsMeasured(lane)));
+  }
   if (rule.second == kNone) return StepRun(lane, frame, evaluator_.Truth(rule.first, view));
   // Two thresholds: what has begun goes on until the second says so.
   const bool on = lane.open && !lane.in_gap;

@@ -40,7 +40,7 @@ std::string_view Engine::WhyNoTick(Tick tick) const {
   return {};
 }
 
-std::string_view Engine::WhyNotWatchable(const Frame& frame) const {
+std::string_view Engine::WhyNotWatchable(const Frame& frame) {
   if (static_cast<int>(frame.entities.size()) != entity_count_) return "a frame shows another number of entities than the cast";
   int last_hand = kNobody;
   for (const HandLook& hand : frame.hands) {
@@ -51,7 +51,7 @@ std::string_view Engine::WhyNotWatchable(const Frame& frame) const {
   return WhyNoTouches(frame.touches);
 }
 
-std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) const {
+std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) {
   for (const EntityChange& change : changes.entities) {
     if (!IsEntity(change.entity)) return "a frame shows somebody who is not in the cast";
   }
@@ -64,11 +64,16 @@ std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) const {
   return WhyNoTouches(changes.touches);
 }
 
-std::string_view Engine::WhyNoTouches(std::span<const Touch> touches) const {
+// Looks up their lanes, too: one look-up does not wait for another one, as it would between changes.
+std::string_view Engine::WhyNoTouches(std::span<const Touch> touches) {
+  pressed_.clear();
   for (const Touch& touch : touches) {
-    if (!IsEntity(touch.a) || !IsEntity(touch.b) || touch.a >= touch.b) {
+    if (touch.a < 0 || touch.a >= touch.b || touch.b >= entity_count_) {
       return "a frame shows a touch of somebody not in the cast";
     }
+    const int lane = lanes_.Find(kTouchingRule, {touch.a, touch.b, kNobody, kNobody});
+    if (lane != kNone) lanes_.Fetch(lane);
+    pressed_.push_back(lane);
   }
   return {};
 }
@@ -80,7 +85,7 @@ void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
     if (!Same(frame.entities[i], history_.Look(entity, history_.now()))) Look(entity, frame.entities[i]);
   }
   for (const HandLook& hand : frame.hands) Look(hand);
-  for (const Touch& touch : frame.touches) Press(touch);
+  Press(frame.touches);
   // A touch that this frame does not show has ended.
   for (std::size_t i = touching_.size(); i-- > 0;) Part(touching_[i]);
   EndFrame();
@@ -90,7 +95,7 @@ void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
   if (!BeginFrame(changes, out)) return;
   for (const EntityChange& change : changes.entities) Look(change.entity, change.look);
   for (const HandLook& hand : changes.hands) Look(hand);
-  for (const Touch& touch : changes.touches) Press(touch);
+  Press(changes.touches);
   for (const Parting& parting : changes.partings) {
     const int index = lanes_.Find(kTouchingRule, {parting.a, parting.b, kNobody, kNobody});
     if (index != kNone && lanes_[index].open) Part(index);
@@ -172,22 +177,28 @@ void Engine::Look(const HandLook& hand) {
   const ThresholdSet beyond = Beyond(program_->thresholds, measured);
   const ThresholdSet crossed = before == nullptr ? ~ThresholdSet{0} : kAnyChange | (beyond ^ before->beyond);
   history_.SetHand(hand, beyond);
+  grips_[hand.entity] = beyond;
   for (const Watch& watch : lanes_.GripWatchers(hand.entity)) {
-    if (same_grip || (RuleOf(lanes_[watch.lane]).watches_grips & crossed) == 0) continue;
-    if (MayStir(lanes_[watch.lane])) Wake(watch.lane);
+    const Lane& lane = lanes_[watch.lane];
+    if (same_grip || lane.awake || (RuleOf(lane).watches_grips & crossed) == 0) continue;
+    if (MayStir(lane) && !SaysTheSame(lane)) Wake(watch.lane);
   }
   WakeWatchers(lanes_.PoseWatchers(hand.entity));
 }
 
-void Engine::Press(const Touch& touch) {
-  const int index = lanes_.Ensure(kTouchingRule, {touch.a, touch.b, kNobody, kNobody});
+void Engine::Press(std::span<const Touch> touches) {
+  for (std::size_t i = 0; i < touches.size(); ++i) Press(touches[i], pressed_[i]);
+}
+
+void Engine::Press(const Touch& touch, int index) {
+  if (index == kNone) index = lanes_.Ensure(kTouchingRule, {touch.a, touch.b, kNobody, kNobody});
   if (index == kNone) return;
   Lane& lane = lanes_[index];
   if (lane.touched == history_.now()) return;  // said twice
   lane.touched = history_.now();
   const bool swapped = lane.entities[0] != touch.a;
   if (lane.open && Same(touch, swapped, lane.touches.back())) return;
-  const ThresholdSet before = lane.open ? lane.touches.back().beyond : 0;
+  const ThresholdSet before = lane.open ? lane.beyond : 0;
   ForgetSamples(lane.touches, history_.first_look());
   // Filled in place: what is written in parts and copied at once has to wait for itself.
   TouchSample& sample = lane.touches.PushBack();
@@ -197,12 +208,14 @@ void Engine::Press(const Touch& touch) {
   sample.force_n = touch.normal_force_n;
   sample.sensor_sets = touch.sensor_sets;
   const double sets = std::popcount(sample.sensor_sets);
-  sample.beyond = Beyond(program_->thresholds, {sets, sample.up[0], sample.up[1], sample.force_n, 0});
-  const ThresholdSet crossed = kAnyChange | (sample.beyond ^ before);
+  sample.beyond = lane.beyond = Beyond(program_->thresholds, {sets, sample.up[0], sample.up[1], sample.force_n, 0});
+  const ThresholdSet crossed = kAnyChange | (lane.beyond ^ before);
   if (lane.open) {
     if ((crossed & watched_press_) == 0) return;
-    for (const int watcher : lane.watchers) {
-      if ((RuleOf(lanes_[watcher]).watches_press & crossed) != 0 && MayStir(lanes_[watcher])) Wake(watcher);
+    for (const int index : lane.watchers) {
+      const Lane& watcher = lanes_[index];
+      if (watcher.awake || (RuleOf(watcher).watches_press & crossed) == 0) continue;
+      if (!SaysTheSame(watcher) && MayStir(watcher)) Wake(index);
     }
     return;
   }

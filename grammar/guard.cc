@@ -2,6 +2,8 @@
 #include "grammar/guard.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 namespace prehend::grammar {
@@ -151,6 +153,12 @@ std::optional<std::array<Threshold::Value, 2>> MeasuredBy(Op op) {
   }
 }
 
+// Nothing is larger than what is endless, nor at least what is no number.
+double NextLarger(double number) {
+  using Limits = std::numeric_limits<double>;
+  return number < Limits::infinity() ? std::nextafter(number, Limits::infinity()) : Limits::quiet_NaN();
+}
+
 // `value >= number`, or another order or the other way round, is answered when the value is measured.
 void FindThreshold(Program& program, Node& node) {
   if (node.op < Op::kLess || node.op > Op::kGreaterEqual) return;
@@ -162,8 +170,9 @@ void FindThreshold(Program& program, Node& node) {
   if (number.op != Op::kNumber || !measured) return;
   const bool strict = op == Op::kGreater || op == Op::kLessEqual;
   const bool beyond = op == Op::kGreater || op == Op::kGreaterEqual;
-  const int as_named = Enter(program, {(*measured)[0], strict, number.number});
-  const int swapped = Enter(program, {(*measured)[1], strict, number.number});
+  const double at_least = strict ? NextLarger(number.number) : number.number;
+  const int as_named = Enter(program, {(*measured)[0], at_least});
+  const int swapped = Enter(program, {(*measured)[1], at_least});
   if (as_named != kNone && swapped != kNone) node.by_threshold = {value, {as_named, swapped}, beyond};
 }
 
@@ -173,6 +182,43 @@ void WatchThresholds(const Program& program, Rule& rule, const ByThreshold& by) 
   const Node& value = program.nodes[by.value];
   if (value.op == Op::kTrigger) rule.watches_grip[value.roles[0]] = true;
   (value.op == Op::kTrigger ? rule.watches_grips : rule.watches_press) |= both;
+}
+
+// Adds a comparison to what must be measured, if it is of the same touch or hand as the others.
+bool AddMeasured(const Program& program, MeasuredPart& part, const ByThreshold& by) {
+  const Node& value = program.nodes[by.value];
+  const auto add = [&](Limits& limits, int threshold) {
+    (by.beyond ? limits.beyond : limits.short_of) |= ThresholdSet{1} << threshold;
+  };
+  if (value.op == Op::kTrigger) {
+    if (part.hand != kNone && part.hand != value.roles[0]) return false;
+    part.hand = value.roles[0];
+    add(part.grip, by.thresholds[0]);
+    return true;
+  }
+  if (part.touch != kNone && part.touch != value.slot) return false;
+  part.touch = value.slot;
+  if (part.first == kNone) part.first = value.roles[0];
+  const std::size_t turned = part.first == value.roles[0] ? 0 : 1;
+  add(part.press[turned], by.thresholds[0]);
+  add(part.press[1 - turned], by.thresholds[1]);
+  return true;
+}
+
+void FindMeasured(const Program& program, const Rule& rule, MeasuredPart& part, int index) {
+  const Node& node = program.nodes[index];
+  const bool touching = node.op == Op::kHolds && rule.references[node.slot].rule == kTouchingRule;
+  if (node.op == Op::kAnd) {
+    FindMeasured(program, rule, part, node.args[0]);
+    FindMeasured(program, rule, part, node.args[1]);
+  } else if (node.by_threshold.value != kNone) {
+    part.whole = AddMeasured(program, part, node.by_threshold) && part.whole;
+  } else if (touching && (part.touch == kNone || part.touch == node.slot)) {
+    part.touch = node.slot;
+    part.must_touch = true;
+  } else {
+    part.whole = false;
+  }
 }
 
 // A value where the interval begins or ends is not asked for at every frame.
@@ -223,6 +269,10 @@ void ChooseGuards(Program& program) {
     // The approach to an end is looked at when the end is there, unless others must know at all times.
     if (rule.form != Form::kUntilSince || rule.referenced) WatchEntities(program, rule, rule.second);
     WatchEntities(program, rule, rule.during);
+    if (rule.form == Form::kWhile || rule.form == Form::kFromTo) {
+      FindMeasured(program, rule, rule.measured, rule.first);
+      rule.measured.whole = rule.measured.whole && rule.form == Form::kWhile && rule.second == kNone;
+    }
     std::vector<int> nodes = rule.anchors;
     for (const RuleAttribute& attribute : rule.attributes) nodes.push_back(attribute.node);
     nodes.insert(nodes.end(), {rule.second, rule.during, rule.approach, rule.motion, rule.requirement});

@@ -25,6 +25,7 @@ Lanes::Lanes(const Program& program, const Cast& cast)
     if (rule.guard != kNone && rule.form != Form::kCompose) guarded_[rule.references[rule.guard].rule].push_back(index);
   }
   for (const Rule& rule : program.events) {
+    symmetric_.push_back(rule.symmetric ? 1 : 0);
     std::vector<std::vector<bool>>& roles = fits_.emplace_back();
     for (const RuleRole& role : rule.roles) {
       std::vector<bool>& entities = roles.emplace_back();
@@ -84,12 +85,6 @@ void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard, s
   }
 }
 
-LaneKey Lanes::Canonical(int rule, Binding entities) const {
-  const bool swap = program_.events[rule].symmetric && name_rank_[entities[1]] < name_rank_[entities[0]];
-  if (swap) std::swap(entities[0], entities[1]);
-  return {rule, entities};
-}
-
 bool Lanes::Fits(int rule, const Binding& entities) const {
   for (std::size_t i = 0; i < program_.events[rule].roles.size(); ++i) {
     if (!fits_[rule][i][entities[i]]) return false;
@@ -100,24 +95,22 @@ bool Lanes::Fits(int rule, const Binding& entities) const {
   return true;
 }
 
-int Lanes::Ensure(int rule, const Binding& entities) {
-  const LaneKey key = Canonical(rule, entities);
-  if (const int found = index_.Find(key, KeyOf()); found != kNone) return found;
-  if (!Fits(rule, entities)) return kNone;
+int Lanes::Make(const LaneKey& key) {
+  if (!Fits(key.rule, key.entities)) return kNone;
   if (in_use() >= kMaxLanes) {
     too_many_ = true;
     return kNone;
   }
   if (free_.empty()) {
     free_.push_back(size());
-    lanes_.emplace_back();
+    lanes_.PushBack();
   }
   Lane& lane = lanes_[free_.back()];
   lane.index = free_.back();
   free_.pop_back();
-  lane.rule = rule;
+  lane.rule = key.rule;
   lane.entities = key.entities;
-  const Rule& r = program_.events[rule];
+  const Rule& r = program_.events[key.rule];
   lane.references.assign(r.references.size(), kNone);
   lane.anchors.assign(3 * r.anchors.size(), 0);
   lane.parts.resize(r.composition.parts.size());

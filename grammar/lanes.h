@@ -12,10 +12,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <string>
 #include <vector>
 
+#include "grammar/blocks.h"
 #include "grammar/history.h"
 #include "grammar/kleene.h"
 #include "grammar/lane_index.h"
@@ -68,12 +68,13 @@ struct Lane : LaneKey {  // rule kNone: the lane is free
   FrameNumber known = kNever;    ///< truth is final before this frame
   Moment begin;
   FrameNumber touched = -1;              ///< kTouching only: the last frame that said so
-  std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not asked for yet
+  ThresholdSet beyond = 0;               ///< kTouching only, while it is open: of the newest sample
   std::vector<int> watchers;    ///< lanes to wake when the truth of this one changes
+  Ring<TouchSample> touches;    ///< kTouching only, where they change
+  std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not asked for yet
   std::vector<Span> past;       ///< intervals, as long as somebody may ask
   std::vector<Pending> pending;
   FrameNumber resting_since = 0;
-  Ring<TouchSample> touches;        ///< kTouching only, where they change
   std::size_t touching_place = 0;   ///< kTouching only: where among those that touch now
   Moment gap;
   std::vector<double> anchors;  ///< three numbers per Rule::anchors
@@ -98,15 +99,19 @@ class Lanes {
   /// Binds the rules that have no guard.
   void BindUnguarded();
   /// Makes the lane, at rest, if it is not there. kNone if an entity's class does not fit, or there are TooMany().
-  int Ensure(int rule, const Binding& entities);
+  int Ensure(int rule, const Binding& entities) {
+    const LaneKey key = Canonical(rule, entities);
+    const int found = Find(key);
+    return found != kNone ? found : Make(key);
+  }
   /// Makes the lanes that this one guards and appends them to `made`, those that were there already, too.
   void MakeDependents(int lane, std::vector<int>& made);
   /// Frees a lane that nothing but kAny lanes watches. Appends the lanes that it leaves without a watcher.
   void Free(int lane, std::vector<int>& orphans);
   bool TooMany() const { return too_many_; }
 
-  Lane& operator[](int lane) { return lanes_[lane]; }
-  const Lane& operator[](int lane) const { return lanes_[lane]; }
+  Lane& operator[](int lane) { return lanes_[static_cast<std::size_t>(lane)]; }
+  const Lane& operator[](int lane) const { return lanes_[static_cast<std::size_t>(lane)]; }
   /// Numbers of lanes are below this, free ones included.
   int size() const { return static_cast<int>(lanes_.size()); }
   int in_use() const { return static_cast<int>(lanes_.size() - free_.size()); }
@@ -116,6 +121,11 @@ class Lanes {
   /// Likewise, kNone if it is not there.
   int Find(const Lane& lane, int slot) const { return Find(Referred(lane, slot)); }
   int Find(int rule, const Binding& entities) const { return Find(Canonical(rule, entities)); }
+  /// It will be looked at soon: what is far away in memory is on its way meanwhile.
+  void Fetch(int lane) const {
+    const char* at = reinterpret_cast<const char*>(&lanes_[static_cast<std::size_t>(lane)]);
+    for (int line = 0; line < 3; ++line) __builtin_prefetch(at + 64 * line);
+  }
 
   /// The lanes that look at an entity, and those that look at nothing but its grip.
   const std::vector<Watch>& PoseWatchers(int entity) const { return pose_watchers_[entity]; }
@@ -151,7 +161,11 @@ class Lanes {
   auto KeyOf() const {
     return [this](int lane) -> const LaneKey& { return lanes_[lane]; };
   }
-  LaneKey Canonical(int rule, Binding entities) const;
+  LaneKey Canonical(int rule, const Binding& entities) const {
+    const bool swap = symmetric_[rule] != 0 && name_rank_[entities[1]] < name_rank_[entities[0]];
+    return {rule, swap ? Binding{entities[1], entities[0], entities[2], entities[3]} : entities};
+  }
+  int Make(const LaneKey& key);
   int Find(const LaneKey& key) const { return index_.Find(key, KeyOf()); }
   LaneKey Referred(const Lane& lane, int slot) const;
   bool Fits(int rule, const Binding& entities) const;
@@ -166,7 +180,7 @@ class Lanes {
   void Unlink(int lane, int watcher, std::vector<int>& orphans);
   const Program& program_;
   const Cast& cast_;
-  std::deque<Lane> lanes_;  // a lane stays where it is when others are made
+  Blocks<Lane> lanes_;  // a lane stays where it is when others are made
   std::vector<int> free_;
   LaneIndex index_;
   std::vector<std::vector<int>> guarded_;             // by rule: the rules it guards
@@ -174,6 +188,7 @@ class Lanes {
   std::vector<std::vector<Watch>> pose_watchers_;     // by entity
   std::vector<std::vector<Watch>> grip_watchers_;
   std::vector<int> name_rank_;                        // alphabetical order of entities
+  std::vector<char> symmetric_;                       // by rule
   bool too_many_ = false;
 };
 

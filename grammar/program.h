@@ -43,13 +43,13 @@ enum class Op : std::uint8_t {
   kAtEnd,    ///< args[0] where the interval ends
 };
 
-/// A number that a measured value is compared with. While a value stays on the same side of every threshold, whatever is
-/// said by comparing it stays as it is.
+/// A number that a measured value is compared with: it is beyond the threshold if it is at least that number (for `> x`,
+/// the next larger one). While a value stays on the same side of every threshold, whatever is said by comparing it stays
+/// as it is.
 struct Threshold {
   enum class Value : std::uint8_t { kSensorSets, kUpOnFirst, kUpOnSecond, kForce, kTrigger };
   Value value = Value::kSensorSets;
-  bool strict = false;  ///< beyond it is `>`, not `>=`
-  double number = 0;
+  double at_least = 0;
   friend bool operator==(const Threshold&, const Threshold&) = default;
 };
 /// What a touch or a grip measures, by Threshold::Value; here: what a touch that is not there measures.
@@ -65,8 +65,7 @@ inline ThresholdSet Beyond(const std::vector<Threshold>& thresholds, const Measu
   ThresholdSet beyond = 0;
   for (std::size_t i = 0; i < thresholds.size(); ++i) {
     const Threshold& t = thresholds[i];
-    const double value = measured[static_cast<std::size_t>(t.value)];
-    beyond |= ThresholdSet{t.strict ? value > t.number : value >= t.number} << i;
+    beyond |= ThresholdSet{measured[static_cast<std::size_t>(t.value)] >= t.at_least} << i;
   }
   return beyond;
 }
@@ -86,6 +85,25 @@ struct Node {
   int name = kNone;       ///< kSensorSet: index into Program::set_names
   double number = 0;      ///< kNumber, kSensorSet, and the windows of kDriftAlong, kTurnRate, kRate
   ByThreshold by_threshold = {};
+};
+
+/// Thresholds that something measured must be beyond, and such that it must not be beyond.
+struct Limits {
+  ThresholdSet beyond = 0;
+  ThresholdSet short_of = 0;
+  bool Fit(ThresholdSet measured) const { return (measured & beyond) == beyond && (measured & short_of) == 0; }
+};
+
+/// What must be so of one touch and of one hand's grip for a condition to be true: answered by two sets of bits.
+struct MeasuredPart {
+  int touch = kNone;           ///< reference to the two that touch; kNone: no touch matters
+  int first = kNone;           ///< role: whom `press[0]` takes for the first of the two, `press[1]` for the second
+  bool must_touch = false;
+  std::array<Limits, 2> press;
+  int hand = kNone;            ///< role; kNone: no grip matters
+  Limits grip;
+  bool whole = true;           ///< the condition is nothing else
+  bool is_empty() const { return touch == kNone && hand == kNone; }
 };
 
 /// One number per role.
@@ -184,6 +202,7 @@ struct Rule {
   std::array<bool, kMaxRoles> watches_grip = {};
   ThresholdSet watches_press = 0;  ///< what matters of how entities touch, apart from whether they do
   ThresholdSet watches_grips = 0;  ///< what matters of how far hands are closed
+  MeasuredPart measured;        ///< kWhile and kFromTo: of what must be true where something begins
   double looks_around_s = 0; ///< its signals ask for poses so long before and after the frames it looks at
 };
 

@@ -94,16 +94,18 @@ TEST(Changes, SayTheSameAsWholeFrames) {
   EXPECT_GT(count, 10000u);
 }
 
-// Without thresholds and opening moments everything that changes wakes everybody who asks about it.
+// Without thresholds, opening moments and what is measured everything that changes wakes everybody who asks about it.
 TEST(Changes, WhoeverIsNotWokenHasNothingToSay) {
   const CompileResult compiled =
       Compile({"both", std::string("grammar both\n") + testing::kRestlessRules}, testing::LibraryIncluder());
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
   const auto plain = std::make_shared<Program>(*compiled.program);
-  int opened = 0, compared = 0;
+  int opened = 0, compared = 0, measured = 0;
   for (Rule& rule : plain->events) {
     opened += rule.opened_by != kNone ? 1 : 0;
     rule.opened_by = kNone;
+    measured += rule.measured.is_empty() ? 0 : 1;
+    rule.measured = {};
     rule.watches_press = rule.watches_grips = ~ThresholdSet{0};
   }
   for (Node& node : plain->nodes) {
@@ -112,6 +114,7 @@ TEST(Changes, WhoeverIsNotWokenHasNothingToSay) {
   }
   EXPECT_GE(opened, 5);
   EXPECT_GE(compared, 5);
+  EXPECT_GE(measured, 5);
   std::size_t count = 0, object_frames = 0;
   for (int round = 0; round < 100; ++round) {
     RandomWorld world(7000 + round);

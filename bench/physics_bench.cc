@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one physics tick costs with many boxes, awake and asleep: our Simulation (step, contacts,
+// snapshot, state hash, checks) beside a bare Bullet loop of the same scene. Look at the ratio.
+#include <benchmark/benchmark.h>
+
+#include <memory>
+
+#include "bench/bullet_alone.h"
+#include "harness/speed/sleepers.h"
+#include "physics/simulation.h"
+
+namespace prehend::harness {
+namespace {
+
+/// Shorter than the two seconds after which resting boxes fall asleep.
+constexpr int kTicksAwake = 480;
+/// To fall asleep takes 2 s, however few ticks they have; a tick asleep costs the same at any rate.
+constexpr int kAsleepRate_hz = 60;
+constexpr int kTicksUntilAsleep = static_cast<int>(kUntilAsleep_s * kAsleepRate_hz);
+
+struct Ours {
+  explicit Ours(const Scenario& scenario) : simulation(scenario.scene, scenario.script) {}
+  void Step() { simulation.Step(); }
+  physics::Simulation simulation;
+};
+
+struct Bare {
+  explicit Bare(const Scenario& scenario) : bullet(scenario.scene) {}
+  void Step() { bullet.Step(); }
+  bench::BulletAlone bullet;
+};
+
+template <class Runner>
+void Awake(benchmark::State& state) {
+  const Scenario scenario = BoxesOnAFloor(static_cast<int>(state.range(0)));
+  auto runner = std::make_unique<Runner>(scenario);
+  int ticks = 0;
+  for (auto _ : state) {
+    if (++ticks > kTicksAwake) {
+      state.PauseTiming();
+      runner = std::make_unique<Runner>(scenario);
+      ticks = 1;
+      state.ResumeTiming();
+    }
+    runner->Step();
+  }
+}
+
+template <class Runner>
+void Asleep(benchmark::State& state) {
+  Runner runner(BoxesOnAFloor(static_cast<int>(state.range(0)), kAsleepRate_hz));
+  for (int i = 0; i < kTicksUntilAsleep; ++i) runner.Step();
+  for (auto _ : state) runner.Step();
+}
+
+BENCHMARK(Awake<Bare>)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(Awake<Ours>)->Arg(1000)->Unit(benchmark::kMicrosecond);
+// Letting 5,000 boxes fall asleep takes some seconds each: ./test leaves that size out.
+BENCHMARK(Asleep<Bare>)->Arg(100)->Arg(5000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(Asleep<Ours>)->Arg(100)->Arg(5000)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace prehend::harness
