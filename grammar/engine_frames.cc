@@ -212,10 +212,10 @@ void Engine::Press(const Touch& touch, int index) {
   const ThresholdSet crossed = kAnyChange | (lane.beyond ^ before);
   if (lane.open) {
     if ((crossed & watched_press_) == 0) return;
-    for (const int index : lane.watchers) {
-      const Lane& watcher = lanes_[index];
-      if (watcher.awake || (RuleOf(watcher).watches_press & crossed) == 0) continue;
-      if (!SaysTheSame(watcher) && MayStir(watcher)) Wake(index);
+    for (const int watcher : lane.watchers) {
+      const Lane& watching = lanes_[watcher];
+      if (watching.awake || (RuleOf(watching).watches_press & crossed) == 0) continue;
+      if (!SaysTheSame(watching) && MayStir(watching)) Wake(watcher);
     }
     return;
   }

@@ -124,12 +124,24 @@ class Lexer {
     }
     if (kOneByte.find(Peek()) != std::string_view::npos) return Take(Token::Kind::kSymbol, 1);
     const std::size_t length = Utf8Length(text(), at_);
-    Complain("unexpected character '" + std::string(text().substr(at_, length)) + "'");
-    at_ += length;
+    const std::string found(text().substr(at_, length));
+    Complain("unexpected character '" + found + "'", HintFor(found));
+    while (text().substr(at_, length) == found) at_ += length;  // `&&` is one mistake
   }
 
-  void Complain(std::string message) {
-    diagnostics_.push_back(DiagnosticAt(grammar_.file, text(), Here(), std::move(message)));
+  /// What people mean by it who are used to other languages.
+  static std::string HintFor(std::string_view found) {
+    if (found == "&") return "both must hold: F and G";
+    if (found == "|") return "one of them must hold: F or G";
+    if (found == "!") return "it must not hold: not F";
+    if (found == "%") return "shares are plain numbers: 0.5";
+    if (found == "^") return "units are quotients: m/s/s";
+    if (found == ";") return "nothing ends a line or a definition";
+    return {};
+  }
+
+  void Complain(std::string message, std::string hint = {}) {
+    diagnostics_.push_back(DiagnosticAt(grammar_.file, text(), Here(), std::move(message), std::move(hint)));
   }
 
   const GrammarText& grammar_;

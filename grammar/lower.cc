@@ -314,7 +314,9 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
     return Bad(expr.place, "'any' stands only for a role of an event or condition",
                "for example: supported_by(object, any)");
   }
-  return Bad(expr.place, "unknown name " + Quoted(expr.text), Suggest(expr.text, KnownNames(false)));
+  const bool is_call = FindBuiltin(expr.text) != nullptr || symbols_.rules.contains(expr.text);
+  return Bad(expr.place, "unknown name " + Quoted(expr.text),
+             is_call ? "say of whom: " + expr.text + "(object)" : Suggest(expr.text, KnownNames(false)));
 }
 
 Lowering::Typed Lowering::LowerUnary(const Expr& expr) {

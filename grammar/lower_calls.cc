@@ -30,7 +30,7 @@ std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wan
     std::vector<std::string> names;
     for (const RuleRole& known : rule().roles) names.push_back(known.name);
     if (expr.text == "any") {
-      Complain(expr.place, "'any' stands only for a role of an event or condition", "for example: contact(object, any)");
+      Complain(expr.place, "'any' stands only for a role of an event or condition", "for example: contact(object, any), with `use contact`");
       return std::nullopt;
     }
     Complain(expr.place, Quoted(callee) + " takes a role here" +

@@ -67,7 +67,7 @@ class Parser : public ExpressionParser {
     } else if (Accept("grammar")) {
       FailAt(place, "a second 'grammar' line", "one file holds one grammar; `use NAME` reads another one");
     } else {
-      Fail("expected 'use', 'param', 'define', 'condition' or 'event', found " + Found(), NearestWordHint());
+      Fail("expected 'use', 'param', 'define', 'condition' or 'event', found " + Found(), WordHint());
     }
   }
 
@@ -159,7 +159,7 @@ class Parser : public ExpressionParser {
     } else if (Accept("compose")) {
       ParseCompose(definition);
     } else {
-      Fail("expected 'while', 'from', 'until', 'rest' or 'compose', found " + Found(), NearestWordHint());
+      Fail("expected 'while', 'from', 'until', 'rest' or 'compose', found " + Found(), WordHint());
     }
   }
 

@@ -16,6 +16,27 @@ constexpr std::array<std::string_view, 33> kOtherWords = {
     "outside", "compose", "where", "bridging", "lasting", "requires", "confirmed", "by", "within",   "with",  "without",
     "approaching", "receding", "slower", "than", "begins", "ends",   "and",      "or",          "not",      "any",   "style"};
 
+/// What people write who are used to other languages, and how it is said here.
+struct Habit {
+  std::string_view found;
+  std::string_view hint;
+};
+constexpr std::array<Habit, 13> kHabits = {{
+    {"for", "how long it must hold at least: lasting 2 s"},
+    {"within", "a deadline belongs to from A to B: from A to B within 2 s"},
+    {"if", "what must hold: while F"},
+    {"when", "what must hold: while F"},
+    {"rule", "what is recognised is an event, what only other rules use a condition"},
+    {"then", "one after the other: from A to B, or compose a: E, b: F where a before b"},
+    {"=", "'==' compares"},
+    {"=>", "'>=' compares"},
+    {"<", "one comparison at a time, joined by 'and': 1 cm < x and x < 2 cm"},
+    {"<=", "one comparison at a time, joined by 'and': 1 cm < x and x < 2 cm"},
+    {">", "one comparison at a time, joined by 'and': 2 cm > x and x > 1 cm"},
+    {">=", "one comparison at a time, joined by 'and': 2 cm > x and x > 1 cm"},
+    {"==", "one comparison at a time, joined by 'and'"},
+}};
+
 bool IsItemWord(std::string_view word) {
   return std::find(kItemWords.begin(), kItemWords.end(), word) != kItemWords.end();
 }
@@ -79,7 +100,10 @@ std::string TokenReader::ExpectName(std::string_view what) {
   return Take().text;
 }
 
-std::string TokenReader::NearestWordHint() const {
+std::string TokenReader::WordHint() const {
+  const std::string_view found = At("=") && At(">", 1) ? std::string_view("=>") : std::string_view(Peek().text);
+  const auto habit = std::find_if(kHabits.begin(), kHabits.end(), [&](const Habit& h) { return h.found == found; });
+  if (habit != kHabits.end()) return std::string(habit->hint);
   std::vector<std::string> words(kItemWords.begin(), kItemWords.end());
   words.insert(words.end(), kOtherWords.begin(), kOtherWords.end());
   const std::string near = NearestName(Peek().text, words);

@@ -32,8 +32,9 @@ class TokenReader {
   void Expect(std::string_view text, std::string hint = {});
   void ExpectAtMost();
   std::string ExpectName(std::string_view what);
-  /// "did you mean 'event'?" when the next token is nearly a word of the language.
-  std::string NearestWordHint() const;
+  /// How it is said here when the next token is a word of other languages; "did you mean 'event'?" when it is nearly one
+  /// of this language.
+  std::string WordHint() const;
   void SkipToItem();
   void SkipToEnd() { at_ = tokens_.size() - 1; }
 
