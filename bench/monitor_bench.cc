@@ -4,8 +4,12 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <string>
 
+#include "harness/library_paths.h"
+#include "harness/prepare_run.h"
 #include "harness/run_output.h"
+#include "harness/run_scenario.h"
 #include "harness/speed/four_rules.h"
 
 namespace prehend::harness {
@@ -54,6 +58,30 @@ void Touches(benchmark::State& state) {
 }
 BENCHMARK(Touches<ByGrammar>)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
 BENCHMARK(Touches<ByHand>)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
+
+// Every object changes a fact every so many frames.
+template <auto kWatch>
+void Dense(benchmark::State& state) {
+  constexpr int kObjects = 1024, kFrames = 1000;
+  const ChangeLog log = MakeFlicker(kObjects, kFrames, kObjects / static_cast<int>(state.range(0)), Flicker::kFact);
+  Play(state, log, 1.0 * kFourRules * kObjects * (kFrames - 1), kWatch);
+}
+BENCHMARK(Dense<ByGrammar>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMillisecond);
+BENCHMARK(Dense<ByHand>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMillisecond);
+
+// All of pick_and_place on a simulated scene, from its recording: sensing and grammar, no physics.
+void RecordedCarton(benchmark::State& state) {
+  const std::string root = FindProjectRoot().value_or(".");
+  const PreparedRun carton =
+      *PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root).value;
+  const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
+  std::size_t events = 0;
+  for (auto _ : state) events = Resegment(carton.scenario, run.recording, carton.program, run.ticks + 1).events.size();
+  state.counters["events"] = static_cast<double>(events);
+  state.counters["times_real_time"] = benchmark::Counter(static_cast<double>(run.ticks) / carton.scenario.world.rate_hz,
+                                                         benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(RecordedCarton)->Unit(benchmark::kMillisecond);
 
 void IdleTick(benchmark::State& state) {
   const ChangeLog log = MakeStations(static_cast<int>(state.range(0)), 1, kPeriod_s);
