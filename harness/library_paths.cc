@@ -108,9 +108,11 @@ std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenari
 }
 
 ScenarioFile ScenarioAt(const std::vector<ScenarioFile>& scenarios, const std::string& path) {
+  const auto known = std::ranges::find(scenarios, path, &ScenarioFile::path);
+  if (known != scenarios.end()) return *known;
   for (const ScenarioFile& scenario : scenarios) {
     std::error_code error;
-    if (scenario.path == path || fs::equivalent(scenario.path, path, error)) return scenario;
+    if (fs::equivalent(scenario.path, path, error)) return scenario;
   }
   return {.skill = "", .name = fs::path(path).stem().string(), .path = path, .in_project = false};
 }

@@ -2,6 +2,9 @@
 // See load_grammar.h. Tested by tests/house/command_line_test.cc
 #include "harness/load_grammar.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -35,7 +38,8 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
     const bool is_name = file != name_or_path;
     if (is_name && std::ranges::count(known, name_or_path) == 0) {
       const std::string near = grammar::NearestName(name_or_path, known);
-      text.diagnostics.front().hint = near.empty() ? "" : "did you mean '" + near + "'?";
+      text.diagnostics.front().hint =
+          near.empty() ? fmt::format("there are: {}", fmt::join(known, ", ")) : fmt::format("did you mean '{}'?", near);
     }
     return {nullptr, std::move(text.diagnostics)};
   }

@@ -54,6 +54,16 @@ std::string TableLine(const std::string& outcome, std::size_t count, std::size_t
                      100.0 * static_cast<double>(count) / static_cast<double>(of));
 }
 
+std::vector<std::string> AllOutcomes(const TrialReport& report) {
+  std::vector<std::string> names = report.outcomes;
+  names.insert(names.end(), {kOther, kFailed});
+  return names;
+}
+
+std::size_t CountOf(const std::string& outcome, const TrialReport& report) {
+  return static_cast<std::size_t>(std::ranges::count(report.results, outcome, &TrialResult::outcome));
+}
+
 }  // namespace
 
 ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root,
@@ -115,14 +125,20 @@ ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& 
   return {std::move(report), {}};
 }
 
+nlohmann::ordered_json TrialJson(const TrialReport& report) {
+  nlohmann::ordered_json outcomes, results = nlohmann::ordered_json::array();
+  for (const std::string& name : AllOutcomes(report)) outcomes[name] = CountOf(name, report);
+  for (const TrialResult& result : report.results)
+    results.push_back({{"trial", result.trial}, {"outcome", result.outcome}, {"reason", result.reason}});
+  return {{"trials", report.results.size()}, {"outcomes", std::move(outcomes)}, {"results", std::move(results)}};
+}
+
 std::string TrialTable(const TrialReport& report, const std::string& command) {
   const std::vector<TrialResult>& results = report.results;
-  std::vector<std::string> names = report.outcomes;
-  names.insert(names.end(), {kOther, kFailed});
+  const std::vector<std::string> names = AllOutcomes(report);
   std::string table;
   for (const std::string& name : names) {
-    const auto count =
-        static_cast<std::size_t>(std::ranges::count(results, name, &TrialResult::outcome));
+    const std::size_t count = CountOf(name, report);
     const bool own = name != kOther && name != kFailed;
     if (own || count > 0) table += TableLine(name, count, results.size());
   }

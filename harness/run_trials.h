@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& 
 /// The request with the draws of one trial added to its settings.
 ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root,
                                       int trial);
+
+/// For programs: `trials`, `outcomes` (name to count) and `results` (`trial`, `outcome`, `reason`).
+nlohmann::ordered_json TrialJson(const TrialReport& report);
 
 /// How often each outcome came, and the trials that did not end with the first one, each with the
 /// command that shows it again: `command` and the trial's number.

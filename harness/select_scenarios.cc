@@ -16,6 +16,8 @@
 namespace prehend::harness {
 namespace {
 
+constexpr std::string_view kTag = "tag:";
+
 bool Matches(const std::string& pattern, const ScenarioFile& file) {
   return fnmatch(pattern.c_str(), file.name.c_str(), 0) == 0 ||
          fnmatch(pattern.c_str(), IdOf(file).c_str(), 0) == 0;
@@ -30,8 +32,23 @@ bool HasTag(const ScenarioFile& file, const std::string& tag, const ScenarioLibr
 
 bool PassesFilter(const ScenarioFile& file, const std::string& filter, const ScenarioLibrary& library) {
   if (filter.starts_with('!')) return !PassesFilter(file, filter.substr(1), library);
-  if (filter.starts_with("tag:")) return HasTag(file, filter.substr(4), library);
+  if (filter.starts_with(kTag)) return HasTag(file, filter.substr(kTag.size()), library);
   return Matches(filter, file);
+}
+
+/// "" or that nothing passes a filter that is not a "not", with the nearest tag.
+std::string WhyNonePasses(const std::string& filter, const std::vector<ScenarioFile>& all, const ScenarioLibrary& library) {
+  if (filter.starts_with('!')) return filter.size() > 1 ? "" : "--filter: '!' is followed by what must not match";
+  const bool some = std::ranges::any_of(all, [&](const auto& file) { return PassesFilter(file, filter, library); });
+  if (some || !filter.starts_with(kTag)) return some ? "" : "--filter: no scenario matches '" + filter + "'";
+  std::vector<std::string> tags;
+  for (const ScenarioFile& file : all) {
+    const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, library);
+    if (scenario.value) tags.insert(tags.end(), scenario.value->tags.begin(), scenario.value->tags.end());
+  }
+  const std::string tag = filter.substr(kTag.size());
+  const std::string near = grammar::NearestName(tag, tags);
+  return "--filter: no scenario has the tag '" + tag + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
 }
 
 bool IsFile(const std::string& typed) {
@@ -94,7 +111,11 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
   });
   if (patterns.empty() && filters.empty()) selection.orphans = OrphanGoldens(all, root);
   if (!selection.scenarios.empty() || !selection.orphans.empty()) return selection;
-  problem = "no scenario is selected ('prehend list' shows all)";
+  problem = "no scenario is selected";
+  for (const std::string& filter : filters) {
+    if (const std::string why = WhyNonePasses(filter, all, library); !why.empty()) problem = why;
+  }
+  problem += " ('prehend list' shows all)";
   return std::nullopt;
 }
 

@@ -3,6 +3,7 @@
 #include "harness/commands/command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 namespace prehend::harness {
 
@@ -74,7 +75,11 @@ ExitCode Complain(const CommandContext& context, ExitCode code, const std::strin
 }
 
 ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& diagnostics) {
-  context.err << Format(diagnostics) << "  again: " << context.command_line << "\n";
+  constexpr std::size_t kMostTold = 100;  // nobody reads on
+  const std::size_t told = std::min(diagnostics.size(), kMostTold);
+  for (std::size_t i = 0; i < told; ++i) context.err << Format(diagnostics[i]);
+  if (told < diagnostics.size()) context.err << "and " << diagnostics.size() - told << " more\n";
+  context.err << "  again: " << context.command_line << "\n";
   return ExitCode::kBadInput;
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend run. Tested by tests/house/command_line_test.cc
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -45,6 +47,7 @@ void Declare(CLI::App& options) {
 /// The command that shows one trial again, but for its number.
 std::string AgainCommand(const CLI::App& options) {
   std::string command = "prehend run " + ShellWord(ValueOf(options, "scenario"));
+  if (IsGiven(options, "--grammar")) command += " --grammar " + ShellWord(ValueOf(options, "--grammar"));
   for (const std::string& setting : ValuesOf(options, "--set"))
     command += " --set " + ShellWord(setting);
   return command;
@@ -62,7 +65,11 @@ ExitCode CountTrials(const CLI::App& options, const RunRequest& request,
   });
   if (context.progress) context.err << "\r\033[K" << std::flush;
   if (!report.value) return Complain(context, report.diagnostics);
-  context.out << TrialTable(*report.value, AgainCommand(options));
+  if (IsGiven(options, "--json")) {
+    context.out << TrialJson(*report.value).dump(2) << "\n";
+  } else {
+    context.out << TrialTable(*report.value, AgainCommand(options));
+  }
   return ExitCode::kAgrees;
 }
 
@@ -70,6 +77,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const auto file = FindScenarioOrComplain(ValueOf(options, "scenario"), context);
   if (!file) return ExitCode::kNothing;
   RunRequest request = RequestOf(options, file->path);
+  for (const char* of_one_run : {"--trial", "--record", "--measure"}) {
+    if (IsGiven(options, "--trials") && IsGiven(options, of_one_run))
+      return Complain(context, ExitCode::kBadInput, fmt::format("{} is about one run, --trials about many", of_one_run));
+  }
   if (IsGiven(options, "--trials")) return CountTrials(options, request, context);
   if (IsGiven(options, "--trial")) {
     auto varied = RequestOfTrial(request, context.root, std::stoi(ValueOf(options, "--trial")));

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 namespace prehend::harness {
 namespace {
@@ -56,6 +58,11 @@ TEST(RunTrials, CountsOutcomesAndRepeats) {
 TEST(RunTrials, TheTableNamesTheWorstAndHowToRepeatThem) {
   const std::vector<TrialResult> results = {
       {1, "stays", ""}, {2, "falls", ""}, {3, "failed", "ball: gone"}, {4, "stays", ""}};
+  const auto json = TrialJson({{"stays", "falls"}, results});
+  EXPECT_EQ(json["trials"], results.size());
+  EXPECT_EQ(json["results"][1]["trial"], results[1].trial);
+  EXPECT_EQ(json["outcomes"].size(), 4u);
+  EXPECT_EQ(json["outcomes"]["stays"], std::ranges::count(results, "stays", &TrialResult::outcome));
   EXPECT_EQ(TrialTable({{"stays", "falls"}, results}, "prehend run ball"),
             "stays                        2   50.0 %\n"
             "falls                        1   25.0 %\n"

@@ -81,7 +81,11 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
       {"check --filter tag:quiet --filter !*rests", 4, "prehend: no scenario is selected[^]*"},
       {"run carton_rests --record no/such/folder/e.jsonl", 2,
        "prehend: --record: cannot write no/such/folder/e.jsonl: [^]*"},
-      {"check --filter tag:none", 4, "prehend: no scenario is selected.*\n  again: .*\n"},
+      {"check --filter tag:none", 4, "prehend: --filter: no scenario has the tag 'none' .*\n  again: .*\n"},
+      {"check --filter tag:quite", 4, "prehend: --filter: no scenario has the tag 'quite'; did you mean 'quiet'\\?[^]*"},
+      {"check --filter nothing*", 4, "prehend: --filter: no scenario matches 'nothing\\*' [^]*"},
+      {"run carton_rests --trials 2 --record x", 2, "prehend: --record is about one run, --trials about many\n[^]*"},
+      {"run carton_rests --grammar xyz", 2, "[^]*no such file\n  hint: there are: [^]*pick_and_place[^]*"},
       {"run missing.yaml", 2, "missing.yaml: error: [^]*\n  again: prehend run missing.yaml\n"},
       {"run carton_rests --set lift_ris=3cm", 2, "[^]*error: [^]*lift_rise[^]*\n  again: [^]*\n"},
       {"run carton_rests --set lift_rise", 2, "--set:1:1: error: expected NAME=VALUE\n[^]*"},
@@ -170,6 +174,10 @@ TEST_F(CommandLine, ValidateTellsOfAllThatIsWrongAtOnce) {
   for (const char* part : {"mass_kg", "did you mean 'human_right'?", "odd.grammar:", "carton_rests.timeline:"}) {
     EXPECT_NE(said.err.find(part), std::string::npos) << part << "\n" << said.err;
   }
+  std::string many = wrong;
+  for (int i = 0; i < 150; ++i) many += "odd_" + std::to_string(i) + ": 1\n";
+  WriteFile(Scenario(), many);
+  EXPECT_NE(Do("validate carton_rests").err.find("\nand 5"), std::string::npos) << "of a hundred and more";
   WriteFile(Scenario(), std::regex_replace(wrong, std::regex("tags:"), "grammar: pick_and_plac\ntags:"));
   const std::string err = Do("validate carton_rests").err;
   EXPECT_NE(err.find("did you mean 'pick_and_place'?"), std::string::npos) << err;
