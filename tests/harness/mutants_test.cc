@@ -56,7 +56,7 @@ const std::vector<Mutant> kMutants = {
      "slide_pause    = 800 ms", ""},
     {"what was pushed slides from the grasp on", "pick_and_place",
      "while grasping(hand, object) and supported_by(object, support) and speed_along",
-     "while supported_by(object, support) and speed_along", ""},
+     "while touching(hand, object) and supported_by(object, support) and speed_along", ""},
     {"a pick-up may go far to the side", "pick_and_place", "lift_radius = 9 cm",
      "lift_radius = 30 cm", ""},
     {"a pick-up ends low", "pick_and_place", "lift_height = 12 cm", "lift_height = 6 cm", ""},
@@ -80,7 +80,7 @@ const std::vector<Mutant> kMutants = {
     {"a transport includes the put-down", "pick_and_place",
      ", picking_up(hand, object), putting_down(hand, object)", ", picking_up(hand, object)", ""},
     {"the put-down comes before the grasp", "pick_and_place",
-     "grasp contains|started_by|finished_by put", "put before|meets grasp", ""},
+     "hold contains|finished_by put", "put before|meets hold", ""},
 };
 
 // In the order in which they kill most.
