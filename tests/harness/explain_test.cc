@@ -123,7 +123,7 @@ TEST(ExplainMissing, NoPutDownWhereTheCartonSlidesIn) {
 
 TEST(ExplainMissing, NoWholeWithoutAllItsParts) {
   const WhyMissing why = WhyNot(Played(kSlidesIn), "pick_and_place right_hand milk");
-  ExpectReason(why.reasons, "grasping(right_hand, milk)", Mark::kNote);
+  ExpectReason(why.reasons, "first_hold(right_hand, milk)", Mark::kNote);
   ExpectReason(why.reasons, "putting_down(right_hand, milk)", Mark::kFailed);
   EXPECT_TRUE(why.because.starts_with("outside low_at_last(right_hand, milk): it held ")) << why.because;
 }
