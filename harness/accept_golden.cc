@@ -64,11 +64,13 @@ void TakeOver(Golden& golden, const Golden& old, const grammar::Timeline& recogn
 void NoteOracle(Golden& golden, const Proposal& proposal) {
   for (GoldenEvent& line : golden.events) {
     const auto note = std::ranges::find_if(proposal.notes, [&](const OracleNote& candidate) {
-      return candidate.event.interval == line.event.interval && candidate.event.Label() == line.event.Label();
+      return candidate.event.interval == line.event.interval &&
+             candidate.event.Label() == line.event.Label();
     });
     line.oracle = note == proposal.notes.end() ? "" : note->text;
     if (line.oracle.empty()) line.oracle_because.clear();
-    if (!line.oracle.empty() && line.oracle_because.empty()) line.oracle_because = proposal.acceptance->reason;
+    if (!line.oracle.empty() && line.oracle_because.empty())
+      line.oracle_because = proposal.acceptance->reason;
   }
 }
 
@@ -108,7 +110,9 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
   return ProposeGolden(old, recognised, proposal);
 }
 
-std::string Fingerprint(const Golden& pending) { return ContentHash(WriteGolden(pending)).substr(0, 8); }
+std::string Fingerprint(const Golden& pending) {
+  return ContentHash(WriteGolden(pending)).substr(0, 8);
+}
 
 bool SaysTheSame(const Golden& golden, const grammar::Timeline& recognised) {
   if (golden.ticks_per_second != recognised.ticks_per_second) return false;

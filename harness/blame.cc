@@ -12,8 +12,9 @@ namespace {
 
 constexpr const char* kAgreed = "as when this last agreed with its golden";
 
-/// "scenarios/slide/x.yaml" and the like, "the program", and what the command line asks for. A grammar that the command
-/// line put in another's place did not change, nor did the one that it replaces.
+/// "scenarios/slide/x.yaml" and the like, "the program", and what the command line asks for. A
+/// grammar that the command line put in another's place did not change, nor did the one that it
+/// replaces.
 std::vector<std::string> WhatChanged(const CheckRecord& last_agreed, const Suspect& now,
                                      const std::string& root) {
   std::vector<std::string> changed;
@@ -55,7 +56,8 @@ std::string BlameText(const std::optional<CheckRecord>& last_agreed,
       text += fmt::format(
           ": since {:.4f} s (tick {}) {} {}",
           static_cast<double>(parting->tick) / now.ticks_per_second, parting->tick,
-          parting->entity.empty() ? "the run is not as long" : parting->entity + " does not move", kAgreed);
+          parting->entity.empty() ? "the run is not as long" : parting->entity + " does not move",
+          kAgreed);
     }
   }
   const std::vector<std::string> changed = WhatChanged(*last_agreed, now, root);

@@ -32,7 +32,8 @@ namespace fs = std::filesystem;
 std::vector<std::string> OptionsOf(const RunRequest& changes) {
   std::vector<std::string> options;
   if (!changes.grammar.empty()) options.push_back("--grammar " + ShellWord(changes.grammar));
-  for (const std::string& setting : changes.settings) options.push_back("--set " + ShellWord(setting));
+  for (const std::string& setting : changes.settings)
+    options.push_back("--set " + ShellWord(setting));
   return options;
 }
 

@@ -28,14 +28,19 @@ Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
 
 namespace {
 
-std::vector<OracleNote> NotesOf(const Agreement& agreement, grammar::Tick tolerance, const RunResult& run) {
+std::vector<OracleNote> NotesOf(const Agreement& agreement, grammar::Tick tolerance,
+                                const RunResult& run) {
   std::vector<OracleNote> notes;
-  const auto offset_ms = [&](grammar::Tick ticks) { return MillisecondsOf(ticks, run.timeline.ticks_per_second); };
+  const auto offset_ms = [&](grammar::Tick ticks) {
+    return MillisecondsOf(ticks, run.timeline.ticks_per_second);
+  };
   for (const LabelAgreement& label : agreement.labels) {
     for (const Match& match : label.matches) {
-      if (std::max(std::abs(match.begin_offset()), std::abs(match.end_offset())) <= tolerance) continue;
-      notes.push_back({match.found, fmt::format("{:+.1f}/{:+.1f}ms", offset_ms(match.begin_offset()),
-                                                offset_ms(match.end_offset()))});
+      if (std::max(std::abs(match.begin_offset()), std::abs(match.end_offset())) <= tolerance)
+        continue;
+      notes.push_back(
+          {match.found, fmt::format("{:+.1f}/{:+.1f}ms", offset_ms(match.begin_offset()),
+                                    offset_ms(match.end_offset()))});
     }
     for (const grammar::NamedEvent& event : label.extra) notes.push_back({event, "none"});
   }
@@ -51,8 +56,9 @@ Derivation Derive(const Scenario& scenario, const grammar::Program& program, con
       DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz);
   const Agreement agreement = Agree(truth, judged, tolerance);
 
-  Derivation derivation{
-      .agrees = agreement.Within(tolerance), .lines = {}, .notes = NotesOf(agreement, tolerance, run)};
+  Derivation derivation{.agrees = agreement.Within(tolerance),
+                        .lines = {},
+                        .notes = NotesOf(agreement, tolerance, run)};
   const std::string unjudged =
       others == 0 ? "" : fmt::format(" ({} events of other kinds not judged)", others);
   derivation.lines.push_back(

@@ -223,7 +223,8 @@ class GoldenReader {
       return Fail("a tolerance needs a reason", "tolerance=20ms because \"the reason\"");
     }
     if (!line.oracle.empty() && line.oracle_because.empty()) {
-      return Fail("what differs from the oracle needs a reason", "oracle=none because \"the reason\"");
+      return Fail("what differs from the oracle needs a reason",
+                  "oracle=none because \"the reason\"");
     }
     return true;
   }

@@ -54,7 +54,8 @@ bool operator==(const GoldenEvent& a, const GoldenEvent& b) {
   return a.event.event == b.event.event && a.event.roles == b.event.roles &&
          a.event.interval == b.event.interval && a.event.values == b.event.values &&
          a.event.open_end == b.event.open_end && a.tolerance_ms == b.tolerance_ms &&
-         a.because == b.because && a.oracle == b.oracle && a.oracle_because == b.oracle_because && a.comments == b.comments && a.accepted == b.accepted;
+         a.because == b.because && a.oracle == b.oracle && a.oracle_because == b.oracle_because &&
+         a.comments == b.comments && a.accepted == b.accepted;
 }
 
 std::string WriteGolden(const Golden& golden) {

@@ -109,7 +109,8 @@ ExitCode AcceptPictures(const CLI::App& options, const CommandContext& context, 
   const auto changed = ReplacePictures(context, golden.scenario, scenario, run);
   if (!changed) return ExitCode::kFailure;
   if (*changed == 0) {
-    context.out << "nothing to accept: the pictures of " << golden.scenario << " are the same already\n";
+    context.out << "nothing to accept: the pictures of " << golden.scenario
+                << " are the same already\n";
     return ExitCode::kAgrees;
   }
   golden.pictures.push_back({context.today, ValueOf(options, "--reason")});
@@ -226,8 +227,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
                     "its events have no golden yet; accept them first, without --pictures");
   }
 
-  played.run =
-      RunScenario(played.prepared.scenario, played.prepared.program, {.record = true});
+  played.run = RunScenario(played.prepared.scenario, played.prepared.program, {.record = true});
   if (played.run.status.kind != physics::RunStatus::Kind::kCompleted) {
     return Complain(context, ExitCode::kFailure,
                     "a run that did not complete is not accepted: " + StatusText(played.run));
@@ -244,7 +244,8 @@ Command AcceptCommand() {
       .summary = "Make what a scenario yields now its golden, with a reason",
       .examples =
           "prehend accept milk_carton_wrap --reason \"first golden, checked against the picture\"\n"
-          "prehend accept milk_carton_wrap --reviewed 3fa90c11 --reason \"the grasp ends earlier\"\n"
+          "prehend accept milk_carton_wrap --reviewed 3fa90c11 --reason \"the grasp ends "
+          "earlier\"\n"
           "prehend accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the "
           "hand's first motion\"\n"
           "prehend accept milk_carton_wrap --pictures --reason \"the carton is seen in the hand\"",

@@ -265,6 +265,17 @@ Reasons EventReasons::Waited(int lane, const Fate& fate, int depth) {
   return reasons;
 }
 
+// How far back it may turn out to have held: it looks back itself, or begins with what does. 0: not at all.
+double EventReasons::LooksBack_s(int lane) {
+  const Rule& rule = past_.RuleOf(lane);
+  if (rule.form == Form::kUntilSince) return rule.back_s;
+  const int begins_with = rule.form == Form::kRestOf   ? rule.first
+                          : rule.form == Form::kFromTo ? rule.opened_by
+                                                       : kNone;
+  const int target = begins_with == kNone ? kNone : past_.Referred(lane, begins_with);
+  return target == kNone ? 0 : LooksBack_s(target);
+}
+
 // What it refers to and was known at that very moment only; or what might still have come in that time.
 Reasons EventReasons::WaitedFor(int lane, const Fate& fate, int depth) {
   const Rule& rule = past_.RuleOf(lane);
@@ -284,10 +295,10 @@ Reasons EventReasons::WaitedFor(int lane, const Fate& fate, int depth) {
     reasons.push_back(std::move(reason));
   }
   for (const int target : targets) {
-    const Rule& asked = past_.RuleOf(target);
-    if (!reasons.empty() || asked.form != Form::kUntilSince) continue;
+    const double back_s = LooksBack_s(target);
+    if (!reasons.empty() || back_s <= 0) continue;
     reasons.push_back(Remark(Label(past_, target), "might still have turned out to hold: it is known from its end on, and looks back up to " +
-                                                       Seconds(asked.back_s)));
+                                                       Seconds(back_s)));
   }
   return reasons;
 }

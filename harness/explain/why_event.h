@@ -27,6 +27,7 @@ class EventReasons {
   Reasons Counted(int lane, const grammar::Fate& fate);
   Reasons Waited(int lane, const grammar::Fate& fate, int depth);
   Reasons WaitedFor(int lane, const grammar::Fate& fate, int depth);
+  double LooksBack_s(int lane);
   Reasons Change(int node, const Moment& at, bool truth, int depth);
   Clauses::Follow FollowFrom(int depth);
   const grammar::Node& NodeAt(int node) const { return past_.program().nodes[node]; }

@@ -260,8 +260,13 @@ MissingReasons::Blame MissingReasons::OfRest(int lane, const Window& window, int
     const int target = past_.Referred(lane, slot);
     if (!covers(target, frame)) continue;
     const Fate& fate = *past_.Covering(target, frame);
-    reason.because.push_back(Failed("outside " + Label(past_, target),
-                                    "it held " + IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second)));
+    Reason covered = Failed("outside " + Label(past_, target),
+                            "it held " + IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second));
+    if (past_.RuleOf(target).form == Form::kUntilSince) {
+      const Moment at{.lane = target, .frame = frame, .begin = fate.span.begin.frame, .end = fate.span.end.frame};
+      covered.because = clauses_.State(past_.RuleOf(target).second, at, true);
+    }
+    reason.because.push_back(std::move(covered));
   }
   return {{std::move(reason)}, 0.7};
 }

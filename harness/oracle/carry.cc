@@ -119,13 +119,14 @@ class Carrier {
     while (near > unsupported.begin && region.Contains(place(near - 1)) &&
            recording_.Seconds(near - 1, landing) <= settings_.put_down_look_back_s)
       --near;
-    if (Highest({near, landing}) - region.anchor.z() < settings_.put_down_drop_m)
-      return std::nullopt;
     std::vector<DistanceAt> path;
     for (int frame = near; frame < landing; ++frame)
       path.push_back({recording_.Seconds(near, frame), (place(frame) - region.anchor).norm()});
-    const int begin = ApproachBegin(path, settings_.put_down_dead_band_m, settings_);
-    return Span{near + begin, landing};
+    const int begin = near + ApproachBegin(path, settings_.put_down_dead_band_m, settings_);
+    // How high it was before it last moved away does not make this approach one from above.
+    if (Highest({begin, landing}) - region.anchor.z() < settings_.put_down_drop_m)
+      return std::nullopt;
+    return Span{begin, landing};
   }
 
   /// `lost_support`: it was supported before. Otherwise it was caught, or taken over in the air.

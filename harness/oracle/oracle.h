@@ -43,10 +43,10 @@ struct OracleSettings {
   double pick_up_rise_m = 0.03;
   double pick_up_radius_m = 0.09, pick_up_height_m = 0.12;
 
-  double put_down_drop_m = 0.02;
+  double put_down_drop_m = 0.02;  ///< from the highest place of the approach to the landing place
   double put_down_radius_m = 0.09, put_down_height_m = 0.08;
   double put_down_look_back_s = 3.3;
-  double put_down_dead_band_m = 0.01;  ///< a held object trembles by less than this
+  double put_down_dead_band_m = 0.005;  ///< moving away by less is not moving away
 };
 
 /// The events that docs/events.md defines, in its order.

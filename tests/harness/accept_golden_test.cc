@@ -83,9 +83,12 @@ TEST(ProposeGolden, AnEventKeepsTheAcceptanceThatMadeItSo) {
 }
 
 TEST(ProposeGolden, StartsFromNothing) {
-  const Golden golden = ProposeGolden(
-      std::nullopt, kShiftedWithoutFixation,
-      {.scenario = "slide/x", .grammar = "g", .derived = {"by eye"}, .acceptance = {}, .notes = {}});
+  const Golden golden = ProposeGolden(std::nullopt, kShiftedWithoutFixation,
+                                      {.scenario = "slide/x",
+                                       .grammar = "g",
+                                       .derived = {"by eye"},
+                                       .acceptance = {},
+                                       .notes = {}});
   EXPECT_EQ(golden.derived, std::vector<std::string>{"by eye"});
   EXPECT_TRUE(golden.accepted.empty());
   EXPECT_EQ(golden.events.size(), 2u);
@@ -104,10 +107,12 @@ TEST(ProposeGolden, WhatTheOracleSeesOtherwiseStandsInTheLineWithAReason) {
   EXPECT_EQ(first.events[1].oracle_because, "it bounces");
   EXPECT_EQ(ReadGolden("x", WriteGolden(first)).value, first);
   proposal.acceptance = Acceptance{"2026-02-02", "again"};
-  EXPECT_EQ(ProposeGolden(first, kShiftedWithoutFixation, proposal).events[1].oracle_because, "it bounces")
+  EXPECT_EQ(ProposeGolden(first, kShiftedWithoutFixation, proposal).events[1].oracle_because,
+            "it bounces")
       << "the reason stays with what it explains";
   proposal.notes.clear();
-  EXPECT_EQ(ProposeGolden(first, kShiftedWithoutFixation, proposal).events[1].oracle, "") << "now they agree";
+  EXPECT_EQ(ProposeGolden(first, kShiftedWithoutFixation, proposal).events[1].oracle, "")
+      << "now they agree";
 }
 
 TEST(Fingerprint, TellsEveryTickAndEveryOldGoldenApart) {
@@ -117,7 +122,8 @@ TEST(Fingerprint, TellsEveryTickAndEveryOldGoldenApart) {
   auto a_tick_later = kShiftedWithoutFixation;
   a_tick_later.events[0].interval.begin += 1;
   EXPECT_NE(Fingerprint(PendingGolden(Old(), a_tick_later, "slide/x", "g")), Fingerprint(pending));
-  EXPECT_NE(Fingerprint(PendingGolden(std::nullopt, kShiftedWithoutFixation, "slide/x", "g")), Fingerprint(pending));
+  EXPECT_NE(Fingerprint(PendingGolden(std::nullopt, kShiftedWithoutFixation, "slide/x", "g")),
+            Fingerprint(pending));
 }
 
 TEST(SaysTheSame, IsExact) {

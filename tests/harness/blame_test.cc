@@ -43,9 +43,10 @@ TEST(Blame, WithoutAnyChangedFileNothingIsKnown) {
   Runs runs;
   runs.now.trace.ticks.pop_back();
   runs.now.trace.hashes.pop_back();
-  EXPECT_EQ(runs.Text(),
-            "blame: physics: since 0.0042 s (tick 2) the run is not as long as when this last agreed "
-            "with its golden; changed since then: nothing that is known\n");
+  EXPECT_EQ(
+      runs.Text(),
+      "blame: physics: since 0.0042 s (tick 2) the run is not as long as when this last agreed "
+      "with its golden; changed since then: nothing that is known\n");
 }
 
 TEST(Blame, AGrammarThatTheCommandLineChoseDidNotChange) {
@@ -55,7 +56,8 @@ TEST(Blame, AGrammarThatTheCommandLineChoseDidNotChange) {
   runs.now.options = {"--grammar b", "--set slide_min=2s"};
   runs.now.other_grammar = true;
   const std::string with_options = runs.Text();
-  EXPECT_TRUE(with_options.ends_with("; changed since then: --grammar b, --set slide_min=2s\n")) << with_options;
+  EXPECT_TRUE(with_options.ends_with("; changed since then: --grammar b, --set slide_min=2s\n"))
+      << with_options;
   runs.now.options.clear();
   runs.now.other_grammar = false;
   EXPECT_TRUE(runs.Text().ends_with("; changed since then: b.grammar, a.grammar\n")) << runs.Text();

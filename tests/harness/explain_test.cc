@@ -44,14 +44,14 @@ TEST(Explain, AReachBeginsWhereTheApproachTurned) {
 TEST(Explain, ASlideBeginsAndEndsWithTheMotionAlongTheTable) {
   const WhyEvent why = Why(Played(kSlide), "sliding@2s");
   ExpectReason(why.began, "grasping(right_hand, milk)", Mark::kHeld);
-  ExpectReason(why.began, "moving_along(milk, table)", Mark::kTurned);
+  ExpectReason(why.began, "moving_along(right_hand, milk, table)", Mark::kTurned);
   ExpectReason(why.began, "drift_along(milk, table, slide_window) >= slide_speed", Mark::kTurned, true);
   ExpectReason(why.ended, "speed_along(milk, table) >= slide_speed", Mark::kTurned, false);
   EXPECT_EQ(Find(why.began, "drift_along(milk, table, slide_window) >= slide_speed")->tick, why.interval.begin);
   EXPECT_EQ(Find(why.ended, "speed_along(milk, table) >= slide_speed")->tick, why.interval.end);
   // moving_along bridges gaps of 150 ms, two rules down.
   EXPECT_EQ(why.decided - why.interval.end, 72);
-  EXPECT_EQ(Find(why.waited, "moving_along(milk, table)")->because.front().how, "a gap of up to 150 ms would have been bridged");
+  EXPECT_EQ(Find(why.waited, "moving_along(right_hand, milk, table)")->because.front().how, "a gap of up to 150 ms would have been bridged");
 }
 
 TEST(Explain, APickUpBeginsWhenTheTableIsLost) {
@@ -117,15 +117,15 @@ TEST(ExplainMissing, NoReachForACartonThatIsNotTouched) {
 
 TEST(ExplainMissing, NoPutDownWhereTheCartonSlidesIn) {
   const WhyMissing why = WhyNot(Played(kSlidesIn), "putting_down right_hand milk");
-  ExpectReason(why.reasons, "requires drop(milk) >= put_drop", Mark::kFailed, false);
-  ExpectReason(why.reasons, "supported_by(milk, board)", Mark::kTurned);  // where it ended
+  ExpectReason(why.reasons, "outside low_at_last(right_hand, milk)", Mark::kFailed);
+  ExpectReason(why.reasons, "height(position(milk)) - height(position(milk)@end) < put_drop", Mark::kHeld, false);
 }
 
 TEST(ExplainMissing, NoWholeWithoutAllItsParts) {
   const WhyMissing why = WhyNot(Played(kSlidesIn), "pick_and_place right_hand milk");
-  ExpectReason(why.reasons, "grasping(right_hand, milk)", Mark::kNote);
+  ExpectReason(why.reasons, "first_hold(right_hand, milk)", Mark::kNote);
   ExpectReason(why.reasons, "putting_down(right_hand, milk)", Mark::kFailed);
-  EXPECT_TRUE(why.because.starts_with("requires drop(milk) >= put_drop")) << why.because;
+  EXPECT_TRUE(why.because.starts_with("outside low_at_last(right_hand, milk): it held ")) << why.because;
 }
 
 TEST(ExplainMissing, NoTransportBeforeTheGrasp) {

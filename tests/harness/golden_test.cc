@@ -59,7 +59,8 @@ TEST(Golden, IsReadAsWritten) {
   EXPECT_EQ(golden.events[3].oracle, "+29.2/-4.2ms");
   EXPECT_EQ(golden.events[3].oracle_because, "it bounces");
   EXPECT_EQ(golden.events[3].because, "exact");
-  EXPECT_EQ(golden.pictures, (std::vector<Acceptance>{{"2026-02-02", "the carton is seen in the hand"}}));
+  EXPECT_EQ(golden.pictures,
+            (std::vector<Acceptance>{{"2026-02-02", "the carton is seen in the hand"}}));
   EXPECT_EQ(golden.closing_comments, std::vector<std::string>{"the end"});
 }
 
@@ -142,14 +143,18 @@ INSTANTIATE_TEST_SUITE_P(
                 "4:42: expected a reason in double quotes"},
         Mistake{"quote_open", "contact 1 2 a=cup tolerance=20ms because \"so",
                 "4:42: the closing quote is missing"},
-        Mistake{"reason_alone", "contact 1 2 a=cup because \"soft\"",
-                "4:19: 'because' gives the reason of a tolerance or of what differs from the oracle, "
-                "but there is none before it"},
-        Mistake{"reason_of_nothing_more", "contact 1 2 a=cup tolerance=20ms because \"soft\" because \"hard\"",
-                "4:49: 'because' gives the reason of a tolerance or of what differs from the oracle, "
-                "but there is none before it"},
+        Mistake{
+            "reason_alone", "contact 1 2 a=cup because \"soft\"",
+            "4:19: 'because' gives the reason of a tolerance or of what differs from the oracle, "
+            "but there is none before it"},
+        Mistake{
+            "reason_of_nothing_more",
+            "contact 1 2 a=cup tolerance=20ms because \"soft\" because \"hard\"",
+            "4:49: 'because' gives the reason of a tolerance or of what differs from the oracle, "
+            "but there is none before it"},
         Mistake{"oracle_unexplained", "contact 1 2 a=cup oracle=none",
-                "4:30: what differs from the oracle needs a reason | oracle=none because \"the reason\""},
+                "4:30: what differs from the oracle needs a reason | oracle=none because \"the "
+                "reason\""},
         Mistake{"oracle_in_words", "contact 1 2 a=cup oracle=late because \"x\"",
                 "4:26: expected how it differs from the oracle's event: none, or its begin and end "
                 "like +29.2/-4.2ms"},

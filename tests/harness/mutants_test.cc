@@ -54,9 +54,9 @@ const std::vector<Mutant> kMutants = {
      ""},
     {"pauses do not end a slide", "pick_and_place", "slide_pause    = 150 ms",
      "slide_pause    = 800 ms", ""},
-    {"pushing is sliding", "pick_and_place",
-     "while grasping(hand, object) and supported_by(object, support) and",
-     "while touching(hand, object) and", ""},
+    {"what was pushed slides from the grasp on", "pick_and_place",
+     "while grasping(hand, object) and supported_by(object, support) and speed_along",
+     "while touching(hand, object) and supported_by(object, support) and speed_along", ""},
     {"a pick-up may go far to the side", "pick_and_place", "lift_radius = 9 cm",
      "lift_radius = 30 cm", ""},
     {"a pick-up ends low", "pick_and_place", "lift_height = 12 cm", "lift_height = 6 cm", ""},
@@ -71,12 +71,16 @@ const std::vector<Mutant> kMutants = {
      "put_drop   = 4 cm", ""},
     {"slow put-downs are cut short", "pick_and_place", "put_back   = 3.3 s", "put_back   = 1 s",
      ""},
-    {"a put-down ends in the air", "pick_and_place", "until supported_by(object, any) begins",
-     "until supported_by(object, any) ends", ""},
+    {"a put-down ends in the air", "pick_and_place",
+     "until supported_by(object, any) begins\n  since in_the_air(hand, object) and in_cylinder",
+     "until supported_by(object, any) ends\n  since in_the_air(hand, object) and in_cylinder", ""},
+    {"a put-down need not come from above", "pick_and_place", "from from_above(hand, object) begins",
+     "from nearing(hand, object) begins", ""},
+    {"a pick-up must end high", "pick_and_place", " or raised(object)", "", ""},
     {"a transport includes the put-down", "pick_and_place",
      ", picking_up(hand, object), putting_down(hand, object)", ", picking_up(hand, object)", ""},
     {"the put-down comes before the grasp", "pick_and_place",
-     "grasp contains|started_by|finished_by put", "put before|meets grasp", ""},
+     "hold contains|finished_by put", "put before|meets hold", ""},
 };
 
 // In the order in which they kill most.
@@ -96,6 +100,9 @@ const char* const kScenarios[] = {
     "support/side_by_side_is_no_support",
     "support/bounces_are_contacts_of_their_own",
     "put_down/slow_put_down",
+    "pick_up/low_arch_is_a_pick_up",
+    "put_down/low_last_approach_is_no_put_down",
+    "grasp/one_of_two_held_things_slides",
 };
 
 /// The mutant's program; no value: the mutation did not apply, or made no grammar.

@@ -174,7 +174,7 @@ TEST_F(OracleCarry, APutDownIsBackdatedToTheEntryOfItsRegion) {  // (i), from th
 }
 
 TEST_F(OracleCarry, APutDownIsCutShortByMovingAway) {  // (j)
-  for (const double away_m : {0.005, 0.03}) {
+  for (const double away_m : {0.003, 0.03}) {
     stage_ = Stage();
     SetUp();
     Lift(0.2);
@@ -186,8 +186,34 @@ TEST_F(OracleCarry, APutDownIsCutShortByMovingAway) {  // (j)
     stage_.Carry((0.04 + away_m) / 0.2, {0, 0, -0.2});
     const Tick landing = Land();
     SCOPED_TRACE(away_m);
-    ExpectNear(Events("putting_down"), {{away_m > 0.01 ? turn : near, landing}});
+    ExpectNear(Events("putting_down"), {{away_m > 0.005 ? turn : near, landing}});
   }
+}
+
+TEST_F(OracleCarry, AnApproachThatBeganLowIsNoPutDown) {
+  Lift(0.2);
+  const Tick out = stage_.now() - static_cast<Tick>((0.08 / 0.2) * 480);
+  stage_.Carry(0.2, {0.5, 0, 0});
+  stage_.Carry(0.95, {0, 0, -0.2});  // a centimetre above the table
+  stage_.Carry(0.3, {0.1, 0, 0});
+  stage_.Carry(0.2, {-0.1, 0, 0});
+  stage_.Carry(0.05, {0, 0, -0.2});
+  const Tick landing = Land();
+  EXPECT_TRUE(Events("putting_down").empty());
+  ExpectNear(Events("transporting"), {{out, landing}});
+}
+
+TEST_F(OracleCarry, ALowArchRisesAndComesFromAbove) {
+  const Tick lost = stage_.now();
+  stage_.cup_on_table = false;
+  stage_.Carry(0.4, {0.25, 0, 0.1});
+  const Tick over = stage_.now();
+  stage_.Carry(0.4, {0.25, 0, -0.1});
+  const Tick landing = Land();
+  const Tick near = landing - static_cast<Tick>(0.09 / 0.25 * 480);
+  EXPECT_LT(over, near);
+  ExpectNear(Events("picking_up"), {{lost, lost + static_cast<Tick>(0.09 / 0.25 * 480)}});
+  ExpectNear(Events("putting_down"), {{near, landing}});
 }
 
 TEST_F(OracleCarry, APutDownStartsAtMostThreePointThreeSecondsBeforeTheLanding) {

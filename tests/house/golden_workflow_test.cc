@@ -27,8 +27,9 @@ TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
   const Said fresh = Do("review");
   EXPECT_EQ(fresh.exit_code, 5);
   EXPECT_TRUE(SaysIn(fresh, "new  rest/carton_rests\n    contact +0\\.0")) << fresh.out;
-  EXPECT_TRUE(SaysIn(
-      fresh, "\n    if right: prehend accept rest/carton_rests --reviewed [0-9a-f]{8} --reason \"...\"\n"));
+  EXPECT_TRUE(SaysIn(fresh,
+                     "\n    if right: prehend accept rest/carton_rests --reviewed [0-9a-f]{8} "
+                     "--reason \"...\"\n"));
   Accept();
   EXPECT_EQ(Do("review").exit_code, 0);
 
@@ -58,9 +59,10 @@ TEST_F(GoldenWorkflow, TheGrammarIsToBlameWhenNothingMovesOtherwise) {
                          "\nevent resting(object: Movable)\n  while supported_by(object, any)\n");
   const Said said = Do("check --no-pictures");
   EXPECT_EQ(said.exit_code, 1) << said.out << said.err;
-  EXPECT_TRUE(SaysIn(said,
-                     "blame: the grammar or the golden: everything moves as when this last agreed "
-                     "with its golden; changed since then: grammar/library/pick_and_place.grammar\n"))
+  EXPECT_TRUE(
+      SaysIn(said,
+             "blame: the grammar or the golden: everything moves as when this last agreed "
+             "with its golden; changed since then: grammar/library/pick_and_place.grammar\n"))
       << said.out;
 }
 
@@ -87,10 +89,12 @@ TEST_F(GoldenWorkflow, WhatWasAcceptedIsWhatTheNextBlameComparesWith) {
   Accept();
   WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.1 0.2 hand=right_hand object=carton\n");
   EXPECT_TRUE(SaysIn(Do("check --no-pictures"),
-                     "blame: the grammar or the golden: everything moves as when this last agreed with its golden; "
+                     "blame: the grammar or the golden: everything moves as when this last agreed "
+                     "with its golden; "
                      "changed since then: golden/rest/carton_rests.timeline\n"));
-  EXPECT_TRUE(SaysIn(Do("check --no-pictures --grammar original_2020"),
-                     "changed since then: golden/rest/carton_rests.timeline, --grammar original_2020\n"));
+  EXPECT_TRUE(
+      SaysIn(Do("check --no-pictures --grammar original_2020"),
+             "changed since then: golden/rest/carton_rests.timeline, --grammar original_2020\n"));
 }
 
 TEST_F(GoldenWorkflow, WhatWasAcceptedIsStillChecked) {
@@ -103,7 +107,8 @@ TEST_F(GoldenWorkflow, WithoutARunThatAgreedTheBlameIsUnknown) {
   Accept();
   fs::remove_all(root_ / "build/check");
   WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.1 0.2 hand=right_hand object=carton\n");
-  EXPECT_TRUE(SaysIn(Do("check --no-pictures"), "blame: unknown, this scenario has not agreed with its golden"));
+  EXPECT_TRUE(SaysIn(Do("check --no-pictures"),
+                     "blame: unknown, this scenario has not agreed with its golden"));
 }
 
 TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
@@ -113,7 +118,8 @@ TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
   for (const std::string& how : {std::string(), " --reviewed " + shown}) {
     const Said refused = Do("accept carton_rests --reason seen" + how);
     EXPECT_EQ(refused.exit_code, 1) << refused.err;
-    EXPECT_NE(refused.err.find("was " + shown + ", but the scenario yields something else now"), std::string::npos)
+    EXPECT_NE(refused.err.find("was " + shown + ", but the scenario yields something else now"),
+              std::string::npos)
         << refused.err;
     EXPECT_TRUE(SaysIn(refused, "new golden:\n")) << "it shows what: " << refused.out;
     EXPECT_FALSE(fs::exists(Golden()));
@@ -124,7 +130,8 @@ TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
 
 TEST_F(GoldenWorkflow, PicturesHaveAGateOfTheirOwn) {
   WriteFile(Scenario(), std::string(kCartonRests) + "pictures: [{at: 0.1}]\n");
-  EXPECT_EQ(Do("accept carton_rests --pictures --reason too_early").exit_code, 5) << "events come first";
+  EXPECT_EQ(Do("accept carton_rests --pictures --reason too_early").exit_code, 5)
+      << "events come first";
   EXPECT_EQ(Do("accept carton_rests --pictures --derived x --reason y").exit_code, 2);
   Accept();
   const Said accepted = Do("accept carton_rests --pictures --reason a_carton_is_seen");
@@ -137,10 +144,12 @@ TEST_F(GoldenWorkflow, PicturesHaveAGateOfTheirOwn) {
   EXPECT_TRUE(Do("accept carton_rests --pictures --reason again").out.starts_with("nothing to"));
   EXPECT_EQ(ReadFile(Golden()), timeline) << "accepting twice is accepting once";
 
-  WriteFile(Scenario(), Replaced(kCartonRests, "wait_s: 0.2", "wait_s: 0.3") + "pictures: [{at: 0.1, camera: top}]\n");
+  WriteFile(Scenario(), Replaced(kCartonRests, "wait_s: 0.2", "wait_s: 0.3") +
+                            "pictures: [{at: 0.1, camera: top}]\n");
   const Said differs = Do("check");
   EXPECT_EQ(differs.exit_code, 1) << differs.out;
-  EXPECT_TRUE(SaysIn(differs, "picture .*carton_rests.png: .* % of its pixels differ, at most 1 % may\n"))
+  EXPECT_TRUE(
+      SaysIn(differs, "picture .*carton_rests.png: .* % of its pixels differ, at most 1 % may\n"))
       << differs.out;
   EXPECT_EQ(Do("accept carton_rests --pictures --reason from_above").exit_code, 0);
   const std::string with_reason = ReadFile(Golden());
