@@ -66,6 +66,9 @@ std::vector<std::string> Sided(const std::string& name, bool right) {
 /// From BVH's axes (x left, y up, z ahead) to ours.
 Vector3d ToOurAxes(const Vector3d& p) { return {p.z(), p.x(), p.y()}; }
 
+constexpr const char* kNamesHint =
+    "like RightUpLeg, rThigh, thigh.R or mixamorig:RightUpLeg; see docs/recorded-input.md";
+
 struct JointPose {
   Vector3d p = Vector3d::Zero();  ///< in the file's axes and units
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
@@ -99,33 +102,35 @@ class TrackMaker {
     for (std::size_t i = 0; i < bvh_.joints.size(); ++i)
       joints.emplace(Plain(bvh_.joints[i].name), static_cast<int>(i));
     roles_.fill(-1);
-    for (const auto& [role, names] : NamesOfRoles()) {
+    for (const auto& [role, wanted] : NamesOfRoles()) {
       if (role == kHead) {
-        Find(role, names.called, names.names, joints);
+        roles_[role] = Find(wanted.names, joints);
+        if (roles_[role] < 0) Complain("no joint is called Head", kNamesHint);
         continue;
       }
       for (const bool right : {true, false}) {
         std::vector<std::string> sided;
-        for (const std::string& name : names.names) {
+        for (const std::string& name : wanted.names) {
           const std::vector<std::string> ways = Sided(name, right);
           sided.insert(sided.end(), ways.begin(), ways.end());
         }
-        Find(static_cast<Role>(role + (right ? 0 : 1)),
-             fmt::format("{} {}", right ? "right" : "left", names.called), sided, joints);
+        int& joint = roles_[static_cast<std::size_t>(role) + (right ? 0 : 1)];
+        joint = Find(sided, joints);
+        if (joint >= 0) continue;
+        const char* side = right ? "right" : "left";
+        Complain(fmt::format("no joint is a person's {} {}: wanted '{}' with one of {}", side,
+                             wanted.called, side, fmt::join(wanted.names, ", ")),
+                 kNamesHint);
       }
     }
   }
 
-  void Find(Role role, const std::string& called, const std::vector<std::string>& names,
-            const std::map<std::string, int>& joints) {
+  /// The first of these names that there is; -1: none.
+  static int Find(const std::vector<std::string>& names, const std::map<std::string, int>& joints) {
     for (const std::string& name : names) {
-      const auto found = joints.find(name);
-      if (found == joints.end()) continue;
-      roles_[role] = found->second;
-      return;
+      if (const auto found = joints.find(name); found != joints.end()) return found->second;
     }
-    Complain(fmt::format("no joint is a person's {}", called),
-             fmt::format("looked for {}, with small or capital letters", fmt::join(names, ", ")));
+    return -1;
   }
 
   /// The person with all joints at 0.

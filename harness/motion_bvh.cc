@@ -164,7 +164,7 @@ class BvhReader {
     BvhJoint joint{.parent = open_.empty() ? -1 : open_.back()};
     bool braced = words_.back().text == "{";
     const std::size_t words = words_.size() - (braced ? 1 : 0);
-    if (words < 2) return Wrong("a name after it");
+    if (words < 2) return Wrong(fmt::format("'{}' and a name", words_.front().text));
     joint.place = PlaceOf(words_[1]);
     if (words_.front().text != "End") {
       for (std::size_t i = 1; i < words; ++i)

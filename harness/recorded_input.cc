@@ -79,6 +79,9 @@ std::vector<physics::TimedFigure> Place(const RecordingEntry& entry, const BodyT
   return figures;
 }
 
+/// More would say the same again.
+constexpr std::size_t kMostOddities = 12;
+
 /// What is odd about how hips, hands and feet go, in metres.
 grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingEntry& entry,
                                     double scale) {
@@ -97,6 +100,7 @@ grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingEntry
     for (const BodySample& sample : track.samples)
       point.samples.push_back({sample.t_s, {scale * sample.points[i]}, {}, sample.place});
     for (Diagnostic& found : CheckTrack(point, limits)) {
+      if (odd.size() == kMostOddities) return odd;
       found.message = fmt::format("{}: {}", kWatchedPoints[i], found.message);
       odd.push_back(std::move(found));
     }
@@ -140,6 +144,7 @@ class RecordingReader {
     const double scale = entry.scale
                              ? entry.scale->value
                              : physics::LegLength(person->value.height_m) / track.value->leg_units;
+    if (!CheckScale(entry, scale * track.value->leg_units, person->value)) return;
     if (!Accept(entry, CheckBodyTrack(*track.value, entry, scale))) return;
     if (!HasRoom(entry, track.value->samples.size())) return;
     entry.figures = Place(entry, *track.value, person->value, scale);
@@ -150,6 +155,21 @@ class RecordingReader {
                                fmt::format("the hips are beyond {} m", kFarthestTrackM),
                                "in which units is the file? Say so with scale: metres per unit")});
     }
+  }
+
+  /// Nobody's legs are a third or three times as long as hers: those are other units.
+  bool CheckScale(const RecordingEntry& entry, double legs_m, const PersonActor& person) {
+    constexpr double kMostRatio = 3;
+    const double hers_m = physics::LegLength(person.height_m), ratio = legs_m / hers_m;
+    if (ratio < kMostRatio && ratio > 1 / kMostRatio) return true;
+    complaints_.Add(
+        entry.scale->where,
+        fmt::format("scale: the recorded legs would be {:.3g} m long, hers are {:.3g} m", legs_m,
+                    hers_m),
+        fmt::format("metres per unit of the file: perhaps {:.3g}; without scale, legs "
+                    "are as long as hers",
+                    entry.scale->value / ratio));
+    return false;
   }
 
   std::string PathOf(const RecordingEntry& entry) const {
