@@ -66,16 +66,15 @@ physics::Body MakeBody(const Named<EntityEntry>& named) {
   return body;
 }
 
-bool IsUpright(const physics::Body& body) {
-  constexpr double kUprightCosine = 0.999;
-  return (body.X_WB.q * Vector3d::UnitZ()).z() >= kUprightCosine;
-}
+/// 1: as it is built; -1: on its head.
+double Uprightness(const physics::Body& body) { return (body.X_WB.q * Vector3d::UnitZ()).z(); }
+constexpr double kUpright = 0.999;
 
 /// Is the point above the body? An upright body is asked in its own axes, a tilted one by its world
 /// box.
 bool StandsAbove(const physics::Body& support, const Eigen::Vector2d& p_W) {
   const Vector3d top_W(p_W.x(), p_W.y(), support.X_WB.p_m.z());
-  if (!IsUpright(support)) {
+  if (std::abs(Uprightness(support)) < kUpright) {
     const Eigen::AlignedBox3d bounds = physics::WorldBounds(support, support.X_WB);
     return bounds.contains(Vector3d(top_W.x(), top_W.y(), bounds.center().z()));
   }
@@ -165,7 +164,7 @@ class Stacking {
     physics::Body& body = bodies[i];
     const physics::Body* vessel = Placed(entity.in);
     if (!vessel || !entity.grains) return;  // was complained about
-    if (!IsUpright(*vessel)) {
+    if (Uprightness(*vessel) < kUpright) {
       return complaints_.Add(entity.in->where, fmt::format("in: '{}' does not stand upright", vessel->name));
     }
     constexpr int kMostGrains = 500;
