@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/read_scenario.h"
+#include "physics/compounds.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {
@@ -59,9 +60,9 @@ TEST(Outcome, AMomentIsLookedAtWhenItComes) {
 
 TEST(Outcome, InsideIsInTheBoundingBox) {
   const std::string outcomes = "  through: [{entity: milk, inside: table}]\n";
-  EXPECT_EQ(Judge(outcomes, {Upright(0.59, 0.75)}), "through");
-  EXPECT_EQ(Judge(outcomes, {Upright(0.59, 0.77)}), "");
-  EXPECT_EQ(Judge(outcomes, {Upright(0.61, 0.75)}), "");
+  EXPECT_EQ(Judge(outcomes, {Upright(0.59, 0.01)}), "through");
+  EXPECT_EQ(Judge(outcomes, {Upright(0.59, 0.03)}), "");
+  EXPECT_EQ(Judge(outcomes, {Upright(0.61, 0.01)}), "");
 }
 
 TEST(Outcome, OfGrainsAShareIsInside) {
@@ -89,7 +90,7 @@ TEST(Outcome, RefusesWhatIsNotThere) {
   EXPECT_EQ(Brief(Read("  open: [{entity: milk, joint_above: 0.5}]\n").diagnostics),
             "16:10: entity: 'milk' hangs on no joint\n");
   EXPECT_EQ(Brief(Read("  kept: [{entity: milk, inside: tabel}]\n").diagnostics),
-            "16:34: inside: no entity is called 'tabel' | did you mean 'table'?\n");
+            "16:33: inside: no entity is called 'tabel' | did you mean 'table'?\n");
 }
 
 }  // namespace
