@@ -17,7 +17,7 @@ std::span<const Builtin> Builtins() {
        "(what, centre, radius): a position, or any part of an entity's box, is in the sphere"},
       {"in_cylinder", Op::kInCylinder, T::kTruth, kPlain, {A::kPosition, A::kPosition, A::kLength, A::kLength},
        "(position, centre, radius, height): in the upright cylinder, at most height above or below its centre"},
-      {"part_of", Op::kPartOf, T::kTruth, kPlain, {A::kEntity, A::kEntity}, "the first is a part of the second"},
+      {"part_of", Op::kPartOf, T::kTruth, kPlain, {A::kEntity, A::kEntity}, "the first is a part of the second, or of a part of it"},
       {"gazed", Op::kGazed, T::kTruth, kPlain, {A::kEntity, A::kEntity}, "the first looks at the second"},
       {"sensor_set", Op::kSensorSet, T::kTruth, kPlain, {A::kHand, A::kSet, A::kThing},
        "(hand, set, object): the object touches this sensor set of the hand; a name, or a number from 1"},

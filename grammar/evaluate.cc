@@ -30,6 +30,15 @@ bool IsPosition(const Program& program, int node) {
   }
 }
 
+/// Directly, or through other parts. A recording may have rings of them, hence the bound.
+bool IsPartOf(const Cast& cast, int part, int whole) {
+  for (std::size_t depth = 0; depth < cast.entities.size() && part != kNobody; ++depth) {
+    part = cast.entities[static_cast<std::size_t>(part)].part_of;
+    if (part == whole) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Kleene Evaluator::Truth(int index, const View& view) const {
@@ -53,7 +62,7 @@ Kleene Evaluator::Truth(int index, const View& view) const {
       const std::optional<Reach> reach = ReachOf(node, view);
       return reach ? Known(reach->IsInside()) : Kleene::kUnknown;
     }
-    case Op::kPartOf: return Known(cast_.entities[Entity(node, view, 0)].part_of == Entity(node, view, 1));
+    case Op::kPartOf: return Known(IsPartOf(cast_, Entity(node, view, 0), Entity(node, view, 1)));
     case Op::kGazed: return Known(history_.Look(Entity(node, view, 0), view.frame).gazes_at == Entity(node, view, 1));
     case Op::kSensorSet: return Known(SensorSet(node, view));
     case Op::kIsA: return Known(lanes_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));

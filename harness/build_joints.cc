@@ -106,6 +106,8 @@ std::vector<physics::Joint> BuildJoints(const ScenarioEntry& entry, Complaints& 
                      fmt::format("fixed_to: '{}' never moves", written->to->value),
                      fmt::format("give '{}' 'fixed: true' instead", entry.entities[i].name));
     }
+    if (entry.entities[base].value.grains)
+      complaints.Add(written->to->where, fmt::format("{}: '{}' is grains, which carry nothing", written->key, written->to->value));
     physics::Joint& joint = joints.emplace_back(MakeJoint(*written));
     joint.body = static_cast<int>(i);
     joint.base = static_cast<int>(base);

@@ -8,7 +8,9 @@
 #include <map>
 #include <numbers>
 
+#include "physics/fill_vessel.h"
 #include "physics/geometry.h"
+#include "physics/random.h"
 
 namespace prehend::harness {
 namespace {
@@ -27,6 +29,7 @@ physics::PlacedShape ShapeOf(const PartEntry& part) {
 }
 
 std::vector<physics::PlacedShape> ShapesOf(const EntityEntry& entity) {
+  if (entity.grains) return {};
   if (entity.tray) return physics::ShapesOf(*entity.tray);
   if (entity.mug) return physics::ShapesOf(*entity.mug);
   if (entity.bowl) return physics::ShapesOf(*entity.bowl);
@@ -51,8 +54,10 @@ physics::Body MakeBody(const Named<EntityEntry>& named) {
   body.fixed = entity.fixed;
   body.mass_kg = entity.mass_kg ? entity.mass_kg->value : 0;
   if (entity.friction) body.friction = entity.friction->value;
+  const bool rolls = entity.sphere || entity.grains;
   body.rolling_friction =
-      entity.rolling_friction.value_or(entity.sphere ? kDefaultSphereRollingFriction : 0);
+      entity.rolling_friction.value_or(rolls ? kDefaultSphereRollingFriction : 0);
+  if (entity.grains) body.grains = physics::Grains{.radius_m = entity.grains->radius_m, .p_WG_m = {}};
   body.restitution = entity.restitution;
   body.linear_damping_per_s = entity.linear_damping_per_s;
   body.angular_damping_per_s = entity.angular_damping_per_s;
@@ -61,12 +66,15 @@ physics::Body MakeBody(const Named<EntityEntry>& named) {
   return body;
 }
 
+/// 1: as it is built; -1: on its head.
+double Uprightness(const physics::Body& body) { return (body.X_WB.q * Vector3d::UnitZ()).z(); }
+constexpr double kUpright = 0.999;
+
 /// Is the point above the body? An upright body is asked in its own axes, a tilted one by its world
 /// box.
 bool StandsAbove(const physics::Body& support, const Eigen::Vector2d& p_W) {
-  constexpr double kUprightCosine = 0.999;
   const Vector3d top_W(p_W.x(), p_W.y(), support.X_WB.p_m.z());
-  if (std::abs((support.X_WB.q * Vector3d::UnitZ()).z()) < kUprightCosine) {
+  if (std::abs(Uprightness(support)) < kUpright) {
     const Eigen::AlignedBox3d bounds = physics::WorldBounds(support, support.X_WB);
     return bounds.contains(Vector3d(top_W.x(), top_W.y(), bounds.center().z()));
   }
@@ -108,11 +116,15 @@ class Stacking {
     }
     if (next && progress_[*next] == Progress::kBegun) {
       const EntityEntry& entity = entry_.entities[above.back()].value;
-      complaints_.Add(entity.on->where, fmt::format("on: '{}' stands, directly or not, on itself",
-                                                    entry_.entities[*next].name));
+      const auto& below = entity.in ? entity.in : entity.on;
+      complaints_.Add(below->where, fmt::format("on: '{}' stands, directly or not, on itself",
+                                                entry_.entities[*next].name));
     }
     for (; !above.empty(); above.pop_back()) {
-      PlaceOnSupport(above.back());
+      if (entry_.entities[above.back()].value.in)
+        PlaceInVessel(above.back());
+      else
+        PlaceOnSupport(above.back());
       progress_[above.back()] = Progress::kDone;
     }
   }
@@ -123,13 +135,54 @@ class Stacking {
   enum class Progress { kWaiting, kBegun, kDone };
 
   std::optional<std::size_t> SupportOf(std::size_t i) {
-    const auto& on = entry_.entities[i].value.on;
-    if (!on) return std::nullopt;
-    const auto found = index_.find(on->value);
-    if (found != index_.end()) return found->second;
-    complaints_.AddUnknownName(on->where, fmt::format("on: no entity is called '{}'", on->value),
-                               on->value, names_);
-    return std::nullopt;
+    const EntityEntry& entity = entry_.entities[i].value;
+    const auto& below = entity.in ? entity.in : entity.on;
+    if (!below) return std::nullopt;
+    const char* key = entity.in ? "in" : "on";
+    const auto found = index_.find(below->value);
+    if (found == index_.end()) {
+      complaints_.AddUnknownName(below->where, fmt::format("{}: no entity is called '{}'", key, below->value),
+                                 below->value, names_);
+      return std::nullopt;
+    }
+    if (bodies[found->second].grains) {
+      complaints_.Add(below->where, fmt::format("{}: '{}' is grains, which carry nothing", key, below->value));
+      return std::nullopt;
+    }
+    return found->second;
+  }
+
+  /// Of what has been placed already.
+  const physics::Body* Placed(const std::optional<Located<std::string>>& name) const {
+    const auto found = name ? index_.find(name->value) : index_.end();
+    if (found == index_.end() || progress_[found->second] != Progress::kDone) return nullptr;
+    return &bodies[found->second];
+  }
+
+  void PlaceInVessel(std::size_t i) {
+    const EntityEntry& entity = entry_.entities[i].value;
+    physics::Body& body = bodies[i];
+    const physics::Body* vessel = Placed(entity.in);
+    if (!vessel || !entity.grains) return;  // was complained about
+    if (Uprightness(*vessel) < kUpright) {
+      return complaints_.Add(entity.in->where, fmt::format("in: '{}' does not stand upright", vessel->name));
+    }
+    constexpr int kMostGrains = 500;
+    grains_so_far_ += entity.grains->count;
+    if (grains_so_far_ > kMostGrains) {
+      return complaints_.Add(entity.in->where, fmt::format("more than {} grains in the scenario", kMostGrains));
+    }
+    const std::uint64_t seed = physics::Random(entry_.world.seed ^ physics::Random(i).Next()).Next();
+    const GrainsEntry& grains = *entity.grains;
+    for (const Vector3d& p_B_m : physics::FillVessel(*vessel, grains.radius_m, grains.count, seed)) {
+      body.grains->p_WG_m.push_back(vessel->X_WB * p_B_m);
+      body.X_WB.p_m += body.grains->p_WG_m.back() / grains.count;
+    }
+    if (const std::size_t fit = body.grains->p_WG_m.size(); fit < static_cast<std::size_t>(grains.count)) {
+      complaints_.Add(entity.in->where,
+                      fmt::format("in: {} of {} grains fit into '{}' below its rim", fit, grains.count, vessel->name),
+                      "take fewer, smaller ones, or a larger vessel; its hollow is around the vertical through its at_m");
+    }
   }
 
   void PlaceOnSupport(std::size_t i) {
@@ -138,10 +191,9 @@ class Stacking {
     const std::vector<double>& at = entity.at_m.value;
     if (at.size() < 2) return;  // was complained about
     body.X_WB.p_m = {at[0], at[1], at.size() > 2 ? at[2] : 0};
-    const auto found = entity.on ? index_.find(entity.on->value) : index_.end();
-    if (found == index_.end() || progress_[found->second] != Progress::kDone)
-      return;  // unknown or cyclic
-    const physics::Body& support = bodies[found->second];
+    const physics::Body* placed = Placed(entity.on);
+    if (!placed) return;  // unknown or cyclic
+    const physics::Body& support = *placed;
     const double lowest = physics::WorldBounds(body, {Vector3d::Zero(), body.X_WB.q}).min().z();
     body.X_WB.p_m.z() =
         physics::HighestBelow(support, support.X_WB, body, Above(body.X_WB)) - lowest;
@@ -158,6 +210,7 @@ class Stacking {
   std::map<std::string, std::size_t> index_;
   std::vector<std::string> names_;
   std::vector<Progress> progress_;
+  int grains_so_far_ = 0;
 };
 
 void Override(const PidOverride& given, physics::PidGains& gains) {

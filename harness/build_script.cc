@@ -101,8 +101,16 @@ struct StepMaker {
   }
 
  private:
+  /// Complains about what does not exist or is no thing.
   void CheckEntity(const char* key, const Located<std::string>& name) const {
-    if (std::find(entities.begin(), entities.end(), name.value) != entities.end()) return;
+    const auto found = std::find(entities.begin(), entities.end(), name.value);
+    if (found != entities.end()) {
+      const auto index = static_cast<std::size_t>(found - entities.begin());
+      if (index < scene.bodies.size() && scene.bodies[index].grains)
+        complaints.Add(name.where, fmt::format("{}: '{}' is grains, and no thing", key, name.value),
+                       "name the vessel that they are in");
+      return;
+    }
     complaints.AddUnknownName(name.where,
                               fmt::format("{}: no entity is called '{}'", key, name.value),
                               name.value, entities);
@@ -113,7 +121,7 @@ struct StepMaker {
     const auto found = std::find(entities.begin(), entities.end(), e.reach.value);
     if (!e.point_m || found == entities.end()) return;
     const auto index = static_cast<std::size_t>(found - entities.begin());
-    if (index >= scene.bodies.size()) return;
+    if (index >= scene.bodies.size() || scene.bodies[index].shapes.empty()) return;
     const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
     if (away_m <= kFarthestPointM) return;
     complaints.Add(e.point_m->where,

@@ -24,6 +24,7 @@ struct Occupant {
   bool hand = false;
   bool fixed = false;
   bool person = false;
+  bool grains = false;
   std::vector<PlacedSolid> solids;
   Eigen::AlignedBox3d bounds;
 };
@@ -41,6 +42,10 @@ Occupant OccupantOf(const physics::Body& body, Where where) {
                     .solids = {},
                     .bounds = {}};
   for (const auto& placed : body.shapes) AddSolid(placed.shape, body.X_WB * placed.X_BS, occupant);
+  if (!body.grains) return occupant;
+  occupant.grains = true;
+  for (const Eigen::Vector3d& p_WG_m : body.grains->p_WG_m)
+    AddSolid(physics::Sphere{body.grains->radius_m}, {p_WG_m}, occupant);
   return occupant;
 }
 
@@ -95,6 +100,10 @@ void Complain(const Occupant& later, const Occupant& earlier, double depth_m,
                    fmt::format("actor '{}' starts inside '{}', {:.0f} mm deep", later.name,
                                earlier.name, depth_mm),
                    "let the hand start in free space");
+  } else if (earlier.grains || later.grains) {
+    complaints.Add(later.where,
+                   fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),
+                   "grains lie around the vertical axis of their vessel: leave that free");
   } else {
     complaints.Add(
         later.where,
@@ -105,7 +114,7 @@ void Complain(const Occupant& later, const Occupant& earlier, double depth_m,
 
 /// Of a body's place. After the entities come the parts of the persons.
 Where WhereOf(const ScenarioEntry& entry, const physics::Scene& scene, std::size_t body) {
-  if (body < entry.entities.size()) return entry.entities[body].value.at_m.where;
+  if (body < entry.entities.size()) return PlaceOf(entry.entities[body].value);
   Where where;
   for (std::size_t i = 0; i < scene.persons.size(); ++i) {
     if (static_cast<std::size_t>(scene.persons[i].head) <= body) where = entry.persons[i].value.at_m.where;

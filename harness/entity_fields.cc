@@ -86,7 +86,7 @@ Format<JointEntry> BallJointFormat() {
 
 void CheckClass(const EntityEntry& entity, Complaints& complaints) {
   for (const char* reserved : {"Entity", "Thing", "Movable", "Fixed", "Jointed", "Hand", "Person",
-                               "BodyPart"}) {
+                               "BodyPart", "Grains"}) {
     if (entity.class_name.value != reserved) continue;
     complaints.Add(entity.class_name.where,
                    "class: '" + entity.class_name.value + "' is built in and given anyway",
@@ -116,9 +116,24 @@ void CheckJoint(const YamlNode& node, const EntityEntry& entity, Complaints& com
   }
 }
 
+/// Grains lie in a vessel, and nothing else does. They are many: what one thing has, they have not.
+void CheckGrains(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
+  const std::string title = "entity '" + node.key + "'";
+  if (entity.in && !entity.grains)
+    complaints.Add(entity.in->where, "in: only grains are put into something", "for a thing: 'on', with at_m: [x, y]");
+  if (!entity.grains) return;
+  if (!entity.in)
+    complaints.Add(node.key_where, title + " is grains: it needs the key 'in'", "the vessel that they fill");
+  for (const char* key : {"fixed", "part_of", "fixed_to", "slider", "hinge", "ball_joint", "on", "at_m", "rpy_deg", "yaw_deg"}) {
+    if (const YamlNode* given = node.Find(key))
+      complaints.Add(given->key_where, std::string(key) + ": grains have none; they lie loose in their vessel");
+  }
+}
+
 void CheckEntity(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
   CheckClass(entity, complaints);
   CheckJoint(node, entity, complaints);
+  CheckGrains(node, entity, complaints);
   const std::string title = "entity '" + node.key + "'";
   if (entity.fixed && entity.mass_kg) {
     complaints.Add(entity.mass_kg->where, title + " is fixed: it cannot have a mass",
@@ -129,7 +144,7 @@ void CheckEntity(const YamlNode& node, const EntityEntry& entity, Complaints& co
                    "or 'fixed: true'");
   }
   const std::size_t wanted = entity.on ? 2 : 3;
-  if (entity.at_m.value.size() != wanted) {
+  if (!entity.in && !entity.grains && entity.at_m.value.size() != wanted) {
     complaints.Add(entity.at_m.where,
                    entity.on
                        ? "at_m: with 'on' expected [x, y]; z follows from the top of the support"
@@ -161,12 +176,13 @@ Format<EntityEntry> EntityFormat() {
                 "Its shape: boards between two sides; a cupboard has two.")
       .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMostParts),
                 "Its shape: several shapes, rigidly together.")
+      .Optional("grains", &E::grains, GrainsFormat(), "Many loose balls in a vessel, seen as one entity.")
       .Optional("fixed", &E::fixed, Flag(), "True: never moves and has no mass.")
-      .Optional("mass_kg", &E::mass_kg, Number(0.001, 1000), "Mass; required unless fixed.")
+      .Optional("mass_kg", &E::mass_kg, Number(0.001, 1000), "Mass; required unless fixed. Of grains: of all together.")
       .Optional("friction", &E::friction, Number(0, 5),
                 "Coulomb friction; that of two bodies is multiplied. Default 0.8.")
       .Optional("rolling_friction", &E::rolling_friction, Number(0, 1),
-                "Slows rolling; default 0.006 for a sphere, 0 for the others.")
+                "Slows rolling; default 0.006 for a sphere and for grains, 0 for the others.")
       .Optional("restitution", &E::restitution, Number(0, 1),
                 "0: does not bounce. 1: bounces without loss.")
       .Optional("linear_damping_per_s", &E::linear_damping_per_s, Number(0, 100),
@@ -174,6 +190,7 @@ Format<EntityEntry> EntityFormat() {
       .Optional("angular_damping_per_s", &E::angular_damping_per_s, Number(0, 100),
                 "Rate at which its turning decays.")
       .Optional("on", &E::on, Identifier(), "The entity it stands on; then at_m is [x, y].")
+      .Optional("in", &E::in, Identifier(), "Of grains: the vessel that they fill; instead of at_m.")
       .Optional("fixed_to", &E::fixed_to, Identifier(),
                 "The entity that it is glued to: both move as one.")
       .Optional("slider", &E::slider, SliderFormat(),
@@ -181,13 +198,14 @@ Format<EntityEntry> EntityFormat() {
       .Optional("hinge", &E::hinge, HingeFormat(), "It turns on another entity, as a door does.")
       .Optional("ball_joint", &E::ball_joint, BallJointFormat(),
                 "It swings any way about a point of another entity.")
-      .Required("at_m", &E::at_m, ListOf(Number(-kFarthestM, kFarthestM), 2, 3),
+      .Optional("at_m", &E::at_m, ListOf(Number(-kFarthestM, kFarthestM), 2, 3),
                 "World coordinates of its centre: [x, y, z], or [x, y] with 'on'.")
       .Optional("rpy_deg", &E::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis.")
       .Optional("yaw_deg", &E::yaw_deg, Number(-360, 360), "Turn about the vertical, degrees.")
       .ExactlyOneOf(
-          {"box", "sphere", "cylinder", "capsule", "tray", "mug", "bowl", "shelf", "parts"})
+          {"box", "sphere", "cylinder", "capsule", "tray", "mug", "bowl", "shelf", "parts", "grains"})
+      .ExactlyOneOf({"at_m", "in"})
       .AtMostOneOf({"rpy_deg", "yaw_deg"})
       .AtMostOneOf({"fixed_to", "slider", "hinge", "ball_joint"})
       .Check(CheckEntity)

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/geometry.h"
+
 namespace prehend::harness {
 namespace {
 
@@ -66,7 +68,26 @@ bool OutcomeWatch::Holds(const Outcome::Condition& condition,
          (!wanted.tilt_above_deg || tilt_deg > *wanted.tilt_above_deg) &&
          (!wanted.slower_than_m_per_s || state.v_WB_m_per_s.norm() < *wanted.slower_than_m_per_s) &&
          (!wanted.joint_above || fraction > *wanted.joint_above) &&
-         (!wanted.joint_below || fraction < *wanted.joint_below);
+         (!wanted.joint_below || fraction < *wanted.joint_below) &&
+         (!wanted.inside || ShareInside(condition, snapshot) >= wanted.share);
+}
+
+/// 0 or 1 of what is one thing.
+double OutcomeWatch::ShareInside(const Outcome::Condition& condition,
+                                 const physics::Snapshot& snapshot) const {
+  const auto index = static_cast<std::size_t>(condition.body), in = static_cast<std::size_t>(condition.vessel);
+  const physics::LocalBox box = physics::BoundingBox(scene_.bodies[in]);
+  const physics::Pose& X_WV = snapshot.bodies[in].X_WB;
+  const physics::Body& body = scene_.bodies[index];
+  if (!body.grains) {
+    const Eigen::Vector3d p_W_m = snapshot.bodies[index].X_WB * physics::BoundingBox(body).p_BC_m;
+    return physics::IsInside(box, X_WV, p_W_m) ? 1 : 0;
+  }
+  const std::span<const Eigen::Vector3d> grains = physics::GrainsOf(scene_, index, snapshot);
+  const auto inside = std::count_if(grains.begin(), grains.end(), [&](const Eigen::Vector3d& p_W_m) {
+    return physics::IsInside(box, X_WV, p_W_m);
+  });
+  return static_cast<double>(inside) / static_cast<double>(grains.size());
 }
 
 }  // namespace prehend::harness

@@ -31,6 +31,8 @@ class OutcomeWatch {
   };
   bool Holds(const Outcome::Condition& condition, const physics::Snapshot& snapshot) const;
 
+  double ShareInside(const Outcome::Condition& condition, const physics::Snapshot& snapshot) const;
+
   const physics::Scene& scene_;
   const std::vector<Outcome>& outcomes_;
   std::vector<Moment> moments_;  ///< of the conditions that say when

@@ -29,6 +29,7 @@ struct MemberEntry {
   std::string class_name = "Object";
   bool fixed = false;
   bool jointed = false;
+  bool grains = false;
   bool person = false;
   bool hand = false;
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
@@ -99,6 +100,7 @@ Format<HeaderEntry> HeaderFormat() {
                                .Optional("fixed", &M::fixed, Flag(), "")
                                .Optional("jointed", &M::jointed, Flag(), "")
                                .Optional("person", &M::person, Flag(), "")
+                               .Optional("grains", &M::grains, Flag(), "")
                                .Optional("hand", &M::hand, Flag(), "")
                                .Optional("centre_m", &M::centre_m, Position(), "")
                                .Required("size_m", &M::size_m, Vector<3>(0, kFarthestM), "")
@@ -231,6 +233,8 @@ class EpisodeReader {
         hands_.push_back(static_cast<int>(cast.entities.size()) - 1);
       } else if (m.person) {
         member.classes = {m.class_name, "Entity"};
+      } else if (m.grains) {
+        member.classes = {m.class_name, "Grains", "Entity"};
       } else {
         member.classes = {m.class_name, m.fixed ? "Fixed" : m.jointed ? "Jointed" : "Movable", "Thing", "Entity"};
       }

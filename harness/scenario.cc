@@ -19,6 +19,14 @@ const char* MobilityOf(const physics::Scene& scene, int body) {
   return physics::MovesFreely(scene, body) ? "Movable" : "Jointed";
 }
 
+std::vector<std::string> ClassesOf(const Scenario& scenario, std::size_t body) {
+  const std::string& own = scenario.body_classes[body];
+  const physics::Body& is = scenario.scene.bodies[body];
+  if (is.grains) return {own, "Grains", "Entity"};
+  if (!physics::IsThing(is)) return {own, "Entity"};
+  return {own, MobilityOf(scenario.scene, static_cast<int>(body)), "Thing", "Entity"};
+}
+
 }  // namespace
 
 grammar::Cast MakeCast(const Scenario& scenario) {
@@ -29,11 +37,7 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     const physics::LocalBox box = physics::BoundingBox(body);
     grammar::CastMember& member = cast.entities.emplace_back();
     member.name = body.name;
-    member.classes = body.kinematic
-                         ? std::vector<std::string>{scenario.body_classes[i], "Entity"}
-                         : std::vector<std::string>{scenario.body_classes[i],
-                                                    MobilityOf(scenario.scene, static_cast<int>(i)),
-                                                    "Thing", "Entity"};
+    member.classes = ClassesOf(scenario, i);
     member.part_of = scenario.body_part_of[i];
     member.p_BC_m = box.p_BC_m;
     member.half_size_m = box.half_size_m;

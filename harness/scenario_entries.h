@@ -28,6 +28,12 @@ struct PartEntry {
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
 };
 
+/// Loose balls that lie in a vessel.
+struct GrainsEntry {
+  int count = 0;
+  double radius_m = 0;
+};
+
 /// A joint to another entity; which numbers are read depends on its kind.
 struct JointEntry {
   Located<std::string> to;
@@ -53,6 +59,7 @@ struct EntityEntry {
   std::optional<physics::Bowl> bowl;
   std::optional<physics::Shelf> shelf;
   std::vector<PartEntry> parts;
+  std::optional<GrainsEntry> grains;
   bool fixed = false;
   std::optional<Located<double>> mass_kg;
   std::optional<Located<double>> friction;  ///< default: that of physics::Body
@@ -63,10 +70,16 @@ struct EntityEntry {
   std::optional<Located<std::string>> fixed_to;
   std::optional<Located<JointEntry>> slider, hinge, ball_joint;
   std::optional<Located<std::string>> on;
+  std::optional<Located<std::string>> in;  ///< the vessel of grains, which have no at_m
   Located<std::vector<double>> at_m;
   std::optional<Eigen::Vector3d> rpy_deg;
   std::optional<double> yaw_deg;
 };
+
+/// Where it is said where it is.
+inline const Where& PlaceOf(const EntityEntry& entity) {
+  return entity.in ? entity.in->where : entity.at_m.where;
+}
 
 /// What is not given keeps the value of the hand file.
 struct PidOverride {

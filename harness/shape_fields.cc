@@ -114,6 +114,16 @@ Format<physics::Shelf> ShelfFormat() {
       .format();
 }
 
+Format<GrainsEntry> GrainsFormat() {
+  using G = GrainsEntry;
+  constexpr int kMostGrains = 500;
+  constexpr double kSmallestGrainM = 0.002, kLargestGrainM = 0.05;
+  return Record<G>("grains")
+      .Required("count", &G::count, Integer<int>(1, kMostGrains), "How many.")
+      .Required("radius_m", &G::radius_m, Number(kSmallestGrainM, kLargestGrainM), "Radius of each.")
+      .format();
+}
+
 Format<PartEntry> PartFormat() {
   using P = PartEntry;
   return Record<P>("a part")

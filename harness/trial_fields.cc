@@ -39,6 +39,8 @@ Format<ConditionEntry> ConditionFormat() {
                 "Its joint stands above this fraction of its range.")
       .Optional("joint_below", &C::joint_below, fraction,
                 "Its joint stands below this fraction of its range.")
+      .Optional("inside", &C::inside, Identifier(), "Its centre is in the bounding box of this entity.")
+      .Optional("share", &C::share, fraction, "Of grains: at least this share of them is inside.")
       .format();
 }
 
@@ -95,32 +97,57 @@ void CheckVariations(const YamlDocument& document, const std::vector<VariationEn
   }
 }
 
+namespace {
+
+/// Names to bodies and joints, as far as the scene has them.
+class ConditionBuilder {
+ public:
+  ConditionBuilder(const physics::Scene& scene, Complaints& complaints) : scene_(scene), complaints_(complaints) {
+    for (const physics::Body& body : scene.bodies) names_.push_back(body.name);
+  }
+
+  std::optional<Outcome::Condition> Build(const ConditionEntry& wanted) const {
+    Outcome::Condition condition{.wanted = wanted};
+    condition.body = Find("entity", wanted.entity, wanted.where);
+    if (condition.body < 0) return std::nullopt;
+    condition.joint = JointOf(condition.body);
+    if ((wanted.joint_above || wanted.joint_below) && condition.joint < 0)
+      complaints_.Add(wanted.where, fmt::format("entity: '{}' hangs on no joint", wanted.entity));
+    if (wanted.inside) condition.vessel = Find("inside", wanted.inside->value, wanted.inside->where);
+    return condition;
+  }
+
+ private:
+  /// -1 after complaining.
+  int Find(const char* key, const std::string& name, const Where& where) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    if (found != names_.end()) return static_cast<int>(found - names_.begin());
+    complaints_.AddUnknownName(where, fmt::format("{}: no entity is called '{}'", key, name), name, names_);
+    return -1;
+  }
+
+  int JointOf(int body) const {
+    const auto joint = std::find_if(scene_.joints.begin(), scene_.joints.end(),
+                                    [&](const physics::Joint& candidate) { return candidate.body == body; });
+    return joint == scene_.joints.end() ? -1 : static_cast<int>(joint - scene_.joints.begin());
+  }
+
+  const physics::Scene& scene_;
+  Complaints& complaints_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
 std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionEntry>>>& entries,
                                    const physics::Scene& scene, Complaints& complaints) {
-  std::vector<std::string> names;
-  for (const physics::Body& body : scene.bodies) names.push_back(body.name);
+  const ConditionBuilder builder(scene, complaints);
   std::vector<Outcome> outcomes;
   for (const auto& entry : entries) {
     Outcome& outcome = outcomes.emplace_back();
     outcome.name = entry.name;
-    for (const ConditionEntry& condition : entry.value) {
-      const std::string& entity = condition.entity;
-      const auto found = std::find(names.begin(), names.end(), entity);
-      if (found == names.end()) {
-        complaints.AddUnknownName(condition.where,
-                                  fmt::format("entity: no entity is called '{}'", entity), entity,
-                                  names);
-        continue;
-      }
-      const int body = static_cast<int>(found - names.begin());
-      const auto joint =
-          std::find_if(scene.joints.begin(), scene.joints.end(),
-                       [&](const physics::Joint& candidate) { return candidate.body == body; });
-      if ((condition.joint_above || condition.joint_below) && joint == scene.joints.end())
-        complaints.Add(condition.where, fmt::format("entity: '{}' hangs on no joint", entity));
-      outcome.conditions.push_back(
-          {body, joint == scene.joints.end() ? -1 : static_cast<int>(joint - scene.joints.begin()),
-           condition});
+    for (const ConditionEntry& wanted : entry.value) {
+      if (auto condition = builder.Build(wanted)) outcome.conditions.push_back(std::move(*condition));
     }
   }
   return outcomes;

@@ -27,6 +27,7 @@ Json MemberJson(const grammar::CastMember& member, const grammar::Cast& cast) {
     json["fixed"] = member.classes[1] == "Fixed";
     if (member.classes[1] == "Jointed") json["jointed"] = true;
     if (member.classes[1] == "Entity") json["person"] = true;
+    if (member.classes[1] == "Grains") json["grains"] = true;
   }
   return json;
 }

@@ -52,6 +52,19 @@ std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape) {
   return std::visit(MakeShapeOf{}, shape);
 }
 
+btRigidBody::btRigidBodyConstructionInfo RigidInfo(const Body& body, btCollisionShape* shape,
+                                                   const btVector3& inertia) {
+  btRigidBody::btRigidBodyConstructionInfo info(body.mass_kg, nullptr, shape, inertia);
+  info.m_friction = body.friction;
+  info.m_rollingFriction = body.rolling_friction;
+  info.m_restitution = body.restitution;
+  info.m_linearDamping = ShareLost(body.linear_damping_per_s);
+  info.m_angularDamping = ShareLost(body.angular_damping_per_s);
+  info.m_linearSleepingThreshold = kSleepSpeed_m_per_s;
+  info.m_angularSleepingThreshold = kSleepTurn_rad_per_s;
+  return info;
+}
+
 BulletBody::BulletBody(const std::vector<const Body*>& bodies) {
   const Body& root = *bodies.front();
   const std::vector<RigidMember> members = MembersOf(bodies);
@@ -84,15 +97,9 @@ BulletBody::BulletBody(const std::vector<const Body*>& bodies) {
   for (std::size_t i = 1; i < bodies.size(); ++i)
     X_CB_.push_back(X_CR * root.X_WB.inverse() * bodies[i]->X_WB);
 
-  btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, whole, inertia);
+  btRigidBody::btRigidBodyConstructionInfo info = RigidInfo(root, whole, inertia);
+  info.m_mass = mass;
   info.m_startWorldTransform = ToBullet(root.X_WB * X_CR.inverse());
-  info.m_friction = root.friction;
-  info.m_rollingFriction = root.rolling_friction;
-  info.m_restitution = root.restitution;
-  info.m_linearDamping = ShareLost(root.linear_damping_per_s);
-  info.m_angularDamping = ShareLost(root.angular_damping_per_s);
-  info.m_linearSleepingThreshold = kSleepSpeed_m_per_s;
-  info.m_angularSleepingThreshold = kSleepTurn_rad_per_s;
   rigid_ = std::make_unique<btRigidBody>(info);
   if (!root.kinematic) return;
   rigid_->setCollisionFlags(rigid_->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);

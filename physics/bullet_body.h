@@ -20,6 +20,10 @@ inline constexpr double kMargin_m = 0.001;
 
 std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape);
 
+/// Mass, surface, damping and sleep of a body that has this shape, at the origin.
+btRigidBody::btRigidBodyConstructionInfo RigidInfo(const Body& body, btCollisionShape* shape,
+                                                   const btVector3& inertia);
+
 class BulletBody {
  public:
   /// `bodies`: the root, then those tied to it. Friction, restitution and damping are the root's.

@@ -17,6 +17,8 @@ void ReadContacts(const btDispatcher& const_dispatcher, const ContactSides& side
   auto& dispatcher = const_cast<btDispatcher&>(const_dispatcher);
   for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
     const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+    // Grains of one body touch each other all the time, and nobody asks.
+    if (manifold.getBody0()->getUserIndex() == manifold.getBody1()->getUserIndex()) continue;
     // What makes up one object rests or moves as one.
     if (pairs.Rest(SideOf(sides, *manifold.getBody0(), 0), SideOf(sides, *manifold.getBody1(), 0)))
       continue;

@@ -145,6 +145,11 @@ bool IsRoundAboutVertical(const Body& body, const Pose& X_WB) {
   return std::abs(((X_WB * placed.X_BS).q * Eigen::Vector3d::UnitZ()).z()) > kUprightCosine;
 }
 
+bool IsInside(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& p_W_m) {
+  const Eigen::Vector3d away_m = (X_WB.inverse() * p_W_m - box.p_BC_m).cwiseAbs();
+  return (away_m.array() <= box.half_size_m.array()).all();
+}
+
 LocalBox BoundingBox(const Body& body) {
   const Eigen::AlignedBox3d bounds = WorldBounds(body, Pose{});
   if (bounds.isEmpty()) return {};

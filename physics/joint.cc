@@ -30,9 +30,20 @@ double Position(const Scene& scene, const Joint& joint, const Pose& X_WBase, con
 
 }  // namespace
 
+bool IsThing(const Body& body) { return !body.kinematic && !body.grains; }
+
+std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body, const Snapshot& snapshot) {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < body; ++i)
+    if (const auto& other = scene.bodies[i].grains) first += other->p_WG_m.size();
+  const std::vector<Eigen::Vector3d>& placed = scene.bodies[body].grains->p_WG_m;
+  if (first + placed.size() > snapshot.grains.size()) return placed;
+  return std::span(snapshot.grains).subspan(first, placed.size());
+}
+
 bool MovesFreely(const Scene& scene, int body) {
   const Body& moved = BodyAt(scene, body);
-  return !moved.fixed && !moved.kinematic && JointOf(scene, body) < 0;
+  return !moved.fixed && IsThing(moved) && JointOf(scene, body) < 0;
 }
 
 JointState StateOf(const Scene& scene, const Joint& joint, const Pose& X_WBase, const Pose& X_WB) {

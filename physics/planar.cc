@@ -104,6 +104,7 @@ bool LiesInPlane(const Shape& shape, const Pose& X_WS) {
 }
 
 std::string WhyNotPlanar(const Body& body) {
+  if (body.grains) return "grains do not stay in the plane";
   if (!InPlane(body.X_WB.p_m)) return "its centre is off the plane y = 0";
   for (const PlacedShape& placed : body.shapes) {
     const Pose X_WS = body.X_WB * placed.X_BS;

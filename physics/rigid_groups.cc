@@ -10,7 +10,9 @@ namespace prehend::physics {
 std::vector<std::vector<std::size_t>> RigidGroups(const Scene& scene) {
   const std::size_t count = scene.bodies.size();
   std::vector<std::vector<std::size_t>> groups(count);  // by root, the root itself first
-  for (std::size_t i = 0; i < count; ++i) groups[i].push_back(i);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!scene.bodies[i].grains) groups[i].push_back(i);
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const auto root = static_cast<std::size_t>(RootOf(scene, static_cast<int>(i)));
     if (root == i) continue;

@@ -37,9 +37,16 @@ struct PlacedShape {
   Pose X_BS;
 };
 
+/// Loose small balls, simulated one by one and seen as one body, whose place is the mean of theirs.
+struct Grains {
+  double radius_m = 0.004;
+  std::vector<Eigen::Vector3d> p_WG_m;  ///< their centres before the first tick; at least one
+};
+
 struct Body {
   std::string name;
-  std::vector<PlacedShape> shapes;  ///< one, or several for a compound
+  std::vector<PlacedShape> shapes;  ///< one, or several for a compound; none of grains
+  std::optional<Grains> grains;     ///< it is not one thing but many, which share its mass; only in Bullet
   bool fixed = false;
   bool kinematic = false;  ///< moves as a Person's motion says: pushes, and is never pushed
   double mass_kg = 0;      ///< 0 only for fixed and kinematic bodies
@@ -123,8 +130,10 @@ struct Scene {
   std::vector<Person> persons;
 };
 
-/// Can it be picked up? Not when it is fixed or part of a person, nor when a joint ties it to
-/// something.
+/// A thing can carry others and be grasped; parts of persons and grains cannot.
+bool IsThing(const Body& body);
+
+/// Can it be picked up? Not when it is fixed or no thing, nor when a joint ties it to something.
 bool MovesFreely(const Scene& scene, int body);
 
 /// Tight oriented bounding box of a body, in its own frame B: centre and half sizes, metres.

@@ -13,6 +13,7 @@
 
 namespace prehend::physics {
 
+/// Of grains: the mean.
 struct BodyState {
   Pose X_WB;
   Eigen::Vector3d v_WB_m_per_s = Eigen::Vector3d::Zero();
@@ -65,6 +66,7 @@ struct GazeState {
 struct Snapshot {
   std::int64_t tick = 0;  ///< physics steps done; 0 is the scene as placed
   std::vector<BodyState> bodies;
+  std::vector<Eigen::Vector3d> grains;  ///< centres in the world, of one body with grains after the other
   std::vector<JointState> joints;
   std::vector<HandState> hands;
   std::vector<GazeState> gazes;
@@ -84,5 +86,9 @@ struct Snapshot {
     return {contacts, resting ? std::span(*resting) : std::span<const ContactPoint>()};
   }
 };
+
+struct Scene;
+/// Where the grains of a body of the scene are; where they were placed, if the snapshot has none.
+std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body, const Snapshot& snapshot);
 
 }  // namespace prehend::physics

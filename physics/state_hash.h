@@ -36,6 +36,7 @@ class StateHash {
       Add(std::uint64_t{i});
       Add(snapshot.bodies[i]);
     }
+    for (const Eigen::Vector3d& grain : snapshot.grains) Add(grain.data(), 3);
     for (const JointState& joint : snapshot.joints) Add(&joint.position, 1);
     for (const GazeState& gaze : snapshot.gazes) Add(gaze.toward_W.data(), 3);
     for (const HandState& hand : snapshot.hands) Add(hand);

@@ -83,6 +83,15 @@ void AddBody(const physics::Body& body, const physics::Pose& X_WB, const Look& l
   }
 }
 
+void AddGrains(double radius_m, std::span<const Eigen::Vector3d> centres_W_m, const Look& look,
+               std::vector<Item>* items, DrawList* list) {
+  for (const Eigen::Vector3d& p_W_m : centres_W_m) {
+    Item item = MakeItem(ToAffine({p_W_m}), look);
+    SetShape(physics::Sphere{radius_m}, &item);
+    AddItem(item, items, list);
+  }
+}
+
 void AddHand(const physics::HandModel& model, const physics::HandState& state, const Look& look,
              std::vector<Item>* items, DrawList* list) {
   Item palm = MakeItem(ToAffine(state.palm.X_WB), look);
@@ -131,6 +140,8 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
     const Look look{.color = BodyColor(picture, i),
                     .object = AddObject("body:" + scene.bodies[i].name, list)};
     AddBody(scene.bodies[i], BodyPose(scene, picture.snapshot, i), look, &list->solids, list);
+    if (const auto& grains = scene.bodies[i].grains)
+      AddGrains(grains->radius_m, physics::GrainsOf(scene, i, picture.snapshot), look, &list->solids, list);
   }
   list->first_hand = static_cast<int>(list->objects.size());
   for (std::size_t i = 0; i < scene.hands.size(); ++i) {

@@ -82,7 +82,7 @@ class TouchReader {
     const physics::BodyState &held = recording_.body(object, frame),
                              &by = recording_.body(support, frame);
     return physics::MovesFreely(recording_.scene, object) &&
-           !recording_.scene.bodies[static_cast<std::size_t>(support)].kinematic && up >= settings_.support_up &&
+           physics::IsThing(recording_.scene.bodies[static_cast<std::size_t>(support)]) && up >= settings_.support_up &&
            std::abs(RelativeVelocity(held, by).z()) <= settings_.support_speed_m_per_s;
   }
 

@@ -167,6 +167,22 @@ TEST(Signals, TestsHoldAsDocumented) {
   for (const auto& [condition, holds] : cases) EXPECT_EQ(HoldsInScene(condition), holds) << condition;
 }
 
+TEST(Signals, APartOfAPartIsAPartOfTheWhole) {
+  const auto program = testing::CompileText("grammar t\nevent e(part: Entity, whole: Entity) while part_of(part, whole)");
+  Scene scene;
+  scene.cast.entities[Scene::kTray].part_of = Scene::kHand;  // and the cup is a part of the tray
+  const auto pairs = [&] {
+    Monitor monitor(program, scene.cast);
+    std::vector<Event> events;
+    monitor.Advance(scene.At(0), events);
+    monitor.Finish(10, events);
+    return events.size();
+  };
+  EXPECT_EQ(pairs(), 3u);
+  scene.cast.entities[Scene::kHand].part_of = Scene::kCup;  // a ring ends, too: each is a part of both others
+  EXPECT_EQ(pairs(), 6u);
+}
+
 // Users look signals up in the reference; it lists each of them.
 TEST(Signals, AreAllDocumented) {
   const std::string docs = testing::ReadFile(PREHEND_SOURCE_DIR "/docs/grammar-language.md");

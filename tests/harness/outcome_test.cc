@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/read_scenario.h"
+#include "physics/compounds.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {
@@ -57,11 +58,39 @@ TEST(Outcome, AMomentIsLookedAtWhenItComes) {
   EXPECT_EQ(Judge(outcomes, {Upright(0, 0.8)}), "");  // it never came
 }
 
+TEST(Outcome, InsideIsInTheBoundingBox) {
+  const std::string outcomes = "  through: [{entity: milk, inside: table}]\n";
+  EXPECT_EQ(Judge(outcomes, {Upright(0.59, 0.01)}), "through");
+  EXPECT_EQ(Judge(outcomes, {Upright(0.59, 0.03)}), "");
+  EXPECT_EQ(Judge(outcomes, {Upright(0.61, 0.01)}), "");
+}
+
+TEST(Outcome, OfGrainsAShareIsInside) {
+  const physics::Body cup{.name = "cup", .shapes = physics::ShapesOf(physics::Tray{{0.1, 0.1, 0.1}, 0.01})};
+  physics::Body peas{.name = "peas", .shapes = {}, .grains = physics::Grains{}};
+  peas.grains->p_WG_m.resize(4);
+  const physics::Scene scene{.bodies = {cup, peas}};
+  physics::Snapshot snapshot;
+  snapshot.bodies.resize(2);
+  snapshot.grains = {{0, 0, 0}, {0.04, 0.04, 0}, {0, 0, -0.04}, {0.06, 0, 0}};  // the last one is outside
+  const auto judge = [&](double share) {
+    ConditionEntry wanted{.entity = "peas"};
+    wanted.inside = Located<std::string>{"cup", {}};
+    wanted.share = share;
+    const std::vector<Outcome> outcomes = {{"kept", {{.body = 1, .vessel = 0, .wanted = wanted}}}};
+    return OutcomeWatch(scene, outcomes).Judge(snapshot);
+  };
+  EXPECT_EQ(judge(0.75), "kept");
+  EXPECT_EQ(judge(0.76), "");
+}
+
 TEST(Outcome, RefusesWhatIsNotThere) {
   EXPECT_EQ(Brief(Read("  held: [{entity: mlik}]\n").diagnostics),
             "16:10: entity: no entity is called 'mlik' | did you mean 'milk'?\n");
   EXPECT_EQ(Brief(Read("  open: [{entity: milk, joint_above: 0.5}]\n").diagnostics),
             "16:10: entity: 'milk' hangs on no joint\n");
+  EXPECT_EQ(Brief(Read("  kept: [{entity: milk, inside: tabel}]\n").diagnostics),
+            "16:33: inside: no entity is called 'tabel' | did you mean 'table'?\n");
 }
 
 }  // namespace

@@ -22,6 +22,8 @@ struct Case {
   const char* complaints;
 };
 
+constexpr const char* kMilk = "milk: {box: {size_m: [0.07, 0.07, 0.20]}, mass_kg: 0.4, on: table, at_m: [0.2, 0.1]}";
+
 // clang-format off
 const Case kCases[] = {
       {"missing_key", "shows: a carton on a table\n", "", kRefuses,
@@ -60,7 +62,7 @@ const Case kCases[] = {
       {"world_is_scalar", "world: {engine: bullet, rate_hz: 480, sensing_hz: 240, seed: 1}", "world: bullet", kRefuses,
        "4:8: world: expected a mapping with the fields of the world, found 'bullet'\n"},
       {"no_shape", "box: {size_m: [0.07, 0.07, 0.20]}, ", "", kRefuses,
-       "7:3: entity 'milk' needs one of the keys box, sphere, cylinder, capsule, tray, mug, bowl, shelf, parts\n"},
+       "7:3: entity 'milk' needs one of the keys box, sphere, cylinder, capsule, tray, mug, bowl, shelf, parts, grains\n"},
       {"two_shapes", "box: {size_m: [0.07, 0.07, 0.20]}, ", "box: {size_m: [0.07, 0.07, 0.20]}, sphere: {radius_m: 0.1}, ", kRefuses,
        "7:45: entity 'milk' cannot have both 'box' and 'sphere'\n"},
       {"size_zero", "[0.07, 0.07, 0.20]", "[0.07, 0, 0.20]", kRefuses,
@@ -109,6 +111,25 @@ const Case kCases[] = {
        "7:76: at_m: with 'on' expected [x, y]; z follows from the top of the support\n"},
       {"no_z_without_on", "on: table, ", "", kAccepts,
        "7:65: at_m: expected [x, y, z], the centre | or [x, y] together with 'on: SUPPORT'\n"},
+      {"no_place", ", at_m: [0.2, 0.1]", "", kRefuses,
+       "7:3: entity 'milk' needs one of the keys at_m, in\n"},
+      {"in_is_for_grains", "on: table, at_m: [0.2, 0.1]", "in: table", kAccepts,
+       "7:63: in: only grains are put into something | for a thing: 'on', with at_m: [x, y]\n"},
+      {"grains_without_vessel", "box: {size_m: [0.07, 0.07, 0.20]}", "grains: {count: 10, radius_m: 0.005}", kAccepts,
+       "7:3: entity 'milk' is grains: it needs the key 'in' | the vessel that they fill\n"
+       "7:62: on: grains have none; they lie loose in their vessel\n"
+       "7:73: at_m: grains have none; they lie loose in their vessel\n"
+       "11:25: reach: 'milk' is grains, and no thing | name the vessel that they are in\n"},
+      {"too_many_grains", "box: {size_m: [0.07, 0.07, 0.20]}", "grains: {count: 501, radius_m: 0.005}", kRefuses,
+       "7:26: count: expected a whole number from 1 to 500, found '501'\n"},
+      {"too_small_grains", "box: {size_m: [0.07, 0.07, 0.20]}", "grains: {count: 50, radius_m: 0.001}", kRefuses,
+       "7:40: radius_m: expected a number from 0.002 to 0.05, found '0.001'\n"},
+      {"grains_in_nothing", kMilk, "milk: {grains: {count: 10, radius_m: 0.005}, mass_kg: 0.4, in: tabel}", kAccepts,
+       "7:66: in: no entity is called 'tabel' | did you mean 'table'?\n"
+       "11:25: reach: 'milk' is grains, and no thing | name the vessel that they are in\n"},
+      {"grains_in_what_is_solid", kMilk, "milk: {grains: {count: 10, radius_m: 0.005}, mass_kg: 0.4, in: table}", kAccepts,
+       "7:66: in: 0 of 10 grains fit into 'table' below its rim | take fewer, smaller ones, or a larger vessel; its hollow is around the vertical through its at_m\n"
+       "11:25: reach: 'milk' is grains, and no thing | name the vessel that they are in\n"},
       {"inside_table", "on: table, at_m: [0.2, 0.1]", "at_m: [0.2, 0.1, 0.8]", kAccepts,
        "7:65: 'milk' overlaps 'table' by 60 mm | 'on: table' with at_m: [x, y] puts it on top\n"},
       {"entity_name_upper", "milk: {", "Milk: {", kRefuses,
