@@ -188,7 +188,7 @@ TEST_F(RecordedBodyTest, Refuses) {
   EXPECT_NE(Refused("recording: sticks.bvh, most_gap_s: 0.1")
                 .find("gap: frames are 0.200 s apart; at most 0.1 s are bridged | raise most_gap_s"),
             std::string::npos);
-  EXPECT_NE(Refused("recording: sticks.bvh, scale: 0.03").find("hips: jump: 1.507 m within 0.200 s, at 0.200 s; at most 0.1 m"),
+  EXPECT_NE(Refused("recording: sticks.bvh, scale: 0.035").find("hips: jump: 1.759 m within 0.200 s, at 0.200 s; at most 0.1 m"),
             std::string::npos);
   EXPECT_NE(Refused("recording: sticks.bvh, scale: 1")
                 .find("scale: the recorded legs would be 80 m long, hers are 0.982 m | metres per unit of the file: "
