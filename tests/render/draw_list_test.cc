@@ -56,6 +56,22 @@ TEST(DrawListTest, EverythingHasItsName) {
   EXPECT_EQ(names, expected);
 }
 
+TEST(DrawListTest, GrainsAreBallsWhereTheSnapshotHasThem) {
+  physics::Scene scene;
+  physics::Body peas{.name = "peas", .shapes = {}, .grains = physics::Grains{.radius_m = 0.004, .p_WG_m = {}}};
+  peas.grains->p_WG_m = {{0, 0, 1}, {0, 0, 2}};
+  scene.bodies = {peas};
+  Picture picture;
+  picture.scene = &scene;
+  picture.snapshot.bodies.resize(1);
+  picture.snapshot.grains = {{0, 0, 3}, {0, 0, 4}};
+  const DrawList list = MakeDrawList(picture);
+  ASSERT_EQ(Count(list.solids, Primitive::kBall), 2);
+  const auto first = std::ranges::find(list.solids, Primitive::kBall, &Item::primitive);
+  EXPECT_FLOAT_EQ(first->X_WI.translation().z(), 3);
+  EXPECT_FLOAT_EQ(first->rounding_m, 0.004f);
+}
+
 TEST(DrawListTest, BoundsAreThoseOfTheShapes) {
   physics::Scene scene;
   const double s = std::sqrt(0.5);
