@@ -83,11 +83,14 @@ void AddBody(const physics::Body& body, const physics::Pose& X_WB, const Look& l
   }
 }
 
-void AddGrains(double radius_m, std::span<const Eigen::Vector3d> centres_W_m, const Look& look,
-               std::vector<Item>* items, DrawList* list) {
-  for (const Eigen::Vector3d& p_W_m : centres_W_m) {
-    Item item = MakeItem(ToAffine({p_W_m}), look);
-    SetShape(physics::Sphere{radius_m}, &item);
+/// `first`: which of the snapshot's grains is the first of these; a snapshot without them: they are as placed.
+void AddGrains(const physics::Grains& grains, const physics::Snapshot& snapshot, std::size_t first,
+               const Look& look, std::vector<Item>* items, DrawList* list) {
+  const bool moved = first + grains.p_WG_m.size() <= snapshot.grains.size();
+  for (std::size_t i = 0; i < grains.p_WG_m.size(); ++i) {
+    const physics::Pose X_WG{moved ? snapshot.grains[first + i] : grains.p_WG_m[i]};
+    Item item = MakeItem(ToAffine(X_WG), look);
+    SetShape(physics::Sphere{grains.radius_m}, &item);
     AddItem(item, items, list);
   }
 }
@@ -136,12 +139,15 @@ physics::Pose BodyPose(const physics::Scene& scene, const physics::Snapshot& sna
 void AddBodiesAndHands(const Picture& picture, DrawList* list) {
   const physics::Scene& scene = *picture.scene;
   list->first_body = static_cast<int>(list->objects.size());
+  std::size_t first_grain = 0;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Look look{.color = BodyColor(picture, i),
                     .object = AddObject("body:" + scene.bodies[i].name, list)};
     AddBody(scene.bodies[i], BodyPose(scene, picture.snapshot, i), look, &list->solids, list);
-    if (const auto& grains = scene.bodies[i].grains)
-      AddGrains(grains->radius_m, physics::GrainsOf(scene, i, picture.snapshot), look, &list->solids, list);
+    if (const auto& grains = scene.bodies[i].grains) {
+      AddGrains(*grains, picture.snapshot, first_grain, look, &list->solids, list);
+      first_grain += grains->p_WG_m.size();
+    }
   }
   list->first_hand = static_cast<int>(list->objects.size());
   for (std::size_t i = 0; i < scene.hands.size(); ++i) {
