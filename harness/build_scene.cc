@@ -152,11 +152,12 @@ class Stacking {
     return found->second;
   }
 
-  /// Of what has been placed already.
+  /// Of what has been placed already and is a thing.
   const physics::Body* Placed(const std::optional<Located<std::string>>& name) const {
     const auto found = name ? index_.find(name->value) : index_.end();
     if (found == index_.end() || progress_[found->second] != Progress::kDone) return nullptr;
-    return &bodies[found->second];
+    const physics::Body& body = bodies[found->second];
+    return body.grains ? nullptr : &body;
   }
 
   void PlaceInVessel(std::size_t i) {

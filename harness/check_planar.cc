@@ -77,7 +77,7 @@ void CheckBodies(const ScenarioEntry& entry, const physics::Scene& scene, Compla
     const physics::Body& body = scene.bodies[i];
     const std::string why = physics::WhyNotPlanar(body);
     if (why.empty()) continue;
-    const bool beside = std::abs(body.X_WB.p_m.y()) > kOnPlane_m;
+    const bool beside = !body.grains && std::abs(body.X_WB.p_m.y()) > kOnPlane_m;
     complaints.Add(beside ? entry.entities[i].value.at_m.where : entry.entities[i].name_where,
                    fmt::format("'{}' does not fit a planar world: {}", body.name, why),
                    beside ? kZeroY

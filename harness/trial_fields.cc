@@ -16,6 +16,21 @@ namespace {
 
 constexpr double kLargest = 1e6;
 
+/// A text, or a number or flag as it is written: what a field can be set to.
+Format<std::string> Value() {
+  const Format<std::string> text = Text();
+  return {.schema = {{"type", {"string", "number", "boolean"}}},
+          .read =
+              [text](const YamlNode& node, Complaints& complaints, std::string& value) {
+                const bool plain = node.kind == YamlNode::Kind::kScalar &&
+                                   (NumberOf(node) || node.text == "true" || node.text == "false");
+                if (!plain) return text.read(node, complaints, value);
+                value = node.text;
+                return true;
+              },
+          .show = {}};
+}
+
 Format<ConditionEntry> ConditionFormat() {
   using C = ConditionEntry;
   const auto height = Number(-kFarthestM, kFarthestM);
@@ -59,7 +74,7 @@ Format<VariationEntry> VariationFormat() {
       .Optional("normal", &V::normal, range, "[mean, standard deviation].")
       .Optional("plus", &V::plus, range, "What is written, plus anything between [least, most].")
       .Optional("times", &V::times, range, "What is written, times anything between [least, most].")
-      .Optional("choose", &V::choose, ListOf(Text(), 1, 64), "One of these values.")
+      .Optional("choose", &V::choose, ListOf(Value(), 1, 64), "One of these values.")
       .ExactlyOneOf({"uniform", "normal", "plus", "times", "choose"})
       .Check([](const YamlNode& node, const V& variation, Complaints& complaints) {
         for (const char* key : {"uniform", "plus", "times"}) {

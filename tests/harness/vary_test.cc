@@ -29,6 +29,13 @@ double NumberIn(const std::string& setting) {
 
 const std::string kMass = "vary:\n  - {fields: [entities.milk.mass_kg], uniform: [0.2, 0.5]}\n";
 
+TEST(Vary, ChoosesAmongNumbersAndFlagsToo) {
+  const std::string drawn = Draw("vary:\n  - {fields: [entities.milk.mass_kg], choose: [0.25, 0.3]}\n", 1, 1)[0];
+  EXPECT_TRUE(drawn == "entities.milk.mass_kg=0.25" || drawn == "entities.milk.mass_kg=0.3") << drawn;
+  EXPECT_EQ(Draw("vary:\n  - {fields: [world.planar], choose: [false]}\n", 1, 1)[0], "world.planar=false");
+  EXPECT_FALSE(Read("vary:\n  - {fields: [world.planar], choose: [no]}\n").value);
+}
+
 TEST(Vary, TheSameTrialIsTheSameDraw) {
   EXPECT_EQ(Draw(kMass, 1, 7), Draw(kMass, 1, 7));
   EXPECT_NE(Draw(kMass, 1, 7), Draw(kMass, 1, 8));
