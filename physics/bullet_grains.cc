@@ -12,6 +12,8 @@ namespace {
 
 /// A grain that is farther from the origin fell past everything.
 constexpr double kLost_m = 10;
+/// Of a grain, and of its surface.
+constexpr double kSleepSpeed_m_per_s = 0.05;
 
 }  // namespace
 
@@ -23,6 +25,9 @@ BulletGrains::BulletGrains(const Body& body) : shape_(body.grains->radius_m) {
   btVector3 inertia;
   shape_.calculateLocalInertia(grain.mass_kg, inertia);
   btRigidBody::btRigidBodyConstructionInfo info = RigidInfo(grain, &shape_, inertia);
+  // Grains tremble in a heap and turn fast for their size: with the limits of things no heap would ever sleep.
+  info.m_linearSleepingThreshold = kSleepSpeed_m_per_s;
+  info.m_angularSleepingThreshold = kSleepSpeed_m_per_s / body.grains->radius_m;
   for (const Eigen::Vector3d& p_WG_m : body.grains->p_WG_m) {
     info.m_startWorldTransform.setOrigin(ToBullet(p_WG_m));
     rigids_.push_back(std::make_unique<btRigidBody>(info));
