@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
+#include <vector>
 
 #include "harness/shared_ticks.h"
 
@@ -135,6 +136,8 @@ TEST(WorkerPool, WhoeverIsRefusedMemoryTheReasonIsTheSame) {
 }
 
 TEST(WorkerPool, WhatHasTooLittleMemoryToStartIsTold) {
+  const std::vector<char> what_this_process_has_already(50'000'000, 'x');
+  ASSERT_EQ(what_this_process_has_already.back(), 'x');
   const std::string reason = EndOf(Good, 1);
   EXPECT_TRUE(reason.starts_with("1 MB of memory are too little for it to start, which takes ")) << reason;
 }
