@@ -17,6 +17,7 @@ namespace {
 constexpr double kSceneryFromM = 0.5;
 // Paths are thinned to this many points a second; more only costs triangles.
 constexpr double kPathPointsPerS = 60;
+constexpr std::size_t kMostRows = 6;  // of the strip; more would hide the picture
 
 render::Color ColorOf(std::uint32_t rgb) {
   return {static_cast<float>(rgb >> 16 & 255) / 255, static_cast<float>(rgb >> 8 & 255) / 255,
@@ -161,7 +162,22 @@ std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunRe
   return markers;
 }
 
-/// Rows per hand: its phases, its grasps; then one row of supports per movable body that has any.
+/// Events that are neither drawn as rows of hands and supports nor everywhere all the time: those of
+/// grammars about something else. In the order in which they first happen.
+std::vector<std::string> OtherEvents(const grammar::Timeline& timeline) {
+  std::vector<std::string> names;
+  for (const grammar::NamedEvent& event : timeline.events) {
+    const bool has_its_place = IsPhase(event.event) || event.event == "grasping" ||
+                               event.event == "supported_by" || event.event == "contact" ||
+                               event.event == "pick_and_place";
+    if (!has_its_place && std::ranges::find(names, event.event) == names.end())
+      names.push_back(event.event);
+  }
+  return names;
+}
+
+/// Rows per hand: its phases, its grasps; then one per kind of other events; then one of supports
+/// per movable body that has any.
 render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& run,
                                    grammar::Tick moment) {
   render::TimelineStrip strip{.begin_s = 0,
@@ -192,8 +208,14 @@ render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& ru
         [&](const auto& e) { return e.event == "grasping" && HasRoleValue(e, "hand", hand.name); },
         [&](const auto& e) { return *RoleValue(e, "object"); });
   }
+  for (const std::string& name : OtherEvents(run.timeline)) {
+    if (strip.rows.size() >= kMostRows) break;
+    add_row(
+        spoken(name), [&](const auto& e) { return e.event == name; },
+        [&](const auto& e) { return e.roles.empty() ? spoken(name) : e.roles.back().value; });
+  }
   for (const physics::Body& body : scenario.scene.bodies) {
-    if (body.fixed || body.kinematic || strip.rows.size() >= 6) continue;
+    if (body.fixed || body.kinematic || strip.rows.size() >= kMostRows) continue;
     add_row(
         body.name + " on",
         [&](const auto& e) {
