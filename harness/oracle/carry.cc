@@ -33,7 +33,7 @@ class Carrier {
     for (const auto& [support, spans] : supports_) supported = Union(supported, spans);
     for (const Span& span : supported) FindSlides(Common(span, grasp_.span), span);
     for (const Span& span : Rest(supported, grasp_.span))
-      DivideUnsupported(span, Covers(supported, span.begin - 1));
+      DivideUnsupported(span, Covers(supported, span.begin - 1), Covers(supported, span.end));
     return found_;
   }
 
@@ -113,7 +113,6 @@ class Carrier {
   /// From the begin of the last uninterrupted approach from above to the landing.
   std::optional<Span> PutDown(Span unsupported) const {
     const int landing = unsupported.end;
-    if (landing == grasp_.span.end) return std::nullopt;  // let go in the air, or held to the end
     const Region region{place(landing), settings_.put_down_radius_m, settings_.put_down_height_m};
     int near = landing;
     while (near > unsupported.begin && region.Contains(place(near - 1)) &&
@@ -130,9 +129,11 @@ class Carrier {
   }
 
   /// `lost_support`: it was supported before. Otherwise it was caught, or taken over in the air.
-  void DivideUnsupported(Span unsupported, bool lost_support) {
+  /// `lands`: it is supported after, be it in the very frame in which it is let go. Otherwise it was
+  /// dropped, or held to the end.
+  void DivideUnsupported(Span unsupported, bool lost_support, bool lands) {
     Span transport = unsupported;
-    if (const auto put_down = PutDown(unsupported)) {
+    if (const auto put_down = lands ? PutDown(unsupported) : std::nullopt) {
       found_.put_downs.push_back(*put_down);
       transport.end = put_down->begin;
     }

@@ -90,8 +90,8 @@ class TimelineBuilder {
       if (other.body == grasp.body &&
           Span{contact.begin, grasp.span.begin}.Contains(other.span.begin))
         return {};
-      // A grasp drops every candidate that is not touched yet.
-      if (other.span.begin < contact.begin) earliest = std::max(earliest, other.span.begin);
+      // A grasp drops every candidate that is not touched yet; what comes after it may be a reach.
+      if (other.span.begin < contact.begin) earliest = std::max(earliest, other.span.begin + 1);
     }
     Add("fixation", RolesOf(grasp), {contact.begin, grasp.span.begin});
     const int begin =
