@@ -63,9 +63,9 @@ Derivation Derive(const Scenario& scenario, const grammar::Program& program, con
       others == 0 ? "" : fmt::format(" ({} events of other kinds not judged)", others);
   derivation.lines.push_back(
       fmt::format("{}{} of {} events follow from the definitions of docs/events.md, boundaries at "
-                  "most {} ticks off{}",
+                  "most {:.1f} ms off{}",
                   kOracleLine, agreement.matched(), judged.events.size(),
-                  agreement.largest_offset(), unjudged));
+                  MillisecondsOf(agreement.largest_offset(), agreement.ticks_per_second), unjudged));
   std::istringstream differences(DescribeDisagreement(agreement, tolerance));
   for (std::string line; std::getline(differences, line);)
     derivation.lines.push_back(fmt::format("{}disagrees: {}", kOracleLine, line));

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <map>
 
+#include "harness/event_text.h"
+
 namespace prehend::harness {
 
 namespace {
@@ -70,17 +72,13 @@ LabelAgreement Pair(const std::string& label, const Events& events, Tick collar)
   return agreement;
 }
 
-std::string Text(const Interval& interval) {
-  return fmt::format("[{}, {})", interval.begin, interval.end);
-}
-
 }  // namespace
 
 Agreement Agree(const grammar::Timeline& truth, const grammar::Timeline& found, Tick collar) {
   std::map<std::string, Events> by_label;
   for (const NamedEvent& event : truth.events) by_label[event.Label()].truth.push_back(event);
   for (const NamedEvent& event : found.events) by_label[event.Label()].found.push_back(event);
-  Agreement agreement;
+  Agreement agreement{.labels = {}, .ticks_per_second = truth.ticks_per_second};
   for (const auto& [label, events] : by_label)
     agreement.labels.push_back(Pair(label, events, collar));
   return agreement;
@@ -116,19 +114,23 @@ bool Agreement::Within(Tick tolerance) const {
 }
 
 std::string DescribeDisagreement(const Agreement& agreement, Tick tolerance) {
+  const auto interval = [&](const NamedEvent& event) {
+    return IntervalText(event.interval, agreement.ticks_per_second);
+  };
+  const auto ms = [&](Tick ticks) { return MillisecondsOf(ticks, agreement.ticks_per_second); };
   std::size_t width = 0;
   for (const LabelAgreement& label : agreement.labels) width = std::max(width, label.label.size());
   std::string text;
   for (const LabelAgreement& label : agreement.labels) {
     for (const Match& match : label.matches)
       if (LargerOffset(match) > tolerance)
-        text += fmt::format("off      {:{}}  true {}  found {}  begin {:+}, end {:+}\n",
-                            label.label, width, Text(match.truth.interval),
-                            Text(match.found.interval), match.begin_offset(), match.end_offset());
+        text += fmt::format("off      {:{}}  true {}  found {}  begin {:+.1f} ms, end {:+.1f} ms\n",
+                            label.label, width, interval(match.truth), interval(match.found),
+                            ms(match.begin_offset()), ms(match.end_offset()));
     for (const NamedEvent& event : label.missing)
-      text += fmt::format("missing  {:{}}  true {}\n", label.label, width, Text(event.interval));
+      text += fmt::format("missing  {:{}}  true {}\n", label.label, width, interval(event));
     for (const NamedEvent& event : label.extra)
-      text += fmt::format("extra    {:{}}  found {}\n", label.label, width, Text(event.interval));
+      text += fmt::format("extra    {:{}}  found {}\n", label.label, width, interval(event));
   }
   return text;
 }

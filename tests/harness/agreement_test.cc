@@ -53,15 +53,16 @@ TEST(Agreement, OtherRolesAreOtherEventsButAttributesAreNotCompared) {
 }
 
 TEST(Agreement, IsDescribedLineByLine) {
-  const Timeline truth{.events = {Sliding("cup", {0, 100}), Sliding("milk", {0, 10})}};
-  const Timeline found{.events = {Sliding("cup", {12, 98}), Sliding("mug", {7, 9})}};
+  const Timeline truth{.events = {Sliding("cup", {0, 120}), Sliding("milk", {0, 12})}};
+  const Timeline found{.events = {Sliding("cup", {12, 118}), Sliding("mug", {6, 12})}};
   const Agreement agreement = Agree(truth, found, 0);
   EXPECT_EQ(agreement.largest_offset(), 12);
   EXPECT_FALSE(agreement.Within(12)) << "something is missing";
   EXPECT_EQ(DescribeDisagreement(agreement, 11),
-            "off      sliding(hand, cup)   true [0, 100)  found [12, 98)  begin +12, end -2\n"
-            "missing  sliding(hand, milk)  true [0, 10)\n"
-            "extra    sliding(hand, mug)   found [7, 9)\n");
+            "off      sliding(hand, cup)   true 0.0000..0.2500 s  found 0.0250..0.2458 s"
+            "  begin +25.0 ms, end -4.2 ms\n"
+            "missing  sliding(hand, milk)  true 0.0000..0.0250 s\n"
+            "extra    sliding(hand, mug)   found 0.0125..0.0250 s\n");
   EXPECT_EQ(DescribeDisagreement(agreement, 12).find("off"), std::string::npos);
 }
 

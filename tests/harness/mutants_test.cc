@@ -42,6 +42,7 @@ const std::vector<Mutant> kMutants = {
     {"a small retreat restarts the reach", "pick_and_place", "reach_slack  = 25 mm",
      "reach_slack  = 5 mm", ""},
     {"idling is reaching", "pick_and_place", "reach_idle   = 0.5 s", "reach_idle   = 5 s", ""},
+    {"a grasp drops no other reach", "pick_and_place", "\n    and not taking(hand, any)", "", ""},
     {"a fast approach is no reach", "pick_and_place", "reach_min    = 100 ms",
      "reach_min    = 300 ms", ""},
     {"the region of interest is smaller", "pick_and_place", "reach_radius = 30 cm",
@@ -103,6 +104,7 @@ const char* const kScenarios[] = {
     "pick_up/low_arch_is_a_pick_up",
     "put_down/low_last_approach_is_no_put_down",
     "grasp/one_of_two_held_things_slides",
+    "reach/a_grasp_drops_the_reach_for_its_neighbour",
 };
 
 /// The mutant's program; no value: the mutation did not apply, or made no grammar.

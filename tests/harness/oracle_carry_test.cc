@@ -146,6 +146,27 @@ TEST_F(OracleCarry, ASlideOnAMovingTrayIsMeasuredFromTheTray) {
   ExpectNear(Events("sliding"), {{begin, end}});
 }
 
+TEST_F(OracleCarry, LetGoInTheFrameOfTheLandingIsPutDownAndAFrameBeforeIsDropped) {
+  for (const bool dropped : {false, true}) {
+    stage_ = Stage();
+    stage_.GraspCup();
+    stage_.Play(0.2);
+    Lift(0.12);
+    stage_.Carry(0.5, {0, 0.5, 0});
+    stage_.Carry(0.6, {0, 0, -0.2});
+    stage_.sets = 0;
+    stage_.trigger = 0;
+    if (dropped) stage_.Play(1 / 240.0);
+    const Tick landing = Land();
+    EXPECT_EQ(Events("putting_down").size(), dropped ? 0u : 1u);
+    EXPECT_EQ(Events("pick_and_place").size(), dropped ? 0u : 1u);
+    ASSERT_EQ(Events("transporting").size(), 1u);
+    if (dropped) continue;
+    EXPECT_EQ(Events("putting_down")[0].end, landing);
+    EXPECT_EQ(Events("grasping")[0].end, landing);
+  }
+}
+
 TEST_F(OracleCarry, ASnatchIsAPickUpEvenIfOneFrameSeesItAll) {
   stage_ = Stage(16);
   SetUp();

@@ -180,6 +180,7 @@ TEST(OracleReach, ForASecondObjectBeginsNotBeforeTheFirstIsGrasped) {
                     {Stage::BodySide(milk), Stage::HandSide(0, 2)}};
   stage.Play(0.2);
   ExpectNear(Of("reaching(hand, milk)", stage.Truth()), {{first, second}});
+  EXPECT_GT(Of("reaching(hand, milk)", stage.Truth())[0].begin, first);
 }
 
 TEST(OracleReach, BeginsAnewAfterATouchThatLedToNothing) {
