@@ -4,7 +4,6 @@
 // can drop time. Tested by tests/physics/world_test.cc
 #include "physics/bullet_world.h"
 
-#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 
@@ -16,6 +15,7 @@
 #include "physics/bullet_grains.h"
 #include "physics/bullet_hand.h"
 #include "physics/bullet_sight.h"
+#include "physics/bullet_solver.h"
 #include "physics/bullet_joint.h"
 #include "physics/joint.h"
 #include "physics/rigid_groups.h"
@@ -102,7 +102,7 @@ class BulletWorld final : public World {
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
-  btMultiBodyConstraintSolver solver_;
+  BulletSolver solver_;
   DynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
   struct Place {
     std::size_t rigid = 0;   ///< index into rigids_
