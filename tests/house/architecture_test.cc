@@ -42,7 +42,8 @@ struct LibraryRule {
 
 const std::vector<LibraryRule>& LibraryRules() {
   static const std::vector<LibraryRule> rules = {
-      {"Bullet", std::regex("(bt[A-Z]|Bullet|LinearMath).*"), std::regex("(physics|bench)/bullet_.*")},
+      {"Bullet", std::regex("(bt[A-Z]|Bullet|LinearMath).*"),
+       std::regex("(physics|bench|tests/physics)/bullet_.*")},
       {"Box2D", std::regex("box2d/.*"), std::regex("physics/box2d_.*")},
       {"yaml-cpp", std::regex("yaml-cpp/.*"), std::regex("harness/.*")},
       {"JSON", std::regex("nlohmann/.*"), std::regex("(harness|tests|bench)/.*")},
