@@ -5,23 +5,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "harness/compare.h"
 #include "harness/content_hash.h"
 #include "harness/event_text.h"
+#include "harness/oracle_notes.h"
 
 namespace prehend::harness {
 namespace {
 
 using Lines = std::vector<std::string>;
 
-bool IsExactly(const Pairing& pairing) {
-  return pairing.agreement == LineVerdict::kMatched && pairing.begin_offset == 0 &&
-         pairing.end_offset == 0;
+/// With what a golden keeps of it, and the digits.
+grammar::NamedEvent AsWritten(grammar::NamedEvent event) {
+  event.decided = 0;
+  for (grammar::NamedValue& value : event.values) value.value = std::stod(fmt::format("{:.4g}", value.value));
+  return event;
 }
-
-/// With the digits that a golden keeps.
-double AsWritten(double value) { return std::stod(fmt::format("{:.4g}", value)); }
 
 void Append(Lines& to, const Lines& lines) { to.insert(to.end(), lines.begin(), lines.end()); }
 
@@ -34,45 +35,87 @@ Lines Farewell(const GoldenEvent& gone, grammar::Tick ticks_per_second) {
   return lines;
 }
 
-/// What its partner in the old golden had; where nothing changed, the acceptance it is from, too.
-void Inherit(GoldenEvent& line, const GoldenEvent& old, bool exactly) {
-  if (exactly) line.accepted = old.accepted;
-  line.tolerance_ms = old.tolerance_ms;
-  line.because = old.because;
-  line.oracle = old.oracle;
-  line.oracle_because = old.oracle_because;
-  line.comments = old.comments;
-}
+/// What the run proposes, with everything that people wrote.
+class TakeOver {
+ public:
+  TakeOver(const Golden& old, const grammar::Timeline& recognised, const Proposal& proposal)
+      : old_(old),
+        proposal_(proposal),
+        same_ticks_(old.ticks_per_second == recognised.ticks_per_second),
+        next_(static_cast<int>(old.accepted.size()) + 1),
+        tolerance_ms_(MillisecondsOf(proposal.tolerance, recognised.ticks_per_second)) {}
 
-/// The events of the comparison's actual side, in order of time; each inherits from its partner.
-void TakeOver(Golden& golden, const Golden& old, const grammar::Timeline& recognised) {
-  for (const Pairing& pairing : Compare(old, recognised, 0).pairings) {
-    const GoldenEvent* partner = pairing.expected ? &old.events[pairing.golden_line] : nullptr;
-    if (!pairing.actual) {
-      if (partner) Append(golden.closing_comments, Farewell(*partner, old.ticks_per_second));
-      continue;
+  void Pair(const Pairing& pairing, Golden& golden) const {
+    const GoldenEvent* partner = pairing.expected ? &old_.events[pairing.golden_line] : nullptr;
+    if (pairing.actual) {
+      golden.events.push_back(LineOf(pairing, partner));
+      Note(NoteOf(*pairing.actual), golden.events.back());
+    } else if (partner) {
+      Append(golden.closing_comments, Farewell(*partner, old_.ticks_per_second));
     }
-    GoldenEvent line;
-    line.event = *pairing.actual;
-    line.accepted = static_cast<int>(old.accepted.size()) + 1;
-    if (partner) Inherit(line, *partner, IsExactly(pairing));
-    golden.events.push_back(std::move(line));
   }
-}
 
-/// What the oracle says now.
-void NoteOracle(Golden& golden, const Proposal& proposal) {
-  for (GoldenEvent& line : golden.events) {
-    const auto note = std::ranges::find_if(proposal.notes, [&](const OracleNote& candidate) {
-      return candidate.event.interval == line.event.interval &&
-             candidate.event.Label() == line.event.Label();
-    });
-    line.oracle = note == proposal.notes.end() ? "" : note->text;
-    if (line.oracle.empty()) line.oracle_because.clear();
-    if (!line.oracle.empty() && line.oracle_because.empty())
-      line.oracle_because = proposal.acceptance->reason;
+  /// What only the oracle sees.
+  void TakeOverUnseen(Golden& golden) const {
+    std::vector<const GoldenEvent*> kept;
+    for (const OracleNote& note : proposal_.notes) {
+      if (note.text != kOnlyOracle) continue;
+      const auto known = std::ranges::find_if(old_.events, [&](const GoldenEvent& line) {
+        return !line.IsExpected() && same_ticks_ && IsNear(line.event, note.event);
+      });
+      if (known != old_.events.end()) {
+        kept.push_back(&*known);
+        golden.events.push_back(*known);
+      } else {
+        golden.events.push_back({.event = AsWritten(note.event)});
+        Note(kOnlyOracle, golden.events.back());
+      }
+    }
+    for (const GoldenEvent& line : old_.events) {
+      if (!line.IsExpected() && std::ranges::count(kept, &line) == 0)
+        Append(golden.closing_comments, Farewell(line, old_.ticks_per_second));
+    }
   }
-}
+
+ private:
+  /// Where boundaries moved within the tolerance, nobody was shown that they did: such a line stays.
+  GoldenEvent LineOf(const Pairing& pairing, const GoldenEvent* partner) const {
+    const bool agrees = pairing.agreement == LineVerdict::kMatched;
+    if (partner && agrees && same_ticks_) return *partner;
+    GoldenEvent line = partner ? *partner : GoldenEvent();
+    line.as_written.clear();
+    line.event = AsWritten(*pairing.actual);
+    if (!agrees) line.accepted = next_;
+    return line;
+  }
+
+  std::string NoteOf(const grammar::NamedEvent& event) const {
+    const auto note = std::ranges::find_if(proposal_.notes, [&](const OracleNote& candidate) {
+      return candidate.text != kOnlyOracle && candidate.event.interval == event.interval &&
+             candidate.event.Label() == event.Label();
+    });
+    return note == proposal_.notes.end() ? "" : note->text;
+  }
+
+  void Note(const std::string& now, GoldenEvent& line) const {
+    if (SameNote(line.oracle, now, tolerance_ms_)) return;
+    line.as_written.clear();
+    line.accepted = next_;
+    line.oracle = now;
+    line.oracle_because = now.empty() ? "" : kReasonWanted;
+  }
+
+  bool IsNear(const grammar::NamedEvent& a, const grammar::NamedEvent& b) const {
+    return a.Label() == b.Label() && std::abs(a.interval.begin - b.interval.begin) <= proposal_.tolerance &&
+           std::abs(a.interval.end - b.interval.end) <= proposal_.tolerance;
+  }
+
+  const Golden& old_;
+  const Proposal& proposal_;
+  const bool same_ticks_;
+  const int next_;  ///< acceptance
+  const double tolerance_ms_;
+};
 
 }  // namespace
 
@@ -89,13 +132,11 @@ Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& 
   }
   if (!proposal.derived.empty()) golden.derived = proposal.derived;
   if (proposal.acceptance) golden.accepted.push_back(*proposal.acceptance);
-  TakeOver(golden, old.value_or(Golden{.ticks_per_second = recognised.ticks_per_second}),
-           recognised);
-  if (proposal.acceptance) NoteOracle(golden, proposal);
-  for (GoldenEvent& line : golden.events) {
-    line.event.decided = 0;
-    for (grammar::NamedValue& value : line.event.values) value.value = AsWritten(value.value);
-  }
+  const Golden before = old.value_or(Golden{.ticks_per_second = recognised.ticks_per_second});
+  const TakeOver take_over(before, recognised, proposal);
+  for (const Pairing& pairing : Compare(before, recognised, proposal.tolerance).pairings)
+    take_over.Pair(pairing, golden);
+  take_over.TakeOverUnseen(golden);
   std::stable_sort(
       golden.events.begin(), golden.events.end(),
       [](const GoldenEvent& a, const GoldenEvent& b) { return ComesBefore(a.event, b.event); });
@@ -103,21 +144,18 @@ Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& 
 }
 
 Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
-                     const std::string& scenario, const std::string& grammar) {
+                     const std::string& scenario, const std::string& grammar,
+                     const Derivation& derivation) {
   Proposal proposal;
   proposal.scenario = scenario;
   proposal.grammar = grammar;
+  proposal.notes = derivation.notes;
+  proposal.tolerance = derivation.tolerance;
   return ProposeGolden(old, recognised, proposal);
 }
 
 std::string Fingerprint(const Golden& pending) {
   return ContentHash(WriteGolden(pending)).substr(0, 8);
-}
-
-bool SaysTheSame(const Golden& golden, const grammar::Timeline& recognised) {
-  if (golden.ticks_per_second != recognised.ticks_per_second) return false;
-  const Comparison comparison = Compare(golden, recognised, 0);
-  return std::ranges::all_of(comparison.pairings, IsExactly);
 }
 
 }  // namespace prehend::harness

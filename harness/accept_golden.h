@@ -19,23 +19,22 @@ struct Proposal {
   std::string grammar;
   std::vector<std::string> derived;      ///< empty: keep the old golden's
   std::optional<Acceptance> acceptance;  ///< empty for a pending file
-  std::vector<OracleNote> notes;         ///< of an acceptance: what the oracle sees otherwise
+  std::vector<OracleNote> notes;         ///< what the oracle sees otherwise
+  grammar::Tick tolerance = 0;           ///< of lines without their own, in ticks of the run
 };
 
-/// Comments and tolerances stay with the event they belong to; comments above events that are gone
-/// stand at the end, below a line that says which event that was. What the oracle sees otherwise keeps
-/// the reason that people gave for it; a new one takes the acceptance's.
+/// Lines that agree within their tolerance stay as they are. Of the others comments and tolerances stay with the event
+/// they belong to; comments above events that are gone stand at the end, below a line that says which event that was.
+/// What the oracle sees otherwise keeps the reason that people gave for it; what it did not before has kReasonWanted.
 Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
                      const Proposal& proposal);
 
 /// What a run leaves below build/pending, and `review` shows.
 Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
-                     const std::string& scenario, const std::string& grammar);
+                     const std::string& scenario, const std::string& grammar,
+                     const Derivation& derivation);
 
 /// Eight hexadecimal digits, which tell one pending golden from another.
 std::string Fingerprint(const Golden& pending);
-
-/// Whether the golden's events are exactly these, tolerances aside.
-bool SaysTheSame(const Golden& golden, const grammar::Timeline& recognised);
 
 }  // namespace prehend::harness

@@ -16,6 +16,8 @@
 #include "harness/facts_around.h"
 #include "harness/golden_files.h"
 #include "harness/invariants.h"
+#include "harness/oracle_notes.h"
+#include "harness/orphans.h"
 #include "harness/physics_trace.h"
 #include "harness/pictures.h"
 #include "harness/run_output.h"
@@ -69,22 +71,49 @@ void Draw(const CheckRequest& request, const Scenario& scenario, const RunResult
     Fail(verdict, ExitCode::kFailure, "no picture", "no picture: " + drawn.error + "\n");
 }
 
+/// Whether it is played as its file says: what differs can be accepted, what is not asked for is not.
+bool AsItsFileSays(const CheckRequest& request) { return OptionsOf(request.run).empty(); }
+
+/// Keeps a picture that differs, and where it does, for `review`. The lines that say where.
+std::string LeavePicture(const CheckRequest& request, const std::string& golden, const fs::path& drawn) {
+  if (request.is_trial) return "";
+  const GoldenFiles files(request.root);
+  const std::string name = drawn.filename().string();
+  const fs::path pending = files.PendingPicturePath(request.id, name);
+  const std::string difference = files.DifferencePath(request.id, name).string();
+  std::error_code ignored;
+  files.RemovePendingPicture(request.id, name);
+  fs::create_directories(pending.parent_path(), ignored);
+  fs::copy_file(drawn, pending, ignored);
+  return WritePictureDifference(golden, drawn.string(), difference) ? "  difference " + difference + "\n" : "";
+}
+
 /// A gate of its own: events may agree while a picture does not, and the other way round.
-void JudgePictures(const CheckRequest& request, ScenarioVerdict& verdict) {
+void JudgePictures(const CheckRequest& request, const Scenario& scenario, ScenarioVerdict& verdict) {
   if (!request.has_golden) return;
+  const GoldenFiles files(request.root);
+  const std::string accept = AsItsFileSays(request)
+      ? fmt::format("  accept it with: prehend accept {} --pictures --reason \"...\"\n", ShellWord(request.id)) : "";
   for (const ReportedPicture& picture : verdict.pictures) {
     const fs::path drawn = fs::path(request.report_folder) / picture.file;
-    const std::string golden =
-        GoldenFiles(request.root).PicturePath(request.id, drawn.filename().string()).string();
+    const std::string name = drawn.filename().string();
+    const std::string golden = files.PicturePath(request.id, name).string();
     std::error_code ignored;
     if (!fs::exists(golden, ignored)) continue;
     const std::string difference = PictureDifference(golden, drawn.string());
-    if (difference.empty()) continue;
-    Fail(
-        verdict, ExitCode::kDiffers, "a picture differs from its golden",
-        fmt::format("picture {}: {}\n  expected {}\n  accept it with: prehend accept {} --pictures "
-                    "--reason \"...\"\n",
-                    drawn.string(), difference, golden, request.id));
+    if (difference.empty()) {
+      if (!request.is_trial) files.RemovePendingPicture(request.id, name);
+      continue;
+    }
+    Fail(verdict, ExitCode::kDiffers, "a picture differs from its golden",
+         fmt::format("picture {}: {}\n  expected {}\n{}{}", drawn.string(), difference, golden,
+                     LeavePicture(request, golden, drawn), accept));
+  }
+  if (!AsItsFileSays(request)) return;
+  for (const fs::path& unasked : UnaskedPictures(request.id, scenario.pictures.size(), request.root)) {
+    Fail(verdict, ExitCode::kDiffers, "a golden picture that the scenario does not ask for",
+         UnaskedText(unasked, scenario.pictures.size()) + "\n  remove it, or: prehend accept " + ShellWord(request.id) +
+             " --pictures --reason \"...\"\n");
   }
 }
 
@@ -117,12 +146,10 @@ void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, cons
   if (!violations.empty()) Fail(verdict, ExitCode::kDiffers, "invariant violated", details);
 }
 
-void LeavePending(const CheckRequest& request, const PreparedRun& prepared,
-                  const std::optional<Golden>& golden, const RunResult& run) {
+void LeavePending(const CheckRequest& request, const Golden& pending) {
   if (request.is_trial) return;
   // Whether it could be written is only news to `accept`, which runs the scenario itself.
-  (void)GoldenFiles(request.root)
-      .WritePending(PendingGolden(golden, run.timeline, request.id, prepared.scenario.grammar));
+  (void)GoldenFiles(request.root).WritePending(pending);
 }
 
 std::vector<BoundaryRoom> Boundaries(const Comparison& comparison) {
@@ -155,6 +182,33 @@ std::string Blame(const CheckRequest& request, const Scenario& scenario, const R
                    request.root);
 }
 
+/// There is nothing to compare with.
+void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending, const std::string& objections,
+                        ScenarioVerdict& verdict) {
+  LeavePending(request, pending);
+  verdict.details += objections;
+  if (verdict.verdict != Verdict::kPassed) return;
+  verdict.verdict = Verdict::kPending;
+  verdict.exit_code = ExitCode::kPending;
+  verdict.reason = request.has_golden ? "no golden yet" : "no golden: only scenarios below scenarios/ have one";
+  if (request.has_golden) verdict.command = fmt::format("prehend accept {} --reason \"...\"", request.id);
+}
+
+/// What differs, with the facts around the first of it, and whose doing it is.
+void TellDifferences(const CheckRequest& request, const PreparedRun& prepared, const RunResult& watched,
+                     const Comparison& comparison, ScenarioVerdict& verdict) {
+  verdict.blame = Blame(request, prepared.scenario, watched, verdict.inputs);
+  const std::string facts = FactsAround(prepared.scenario, watched.recording, *comparison.FirstDivergence());
+  verdict.differences = DifferencesJson(comparison, ExplainCommand(request.id, request.run));
+  verdict.relations = RelationsJson(comparison);
+  const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
+    return pairing.agreement != LineVerdict::kMatched;
+  });
+  Fail(verdict, ExitCode::kDiffers,
+       fmt::format("{} of {} events differ from the golden", differing, comparison.pairings.size()),
+       DifferenceText(comparison, ExplainCommand(request.id, request.run), facts) + verdict.blame);
+}
+
 /// Compares the plain run; the watched one has the recording.
 void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared,
                         const RunResult& watched, const RunResult& run, ScenarioVerdict& verdict) {
@@ -168,37 +222,23 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
       Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
               run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
   verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1);
-  if (!golden.value) {
-    LeavePending(request, prepared, golden.value, run);
-    if (verdict.verdict != Verdict::kPassed) return;
-    verdict.verdict = Verdict::kPending;
-    verdict.exit_code = ExitCode::kPending;
-    verdict.reason = request.has_golden ? "no golden yet" : "no golden: only scenarios below scenarios/ have one";
-    if (request.has_golden) verdict.command = fmt::format("prehend accept {} --reason \"...\"", request.id);
-    return;
-  }
+  const Derivation derivation = Derive(prepared.scenario, *prepared.program, watched);
+  const Golden pending =
+      PendingGolden(golden.value, run.timeline, request.id, prepared.scenario.grammar, derivation);
+  const std::vector<Objection> objections = Objections(golden.value, pending);
+  if (!golden.value) return JudgeWithoutGolden(request, pending, Text(objections), verdict);
   verdict.headroom = HeadroomText(comparison);
   verdict.boundaries = Boundaries(comparison);
-  const Pairing* first = comparison.FirstDivergence();
-  if (!first) return GoldenFiles(request.root).RemovePending(request.id);
-  LeavePending(request, prepared, golden.value, run);
-  verdict.blame = Blame(request, prepared.scenario, watched, verdict.inputs);
-  const std::string facts =
-      FactsAround(prepared.scenario, watched.recording, first->event(), first->DivergenceTick());
-  verdict.differences = DifferencesJson(comparison, ExplainCommand(request.id, request.run));
-  verdict.relations = RelationsJson(comparison);
-  const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
-    return pairing.agreement != LineVerdict::kMatched;
-  });
-  Fail(verdict, ExitCode::kDiffers,
-       fmt::format("{} of {} events differ from the golden", differing, comparison.pairings.size()),
-       DifferenceText(comparison, ExplainCommand(request.id, request.run), facts) + verdict.blame);
+  if (comparison.Agrees() && objections.empty()) return GoldenFiles(request.root).RemovePending(request.id);
+  LeavePending(request, pending);
+  if (!comparison.Agrees()) TellDifferences(request, prepared, watched, comparison, verdict);
+  if (!objections.empty()) Fail(verdict, ExitCode::kDiffers, Summary(objections), Text(objections));
 }
 
 std::vector<std::string> FilesOfGolden(const CheckRequest& request) {
   const GoldenFiles goldens(request.root);
   std::vector<std::string> files = {goldens.GoldenPath(request.id).string()};
-  for (const fs::path& picture : goldens.PicturesOf(request.id)) files.push_back(picture.string());
+  for (const KeptPicture& picture : goldens.PicturesOf(request.id)) files.push_back(picture.path.string());
   return files;
 }
 
@@ -255,7 +295,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   JudgeInvariants(*prepared.value, watched, plain, verdict);
   JudgeAgainstGolden(request, *prepared.value, watched, plain, verdict);
   JudgeOtherEngine(request, *prepared.value, plain, verdict);
-  JudgePictures(request, verdict);
+  JudgePictures(request, scenario, verdict);
   if (verdict.verdict == Verdict::kPassed) LeaveTrace(request, scenario, watched);
   return verdict;
 }

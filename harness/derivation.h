@@ -14,7 +14,7 @@ namespace prehend::harness {
 /// people's.
 inline constexpr const char* kOracleLine = "oracle: ";
 
-/// A recognised event that the oracle sees otherwise.
+/// An event that the run and the oracle see otherwise: a recognised one, or one that is the oracle's alone.
 struct OracleNote {
   grammar::NamedEvent event;
   std::string text;  ///< GoldenEvent::oracle
@@ -23,7 +23,8 @@ struct OracleNote {
 struct Derivation {
   bool agrees = false;  ///< no event missing or extra, every boundary within two sensing frames
   std::vector<std::string> lines;  ///< each begins with kOracleLine
-  std::vector<OracleNote> notes;   ///< of every recognised event that differs
+  std::vector<OracleNote> notes;   ///< of every event that differs
+  grammar::Tick tolerance = 0;     ///< those two frames
 };
 
 /// What the definitions and a grammar both speak of.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "harness/event_text.h"
@@ -27,12 +28,16 @@ struct Touching {
   Interval interval;
 };
 
-std::set<int> Participants(const grammar::NamedEvent& event, const grammar::Cast& cast) {
+/// Of what was expected and of what was recognised instead.
+std::set<int> Participants(const Pairing& difference, const grammar::Cast& cast) {
   std::set<int> ids;
-  for (std::size_t i = 0; i < cast.entities.size(); ++i) {
-    const bool takes_part = std::ranges::any_of(
-        event.roles, [&](const auto& role) { return role.value == cast.entities[i].name; });
-    if (takes_part) ids.insert(static_cast<int>(i));
+  for (const std::optional<grammar::NamedEvent>* side : {&difference.expected, &difference.actual}) {
+    if (!*side) continue;
+    for (std::size_t i = 0; i < cast.entities.size(); ++i) {
+      const bool takes_part = std::ranges::any_of(
+          (*side)->roles, [&](const auto& role) { return role.value == cast.entities[i].name; });
+      if (takes_part) ids.insert(static_cast<int>(i));
+    }
   }
   return ids;
 }
@@ -94,10 +99,11 @@ std::string StateText(const grammar::Frame& frame, const std::set<int>& particip
 }  // namespace
 
 std::string FactsAround(const Scenario& scenario, std::span<const physics::Snapshot> recording,
-                        const grammar::NamedEvent& event, Tick tick) {
+                        const Pairing& difference) {
   if (recording.empty()) return "";
+  const Tick tick = difference.DivergenceTick();
   const grammar::Cast cast = MakeCast(scenario);
-  const std::set<int> participants = Participants(event, cast);
+  const std::set<int> participants = Participants(difference, cast);
   const Tick rate = cast.ticks_per_second;
   const Tick around = TickAt(kAround_s, rate);
   Sensing sensing(scenario.scene, scenario.world.sensing_hz);

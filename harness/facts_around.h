@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What could be observed around a moment: where the participants of an event are, how fast they
-// move, and who touches them. Shown beside the first difference. Tested by
+// What could be observed where a difference begins: where the participants of both its sides are, how
+// fast they move, and who touches them. Shown beside the first difference. Tested by
 // tests/harness/facts_around_test.cc
 #pragma once
 
 #include <span>
 #include <string>
 
-#include "grammar/timeline.h"
+#include "harness/compare.h"
 #include "harness/scenario.h"
 #include "physics/snapshot.h"
 
@@ -15,6 +15,6 @@ namespace prehend::harness {
 
 /// Lines indented by two blanks; "" without a recording. Touches are raw: nothing is bridged.
 std::string FactsAround(const Scenario& scenario, std::span<const physics::Snapshot> recording,
-                        const grammar::NamedEvent& event, grammar::Tick tick);
+                        const Pairing& difference);
 
 }  // namespace prehend::harness

@@ -13,6 +13,20 @@
 
 namespace prehend::harness {
 
+/// A picture in golden/ or in build/pending/: NAME.png is the first of its scenario, NAME-2.png the second.
+struct KeptPicture {
+  std::string scenario;  ///< skill/name
+  int number = 1;
+  std::filesystem::path path;
+};
+
+/// That a golden says of itself that it is of another scenario; nothing when it does not.
+grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view text, const Golden& golden,
+                                       const std::string& scenario);
+
+/// Where the name stands in the line "# scenario: ..".
+grammar::Place ScenarioLine(std::string_view text);
+
 class GoldenFiles {
  public:
   explicit GoldenFiles(std::filesystem::path project_root) : root_(std::move(project_root)) {}
@@ -39,8 +53,17 @@ class GoldenFiles {
   std::filesystem::path PicturePath(const std::string& scenario, const std::string& file) const {
     return GoldenPath(scenario).parent_path() / file;
   }
-  /// The goldens of a scenario's pictures, sorted: NAME.png, NAME-2.png, ..
-  std::vector<std::filesystem::path> PicturesOf(const std::string& scenario) const;
+  /// The goldens of a scenario's pictures, by their numbers; and of all scenarios.
+  std::vector<KeptPicture> PicturesOf(const std::string& scenario) const;
+  std::vector<KeptPicture> Pictures() const;
+
+  /// A picture that differs from its golden waits there, and beside it what shows where.
+  std::filesystem::path PendingPicturePath(const std::string& scenario, const std::string& file) const {
+    return PendingPath(scenario).parent_path() / file;
+  }
+  std::filesystem::path DifferencePath(const std::string& scenario, const std::string& file) const;
+  std::vector<KeptPicture> PendingPictures() const;
+  void RemovePendingPicture(const std::string& scenario, const std::string& file) const;
 
  private:
   std::filesystem::path root_;

@@ -44,18 +44,12 @@ std::optional<Number> ParseNumber(std::string_view text) {
   return value;
 }
 
-/// "+29.2/-4.2ms"
-bool AreOffsets(std::string_view text) {
-  if (!text.ends_with("ms")) return false;
-  text.remove_suffix(2);
-  const std::size_t slash = text.find('/');
-  if (slash == std::string_view::npos) return false;
-  for (std::string_view offset : {text.substr(0, slash), text.substr(slash + 1)}) {
-    if (!offset.starts_with('+') && !offset.starts_with('-')) return false;
-    const auto milliseconds = ParseNumber<double>(offset.substr(1));
-    if (!milliseconds || !std::isfinite(*milliseconds) || *milliseconds < 0) return false;
-  }
-  return true;
+/// "+29.2"
+std::optional<double> ParseSigned(std::string_view text) {
+  if (!text.starts_with('+') && !text.starts_with('-')) return std::nullopt;
+  const auto size = ParseNumber<double>(text.substr(1));
+  if (!size || !std::isfinite(*size) || *size < 0) return std::nullopt;
+  return text.front() == '-' ? -*size : *size;
 }
 
 class GoldenReader {
@@ -188,6 +182,8 @@ class GoldenReader {
       column_ = event_column;
       return Complain("this event is listed twice");
     }
+    line.as_written = line_;
+    line.line = line_number_;
     golden_.events.push_back(std::move(line));
   }
 
@@ -281,15 +277,15 @@ class GoldenReader {
     return true;
   }
 
-  /// "none", or how much later begin and end are than the oracle's: "+29.2/-4.2ms".
+  /// "none", "only", or how much later begin and end are than the oracle's: "+29.2/-4.2ms".
   bool ReadOracle(GoldenEvent& line, std::size_t word_column) {
     if (!line.oracle.empty()) return FailAt(word_column, "second 'oracle'");
     const std::size_t value_column = column_;
     const std::string_view word = Word();
-    if (word != "none" && !AreOffsets(word)) {
+    if (word != kNotOfOracle && word != kOnlyOracle && !NoteOffsets_ms(word)) {
       return FailAt(value_column,
-                    "expected how it differs from the oracle's event: none, or its begin and end "
-                    "like +29.2/-4.2ms");
+                    "expected how it differs from the oracle's event: none, only, or its begin and "
+                    "end like +29.2/-4.2ms");
     }
     line.oracle = word;
     return true;
@@ -409,6 +405,16 @@ class GoldenReader {
 };
 
 }  // namespace
+
+std::optional<std::pair<double, double>> NoteOffsets_ms(std::string_view note) {
+  if (!note.ends_with("ms")) return std::nullopt;
+  note.remove_suffix(2);
+  const std::size_t slash = note.find('/');
+  if (slash == std::string_view::npos) return std::nullopt;
+  const auto begin = ParseSigned(note.substr(0, slash)), end = ParseSigned(note.substr(slash + 1));
+  if (!begin || !end) return std::nullopt;
+  return std::pair(*begin, *end);
+}
 
 ReadResult<Golden> ReadGolden(std::string_view file, std::string_view text) {
   grammar::Diagnostics not_text = CheckText(std::string(file), text);

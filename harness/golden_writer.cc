@@ -45,7 +45,11 @@ std::vector<std::string> TableLines(const Golden& golden) {
       add(fmt::format("tolerance={}ms because {}", *line.tolerance_ms, Quoted(line.because)));
     rows.push_back(std::move(cells));
   }
-  return AlignColumns(rows);
+  std::vector<std::string> lines = AlignColumns(rows);
+  for (std::size_t i = 0; i < golden.events.size(); ++i) {
+    if (!golden.events[i].as_written.empty()) lines[i + 1] = golden.events[i].as_written;
+  }
+  return lines;
 }
 
 }  // namespace
@@ -80,7 +84,9 @@ std::string WriteGolden(const Golden& golden) {
 
 grammar::Timeline ToTimeline(const Golden& golden) {
   grammar::Timeline timeline{.ticks_per_second = golden.ticks_per_second, .events = {}};
-  for (const GoldenEvent& line : golden.events) timeline.events.push_back(line.event);
+  for (const GoldenEvent& line : golden.events) {
+    if (line.IsExpected()) timeline.events.push_back(line.event);
+  }
   return timeline;
 }
 

@@ -20,4 +20,6 @@ PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureEntry&
 
 std::string PictureDifference(const std::string&, const std::string&) { return ""; }
 
+bool WritePictureDifference(const std::string&, const std::string&, const std::string&) { return false; }
+
 }  // namespace prehend::harness

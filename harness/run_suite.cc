@@ -12,7 +12,6 @@
 
 #include "harness/check_records.h"
 #include "harness/check_scenario.h"
-#include "harness/golden_files.h"
 #include "harness/shared_ticks.h"
 
 namespace prehend::harness {
@@ -155,19 +154,17 @@ class Suite {
       }
     }
     (void)records_.WriteCosts(costs_);
-    for (const std::string& orphan : request_.selection.orphans) {
+    for (const Orphan& orphan : request_.selection.orphans) {
       verdicts.push_back(OrphanVerdict(orphan));
     }
     return verdicts;
   }
 
-  ScenarioVerdict OrphanVerdict(const std::string& id) const {
-    ScenarioVerdict verdict{.scenario = id, .shows = {}, .verdict = Verdict::kFailed};
+  static ScenarioVerdict OrphanVerdict(const Orphan& orphan) {
+    ScenarioVerdict verdict{.scenario = orphan.scenario, .shows = {}, .verdict = Verdict::kFailed};
     verdict.exit_code = ExitCode::kDiffers;
     verdict.reason = "a golden without scenario";
-    verdict.details =
-        fmt::format("{} belongs to no scenario: remove it, or bring scenarios/{}.yaml back\n",
-                    GoldenFiles(request_.root).GoldenPath(id).string(), id);
+    verdict.details = Text(orphan);
     verdict.command = "prehend check";
     return verdict;
   }

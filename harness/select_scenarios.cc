@@ -8,10 +8,7 @@
 #include <charconv>
 #include <filesystem>
 #include <iterator>
-#include <set>
 #include <tuple>
-
-#include "harness/golden_files.h"
 
 namespace prehend::harness {
 namespace {
@@ -72,17 +69,6 @@ std::string WhyNoMatch(const std::string& typed, const std::vector<ScenarioFile>
   return "no scenario matches '" + typed + "'" + (hint.empty() ? "" : "; " + hint) + " ('prehend list' shows all)";
 }
 
-std::vector<std::string> OrphanGoldens(const std::vector<ScenarioFile>& all,
-                                       const std::string& root) {
-  std::set<std::string> known;
-  for (const ScenarioFile& file : all) known.insert(IdOf(file));
-  const std::vector<std::string> goldens = GoldenFiles(root).List();
-  std::vector<std::string> orphans;
-  std::set_difference(goldens.begin(), goldens.end(), known.begin(), known.end(),
-                      std::back_inserter(orphans));
-  return orphans;
-}
-
 }  // namespace
 
 std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
@@ -109,7 +95,7 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
   std::ranges::copy_if(named, std::back_inserter(selection.scenarios), [&](const ScenarioFile& file) {
     return std::ranges::all_of(filters, [&](const std::string& filter) { return PassesFilter(file, filter, library); });
   });
-  if (patterns.empty() && filters.empty()) selection.orphans = OrphanGoldens(all, root);
+  if (patterns.empty() && filters.empty()) selection.orphans = OrphansAmong(all, root);
   if (!selection.scenarios.empty() || !selection.orphans.empty()) return selection;
   problem = "no scenario is selected";
   for (const std::string& filter : filters) {

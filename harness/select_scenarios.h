@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "harness/library_paths.h"
+#include "harness/orphans.h"
 
 namespace prehend::harness {
 
 struct ScenarioSelection {
   std::vector<ScenarioFile> scenarios;
-  std::vector<std::string>
-      orphans;  ///< goldens without scenario; looked for when nothing narrows the selection
+  std::vector<Orphan> orphans;  ///< looked for when nothing narrows the selection
 };
 
 /// `patterns` are globs over names and skill/name, or files; none means all. A scenario must pass each of

@@ -4,24 +4,24 @@
 // Tested by tests/house/golden_workflow_test.cc
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 
 #include "harness/accept_golden.h"
 #include "harness/check_records.h"
 #include "harness/check_scenario.h"
+#include "harness/commands/accept_pictures.h"
 #include "harness/commands/command.h"
 #include "harness/compare.h"
 #include "harness/content_hash.h"
 #include "harness/derivation.h"
 #include "harness/golden_files.h"
+#include "harness/oracle_notes.h"
 #include "harness/physics_trace.h"
-#include "harness/pictures.h"
 #include "harness/run_output.h"
 
 namespace prehend::harness {
 namespace {
 
-namespace fs = std::filesystem;
+constexpr std::size_t kFingerprintDigits = 8;
 
 void Declare(CLI::App& options) {
   options.add_option("scenario", "a name or skill/name")->required()->expected(1);
@@ -35,11 +35,29 @@ void Declare(CLI::App& options) {
       ->type_name("TEXT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  options
+      .add_option("--against-the-oracle",
+                  "why an event is right that the physical oracle objects to: "
+                  "\"sliding(right_hand, cup): it "
+                  "jerks\"; without the event for all of them")
+      ->type_name("[EVENT(ROLES): ]TEXT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   options.add_option("--reviewed", "what 'prehend review' printed: accept that, and nothing else")
       ->type_name("FINGERPRINT")
       ->expected(1);
   DeclareFlag(options, "--pictures",
               "its pictures become goldens, kept beside the timeline; the events stay as they are");
+}
+
+/// "" or that it is none.
+std::string NoFingerprint(const std::string& typed) {
+  const bool is_one = typed.size() == kFingerprintDigits &&
+                      typed.find_first_not_of("0123456789abcdef") == std::string::npos;
+  if (is_one) return "";
+  return "--reviewed: '" + typed +
+         "' is no fingerprint; 'prehend review' prints it, 8 digits from 0-9 and a-f, like "
+         "3fa90c11";
 }
 
 /// "" or why the command line alone is enough to refuse.
@@ -48,74 +66,17 @@ std::string Refusal(const CLI::App& options, const CommandContext& context) {
   if (ValueOf(options, "--reason").find_first_not_of(" \t") == std::string::npos) {
     return "accepting needs a reason: --reason \"why this is right\"";
   }
-  for (const char* name : {"--derived", "--reviewed"}) {
+  for (const char* name : {"--derived", "--reviewed", "--against-the-oracle"}) {
     if (IsGiven(options, "--pictures") && IsGiven(options, name))
       return std::string(name) + " is about events, and --pictures accepts pictures only";
   }
-  for (const char* name : {"--reason", "--derived"}) {
+  for (const char* name : {"--reason", "--derived", "--against-the-oracle"}) {
     for (const std::string& text : ValuesOf(options, name)) {
       if (text.find_first_of("\n\r") != std::string::npos)
         return std::string(name) + " takes a single line";
     }
   }
-  return "";
-}
-
-/// What will change, before it does.
-void ShowDifference(const std::optional<Golden>& old, const Scenario& scenario,
-                    const RunResult& run, const std::string& id, const CommandContext& context) {
-  if (!old) {
-    context.out << "new golden:\n" << RunTable(run);
-    return;
-  }
-  const Comparison comparison = Compare(
-      *old, run.timeline, DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz));
-  const std::string text = DifferenceText(comparison, ExplainCommand(id, {}));
-  context.out << (text.empty() ? "differs within tolerance only\n" : text);
-}
-
-/// Draws the pictures and moves those that are not as their goldens, to the byte, into their place.
-/// How many these were; nothing after a complaint.
-std::optional<int> ReplacePictures(const CommandContext& context, const std::string& id,
-                                   const Scenario& scenario, const RunResult& run) {
-  const fs::path folder = fs::path(context.root) / "build/pending-pictures" / scenario.skill;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  const PictureResult drawn = DrawPictures(scenario, run, folder.string());
-  if (!drawn.error.empty()) {
-    Complain(context, ExitCode::kFailure, "no picture: " + drawn.error);
-    return std::nullopt;
-  }
-  int changed = 0;
-  for (const WrittenPicture& picture : drawn.pictures) {
-    const fs::path golden =
-        GoldenFiles(context.root).PicturePath(id, fs::path(picture.file).filename().string());
-    if (FileHash(golden.string()) == FileHash(picture.file)) continue;
-    fs::create_directories(golden.parent_path(), error);
-    fs::rename(picture.file, golden, error);
-    if (error) {
-      Complain(context, ExitCode::kFailure, "cannot write " + golden.string());
-      return std::nullopt;
-    }
-    context.out << "accepted: " << golden.string() << "\n";
-    ++changed;
-  }
-  return changed;
-}
-
-/// The events stay as they are; the reason goes into the header.
-ExitCode AcceptPictures(const CLI::App& options, const CommandContext& context, Golden golden,
-                        const Scenario& scenario, const RunResult& run) {
-  const auto changed = ReplacePictures(context, golden.scenario, scenario, run);
-  if (!changed) return ExitCode::kFailure;
-  if (*changed == 0) {
-    context.out << "nothing to accept: the pictures of " << golden.scenario
-                << " are the same already\n";
-    return ExitCode::kAgrees;
-  }
-  golden.pictures.push_back({context.today, ValueOf(options, "--reason")});
-  const std::string problem = GoldenFiles(context.root).WriteGoldenFile(golden);
-  return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
+  return IsGiven(options, "--reviewed") ? NoFingerprint(ValueOf(options, "--reviewed")) : "";
 }
 
 /// What was played, and the golden it had before.
@@ -126,6 +87,19 @@ struct Played {
   std::vector<std::string> files;  ///< all that decided it
   RunResult run;
 };
+
+/// What will change, before it does, and what speaks against it.
+void ShowDifference(const Played& played, const Golden& pending, const CommandContext& context) {
+  if (!played.old) {
+    context.out << "new golden:\n" << RunTable(played.run);
+  } else {
+    const WorldEntry& world = played.prepared.scenario.world;
+    context.out << DifferenceText(Compare(*played.old, played.run.timeline,
+                                          DefaultTolerance(world.rate_hz, world.sensing_hz)),
+                                  ExplainCommand(played.id, {}));
+  }
+  context.out << Text(Objections(played.old, pending));
+}
 
 /// The next blame compares with what was accepted now.
 void LeaveBaseline(const CommandContext& context, const Played& played) {
@@ -143,29 +117,41 @@ void LeaveBaseline(const CommandContext& context, const Played& played) {
 std::string NotWhatWasShown(const CLI::App& options, const CommandContext& context,
                             const Golden& pending) {
   const std::string now = Fingerprint(pending);
-  if (IsGiven(options, "--reviewed")) {
-    const std::string reviewed = ValueOf(options, "--reviewed");
-    return reviewed == now ? "" : "what was reviewed was " + reviewed;
-  }
   const ReadResult<Golden> waiting = GoldenFiles(context.root).ReadPendingOf(pending.scenario);
-  if (!waiting.value || Fingerprint(*waiting.value) == now) return "";
-  return "what waited for acceptance was " + Fingerprint(*waiting.value);
+  const std::string shown = waiting.value ? Fingerprint(*waiting.value) : now;
+  const std::string reviewed =
+      IsGiven(options, "--reviewed") ? ValueOf(options, "--reviewed") : shown;
+  if (reviewed == now) return "";
+  if (reviewed == shown)
+    return "what waited for acceptance was " + shown +
+           ", but the scenario yields something else now, " + now;
+  if (shown == now) return "what waits for acceptance is " + now + ", not " + reviewed;
+  return "what was reviewed was " + reviewed + ", but the scenario yields something else now, " +
+         now;
 }
 
 /// Shows what is there now instead, and lets it wait for the next acceptance.
 ExitCode Refuse(const CommandContext& context, const Played& played, const Golden& pending,
-                const std::string& why) {
-  ShowDifference(played.old, played.prepared.scenario, played.run, played.id, context);
+                ExitCode code, const std::string& why, const std::string& options) {
+  ShowDifference(played, pending, context);
   const std::string problem = GoldenFiles(context.root).WritePending(pending);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
-  return Complain(context, ExitCode::kDiffers,
-                  why + ", but the scenario yields something else now, " + Fingerprint(pending) +
-                      " (shown above); nothing was accepted\n  if that is right: prehend accept " +
-                      played.id + " --reviewed " + Fingerprint(pending) + " --reason \"...\"");
+  return Complain(
+      context, code,
+      why + " (shown above); nothing was accepted\n  if that is right: prehend accept " +
+          played.id + " --reviewed " + Fingerprint(pending) + " --reason \"...\"" + options);
 }
 
-bool SameNotes(const Golden& a, const Golden& b) {
-  return std::ranges::equal(a.events, b.events, {}, &GoldenEvent::oracle, &GoldenEvent::oracle);
+ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
+  GoldenFiles(context.root).RemovePending(played.id);
+  LeaveBaseline(context, played);
+  const WorldEntry& world = played.prepared.scenario.world;
+  const std::string headroom = HeadroomText(
+      Compare(*played.old, played.run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz)));
+  context.out << "nothing to accept: the scenario agrees with "
+              << GoldenFiles(context.root).GoldenPath(played.id).string()
+              << (headroom.empty() ? "" : "; " + headroom) << "\n";
+  return ExitCode::kAgrees;
 }
 
 ExitCode AcceptEvents(const CLI::App& options, const CommandContext& context,
@@ -177,23 +163,23 @@ ExitCode AcceptEvents(const CLI::App& options, const CommandContext& context,
                     .grammar = prepared.scenario.grammar,
                     .derived = ValuesOf(options, "--derived"),
                     .acceptance = Acceptance{context.today, ValueOf(options, "--reason")},
-                    .notes = derivation.notes};
+                    .notes = derivation.notes,
+                    .tolerance = derivation.tolerance};
   const bool from_people = !proposal.derived.empty();
   if (!from_people && old) proposal.derived = old->derived;
   proposal.derived = RenewedDerivation(proposal.derived, derivation);
   const bool tells_derivation = from_people && (!old || old->derived != proposal.derived);
-  const Golden golden = ProposeGolden(old, run.timeline, proposal);
-  if (old && SaysTheSame(*old, run.timeline) && SameNotes(*old, golden) && !tells_derivation) {
-    files.RemovePending(id);
-    LeaveBaseline(context, played);
-    context.out << "nothing to accept: " << files.GoldenPath(id).string()
-                << " says the same already\n";
-    return ExitCode::kAgrees;
-  }
-  const Golden pending = PendingGolden(old, run.timeline, id, prepared.scenario.grammar);
+  const Golden pending =
+      PendingGolden(old, run.timeline, id, prepared.scenario.grammar, derivation);
+  if (old && *old == pending && !tells_derivation) return NothingToAccept(context, played);
   const std::string why_not = NotWhatWasShown(options, context, pending);
-  if (!why_not.empty()) return Refuse(context, played, pending, why_not);
-  ShowDifference(old, prepared.scenario, run, id, context);
+  if (!why_not.empty()) return Refuse(context, played, pending, ExitCode::kDiffers, why_not, "");
+  Golden golden = ProposeGolden(old, run.timeline, proposal);
+  const std::string objection = GiveReasons(ValuesOf(options, "--against-the-oracle"), golden);
+  if (!objection.empty())
+    return Refuse(context, played, pending, ExitCode::kBadInput, objection,
+                  " --against-the-oracle \"EVENT(ROLES): why it is right nevertheless\"");
+  ShowDifference(played, pending, context);
   for (const std::string& line : derivation.lines) context.out << line << "\n";
   const std::string problem = files.WriteAccepted(golden);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
@@ -233,7 +219,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
                     "a run that did not complete is not accepted: " + StatusText(played.run));
   }
   if (!IsGiven(options, "--pictures")) return AcceptEvents(options, context, played);
-  return AcceptPictures(options, context, *played.old, played.prepared.scenario, played.run);
+  return AcceptPictures(context, ValueOf(options, "--reason"), *played.old,
+                        played.prepared.scenario, played.run);
 }
 
 }  // namespace

@@ -5,24 +5,33 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "harness/accept_golden.h"
+#include "harness/check_scenario.h"
 #include "harness/commands/command.h"
 #include "harness/compare.h"
 #include "harness/event_text.h"
 #include "harness/golden_files.h"
+#include "harness/oracle_notes.h"
+#include "harness/orphans.h"
 #include "harness/select_scenarios.h"
 
 namespace prehend::harness {
 namespace {
 
-/// One pending golden, in words.
+namespace fs = std::filesystem;
+
+/// What waits of a scenario, in words.
 struct Review {
   std::string id;
-  std::string kind;  ///< "new", "changed", "same", "unreadable", "orphan"
+  std::string kind;  ///< "new", "changed", "same", "picture", "unreadable", "orphan"
   std::string text;  ///< events of a new one, differences, complaints; several lines or empty
   std::string fingerprint = {};  ///< of what is shown; with it `accept` takes nothing else
+  bool wants_reason = false;     ///< for what the physical oracle objects to
+  std::vector<std::string> files =
+      {};  ///< of a picture: golden, new, difference; of an orphan: what to remove
 };
 
 void Declare(CLI::App& options) {
@@ -37,8 +46,10 @@ std::string EventLines(const Golden& golden) {
   std::size_t role_columns = 1;
   for (const GoldenEvent& line : golden.events)
     role_columns = std::max(role_columns, line.event.roles.size());
-  for (const GoldenEvent& line : golden.events)
-    rows.push_back(EventCells(line.event, golden.ticks_per_second, role_columns));
+  for (const GoldenEvent& line : golden.events) {
+    if (line.IsExpected())
+      rows.push_back(EventCells(line.event, golden.ticks_per_second, role_columns));
+  }
   std::string text;
   for (const std::string& line : AlignColumns(rows)) text += line + "\n";
   return text;
@@ -54,17 +65,53 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
       Format(pending.diagnostics) + Format(golden.diagnostics) + Format(scenario.diagnostics);
   if (!pending.value || !scenario.value || !golden.diagnostics.empty()) return review;
   review.fingerprint = Fingerprint(*pending.value);
+  const std::vector<Objection> objections = Objections(golden.value, *pending.value);
+  review.wants_reason = std::ranges::any_of(objections, &Objection::wants_reason);
   if (!golden.value) {
     review.kind = "new";
-    review.text = EventLines(*pending.value);
+    review.text = EventLines(*pending.value) + Text(objections);
     return review;
   }
   const WorldEntry& world = scenario.value->world;
   const Comparison comparison = Compare(*golden.value, ToTimeline(*pending.value),
                                         DefaultTolerance(world.rate_hz, world.sensing_hz));
-  review.kind = comparison.Agrees() ? "same" : "changed";
-  review.text = DifferenceText(comparison, "prehend explain " + review.id);
+  review.kind = comparison.Agrees() && objections.empty() ? "same" : "changed";
+  review.text = DifferenceText(comparison, ExplainCommand(review.id, {})) + Text(objections);
   return review;
+}
+
+/// A picture that differs from its golden, as `check` left it.
+Review PictureReview(const KeptPicture& pending, const std::string& root) {
+  const GoldenFiles files(root);
+  const std::string name = pending.path.filename().string();
+  const fs::path golden = files.PicturePath(pending.scenario, name),
+                 difference = files.DifferencePath(pending.scenario, name);
+  Review review{.id = pending.scenario, .kind = "picture", .text = {}};
+  std::error_code error;
+  for (const auto& [what, file] : {std::pair("golden", golden), std::pair("new", pending.path),
+                                   std::pair("difference", difference)}) {
+    if (!fs::exists(file, error)) continue;
+    review.text += fmt::format("{:<10}  {}\n", what, file.string());
+    review.files.push_back(file.string());
+  }
+  return review;
+}
+
+/// What there is to say about one scenario: its events, then its pictures.
+void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pending,
+                const std::vector<KeptPicture>& pending_pictures, std::vector<Review>& reviews) {
+  if (!file.in_project) return;
+  if (is_pending) reviews.push_back(ReviewOf(file, root));
+  for (const KeptPicture& picture : pending_pictures) {
+    if (picture.scenario == IdOf(file)) reviews.push_back(PictureReview(picture, root));
+  }
+  if (GoldenFiles(root).PicturesOf(IdOf(file)).empty()) return;
+  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
+  if (!scenario.value) return;
+  const std::size_t asked = scenario.value->pictures.size();
+  for (const fs::path& picture : UnaskedPictures(IdOf(file), asked, root))
+    reviews.push_back(
+        {IdOf(file), "orphan", UnaskedText(picture, asked) + "\n", "", false, {picture.string()}});
 }
 
 /// Nothing after a complaint.
@@ -77,16 +124,23 @@ std::optional<std::vector<Review>> Reviews(const CLI::App& options, const Comman
     return std::nullopt;
   }
   std::vector<std::string> pending = GoldenFiles(context.root).ListPending();
+  const std::vector<KeptPicture> pictures = GoldenFiles(context.root).PendingPictures();
   std::vector<Review> reviews;
-  for (const ScenarioFile& file : selection ? selection->scenarios : std::vector<ScenarioFile>()) {
-    if (std::erase(pending, ScenarioId(file.skill, file.name)) > 0)
-      reviews.push_back(ReviewOf(file, context.root));
-  }
+  for (const ScenarioFile& file : selection ? selection->scenarios : std::vector<ScenarioFile>())
+    AddReviews(file, context.root, std::erase(pending, IdOf(file)) > 0, pictures, reviews);
   if (!patterns.empty()) return reviews;
   for (const std::string& id : pending)
-    reviews.push_back({id, "orphan", "pending, but there is no such scenario\n"});
-  for (const std::string& id : selection ? selection->orphans : std::vector<std::string>())
-    reviews.push_back({id, "orphan", "a golden, but there is no such scenario\n"});
+    reviews.push_back({id,
+                       "orphan",
+                       "pending, but there is no such scenario\n",
+                       "",
+                       false,
+                       {GoldenFiles(context.root).PendingPath(id).string()}});
+  for (const Orphan& orphan : selection ? selection->orphans : std::vector<Orphan>()) {
+    Review review{orphan.scenario, "orphan", Text(orphan)};
+    for (const fs::path& file : orphan.files) review.files.push_back(file.string());
+    reviews.push_back(std::move(review));
+  }
   return reviews;
 }
 
@@ -99,8 +153,13 @@ void Print(const std::vector<Review>& reviews, const CommandContext& context) {
       begin = end + 1;
     }
     if (review.kind == "new" || review.kind == "changed")
-      context.out << fmt::format("    if right: prehend accept {} --reviewed {} --reason \"...\"\n",
-                                 review.id, review.fingerprint);
+      context.out << fmt::format(
+          "    if right: prehend accept {} --reviewed {} --reason \"...\"{}\n", review.id,
+          review.fingerprint,
+          review.wants_reason ? " --against-the-oracle \"EVENT(ROLES): ...\"" : "");
+    if (review.kind == "picture")
+      context.out << fmt::format("    if right: prehend accept {} --pictures --reason \"...\"\n",
+                                 review.id);
   }
   if (reviews.empty())
     context.out << "nothing is pending ('prehend check' finds out what should be)\n";
@@ -115,6 +174,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
       list.push_back({{"scenario", review.id},
                       {"kind", review.kind},
                       {"fingerprint", review.fingerprint},
+                      {"wants_reason", review.wants_reason},
+                      {"files", review.files},
                       {"text", review.text}});
     context.out << nlohmann::ordered_json{{"pending", list}}.dump(2) << "\n";
   } else {

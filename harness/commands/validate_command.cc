@@ -3,26 +3,31 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "grammar/describe.h"
+#include "harness/check_golden.h"
 #include "harness/commands/command.h"
 #include "harness/commands/warn.h"
 #include "harness/content_hash.h"
 #include "harness/golden_files.h"
 #include "harness/load_grammar.h"
+#include "harness/orphans.h"
 #include "harness/text_file.h"
 
 namespace prehend::harness {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Validated {
   std::string file;
   grammar::Diagnostics diagnostics;
-  std::string description = {};          ///< of a grammar without errors
+  std::string description = {};  ///< of a grammar without errors
   grammar::Diagnostics warnings = {};
   std::vector<std::string> inputs = {};  ///< every file that was looked at
 };
@@ -38,11 +43,6 @@ void Declare(CLI::App& options) {
   DeclareFlag(options, "--watch", "go on until interrupted: read again what a save affects");
 }
 
-grammar::Diagnostics ReadGoldenFile(const std::string& path) {
-  ReadResult<std::string> text = ReadTextFile(path);
-  return text.value ? ReadGolden(path, *text.value).diagnostics : std::move(text.diagnostics);
-}
-
 Validated ValidateGrammar(const std::string& name_or_path, const std::string& root) {
   Validated validated{.file = GrammarFile(root, name_or_path)};
   grammar::CompileResult compiled = LoadGrammar(root, name_or_path, {}, &validated.inputs);
@@ -52,23 +52,59 @@ Validated ValidateGrammar(const std::string& name_or_path, const std::string& ro
   return validated;
 }
 
+/// What is kept in golden/ for a scenario. Its events are those of the scenario's own grammar, not
+/// of another.
+void AddGolden(const ScenarioFile& file, const CLI::App& options,
+               const std::optional<PreparedRun>& prepared, const std::string& root,
+               Validated& validated) {
+  const GoldenFiles goldens(root);
+  const std::string path = goldens.GoldenPath(IdOf(file)).string();
+  validated.inputs.push_back(path);
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return;
+  const bool as_it_is = !IsGiven(options, "--grammar") && !IsGiven(options, "--set");
+  std::ranges::move(prepared && as_it_is ? CheckGoldenFile(path, IdOf(file), *prepared)
+                                         : goldens.ReadGoldenOf(IdOf(file)).diagnostics,
+                    std::back_inserter(validated.diagnostics));
+  if (!prepared || !as_it_is) return;
+  const std::size_t asked = prepared->scenario.pictures.size();
+  for (const fs::path& picture : UnaskedPictures(IdOf(file), asked, root))
+    validated.diagnostics.push_back(grammar::Diagnostic{.file = file.path,
+                                                        .place = {},
+                                                        .message = UnaskedText(picture, asked),
+                                                        .source_line = {},
+                                                        .hint = {}});
+}
+
+/// What is kept in golden/ for scenarios that are gone.
+Validated ValidateOrphan(const Orphan& orphan) {
+  Validated validated{.file = orphan.files.front().string(), .diagnostics = {}};
+  for (const fs::path& file : orphan.files)
+    validated.diagnostics.push_back(grammar::Diagnostic{
+        .file = file.string(),
+        .place = {},
+        .message = "belongs to no scenario",
+        .source_line = {},
+        .hint = "remove it, or bring scenarios/" + orphan.scenario + ".yaml back"});
+  return validated;
+}
+
 /// Nothing when it is the name of no scenario.
 std::optional<Validated> Validate(const std::string& typed, const CLI::App& options,
                                   const CommandContext& context) {
   if (typed.ends_with(".grammar")) return ValidateGrammar(typed, context.root);
-  if (typed.ends_with(".timeline"))
-    return Validated{.file = typed, .diagnostics = ReadGoldenFile(typed), .inputs = {typed}};
+  if (typed.ends_with(".timeline")) {
+    Validated validated{.file = typed, .diagnostics = {}};
+    validated.diagnostics = CheckGoldenAlone(typed, context.root, validated.inputs);
+    return validated;
+  }
   const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return std::nullopt;
   Validated validated{.file = file->path};
   ReadResult<PreparedRun> prepared =
       PrepareRun(RequestOf(options, file->path), context.root, &validated.inputs);
   validated.diagnostics = std::move(prepared.diagnostics);
-  if (file->in_project) {
-    const GoldenFiles goldens(context.root);
-    validated.inputs.push_back(goldens.GoldenPath(IdOf(*file)).string());
-    std::ranges::move(goldens.ReadGoldenOf(IdOf(*file)).diagnostics, std::back_inserter(validated.diagnostics));
-  }
+  if (file->in_project) AddGolden(*file, options, prepared.value, context.root, validated);
   if (prepared.value) validated.warnings = std::move(prepared.value->warnings);
   return validated;
 }
@@ -98,8 +134,7 @@ std::vector<std::string> Names(const CLI::App& options, const CommandContext& co
   if (!names.empty()) return names;
   if (IsGiven(options, "--grammar"))
     return {GrammarFile(context.root, ValueOf(options, "--grammar"))};
-  for (const ScenarioFile& file : ListScenarios(context.root))
-    names.push_back(IdOf(file));
+  for (const ScenarioFile& file : ListScenarios(context.root)) names.push_back(IdOf(file));
   return names;
 }
 
@@ -137,6 +172,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     if (!validated) return ExitCode::kNothing;
     all.push_back(std::move(*validated));
   }
+  const bool everything = ValuesOf(options, "files").empty() && !IsGiven(options, "--grammar");
+  for (const Orphan& orphan :
+       everything ? OrphansAmong(ListScenarios(context.root), context.root) : std::vector<Orphan>())
+    all.push_back(ValidateOrphan(orphan));
 
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   grammar::Diagnostics diagnostics;

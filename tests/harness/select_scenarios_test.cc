@@ -22,7 +22,7 @@ TEST(Shard, EveryScenarioIsInExactlyOne) {
   for (int number = 1; number <= 3; ++number) {
     ScenarioSelection selection;
     for (const char* name : {"a", "b", "c", "d"}) selection.scenarios.push_back({"s", name, name});
-    selection.orphans = {"s/gone"};
+    selection.orphans = {{"s/gone", {}}};
     KeepShard({number, 3}, selection);
     EXPECT_EQ(selection.orphans.size(), number == 1 ? 1u : 0u);
     for (const ScenarioFile& file : selection.scenarios) kept.push_back(file.name);

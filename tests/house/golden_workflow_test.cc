@@ -48,7 +48,8 @@ TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
   EXPECT_TRUE(
       SaysIn(orphans, "orphan  rest/carton_rests\n    pending, but there is no such scenario"))
       << orphans.out;
-  EXPECT_TRUE(SaysIn(orphans, "a golden, but there is no such scenario")) << orphans.out;
+  EXPECT_TRUE(SaysIn(orphans, "carton_rests.timeline belongs to no scenario: remove it"))
+      << orphans.out;
 }
 
 TEST_F(GoldenWorkflow, TheGrammarIsToBlameWhenNothingMovesOtherwise) {
@@ -115,16 +116,21 @@ TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
   EXPECT_EQ(Do("check --no-pictures").exit_code, 5);
   const std::string shown = Json::parse(Do("review --json").out)["pending"][0]["fingerprint"];
   WriteFile(Scenario(), Replaced(kCartonRests, "wait_s: 0.2", "wait_s: 0.3"));
-  for (const std::string& how : {std::string(), " --reviewed " + shown}) {
+  const std::string by_fingerprint = " --reviewed " + shown;
+  for (const auto& [how, why] :
+       {std::pair(std::string(), "was " + shown + ", but the scenario yields something else now"),
+        std::pair(by_fingerprint, ", not " + shown)}) {
     const Said refused = Do("accept carton_rests --reason seen" + how);
     EXPECT_EQ(refused.exit_code, 1) << refused.err;
-    EXPECT_NE(refused.err.find("was " + shown + ", but the scenario yields something else now"),
-              std::string::npos)
-        << refused.err;
+    EXPECT_NE(refused.err.find(why), std::string::npos) << refused.err;
     EXPECT_TRUE(SaysIn(refused, "new golden:\n")) << "it shows what: " << refused.out;
     EXPECT_FALSE(fs::exists(Golden()));
   }
   const std::string now = Json::parse(Do("review --json").out)["pending"][0]["fingerprint"];
+  const Said no_fingerprint = Do("accept carton_rests --reason seen --reviewed ABCDEF01");
+  EXPECT_EQ(no_fingerprint.exit_code, 2);
+  EXPECT_NE(no_fingerprint.err.find("--reviewed: 'ABCDEF01' is no fingerprint; "),
+            std::string::npos);
   EXPECT_EQ(Do("accept carton_rests --reason seen --reviewed " + now).exit_code, 0);
 }
 
@@ -136,7 +142,8 @@ TEST_F(GoldenWorkflow, PicturesHaveAGateOfTheirOwn) {
   Accept();
   const Said accepted = Do("accept carton_rests --pictures --reason a_carton_is_seen");
   const fs::path golden = root_ / "golden/rest/carton_rests.png";
-  if (accepted.err.find("no render room") != std::string::npos) GTEST_SKIP() << "a build without OSMesa draws nothing: " << accepted.err;
+  if (accepted.err.find("no render room") != std::string::npos)
+    GTEST_SKIP() << "a build without OSMesa draws nothing: " << accepted.err;
   ASSERT_EQ(accepted.exit_code, 0) << accepted.err;
   ASSERT_TRUE(fs::exists(golden));
   EXPECT_EQ(Do("check").exit_code, 0);
@@ -151,12 +158,133 @@ TEST_F(GoldenWorkflow, PicturesHaveAGateOfTheirOwn) {
   EXPECT_TRUE(
       SaysIn(differs, "picture .*carton_rests.png: .* % of its pixels differ, at most 1 % may\n"))
       << differs.out;
+  EXPECT_TRUE(SaysIn(differs, "  accept it with: prehend accept rest/carton_rests --pictures "));
+  EXPECT_FALSE(SaysIn(Do("check --set settle_s=0.2"), "accept it"))
+      << "what is tried is not accepted";
+  const Said reviewed = Do("review");
+  EXPECT_TRUE(
+      SaysIn(reviewed,
+             "picture  rest/carton_rests\n    golden      .*/golden/rest/carton_rests.png\n"
+             "    new         .*/build/pending/rest/carton_rests.png\n"
+             "    difference  .*/build/pending/rest/carton_rests.difference.png\n"
+             "    if right: prehend accept rest/carton_rests --pictures --reason \"...\"\n"))
+      << reviewed.out;
+  EXPECT_TRUE(fs::exists(root_ / "build/pending/rest/carton_rests.difference.png"));
   EXPECT_EQ(Do("accept carton_rests --pictures --reason from_above").exit_code, 0);
   const std::string with_reason = ReadFile(Golden());
   EXPECT_NE(with_reason.find("# pictures: "), std::string::npos);
   EXPECT_NE(with_reason.find("\"from_above\""), std::string::npos);
   EXPECT_EQ(with_reason.find("accepted=2"), std::string::npos) << "no event was accepted";
+  EXPECT_FALSE(SaysIn(Do("review"), "picture"));
   EXPECT_EQ(Do("check").exit_code, 1) << "the events still differ";
+}
+
+TEST_F(GoldenWorkflow, PicturesThatBelongToNothingAreTold) {
+  Accept();
+  WriteFile(root_ / "golden/rest/carton_rests.png", "");
+  const std::string unasked =
+      "golden/rest/carton_rests.png belongs to no picture: the scenario asks for none\n";
+  for (const char* command :
+       {"check carton_rests --no-pictures", "review carton_rests", "validate carton_rests"}) {
+    const Said said = Do(command);
+    EXPECT_NE((said.out + said.err).find(unasked), std::string::npos)
+        << command << ": " << said.out << said.err;
+  }
+  EXPECT_EQ(Do("check carton_rests --no-pictures").exit_code, 1);
+  fs::rename(root_ / "golden/rest/carton_rests.png", root_ / "golden/rest/gone-2.png");
+  for (const char* command : {"check --no-pictures", "review", "validate"}) {
+    const Said said = Do(command);
+    const std::regex told(
+        "golden/rest/gone-2.png(: error:)? belongs to no scenario(: |\n  hint: )remove it, or "
+        "bring "
+        "scenarios/rest/gone.yaml back");
+    EXPECT_TRUE(std::regex_search(said.out + said.err, told))
+        << command << ": " << said.out << said.err;
+    EXPECT_NE(said.exit_code, 0) << command;
+  }
+}
+
+TEST_F(GoldenWorkflow, WhatAGoldenNamesMustExist) {
+  Accept();
+  const std::string golden = ReadFile(Golden());
+  const auto says = [&](const std::string& from, const std::string& to,
+                        const std::string& complaint) {
+    WriteFile(Golden(), Replaced(golden, from, to));
+    for (const std::string& what : {std::string("carton_rests"), Golden().string()}) {
+      const Said said = Do("validate " + what);
+      EXPECT_EQ(said.exit_code, 2) << to;
+      EXPECT_NE(said.err.find(complaint), std::string::npos) << said.err;
+    }
+  };
+  const std::string file = Golden().string();
+  says("contact  ", "contakt  ", file + ":7:1: error: the grammar has no event 'contakt'\n");
+  says("support=table", "suport=table",
+       file + ":8:47: error: 'supported_by' has no role 'suport'\n");
+  says("a=carton", "a=karton", file + ":7:32: error: the scenario has no 'karton'\n");
+  says("b=table", "style=wrap", "error: 'contact' has no style\n");
+  says("b=table", "", file + ":7:1: error: 'contact' has a role 'b', which is missing here\n");
+  says("# grammar: pick_and_place", "# grammar: contact",
+       file +
+           ":2:12: error: this golden is of the grammar 'contact', but the scenario is watched by "
+           "'pick_and_place'\n");
+  says(
+      "# scenario: rest/carton_rests", "# scenario: rest/carton",
+      file + ":1:13: error: this golden says it is of 'rest/carton', not of 'rest/carton_rests'\n");
+  const fs::path elsewhere = root_ / "elsewhere.timeline";
+  WriteFile(elsewhere, Replaced(golden, "rest/carton_rests", "rest/carton_rest"));
+  EXPECT_NE(Do("validate " + elsewhere.string())
+                .err.find(":1:13: error: there is no scenario 'rest/carton_rest'\n"),
+            std::string::npos);
+  WriteFile(elsewhere, golden);
+  EXPECT_EQ(Do("validate " + elsewhere.string()).exit_code, 0);
+}
+
+TEST_F(GoldenWorkflow, WhatMovedWithinTheToleranceIsNotWrittenUnseen) {
+  Accept();
+  const std::string by_hand = "contact 0.0042 0.3 a=carton b=table open_end\n";  // a tick early
+  std::string golden =
+      std::regex_replace(ReadFile(Golden()), std::regex("contact +0.*\n"), by_hand);
+  WriteFile(Golden(), golden + "sliding 0.1 0.2 hand=right_hand object=carton\n");
+  EXPECT_EQ(Do("check --no-pictures").exit_code, 1);
+  EXPECT_EQ(Do("accept carton_rests --reason it_does_not_slide").exit_code, 0);
+  const std::string table = "# event";
+  EXPECT_EQ(ReadFile(Golden()).substr(ReadFile(Golden()).find(table)),
+            golden.substr(golden.find(table)));
+  const Said again = Do("accept carton_rests --reason again");
+  EXPECT_TRUE(
+      SaysIn(again, "nothing to accept: .*; headroom: 6.2 of 8.3 ms are left at end of contact"))
+      << again.out;
+}
+
+TEST_F(GoldenWorkflow, WhatThePhysicalOracleObjectsToIsAnsweredBeforeItIsAccepted) {
+  WriteFile(root_ / "grammar/library/slow.grammar",
+            "grammar slow\nsymmetric event contact(a: Entity, b: Entity)\n  while touching(a, b)\n "
+            " lasting 10 s\n");
+  WriteFile(Scenario(), std::string(kCartonRests) + "grammar: slow\n");
+  const std::string objection =
+      "only the oracle sees this event: contact\\(carton, table\\) 0\\.0042\\.\\.0\\.3021 s\n";
+  const Said pending = Do("check --no-pictures");
+  EXPECT_EQ(pending.exit_code, 5);
+  EXPECT_TRUE(SaysIn(pending, objection)) << pending.out;
+  EXPECT_TRUE(SaysIn(Do("review"), objection + "    if right: .* --against-the-oracle"));
+  const Said refused = Do("accept carton_rests --reason seen");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(SaysIn(refused, objection)) << refused.out;
+  EXPECT_NE(refused.err.find("the physical oracle objects to contact(carton, table) (shown above); "
+                             "nothing was accepted"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_FALSE(fs::exists(Golden()));
+  EXPECT_EQ(Do("accept carton_rests --reason seen --against-the-oracle too_short").exit_code, 0);
+  EXPECT_NE(ReadFile(Golden()).find("oracle=only because \"too_short\"\n"), std::string::npos)
+      << ReadFile(Golden());
+  EXPECT_EQ(Do("check --no-pictures").exit_code, 0);
+
+  WriteFile(Golden(), std::regex_replace(ReadFile(Golden()), std::regex("contact +0.*\n"), ""));
+  const Said missing = Do("check --no-pictures");
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_TRUE(SaysIn(missing, "the physical oracle objects to 1 event\n    " + objection))
+      << missing.out;
 }
 
 TEST_F(GoldenWorkflow, WatchingReadsAgainWhatASaveAffects) {
