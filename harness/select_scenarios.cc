@@ -35,7 +35,7 @@ bool PassesFilter(const ScenarioFile& file, const std::string& filter, const Sce
 
 /// "" or that nothing passes a filter that is not a "not", with the nearest tag.
 std::string WhyNonePasses(const std::string& filter, const std::vector<ScenarioFile>& all, const ScenarioLibrary& library) {
-  if (filter.starts_with('!')) return filter.size() > 1 ? "" : "--filter: '!' is followed by what must not match";
+  if (filter.starts_with('!')) return "";
   const bool some = std::ranges::any_of(all, [&](const auto& file) { return PassesFilter(file, filter, library); });
   if (some || !filter.starts_with(kTag)) return some ? "" : "--filter: no scenario matches '" + filter + "'";
   std::vector<std::string> tags;

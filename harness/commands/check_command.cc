@@ -29,12 +29,19 @@ void DeclareSelection(CLI::App& options) {
   options.add_option("names", "names, skill/name, globs or files; nothing: all")
       ->expected(-1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  const auto is_filter = [](const std::string& text) {
+    const std::size_t word = text.starts_with("!") ? 1 : 0;
+    const bool of_tag = text.compare(word, 4, "tag:") == 0;
+    if (text.empty() || text.size() > word + (of_tag ? 4 : 0)) return std::string();
+    return "'" + text + "' is followed by " + (of_tag ? "a tag, like " : "what must not match, like ") + text + (of_tag ? "smoke" : "reach/*");
+  };
   options
       .add_option("--filter",
                   "only those that match this glob, or have tag:NAME; with a leading ! only the "
                   "others; may be given again, then all must hold")
       ->type_name("[!]GLOB|[!]tag:NAME")
       ->expected(1)
+      ->check(CLI::Validator(is_filter, "", "filter"))
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   const auto is_shard = [](const std::string& text) {
     return ParseShard(text) ? std::string()

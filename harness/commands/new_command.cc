@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "harness/commands/command.h"
+#include "harness/scenario_copy.h"
 #include "harness/text_file.h"
 #include "harness/whole_file.h"
 
@@ -16,7 +17,7 @@ constexpr const char* kDefaultSkill = "pick_and_place";
 
 constexpr const char* kTemplate = R"(# yaml-language-server: $schema=../scenario.schema.json
 # Every key is explained in docs/scenario-format.md. Units are the last word of a key; z is up.
-scenario: NAME
+scenario: name
 shows: a carton is picked up with a wrap grasp and put down further to the right   # what it proves, as a sentence
 grammar: pick_and_place            # a file of grammar/library/, without ".grammar"
 tags: []
@@ -58,51 +59,77 @@ void Declare(CLI::App& options) {
 
 constexpr std::string_view kModeline = "# yaml-language-server: $schema=../scenario.schema.json\n";
 
-/// The text with its `scenario:` line naming the new one, and with the line that editors look for.
-std::string Renamed(const std::string& text, const std::string& name) {
-  static const std::regex name_line("(^|\n)scenario:[^\n]*");
-  const bool has_modeline = text.find("yaml-language-server:") != std::string::npos;
-  return (has_modeline ? "" : std::string(kModeline)) +
-         std::regex_replace(text, name_line, "$1scenario: " + name,
-                            std::regex_constants::format_first_only);
+/// Where new scenarios start from.
+struct Model {
+  std::string path;  ///< also of the template, as if it stood in the default folder
+  std::string text = kTemplate;
+  std::string skill = kDefaultSkill;
+};
+
+/// The scenario as it will stand in `path`, with the line that editors look for; nothing after a
+/// complaint: nobody should have to find the mistakes of another file in one of their own.
+std::optional<std::string> Composed(const Model& model, const std::filesystem::path& path,
+                                    const CommandContext& context) {
+  const ScenarioLibrary library = ProjectLibrary(context.root);
+  const ReadResult<Scenario> as_it_is = ReadScenarioText(model.path, model.text, {}, library);
+  ReadResult<std::string> copy = as_it_is.value ? CopyOfScenario(model.path, model.text, path)
+                                                : ReadResult<std::string>{{}, as_it_is.diagnostics};
+  if (copy.value) {
+    const bool has_modeline = copy.value->find("yaml-language-server:") != std::string::npos;
+    if (!has_modeline) copy.value->insert(0, kModeline);
+    std::error_code error;
+    std::filesystem::create_directories(path.parent_path(), error);  // for paths that go through it
+    const ReadResult<Scenario> read = ReadScenarioText(path.string(), *copy.value, {}, library);
+    if (read.value) return copy.value;
+    std::filesystem::remove(path.parent_path(), error);  // only when it is empty
+    copy.diagnostics = read.diagnostics;
+  }
+  Complain(context, copy.diagnostics);
+  return std::nullopt;
 }
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const std::string typed = ValueOf(options, "name");
   static const std::regex well_formed("([a-z][a-z0-9_]{0,63}/)?[a-z][a-z0-9_]{0,63}");
   if (!std::regex_match(typed, well_formed)) {
-    return Complain(
-        context, ExitCode::kBadInput,
-        "'" + typed +
-            "' is no name of at most 64 letters; one looks like slide_then_transport or slide/slide_then_transport");
+    return Complain(context, ExitCode::kBadInput,
+                    "'" + typed +
+                        "' is no name of at most 64 letters; one looks like slide_then_transport "
+                        "or slide/slide_then_transport");
   }
-  std::string text = kTemplate;
-  std::string skill = kDefaultSkill;
+  namespace fs = std::filesystem;
+  const fs::path scenarios = fs::path(context.root) / "scenarios";
+  Model model{.path = (scenarios / kDefaultSkill / "name.yaml").string()};
   if (IsGiven(options, "--like")) {
-    const auto model = FindScenarioOrComplain(ValueOf(options, "--like"), context);
-    if (!model) return ExitCode::kNothing;
-    ReadResult<std::string> read = ReadTextFile(model->path);
+    const auto like = FindScenarioOrComplain(ValueOf(options, "--like"), context);
+    if (!like) return ExitCode::kNothing;
+    ReadResult<std::string> read = ReadTextFile(like->path);
     if (!read.value) return Complain(context, read.diagnostics);
-    text = std::move(*read.value);
-    if (!model->skill.empty()) skill = model->skill;
+    model = {.path = like->path,
+             .text = std::move(*read.value),
+             .skill = like->skill.empty() ? kDefaultSkill : like->skill};
   }
+  std::string skill = model.skill;
   const std::size_t slash = typed.find('/');
   if (slash != std::string::npos) skill = typed.substr(0, slash);
   const std::string name = slash == std::string::npos ? typed : typed.substr(slash + 1);
 
   if (skill == kShowsErrors) {
     return Complain(context, ExitCode::kBadInput,
-                    "scenarios/invalid/ holds files that show errors, no command takes them for scenarios; choose another "
-                    "skill, like " + std::string(kDefaultSkill) + "/" + name);
+                    "scenarios/invalid/ holds files that show errors, no command takes them for "
+                    "scenarios; choose another "
+                    "skill, like " +
+                        std::string(kDefaultSkill) + "/" + name);
   }
   for (const ScenarioFile& scenario : ListScenarios(context.root)) {
     if (scenario.name == name)
       return Complain(context, ExitCode::kBadInput,
                       "there is a scenario of this name: " + scenario.path);
   }
-  const std::filesystem::path path =
-      std::filesystem::path(context.root) / "scenarios" / skill / (name + ".yaml");
-  const std::string problem = WriteTextFile(path, Renamed(text, name));
+  const fs::path path = scenarios / skill / (name + ".yaml");
+  const auto text = Composed(model, path, context);
+  if (!text) return ExitCode::kBadInput;
+  const std::string problem = WriteTextFile(path, *text);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   const std::string id = ScenarioId(skill, name);
   context.out << path.string() << "\n"

@@ -83,6 +83,8 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
        "prehend: --record: cannot write no/such/folder/e.jsonl: [^]*"},
       {"check --filter tag:none", 4, "prehend: --filter: no scenario has the tag 'none' .*\n  again: .*\n"},
       {"check --filter tag:quite", 4, "prehend: --filter: no scenario has the tag 'quite'; did you mean 'quiet'\\?[^]*"},
+      {"check --filter !", 2, "prehend: --filter: '!' is followed by what must not match, like !reach/\\*\n[^]*"},
+      {"check --filter !tag:", 2, "prehend: --filter: '!tag:' is followed by a tag, like !tag:smoke\n[^]*"},
       {"check --filter nothing*", 4, "prehend: --filter: no scenario matches 'nothing\\*' [^]*"},
       {"run carton_rests --trials 2 --record x", 2, "prehend: --record is about one run, --trials about many\n[^]*"},
       {"run carton_rests --grammar xyz", 2, "[^]*no such file\n  hint: there are: [^]*pick_and_place[^]*"},
@@ -332,6 +334,31 @@ TEST_F(CommandLine, NewWritesAScenarioThatRuns) {
                   .starts_with("# yaml-language-server: $schema=../scenario.schema.json\n"
                                "scenario: carton_still_rests\nshows: a carton stands"));
   EXPECT_EQ(Do("run carton_still_rests").exit_code, 0);
+}
+
+TEST_F(CommandLine, WhatIsNewCanBeReadWhateverItsName) {
+  for (const char* name : {"on", "true", "null", "words/off"}) {
+    EXPECT_EQ(Do(std::string("new ") + name).exit_code, 0) << name;
+    EXPECT_EQ(Do(std::string("validate ") + name).exit_code, 0) << Do(std::string("validate ") + name).err;
+  }
+  EXPECT_NE(ReadFile(root_ / "scenarios/words/off.yaml").find("\nscenario: \"off\"\n"), std::string::npos);
+}
+
+TEST_F(CommandLine, ACopyFindsTheRecordingsOfItsModel) {
+  WriteFile(root_ / "scenarios/rest/track.csv", "t_s,x_m,y_m,z_m\n0,-0.25,-0.1,1.1\n0.1,-0.25,-0.1,1.12\n");
+  WriteVariant("rest/moved", "wait_s: 0.2", "recording: 'track.csv'  ");
+  ASSERT_EQ(Do("validate moved").exit_code, 0) << Do("validate moved").err;
+  for (const char* name : {"rest/beside", "other/elsewhere"}) {
+    EXPECT_EQ(Do(std::string("new ") + name + " --like moved").exit_code, 0) << name;
+    EXPECT_EQ(Do(std::string("validate ") + name).exit_code, 0) << Do(std::string("validate ") + name).err;
+  }
+  EXPECT_NE(ReadFile(root_ / "scenarios/other/elsewhere.yaml").find("{recording: ../rest/track.csv  }"), std::string::npos);
+  EXPECT_NE(ReadFile(root_ / "scenarios/rest/beside.yaml").find("{recording: 'track.csv'  }"), std::string::npos);
+  WriteVariant("rest/wrong", "mass_kg", "mass");
+  const Said refused = Do("new rest/as_wrong --like wrong");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("/wrong.yaml:6:62: error: unknown key 'mass'"), std::string::npos) << refused.err;
+  EXPECT_FALSE(fs::exists(root_ / "scenarios/rest/as_wrong.yaml"));
 }
 
 }  // namespace
