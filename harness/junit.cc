@@ -3,9 +3,13 @@
 #include "harness/junit.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "harness/timeline_svg.h"
 
@@ -30,12 +34,43 @@ std::string_view Element(const ScenarioVerdict& verdict) {
   return broken ? "error" : "failure";
 }
 
+/// "0.0042..0.3021 s", or "nothing".
+std::string SideText(const nlohmann::ordered_json& side) {
+  if (side.is_null()) return "nothing";
+  return fmt::format("{:.4f}..{:.4f} s", side.at("begin_s").get<double>(), side.at("end_s").get<double>());
+}
+
+/// "supported_by(carton, table)"
+std::string LabelOf(const nlohmann::ordered_json& difference) {
+  const nlohmann::ordered_json& side = difference.at(difference.at("expected").is_null() ? "recognised" : "expected");
+  std::vector<std::string> roles;
+  for (const auto& [name, value] : side.at("roles").items()) roles.push_back(value.get<std::string>());
+  return fmt::format("{}({})", difference.at("event").get<std::string>(), fmt::join(roles, ", "));
+}
+
+/// What servers show first: the reason, and of differences the first one, with its numbers.
+std::string Message(const ScenarioVerdict& verdict) {
+  if (verdict.differences.empty()) {
+    const std::string first = verdict.details.substr(0, verdict.details.find('\n'));
+    return first.empty() ? verdict.reason : verdict.reason + "; first: " + first;
+  }
+  const nlohmann::ordered_json& difference = verdict.differences.front();
+  std::string text = fmt::format("{}; first: {} {}: expected {}, recognised {}", verdict.reason,
+                                 difference.at("kind").get<std::string>(), LabelOf(difference),
+                                 SideText(difference.at("expected")), SideText(difference.at("recognised")));
+  if (!difference.at("begin_ms").is_null())
+    text += fmt::format(", begin {:+.1f} ms, end {:+.1f} ms", difference.at("begin_ms").get<double>(),
+                        difference.at("end_ms").get<double>());
+  for (const auto& change : difference.at("changes")) text += ", " + change.get<std::string>();
+  return text;
+}
+
 std::string Outcome(const ScenarioVerdict& verdict) {
   const std::string_view element = Element(verdict);
   if (element.empty()) return "";
   if (element == "skipped") return "      <skipped message=\"nothing changed since it passed\"/>\n";
   return fmt::format("      <{0} type=\"{1}\" message=\"{2}\">{3}again: {4}\n</{0}>\n", element,
-                     Name(verdict.verdict), EscapeXml(verdict.reason), EscapeXml(verdict.details),
+                     Name(verdict.verdict), EscapeXml(Message(verdict)), EscapeXml(verdict.details),
                      EscapeXml(verdict.command));
 }
 

@@ -68,6 +68,30 @@ bool IsLackOfMemory(const std::system_error& problem) {
          problem.code() == std::errc::resource_unavailable_try_again;
 }
 
+/// "crashed (segmentation fault, signal 11)". SIGKILL is the system's, too, when the machine has no memory left.
+std::string SignalText(int signal) {
+  switch (signal) {
+    case SIGSEGV:
+      return "crashed (segmentation fault, signal 11)";
+    case SIGABRT:
+      return "gave up (abort, signal 6)";
+    case SIGFPE:
+      return "crashed (arithmetic that has no result, signal 8)";
+    case SIGBUS:
+      return "crashed (bus error, signal 7)";
+    case SIGILL:
+      return "crashed (an instruction that this machine lacks, signal 4)";
+    case SIGKILL:
+      return "was killed (signal 9: by somebody, or by the system for want of memory)";
+    case SIGTERM:
+      return "was asked to end (signal 15)";
+    case SIGXCPU:
+      return "used up its processor time (signal 24)";
+    default:
+      return fmt::format("ended by signal {} ({})", signal, strsignal(signal));
+  }
+}
+
 /// The child's life. Leaves by _exit: the parent's buffers and destructors are not the child's to
 /// run.
 [[noreturn]] void Work(const WorkerJob& job, const WorkerLimits& limits, int pipe) {
@@ -217,7 +241,7 @@ class Pool {
   std::string EndReason(const Worker& worker, int status) const {
     if (worker.killed) return fmt::format("no end after {:g} s", limits_.time_limit_s);
     if (WIFSIGNALED(status))
-      return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+      return SignalText(WTERMSIG(status));
     if (WEXITSTATUS(status) == kJobOutOfMemory) {
       return limits_.memory_limit_bytes == 0
                  ? "no memory is left"

@@ -22,7 +22,7 @@ struct WorkerLimits {
 struct WorkerResult {
   bool finished = false;  ///< false: crashed, killed, out of time or memory
   std::string output;     ///< what the job returned; empty unless finished
-  std::string reason;  ///< "signal 11 (Segmentation fault)", "no end after 60 s", "it needs more
+  std::string reason;  ///< "crashed (segmentation fault, signal 11)", "no end after 60 s", "it needs more
                        ///< memory than 1000 MB"; empty when finished
   std::string said;    ///< the end of what a job that failed wrote to standard error; not when memory ran out
   double seconds = 0;

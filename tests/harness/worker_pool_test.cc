@@ -81,7 +81,7 @@ TEST(WorkerPool, WhatAJobSaysBeforeItCrashesIsKept) {
     return Good();
   };
   const auto results = RunInWorkers({talks}, {});
-  EXPECT_EQ(results[0].reason, "signal 6 (Aborted)");
+  EXPECT_EQ(results[0].reason, "gave up (abort, signal 6)");
   EXPECT_EQ(results[0].said, "the sky is falling\n");
 }
 
@@ -90,7 +90,11 @@ std::string NameOf(const testing::TestParamInfo<Misbehaviour>& row) { return row
 INSTANTIATE_TEST_SUITE_P(
     Table, WorkerPoolMisbehaviour,
     testing::Values(Misbehaviour{"killed", [] { return raise(SIGKILL), Good(); },
-                                 "signal 9 (Killed)"},
+                                 "was killed (signal 9: by somebody, or by the system for want of memory)"},
+                    Misbehaviour{"recurses", [] { return raise(SIGSEGV), Good(); },
+                                 "crashed (segmentation fault, signal 11)"},
+                    Misbehaviour{"has_another_signal", [] { return raise(SIGUSR1), Good(); },
+                                 "ended by signal 10 (User defined signal 1)"},
                     Misbehaviour{"hangs", [] { return pause(), Good(); }, "no end after 0.5 s"},
                     Misbehaviour{"exits", []() -> std::string { _exit(9); }, "exit status 9"},
                     Misbehaviour{"throws", []() -> std::string { throw std::runtime_error("no"); },

@@ -92,7 +92,7 @@ TEST_F(Runner, AKilledWorkerIsAVerdictOfItsOwn) {
   killer.join();
   EXPECT_EQ(verdicts.at("rest/carton_rests").at("verdict"), "passed");
   const std::string reason = verdicts.at("long/takes_long").at("reason");
-  EXPECT_TRUE(reason.starts_with("its process ended: signal 9 (Killed), at tick ")) << reason;
+  EXPECT_TRUE(reason.starts_with("its process ended: was killed (signal 9: by somebody, or by the system for want of memory), last tick ")) << reason;
   EXPECT_GT(verdicts.at("long/takes_long").at("ticks"), 100);
 }
 
@@ -102,7 +102,7 @@ TEST_F(Runner, AScenarioThatNeverEndsIsStopped) {
   const auto verdicts = Check("--time-limit-s 8", 3);
   EXPECT_EQ(verdicts.at("rest/carton_rests").at("verdict"), "passed");
   const std::string reason = verdicts.at("long/takes_long").at("reason");
-  EXPECT_TRUE(reason.starts_with("its process ended: no end after 8 s, at tick ")) << reason;
+  EXPECT_TRUE(reason.starts_with("its process ended: no end after 8 s, last tick ")) << reason;
   EXPECT_EQ(verdicts.at("long/takes_long").at("command"),
             "prehend check long/takes_long --time-limit-s 8 --memory-limit-mb 1000");
 }
@@ -113,14 +113,14 @@ TEST_F(Runner, AScenarioThatWantsMoreAndMoreMemoryIsStopped) {
   const auto verdicts = Check("--memory-limit-mb 20", 3);
   EXPECT_EQ(verdicts.at("rest/carton_rests").at("verdict"), "passed");
   const std::string reason = verdicts.at("long/takes_much").at("reason");
-  EXPECT_TRUE(reason.starts_with("its process ended: it needs more memory than 20 MB, at tick ")) << reason;
+  EXPECT_TRUE(reason.starts_with("its process ended: it needs more memory than 20 MB, last tick ")) << reason;
 }
 
 TEST_F(Runner, TooLittleMemoryIsSaidHoweverLittleItIs) {
   Accept();
   const std::regex reason(
       "its process ended: (it needs more memory than \\d+ MB|\\d+ MB of memory are too little for it to start, which takes "
-      "\\d+ MB), (before the first tick|at tick \\d+)");
+      "\\d+ MB), (before the first tick|last tick \\d+)");
   bool some_passed = false;
   for (const int limit_mb : {1, 3, 5, 8, 11, 15, 400}) {
     const Said said = Do("check --json --memory-limit-mb " + std::to_string(limit_mb));
