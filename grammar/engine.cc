@@ -17,8 +17,9 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
       history_(cast_),
       lanes_(*program_, cast_),
       evaluator_(*program_, cast_, history_, lanes_),
-      beyond_when_nothing_(Beyond(program_->thresholds, kNothingMeasured)),
-      grips_(cast_.entities.size(), beyond_when_nothing_),
+      thresholds_(program_->thresholds),
+      keeps_touches_(program_->asks_touches),
+      grips_(cast_.entities.size(), thresholds_.OfGrip(0)),
       awake_(program_->events.size()) {
   for (const Rule& rule : program_->events) {
     rule_ticks_.push_back({.bridging = history_.AtMostTicks(rule.bridging_s),
@@ -64,11 +65,16 @@ bool Engine::CanMeasure(const Lane& lane) const {
 // What must be so of a touch and of a grip is so now.
 bool Engine::IsMeasured(const Lane& lane) const {
   const MeasuredPart& part = RuleOf(lane).measured;
-  if (part.hand != kNone && !part.grip.Fit(grips_[lane.entities[part.hand]])) return false;
-  if (part.touch == kNone) return true;
+  if (part.touch == kNone) return part.grip.Fit(grips_[lane.entities[part.hand]]);
   const Lane& touch = lanes_[lane.references[part.touch]];
-  if (!touch.open) return !part.must_touch && part.press[0].Fit(beyond_when_nothing_);
-  const bool turned = part.first != kNone && touch.entities[0] != lane.entities[part.first];
+  return IsMeasured(lane, touch, part.first != kNone && touch.entities[0] != lane.entities[part.first]);
+}
+
+// Likewise, of this touch, which names the two the other way round than the rule if `turned`.
+bool Engine::IsMeasured(const Lane& lane, const Lane& touch, bool turned) const {
+  const MeasuredPart& part = RuleOf(lane).measured;
+  if (part.hand != kNone && !part.grip.Fit(grips_[lane.entities[part.hand]])) return false;
+  if (!touch.open) return !part.must_touch && part.press[0].Fit(thresholds_.OfNoTouch());
   return part.press[turned ? 1 : 0].Fit(touch.beyond);
 }
 
@@ -98,13 +104,15 @@ void Engine::Tell(Lane& lane) {
     lanes_.MakeDependents(lane.index, scratch_);
     for (const int dependent : scratch_) Wake(dependent);
   }
-  for (const int watcher : lane.watchers) {
-    Lane& watching = lanes_[watcher];
+  for (const Watcher& watcher : lane.watchers) {
+    Lane& watching = lanes_[watcher.lane];
     if (watching.awake) continue;
-    if (watching.open || MayBegin(watching)) {
-      if (watching.open || lanes_.Guards(lane.index, watching) || !lanes_.GuardRests(watching)) Wake(watcher);
-    } else if (!lane.open && lanes_.Guards(lane.index, watching)) {
-      Wake(watcher);  // the guard has held up to the frame before; a moment here may still be told of
+    if (watcher.instant) {
+      Measure(watching, watcher, lane);
+    } else if (watching.open || MayBegin(watching)) {
+      if (watching.open || watcher.guarded || !lanes_.GuardRests(watching)) Wake(watcher.lane);
+    } else if (!lane.open && watcher.guarded) {
+      Wake(watcher.lane);  // the guard has held up to the frame before; a moment here may still be told of
     }
   }
 }
@@ -233,7 +241,7 @@ bool Engine::CanBeFreed(const Lane& lane) const {
   if (form != Form::kTouching && !lanes_.GuardRests(lane)) return false;
   // Compositions remember; and whoever asks about this lane must be woken by it, unless it is made to be.
   const auto remembers = [](const std::vector<Span>& spans) { return !spans.empty(); };
-  const auto depends = [&](int watcher) { return RuleOf(lanes_[watcher]).form != Form::kAny; };
+  const auto depends = [&](const Watcher& watcher) { return RuleOf(lanes_[watcher.lane]).form != Form::kAny; };
   return std::none_of(lane.parts.begin(), lane.parts.end(), remembers) && !MayOverlap(lane) &&
          std::none_of(lane.watchers.begin(), lane.watchers.end(), depends);
 }

@@ -40,7 +40,10 @@ class Engine {
   int lanes_in_use() const { return lanes_.in_use(); }
 
   // For hindsight.h. From now on nothing is forgotten, and what becomes of each run is noted. Before the first frame.
-  void Remember(Fates& fates) { fates_ = &fates; }
+  void Remember(Fates& fates) {
+    fates_ = &fates;
+    keeps_touches_ = true;
+  }
   const Program& program() const { return *program_; }
   const Cast& cast() const { return cast_; }
   const History& history() const { return history_; }
@@ -81,6 +84,8 @@ class Engine {
   void Press(const Touch& touch, int touching);
   void Part(int touching);
   void CloseTouch(Lane& touching, Moment end);
+  void TellPress(const Lane& touch, ThresholdSet crossed);
+  void Measure(Lane& lane, const Watcher& as, const Lane& touch);
 
   // Waking and resting.
   void Wake(int lane);
@@ -88,6 +93,7 @@ class Engine {
   bool MayStir(const Lane& lane) const;
   bool CanMeasure(const Lane& lane) const;
   bool IsMeasured(const Lane& lane) const;
+  bool IsMeasured(const Lane& lane, const Lane& touch, bool turned) const;
   bool SaysTheSame(const Lane& lane) const;
   bool MayBegin(const Lane& lane) const;
   void Tell(Lane& lane);
@@ -146,8 +152,9 @@ class Engine {
   Lanes lanes_;
   Evaluator evaluator_;
   std::vector<RuleTicks> rule_ticks_;
+  Thresholds thresholds_;
   ThresholdSet watched_press_ = 0;  // by any rule
-  ThresholdSet beyond_when_nothing_ = 0;
+  bool keeps_touches_ = false;      // all that they measure; else which thresholds they are beyond
   std::vector<ThresholdSet> grips_;  // by entity: what its grip is beyond now
   Tick longest_look_back_ = 0;
   std::vector<std::vector<int>> awake_;  // by rule

@@ -2,7 +2,6 @@
 // What a frame says, and the end of the episode. A whole frame is compared with the one before it; from there on there
 // are only changes.
 #include <algorithm>
-#include <bit>
 #include <tuple>
 
 #include "grammar/engine.h"
@@ -71,7 +70,7 @@ std::string_view Engine::WhyNoTouches(std::span<const Touch> touches) {
     if (touch.a < 0 || touch.a >= touch.b || touch.b >= entity_count_) {
       return "a frame shows a touch of somebody not in the cast";
     }
-    const int lane = lanes_.Find(kTouchingRule, {touch.a, touch.b, kNobody, kNobody});
+    const int lane = lanes_.FindTouch(touch.a, touch.b);
     if (lane != kNone) lanes_.Fetch(lane);
     pressed_.push_back(lane);
   }
@@ -97,7 +96,7 @@ void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
   for (const HandLook& hand : changes.hands) Look(hand);
   Press(changes.touches);
   for (const Parting& parting : changes.partings) {
-    const int index = lanes_.Find(kTouchingRule, {parting.a, parting.b, kNobody, kNobody});
+    const int index = lanes_.FindTouch(parting.a, parting.b);
     if (index != kNone && lanes_[index].open) Part(index);
   }
   EndFrame();
@@ -172,9 +171,7 @@ void Engine::Look(const HandLook& hand) {
   const bool same_grip = before != nullptr && before->look.trigger == hand.trigger;
   const bool same_pose = before != nullptr && SamePose(hand, *before);
   if (same_grip && same_pose) return;
-  Measured measured = kNothingMeasured;
-  measured[static_cast<std::size_t>(Threshold::Value::kTrigger)] = hand.trigger;
-  const ThresholdSet beyond = Beyond(program_->thresholds, measured);
+  const ThresholdSet beyond = thresholds_.OfGrip(hand.trigger);
   const ThresholdSet crossed = before == nullptr ? ~ThresholdSet{0} : kAnyChange | (beyond ^ before->beyond);
   history_.SetHand(hand, beyond);
   grips_[hand.entity] = beyond;
@@ -197,8 +194,11 @@ void Engine::Press(const Touch& touch, int index) {
   if (lane.touched == history_.now()) return;  // said twice
   lane.touched = history_.now();
   const bool swapped = lane.entities[0] != touch.a;
-  if (lane.open && Same(touch, swapped, lane.touches.back())) return;
-  const ThresholdSet before = lane.open ? lane.beyond : 0;
+  const ThresholdSet beyond = thresholds_.OfTouch(swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b,
+                                                  touch.normal_force_n, touch.sensor_sets);
+  const ThresholdSet crossed = kAnyChange | (beyond ^ lane.beyond);
+  if (lane.open && (keeps_touches_ ? Same(touch, swapped, lane.touches.back()) : beyond == lane.beyond)) return;
+  lane.beyond = beyond;
   ForgetSamples(lane.touches, history_.first_look());
   // Filled in place: what is written in parts and copied at once has to wait for itself.
   TouchSample& sample = lane.touches.PushBack();
@@ -207,22 +207,47 @@ void Engine::Press(const Touch& touch, int index) {
   sample.up[swapped ? 0 : 1] = touch.up_on_b;
   sample.force_n = touch.normal_force_n;
   sample.sensor_sets = touch.sensor_sets;
-  const double sets = std::popcount(sample.sensor_sets);
-  sample.beyond = lane.beyond = Beyond(program_->thresholds, {sets, sample.up[0], sample.up[1], sample.force_n, 0});
-  const ThresholdSet crossed = kAnyChange | (lane.beyond ^ before);
-  if (lane.open) {
-    if ((crossed & watched_press_) == 0) return;
-    for (const int watcher : lane.watchers) {
-      const Lane& watching = lanes_[watcher];
-      if (watching.awake || (RuleOf(watching).watches_press & crossed) == 0) continue;
-      if (!SaysTheSame(watching) && MayStir(watching)) Wake(watcher);
-    }
-    return;
+  sample.beyond = beyond;
+  if (!lane.open) {
+    lane.open = lane.certain = true;
+    lane.begin = history_.At(history_.now());
+    lane.touching_place = touching_.size();
+    touching_.push_back(index);
+    Tell(lane);
+  } else if ((crossed & watched_press_) != 0) {
+    TellPress(lane, crossed);
   }
-  lane.open = lane.certain = true;
-  lane.begin = history_.At(history_.now());
-  lane.touching_place = touching_.size();
-  touching_.push_back(index);
+}
+
+// The two touch as before, but press otherwise: these thresholds were crossed.
+void Engine::TellPress(const Lane& touch, ThresholdSet crossed) {
+  for (const Watcher& watcher : touch.watchers) {
+    if ((watcher.press & crossed) == 0) continue;
+    Lane& watching = lanes_[watcher.lane];
+    if (watching.awake) continue;
+    if (watcher.instant) {
+      Measure(watching, watcher, touch);
+    } else if (!SaysTheSame(watching) && MayStir(watching)) {
+      Wake(watcher.lane);
+    }
+  }
+}
+
+// The rest of what a resting lane asks for is known already: hands are looked at before touches are, and no touch is
+// told of twice. So its interval begins or ends here and now, if something has changed.
+void Engine::Measure(Lane& lane, const Watcher& as, const Lane& touch) {
+  if (IsMeasured(lane, touch, as.turned) == lane.open) return;
+  const Moment now = history_.At(history_.now());
+  if (lane.open) {
+    Close(lane, now);
+    lane.resting_since = now.frame;
+    Retire(lane);
+  } else {
+    static_cast<void>(Open(lane, now.frame));  // without anchors nothing can be unknown
+    lane.certain = TicksOf(lane).lasting == 0;
+  }
+  lane.known = kNever;
+  lane.told = Known(lane.open);
   Tell(lane);
 }
 

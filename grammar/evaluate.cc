@@ -106,13 +106,13 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
 Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const {
   const Node& value = program_.nodes[by.value];
   bool swapped = false;
-  ThresholdSet beyond = beyond_when_nothing_;
+  ThresholdSet beyond = 0;
   if (value.op == Op::kTrigger) {
     const HandSample* hand = history_.Hand(Entity(value, view, 0), view.frame);
-    if (hand != nullptr) beyond = hand->beyond;
+    beyond = hand != nullptr ? hand->beyond : thresholds_.OfGrip(0);
   } else {
     const TouchSample* touch = Touch(value, view, swapped);
-    if (touch != nullptr) beyond = touch->beyond;
+    beyond = touch != nullptr ? touch->beyond : thresholds_.OfNoTouch();
   }
   return Known((((beyond >> by.thresholds[swapped ? 1 : 0]) & 1) != 0) == by.beyond);
 }

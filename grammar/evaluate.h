@@ -16,7 +16,7 @@ class Evaluator {
         cast_(cast),
         history_(history),
         lanes_(lanes),
-        beyond_when_nothing_(Beyond(program.thresholds, kNothingMeasured)) {}
+        thresholds_(program.thresholds) {}
 
   /// Whose roles, at which frame, and at which frame the interval ends, if that is known.
   struct View {
@@ -89,7 +89,7 @@ class Evaluator {
   const Cast& cast_;
   const History& history_;
   Lanes& lanes_;
-  ThresholdSet beyond_when_nothing_;
+  Thresholds thresholds_;
   mutable bool restless_ = false;
 };
 

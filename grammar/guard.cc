@@ -115,6 +115,18 @@ bool UsesLooks(const Program& program, int index) {
          std::any_of(node.args.begin(), node.args.end(), [&](int arg) { return UsesLooks(program, arg); });
 }
 
+// For what a touch measures, apart from which thresholds it is beyond.
+bool AsksTouches(const Program& program, int index) {
+  if (index == kNone) return false;
+  const Node& node = program.nodes[index];
+  if (node.by_threshold.value != kNone) return false;
+  switch (node.op) {
+    case Op::kSensorSet: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: return true;
+    default: break;
+  }
+  return std::any_of(node.args.begin(), node.args.end(), [&](int arg) { return AsksTouches(program, arg); });
+}
+
 double LooksAround(const Program& program, int index) {
   if (index == kNone) return 0;
   const Node& node = program.nodes[index];
@@ -221,6 +233,13 @@ void FindMeasured(const Program& program, const Rule& rule, MeasuredPart& part, 
   }
 }
 
+// Nothing that is to come, nothing that was before and nothing else of now has a say in its intervals.
+bool IsInstant(const Rule& rule) {
+  return rule.measured.whole && rule.measured.touch != kNone && rule.bridging_s == 0 && rule.requirement == kNone &&
+         rule.confirmed_by == kNone && rule.attributes.empty() && rule.anchors.empty() &&
+         (rule.lasting_s == 0 || !rule.referenced);
+}
+
 // A value where the interval begins or ends is not asked for at every frame.
 void WatchEntities(const Program& program, Rule& rule, int index) {
   if (index == kNone) return;
@@ -272,12 +291,16 @@ void ChooseGuards(Program& program) {
     if (rule.form == Form::kWhile || rule.form == Form::kFromTo) {
       FindMeasured(program, rule, rule.measured, rule.first);
       rule.measured.whole = rule.measured.whole && rule.form == Form::kWhile && rule.second == kNone;
+      rule.measured.instant = IsInstant(rule);
     }
     std::vector<int> nodes = rule.anchors;
     for (const RuleAttribute& attribute : rule.attributes) nodes.push_back(attribute.node);
     nodes.insert(nodes.end(), {rule.second, rule.during, rule.approach, rule.motion, rule.requirement});
     if (rule.form != Form::kRestOf) nodes.push_back(rule.first);
-    for (const int node : nodes) rule.looks_around_s = std::max(rule.looks_around_s, LooksAround(program, node));
+    for (const int node : nodes) {
+      rule.looks_around_s = std::max(rule.looks_around_s, LooksAround(program, node));
+      program.asks_touches = program.asks_touches || AsksTouches(program, node);
+    }
   }
 }
 

@@ -114,7 +114,11 @@ int Lanes::Make(const LaneKey& key) {
   lane.references.assign(r.references.size(), kNone);
   lane.anchors.assign(3 * r.anchors.size(), 0);
   lane.parts.resize(r.composition.parts.size());
-  index_.Insert(lane.index, lane);
+  if (key.rule == kTouchingRule) {
+    touches_.Insert(lane.index, PairKey(key.entities[0], key.entities[1]));
+  } else {
+    index_.Insert(lane.index, key);
+  }
   WatchEntities(lane);
   return lane.index;
 }
@@ -148,11 +152,26 @@ void Lanes::LinkToGuard(int index, int guard) {
   if (rule.form == Form::kAny) {
     if (std::find(lane.members.begin(), lane.members.end(), guard) != lane.members.end()) return;
     lane.members.push_back(guard);
-  } else {
-    if (lane.references[rule.guard] != kNone) return;
-    lane.references[rule.guard] = guard;
+    lanes_[guard].watchers.push_back({.lane = index, .guarded = true});
+  } else if (lane.references[rule.guard] == kNone) {
+    Refer(lane, rule.guard, guard);
   }
-  lanes_[guard].watchers.push_back(index);
+}
+
+// From now on the lane's reference `slot` is this one, whose changes wake it.
+void Lanes::Refer(Lane& lane, int slot, int target) {
+  lane.references[slot] = target;
+  if (target == kNone) return;
+  const Rule& rule = program_.events[lane.rule];
+  const MeasuredPart& part = rule.measured;
+  Lane& watched = lanes_[target];
+  const bool measuring = part.touch == slot;
+  watched.watchers.push_back({.lane = lane.index,
+                              .guarded = rule.guard == slot,
+                              .measuring = measuring,
+                              .turned = measuring && part.first != kNone && watched.entities[0] != lane.entities[part.first],
+                              .instant = measuring && part.instant,
+                              .press = rule.watches_press});
 }
 
 void Lanes::WatchEntities(Lane& lane) {
@@ -180,7 +199,7 @@ void Lanes::UnwatchEntities(const Lane& lane) {
 // Before `lane` is freed: it is no watcher any more, and has to be made again when its guard holds again.
 void Lanes::Unlink(int index, int watcher, std::vector<int>& orphans) {
   Lane& lane = lanes_[index];
-  std::erase(lane.watchers, watcher);
+  std::erase_if(lane.watchers, [&](const Watcher& one) { return one.lane == watcher; });
   lane.dependents_made = false;
   if (lane.watchers.empty()) orphans.push_back(index);
 }
@@ -188,12 +207,16 @@ void Lanes::Unlink(int index, int watcher, std::vector<int>& orphans) {
 void Lanes::Free(int index, std::vector<int>& orphans) {
   Lane& lane = lanes_[index];
   UnwatchEntities(lane);
-  index_.Erase(index, lane);
+  if (lane.rule == kTouchingRule) {
+    touches_.Erase(PairKey(lane.entities[0], lane.entities[1]));
+  } else {
+    index_.Erase(lane);
+  }
   for (const int reference : lane.references) {
     if (reference != kNone) Unlink(reference, index, orphans);
   }
   for (const int member : lane.members) Unlink(member, index, orphans);
-  for (const int any : lane.watchers) std::erase(lanes_[any].members, index);
+  for (const Watcher& any : lane.watchers) std::erase(lanes_[any.lane].members, index);
   lane.members.clear();
   lane.watchers.clear();
   lane.past.clear();
@@ -216,11 +239,6 @@ bool Lanes::GuardRests(const Lane& lane) const {
   return guard == kNone || rests(guard);
 }
 
-bool Lanes::Guards(int guard, const Lane& lane) const {
-  const Rule& rule = program_.events[lane.rule];
-  return rule.form == Form::kAny || (rule.guard != kNone && lane.references[rule.guard] == guard);
-}
-
 LaneKey Lanes::Referred(const Lane& lane, int slot) const {
   const Reference& reference = program_.events[lane.rule].references[slot];
   Binding entities = kUnbound;
@@ -233,9 +251,8 @@ LaneKey Lanes::Referred(const Lane& lane, int slot) const {
 int Lanes::Resolve(Lane& lane, int slot) {
   if (lane.references[slot] != kNone) return lane.references[slot];
   const LaneKey key = Referred(lane, slot);
-  const int target = Ensure(key.rule, key.entities);
-  if (target != kNone) lanes_[target].watchers.push_back(lane.index);
-  return lane.references[slot] = target;
+  Refer(lane, slot, Ensure(key.rule, key.entities));
+  return lane.references[slot];
 }
 
 }  // namespace prehend::grammar

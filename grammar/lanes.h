@@ -46,6 +46,16 @@ struct TouchSample {
   ThresholdSet beyond = 0;  ///< kept from when it was measured
 };
 
+/// A lane that asks about another one, and as what.
+struct Watcher {
+  int lane = kNone;
+  bool guarded = false;    ///< the other one is its guard
+  bool measuring = false;  ///< the other one is the touch of its rule's MeasuredPart
+  bool turned = false;     ///< likewise, and names the two the other way round
+  bool instant = false;    ///< likewise, and the rule is MeasuredPart::instant
+  ThresholdSet press = 0;  ///< what matters to it of how the two touch
+};
+
 /// A finished interval that waits for its confirmation.
 struct Pending {
   Span span;
@@ -69,7 +79,7 @@ struct Lane : LaneKey {  // rule kNone: the lane is free
   Moment begin;
   FrameNumber touched = -1;              ///< kTouching only: the last frame that said so
   ThresholdSet beyond = 0;               ///< kTouching only, while it is open: of the newest sample
-  std::vector<int> watchers;    ///< lanes to wake when the truth of this one changes
+  std::vector<Watcher> watchers;  ///< lanes to wake when the truth of this one changes
   Ring<TouchSample> touches;    ///< kTouching only, where they change
   std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not asked for yet
   std::vector<Span> past;       ///< intervals, as long as somebody may ask
@@ -121,6 +131,7 @@ class Lanes {
   /// Likewise, kNone if it is not there.
   int Find(const Lane& lane, int slot) const { return Find(Referred(lane, slot)); }
   int Find(int rule, const Binding& entities) const { return Find(Canonical(rule, entities)); }
+  int FindTouch(int a, int b) const { return touches_.Find(PairKey(a, b)); }
   /// It will be looked at soon: what is far away in memory is on its way meanwhile.
   void Fetch(int lane) const {
     const char* at = reinterpret_cast<const char*>(&lanes_[static_cast<std::size_t>(lane)]);
@@ -132,7 +143,6 @@ class Lanes {
   const std::vector<Watch>& GripWatchers(int entity) const { return grip_watchers_[entity]; }
   /// The lane's guard is false, and known to be.
   bool GuardRests(const Lane& lane) const;
-  bool Guards(int guard, const Lane& lane) const;
 
   Kleene TruthAt(int index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
@@ -158,15 +168,15 @@ class Lanes {
   bool IsA(int entity, const std::string& class_name) const;
 
  private:
-  auto KeyOf() const {
-    return [this](int lane) -> const LaneKey& { return lanes_[lane]; };
-  }
   LaneKey Canonical(int rule, const Binding& entities) const {
     const bool swap = symmetric_[rule] != 0 && name_rank_[entities[1]] < name_rank_[entities[0]];
     return {rule, swap ? Binding{entities[1], entities[0], entities[2], entities[3]} : entities};
   }
   int Make(const LaneKey& key);
-  int Find(const LaneKey& key) const { return index_.Find(key, KeyOf()); }
+  int Find(const LaneKey& key) const {
+    return key.rule == kTouchingRule ? FindTouch(key.entities[0], key.entities[1]) : index_.Find(key);
+  }
+  void Refer(Lane& lane, int slot, int target);
   LaneKey Referred(const Lane& lane, int slot) const;
   bool Fits(int rule, const Binding& entities) const;
   void BindRest(int rule, Binding& entities, std::size_t role, int guard, std::vector<int>* made);
@@ -182,7 +192,8 @@ class Lanes {
   const Cast& cast_;
   Blocks<Lane> lanes_;  // a lane stays where it is when others are made
   std::vector<int> free_;
-  LaneIndex index_;
+  LaneIndex<LaneKey> index_;
+  LaneIndex<PairKey> touches_;  // the lanes of kTouchingRule
   std::vector<std::vector<int>> guarded_;             // by rule: the rules it guards
   std::vector<std::vector<std::vector<bool>>> fits_;  // by rule, role, entity
   std::vector<std::vector<Watch>> pose_watchers_;     // by entity

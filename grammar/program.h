@@ -13,6 +13,7 @@
 #include "grammar/diagnostic.h"
 #include "grammar/monitor.h"
 #include "grammar/quantity.h"
+#include "grammar/thresholds.h"
 
 namespace prehend::grammar {
 
@@ -42,33 +43,6 @@ enum class Op : std::uint8_t {
   kAtBegin,  ///< the value that anchor `slot` had where the interval begins
   kAtEnd,    ///< args[0] where the interval ends
 };
-
-/// A number that a measured value is compared with: it is beyond the threshold if it is at least that number (for `> x`,
-/// the next larger one). While a value stays on the same side of every threshold, whatever is said by comparing it stays
-/// as it is.
-struct Threshold {
-  enum class Value : std::uint8_t { kSensorSets, kUpOnFirst, kUpOnSecond, kForce, kTrigger };
-  Value value = Value::kSensorSets;
-  double at_least = 0;
-  friend bool operator==(const Threshold&, const Threshold&) = default;
-};
-/// What a touch or a grip measures, by Threshold::Value; here: what a touch that is not there measures.
-using Measured = std::array<double, 5>;
-inline constexpr Measured kNothingMeasured = {0, -1, -1, 0, 0};
-/// A set of thresholds, bit i for Program::thresholds[i], and of anything else that may change.
-using ThresholdSet = std::uint64_t;
-inline constexpr int kMaxThresholds = 63;
-inline constexpr ThresholdSet kAnyChange = ThresholdSet{1} << kMaxThresholds;
-
-/// The thresholds that the values are beyond.
-inline ThresholdSet Beyond(const std::vector<Threshold>& thresholds, const Measured& measured) {
-  ThresholdSet beyond = 0;
-  for (std::size_t i = 0; i < thresholds.size(); ++i) {
-    const Threshold& t = thresholds[i];
-    beyond |= ThresholdSet{measured[static_cast<std::size_t>(t.value)] >= t.at_least} << i;
-  }
-  return beyond;
-}
 
 /// A comparison that is answered by thresholds, when its value is measured.
 struct ByThreshold {
@@ -103,6 +77,7 @@ struct MeasuredPart {
   int hand = kNone;            ///< role; kNone: no grip matters
   Limits grip;
   bool whole = true;           ///< the condition is nothing else
+  bool instant = false;        ///< and nothing else decides when the rule's interval begins and ends, and that it is one
   bool is_empty() const { return touch == kNone && hand == kNone; }
 };
 
@@ -242,6 +217,7 @@ struct Program {
   Diagnostics warnings;                  ///< what Compile() warned of
   std::vector<ProgramParam> params;
   std::vector<Threshold> thresholds;     ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
+  bool asks_touches = false;             ///< for what a touch measures, apart from which thresholds it is beyond
 };
 
 inline constexpr int kTouchingRule = 0;

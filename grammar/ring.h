@@ -17,8 +17,8 @@ class Ring {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
-  T& operator[](std::size_t i) { return slots_[(front_ + i) & (slots_.size() - 1)]; }
-  const T& operator[](std::size_t i) const { return slots_[(front_ + i) & (slots_.size() - 1)]; }
+  T& operator[](std::size_t i) { return slots_[(front_ + i) & (capacity_ - 1)]; }
+  const T& operator[](std::size_t i) const { return slots_[(front_ + i) & (capacity_ - 1)]; }
   T& front() { return (*this)[0]; }
   const T& front() const { return (*this)[0]; }
   T& back() { return (*this)[size_ - 1]; }
@@ -26,14 +26,14 @@ class Ring {
 
   /// A new last element. It holds whatever an earlier element left there, so that its memory is used again.
   T& PushBack() {
-    if (size_ == slots_.size()) Grow();
+    if (size_ == capacity_) Grow();
     ++size_;
     return back();
   }
 
   void PopFront() {
     assert(size_ > 0);
-    front_ = (front_ + 1) & (slots_.size() - 1);
+    front_ = (front_ + 1) & (capacity_ - 1);
     --size_;
   }
 
@@ -45,10 +45,12 @@ class Ring {
     std::vector<T> larger(slots_.empty() ? 2 : 2 * slots_.size());
     for (std::size_t i = 0; i < size_; ++i) larger[i] = std::move((*this)[i]);
     slots_ = std::move(larger);
+    capacity_ = slots_.size();
     front_ = 0;
   }
 
   std::vector<T> slots_;  // the number of slots is zero or a power of two
+  std::size_t capacity_ = 0;  // kept, as it takes a division to ask for it
   std::size_t front_ = 0;
   std::size_t size_ = 0;
 };
