@@ -70,14 +70,6 @@ bool Engine::IsMeasured(const Lane& lane) const {
   return IsMeasured(lane, touch, part.first != kNone && touch.entities[0] != lane.entities[part.first]);
 }
 
-// Likewise, of this touch, which names the two the other way round than the rule if `turned`.
-bool Engine::IsMeasured(const Lane& lane, const Lane& touch, bool turned) const {
-  const MeasuredPart& part = RuleOf(lane).measured;
-  if (part.hand != kNone && !part.grip.Fit(grips_[lane.entities[part.hand]])) return false;
-  if (!touch.open) return !part.must_touch && part.press[0].Fit(thresholds_.OfNoTouch());
-  return part.press[turned ? 1 : 0].Fit(touch.beyond);
-}
-
 // A resting lane would find what it found before: what must be measured for it to begin is not, or nothing else matters
 // and that is as it was.
 bool Engine::SaysTheSame(const Lane& lane) const {
@@ -89,6 +81,7 @@ bool Engine::SaysTheSame(const Lane& lane) const {
 // What begins with a moment does not begin at others. That moment may be told of later in this frame; whoever tells of
 // it asks again.
 bool Engine::MayBegin(const Lane& lane) const {
+  if (lane.moment < history_.now()) return false;
   const Rule& rule = RuleOf(lane);
   if (rule.opened_by == kNone) return true;
   const int event = lane.references[rule.opened_by];
@@ -106,13 +99,15 @@ void Engine::Tell(Lane& lane) {
   }
   for (const Watcher& watcher : lane.watchers) {
     Lane& watching = lanes_[watcher.lane];
+    if (watcher.opened) watching.moment = lane.told == Kleene::kUnknown ? kNever : history_.now();
     if (watching.awake) continue;
     if (watcher.instant) {
       Measure(watching, watcher, lane);
     } else if (watching.open || MayBegin(watching)) {
       if (watching.open || watcher.guarded || !lanes_.GuardRests(watching)) Wake(watcher.lane);
     } else if (!lane.open && watcher.guarded) {
-      Wake(watcher.lane);  // the guard has held up to the frame before; a moment here may still be told of
+      // The guard has held up to the frame before; a moment here may still be told of.
+      watcher.guarded_begin && lane.told == Kleene::kFalse ? RestOn(watching) : Wake(watcher.lane);
     }
   }
 }
@@ -174,6 +169,12 @@ void Engine::Rest(Lane& lane) {
   lane.resting_since = history_.now();
   if (!lane.open || (lane.certain && !lane.in_gap)) lane.known = kNever;
   if (!lane.open) Retire(lane);
+}
+
+// Nothing of it has been looked at, as nothing can have begun, but now it may be of no more use.
+void Engine::RestOn(Lane& lane) {
+  lane.resting_since = history_.now();
+  Retire(lane);
 }
 
 void Engine::Retire(Lane& lane) {

@@ -85,7 +85,10 @@ class Engine {
   void Part(int touching);
   void CloseTouch(Lane& touching, Moment end);
   void TellPress(const Lane& touch, ThresholdSet crossed);
-  void Measure(Lane& lane, const Watcher& as, const Lane& touch);
+  void Measure(Lane& lane, const Watcher& as, const Lane& touch) {
+    if (IsMeasured(lane, touch, as.turned) != lane.open) BeginOrEnd(lane);
+  }
+  void BeginOrEnd(Lane& lane);
 
   // Waking and resting.
   void Wake(int lane);
@@ -93,7 +96,13 @@ class Engine {
   bool MayStir(const Lane& lane) const;
   bool CanMeasure(const Lane& lane) const;
   bool IsMeasured(const Lane& lane) const;
-  bool IsMeasured(const Lane& lane, const Lane& touch, bool turned) const;
+  /// Likewise, of this touch, which names the two the other way round than the rule if `turned`.
+  bool IsMeasured(const Lane& lane, const Lane& touch, bool turned) const {
+    const MeasuredPart& part = RuleOf(lane).measured;
+    if (part.hand != kNone && !part.grip.Fit(grips_[lane.entities[part.hand]])) return false;
+    if (!touch.open) return !part.must_touch && part.press[0].Fit(thresholds_.OfNoTouch());
+    return part.press[turned ? 1 : 0].Fit(touch.beyond);
+  }
   bool SaysTheSame(const Lane& lane) const;
   bool MayBegin(const Lane& lane) const;
   void Tell(Lane& lane);
@@ -102,6 +111,7 @@ class Engine {
   void RingAlarms();
   bool MayRest(const Lane& lane);
   void Rest(Lane& lane);
+  void RestOn(Lane& lane);
   void Retire(Lane& lane);
   void StepRule(int rule);
   void ForgetThePast();
@@ -126,11 +136,13 @@ class Engine {
 
   // From a run to an event.
   [[nodiscard]] bool Open(Lane& lane, FrameNumber frame);
+  void Begin(Lane& lane, FrameNumber frame);
   int StyleAt(const Lane& lane, FrameNumber frame) const;
   bool Close(Lane& lane, Moment end, bool open_end = false);
   bool Conclude(Lane& lane, const Span& span);
   void ResolvePending(Lane& lane);
   void Emit(Lane& lane, const Pending& finished);
+  void Keep(Lane& lane, const Span& span);
   Tick DecidedAt(const Lane& lane, const Span& span) const;
   void UpdateKnown(Lane& lane);
   bool RunIsCertain(const Lane& lane) const;
@@ -140,6 +152,7 @@ class Engine {
   // Compositions are told of each finished interval of their parts.
   void TellCompositions(const Lane& part, const Span& span);
   FrameNumber Settled(const Lane& lane) const;
+  FrameNumber PartsSettled(const Lane& composition) const;
   void StepCompose(Lane& lane);
 
   const Rule& RuleOf(const Lane& lane) const { return program_->events[lane.rule]; }

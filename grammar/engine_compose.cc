@@ -120,21 +120,28 @@ void Engine::TellCompositions(const Lane& part, const Span& span) {
   }
 }
 
-// All intervals of the lane that end at or before this frame are out.
+// All intervals of the lane that end at or before this frame are out; of a composition, all that are complete by then.
 FrameNumber Engine::Settled(const Lane& lane) const {
+  // A composition rests though its parts do not, as each of their intervals wakes it.
+  if (RuleOf(lane).form == Form::kCompose && !lane.awake) return PartsSettled(lane);
   FrameNumber settled = lane.awake ? lane.next - 1 : finishing_ ? kNever : history_.now();
   if (lane.in_gap) settled = std::min(settled, lane.gap.frame - 1);
   for (const Pending& pending : lane.pending) settled = std::min(settled, pending.span.end.frame - 1);
   return settled;
 }
 
-void Engine::StepCompose(Lane& lane) {
-  const Rule& rule = RuleOf(lane);
+FrameNumber Engine::PartsSettled(const Lane& composition) const {
   FrameNumber settled = finishing_ ? kNever : history_.now();
-  for (const int part : rule.composition.parts) {
-    const int index = lanes_.Find(lane, part);
+  for (const int part : RuleOf(composition).composition.parts) {
+    const int index = lanes_.Find(composition, part);
     if (index != kNone) settled = std::min(settled, Settled(lanes_[index]));
   }
+  return settled;
+}
+
+void Engine::StepCompose(Lane& lane) {
+  const Rule& rule = RuleOf(lane);
+  const FrameNumber settled = PartsSettled(lane);
   for (;;) {
     const Combinations combinations(rule.composition, lane, settled);
     if (combinations.best() == nullptr) break;

@@ -8,12 +8,16 @@ namespace prehend::grammar {
 
 // False while a value is not known that must be kept from here.
 bool Engine::Open(Lane& lane, FrameNumber frame) {
-  if (!evaluator_.CaptureAnchors(lane, frame)) return false;
+  if (!RuleOf(lane).anchors.empty() && !evaluator_.CaptureAnchors(lane, frame)) return false;
+  Begin(lane, frame);
+  return true;
+}
+
+void Engine::Begin(Lane& lane, FrameNumber frame) {
   lane.open = true;
   lane.in_gap = false;
   lane.begin = history_.At(frame);
   lane.style = StyleAt(lane, frame);
-  return true;
 }
 
 // A hand that no frame has shown yet has no style.

@@ -203,16 +203,18 @@ void Engine::Press(const Touch& touch, int index) {
   // Filled in place: what is written in parts and copied at once has to wait for itself.
   TouchSample& sample = lane.touches.PushBack();
   sample.frame = history_.now();
-  sample.up[swapped ? 1 : 0] = touch.up_on_a;
-  sample.up[swapped ? 0 : 1] = touch.up_on_b;
-  sample.force_n = touch.normal_force_n;
-  sample.sensor_sets = touch.sensor_sets;
   sample.beyond = beyond;
+  if (keeps_touches_) {
+    sample.up = swapped ? std::array{touch.up_on_b, touch.up_on_a} : std::array{touch.up_on_a, touch.up_on_b};
+    sample.force_n = touch.normal_force_n;
+    sample.sensor_sets = touch.sensor_sets;
+  }
   if (!lane.open) {
     lane.open = lane.certain = true;
     lane.begin = history_.At(history_.now());
     lane.touching_place = touching_.size();
     touching_.push_back(index);
+    lane.told = Kleene::kTrue;
     Tell(lane);
   } else if ((crossed & watched_press_) != 0) {
     TellPress(lane, crossed);
@@ -235,15 +237,13 @@ void Engine::TellPress(const Lane& touch, ThresholdSet crossed) {
 
 // The rest of what a resting lane asks for is known already: hands are looked at before touches are, and no touch is
 // told of twice. So its interval begins or ends here and now, if something has changed.
-void Engine::Measure(Lane& lane, const Watcher& as, const Lane& touch) {
-  if (IsMeasured(lane, touch, as.turned) == lane.open) return;
+void Engine::BeginOrEnd(Lane& lane) {
   const Moment now = history_.At(history_.now());
   if (lane.open) {
     Close(lane, now);
-    lane.resting_since = now.frame;
-    Retire(lane);
+    RestOn(lane);
   } else {
-    static_cast<void>(Open(lane, now.frame));  // without anchors nothing can be unknown
+    Begin(lane, now.frame);
     lane.certain = TicksOf(lane).lasting == 0;
   }
   lane.known = kNever;
@@ -258,9 +258,9 @@ void Engine::Part(int touching) {
   touching_[lane.touching_place] = touching_.back();
   lanes_[touching_.back()].touching_place = lane.touching_place;
   touching_.pop_back();
+  lane.told = Kleene::kFalse;
   Tell(lane);
-  lane.resting_since = history_.now();
-  Retire(lane);
+  RestOn(lane);
 }
 
 void Engine::CloseTouch(Lane& lane, Moment end) {

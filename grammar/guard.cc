@@ -85,6 +85,14 @@ int ChooseGuard(const Program& program, const Rule& rule) {
   return MostSpecific(rule, candidates);
 }
 
+// Whether the guard must be true in the very frame in which something begins.
+bool GuardsBegin(const Program& program, const Rule& rule) {
+  std::vector<int> needed;
+  if (rule.form == Form::kFromTo) CollectNecessary(program, rule.during, needed, false);
+  if (rule.form == Form::kFromTo || rule.form == Form::kUntilSince) CollectNecessary(program, rule.first, needed, false);
+  return std::find(needed.begin(), needed.end(), rule.guard) != needed.end();
+}
+
 // A moment that must be there when something begins, if it is the begin or the end of an event.
 void FindOpening(const Program& program, Rule& rule, int index) {
   const Node& node = program.nodes[index];
@@ -277,6 +285,7 @@ void ChooseGuards(Program& program) {
   for (std::size_t i = 0; i < program.events.size(); ++i) MarkReferenced(program, static_cast<int>(i));
   for (Rule& rule : program.events) {
     rule.guard = ChooseGuard(program, rule);
+    rule.guarded_begin = GuardsBegin(program, rule);
     // An `until` that others ask about must know at all times how far back a later one can reach.
     const bool waits = rule.form == Form::kFromTo || (rule.form == Form::kUntilSince && !rule.referenced);
     if (waits) FindOpening(program, rule, rule.first);

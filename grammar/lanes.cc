@@ -165,13 +165,15 @@ void Lanes::Refer(Lane& lane, int slot, int target) {
   const Rule& rule = program_.events[lane.rule];
   const MeasuredPart& part = rule.measured;
   Lane& watched = lanes_[target];
-  const bool measuring = part.touch == slot;
+  const bool guarded = slot == rule.guard, opened = slot == rule.opened_by, instant = part.instant && slot == part.touch;
   watched.watchers.push_back({.lane = lane.index,
-                              .guarded = rule.guard == slot,
-                              .measuring = measuring,
-                              .turned = measuring && part.first != kNone && watched.entities[0] != lane.entities[part.first],
-                              .instant = measuring && part.instant,
+                              .guarded = guarded,
+                              .guarded_begin = guarded && rule.guarded_begin,
+                              .opened = opened,
+                              .instant = instant,
+                              .turned = instant && part.first != kNone && watched.entities[0] != lane.entities[part.first],
                               .press = rule.watches_press});
+  if (opened && !watched.awake) lane.moment = -1;  // else it may be on its way
 }
 
 void Lanes::WatchEntities(Lane& lane) {
@@ -223,6 +225,7 @@ void Lanes::Free(int index, std::vector<int>& orphans) {
   lane.touches.Clear();
   lane.dependents_made = false;
   lane.told = Kleene::kFalse;
+  lane.moment = kNever;
   lane.last_end = 0;
   lane.touched = -1;
   lane.style = kNobody;

@@ -49,11 +49,12 @@ struct TouchSample {
 /// A lane that asks about another one, and as what.
 struct Watcher {
   int lane = kNone;
-  bool guarded = false;    ///< the other one is its guard
-  bool measuring = false;  ///< the other one is the touch of its rule's MeasuredPart
-  bool turned = false;     ///< likewise, and names the two the other way round
-  bool instant = false;    ///< likewise, and the rule is MeasuredPart::instant
-  ThresholdSet press = 0;  ///< what matters to it of how the two touch
+  bool guarded = false;        ///< the other one is its guard
+  bool guarded_begin = false;  ///< likewise, see Rule
+  bool opened = false;         ///< nothing of it begins but with a moment of the other one
+  bool instant = false;        ///< the other one is the touch of its rule's MeasuredPart, and that is instant
+  bool turned = false;         ///< likewise, and the touch names the two the other way round
+  ThresholdSet press = 0;      ///< what matters to it of how the two touch
 };
 
 /// A finished interval that waits for its confirmation.
@@ -65,7 +66,7 @@ struct Pending {
 };
 
 /// What every look at a lane needs comes first, so that it shares a line of the cache or two.
-struct Lane : LaneKey {  // rule kNone: the lane is free
+struct alignas(64) Lane : LaneKey {  // rule kNone: the lane is free
   int index = kNone;
   bool awake = false;
   bool open = false;     ///< a run has begun
@@ -74,18 +75,21 @@ struct Lane : LaneKey {  // rule kNone: the lane is free
   bool dependents_made = false;  ///< the lanes that this one guards are there
   bool retiring = false;         ///< waits to be freed
   Kleene told = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
-  FrameNumber next = 0;          ///< first frame not yet looked at; nothing while at rest
   FrameNumber known = kNever;    ///< truth is final before this frame
   Moment begin;
-  FrameNumber touched = -1;              ///< kTouching only: the last frame that said so
-  ThresholdSet beyond = 0;               ///< kTouching only, while it is open: of the newest sample
-  std::vector<Watcher> watchers;  ///< lanes to wake when the truth of this one changes
+  FrameNumber touched = -1;      ///< kTouching only: the last frame that said so
+  // The second line.
+  ThresholdSet beyond = 0;         ///< kTouching only, while it is open: of the newest sample
+  std::vector<Watcher> watchers;   ///< lanes to wake when the truth of this one changes
+  FrameNumber moment = kNever;     ///< Rule::opened_by: nothing begins after this frame until its next change
+  FrameNumber next = 0;            ///< first frame not yet looked at; nothing while at rest
+  FrameNumber resting_since = 0;
+  std::size_t touching_place = 0;  ///< kTouching only: where among those that touch now
+  // The rest.
+  std::vector<Span> past;       ///< intervals, as long as somebody may ask
   Ring<TouchSample> touches;    ///< kTouching only, where they change
   std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not asked for yet
-  std::vector<Span> past;       ///< intervals, as long as somebody may ask
   std::vector<Pending> pending;
-  FrameNumber resting_since = 0;
-  std::size_t touching_place = 0;   ///< kTouching only: where among those that touch now
   Moment gap;
   std::vector<double> anchors;  ///< three numbers per Rule::anchors
   int style = kNobody;

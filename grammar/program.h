@@ -167,6 +167,7 @@ struct Rule {
 
   /// While this reference is false and known, nothing of this rule begins. kNone: watch every binding.
   int guard = kNone;
+  bool guarded_begin = false;  ///< nor where it has just ended: at each moment of beginning it must be true
   int opened_by = kNone;       ///< reference: nothing of this rule begins but where that begins; kNone: it may
   bool opened_by_end = false;  ///< where it ends
   std::vector<PartOf> part_of;  ///< compositions that collect its intervals

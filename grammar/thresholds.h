@@ -5,8 +5,8 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace prehend::grammar {
@@ -31,45 +31,51 @@ class Thresholds {
  public:
   explicit Thresholds(const std::vector<Threshold>& thresholds) {
     for (std::size_t i = 0; i < thresholds.size(); ++i) Add(thresholds[i], ThresholdSet{1} << i);
+    for (std::uint32_t sets = 0; sets < sets_.size(); ++sets) sets_[sets] = OfSets(sets);
     no_touch_ = OfTouch(-1, -1, 0, 0);
   }
 
   /// Of a touch; bits of other values are not set.
   ThresholdSet OfTouch(double up_on_first, double up_on_second, double force_n, std::uint32_t sensor_sets) const {
-    return (any_sets_ ? sets_[static_cast<std::size_t>(std::popcount(sensor_sets))] : 0) |
-           Beyond(Threshold::Value::kUpOnFirst, up_on_first) | Beyond(Threshold::Value::kUpOnSecond, up_on_second) |
-           Beyond(Threshold::Value::kForce, force_n);
+    const std::array<double, 3> measured = {up_on_first, up_on_second, force_n};
+    ThresholdSet beyond = sensor_sets < sets_.size() ? sets_[sensor_sets] : OfSets(sensor_sets);
+    for (const Cut& cut : touches_) beyond |= measured[cut.value] >= cut.at_least ? cut.bit : 0;
+    return beyond;
   }
   ThresholdSet OfNoTouch() const { return no_touch_; }
   /// Of how far a hand is closed; likewise.
-  ThresholdSet OfGrip(double trigger) const { return Beyond(Threshold::Value::kTrigger, trigger); }
-
- private:
-  struct Cut {
-    double at_least = 0;
-    ThresholdSet bit = 0;
-  };
-  static constexpr std::size_t kMostSets = 32;
-
-  void Add(const Threshold& threshold, ThresholdSet bit) {
-    if (threshold.value != Threshold::Value::kSensorSets) {
-      cuts_[static_cast<std::size_t>(threshold.value)].push_back({threshold.at_least, bit});
-      return;
-    }
-    any_sets_ = true;
-    for (std::size_t count = 0; count <= kMostSets; ++count) {
-      if (static_cast<double>(count) >= threshold.at_least) sets_[count] |= bit;
-    }
-  }
-  ThresholdSet Beyond(Threshold::Value value, double measured) const {
+  ThresholdSet OfGrip(double trigger) const {
     ThresholdSet beyond = 0;
-    for (const Cut& cut : cuts_[static_cast<std::size_t>(value)]) beyond |= measured >= cut.at_least ? cut.bit : 0;
+    for (const Cut& cut : grips_) beyond |= trigger >= cut.at_least ? cut.bit : 0;
     return beyond;
   }
 
-  std::array<std::vector<Cut>, 5> cuts_;  // by value; of sensor sets there are whole numbers only
-  std::array<ThresholdSet, kMostSets + 1> sets_ = {};  // by how many
-  bool any_sets_ = false;
+ private:
+  struct Cut {
+    std::size_t value = 0;  // of a touch: which of the three
+    double at_least = 0;
+    ThresholdSet bit = 0;
+  };
+
+  void Add(const Threshold& threshold, ThresholdSet bit) {
+    switch (threshold.value) {
+      case Threshold::Value::kSensorSets: set_counts_.push_back({0, threshold.at_least, bit}); break;
+      case Threshold::Value::kUpOnFirst: touches_.push_back({0, threshold.at_least, bit}); break;
+      case Threshold::Value::kUpOnSecond: touches_.push_back({1, threshold.at_least, bit}); break;
+      case Threshold::Value::kForce: touches_.push_back({2, threshold.at_least, bit}); break;
+      case Threshold::Value::kTrigger: grips_.push_back({0, threshold.at_least, bit}); break;
+    }
+  }
+  ThresholdSet OfSets(std::uint32_t sensor_sets) const {
+    ThresholdSet beyond = 0;
+    for (const Cut& cut : set_counts_) beyond |= std::popcount(sensor_sets) >= cut.at_least ? cut.bit : 0;
+    return beyond;
+  }
+
+  std::vector<Cut> touches_;
+  std::vector<Cut> grips_;
+  std::vector<Cut> set_counts_;
+  std::array<ThresholdSet, 64> sets_ = {};  // OfSets() of up to six sets: most hands have no more
   ThresholdSet no_touch_ = 0;
 };
 

@@ -100,10 +100,12 @@ TEST(Changes, WhoeverIsNotWokenHasNothingToSay) {
       Compile({"both", std::string("grammar both\n") + testing::kRestlessRules}, testing::LibraryIncluder());
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
   const auto plain = std::make_shared<Program>(*compiled.program);
-  int opened = 0, compared = 0, measured = 0;
+  int opened = 0, guarded = 0, compared = 0, measured = 0;
   for (Rule& rule : plain->events) {
     opened += rule.opened_by != kNone ? 1 : 0;
     rule.opened_by = kNone;
+    guarded += rule.guarded_begin ? 1 : 0;
+    rule.guarded_begin = false;
     measured += rule.measured.is_empty() ? 0 : 1;
     rule.measured = {};
     rule.watches_press = rule.watches_grips = ~ThresholdSet{0};
@@ -112,7 +114,9 @@ TEST(Changes, WhoeverIsNotWokenHasNothingToSay) {
     compared += node.by_threshold.value != kNone ? 1 : 0;
     node.by_threshold = {};
   }
+  plain->asks_touches = true;
   EXPECT_GE(opened, 5);
+  EXPECT_GE(guarded, 3);
   EXPECT_GE(compared, 5);
   EXPECT_GE(measured, 5);
   std::size_t count = 0, object_frames = 0;
