@@ -197,9 +197,11 @@ void Engine::StepRule(int rule) {
       Rest(lane);
       return true;
     }
-    oldest_needed_ = std::min(oldest_needed_, lane.next);
+    // What ended at a gap may be asked for what it was like there when it is known that nothing bridges the gap.
+    const FrameNumber needed = lane.in_gap ? lane.gap.frame : lane.next;
+    oldest_needed_ = std::min(oldest_needed_, needed);
     for (const Pending& pending : lane.pending) oldest_needed_ = std::min(oldest_needed_, pending.next);
-    if (RuleOf(lane).uses_looks) oldest_look_needed_ = std::min(oldest_look_needed_, lane.next);
+    if (RuleOf(lane).uses_looks) oldest_look_needed_ = std::min(oldest_look_needed_, needed);
     return false;
   });
 }

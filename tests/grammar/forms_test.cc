@@ -45,6 +45,16 @@ TEST(Forms, WhatComesAtTheDeadlineIsInTime) {
   EXPECT_EQ(WatchTouch(kMissed, {0, 10, 26}, 26).size(), 1u);
 }
 
+// The gap at 20 is too long at 40, but only at 90 is it known whether anything is true there.
+TEST(Forms, WhatIsDecidedLateIsAskedForWhereItEnded) {
+  const std::vector<Event> events = WatchTouch(
+      "condition high(c: Cup) while height(c) > 35 mm lasting 50 ms\n"
+      "event held(h: Hand, c: Cup) while touching(h, c) or high(c) bridging 4 ms requires height(c) < 20.5 mm",
+      {0, 10, 20, 21, 22, 23, 40, 50, 60, 70, 80, 90}, 20);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].interval, (Interval{0, 20}));
+}
+
 TEST(Forms, AttributesAreTakenAtTheBeginUnlessTheySayOtherwise) {
   const std::vector<Event> events = WatchTouch(
       "event held(h: Hand, c: Cup) while touching(h, c)\n"
