@@ -2,6 +2,8 @@
 // Tested by tests/physics/world_test.cc
 #include "physics/bullet_contacts.h"
 
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
 #include "physics/bullet_convert.h"
 
 namespace prehend::physics {
@@ -11,12 +13,10 @@ const ContactSide& SideOf(const ContactSides& sides, const btCollisionObject& ob
   return of_object[of_object.size() == 1 ? 0 : static_cast<std::size_t>(shape)];
 }
 
-void ReadContacts(const btDispatcher& const_dispatcher, const ContactSides& sides,
+void ReadContacts(const btManifoldArray& manifolds, const ContactSides& sides,
                   TouchingPairs& pairs) {
-  // The manifold accessor is not const in Bullet, though it changes nothing.
-  auto& dispatcher = const_cast<btDispatcher&>(const_dispatcher);
-  for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
-    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+  for (int m = 0; m < manifolds.size(); ++m) {
+    const btPersistentManifold& manifold = *manifolds[m];
     // Grains of one body touch each other all the time, and nobody asks.
     if (manifold.getBody0()->getUserIndex() == manifold.getBody1()->getUserIndex()) continue;
     // What makes up one object rests or moves as one.

@@ -3,6 +3,7 @@
 // bullet_*.cc. Tested by tests/physics/world_test.cc
 #pragma once
 
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include <vector>
@@ -19,6 +20,7 @@ using ContactSides = std::vector<std::vector<ContactSide>>;
 const ContactSide& SideOf(const ContactSides& sides, const btCollisionObject& object, int shape);
 
 /// After every step, between the pairs' BeginTick() and EndTick().
-void ReadContacts(const btDispatcher& dispatcher, const ContactSides& sides, TouchingPairs& pairs);
+void ReadContacts(const btManifoldArray& manifolds, const ContactSides& sides,
+                  TouchingPairs& pairs);
 
 }  // namespace prehend::physics

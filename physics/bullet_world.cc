@@ -4,7 +4,6 @@
 // can drop time. Tested by tests/physics/world_test.cc
 #include "physics/bullet_world.h"
 
-#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <map>
@@ -12,11 +11,13 @@
 #include "physics/bullet_body.h"
 #include "physics/bullet_contacts.h"
 #include "physics/bullet_convert.h"
+#include "physics/bullet_dispatcher.h"
+#include "physics/bullet_dynamics.h"
 #include "physics/bullet_grains.h"
 #include "physics/bullet_hand.h"
+#include "physics/bullet_joint.h"
 #include "physics/bullet_sight.h"
 #include "physics/bullet_solver.h"
-#include "physics/bullet_joint.h"
 #include "physics/joint.h"
 #include "physics/rigid_groups.h"
 #include "physics/stillness.h"
@@ -49,34 +50,6 @@ constexpr int kFirstHandGroup = 4;
 // Persons push what moves, and nothing else: they go through what is fixed, and through hands.
 constexpr int kPersonGroup = 1 << 30;
 
-/// Bullet's second user index of grains.
-constexpr int kGrain = 1;
-
-/// Bullet makes the boxes of moving bodies 20 mm larger than need be. For grains, that joins every one with all of
-/// its vessel: 200 of them took 6 ms a tick, and take 2 ms with tight boxes.
-class DynamicsWorld final : public btMultiBodyDynamicsWorld {
- public:
-  using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
-
-  void updateAabbs() override {
-    for (int i = 0; i < m_collisionObjects.size(); ++i) {
-      btCollisionObject& object = *m_collisionObjects[i];
-      if (!object.isActive()) continue;
-      if (object.getUserIndex2() == kGrain)
-        SetTightBox(object);
-      else
-        updateSingleAabb(&object);
-    }
-  }
-
- private:
-  void SetTightBox(btCollisionObject& object) {
-    btVector3 least, most;
-    object.getCollisionShape()->getAabb(object.getWorldTransform(), least, most);
-    getBroadphase()->setAabb(object.getBroadphaseHandle(), least, most, getDispatcher());
-  }
-};
-
 class BulletWorld final : public World {
  public:
   BulletWorld(const Scene& scene, const std::vector<int>& styles);
@@ -100,16 +73,16 @@ class BulletWorld final : public World {
   const double dt_s_;
   std::int64_t tick_ = 0;
   btDefaultCollisionConfiguration configuration_;
-  btCollisionDispatcher dispatcher_{&configuration_};
+  BulletDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
   BulletSolver solver_;
-  DynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+  BulletDynamics world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
   struct Place {
     std::size_t rigid = 0;   ///< index into rigids_
     std::size_t member = 0;  ///< of that rigid body
   };
   std::vector<std::unique_ptr<BulletBody>> rigids_;
-  std::vector<Place> places_;  ///< one per body of the scene; nothing for grains
+  std::vector<Place> places_;                   ///< one per body of the scene; nothing for grains
   std::map<std::size_t, BulletGrains> grains_;  ///< by the index of their body
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;
   std::vector<std::unique_ptr<BulletHand>> hands_;
@@ -165,7 +138,7 @@ void BulletWorld::AddGrains(std::size_t body) {
   const BulletGrains& grains = grains_.try_emplace(body, scene_.bodies[body]).first->second;
   for (const auto& grain : grains.rigids()) {
     grain->setUserIndex(static_cast<int>(sides_.size()));
-    grain->setUserIndex2(kGrain);
+    grain->setUserIndex2(kTightBox);
     world_.addRigidBody(grain.get(), kMovingGroup, -1);
   }
   sides_.push_back({{.body = static_cast<int>(body)}});
@@ -223,7 +196,9 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
     return scene_.bodies[i].grains ? grains_.at(i).rests() : rigids_[places_[i].rigid]->rests();
   });
   touching_.BeginTick(stillness_.rests());
-  ReadContacts(dispatcher_, sides_, touching_);
+  // Who is woken in a step keeps the contacts that it had when it fell asleep.
+  ReadContacts(world_.woke_any() ? dispatcher_.AllManifolds() : dispatcher_.AwakeManifolds(),
+               sides_, touching_);
   touching_.EndTick();
 }
 

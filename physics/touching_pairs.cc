@@ -14,9 +14,13 @@ constexpr double kTouchDistance_m = 0.0005;
 /// A pair that stops pushing for no longer than this still touches: 8 ms at 480 Hz.
 constexpr int kHoldTicks = 4;
 
+/// A ball in the seam of two shapes touches both in one place, so the place alone is no order.
 bool PointLess(const ContactPoint& l, const ContactPoint& r) {
-  return std::tuple(l.p_W_m.x(), l.p_W_m.y(), l.p_W_m.z()) <
-         std::tuple(r.p_W_m.x(), r.p_W_m.y(), r.p_W_m.z());
+  const auto key = [](const ContactPoint& point) {
+    return std::tuple(point.p_W_m.x(), point.p_W_m.y(), point.p_W_m.z(), point.normal_impulse_n_s,
+                      point.distance_m);
+  };
+  return key(l) < key(r);
 }
 
 }  // namespace
