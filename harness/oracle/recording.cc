@@ -120,12 +120,14 @@ Touches FindTouches(const Recording& recording, const OracleSettings& settings) 
   touches.supports = BridgeAll(recording, raw.supported, settings.contact_bridge_s);
   for (const auto& [pair, frames] : raw.gripped) {
     const auto& [hand, body] = pair;
-    // Letting go ends a grasp at once, so gaps are bridged only inside one squeeze of the trigger.
+    const Spans tight = Bridged(WhereTrue(frames), recording.ticks,
+                                recording.Ticks(settings.grasp_bridge_s));
+    // Letting go ends a grasp at once, and none begins before the hand feels the object again.
     for (const Span& squeeze : WhereGripIsCommanded(recording, settings, hand)) {
-      const Spans gripped = Within(WhereTrue(frames), squeeze);
-      for (const Span& span :
-           Bridged(gripped, recording.ticks, recording.Ticks(settings.grasp_bridge_s)))
-        touches.grasps.push_back({hand, body, span});
+      for (Span span : Within(tight, squeeze)) {
+        while (!span.empty() && !frames[span.begin]) ++span.begin;
+        if (!span.empty()) touches.grasps.push_back({hand, body, span});
+      }
     }
   }
   return touches;
