@@ -227,15 +227,20 @@ void Engine::FreeLanes() {
     retirees_.PopFront();
     lane.retiring = false;
     if (lane.awake || lane.open) continue;  // retires when it rests again
-    if (lane.resting_since >= history_.first()) {
-      Retire(lane);
-    } else if (CanBeFreed(lane)) {
-      scratch_.clear();
-      lanes_.Free(lane.index, scratch_);
-      for (const int orphan : scratch_) {
-        if (!lanes_[orphan].awake && !lanes_[orphan].open) Retire(lanes_[orphan]);
-      }
-    }
+    scratch_.assign(1, lane.index);
+    while (!scratch_.empty()) FreeOrRetire(scratch_);
+  }
+}
+
+// Of what only a freed lane asked about, most has rested for as long: with it goes the whole chain.
+void Engine::FreeOrRetire(std::vector<int>& candidates) {
+  Lane& lane = lanes_[candidates.back()];
+  candidates.pop_back();
+  if (lane.rule == kNone || lane.awake || lane.open || lane.retiring) return;
+  if (lane.resting_since >= history_.first()) {
+    Retire(lane);
+  } else if (CanBeFreed(lane)) {
+    lanes_.Free(lane.index, candidates);
   }
 }
 

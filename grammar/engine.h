@@ -116,6 +116,7 @@ class Engine {
   void StepRule(int rule);
   void ForgetThePast();
   void FreeLanes();
+  void FreeOrRetire(std::vector<int>& candidates);
   bool CanBeFreed(const Lane& lane) const;
   bool MayOverlap(const Lane& lane) const;
 

@@ -33,7 +33,7 @@ class Carrier {
     for (const auto& [support, spans] : supports_) supported = Union(supported, spans);
     for (const Span& span : supported) FindSlides(Common(span, grasp_.span), span);
     for (const Span& span : Rest(supported, grasp_.span))
-      DivideUnsupported(span, Covers(supported, span.begin - 1), Covers(supported, span.end));
+      DivideUnsupported(span, SupportLoss(supported, span.begin), Covers(supported, span.end));
     return found_;
   }
 
@@ -91,6 +91,25 @@ class Carrier {
       if (Displacement(slide) >= settings_.slide_displacement_m) found_.slides.push_back(slide);
   }
 
+  /// The frame in which it lost the support that this hand took it from; no value: it was caught, or
+  /// taken over in the air.
+  std::optional<int> SupportLoss(const Spans& supported, int unsupported_since) const {
+    std::optional<int> loss;
+    for (const Span& span : supported)
+      if (span.end <= unsupported_since) loss = span.end;
+    if (!loss || *loss == unsupported_since) return loss;
+    // A hand that closes may lift what it only touches yet: if it did not get far, that is part of it.
+    const Region region = PickUpRegion(*loss);
+    bool near = *loss >= grasp_.touched_since;
+    for (int frame = *loss; near && frame < unsupported_since; ++frame)
+      near = region.Contains(place(frame));
+    return near ? loss : std::nullopt;
+  }
+
+  Region PickUpRegion(int loss) const {
+    return {place(loss), settings_.pick_up_radius_m, settings_.pick_up_height_m};
+  }
+
   double Highest(Span span) const {
     double highest = place(span.begin).z();
     for (int frame = span.begin; frame < span.end; ++frame)
@@ -98,14 +117,13 @@ class Carrier {
     return highest;
   }
 
-  /// From where the support was lost to where the object leaves the region around that place.
-  std::optional<Span> PickUp(Span unsupported) const {
-    const Region region{place(unsupported.begin), settings_.pick_up_radius_m,
-                        settings_.pick_up_height_m};
+  /// In the air, as long as it does not leave the region around the place of the loss.
+  std::optional<Span> PickUp(Span unsupported, int loss) const {
+    const Region region = PickUpRegion(loss);
     int end = unsupported.begin;
     while (end < unsupported.end && region.Contains(place(end))) ++end;
     // The frame in which it is first seen outside still tells how high it rose.
-    const double highest = Highest({unsupported.begin, std::min(end + 1, recording_.size())});
+    const double highest = Highest({loss, std::min(end + 1, recording_.size())});
     if (highest - region.anchor.z() < settings_.pick_up_rise_m) return std::nullopt;
     return Span{unsupported.begin, end};
   }
@@ -128,16 +146,16 @@ class Carrier {
     return Span{begin, landing};
   }
 
-  /// `lost_support`: it was supported before. Otherwise it was caught, or taken over in the air.
-  /// `lands`: it is supported after, be it in the very frame in which it is let go. Otherwise it was
-  /// dropped, or held to the end.
-  void DivideUnsupported(Span unsupported, bool lost_support, bool lands) {
+  /// `loss`: where it lost the support that it was taken from, if it was taken from one. `lands`: it
+  /// is supported after, be it in the very frame in which it is let go. Otherwise it was dropped, or
+  /// held to the end.
+  void DivideUnsupported(Span unsupported, std::optional<int> loss, bool lands) {
     Span transport = unsupported;
     if (const auto put_down = lands ? PutDown(unsupported) : std::nullopt) {
       found_.put_downs.push_back(*put_down);
       transport.end = put_down->begin;
     }
-    if (const auto pick_up = lost_support ? PickUp(unsupported) : std::nullopt) {
+    if (const auto pick_up = loss ? PickUp(unsupported, *loss) : std::nullopt) {
       const Span part = Common(*pick_up, transport);
       if (!part.empty()) found_.pick_ups.push_back(part);
       transport.begin = std::max(transport.begin, part.end);

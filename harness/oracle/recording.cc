@@ -111,6 +111,17 @@ Spans WhereGripIsCommanded(const Recording& recording, const OracleSettings& set
   return WhereTrue(commanded);
 }
 
+void SayHowLongTheyTouched(const Recording& recording, Touches& touches) {
+  const Grasp* before = nullptr;
+  for (Grasp& grasp : touches.grasps) {
+    for (const Span& contact : touches.contacts.at({grasp.body, recording.body_count() + grasp.hand}))
+      if (contact.Contains(grasp.span.begin)) grasp.touched_since = contact.begin;
+    const bool again = before && before->hand == grasp.hand && before->body == grasp.body;
+    if (again) grasp.touched_since = std::max(grasp.touched_since, before->span.end);
+    before = &grasp;
+  }
+}
+
 }  // namespace
 
 Touches FindTouches(const Recording& recording, const OracleSettings& settings) {
@@ -126,10 +137,11 @@ Touches FindTouches(const Recording& recording, const OracleSettings& settings) 
     for (const Span& squeeze : WhereGripIsCommanded(recording, settings, hand)) {
       for (Span span : Within(tight, squeeze)) {
         while (!span.empty() && !frames[span.begin]) ++span.begin;
-        if (!span.empty()) touches.grasps.push_back({hand, body, span});
+        if (!span.empty()) touches.grasps.push_back({hand, body, span, span.begin});
       }
     }
   }
+  SayHowLongTheyTouched(recording, touches);
   return touches;
 }
 

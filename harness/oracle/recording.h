@@ -49,6 +49,7 @@ struct Grasp {
   int hand = 0;  ///< index into Scene::hands
   int body = 0;
   Span span;
+  int touched_since = 0;  ///< the hand touches it, and has not grasped it in between
 };
 
 /// Everything that follows from contacts alone; gaps are bridged as the definitions allow.

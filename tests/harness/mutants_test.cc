@@ -37,7 +37,7 @@ const std::vector<Mutant> kMutants = {
     {"one side is a grasp", "grasp", "grip_sides   = 2", "grip_sides   = 1", ""},
     {"three sides are a grasp", "grasp", "grip_sides   = 2", "grip_sides   = 3", ""},
     {"the grip counts when it is closed", "grasp", "grip_on      = 0.3", "grip_on      = 0.9", ""},
-    {"the grip does not count", "grasp", "trigger(hand) >= grip_on and ", "", ""},
+    {"the grip does not count", "grasp", "trigger(hand) < grip_on or ", "", ""},
     {"grasps are bridged too long", "grasp", "grasp_bridge = 60 ms", "grasp_bridge = 200 ms", ""},
     {"a small retreat restarts the reach", "pick_and_place", "reach_slack  = 25 mm",
      "reach_slack  = 5 mm", ""},
@@ -62,9 +62,10 @@ const std::vector<Mutant> kMutants = {
      "lift_radius = 30 cm", ""},
     {"a pick-up ends low", "pick_and_place", "lift_height = 12 cm", "lift_height = 6 cm", ""},
     {"a low carry is a pick-up", "pick_and_place", "lift_rise   = 3 cm", "lift_rise   = 1 cm", ""},
-    {"a pick-up begins with the grasp", "pick_and_place", "from supported_by(object, any) ends\n",
+    {"a pick-up begins with the grasp", "pick_and_place", "from supported_by(object, any) ends or scooping(hand, object) ends\n",
      "from grasping(hand, object) begins\n", ""},
-    {"a pick-up knows no put-down", "pick_and_place", "\n    or putting_down(hand, object) begins",
+    {"what a closing hand lifts is caught", "pick_and_place", " or scooping(hand, object) ends", "", ""},
+    {"a pick-up knows no put-down", "pick_and_place", " or putting_down(hand, object) begins",
      "", ""},
     {"moving away is putting down", "pick_and_place", "put_slack  = 5 mm", "put_slack  = 50 mm",
      ""},
@@ -105,6 +106,7 @@ const char* const kScenarios[] = {
     "put_down/low_last_approach_is_no_put_down",
     "grasp/one_of_two_held_things_slides",
     "reach/a_grasp_drops_the_reach_for_its_neighbour",
+    "recorded/recorded_controller_grasps_the_can",
 };
 
 /// The mutant's program; no value: the mutation did not apply, or made no grammar.

@@ -167,6 +167,29 @@ TEST_F(OracleCarry, LetGoInTheFrameOfTheLandingIsPutDownAndAFrameBeforeIsDropped
   }
 }
 
+TEST_F(OracleCarry, WhatATouchLiftsIsPickedUpIfItIsGraspedBeforeItGotFar) {
+  for (const bool far : {false, true}) {
+    stage_ = Stage();
+    stage_.Play(1.6, {0.6, 0, 0});
+    stage_.trigger = 1;
+    stage_.sets = 1;
+    stage_.Play(0.1);
+    Lift(far ? 0.2 : 0.04);
+    const Tick grasp = stage_.now();
+    stage_.sets = 2;
+    stage_.Carry(0.4, {0, 0, 0.2});
+    const Tick left = stage_.now();
+    stage_.Carry(0.4, {0, 0, 0.2});
+    if (far) {
+      EXPECT_TRUE(Events("picking_up").empty());
+      EXPECT_EQ(Events("transporting"), (Intervals{{grasp, stage_.now()}}));
+    } else {
+      ExpectNear(Events("picking_up"), {{grasp, left}});
+      ExpectNear(Events("transporting"), {{left, stage_.now()}});
+    }
+  }
+}
+
 TEST_F(OracleCarry, ASnatchIsAPickUpEvenIfOneFrameSeesItAll) {
   stage_ = Stage(16);
   SetUp();
