@@ -31,7 +31,7 @@ class Carrier {
   Carrying Find() {
     Spans supported;
     for (const auto& [support, spans] : supports_) supported = Union(supported, spans);
-    for (const Span& span : supported) FindSlides(Common(span, grasp_.span), span);
+    for (const Span& span : supported) FindSlides(Common(span, grasp_.span));
     for (const Span& span : Rest(supported, grasp_.span))
       DivideUnsupported(span, SupportLoss(supported, span.begin), Covers(supported, span.end));
     return found_;
@@ -46,23 +46,23 @@ class Carrier {
   }
 
   /// Whether the object moves along something that supports it. Its velocity must say so and it
-  /// must get somewhere: a squeezed object trembles faster than it slides. `supported` is where to
-  /// look for frames before and after.
-  bool Slides(int frame, Span supported) const {
+  /// must get somewhere: a squeezed object trembles faster than it slides. Where it gets is asked of
+  /// the frames before and after, supported or not.
+  bool Slides(int frame) const {
     int before = frame, after = frame;
-    while (before > supported.begin &&
-           recording_.Seconds(before, frame) < settings_.slide_window_s / 2)
-      --before;
-    while (after + 1 < supported.end &&
+    while (before > 0 && recording_.Seconds(before, frame) < settings_.slide_window_s / 2) --before;
+    while (after + 1 < recording_.size() &&
            recording_.Seconds(frame, after) < settings_.slide_window_s / 2)
       ++after;
     for (const auto& [support, spans] : supports_) {
       if (!Covers(spans, frame)) continue;
       const Vector3d velocity =
           RelativeVelocity(recording_.body(grasp_.body, frame), recording_.body(support, frame));
-      const double way_m = (Seen(support, after) - Seen(support, before)).norm();
+      const Eigen::Quaterniond& R_WS = recording_.body(support, frame).X_WB.q;
+      const Vector3d way_m = R_WS * (Seen(support, after) - Seen(support, before));
       if (velocity.head<2>().norm() > settings_.slide_speed_m_per_s &&
-          way_m > settings_.slide_speed_m_per_s * recording_.Seconds(before, after))
+          way_m.head<2>().norm() >
+              settings_.slide_speed_m_per_s * recording_.Seconds(before, after))
         return true;
     }
     return false;
@@ -80,12 +80,11 @@ class Carrier {
     return farthest;
   }
 
-  /// `held`: the part of `supported` in which it is grasped. Whether it moves is to be seen from
-  /// all of `supported`.
-  void FindSlides(Span held, Span supported) {
+  /// `held`: it is grasped and supported.
+  void FindSlides(Span held) {
     std::vector<bool> moving(recording_.size());
     for (int frame = held.begin; frame < held.end; ++frame)
-      moving[frame] = Slides(frame, supported);
+      moving[frame] = Slides(frame);
     for (const Span& slide :
          Bridged(WhereTrue(moving), recording_.ticks, recording_.Ticks(settings_.slide_pause_s)))
       if (Displacement(slide) >= settings_.slide_displacement_m) found_.slides.push_back(slide);
