@@ -53,6 +53,7 @@ const std::vector<Mutant> kMutants = {
      "\n    and drift_along(object, support, slide_window) >= slide_speed", "", ""},
     {"short slides are none", "pick_and_place", "slide_distance = 2 cm", "slide_distance = 6 cm",
      ""},
+    {"there and back is no slide", "pick_and_place", " or got_far(hand, object, support)", "", ""},
     {"pauses do not end a slide", "pick_and_place", "slide_pause    = 150 ms",
      "slide_pause    = 800 ms", ""},
     {"what was pushed slides from the grasp on", "pick_and_place",
@@ -107,6 +108,7 @@ const char* const kScenarios[] = {
     "grasp/one_of_two_held_things_slides",
     "reach/a_grasp_drops_the_reach_for_its_neighbour",
     "recorded/recorded_controller_grasps_the_can",
+    "slide/there_and_back_is_a_slide",
 };
 
 /// The mutant's program; no value: the mutation did not apply, or made no grammar.

@@ -120,6 +120,26 @@ TEST_F(OracleCarry, TremblingIsNotSliding) {
   ExpectNear(Events("sliding"), {{begin, end}}, 24);  // a tremble next to the motion is part of it
 }
 
+TEST_F(OracleCarry, MotionThatGoesOnInTheAirIsNoTrembling) {
+  const Tick begin = stage_.now();
+  stage_.Carry(0.4, {0.2, 0, 0});
+  stage_.Play(0.08);
+  stage_.Carry(4 / 240.0, {0.03, 0, 0});  // it moves on just before it is lifted
+  const Tick lost = stage_.now();
+  stage_.cup_on_table = false;
+  stage_.Carry(0.4, {0.03, 0, 0.2});
+  ExpectNear(Events("sliding"), {{begin, lost}});
+}
+
+TEST_F(OracleCarry, ThereAndBackIsASlide) {
+  const Tick begin = stage_.now();
+  stage_.Carry(0.3, {0.2, 0, 0});
+  stage_.Carry(0.3, {-0.2, 0, 0});
+  const Tick end = stage_.now();
+  stage_.Play(0.3);
+  ExpectNear(Events("sliding"), {{begin, end}});
+}
+
 TEST_F(OracleCarry, AReleasedCupDoesNotSlideAndACarriedTrayMakesNoSlide) {
   LetGo();
   stage_.Play(0.4, {0, 0, 0}, {{stage_.cup, {0.2, 0, 0}}});
