@@ -211,7 +211,6 @@ void AddMarker(const Picture& picture, std::size_t number, DrawList* list) {
            .color = look.color,
            .alpha = look.alpha,
            .gloss = 0,
-           .finish = Finish::kRegion,
            .object = AddObject(name, list)},
           &list->markers, list);
 }

@@ -31,7 +31,6 @@ struct Item {
   Color color = {0.5f, 0.5f, 0.5f};
   float alpha = 1;
   float gloss = 0.25f;
-  Finish finish = Finish::kSolid;
   int object = 0;
 };
 

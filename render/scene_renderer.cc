@@ -2,7 +2,7 @@
 // The passes, in order:
 //   1. depth from the light (solids and paths throw shadows);
 //   2. backdrop, ground, solids, paths into a multisampled buffer;
-//   3. ambient occlusion at half size from its depth, multiplied in;
+//   3. ambient occlusion at half size from its depth, blurred there and multiplied in;
 //   4. hidden parts of paths, faintly; ghosts, each after its own depth so that inner joints do not
 //   show; markers;
 //   5. resolve and read back.
@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "render/shaders.h"
 
@@ -22,8 +23,6 @@ using Eigen::Vector3f;
 
 constexpr int kSamples = 4;  // the most that llvmpipe has
 constexpr int kShadowSize_px = 2048;
-constexpr int kShadowReach = 1;  // PCF 3x3
-constexpr int kNoShadow = -1;
 constexpr float kHiddenAlpha = 0.16f;
 constexpr float kOcclusionRadius_m = 0.09f;
 constexpr int kOcclusionTaps = 8;
@@ -51,12 +50,17 @@ float DistanceTo(const View& view, const Item& item) {
   return (item.X_WI.translation() - view.eye_m).norm();
 }
 
+std::string SurfaceShader(Finish finish, bool shadows) {
+  return "#version 330 core\n#define FINISH " + std::to_string(static_cast<int>(finish)) +
+         "\n#define SHADOWS " + (shadows ? "1" : "0") + kSurfaceFragmentShader;
+}
+
 Vector3f ToLight() { return Vector3f(0.38f, -0.42f, 0.82f).normalized(); }
 
 }  // namespace
 
 struct SceneRenderer::Targets {
-  std::unique_ptr<Framebuffer> sampled, resolved, occlusion;
+  std::unique_ptr<Framebuffer> sampled, resolved, occlusion, blurred;
 };
 
 // What all passes of one picture share.
@@ -90,15 +94,21 @@ std::unique_ptr<SceneRenderer> SceneRenderer::Create(const GlFunctions& gl, std:
 bool SceneRenderer::CompilePrograms(std::string* error) {
   const struct {
     std::unique_ptr<Program>* program;
-    const char *vertex_source, *fragment_source;
-  } kAll[] = {{&surface_, kSolidVertexShader, kSurfaceFragmentShader},
+    const char* vertex_source;
+    std::string fragment_source;
+  } kAll[] = {{&solid_, kSolidVertexShader, SurfaceShader(Finish::kSolid, true)},
+              {&ground_, kSolidVertexShader, SurfaceShader(Finish::kGround, true)},
+              {&ghost_, kSolidVertexShader, SurfaceShader(Finish::kSolid, false)},
+              {&region_, kSolidVertexShader, SurfaceShader(Finish::kRegion, false)},
+              {&flat_, kSolidVertexShader, SurfaceShader(Finish::kFlat, false)},
               {&depth_only_, kSolidVertexShader, kDepthFragmentShader},
               {&ids_, kSolidVertexShader, kIdFragmentShader},
               {&backdrop_, kScreenVertexShader, kBackdropFragmentShader},
               {&occlusion_, kScreenVertexShader, kOcclusionFragmentShader},
-              {&occlusion_blur_, kScreenVertexShader, kOcclusionBlurFragmentShader}};
+              {&occlusion_blur_, kScreenVertexShader, kOcclusionBlurFragmentShader},
+              {&darken_, kScreenVertexShader, kDarkenFragmentShader}};
   return std::all_of(std::begin(kAll), std::end(kAll), [&](const auto& each) {
-    *each.program = Program::Create(gl_, each.vertex_source, each.fragment_source, error);
+    *each.program = Program::Create(gl_, each.vertex_source, each.fragment_source.c_str(), error);
     return *each.program != nullptr;
   });
 }
@@ -143,10 +153,12 @@ bool SceneRenderer::PrepareTargets(int width_px, int height_px) {
   made->sampled =
       Framebuffer::Create(gl_, width_px, height_px, kSamples, Plane::kRgba8, Depth::kRead);
   made->resolved = Framebuffer::Create(gl_, width_px, height_px, 0, Plane::kRgba8, Depth::kRead);
-  made->occlusion = Framebuffer::Create(gl_, (width_px + 1) / 2, (height_px + 1) / 2, 0, Plane::kR8,
-                                        Depth::kNone);
-  if (!made->sampled || !made->resolved || !made->occlusion || gl_.GetError() != GL_NO_ERROR)
-    return false;
+  for (auto* half : {&made->occlusion, &made->blurred}) {
+    *half = Framebuffer::Create(gl_, (width_px + 1) / 2, (height_px + 1) / 2, 0, Plane::kR8,
+                                Depth::kNone);
+    if (!*half) return false;
+  }
+  if (!made->sampled || !made->resolved || gl_.GetError() != GL_NO_ERROR) return false;
   targets_ = std::move(made);
   return true;
 }
@@ -242,9 +254,9 @@ void SceneRenderer::DrawSolids(const Frame& frame) const {
   DrawScreen();
   gl_.Enable(GL_DEPTH_TEST);
 
-  UseSurface(frame, kShadowReach);
-  for (const Item& item : frame.list.solids) DrawItem(*surface_, frame, item);
-  for (const Item& item : frame.list.paths) DrawItem(*surface_, frame, item);
+  const Program& surface = UseSurface(frame, solid_);
+  for (const Item& item : frame.list.solids) DrawItem(surface, frame, item);
+  for (const Item& item : frame.list.paths) DrawItem(surface, frame, item);
   DrawGround(frame);
 }
 
@@ -254,12 +266,13 @@ void SceneRenderer::DrawGround(const Frame& frame) const {
   const float clear_radius = std::max(1.3f, 1.1f * frame.focus.radius_m);
   const Vector3f& center = frame.focus.center_m;
   const float lowest = frame.list.bounds.empty() ? 0 : std::min(0.0f, frame.list.bounds.low_m.z());
-  Item ground{.color = kGroundColor, .gloss = 0, .finish = Finish::kGround, .object = 1};
+  Item ground{.color = kGroundColor, .gloss = 0, .object = 1};
   ground.X_WI = Eigen::Translation3f(center.x(), center.y(), lowest - kGroundDrop_m);
   ground.half_size_m = Vector3f(1, 1, 0) * (2.8f * clear_radius);
-  surface_->Set("ground", Vector3f(center.x(), center.y(), clear_radius));
+  const Program& surface = UseSurface(frame, ground_);
+  surface.Set("ground", Vector3f(center.x(), center.y(), clear_radius));
   gl_.Enable(GL_BLEND);
-  DrawItem(*surface_, frame, ground);
+  DrawItem(surface, frame, ground);
   gl_.Disable(GL_BLEND);
 }
 
@@ -281,11 +294,17 @@ void SceneRenderer::DarkenCorners(const Frame& frame) const {
   occlusion_->Set("taps", kOcclusionTaps);
   DrawScreen();
 
-  targets_->sampled->Bind();
+  targets_->blurred->Bind();
   half.BindColorTexture();
   occlusion_blur_->Use();
   occlusion_blur_->Set("occlusion_map", 0);
   occlusion_blur_->Set("texel", texel);
+  DrawScreen();
+
+  targets_->sampled->Bind();
+  targets_->blurred->BindColorTexture();
+  darken_->Use();
+  darken_->Set("occlusion_map", 0);
   gl_.Enable(GL_BLEND);
   gl_.BlendFunc(GL_ZERO, GL_SRC_COLOR);
   DrawScreen();
@@ -295,14 +314,13 @@ void SceneRenderer::DarkenCorners(const Frame& frame) const {
 }
 
 void SceneRenderer::DrawHiddenPaths(const Frame& frame) const {
-  UseSurface(frame, kNoShadow);
+  const Program& surface = UseSurface(frame, flat_);
   gl_.Enable(GL_BLEND);
   gl_.DepthMask(GL_FALSE);
   gl_.DepthFunc(GL_GREATER);
   for (Item item : frame.list.paths) {
     item.alpha = kHiddenAlpha;
-    item.finish = Finish::kFlat;
-    DrawItem(*surface_, frame, item);
+    DrawItem(surface, frame, item);
   }
   gl_.DepthFunc(GL_LESS);
   gl_.DepthMask(GL_TRUE);
@@ -322,11 +340,11 @@ void SceneRenderer::DrawGhosts(const Frame& frame) const {
     for (const Item& item : ghost) DrawItem(*depth_only_, frame, item);
     gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 
-    UseSurface(frame, kNoShadow);
+    const Program& surface = UseSurface(frame, ghost_);
     gl_.Enable(GL_BLEND);
     gl_.DepthMask(GL_FALSE);
     gl_.DepthFunc(GL_LEQUAL);
-    for (const Item& item : ghost) DrawItem(*surface_, frame, item);
+    for (const Item& item : ghost) DrawItem(surface, frame, item);
     gl_.DepthFunc(GL_LESS);
     gl_.DepthMask(GL_TRUE);
     gl_.Disable(GL_BLEND);
@@ -338,31 +356,32 @@ void SceneRenderer::DrawMarkers(const Frame& frame) const {
   std::stable_sort(far_first.begin(), far_first.end(), [&](const Item& a, const Item& b) {
     return DistanceTo(frame.view, a) > DistanceTo(frame.view, b);
   });
-  UseSurface(frame, kNoShadow);
+  const Program& surface = UseSurface(frame, region_);
   gl_.Enable(GL_BLEND);
   gl_.DepthMask(GL_FALSE);
   for (const Item& item : far_first) {
     Item inside = item;
     inside.alpha *= 0.5f;
     gl_.CullFace(GL_FRONT);
-    DrawItem(*surface_, frame, inside);
+    DrawItem(surface, frame, inside);
     gl_.CullFace(GL_BACK);
-    DrawItem(*surface_, frame, item);
+    DrawItem(surface, frame, item);
   }
   gl_.DepthMask(GL_TRUE);
   gl_.Disable(GL_BLEND);
 }
 
-void SceneRenderer::UseSurface(const Frame& frame, int shadow_reach) const {
-  surface_->Use();
-  surface_->Set("world_to_clip", frame.view.world_to_clip());
-  surface_->Set("world_to_light", frame.world_to_light);
-  surface_->Set("to_light", ToLight());
-  surface_->Set("eye", frame.view.eye_m);
-  surface_->Set("shadow_map", 0);
-  surface_->Set("shadow_reach", shadow_reach);
-  surface_->Set("shadow_texel", 1.0f / kShadowSize_px);
+const Program& SceneRenderer::UseSurface(const Frame& frame,
+                                         const std::unique_ptr<Program>& surface) const {
+  surface->Use();
+  surface->Set("world_to_clip", frame.view.world_to_clip());
+  surface->Set("world_to_light", frame.world_to_light);
+  surface->Set("to_light", ToLight());
+  surface->Set("eye", frame.view.eye_m);
+  surface->Set("shadow_map", 0);
+  surface->Set("shadow_texel", 1.0f / kShadowSize_px);
   shadow_map_->BindDepthTexture();
+  return *surface;
 }
 
 void SceneRenderer::DrawItem(const Program& program, const Frame& frame, const Item& item) const {
@@ -372,7 +391,6 @@ void SceneRenderer::DrawItem(const Program& program, const Frame& frame, const I
   program.Set("rounding", item.rounding_m);
   program.Set("color", Eigen::Vector4f(item.color.x(), item.color.y(), item.color.z(), item.alpha));
   program.Set("gloss", item.gloss);
-  program.Set("finish", static_cast<int>(item.finish));
   program.SetUnsigned("object", static_cast<unsigned>(item.object));
   switch (item.primitive) {
     case Primitive::kBox:

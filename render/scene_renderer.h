@@ -42,12 +42,13 @@ class SceneRenderer {
   void DrawHiddenPaths(const Frame& frame) const;
   void DrawGhosts(const Frame& frame) const;
   void DrawMarkers(const Frame& frame) const;
-  void UseSurface(const Frame& frame, int shadow_reach) const;
+  const Program& UseSurface(const Frame& frame, const std::unique_ptr<Program>& surface) const;
   void DrawItem(const Program& program, const Frame& frame, const Item& item) const;
   void DrawScreen() const;
 
   const GlFunctions& gl_;
-  std::unique_ptr<Program> surface_, depth_only_, ids_, backdrop_, occlusion_, occlusion_blur_;
+  std::unique_ptr<Program> solid_, ground_, ghost_, region_, flat_;  // surfaces
+  std::unique_ptr<Program> depth_only_, ids_, backdrop_, occlusion_, occlusion_blur_, darken_;
   std::unique_ptr<GpuMesh> box_, ball_, cylinder_, cone_;
   std::unique_ptr<Framebuffer> shadow_map_;
   std::unique_ptr<Targets> targets_;

@@ -25,31 +25,35 @@ void main() {
 }
 )";
 
-// finish: 0 solid, 1 ground, 2 region (rim brighter than the middle), 3 flat colour.
-const char* const kSurfaceFragmentShader = R"(#version 330 core
+// A program for each FINISH (0 solid, 1 ground, 2 region, whose rim is brighter than its middle, 3 flat colour), with
+// or without SHADOWS: a rasteriser in software runs both sides of every branch.
+const char* const kSurfaceFragmentShader = R"(
 in vec3 p_W, n_W;
 in vec4 p_light;
 out vec4 pixel;
 uniform vec4 color;
 uniform vec3 to_light, eye;
 uniform float gloss, shadow_texel;
-uniform int finish, shadow_reach;
 uniform vec3 ground;  // centre x and y, radius where it starts to fade
 uniform sampler2DShadow shadow_map;
 
+#if SHADOWS
+const float kBeside = exp(-1. / .81);  // weight of a neighbour; of one across the corner its square
 float Shadow(vec3 n) {
   vec3 q = p_light.xyz / p_light.w * .5 + .5;
-  if (shadow_reach < 0 || q.z > 1. || any(lessThan(q.xy, vec2(0))) || any(greaterThan(q.xy, vec2(1)))) return 1.;
+  if (q.z > 1. || any(lessThan(q.xy, vec2(0))) || any(greaterThan(q.xy, vec2(1)))) return 1.;
   q.z -= max(.0012 * (1. - dot(n, to_light)), .0003);
-  float lit = 0., weight = 0., reach = float(shadow_reach);
-  for (float y = -reach; y <= reach; y++)
-    for (float x = -reach; x <= reach; x++) {
-      float g = exp(-(x * x + y * y) / (reach * reach * .8 + .01));
-      lit += g * texture(shadow_map, vec3(q.xy + vec2(x, y) * shadow_texel * 1.3, q.z));
-      weight += g;
+  float lit = 0.;
+  for (int y = -1; y <= 1; y++)
+    for (int x = -1; x <= 1; x++) {
+      float weight = (x == 0 ? 1. : kBeside) * (y == 0 ? 1. : kBeside);
+      lit += weight * texture(shadow_map, vec3(q.xy + vec2(x, y) * shadow_texel * 1.3, q.z));
     }
-  return lit / weight;
+  return lit / ((1. + 2. * kBeside) * (1. + 2. * kBeside));
 }
+#else
+float Shadow(vec3 n) { return 1.; }
+#endif
 
 float GridLine(float pitch, out vec2 density) {
   vec2 cell = p_W.xy / pitch;
@@ -65,25 +69,26 @@ vec3 ToDisplay(vec3 c) {
 }
 
 void main() {
+  vec3 albedo = pow(color.rgb, vec3(2.2));
+  float alpha = color.a;
+#if FINISH == 3
+  pixel = vec4(ToDisplay(albedo), alpha);
+#else
   vec3 n = normalize(n_W);
   if (!gl_FrontFacing) n = -n;
   vec3 v = normalize(eye - p_W);
-  vec3 albedo = pow(color.rgb, vec3(2.2));
-  float alpha = color.a;
-  if (finish == 3) { pixel = vec4(ToDisplay(albedo), alpha); return; }
-  if (finish == 2) {
-    float rim = pow(1. - abs(dot(n, v)), 2.);
-    pixel = vec4(ToDisplay(albedo * (.75 + .5 * rim)), alpha * (.35 + 2.2 * rim));
-    return;
-  }
-  if (finish == 1) {
-    vec2 fine_density, coarse_density;
-    float fine = GridLine(.1, fine_density), coarse = GridLine(.5, coarse_density);
-    fine *= 1. - smoothstep(.15, .6, max(fine_density.x, fine_density.y));
-    coarse *= 1. - smoothstep(.2, .8, max(coarse_density.x, coarse_density.y));
-    albedo *= 1. - .13 * fine - .22 * coarse;
-    alpha = 1. - smoothstep(ground.z, ground.z * 2.8, length(p_W.xy - ground.xy));
-  }
+#if FINISH == 2
+  float rim = pow(1. - abs(dot(n, v)), 2.);
+  pixel = vec4(ToDisplay(albedo * (.75 + .5 * rim)), alpha * (.35 + 2.2 * rim));
+#else
+#if FINISH == 1
+  vec2 fine_density, coarse_density;
+  float fine = GridLine(.1, fine_density), coarse = GridLine(.5, coarse_density);
+  fine *= 1. - smoothstep(.15, .6, max(fine_density.x, fine_density.y));
+  coarse *= 1. - smoothstep(.2, .8, max(coarse_density.x, coarse_density.y));
+  albedo *= 1. - .13 * fine - .22 * coarse;
+  alpha = 1. - smoothstep(ground.z, ground.z * 2.8, length(p_W.xy - ground.xy));
+#endif
   float facing = max(dot(n, to_light), 0.);
   float lit = facing > 0. ? Shadow(n) : 0.;
   vec3 ambient = mix(vec3(.20, .19, .18), vec3(.42, .45, .50), .5 + .5 * n.z);
@@ -91,6 +96,8 @@ void main() {
   float rim = pow(1. - max(dot(n, v), 0.), 4.) * .10;
   vec3 c = albedo * (ambient + vec3(1.05, 1., .93) * .85 * facing * lit) + highlight + rim * vec3(.8, .9, 1.);
   pixel = vec4(ToDisplay(c), alpha);
+#endif
+#endif
 }
 )";
 
@@ -156,6 +163,7 @@ void main() {
 }
 )";
 
+// At half size; bilinear interpolation of means is the mean of interpolations.
 const char* const kOcclusionBlurFragmentShader = R"(#version 330 core
 in vec2 uv;
 out vec4 pixel;
@@ -165,8 +173,15 @@ void main() {
   float sum = 0.;
   for (int y = -2; y < 2; y++)
     for (int x = -2; x < 2; x++) sum += texture(occlusion_map, uv + (vec2(x, y) + .5) * texel).r;
-  pixel = vec4(vec3(mix(.35, 1., sum / 16.)), 1);
+  pixel = vec4(vec3(sum / 16.), 1);
 }
+)";
+
+const char* const kDarkenFragmentShader = R"(#version 330 core
+in vec2 uv;
+out vec4 pixel;
+uniform sampler2D occlusion_map;
+void main() { pixel = vec4(vec3(mix(.35, 1., texture(occlusion_map, uv).r)), 1); }
 )";
 
 }  // namespace prehend::render
