@@ -191,7 +191,7 @@ void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending, cons
   verdict.verdict = Verdict::kPending;
   verdict.exit_code = ExitCode::kPending;
   verdict.reason = request.has_golden ? "no golden yet" : "no golden: only scenarios below scenarios/ have one";
-  if (request.has_golden) verdict.command = fmt::format("prehend accept {} --reason \"...\"", request.id);
+  if (request.has_golden && AsItsFileSays(request)) verdict.command = "prehend review " + ShellWord(request.id);
 }
 
 /// What differs, with the facts around the first of it, and whose doing it is.

@@ -69,8 +69,9 @@ std::string Outcome(const ScenarioVerdict& verdict) {
   const std::string_view element = Element(verdict);
   if (element.empty()) return "";
   if (element == "skipped") return "      <skipped message=\"nothing changed since it passed\"/>\n";
-  return fmt::format("      <{0} type=\"{1}\" message=\"{2}\">{3}again: {4}\n</{0}>\n", element,
+  return fmt::format("      <{0} type=\"{1}\" message=\"{2}\">{3}{4}: {5}\n</{0}>\n", element,
                      Name(verdict.verdict), EscapeXml(Message(verdict)), EscapeXml(verdict.details),
+                     CommandLabel(verdict),
                      EscapeXml(verdict.command));
 }
 

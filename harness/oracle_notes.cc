@@ -106,8 +106,9 @@ std::string Summary(const std::vector<Objection>& objections) {
   if (wanting > 0)
     return fmt::format("the physical oracle objects to {} event{}", wanting,
                        wanting > 1 ? "s" : "");
-  return fmt::format("{} of what the golden says of the physical oracle is out of date",
-                     objections.size());
+  return objections.size() == 1
+             ? "a note about the physical oracle is out of date"
+             : fmt::format("{} notes about the physical oracle are out of date", objections.size());
 }
 
 std::string GiveReasons(const std::vector<std::string>& reasons, Golden& golden) {

@@ -31,6 +31,10 @@ std::string_view Name(Verdict verdict) {
   return "";
 }
 
+std::string_view CommandLabel(const ScenarioVerdict& verdict) {
+  return verdict.verdict == Verdict::kPending && verdict.command.starts_with("prehend review") ? "next" : "again";
+}
+
 Json ToJson(const ScenarioVerdict& verdict) {
   Json pictures = Json::array();
   for (const ReportedPicture& picture : verdict.pictures) {

@@ -48,7 +48,7 @@ struct ScenarioVerdict {
   std::string blame;     ///< BlameText(): whose doing the differences are; or empty
   std::string headroom;  ///< HeadroomText()
   std::vector<BoundaryRoom> boundaries;  ///< of all matched events
-  std::string command;                   ///< shows it again
+  std::string command;                   ///< shows it again; of what is pending, what to accept
   std::string state_hash;
   std::int64_t ticks = 0;
   double seconds = 0;                ///< wall time in its worker
@@ -57,6 +57,9 @@ struct ScenarioVerdict {
   std::vector<ReportedPicture> pictures;
   std::string timeline_svg;
 };
+
+/// What stands before its command: "again", or "next" of one that leads on.
+std::string_view CommandLabel(const ScenarioVerdict& verdict);
 
 /// Both directions; the JSON of a verdict from a worker has all fields.
 nlohmann::ordered_json ToJson(const ScenarioVerdict& verdict);

@@ -191,7 +191,11 @@ ExitCode AcceptEvents(const CLI::App& options, const CommandContext& context,
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const std::string refusal = Refusal(options, context);
   if (!refusal.empty()) return Complain(context, ExitCode::kBadInput, refusal);
-  const auto file = FindScenarioOrComplain(ValueOf(options, "scenario"), context);
+  const std::string typed = ValueOf(options, "scenario");
+  if (typed.find_first_of("*?[") != std::string::npos)
+    return Complain(context, ExitCode::kBadInput,
+                    "'" + typed + "' may mean several scenarios; goldens are accepted one by one, by name");
+  const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return ExitCode::kNothing;
   if (!file->in_project) {
     return Complain(context, ExitCode::kBadInput,

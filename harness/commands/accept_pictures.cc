@@ -79,7 +79,10 @@ ExitCode AcceptPictures(const CommandContext& context, const std::string& reason
     changed += *kept;
   }
   if (changed == 0) {
-    context.out << "nothing to accept: the pictures of " << id << " are the same already\n";
+    context.out << "nothing to accept: "
+                << (drawn.pictures.empty() ? id + " asks for no pictures ('pictures:' in its file)"
+                                           : "the pictures of " + id + " are the same already")
+                << "\n";
     return ExitCode::kAgrees;
   }
   golden.pictures.push_back({context.today, reason});

@@ -158,7 +158,7 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, const std::string& 
                                verdict.scenario, note.empty() ? "" : "  ", note);
     if (verdict.exit_code == ExitCode::kAgrees) continue;
     context.out << Indented(verdict.details);
-    context.out << "    again: " << verdict.command << "\n";
+    context.out << "    " << CommandLabel(verdict) << ": " << verdict.command << "\n";
   }
   const Tally tally = Count(verdicts);
   const std::string least = LeastHeadroomText(verdicts);

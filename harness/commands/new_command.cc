@@ -94,8 +94,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!std::regex_match(typed, well_formed)) {
     return Complain(context, ExitCode::kBadInput,
                     "'" + typed +
-                        "' is no name of at most 64 letters; one looks like slide_then_transport "
-                        "or slide/slide_then_transport");
+                        "' is no name of a scenario: a small letter, then small letters, digits and '_', at most 64; "
+                        "a folder may stand in front, like slide_then_transport or slide/slide_then_transport");
   }
   namespace fs = std::filesystem;
   const fs::path scenarios = fs::path(context.root) / "scenarios";

@@ -177,7 +177,7 @@ TEST_F(WithOracle, WhatOnlyItSeesHasALineThatExpectsNothing) {
   const Golden gone = Proposed(first, {});
   EXPECT_EQ(gone.events.size(), 2u);
   EXPECT_EQ(Summary(Objections(first, gone)),
-            "1 of what the golden says of the physical oracle is out of date");
+            "a note about the physical oracle is out of date");
 }
 
 TEST_F(WithOracle, EveryObjectionIsAnsweredOrNothingIs) {

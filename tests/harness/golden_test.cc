@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "4:9: begin_s is not on a tick of 1/480 s | the nearest tick is at 1.2312"},
         Mistake{"empty_interval", "contact 1 1 a=cup", "4:1: the event must end after it begins"},
         Mistake{"no_roles", "contact 1 2", "4:12: an event needs at least one role=value"},
-        Mistake{"no_equals", "contact 1 2 cup", "4:16: expected '=' after 'cup'"},
+        Mistake{"no_equals", "contact 1 2 cup", "4:16: expected '=' after 'cup' | ROLE=NAME without blanks, or open_end"},
         Mistake{"no_value", "contact 1 2 a= b=cup", "4:15: expected a value for 'a'"},
         Mistake{"no_number", "contact 1 2 a=cup force~much",
                 "4:25: expected a number after 'force~', like 12.5N"},

@@ -107,7 +107,8 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
       {"run carton_rests --grammar none.grammar", 2, "none.grammar: error: [^]*"},
       {"accept carton_rests", 2,
        "prehend: accepting needs a reason: [^]*\n  again: prehend accept carton_rests\n"},
-      {"new Wrong-Name", 2, "prehend: 'Wrong-Name' is no name of at most 64 letters; [^]*"},
+      {"accept rest/* --reason x", 2, "prehend: 'rest/\\*' may mean several scenarios; goldens are accepted one by one, by name\n[^]*"},
+      {"new Wrong-Name", 2, "prehend: 'Wrong-Name' is no name of a scenario: a small letter, then [^]*"},
       {"check --time-limit-s 0", 2, "prehend: --time-limit-s: Value 0 not in range 0.1 to 86400\n[^]*"},
       {"new carton_rests", 2, "prehend: there is a scenario of this name: [^]*"},
   };
