@@ -3,6 +3,7 @@
 #include "harness/moment.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>
@@ -41,7 +42,8 @@ std::optional<MomentProblem> WhyNoMoment(const std::string& text, const grammar:
   }
   const std::string near = grammar::NearestName(moment->event, events);
   return MomentProblem{fmt::format("grammar '{}' has no event '{}'", program.name, moment->event),
-                       near.empty() ? "" : fmt::format("did you mean '{}'?", near)};
+                       near.empty() ? fmt::format("known: {}", fmt::join(events, ", "))
+                                    : fmt::format("did you mean '{}'?", near)};
 }
 
 Moment FindMoment(const std::string& text, const RunResult& run) {

@@ -64,6 +64,7 @@ Json ToJson(const ScenarioVerdict& verdict) {
           {"peak_memory_kib", verdict.peak_memory_kib},
           {"inputs", verdict.inputs},
           {"pictures", std::move(pictures)},
+          {"picture_differences", verdict.picture_differences},
           {"timeline_svg", verdict.timeline_svg}};
 }
 
@@ -93,6 +94,7 @@ ScenarioVerdict VerdictFromJson(const Json& json) {
   for (const Json& picture : json.at("pictures")) {
     verdict.pictures.push_back({.file = picture.at("file"), .caption = picture.at("caption")});
   }
+  verdict.picture_differences = json.at("picture_differences");
   verdict.timeline_svg = json.at("timeline_svg");
   return verdict;
 }
@@ -123,6 +125,17 @@ std::string FlakyReason(const std::vector<ScenarioVerdict>& runs) {
   return reason;
 }
 
+/// Events may agree while a picture does not, and the other way round.
+ScenarioVerdict JudgedByPictures(ScenarioVerdict verdict) {
+  if (verdict.picture_differences.empty()) return verdict;
+  verdict.details += verdict.picture_differences;
+  if (verdict.verdict == Verdict::kFailed || verdict.verdict == Verdict::kFlaky) return verdict;
+  verdict.verdict = Verdict::kFailed;
+  verdict.exit_code = ExitCode::kDiffers;
+  verdict.reason = "a picture differs from its golden";
+  return verdict;
+}
+
 }  // namespace
 
 ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs) {
@@ -133,14 +146,16 @@ ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs) {
   for (const ScenarioVerdict& run : runs) {
     merged.seconds = std::max(merged.seconds, run.seconds);
     merged.peak_memory_kib = std::max(merged.peak_memory_kib, run.peak_memory_kib);
+    if (!run.picture_differences.empty()) merged.picture_differences = run.picture_differences;
+    if (!run.pictures.empty()) merged.pictures = run.pictures;
   }
   const bool agree = std::ranges::all_of(
       runs, [&](const ScenarioVerdict& run) { return SaySame(run, runs.front()); });
-  if (agree) return merged;
+  if (agree) return JudgedByPictures(std::move(merged));
   merged.verdict = Verdict::kFlaky;
   if (merged.exit_code != ExitCode::kFailure) merged.exit_code = ExitCode::kDiffers;
   merged.reason = FlakyReason(runs);
-  return merged;
+  return JudgedByPictures(std::move(merged));
 }
 
 Tally Count(const std::vector<ScenarioVerdict>& verdicts) {

@@ -55,6 +55,7 @@ struct ScenarioVerdict {
   std::int64_t peak_memory_kib = 0;  ///< of its worker
   FileHashes inputs;  ///< every file that decides what the verdict is, as it was before the run
   std::vector<ReportedPicture> pictures;
+  std::string picture_differences;  ///< several lines; only one of several repetitions draws
   std::string timeline_svg;
 };
 
@@ -65,8 +66,9 @@ std::string_view CommandLabel(const ScenarioVerdict& verdict);
 nlohmann::ordered_json ToJson(const ScenarioVerdict& verdict);
 ScenarioVerdict VerdictFromJson(const nlohmann::ordered_json& json);
 
-/// What repeated runs of one scenario come to: their common verdict, or kFlaky when they differ in
-/// anything but time and memory. Of these the largest is kept. Needs at least one.
+/// What runs of one scenario, or a single one, come to: their common verdict, or kFlaky when they differ in
+/// anything but time, memory and pictures. Of these the largest is kept. What passed in all fails when
+/// a picture differs. Needs at least one.
 ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs);
 
 struct Tally {

@@ -178,6 +178,7 @@ nlohmann::ordered_json SummaryJson(const std::vector<ScenarioVerdict>& verdicts,
   for (const ScenarioVerdict& verdict : verdicts) {
     scenarios.push_back(ToJson(verdict));
     scenarios.back().erase("timeline_svg");
+    scenarios.back().erase("picture_differences");  // they are among the details
   }
   return {{"passed", tally.passed},       {"failed", tally.failed}, {"pending", tally.pending},
           {"unchanged", tally.unchanged}, {"report", page},         {"scenarios", scenarios}};

@@ -129,13 +129,11 @@ std::optional<std::vector<Review>> Reviews(const CLI::App& options, const Comman
   for (const ScenarioFile& file : selection ? selection->scenarios : std::vector<ScenarioFile>())
     AddReviews(file, context.root, std::erase(pending, IdOf(file)) > 0, pictures, reviews);
   if (!patterns.empty()) return reviews;
-  for (const std::string& id : pending)
-    reviews.push_back({id,
-                       "orphan",
-                       "pending, but there is no such scenario\n",
-                       "",
-                       false,
-                       {GoldenFiles(context.root).PendingPath(id).string()}});
+  for (const std::string& id : pending) {
+    const std::string file = GoldenFiles(context.root).PendingPath(id).string();
+    reviews.push_back(
+        {id, "orphan", "pending, but there is no such scenario: remove " + file + "\n", "", false, {file}});
+  }
   for (const Orphan& orphan : selection ? selection->orphans : std::vector<Orphan>()) {
     Review review{orphan.scenario, "orphan", Text(orphan)};
     for (const fs::path& file : orphan.files) review.files.push_back(file.string());

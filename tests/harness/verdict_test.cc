@@ -107,5 +107,19 @@ TEST(Verdict, RepeatsThatDifferAreFlaky) {
   EXPECT_EQ(Count({MergeRepeats(runs)}).failed, 1);
 }
 
+TEST(Verdict, APictureThatDiffersFailsWithoutBeingFlaky) {
+  std::vector<ScenarioVerdict> runs(2);
+  for (ScenarioVerdict& run : runs) run.verdict = Verdict::kPassed;
+  runs[1].picture_differences = "picture x.png: 5 % differ\n";  // the first of them to end drew nothing
+  const ScenarioVerdict merged = MergeRepeats(runs);
+  EXPECT_EQ(merged.verdict, Verdict::kFailed);
+  EXPECT_EQ(merged.exit_code, ExitCode::kDiffers);
+  EXPECT_EQ(merged.reason, "a picture differs from its golden");
+  EXPECT_EQ(merged.details, "picture x.png: 5 % differ\n");
+  runs[0].verdict = Verdict::kFailed;
+  EXPECT_EQ(MergeRepeats(runs).verdict, Verdict::kFlaky);
+  EXPECT_EQ(VerdictFromJson(ToJson(runs[1])).picture_differences, runs[1].picture_differences);
+}
+
 }  // namespace
 }  // namespace prehend::harness
