@@ -242,6 +242,15 @@ std::vector<std::string> FilesOfGolden(const CheckRequest& request) {
   return files;
 }
 
+/// The goldens of the pictures that a scenario asks for, and of one more, which nobody asks for; whether they are there
+/// or not: one that appears changes the verdict.
+void AddPictures(const CheckRequest& request, const Scenario& scenario, std::vector<std::string>& files) {
+  for (std::size_t i = 1; i <= scenario.pictures.size() + 1; ++i) {
+    const std::string file = scenario.name + (i == 1 ? "" : "-" + std::to_string(i)) + ".png";
+    files.push_back(GoldenFiles(request.root).PicturePath(request.id, file).string());
+  }
+}
+
 /// A planar scenario has the same events in both engines.
 void JudgeOtherEngine(const CheckRequest& request, const PreparedRun& prepared,
                       const RunResult& run, ScenarioVerdict& verdict) {
@@ -267,6 +276,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.command = RepeatCommand(request.id, request.run);
   std::vector<std::string> files = request.has_golden ? FilesOfGolden(request) : std::vector<std::string>();
   const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root, &files);
+  if (prepared.value && request.has_golden) AddPictures(request, prepared.value->scenario, files);
   verdict.inputs = HashFiles(files);
   if (!prepared.value) {
     Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(prepared.diagnostics));

@@ -181,7 +181,9 @@ TEST_F(GoldenWorkflow, PicturesHaveAGateOfTheirOwn) {
 
 TEST_F(GoldenWorkflow, PicturesThatBelongToNothingAreTold) {
   Accept();
+  EXPECT_EQ(Do("check --no-pictures").exit_code, 0);
   WriteFile(root_ / "golden/rest/carton_rests.png", "");
+  EXPECT_EQ(Do("check --changed --no-pictures").exit_code, 1) << "what appears is a change";
   const std::string unasked =
       "golden/rest/carton_rests.png belongs to no picture: the scenario asks for none\n";
   for (const char* command :
