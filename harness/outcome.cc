@@ -48,7 +48,7 @@ std::string OutcomeWatch::Judge(const physics::Snapshot& last) const {
     for (const Moment& moment : moments_) holds &= moment.outcome != i || moment.holds;
     if (holds) return outcomes_[i].name;
   }
-  return "";
+  return kOtherOutcome;
 }
 
 bool OutcomeWatch::Holds(const Outcome::Condition& condition,
@@ -75,7 +75,8 @@ bool OutcomeWatch::Holds(const Outcome::Condition& condition,
 /// 0 or 1 of what is one thing.
 double OutcomeWatch::ShareInside(const Outcome::Condition& condition,
                                  const physics::Snapshot& snapshot) const {
-  const auto index = static_cast<std::size_t>(condition.body), in = static_cast<std::size_t>(condition.vessel);
+  const auto index = static_cast<std::size_t>(condition.body),
+             in = static_cast<std::size_t>(condition.vessel);
   const physics::LocalBox box = physics::BoundingBox(scene_.bodies[in]);
   const physics::Pose& X_WV = snapshot.bodies[in].X_WB;
   const physics::Body& body = scene_.bodies[index];
@@ -84,9 +85,9 @@ double OutcomeWatch::ShareInside(const Outcome::Condition& condition,
     return physics::IsInside(box, X_WV, p_W_m) ? 1 : 0;
   }
   const std::span<const Eigen::Vector3d> grains = physics::GrainsOf(scene_, index, snapshot);
-  const auto inside = std::count_if(grains.begin(), grains.end(), [&](const Eigen::Vector3d& p_W_m) {
-    return physics::IsInside(box, X_WV, p_W_m);
-  });
+  const auto inside = std::count_if(
+      grains.begin(), grains.end(),
+      [&](const Eigen::Vector3d& p_W_m) { return physics::IsInside(box, X_WV, p_W_m); });
   return static_cast<double>(inside) / static_cast<double>(grains.size());
 }
 

@@ -12,6 +12,9 @@
 
 namespace prehend::harness {
 
+/// What trials call a run that is none of its scenario's outcomes.
+inline constexpr const char* kOtherOutcome = "other";
+
 class OutcomeWatch {
  public:
   /// Both outlive the watch.
@@ -19,8 +22,8 @@ class OutcomeWatch {
 
   /// Every snapshot, in order.
   void Look(const physics::Snapshot& snapshot);
-  /// The first outcome whose conditions all hold, judged after the last snapshot; empty: none of
-  /// them.
+  /// The first outcome whose conditions all hold, judged after the last snapshot, or
+  /// `kOtherOutcome`.
   std::string Judge(const physics::Snapshot& last) const;
 
  private:

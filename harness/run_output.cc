@@ -54,7 +54,18 @@ std::string RunTable(const RunResult& run) {
   }
   std::string table;
   for (const std::string& line : AlignColumns(rows)) table += line + "\n";
-  return table + StatusText(run) + "\n";
+  table += StatusText(run) + "\n";
+  if (!run.outcome.empty()) table += "outcome: " + run.outcome + "\n";
+  return table;
+}
+
+std::vector<std::string> NoteLines(const Scenario& scenario, const RunResult& run) {
+  std::vector<std::string> lines;
+  for (const physics::ScriptNote& note : run.notes)
+    lines.push_back(
+        fmt::format("note: {} s: {}: {}", SecondsText(note.tick, run.timeline.ticks_per_second),
+                    scenario.scene.hands[static_cast<std::size_t>(note.hand)].name, note.text));
+  return lines;
 }
 
 std::string HashText(std::uint64_t hash) { return fmt::format("0x{:016x}", hash); }
@@ -73,6 +84,8 @@ OrderedJson RunJson(const Scenario& scenario, const RunResult& run) {
                        {"reason", run.status.reason},
                        {"advice", run.status.advice}};
   }
+  if (!run.outcome.empty()) json["outcome"] = run.outcome;
+  if (!run.notes.empty()) json["notes"] = NoteLines(scenario, run);
   json["events"] = TimelineJson(run.timeline)["events"];
   return json;
 }

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "harness/run_scenario.h"
 
@@ -18,8 +19,11 @@ std::string StatusText(const RunResult& run);
 /// The events as an aligned table with a title, then the status line.
 std::string RunTable(const RunResult& run);
 
+/// "note: 0.250 s: right_hand: ..." for each note of the run.
+std::vector<std::string> NoteLines(const Scenario& scenario, const RunResult& run);
+
 /// {"scenario", "status", "ticks_per_second", "ticks", "state_hash", "grammar", "events": [...]}; a
-/// failed run has "failure": {"tick", "entity", "reason", "advice"}.
+/// failed run has "failure": {"tick", "entity", "reason", "advice"}, a judged one "outcome", one with notes "notes".
 OrderedJson RunJson(const Scenario& scenario, const RunResult& run);
 
 /// "0x" and 16 digits: 64 bits don't fit into a JSON number.

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "harness/outcome.h"
 #include "harness/sensing.h"
 
 namespace prehend::harness {
@@ -42,11 +43,14 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
     return result;
   }
   std::vector<grammar::Event> events;
+  std::optional<OutcomeWatch> judge;
+  if (options.judge) judge.emplace(scenario.scene, scenario.outcomes);
   LapClock clock(options.measure);
 
   while (simulation.Step()) {
     clock.Lap(result.seconds.physics);
     const physics::Snapshot& snapshot = simulation.snapshot();
+    if (judge) judge->Look(snapshot);
     if (!sensing.Due(snapshot.tick)) continue;
     const grammar::FrameChanges changes = sensing.SenseChanges(snapshot);
     clock.Lap(result.seconds.sensing);
@@ -59,6 +63,9 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
   result.ticks = simulation.snapshot().tick;
   monitor.Finish(result.ticks + 1, events);
   result.status = simulation.status();
+  result.notes = simulation.notes();
+  if (judge && result.status.kind == physics::RunStatus::Kind::kCompleted)
+    result.outcome = judge->Judge(simulation.snapshot());
   result.state_hash = simulation.state_hash();
   result.timeline = grammar::NameEvents(*program, cast, events);
   clock.Lap(result.seconds.grammar);

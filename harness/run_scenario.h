@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "grammar/monitor.h"
@@ -19,6 +20,7 @@ namespace prehend::harness {
 struct RunOptions {
   bool record = false;   ///< keep a snapshot per sensed frame (pictures, oracle)
   std::function<void(const grammar::Frame&)> watch;  ///< shown every sensed frame; may be empty
+  bool judge = false;    ///< by the scenario's outcomes
   bool measure = false;  ///< clock physics, sensing and grammar apart
 };
 
@@ -33,6 +35,8 @@ struct RunResult {
   std::uint64_t state_hash = 0;
   grammar::Timeline timeline;                ///< what was recognised up to where the run ended
   std::vector<physics::Snapshot> recording;  ///< empty unless asked for
+  std::vector<physics::ScriptNote> notes;
+  std::string outcome;  ///< empty unless judged
   RunSeconds seconds;
 };
 

@@ -16,7 +16,6 @@
 namespace prehend::harness {
 namespace {
 
-constexpr const char* kOther = "other";
 constexpr const char* kFailed = "failed";
 constexpr double kTimeLimit_s = 600;
 constexpr std::size_t kMostListed = 20;
@@ -34,8 +33,7 @@ TrialResult RunTrial(const Scenario& scenario, int trial) {
   const physics::RunStatus& status = simulation.status();
   if (status.kind == physics::RunStatus::Kind::kFailed)
     return {trial, kFailed, status.entity + ": " + status.reason};
-  const std::string outcome = watch.Judge(simulation.snapshot());
-  return {trial, outcome.empty() ? kOther : outcome, {}};
+  return {trial, watch.Judge(simulation.snapshot()), {}};
 }
 
 std::string ToJson(const TrialResult& result) {
@@ -56,7 +54,7 @@ std::string TableLine(const std::string& outcome, std::size_t count, std::size_t
 
 std::vector<std::string> AllOutcomes(const TrialReport& report) {
   std::vector<std::string> names = report.outcomes;
-  names.insert(names.end(), {kOther, kFailed});
+  names.insert(names.end(), {kOtherOutcome, kFailed});
   return names;
 }
 
@@ -139,7 +137,7 @@ std::string TrialTable(const TrialReport& report, const std::string& command) {
   std::string table;
   for (const std::string& name : names) {
     const std::size_t count = CountOf(name, report);
-    const bool own = name != kOther && name != kFailed;
+    const bool own = name != kOtherOutcome && name != kFailed;
     if (own || count > 0) table += TableLine(name, count, results.size());
   }
   // The worst first: those that failed, then the outcomes from the last to the first.

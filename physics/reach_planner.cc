@@ -264,7 +264,8 @@ ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& q
     for (const Bend& bend : kBends) {
       ReachPlan plan{.segment = Way(query, candidate, bend), .toward_W = candidate.toward_W};
       plan.clearance_m = clearance.Along(plan.segment, scene, now);
-      if (fits && plan.clearance_m >= clear_enough_m) return plan;
+      plan.found = fits && plan.clearance_m >= clear_enough_m;
+      if (plan.found) return plan;
       if (!have_one || plan.clearance_m > best.clearance_m) best = plan;
       have_one = true;
     }

@@ -21,6 +21,8 @@ constexpr double kPress_m = 0.002;
 constexpr double kMostSpring_m = 0.01;
 /// Putting down is over after this share of its time; in the rest the object settles.
 constexpr double kLoweringShare = 0.85;
+/// The open hand is covered by balls, which stick out by less than this.
+constexpr double kNotedTouch_m = 0.005;
 /// Way-points on the arc of a joint: between them the way is straight to a tenth of a millimetre.
 constexpr int kJointWaypoints = 40;
 
@@ -63,6 +65,8 @@ class ScriptPlayer::Resolver {
     std::visit(*this, step_.action);
     return problem_;
   }
+  /// Empty if there is nothing to say.
+  const std::string& note() const { return note_; }
 
   void operator()(const WaitStep&) {}
   void operator()(const ReachStep& reach);
@@ -84,7 +88,7 @@ class ScriptPlayer::Resolver {
   const Snapshot& now_;
   const Step& step_;
   HandState& hand_;
-  std::string problem_;
+  std::string problem_, note_;
 };
 
 void ScriptPlayer::Resolver::Follow(const Segment& segment) {
@@ -125,6 +129,9 @@ void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
     hand_.style = style;
     hand_.object = object;
     hand_.came_along_W = plan.toward_W;
+    if (!plan.found && plan.clearance_m < -kNotedTouch_m)
+      note_ = "no way to grasp " + reach.object +
+              " keeps clear of everything: the open hand will push against something";
     Follow(plan.segment);
   }
 }
@@ -190,7 +197,8 @@ void ScriptPlayer::Resolver::operator()(const PosesStep& poses) {
   if (!poses.style.empty()) {
     const HandModel& model = scene_.hands[static_cast<std::size_t>(step_.hand)].model;
     hand_.style = FindStyle(model, poses.style);
-    if (hand_.style < 0) problem_ = "poses: hand '" + model.name + "' has no style '" + poses.style + "'";
+    if (hand_.style < 0)
+      problem_ = "poses: hand '" + model.name + "' has no style '" + poses.style + "'";
   }
   if (problem_.empty() && !poses.poses.empty()) Follow(poses.poses);
 }
@@ -255,7 +263,9 @@ void ScriptPlayer::StartBeat(const Snapshot& now) {
   const Beat& beat = script_.beats[beat_++];
   beat_ticks_ = std::llround(DurationOf(beat) * rate_hz);
   for (const Step& step : beat.steps) {
-    problem_ = Resolver(scene_, now, step, hands_[static_cast<std::size_t>(step.hand)]).Resolve();
+    Resolver resolver(scene_, now, step, hands_[static_cast<std::size_t>(step.hand)]);
+    problem_ = resolver.Resolve();
+    if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
     problem_hand_ = step.hand;
     if (!problem_.empty()) return;
   }

@@ -15,6 +15,13 @@
 
 namespace prehend::physics {
 
+/// What went on, and yet perhaps not as its author thinks.
+struct ScriptNote {
+  std::int64_t tick = 0;
+  int hand = 0;  ///< index into Scene::hands
+  std::string text;
+};
+
 class ScriptPlayer {
  public:
   /// `scene` must outlive the player.
@@ -36,6 +43,8 @@ class ScriptPlayer {
   const std::string& problem() const { return problem_; }
   /// The hand that has the problem.
   int problem_hand() const { return problem_hand_; }
+  /// Of all steps so far.
+  const std::vector<ScriptNote>& notes() const { return notes_; }
 
  private:
   struct HandState {
@@ -60,6 +69,7 @@ class ScriptPlayer {
   bool settling_ = false;
   std::string problem_;
   int problem_hand_ = -1;
+  std::vector<ScriptNote> notes_;
 };
 
 /// Simulated length of a script, seconds: all beats and the settling.

@@ -123,6 +123,7 @@ bool Simulation::Step() { return state_->Step(); }
 const Scene& Simulation::scene() const { return state_->scene; }
 const Snapshot& Simulation::snapshot() const { return state_->snapshot; }
 const RunStatus& Simulation::status() const { return state_->status; }
+const std::vector<ScriptNote>& Simulation::notes() const { return state_->player.notes(); }
 std::uint64_t Simulation::state_hash() const { return state_->hash.value(); }
 
 }  // namespace prehend::physics

@@ -9,6 +9,7 @@
 
 #include "physics/scene.h"
 #include "physics/script.h"
+#include "physics/script_player.h"
 #include "physics/snapshot.h"
 
 namespace prehend::physics {
@@ -35,6 +36,8 @@ class Simulation {
   const Scene& scene() const;
   const Snapshot& snapshot() const;
   const RunStatus& status() const;
+  /// What the script's hands could not do as well as they should.
+  const std::vector<ScriptNote>& notes() const;
   /// FNV-1a over every pose, velocity and joint of every tick so far.
   std::uint64_t state_hash() const;
 

@@ -47,7 +47,8 @@ void Declare(CLI::App& options) {
 /// The command that shows one trial again, but for its number.
 std::string AgainCommand(const CLI::App& options) {
   std::string command = "prehend run " + ShellWord(ValueOf(options, "scenario"));
-  if (IsGiven(options, "--grammar")) command += " --grammar " + ShellWord(ValueOf(options, "--grammar"));
+  if (IsGiven(options, "--grammar"))
+    command += " --grammar " + ShellWord(ValueOf(options, "--grammar"));
   for (const std::string& setting : ValuesOf(options, "--set"))
     command += " --set " + ShellWord(setting);
   return command;
@@ -79,12 +80,15 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   RunRequest request = RequestOf(options, file->path);
   for (const char* of_one_run : {"--trial", "--record", "--measure"}) {
     if (IsGiven(options, "--trials") && IsGiven(options, of_one_run))
-      return Complain(context, ExitCode::kBadInput, fmt::format("{} is about one run, --trials about many", of_one_run));
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("{} is about one run, --trials about many", of_one_run));
   }
   if (IsGiven(options, "--trials")) return CountTrials(options, request, context);
   if (IsGiven(options, "--trial")) {
     auto varied = RequestOfTrial(request, context.root, std::stoi(ValueOf(options, "--trial")));
     if (!varied.value) return Complain(context, varied.diagnostics);
+    for (std::size_t i = request.settings.size(); i < varied.value->settings.size(); ++i)
+      context.err << "drawn: " << varied.value->settings[i] << "\n";
     request = std::move(*varied.value);
   }
   const ReadResult<PreparedRun> prepared = PrepareRun(request, context.root);
@@ -92,7 +96,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   Warn(context, prepared.value->warnings);
 
   const bool measure = IsGiven(options, "--measure");
-  RunOptions how{.measure = measure};
+  RunOptions how{.judge = !prepared.value->scenario.outcomes.empty(), .measure = measure};
   std::optional<WholeFile> record;
   std::optional<EpisodeWriter> recorder;
   if (IsGiven(options, "--record")) {
@@ -105,6 +109,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     how.watch = [&](const grammar::Frame& frame) { recorder->Write(frame); };
   }
   const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, how);
+  for (const std::string& note : NoteLines(prepared.value->scenario, run))
+    context.err << note << "\n";
   std::string not_recorded;
   if (recorder) {
     recorder->Finish(run.ticks + 1);
@@ -118,7 +124,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     context.out << RunTable(run);
     if (measure) context.out << MeasurementText(Measure(run));
   }
-  if (!not_recorded.empty()) return Complain(context, ExitCode::kFailure, "--record: " + not_recorded);
+  if (!not_recorded.empty())
+    return Complain(context, ExitCode::kFailure, "--record: " + not_recorded);
   if (run.status.kind == physics::RunStatus::Kind::kCompleted) return ExitCode::kAgrees;
   return Complain(context, ExitCode::kFailure, StatusText(run));
 }

@@ -58,6 +58,25 @@ TEST(ScriptPlayerTest, RetreatGoesBackTheWayItCame) {
   EXPECT_LT((retreated.X_WH.p_m - reached.X_WH.p_m - Eigen::Vector3d(0, 0, 0.2)).norm(), 1e-9);
 }
 
+TEST(ScriptPlayerTest, NotesAReachThatCannotKeepClear) {
+  const Script from_above{.beats = {One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5)}};
+  Scene scene = MakeScene({});
+  const auto notes = [&] {
+    Simulation still(scene, {});
+    ScriptPlayer player(scene, from_above);
+    player.Advance(still.snapshot());
+    return player.notes();
+  };
+  EXPECT_TRUE(notes().empty());
+  Body roof{.name = "roof", .shapes = {{Box{{1, 1, 0.02}}, {}}}, .fixed = true};
+  roof.X_WB.p_m = {0.2, 0.1, 1.05};
+  scene.bodies.push_back(roof);
+  ASSERT_EQ(notes().size(), 1u);
+  EXPECT_EQ(notes()[0].text,
+            "no way to grasp object keeps clear of everything: the open hand will push against "
+            "something");
+}
+
 TEST(ScriptPlayerTest, ABeatLastsAsLongAsItsLongestStep) {
   Scene scene = MakeScene({});
   scene.hands.push_back({"other", LibraryHand("human_left"), {{-0.3, 0.3, 1.1}}});
