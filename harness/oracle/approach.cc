@@ -164,10 +164,13 @@ int ReachBegin(const Recording& recording, const OracleSettings& settings, int h
         {recording.Seconds(begin, frame),
          SurfaceDistance(model, recording.hand(hand, frame), shape, recording.body(body, frame))});
   begin += ApproachBegin(path, settings.reach_dead_band_m, settings);
-  // Standing still is no reach yet.
-  while (begin < touch && Motion_m_per_s(recording, hand, body, begin + 1) <=
-                              settings.onset_speed_m_per_s)
-    ++begin;
+  // Standing still is no reach yet, nor is what settles before the hand moves: it begins with the
+  // movement, slowly at first.
+  const auto motion_m_per_s = [&](int frame) { return Motion_m_per_s(recording, hand, body, frame); };
+  int moves = begin;
+  while (moves < touch && motion_m_per_s(moves + 1) < settings.idle_speed_m_per_s) ++moves;
+  while (moves > begin && motion_m_per_s(moves) > settings.onset_speed_m_per_s) --moves;
+  begin = moves;
   return begin;
 }
 

@@ -92,6 +92,17 @@ TEST(OracleReach, BeginsNotWhileTheHandStandsStill) {
   ExpectNear(Of("reaching(hand, cup)", stage.Truth()), {{start, touch}});
 }
 
+TEST(OracleReach, BeginsNotWhileTheHandSettles) {
+  Stage stage;
+  stage.hand().palm.X_WB.p_m.x() = 0.2;
+  stage.Play(4 / 240.0, {0.003, 0, 0});
+  stage.Play(0.1);
+  const Tick start = stage.now();
+  MoveHandTo(stage, 0.45);
+  const Tick touch = Grasp(stage);
+  ExpectNear(Of("reaching(hand, cup)", stage.Truth()), {{start, touch}});
+}
+
 TEST(OracleReach, BeginsWithASlowStart) {
   Stage stage;
   MoveHandTo(stage, 0.2);
