@@ -18,6 +18,7 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
       lanes_(*program_, cast_),
       evaluator_(*program_, cast_, history_, lanes_),
       thresholds_(program_->thresholds),
+      recalls_touches_(program_->recalls_touches || program_->asks_touches),
       keeps_touches_(program_->asks_touches),
       grips_(cast_.entities.size(), thresholds_.OfGrip(0)),
       awake_(program_->events.size()) {
@@ -27,7 +28,6 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
                            .idle = history_.AtMostTicks(rule.idle_s),
                            .back = history_.AtMostTicks(rule.back_s),
                            .within = rule.within_s < 0 ? -1 : history_.AtMostTicks(rule.within_s)});
-    watched_press_ |= rule.watches_press;
     // A requirement or an attribute is asked for where the run ended, when its gap is too long.
     const double waits_s = rule.requirement == kNone && rule.attributes.empty() ? 0 : rule.bridging_s;
     longest_look_back_ =
@@ -65,9 +65,10 @@ bool Engine::CanMeasure(const Lane& lane) const {
 // What must be so of a touch and of a grip is so now.
 bool Engine::IsMeasured(const Lane& lane) const {
   const MeasuredPart& part = RuleOf(lane).measured;
-  if (part.touch == kNone) return part.grip.Fit(grips_[lane.entities[part.hand]]);
+  const int hand = part.hand == kNone ? kNobody : lane.entities[part.hand];
+  if (part.touch == kNone) return part.grip.Fit(grips_[hand]);
   const Lane& touch = lanes_[lane.references[part.touch]];
-  return IsMeasured(lane, touch, part.first != kNone && touch.entities[0] != lane.entities[part.first]);
+  return IsMeasured(part, hand, touch, part.first != kNone && touch.entities[0] != lane.entities[part.first]);
 }
 
 // A resting lane would find what it found before: what must be measured for it to begin is not, or nothing else matters
@@ -78,10 +79,7 @@ bool Engine::SaysTheSame(const Lane& lane) const {
   return !IsMeasured(lane);
 }
 
-// What begins with a moment does not begin at others. That moment may be told of later in this frame; whoever tells of
-// it asks again.
-bool Engine::MayBegin(const Lane& lane) const {
-  if (lane.moment < history_.now()) return false;
+bool Engine::MomentMayCome(const Lane& lane) const {
   const Rule& rule = RuleOf(lane);
   if (rule.opened_by == kNone) return true;
   const int event = lane.references[rule.opened_by];
@@ -101,7 +99,7 @@ void Engine::Tell(Lane& lane) {
     Lane& watching = lanes_[watcher.lane];
     if (watcher.opened) watching.moment = lane.told == Kleene::kUnknown ? kNever : history_.now();
     if (watching.awake) continue;
-    if (watcher.instant) {
+    if (watcher.instant != nullptr) {
       Measure(watching, watcher, lane);
     } else if (watching.open || MayBegin(watching)) {
       if (watching.open || watcher.guarded || !lanes_.GuardRests(watching)) Wake(watcher.lane);
@@ -171,20 +169,7 @@ void Engine::Rest(Lane& lane) {
   if (!lane.open) Retire(lane);
 }
 
-// Nothing of it has been looked at, as nothing can have begun, but now it may be of no more use.
-void Engine::RestOn(Lane& lane) {
-  lane.resting_since = history_.now();
-  Retire(lane);
-}
-
-void Engine::Retire(Lane& lane) {
-  if (lane.retiring) return;
-  lane.retiring = true;
-  retirees_.PushBack() = {lane.resting_since, lane.index};
-}
-
 void Engine::StepRule(int rule) {
-  if (awake_[rule].empty()) return;
   std::erase_if(awake_[rule], [&](int index) {
     Lane& lane = lanes_[index];
     if (LooksTheSame(lane)) {

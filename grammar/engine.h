@@ -42,7 +42,7 @@ class Engine {
   // For hindsight.h. From now on nothing is forgotten, and what becomes of each run is noted. Before the first frame.
   void Remember(Fates& fates) {
     fates_ = &fates;
-    keeps_touches_ = true;
+    recalls_touches_ = keeps_touches_ = true;
   }
   const Program& program() const { return *program_; }
   const Cast& cast() const { return cast_; }
@@ -81,12 +81,13 @@ class Engine {
   void Look(int entity, const EntityLook& look);
   void Look(const HandLook& hand);
   void Press(std::span<const Touch> touches);
-  void Press(const Touch& touch, int touching);
+  void BeginTouch(Lane& touching);
   void Part(int touching);
   void CloseTouch(Lane& touching, Moment end);
+  void Keep(Lane& touching, const Touch& touch, bool swapped);
   void TellPress(const Lane& touch, ThresholdSet crossed);
   void Measure(Lane& lane, const Watcher& as, const Lane& touch) {
-    if (IsMeasured(lane, touch, as.turned) != lane.open) BeginOrEnd(lane);
+    if (IsMeasured(*as.instant, as.hand, touch, as.turned) != lane.open) BeginOrEnd(lane);
   }
   void BeginOrEnd(Lane& lane);
 
@@ -96,23 +97,32 @@ class Engine {
   bool MayStir(const Lane& lane) const;
   bool CanMeasure(const Lane& lane) const;
   bool IsMeasured(const Lane& lane) const;
-  /// Likewise, of this touch, which names the two the other way round than the rule if `turned`.
-  bool IsMeasured(const Lane& lane, const Lane& touch, bool turned) const {
-    const MeasuredPart& part = RuleOf(lane).measured;
-    if (part.hand != kNone && !part.grip.Fit(grips_[lane.entities[part.hand]])) return false;
+  /// Likewise, of a grip, if there is one, and a touch, which names the two the other way round than the rule if `turned`.
+  bool IsMeasured(const MeasuredPart& part, int hand, const Lane& touch, bool turned) const {
+    if (hand != kNobody && !part.grip.Fit(grips_[hand])) return false;
     if (!touch.open) return !part.must_touch && part.press[0].Fit(thresholds_.OfNoTouch());
     return part.press[turned ? 1 : 0].Fit(touch.beyond);
   }
   bool SaysTheSame(const Lane& lane) const;
-  bool MayBegin(const Lane& lane) const;
+  /// What begins with a moment does not begin at others. That moment may be told of later in this frame; whoever tells
+  /// of it asks again.
+  bool MayBegin(const Lane& lane) const { return lane.moment >= history_.now() && MomentMayCome(lane); }
+  bool MomentMayCome(const Lane& lane) const;
   void Tell(Lane& lane);
   void TellIfChanged(Lane& lane);
   void WakeAt(Tick tick, int lane);
   void RingAlarms();
   bool MayRest(const Lane& lane);
   void Rest(Lane& lane);
-  void RestOn(Lane& lane);
-  void Retire(Lane& lane);
+  /// Nothing of it has been looked at, as nothing can have begun, but now it may be of no more use.
+  void RestOn(Lane& lane) {
+    lane.resting_since = history_.now();
+    Retire(lane);
+  }
+  void Retire(Lane& lane) {
+    if (!lane.retiring) retirees_.PushBack() = {lane.resting_since, lane.index};
+    lane.retiring = true;
+  }
   void StepRule(int rule);
   void ForgetThePast();
   void FreeLanes();
@@ -138,17 +148,23 @@ class Engine {
   // From a run to an event.
   [[nodiscard]] bool Open(Lane& lane, FrameNumber frame);
   void Begin(Lane& lane, FrameNumber frame);
-  int StyleAt(const Lane& lane, FrameNumber frame) const;
+  int StyleAt(const Lane& lane, FrameNumber frame) const {
+    return RuleOf(lane).style_role == kNone ? kNobody : StyleOfHand(lane.entities[RuleOf(lane).style_role], frame);
+  }
+  int StyleOfHand(int hand, FrameNumber frame) const;
   bool Close(Lane& lane, Moment end, bool open_end = false);
   bool Conclude(Lane& lane, const Span& span);
   void ResolvePending(Lane& lane);
   void Emit(Lane& lane, const Pending& finished);
   void Keep(Lane& lane, const Span& span);
-  Tick DecidedAt(const Lane& lane, const Span& span) const;
+  Tick DecidedAt(const Lane& lane, const Span& span) const { return RuleOf(lane).absence ? DeadlineOf(span) : decided_; }
+  Tick DeadlineOf(const Span& span) const;
   void UpdateKnown(Lane& lane);
   bool RunIsCertain(const Lane& lane) const;
   void FinishLane(Lane& lane, Moment end);
-  void Note(const Lane& lane, Fate::Kind kind, const Span& span, FrameNumber cause = kNever, const WalkBack& walk = {});
+  void Note(const Lane& lane, Fate::Kind kind, const Span& span, FrameNumber cause = kNever, const WalkBack& walk = {}) {
+    if (fates_ != nullptr) fates_->push_back({kind, lane.index, span, cause, DecidedAt(lane, span), walk});
+  }
 
   // Compositions are told of each finished interval of their parts.
   void TellCompositions(const Lane& part, const Span& span);
@@ -167,8 +183,8 @@ class Engine {
   Evaluator evaluator_;
   std::vector<RuleTicks> rule_ticks_;
   Thresholds thresholds_;
-  ThresholdSet watched_press_ = 0;  // by any rule
-  bool keeps_touches_ = false;      // all that they measure; else which thresholds they are beyond
+  bool recalls_touches_ = false;  // which thresholds they were beyond
+  bool keeps_touches_ = false;    // and all that they measured
   std::vector<ThresholdSet> grips_;  // by entity: what its grip is beyond now
   Tick longest_look_back_ = 0;
   std::vector<std::vector<int>> awake_;  // by rule

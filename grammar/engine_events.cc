@@ -21,10 +21,8 @@ void Engine::Begin(Lane& lane, FrameNumber frame) {
 }
 
 // A hand that no frame has shown yet has no style.
-int Engine::StyleAt(const Lane& lane, FrameNumber frame) const {
-  const Rule& rule = RuleOf(lane);
-  if (rule.style_role == kNone) return kNobody;
-  const HandSample* hand = history_.Hand(lane.entities[rule.style_role], frame);
+int Engine::StyleOfHand(int entity, FrameNumber frame) const {
+  const HandSample* hand = history_.Hand(entity, frame);
   return hand == nullptr ? kNobody : hand->look.style;
 }
 
@@ -87,11 +85,7 @@ void Engine::Emit(Lane& lane, const Pending& finished) {
   const Rule& rule = RuleOf(lane);
   const Span& span = finished.span;
   Note(lane, Fate::Kind::kInterval, span, rule.confirmed_by == kNone ? kNever : finished.next);
-  if (rule.referenced) {
-    const FrameNumber oldest = history_.first();
-    std::erase_if(lane.past, [&](const Span& past) { return past.end.frame < oldest; });
-    lane.past.push_back(span);
-  }
+  if (rule.referenced) Keep(lane, span);
   if (!rule.part_of.empty()) TellCompositions(lane, span);
   if (!rule.printed) return;
   Event& event = out_->emplace_back();
@@ -104,16 +98,17 @@ void Engine::Emit(Lane& lane, const Pending& finished) {
   event.attributes = finished.attributes;
 }
 
-void Engine::Note(const Lane& lane, Fate::Kind kind, const Span& span, FrameNumber cause, const WalkBack& walk) {
-  if (fates_ == nullptr) return;
-  fates_->push_back({kind, lane.index, span, cause, DecidedAt(lane, span), walk});
+// As long as somebody may ask about it.
+void Engine::Keep(Lane& lane, const Span& span) {
+  while (!lane.past.empty() && lane.past.front().end.frame < history_.first()) lane.past.PopFront();
+  lane.past.PushBack() = span;
 }
 
 // A deadline that passes between two frames decides at once; the later frame only tells that time went on.
-Tick Engine::DecidedAt(const Lane& lane, const Span& span) const {
+Tick Engine::DeadlineOf(const Span& span) const {
   const FrameNumber before = finishing_ ? history_.now() : history_.now() - 1;
   const bool just_passed = before >= history_.first() && span.end.tick > history_.At(before).tick;
-  return RuleOf(lane).absence && just_passed ? span.end.tick : decided_;
+  return just_passed ? span.end.tick : decided_;
 }
 
 bool Engine::RunIsCertain(const Lane& lane) const {

@@ -121,7 +121,9 @@ bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
 }
 
 void Engine::EndFrame() {
-  for (const int rule : program_->schedule) StepRule(rule);
+  for (const int rule : program_->schedule) {
+    if (!awake_[rule].empty()) StepRule(rule);
+  }
   ForgetThePast();
   FreeLanes();
   if (lanes_.TooMany()) error_ = kTooMany;
@@ -184,41 +186,44 @@ void Engine::Look(const HandLook& hand) {
 }
 
 void Engine::Press(std::span<const Touch> touches) {
-  for (std::size_t i = 0; i < touches.size(); ++i) Press(touches[i], pressed_[i]);
+  const FrameNumber now = history_.now();
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const Touch& touch = touches[i];
+    const int index = pressed_[i] != kNone ? pressed_[i] : lanes_.Ensure(kTouchingRule, {touch.a, touch.b, kNobody, kNobody});
+    if (index == kNone) continue;
+    Lane& lane = lanes_[index];
+    if (lane.touched == now) continue;  // said twice
+    lane.touched = now;
+    const bool swapped = lane.entities[0] != touch.a;
+    const ThresholdSet beyond = swapped ? thresholds_.OfTouch(touch.up_on_b, touch.up_on_a, touch.normal_force_n, touch.sensor_sets)
+                                        : thresholds_.OfTouch(touch.up_on_a, touch.up_on_b, touch.normal_force_n, touch.sensor_sets);
+    const ThresholdSet crossed = beyond ^ lane.beyond;
+    if (lane.open && (keeps_touches_ ? Same(touch, swapped, lane.touches.back()) : crossed == 0)) continue;
+    lane.beyond = beyond;
+    if (recalls_touches_) Keep(lane, touch, swapped);
+    lane.open ? TellPress(lane, crossed | kAnyChange) : BeginTouch(lane);
+  }
 }
 
-void Engine::Press(const Touch& touch, int index) {
-  if (index == kNone) index = lanes_.Ensure(kTouchingRule, {touch.a, touch.b, kNobody, kNobody});
-  if (index == kNone) return;
-  Lane& lane = lanes_[index];
-  if (lane.touched == history_.now()) return;  // said twice
-  lane.touched = history_.now();
-  const bool swapped = lane.entities[0] != touch.a;
-  const ThresholdSet beyond = thresholds_.OfTouch(swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b,
-                                                  touch.normal_force_n, touch.sensor_sets);
-  const ThresholdSet crossed = kAnyChange | (beyond ^ lane.beyond);
-  if (lane.open && (keeps_touches_ ? Same(touch, swapped, lane.touches.back()) : beyond == lane.beyond)) return;
-  lane.beyond = beyond;
-  ForgetSamples(lane.touches, history_.first_look());
-  // Filled in place: what is written in parts and copied at once has to wait for itself.
-  TouchSample& sample = lane.touches.PushBack();
+void Engine::Keep(Lane& touching, const Touch& touch, bool swapped) {
+  ForgetSamples(touching.beyonds, history_.first_look());
+  touching.beyonds.PushBack() = {history_.now(), touching.beyond};
+  if (!keeps_touches_) return;
+  ForgetSamples(touching.touches, history_.first_look());
+  TouchSample& sample = touching.touches.PushBack();
   sample.frame = history_.now();
-  sample.beyond = beyond;
-  if (keeps_touches_) {
-    sample.up = swapped ? std::array{touch.up_on_b, touch.up_on_a} : std::array{touch.up_on_a, touch.up_on_b};
-    sample.force_n = touch.normal_force_n;
-    sample.sensor_sets = touch.sensor_sets;
-  }
-  if (!lane.open) {
-    lane.open = lane.certain = true;
-    lane.begin = history_.At(history_.now());
-    lane.touching_place = touching_.size();
-    touching_.push_back(index);
-    lane.told = Kleene::kTrue;
-    Tell(lane);
-  } else if ((crossed & watched_press_) != 0) {
-    TellPress(lane, crossed);
-  }
+  sample.up = swapped ? std::array{touch.up_on_b, touch.up_on_a} : std::array{touch.up_on_a, touch.up_on_b};
+  sample.force_n = touch.normal_force_n;
+  sample.sensor_sets = touch.sensor_sets;
+}
+
+void Engine::BeginTouch(Lane& touching) {
+  touching.open = touching.certain = true;
+  touching.begin = history_.At(history_.now());
+  touching.touching_place = touching_.size();
+  touching_.push_back(touching.index);
+  touching.told = Kleene::kTrue;
+  Tell(touching);
 }
 
 // The two touch as before, but press otherwise: these thresholds were crossed.
@@ -227,7 +232,7 @@ void Engine::TellPress(const Lane& touch, ThresholdSet crossed) {
     if ((watcher.press & crossed) == 0) continue;
     Lane& watching = lanes_[watcher.lane];
     if (watching.awake) continue;
-    if (watcher.instant) {
+    if (watcher.instant != nullptr) {
       Measure(watching, watcher, touch);
     } else if (!SaysTheSame(watching) && MayStir(watching)) {
       Wake(watcher.lane);
@@ -264,8 +269,7 @@ void Engine::Part(int touching) {
 }
 
 void Engine::CloseTouch(Lane& lane, Moment end) {
-  std::erase_if(lane.past, [&](const Span& past) { return past.end.frame < history_.first(); });
-  lane.past.push_back({lane.begin, end});
+  Keep(lane, {lane.begin, end});
   lane.open = false;
 }
 

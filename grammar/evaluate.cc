@@ -111,8 +111,9 @@ Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const
     const HandSample* hand = history_.Hand(Entity(value, view, 0), view.frame);
     beyond = hand != nullptr ? hand->beyond : thresholds_.OfGrip(0);
   } else {
-    const TouchSample* touch = Touch(value, view, swapped);
-    beyond = touch != nullptr ? touch->beyond : thresholds_.OfNoTouch();
+    const Lane* touching = Touching(value, view, swapped);
+    const bool is_now = view.frame == history_.now() && touching != nullptr && touching->open;
+    beyond = touching == nullptr ? thresholds_.OfNoTouch() : is_now ? touching->beyond : SampleAt(touching->beyonds, view.frame).beyond;
   }
   return Known((((beyond >> by.thresholds[swapped ? 1 : 0]) & 1) != 0) == by.beyond);
 }
@@ -373,12 +374,18 @@ Vector3d Evaluator::RelativeVelocity(int a, int b, FrameNumber frame) const {
 }
 
 // Null where the two do not touch.
-const TouchSample* Evaluator::Touch(const Node& node, const View& view, bool& swapped) const {
+const Lane* Evaluator::Touching(const Node& node, const View& view, bool& swapped) const {
   const int index = lanes_.Resolve(view.lane, node.slot);
   if (lanes_.TruthAt(index, view.frame) != Kleene::kTrue) return nullptr;
   const Lane& lane = lanes_[index];
   swapped = lane.entities[0] != Entity(node, view, 0);
-  return &SampleAt(lane.touches, view.frame);
+  return &lane;
+}
+
+// Likewise.
+const TouchSample* Evaluator::Touch(const Node& node, const View& view, bool& swapped) const {
+  const Lane* touching = Touching(node, view, swapped);
+  return touching == nullptr ? nullptr : &SampleAt(touching->touches, view.frame);
 }
 
 std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {

@@ -82,6 +82,7 @@ class Evaluator {
   std::optional<double> TurnRate(const Node& node, const View& view) const;
   Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;
   Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;
+  const Lane* Touching(const Node& node, const View& view, bool& swapped) const;
   const TouchSample* Touch(const Node& node, const View& view, bool& swapped) const;
   int Entity(const Node& node, const View& view, int i) const { return view.lane.entities[node.roles[i]]; }
 

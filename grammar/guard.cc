@@ -135,6 +135,14 @@ bool AsksTouches(const Program& program, int index) {
   return std::any_of(node.args.begin(), node.args.end(), [&](int arg) { return AsksTouches(program, arg); });
 }
 
+// Whether it compares what a touch measures with thresholds.
+bool ComparesTouches(const Program& program, int index) {
+  if (index == kNone) return false;
+  const Node& node = program.nodes[index];
+  if (node.by_threshold.value != kNone) return program.nodes[node.by_threshold.value].op != Op::kTrigger;
+  return std::any_of(node.args.begin(), node.args.end(), [&](int arg) { return ComparesTouches(program, arg); });
+}
+
 double LooksAround(const Program& program, int index) {
   if (index == kNone) return 0;
   const Node& node = program.nodes[index];
@@ -241,11 +249,15 @@ void FindMeasured(const Program& program, const Rule& rule, MeasuredPart& part, 
   }
 }
 
-// Nothing that is to come, nothing that was before and nothing else of now has a say in its intervals.
+// All that it asks is measured: each frame is decided when it is there, and none is looked at later.
+bool IsKnownAtOnce(const Rule& rule) {
+  return rule.measured.whole && !rule.measured.is_empty() && rule.requirement == kNone && rule.confirmed_by == kNone &&
+         rule.attributes.empty() && rule.anchors.empty();
+}
+
+// And nothing else has a say in when its intervals begin and end, and whether they are any.
 bool IsInstant(const Rule& rule) {
-  return rule.measured.whole && rule.measured.touch != kNone && rule.bridging_s == 0 && rule.requirement == kNone &&
-         rule.confirmed_by == kNone && rule.attributes.empty() && rule.anchors.empty() &&
-         (rule.lasting_s == 0 || !rule.referenced);
+  return IsKnownAtOnce(rule) && rule.measured.touch != kNone && rule.bridging_s == 0 && (rule.lasting_s == 0 || !rule.referenced);
 }
 
 // A value where the interval begins or ends is not asked for at every frame.
@@ -309,6 +321,7 @@ void ChooseGuards(Program& program) {
     for (const int node : nodes) {
       rule.looks_around_s = std::max(rule.looks_around_s, LooksAround(program, node));
       program.asks_touches = program.asks_touches || AsksTouches(program, node);
+      program.recalls_touches = program.recalls_touches || (!IsKnownAtOnce(rule) && ComparesTouches(program, node));
     }
   }
 }

@@ -16,7 +16,10 @@ void Hindsight::Finish(Tick end) {
   // The fact has no fates: its intervals are what was seen.
   for (int lane = 0; lane < engine_.lanes().size(); ++lane) {
     if (At(lane).rule != kTouchingRule) continue;
-    for (const Span& span : At(lane).past) by_lane_[lane].push_back({.lane = lane, .span = span, .decided = span.end.tick});
+    const Ring<Span>& past = At(lane).past;
+    for (std::size_t i = 0; i < past.size(); ++i) {
+      by_lane_[lane].push_back({.lane = lane, .span = past[i], .decided = past[i].end.tick});
+    }
   }
   for (Fate& fate : fates_) {
     if (fate.kind == Fate::Kind::kWalkedBack) {

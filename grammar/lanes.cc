@@ -170,9 +170,10 @@ void Lanes::Refer(Lane& lane, int slot, int target) {
                               .guarded = guarded,
                               .guarded_begin = guarded && rule.guarded_begin,
                               .opened = opened,
-                              .instant = instant,
                               .turned = instant && part.first != kNone && watched.entities[0] != lane.entities[part.first],
-                              .press = rule.watches_press});
+                              .press = rule.watches_press,
+                              .instant = instant ? &part : nullptr,
+                              .hand = instant && part.hand != kNone ? lane.entities[part.hand] : kNobody});
   if (opened && !watched.awake) lane.moment = -1;  // else it may be on its way
 }
 
@@ -221,8 +222,9 @@ void Lanes::Free(int index, std::vector<int>& orphans) {
   for (const Watcher& any : lane.watchers) std::erase(lanes_[any.lane].members, index);
   lane.members.clear();
   lane.watchers.clear();
-  lane.past.clear();
+  lane.past.Clear();
   lane.touches.Clear();
+  lane.beyonds.Clear();
   lane.dependents_made = false;
   lane.told = Kleene::kFalse;
   lane.moment = kNever;

@@ -43,18 +43,24 @@ struct TouchSample {
   std::array<double, 2> up = {-1, -1};
   double force_n = 0;
   std::uint32_t sensor_sets = 0;
-  ThresholdSet beyond = 0;  ///< kept from when it was measured
 };
 
-/// A lane that asks about another one, and as what.
+/// Which thresholds that is beyond.
+struct BeyondSample {
+  FrameNumber frame = 0;
+  ThresholdSet beyond = 0;
+};
+
+/// A lane that asks about another one, and as what: all that is needed to see that it need not be looked at.
 struct Watcher {
   int lane = kNone;
   bool guarded = false;        ///< the other one is its guard
   bool guarded_begin = false;  ///< likewise, see Rule
   bool opened = false;         ///< nothing of it begins but with a moment of the other one
-  bool instant = false;        ///< the other one is the touch of its rule's MeasuredPart, and that is instant
-  bool turned = false;         ///< likewise, and the touch names the two the other way round
+  bool turned = false;         ///< `instant` names the two of the touch the other way round
   ThresholdSet press = 0;      ///< what matters to it of how the two touch
+  const MeasuredPart* instant = nullptr;  ///< of its rule, if that is instant and the other one is its touch
+  int hand = kNobody;                     ///< whose grip `instant` asks for
 };
 
 /// A finished interval that waits for its confirmation.
@@ -77,21 +83,23 @@ struct alignas(64) Lane : LaneKey {  // rule kNone: the lane is free
   Kleene told = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
   FrameNumber known = kNever;    ///< truth is final before this frame
   Moment begin;
-  FrameNumber touched = -1;      ///< kTouching only: the last frame that said so
-  // The second line.
+  FrameNumber moment = kNever;   ///< Rule::opened_by: nothing begins after this frame until its next change
+  // The second line: what a touch is looked at for.
+  FrameNumber touched = -1;        ///< kTouching only: the last frame that said so
   ThresholdSet beyond = 0;         ///< kTouching only, while it is open: of the newest sample
   std::vector<Watcher> watchers;   ///< lanes to wake when the truth of this one changes
-  FrameNumber moment = kNever;     ///< Rule::opened_by: nothing begins after this frame until its next change
+  Ring<BeyondSample> beyonds;      ///< kTouching only, where they change
+  // The third line: what lanes are stepped with.
   FrameNumber next = 0;            ///< first frame not yet looked at; nothing while at rest
   FrameNumber resting_since = 0;
-  std::size_t touching_place = 0;  ///< kTouching only: where among those that touch now
+  Ring<Span> past;                 ///< intervals, as long as somebody may ask
+  std::vector<int> references;     ///< lanes, one per Rule::references; kNone: not asked for yet
   // The rest.
-  std::vector<Span> past;       ///< intervals, as long as somebody may ask
-  Ring<TouchSample> touches;    ///< kTouching only, where they change
-  std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not asked for yet
   std::vector<Pending> pending;
   Moment gap;
   std::vector<double> anchors;  ///< three numbers per Rule::anchors
+  Ring<TouchSample> touches;    ///< kTouching only, where they change, if a rule asks for them
+  std::size_t touching_place = 0;  ///< kTouching only: where among those that touch now
   int style = kNobody;
   std::array<int, kMaxRoles> watch_places = kUnbound;  ///< by role: where in the list of the entity's watchers
   FrameNumber approach_from = 0;  ///< kUntilSince: no later interval reaches back before this frame
@@ -189,7 +197,10 @@ class Lanes {
   void UnwatchEntities(const Lane& lane);
   template <typename Which>
   static Kleene AnyPast(const Lane& lane, const Which& which) {
-    return Known(std::any_of(lane.past.rbegin(), lane.past.rend(), which));
+    for (std::size_t i = lane.past.size(); i-- > 0;) {
+      if (which(lane.past[i])) return Kleene::kTrue;
+    }
+    return Kleene::kFalse;
   }
   void Unlink(int lane, int watcher, std::vector<int>& orphans);
   const Program& program_;

@@ -219,6 +219,7 @@ struct Program {
   std::vector<ProgramParam> params;
   std::vector<Threshold> thresholds;     ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
   bool asks_touches = false;             ///< for what a touch measures, apart from which thresholds it is beyond
+  bool recalls_touches = false;          ///< which thresholds it was beyond in frames before the newest
 };
 
 inline constexpr int kTouchingRule = 0;

@@ -6,8 +6,9 @@
 
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <utility>
-#include <vector>
 
 namespace prehend::grammar {
 
@@ -17,8 +18,8 @@ class Ring {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
-  T& operator[](std::size_t i) { return slots_[(front_ + i) & (capacity_ - 1)]; }
-  const T& operator[](std::size_t i) const { return slots_[(front_ + i) & (capacity_ - 1)]; }
+  T& operator[](std::size_t i) { return slots_[Slot(i)]; }
+  const T& operator[](std::size_t i) const { return slots_[Slot(i)]; }
   T& front() { return (*this)[0]; }
   const T& front() const { return (*this)[0]; }
   T& back() { return (*this)[size_ - 1]; }
@@ -41,18 +42,21 @@ class Ring {
   void Clear() { front_ = size_ = 0; }
 
  private:
+  std::uint32_t Slot(std::size_t i) const { return (front_ + static_cast<std::uint32_t>(i)) & (capacity_ - 1); }
+
   void Grow() {
-    std::vector<T> larger(slots_.empty() ? 2 : 2 * slots_.size());
-    for (std::size_t i = 0; i < size_; ++i) larger[i] = std::move((*this)[i]);
+    const std::uint32_t capacity = slots_ == nullptr ? 2 : 2 * capacity_;
+    std::unique_ptr<T[]> larger = std::make_unique<T[]>(capacity);
+    for (std::uint32_t i = 0; i < size_; ++i) larger[i] = std::move((*this)[i]);
     slots_ = std::move(larger);
-    capacity_ = slots_.size();
+    capacity_ = capacity;
     front_ = 0;
   }
 
-  std::vector<T> slots_;  // the number of slots is zero or a power of two
-  std::size_t capacity_ = 0;  // kept, as it takes a division to ask for it
-  std::size_t front_ = 0;
-  std::size_t size_ = 0;
+  std::unique_ptr<T[]> slots_;
+  std::uint32_t capacity_ = 0;  // a power of two, once there is one
+  std::uint32_t front_ = 0;
+  std::uint32_t size_ = 0;
 };
 
 }  // namespace prehend::grammar

@@ -95,47 +95,88 @@ TEST(Changes, SayTheSameAsWholeFrames) {
 }
 
 // Without thresholds, opening moments and what is measured everything that changes wakes everybody who asks about it.
+// The same program, but everybody is woken by everything, and nothing is answered by what was measured.
+std::shared_ptr<const Program> Thorough(const Program& program) {
+  const auto thorough = std::make_shared<Program>(program);
+  for (Rule& rule : thorough->events) {
+    rule.opened_by = kNone;
+    rule.guarded_begin = false;
+    rule.measured = {};
+    rule.watches_press = rule.watches_grips = ~ThresholdSet{0};
+  }
+  for (Node& node : thorough->nodes) node.by_threshold = {};
+  thorough->asks_touches = thorough->recalls_touches = true;
+  return thorough;
+}
+
+struct Compared {
+  std::size_t events = 0;
+  std::size_t object_frames = 0;
+};
+
+// Worlds in which anything may happen, watched by both.
+Compared CompareWithThorough(const std::shared_ptr<const Program>& program, int rounds) {
+  const auto thorough = Thorough(*program);
+  Compared compared;
+  for (int round = 0; round < rounds; ++round) {
+    RandomWorld world(7000 + round);
+    Monitor quick(program, world.cast), slow(thorough, world.cast);
+    std::vector<Event> a, b;
+    for (int i = 0; i < 1200; ++i, compared.object_frames += world.looks.size()) {
+      const Frame frame = world.Next();
+      quick.Advance(frame, a);
+      slow.Advance(frame, b);
+    }
+    quick.Finish(world.tick + 5, a);
+    slow.Finish(world.tick + 5, b);
+    EXPECT_EQ(Lines(a, *program), Lines(b, *program)) << "round " << round;
+    if (::testing::Test::HasFailure()) break;
+    compared.events += a.size();
+  }
+  return compared;
+}
+
 TEST(Changes, WhoeverIsNotWokenHasNothingToSay) {
   const CompileResult compiled =
       Compile({"both", std::string("grammar both\n") + testing::kRestlessRules}, testing::LibraryIncluder());
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
-  const auto plain = std::make_shared<Program>(*compiled.program);
-  int opened = 0, guarded = 0, compared = 0, measured = 0;
-  for (Rule& rule : plain->events) {
-    opened += rule.opened_by != kNone ? 1 : 0;
-    rule.opened_by = kNone;
-    guarded += rule.guarded_begin ? 1 : 0;
-    rule.guarded_begin = false;
-    measured += rule.measured.is_empty() ? 0 : 1;
-    rule.measured = {};
-    rule.watches_press = rule.watches_grips = ~ThresholdSet{0};
-  }
-  for (Node& node : plain->nodes) {
-    compared += node.by_threshold.value != kNone ? 1 : 0;
-    node.by_threshold = {};
-  }
-  plain->asks_touches = true;
-  EXPECT_GE(opened, 5);
-  EXPECT_GE(guarded, 3);
-  EXPECT_GE(compared, 5);
-  EXPECT_GE(measured, 5);
-  std::size_t count = 0, object_frames = 0;
-  for (int round = 0; round < 100; ++round) {
-    RandomWorld world(7000 + round);
-    Monitor quick(compiled.program, world.cast), thorough(plain, world.cast);
-    std::vector<Event> a, b;
-    for (int i = 0; i < 1200; ++i, object_frames += world.looks.size()) {
-      const Frame frame = world.Next();
-      quick.Advance(frame, a);
-      thorough.Advance(frame, b);
-    }
-    quick.Finish(world.tick + 5, a);
-    thorough.Finish(world.tick + 5, b);
-    ASSERT_EQ(Lines(a, *plain), Lines(b, *plain)) << "round " << round;
-    count += a.size();
-  }
-  EXPECT_GT(count, 50000u);
-  EXPECT_GT(object_frames, 1000000u);
+  const auto rules = [&](auto which) { return std::ranges::count_if(compiled.program->events, which); };
+  EXPECT_GE(rules([](const Rule& rule) { return rule.opened_by != kNone; }), 5);
+  EXPECT_GE(rules([](const Rule& rule) { return rule.guarded_begin; }), 3);
+  EXPECT_GE(rules([](const Rule& rule) { return !rule.measured.is_empty(); }), 5);
+  EXPECT_GE(std::ranges::count_if(compiled.program->nodes, [](const Node& node) { return node.by_threshold.value != kNone; }), 5);
+  const Compared compared = CompareWithThorough(compiled.program, 100);
+  EXPECT_GT(compared.events, 50000u);
+  EXPECT_GT(compared.object_frames, 1000000u);
+}
+
+// Rules that are decided where a touch is seen, and those that are made of them.
+constexpr const char* kInstantRules = R"(
+grammar instant
+event gripped(hand: Hand, object: Movable) while trigger(hand) >= 0.3 and sensor_sets(hand, object) >= 2
+event loose(hand: Hand, object: Movable) while sensor_sets(hand, object) < 2 and trigger(hand) < 0.3
+event pressed(object: Movable, other: Thing) while touching(object, other) and force(object, other) > 1.5 N
+event on(object: Movable, support: Thing) while touching(object, support) and up(object, support) >= 0.5
+event under(object: Movable, load: Thing) while up(load, object) > 0.4 lasting 30 ms
+event stands(object: Movable, support: Thing) while on(object, support) lasting 30 ms
+event open_hand(hand: Hand) while trigger(hand) < 0.3
+event lifted(hand: Hand, object: Movable)
+  from on(object, any) ends to gripped(hand, object) ends during gripped(hand, object)
+event felt(hand: Hand, object: Movable)
+  from touching(hand, object) begins to gripped(hand, object) begins during touching(hand, object) lasting 20 ms
+event left(hand: Hand, object: Movable)
+  from gripped(hand, object) ends without gripped(hand, object) begins within 200 ms
+event taken(hand: Hand, object: Movable)
+  compose grip: gripped(hand, object), lift: lifted(hand, object) where grip contains|finished_by|overlaps lift
+event plain(hand: Hand, object: Movable) rest of gripped(hand, object) outside pressed(object, any), stands(object, any)
+)";
+
+TEST(Changes, WhatIsDecidedAtOnceNeedsNoPast) {
+  const CompileResult compiled = Compile({"instant", kInstantRules}, nullptr);
+  ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
+  EXPECT_GE(std::ranges::count_if(compiled.program->events, [](const Rule& rule) { return rule.measured.instant; }), 5);
+  EXPECT_FALSE(compiled.program->recalls_touches);
+  EXPECT_GT(CompareWithThorough(compiled.program, 50).events, 10000u);
 }
 
 // A hand feels its way along many things; what it has left behind is forgotten, and found again.
