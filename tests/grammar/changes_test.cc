@@ -94,7 +94,6 @@ TEST(Changes, SayTheSameAsWholeFrames) {
   EXPECT_GT(count, 10000u);
 }
 
-// Without thresholds, opening moments and what is measured everything that changes wakes everybody who asks about it.
 // The same program, but everybody is woken by everything, and nothing is answered by what was measured.
 std::shared_ptr<const Program> Thorough(const Program& program) {
   const auto thorough = std::make_shared<Program>(program);
