@@ -175,7 +175,7 @@ TEST(Changes, WhatIsDecidedAtOnceNeedsNoPast) {
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
   EXPECT_GE(std::ranges::count_if(compiled.program->events, [](const Rule& rule) { return rule.measured.instant; }), 5);
   EXPECT_FALSE(compiled.program->recalls_touches);
-  EXPECT_GT(CompareWithThorough(compiled.program, 50).events, 10000u);
+  EXPECT_GT(CompareWithThorough(compiled.program, 20).events, 10000u);
 }
 
 // A hand feels its way along many things; what it has left behind is forgotten, and found again.
