@@ -17,6 +17,8 @@ std::span<const Builtin> Builtins() {
        "(what, centre, radius): a position, or any part of an entity's box, is in the sphere"},
       {"in_cylinder", Op::kInCylinder, T::kTruth, kPlain, {A::kPosition, A::kPosition, A::kLength, A::kLength},
        "(position, centre, radius, height): in the upright cylinder, at most height above or below its centre"},
+      {"inside", Op::kInside, T::kTruth, kPlain, {A::kEntity, A::kEntity},
+       "the centre of the first is in the second's box, or in its ball if it is round"},
       {"part_of", Op::kPartOf, T::kTruth, kPlain, {A::kEntity, A::kEntity}, "the first is a part of the second, or of a part of it"},
       {"gazed", Op::kGazed, T::kTruth, kPlain, {A::kEntity, A::kEntity}, "the first looks at the second"},
       {"sensor_set", Op::kSensorSet, T::kTruth, kPlain, {A::kHand, A::kSet, A::kThing},

@@ -62,12 +62,24 @@ Kleene Evaluator::Truth(int index, const View& view) const {
       const std::optional<Reach> reach = ReachOf(node, view);
       return reach ? Known(reach->IsInside()) : Kleene::kUnknown;
     }
+    case Op::kInside: return Known(IsInside(node, view));
     case Op::kPartOf: return Known(IsPartOf(cast_, Entity(node, view, 0), Entity(node, view, 1)));
     case Op::kGazed: return Known(history_.Look(Entity(node, view, 0), view.frame).gazes_at == Entity(node, view, 1));
     case Op::kSensorSet: return Known(SensorSet(node, view));
     case Op::kIsA: return Known(lanes_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));
     default: return Compare(node, view);
   }
+}
+
+bool Evaluator::IsInside(const Node& node, const View& view) const {
+  const auto who = static_cast<std::size_t>(Entity(node, view, 0)), room = static_cast<std::size_t>(Entity(node, view, 1));
+  const CastMember& of = cast_.entities[room];
+  const EntityLook& look = history_.Look(static_cast<int>(who), view.frame);
+  const EntityLook& at = history_.Look(static_cast<int>(room), view.frame);
+  const Vector3d centre_W = look.p_WB_m + look.q_WB * cast_.entities[who].p_BC_m;
+  const Vector3d away_m = at.q_WB.conjugate() * (centre_W - at.p_WB_m) - of.p_BC_m;
+  if (of.round) return away_m.norm() <= of.half_size_m.x();
+  return (away_m.cwiseAbs().array() <= of.half_size_m.array()).all();
 }
 
 Kleene Evaluator::Holds(int slot, const View& view) const {

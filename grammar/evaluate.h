@@ -69,6 +69,7 @@ class Evaluator {
   double ClosingSpeed(int hand, int object, FrameNumber frame) const;
   double SurfaceSpeed(int hand, int object, FrameNumber frame) const;
   bool SensorSet(const Node& node, const View& view) const;
+  bool IsInside(const Node& node, const View& view) const;
   double Weight(int entity) const;
   struct Window {
     FrameNumber early = 0;

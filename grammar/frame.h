@@ -29,12 +29,14 @@ struct CastMember {
   std::string name;
   /// Most specific first, e.g. {"MilkCarton", "Movable", "Thing", "Entity"} or {"Hand", "Entity"}.
   /// The built-in roots are Entity; Hand and Thing (everything that is not a hand); Movable, Fixed
-  /// and Jointed (Things; what hangs on a joint, as a drawer does, is only Jointed).
+  /// and Jointed (Things; what hangs on a joint, as a drawer does, is only Jointed); Abstract (no matter: a Region, say)
+  /// and Grains, which are no Things.
   std::vector<std::string> classes;
   int part_of = kNobody;
   /// Centre and half sizes of the oriented bounding box, in the entity's own frame, metres.
   Eigen::Vector3d p_BC_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+  bool round = false;  ///< it is the ball in that box: a region may be one
   /// Hands only: names of the sensor sets; bit i of Touch::sensor_sets is set i. At most 32.
   std::vector<std::string> sensor_sets;
   double mass_kg = 0;     ///< 0: not known, nothing is too heavy

@@ -110,7 +110,7 @@ bool IsLook(Op op) {
     case Op::kInSphere: case Op::kBoxInSphere: case Op::kInCylinder:
     case Op::kTrigger: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kGap: case Op::kClosingSpeed: case Op::kSurfaceSpeed:
     case Op::kDistance: case Op::kHeight: case Op::kSpeed: case Op::kVerticalSpeed: case Op::kRelativeVerticalSpeed:
-    case Op::kSpeedAlong: case Op::kDriftAlong: case Op::kTurnRate: case Op::kTilt: case Op::kSensorSet: case Op::kGazed:
+    case Op::kSpeedAlong: case Op::kDriftAlong: case Op::kTurnRate: case Op::kTilt: case Op::kSensorSet: case Op::kGazed: case Op::kInside:
     case Op::kJointFraction: case Op::kJointAngle: case Op::kJointTravel: case Op::kRate: case Op::kPosition: case Op::kPositionOn: case Op::kAhead: return true;
     default: return false;
   }

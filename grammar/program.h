@@ -26,7 +26,7 @@ enum class Op : std::uint8_t {
   kHolds,   ///< reference `slot` is true
   kBegins,  ///< args[0] becomes true at this frame; of a reference: one of its intervals begins
   kEnds,    ///< likewise
-  kInSphere, kBoxInSphere, kInCylinder, kPartOf, kIsA, kGazed,
+  kInSphere, kBoxInSphere, kInCylinder, kInside, kPartOf, kIsA, kGazed,
   kSensorSet,  ///< the set named `name`, or without a name the `number`th
   // Numbers, SI units.
   kNumber, kAdd, kSubtract, kMultiply, kDivide, kNegate, kAbs,

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "harness/abstract_fields.h"
 #include "physics/fill_vessel.h"
 #include "physics/geometry.h"
 #include "physics/random.h"
@@ -25,6 +26,7 @@ physics::PlacedShape ShapeOf(const PartEntry& part) {
   if (part.sphere) return {*part.sphere, X_BS};
   if (part.cylinder) return {*part.cylinder, X_BS};
   if (part.capsule) return {*part.capsule, X_BS};
+  if (part.hull) return {*part.hull, X_BS};
   return {part.box.value_or(physics::Box{}), X_BS};
 }
 
@@ -38,7 +40,8 @@ std::vector<physics::PlacedShape> ShapesOf(const EntityEntry& entity) {
     return {ShapeOf(PartEntry{.box = entity.box,
                               .sphere = entity.sphere,
                               .cylinder = entity.cylinder,
-                              .capsule = entity.capsule})};
+                              .capsule = entity.capsule,
+                              .hull = entity.hull})};
   }
   std::vector<physics::PlacedShape> shapes;
   for (const PartEntry& part : entity.parts) shapes.push_back(ShapeOf(part));
@@ -63,6 +66,7 @@ physics::Body MakeBody(const Named<EntityEntry>& named) {
   body.angular_damping_per_s = entity.angular_damping_per_s;
   if (entity.rpy_deg) body.X_WB.q = FromRollPitchYaw(*entity.rpy_deg);
   if (entity.yaw_deg) body.X_WB.q = FromRollPitchYaw({0, 0, *entity.yaw_deg});
+  if (AbstractOf(entity) != physics::Abstract::kNot) MakeAbstract(entity, body);
   return body;
 }
 
@@ -145,8 +149,8 @@ class Stacking {
                                  below->value, names_);
       return std::nullopt;
     }
-    if (bodies[found->second].grains) {
-      complaints_.Add(below->where, fmt::format("{}: '{}' is grains, which carry nothing", key, below->value));
+    if (const std::string what = WhyNoThing(bodies[found->second]); !what.empty()) {
+      complaints_.Add(below->where, fmt::format("{}: '{}' is {}, which carr{} nothing", key, below->value, what, what == "grains" ? "y" : "ies"));
       return std::nullopt;
     }
     return found->second;
@@ -157,7 +161,7 @@ class Stacking {
     const auto found = name ? index_.find(name->value) : index_.end();
     if (found == index_.end() || progress_[found->second] != Progress::kDone) return nullptr;
     const physics::Body& body = bodies[found->second];
-    return body.grains ? nullptr : &body;
+    return physics::IsThing(body) ? &body : nullptr;
   }
 
   void PlaceInVessel(std::size_t i) {

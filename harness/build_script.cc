@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 
+#include "harness/abstract_fields.h"
 #include "harness/build_person_steps.h"
 #include "harness/build_scene.h"
 #include "harness/scenario_fields.h"
@@ -106,9 +107,10 @@ struct StepMaker {
     const auto found = std::find(entities.begin(), entities.end(), name.value);
     if (found != entities.end()) {
       const auto index = static_cast<std::size_t>(found - entities.begin());
-      if (index < scene.bodies.size() && scene.bodies[index].grains)
-        complaints.Add(name.where, fmt::format("{}: '{}' is grains, and no thing", key, name.value),
-                       "name the vessel that they are in");
+      const std::string what = index < scene.bodies.size() ? WhyNoThing(scene.bodies[index]) : "";
+      if (!what.empty())
+        complaints.Add(name.where, fmt::format("{}: '{}' is {}, and no thing", key, name.value, what),
+                       what == "grains" ? "name the vessel that they are in" : "nothing touches it");
       return;
     }
     complaints.AddUnknownName(name.where,

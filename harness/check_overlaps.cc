@@ -41,6 +41,7 @@ Occupant OccupantOf(const physics::Body& body, Where where) {
                     .person = body.kinematic,
                     .solids = {},
                     .bounds = {}};
+  if (body.abstract != physics::Abstract::kNot) return occupant;  // there is room for others
   for (const auto& placed : body.shapes) AddSolid(placed.shape, body.X_WB * placed.X_BS, occupant);
   if (!body.grains) return occupant;
   occupant.grains = true;

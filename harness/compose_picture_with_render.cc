@@ -33,6 +33,22 @@ render::Color BodyColor(const physics::Body& body, int index) {
   return ColorOf(palette[index % palette.size()]);
 }
 
+/// Cameras and lights are not in the picture.
+bool IsSeen(const physics::Body& body) {
+  return body.abstract != physics::Abstract::kCamera && body.abstract != physics::Abstract::kLight;
+}
+
+/// From the middle of the things to the first light; nothing when there is none.
+std::optional<Eigen::Vector3f> ToLight(const physics::Scene& scene) {
+  const auto light = std::ranges::find(scene.bodies, physics::Abstract::kLight, &physics::Body::abstract);
+  if (light == scene.bodies.end()) return std::nullopt;
+  Eigen::AlignedBox3d things;
+  for (const physics::Body& body : scene.bodies)
+    if (physics::IsThing(body)) things.extend(body.X_WB.p_m);
+  if (things.isEmpty()) return std::nullopt;
+  return (light->X_WB.p_m - things.center()).cast<float>();
+}
+
 double Seconds(grammar::Tick tick, const RunResult& run) {
   return static_cast<double>(tick) / static_cast<double>(run.timeline.ticks_per_second);
 }
@@ -226,15 +242,26 @@ render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& ru
   return strip;
 }
 
-/// Frames the paths and everything that is not scenery.
+/// A camera of the scenario.
+render::Camera CameraOf(const physics::Body& camera) {
+  const Eigen::Vector3d ahead_m = camera.X_WB * Eigen::Vector3d::UnitX();
+  return {.eye_m = camera.X_WB.p_m.cast<float>(),
+          .look_at_m = ahead_m.cast<float>(),
+          .vertical_field_of_view_deg = static_cast<float>(camera.view_deg)};
+}
+
+/// A camera of the scenario, or one that frames the paths and everything that is not scenery.
 render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& picture,
                              const std::string& name) {
+  const int own = BodyNamed(scenario.scene, name);
+  if (own >= 0 && scenario.scene.bodies[own].abstract == physics::Abstract::kCamera)
+    return CameraOf(scenario.scene.bodies[own]);
   Eigen::AlignedBox3f box;
   for (const render::PathStretch& stretch : picture.path)
     for (const Eigen::Vector3f& point : stretch.points_m) box.extend(point);
   for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
     const physics::LocalBox local = physics::BoundingBox(scenario.scene.bodies[i]);
-    if (local.half_size_m.maxCoeff() * 2 > kSceneryFromM) continue;
+    if (local.half_size_m.maxCoeff() * 2 > kSceneryFromM || !IsSeen(scenario.scene.bodies[i])) continue;
     for (const physics::Snapshot* snapshot : {&picture.snapshot}) {
       const Eigen::Vector3f centre = (snapshot->bodies[i].X_WB * local.p_BC_m).cast<float>();
       const float reach = static_cast<float>(local.half_size_m.norm());
@@ -259,14 +286,16 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
     picture.body_colors.push_back(BodyColor(scenario.scene.bodies[i], static_cast<int>(i)));
     // A person is named once, at her head: labels of eighteen parts would hide her.
     const bool is_part = scenario.body_classes[i] == "BodyPart";
-    picture.body_labels.push_back(is_part ? "" : scenario.scene.bodies[i].name);
+    const bool is_named = !is_part && IsSeen(scenario.scene.bodies[i]);
+    picture.body_labels.push_back(is_named ? scenario.scene.bodies[i].name : "");
   }
+  if (const auto to_light = ToLight(scenario.scene)) picture.to_light = *to_light;
   for (std::size_t h = 0; h < scenario.scene.hands.size(); ++h)
     AppendPath(scenario.scene, run, static_cast<int>(h), picture.path);
   picture.ghosts = ComposeGhosts(scenario.scene, run, moment.tick);
   picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
   picture.strip = ComposeStrip(scenario, run, moment.tick);
-  picture.camera = ComposeCamera(scenario, picture, entry.camera);
+  picture.camera = ComposeCamera(scenario, picture, entry.camera.value);
   const auto name = ParseMoment(entry.at.value);
   std::string at = name && name->time_s ? "" : fmt::format("  ·  {}", entry.at.value);
   if (!moment.missed.empty()) at = fmt::format("  ·  {}; the end", moment.missed);

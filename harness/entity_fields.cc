@@ -2,7 +2,9 @@
 // Tested by tests/harness/scenario_fields_test.cc
 #include "harness/entity_fields.h"
 
+#include "harness/abstract_fields.h"
 #include "harness/farthest.h"
+#include "harness/kinds.h"
 #include "harness/record.h"
 #include "harness/scenario_fields.h"
 #include "harness/shape_fields.h"
@@ -85,13 +87,9 @@ Format<JointEntry> BallJointFormat() {
 }
 
 void CheckClass(const EntityEntry& entity, Complaints& complaints) {
-  for (const char* reserved : {"Entity", "Thing", "Movable", "Fixed", "Jointed", "Hand", "Person",
-                               "BodyPart", "Grains"}) {
-    if (entity.class_name.value != reserved) continue;
-    complaints.Add(entity.class_name.where,
-                   "class: '" + entity.class_name.value + "' is built in and given anyway",
-                   "name what the thing is, for example Cup");
-  }
+  if (!IsBuiltInClass(entity.class_name.value)) return;
+  complaints.Add(entity.class_name.where, "class: '" + entity.class_name.value + "' is built in and given anyway",
+                 "name what the thing is, for example Cup");
 }
 
 /// What hangs on a joint moves, and what is fixed to something has its surface.
@@ -134,22 +132,24 @@ void CheckEntity(const YamlNode& node, const EntityEntry& entity, Complaints& co
   CheckClass(entity, complaints);
   CheckJoint(node, entity, complaints);
   CheckGrains(node, entity, complaints);
+  CheckAbstract(node, entity, complaints);
+  const bool abstract = AbstractOf(entity) != physics::Abstract::kNot;
   const std::string title = "entity '" + node.key + "'";
   if (entity.fixed && entity.mass_kg) {
     complaints.Add(entity.mass_kg->where, title + " is fixed: it cannot have a mass",
                    "remove fixed or mass_kg");
   }
-  if (!entity.fixed && !entity.mass_kg) {
+  if (!entity.fixed && !entity.mass_kg && !abstract) {
     complaints.Add(node.key_where, title + " can move: it needs the key 'mass_kg'",
                    "or 'fixed: true'");
   }
-  const std::size_t wanted = entity.on ? 2 : 3;
+  const std::size_t wanted = entity.on && !abstract ? 2 : 3;
   if (!entity.in && !entity.grains && entity.at_m.value.size() != wanted) {
     complaints.Add(entity.at_m.where,
-                   entity.on
+                   wanted == 2
                        ? "at_m: with 'on' expected [x, y]; z follows from the top of the support"
                        : "at_m: expected [x, y, z], the centre",
-                   entity.on ? "" : "or [x, y] together with 'on: SUPPORT'");
+                   wanted == 2 || abstract ? "" : "or [x, y] together with 'on: SUPPORT'");
   }
 }
 
@@ -169,6 +169,7 @@ Format<EntityEntry> EntityFormat() {
       .Optional("cylinder", &E::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")
       .Optional("capsule", &E::capsule, CapsuleFormat(),
                 "Its shape: a cylinder with half spheres at its ends, axis along z.")
+      .Optional("hull", &E::hull, HullFormat(), "Its shape: a solid of flat faces, by its corners.")
       .Optional("tray", &E::tray, TrayFormat(), "Its shape: a flat box without a lid.")
       .Optional("mug", &E::mug, MugFormat(), "Its shape: a round cup, perhaps with a handle.")
       .Optional("bowl", &E::bowl, BowlFormat(), "Its shape: a round dish.")
@@ -177,8 +178,12 @@ Format<EntityEntry> EntityFormat() {
       .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMostParts),
                 "Its shape: several shapes, rigidly together.")
       .Optional("grains", &E::grains, GrainsFormat(), "Many loose balls in a vessel, seen as one entity.")
+      .Optional("region", &E::region, RegionFormat(), "No matter: a box or a ball of space.")
+      .Optional("gaze_target", &E::gaze_target, GazeTargetFormat(), "No matter: a place that eyes can look at.")
+      .Optional("camera", &E::camera, CameraFormat(), "No matter: from where pictures can be made.")
+      .Optional("light", &E::light, LightFormat(), "No matter: from where the light of pictures comes.")
       .Optional("fixed", &E::fixed, Flag(), "True: never moves and has no mass.")
-      .Optional("mass_kg", &E::mass_kg, Number(0.001, 1000), "Mass; required unless fixed. Of grains: of all together.")
+      .Optional("mass_kg", &E::mass_kg, Number(0.001, 1000), "Mass; required unless fixed or abstract. Of grains: of all together.")
       .Optional("friction", &E::friction, Number(0, 5),
                 "Coulomb friction; that of two bodies is multiplied. Default 0.8.")
       .Optional("rolling_friction", &E::rolling_friction, Number(0, 1),
@@ -204,7 +209,8 @@ Format<EntityEntry> EntityFormat() {
                 "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis.")
       .Optional("yaw_deg", &E::yaw_deg, Number(-360, 360), "Turn about the vertical, degrees.")
       .ExactlyOneOf(
-          {"box", "sphere", "cylinder", "capsule", "tray", "mug", "bowl", "shelf", "parts", "grains"})
+          {"box", "sphere", "cylinder", "capsule", "hull", "tray", "mug", "bowl", "shelf", "parts", "grains", "region",
+           "gaze_target", "camera", "light"})
       .ExactlyOneOf({"at_m", "in"})
       .AtMostOneOf({"rpy_deg", "yaw_deg"})
       .AtMostOneOf({"fixed_to", "slider", "hinge", "ball_joint"})

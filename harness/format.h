@@ -135,6 +135,18 @@ Format<std::vector<T>> ListOf(Format<T> item, std::size_t least, std::size_t mos
               }};
 }
 
+/// A value that remembers where it was written, for members that are lists or mappings of such.
+template <class T>
+Format<Located<T>> WithPlace(Format<T> format) {
+  return {.schema = format.schema,
+          .read =
+              [format](const YamlNode& node, Complaints& complaints, Located<T>& value) {
+                value.where = node.where;
+                return format.read(node, complaints, value.value);
+              },
+          .show = {}};
+}
+
 /// N numbers, each within the bounds: [x, y, z].
 template <int N>
 Format<Eigen::Matrix<double, N, 1>> Vector(double lowest, double highest) {

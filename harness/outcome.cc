@@ -77,17 +77,17 @@ double OutcomeWatch::ShareInside(const Outcome::Condition& condition,
                                  const physics::Snapshot& snapshot) const {
   const auto index = static_cast<std::size_t>(condition.body),
              in = static_cast<std::size_t>(condition.vessel);
-  const physics::LocalBox box = physics::BoundingBox(scene_.bodies[in]);
+  const physics::Body& vessel = scene_.bodies[in];
   const physics::Pose& X_WV = snapshot.bodies[in].X_WB;
   const physics::Body& body = scene_.bodies[index];
   if (!body.grains) {
     const Eigen::Vector3d p_W_m = snapshot.bodies[index].X_WB * physics::BoundingBox(body).p_BC_m;
-    return physics::IsInside(box, X_WV, p_W_m) ? 1 : 0;
+    return physics::IsInside(vessel, X_WV, p_W_m) ? 1 : 0;
   }
   const std::span<const Eigen::Vector3d> grains = physics::GrainsOf(scene_, index, snapshot);
   const auto inside = std::count_if(
       grains.begin(), grains.end(),
-      [&](const Eigen::Vector3d& p_W_m) { return physics::IsInside(box, X_WV, p_W_m); });
+      [&](const Eigen::Vector3d& p_W_m) { return physics::IsInside(vessel, X_WV, p_W_m); });
   return static_cast<double>(inside) / static_cast<double>(grains.size());
 }
 

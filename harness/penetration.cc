@@ -12,11 +12,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Half of the shape's extent along a unit direction given in its own frame. All shapes are symmetric.
-struct HalfExtent {
+/// How far the shape reaches along a unit direction, both given in its own frame.
+struct ReachOf {
   Vector3d n_S;
   double operator()(const physics::Box& box) const { return n_S.cwiseAbs().dot(box.size_m) / 2; }
   double operator()(const physics::Sphere& sphere) const { return sphere.radius_m; }
+  double operator()(const physics::Hull& hull) const {
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const Vector3d& corner : hull.corners_m) farthest = std::max(farthest, n_S.dot(corner));
+    return farthest;
+  }
   double operator()(const physics::Cylinder& cylinder) const {
     return std::abs(n_S.z()) * cylinder.length_m / 2 + n_S.head<2>().norm() * cylinder.radius_m;
   }
@@ -25,18 +30,44 @@ struct HalfExtent {
   }
 };
 
-double HalfExtentAlong(const PlacedSolid& solid, const Vector3d& n_W) {
-  return std::visit(HalfExtent{solid.X_WS.q.conjugate() * n_W}, solid.shape);
+/// From the solid's own origin.
+double ReachAlong(const PlacedSolid& solid, const Vector3d& n_W) {
+  return std::visit(ReachOf{solid.X_WS.q.conjugate() * n_W}, solid.shape);
 }
 
 /// The point of the solid's bounding box nearest to `p_W`, for axes that meet a box's corner.
 Vector3d NearestInBox(const PlacedSolid& solid, const Vector3d& p_W) {
   Vector3d p_S = solid.X_WS.inverse() * p_W;
   for (int i = 0; i < 3; ++i) {
-    const double half = std::visit(HalfExtent{Vector3d::Unit(i)}, solid.shape);
-    p_S[i] = std::clamp(p_S[i], -half, half);
+    const double least = -std::visit(ReachOf{-Vector3d::Unit(i)}, solid.shape);
+    p_S[i] = std::clamp(p_S[i], least, std::visit(ReachOf{Vector3d::Unit(i)}, solid.shape));
   }
   return solid.X_WS * p_S;
+}
+
+/// The directions of the edges of a hull; of other shapes their axes.
+std::vector<Vector3d> EdgesOf(const PlacedSolid& solid) {
+  const auto* hull = std::get_if<physics::Hull>(&solid.shape);
+  std::vector<Vector3d> edges = hull ? physics::EdgesOf(*hull) : std::vector<Vector3d>{Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
+  for (Vector3d& edge : edges) edge = solid.X_WS.q * edge;
+  return edges;
+}
+
+/// What can separate hulls, beyond what can separate boxes.
+void AddAxesOfHulls(const PlacedSolid& a, const PlacedSolid& b, std::vector<Vector3d>& axes) {
+  bool any = false;
+  for (const PlacedSolid* solid : {&a, &b}) {
+    const auto* hull = std::get_if<physics::Hull>(&solid->shape);
+    if (!hull) continue;
+    any = true;
+    for (const auto& face : hull->faces) axes.push_back(solid->X_WS.q * face.nhat_S);
+    const Vector3d other_W = (solid == &a ? b : a).X_WS.p_m;
+    axes.push_back(other_W - solid->X_WS * physics::NearestIn(*hull, solid->X_WS.inverse() * other_W));
+  }
+  if (!any) return;
+  const std::vector<Vector3d> edges_b = EdgesOf(b);
+  for (const Vector3d& edge_a : EdgesOf(a))
+    for (const Vector3d& edge_b : edges_b) axes.push_back(edge_a.cross(edge_b));
 }
 
 std::vector<Vector3d> CandidateAxes(const PlacedSolid& a, const PlacedSolid& b) {
@@ -54,6 +85,7 @@ std::vector<Vector3d> CandidateAxes(const PlacedSolid& a, const PlacedSolid& b) 
     const Vector3d corner = b.X_WS.p_m - NearestInBox(a, b.X_WS.p_m);
     axes.push_back(corner - R.col(2) * R.col(2).dot(corner));
   }
+  AddAxesOfHulls(a, b, axes);
   return axes;
 }
 
@@ -67,7 +99,9 @@ double Penetration(const PlacedSolid& a, const PlacedSolid& b) {
     const double length = axis.norm();
     if (length < kTooShortForAnAxis) continue;
     const Vector3d n = axis / length;
-    depth = std::min(depth, HalfExtentAlong(a, n) + HalfExtentAlong(b, n) - std::abs(n.dot(between)));
+    for (const Vector3d& way : {n, Vector3d(-n)})
+      depth = std::min(depth, ReachAlong(a, way) + ReachAlong(b, -way) - way.dot(between));
+    if (depth <= 0) return depth;
   }
   return depth;
 }

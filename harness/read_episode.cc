@@ -24,6 +24,7 @@ constexpr std::int64_t kLatestTick = 1'000'000'000'000;
 constexpr std::size_t kMaxMembers = 10'000;
 constexpr std::size_t kMaxFeelers = 1000;
 constexpr std::size_t kMaxSets = 32;
+constexpr std::size_t kMaxKinds = 100;
 
 struct MemberEntry {
   std::string class_name = "Object";
@@ -32,6 +33,9 @@ struct MemberEntry {
   bool grains = false;
   bool person = false;
   bool hand = false;
+  bool round = false;
+  std::string abstract;            ///< which class of those that are Abstract; "": none
+  std::vector<std::string> kinds;  ///< what the class is a kind of
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
   double mass_kg = 0, strength_n = 0;
@@ -79,16 +83,7 @@ struct EndEntry {
 using LineEntry = std::variant<FrameEntry, EndEntry>;
 
 Format<std::string> Name() { return Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'"); }
-Format<Located<std::string>> PlacedName() {
-  const auto name = Name();
-  return {.schema = name.schema,
-          .read =
-              [name](const YamlNode& node, Complaints& complaints, Located<std::string>& value) {
-                value.where = node.where;
-                return name.read(node, complaints, value.value);
-              },
-          .show = {}};
-}
+Format<std::string> ClassName() { return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"); }
 Format<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
 Format<Eigen::Vector3d> Velocity() { return Vector<3>(-kFastest, kFastest); }
 
@@ -96,11 +91,14 @@ Format<HeaderEntry> HeaderFormat() {
   using M = MemberEntry;
   const Format<M> member = Record<M>("entity")
                                .NamedByKey()
-                               .Optional("class", &M::class_name, Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"), "")
+                               .Optional("class", &M::class_name, ClassName(), "")
                                .Optional("fixed", &M::fixed, Flag(), "")
                                .Optional("jointed", &M::jointed, Flag(), "")
                                .Optional("person", &M::person, Flag(), "")
                                .Optional("grains", &M::grains, Flag(), "")
+                               .Optional("abstract", &M::abstract, Choice({"Region", "GazeTarget", "Camera", "Light"}), "")
+                               .Optional("round", &M::round, Flag(), "")
+                               .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxKinds), "")
                                .Optional("hand", &M::hand, Flag(), "")
                                .Optional("centre_m", &M::centre_m, Position(), "")
                                .Required("size_m", &M::size_m, Vector<3>(0, kFarthestM), "")
@@ -152,7 +150,7 @@ Format<LineEntry> LineFormat() {
                               .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
                               .Optional("up_on_b", &T::up_on_b, Number(-1, 1), "")
                               .Optional("force_n", &T::force_n, Number(0, 1e9), "")
-                              .Optional("sensor_sets", &T::sensor_sets, ListOf(PlacedName(), 0, kMaxSets), "")
+                              .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
                               .format();
   using F = FrameEntry;
   const auto tick = Integer64(-kLatestTick, kLatestTick);
@@ -224,6 +222,7 @@ class EpisodeReader {
       member.name = entry.name;
       member.p_BC_m = m.centre_m;
       member.half_size_m = m.size_m / 2;
+      member.round = m.round;
       member.mass_kg = m.mass_kg;
       member.strength_n = m.strength_n;
       if (m.part_of) member.part_of = IndexOf(m.part_of->value, m.part_of->where, complaints);
@@ -231,17 +230,28 @@ class EpisodeReader {
         member.classes = {"Hand", "Entity"};
         member.sensor_sets = m.sensor_sets;
         hands_.push_back(static_cast<int>(cast.entities.size()) - 1);
-      } else if (m.person) {
-        member.classes = {m.class_name, "Entity"};
-      } else if (m.grains) {
-        member.classes = {m.class_name, "Grains", "Entity"};
       } else {
-        member.classes = {m.class_name, m.fixed ? "Fixed" : m.jointed ? "Jointed" : "Movable", "Thing", "Entity"};
+        member.classes = ClassesOf(m);
       }
     }
     now_.entities.resize(names_.size());
     for (const int hand : hands_) now_.hands.push_back({.entity = hand, .feelers = {}});
     now_.feelers.resize(hands_.size());
+  }
+
+  /// Of what is no hand.
+  static std::vector<std::string> ClassesOf(const MemberEntry& m) {
+    std::vector<std::string> classes = {m.class_name};
+    classes.insert(classes.end(), m.kinds.begin(), m.kinds.end());
+    if (!m.abstract.empty()) {
+      classes.insert(classes.end(), {m.abstract, "Abstract"});
+    } else if (m.grains) {
+      classes.emplace_back("Grains");
+    } else if (!m.person) {
+      classes.insert(classes.end(), {m.fixed ? "Fixed" : m.jointed ? "Jointed" : "Movable", "Thing"});
+    }
+    classes.emplace_back("Entity");
+    return classes;
   }
 
   /// The entity of this name, or kNobody after complaining.

@@ -12,6 +12,7 @@
 #include "harness/build_scene.h"
 #include "harness/build_script.h"
 #include "harness/check_planar.h"
+#include "harness/kinds.h"
 #include "harness/recorded_input.h"
 #include "harness/scenario_fields.h"
 #include "harness/trial_fields.h"
@@ -129,6 +130,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   AddPersons(entry, scene, complaints);
   scenario.script = BuildScript(entry, scene, complaints);
   scenario.outcomes = BuildOutcomes(entry.outcomes, scene, complaints);
+  CheckKinds(entry, complaints);
   CheckVariations(document, entry.vary, complaints);
   if (scene.world.planar) CheckPlanar(entry, scene, complaints);
   if (complaints.empty()) CheckOverlaps(entry, scene, complaints);
@@ -144,8 +146,13 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   for (const auto& entity : entry.entities)
     scenario.body_classes.push_back(entity.value.class_name.value);
   AddPersonClasses(scenario);
+  for (const auto& kind : entry.classes) scenario.kinds.push_back({kind.name, kind.value.value});
   scenario.variations = std::move(entry.vary);
   scenario.pictures = std::move(entry.pictures);
+  for (const PictureEntry& picture : scenario.pictures) {
+    if (const auto why = WhyNoCamera(scenario, picture.camera.value)) complaints.AddUnknownName(picture.camera.where, *why, picture.camera.value, CamerasOf(scenario));
+  }
+  if (!complaints.empty()) return AllOf(complaints, in_other_files);
   scenario.warnings = std::move(in_other_files);
   return {std::move(scenario), {}};
 }

@@ -2,6 +2,11 @@
 // Tested by tests/harness/read_scenario_test.cc
 #include "harness/scenario.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/kinds.h"
 #include "harness/sensing.h"
 
 namespace prehend::harness {
@@ -11,23 +16,19 @@ const std::vector<std::string>& CameraWords() {
   return words;
 }
 
-namespace {
-
-/// What hangs on a joint is neither fixed nor can it be picked up.
-const char* MobilityOf(const physics::Scene& scene, int body) {
-  if (scene.bodies[static_cast<std::size_t>(body)].fixed) return "Fixed";
-  return physics::MovesFreely(scene, body) ? "Movable" : "Jointed";
+std::vector<std::string> CamerasOf(const Scenario& scenario) {
+  std::vector<std::string> cameras = CameraWords();
+  for (const physics::Body& body : scenario.scene.bodies) {
+    if (body.abstract == physics::Abstract::kCamera) cameras.push_back(body.name);
+  }
+  return cameras;
 }
 
-std::vector<std::string> ClassesOf(const Scenario& scenario, std::size_t body) {
-  const std::string& own = scenario.body_classes[body];
-  const physics::Body& is = scenario.scene.bodies[body];
-  if (is.grains) return {own, "Grains", "Entity"};
-  if (!physics::IsThing(is)) return {own, "Entity"};
-  return {own, MobilityOf(scenario.scene, static_cast<int>(body)), "Thing", "Entity"};
+std::optional<std::string> WhyNoCamera(const Scenario& scenario, const std::string& camera) {
+  const std::vector<std::string> cameras = CamerasOf(scenario);
+  if (std::ranges::find(cameras, camera) != cameras.end()) return std::nullopt;
+  return fmt::format("camera: expected one of {}, found '{}'", fmt::join(cameras, ", "), camera);
 }
-
-}  // namespace
 
 grammar::Cast MakeCast(const Scenario& scenario) {
   grammar::Cast cast;
@@ -41,6 +42,7 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     member.part_of = scenario.body_part_of[i];
     member.p_BC_m = box.p_BC_m;
     member.half_size_m = box.half_size_m;
+    member.round = body.abstract == physics::Abstract::kRegion && std::holds_alternative<physics::Sphere>(body.shapes.front().shape);
     member.mass_kg = body.fixed ? 0 : body.mass_kg;
   }
   for (const physics::Hand& hand : scenario.scene.hands) {

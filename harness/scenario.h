@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,17 @@ struct WorldEntry {
   std::uint64_t seed = 1;
 };
 
+/// A class and what it is a kind of: every Mug is a Cup.
+struct KindEntry {
+  std::string name;
+  std::string of;
+};
+
 struct PictureEntry {
   Located<std::string> at;  ///< "reaching.begin", "putting_down.end", or a time: "1.25"; see harness/moment.h
-  std::string camera = "three_quarter";
+  Located<std::string> camera{"three_quarter", {}};  ///< one of CameraWords(), or an entity that is a camera
 };
-/// What PictureEntry::camera can be; the same as render::CameraNames(), which is there only with the render room.
+/// Cameras that every scenario has; the same as render::CameraNames(), which is there only with the render room.
 const std::vector<std::string>& CameraWords();
 
 /// A whole scenario, read, checked and resolved: entities and actors are already bodies and hands.
@@ -42,6 +49,7 @@ struct Scenario {
   WorldEntry world;
   physics::Scene scene;
   std::vector<std::string> body_classes;  ///< one per scene body
+  std::vector<KindEntry> kinds;           ///< each class at most once
   std::vector<int> body_part_of;          ///< one per scene body: a scene body, or grammar::kNobody
   physics::Script script;
   std::vector<VariationEntry> variations;
@@ -49,6 +57,12 @@ struct Scenario {
   std::vector<PictureEntry> pictures;
   grammar::Diagnostics warnings;  ///< about what can be used, but is odd
 };
+
+/// From where pictures can be made: CameraWords(), and the entities that are cameras.
+std::vector<std::string> CamerasOf(const Scenario& scenario);
+
+/// Why no picture can be made from this camera, or nothing.
+std::optional<std::string> WhyNoCamera(const Scenario& scenario, const std::string& camera);
 
 /// Who can be bound to roles: the scene's bodies first (same index), then its hands.
 grammar::Cast MakeCast(const Scenario& scenario);

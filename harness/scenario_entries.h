@@ -18,12 +18,13 @@
 
 namespace prehend::harness {
 
-/// One of the shapes of a compound; exactly one of the first four is given.
+/// One of the shapes of a compound; exactly one of the first five is given.
 struct PartEntry {
   std::optional<physics::Box> box;
   std::optional<physics::Sphere> sphere;
   std::optional<physics::Cylinder> cylinder;
   std::optional<physics::Capsule> capsule;
+  std::optional<physics::Hull> hull;
   Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
 };
@@ -33,6 +34,20 @@ struct GrainsEntry {
   int count = 0;
   double radius_m = 0;
 };
+
+// What is abstract: it has a place, and no matter.
+struct RegionEntry {
+  std::optional<Eigen::Vector3d> size_m;  ///< of a box
+  std::optional<double> radius_m;         ///< of a ball
+};
+struct GazeTargetEntry {
+  double radius_m = 0.02;
+};
+struct CameraEntry {
+  Located<Eigen::Vector3d> toward_m{Eigen::Vector3d::Zero(), {}};
+  double view_deg = physics::Body{}.view_deg;
+};
+struct LightEntry {};
 
 /// A joint to another entity; which numbers are read depends on its kind.
 struct JointEntry {
@@ -54,12 +69,17 @@ struct EntityEntry {
   std::optional<physics::Sphere> sphere;
   std::optional<physics::Cylinder> cylinder;
   std::optional<physics::Capsule> capsule;
+  std::optional<physics::Hull> hull;
   std::optional<physics::Tray> tray;
   std::optional<physics::Mug> mug;
   std::optional<physics::Bowl> bowl;
   std::optional<physics::Shelf> shelf;
   std::vector<PartEntry> parts;
   std::optional<GrainsEntry> grains;
+  std::optional<RegionEntry> region;
+  std::optional<GazeTargetEntry> gaze_target;
+  std::optional<CameraEntry> camera;
+  std::optional<LightEntry> light;
   bool fixed = false;
   std::optional<Located<double>> mass_kg;
   std::optional<Located<double>> friction;  ///< default: that of physics::Body
@@ -75,6 +95,11 @@ struct EntityEntry {
   std::optional<Eigen::Vector3d> rpy_deg;
   std::optional<double> yaw_deg;
 };
+
+inline physics::Abstract AbstractOf(const EntityEntry& entity) {
+  using enum physics::Abstract;
+  return entity.region ? kRegion : entity.gaze_target ? kGazeTarget : entity.camera ? kCamera : entity.light ? kLight : kNot;
+}
 
 /// Where it is said where it is.
 inline const Where& PlaceOf(const EntityEntry& entity) {
@@ -242,6 +267,7 @@ struct ScenarioEntry {
   std::vector<std::string> tags;
   WorldEntry world;
   std::vector<Named<EntityEntry>> entities;
+  std::vector<Named<Located<std::string>>> classes;  ///< and what each is a kind of
   std::vector<Named<ActorEntry>> actors;
   std::vector<Named<HandActor>> hands;      ///< those of the actors; see SortActors()
   std::vector<Named<PersonActor>> persons;  ///< the others

@@ -47,6 +47,10 @@ Format<WorldEntry> WorldFormat() {
       .format();
 }
 
+constexpr std::size_t kMaxKinds = 100;
+
+Format<std::string> ClassName() { return Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'"); }
+
 /// A moment is an event's boundary or a time; PictureEntry keeps both as text.
 Format<std::string> MomentFormat() {
   const auto seconds = Number(0, kMaxDurationS);
@@ -68,7 +72,8 @@ Format<PictureEntry> PictureFormat() {
   return Record<PictureEntry>("a picture")
       .Required("at", &PictureEntry::at, MomentFormat(),
                 "When: an event's 'begin' or 'end', or seconds.")
-      .Optional("camera", &PictureEntry::camera, Choice(CameraWords()), "From where.")
+      .Optional("camera", &PictureEntry::camera, Identifier(),
+                "From where: front, left, right, top, three_quarter, or an entity that is a camera.")
       .format();
 }
 
@@ -83,6 +88,8 @@ Format<ScenarioEntry> BuildScenarioFormat() {
       .Optional("world", &S::world, WorldFormat(), "Engine, rates and seed.")
       .Required("entities", &S::entities, MapOf(Identifier(), EntityFormat(), 1, kMaxEntities),
                 "The things in the world, by name.")
+      .Optional("classes", &S::classes, MapOf(ClassName(), WithPlace(ClassName()), 0, kMaxKinds),
+                "Classes, and the class that each is a kind of: {Cup: Container}.")
       .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors),
                 "The hands, by name.")
       .Optional("script", &S::script,

@@ -55,6 +55,34 @@ Format<physics::Capsule> CapsuleFormat() {
   return RoundFormat<physics::Capsule>("a capsule", "Along z, without the two half spheres.");
 }
 
+Format<physics::Hull> HullFormat() {
+  struct Points {
+    std::vector<Eigen::Vector3d> points_m;
+  };
+  const Format<Points> written =
+      Record<Points>("a hull")
+          .Required("points_m", &Points::points_m,
+                    ListOf(Vector<3>(-kFarthestPartM, kFarthestPartM), physics::kFewestHullPoints, physics::kMostHullPoints),
+                    "Its corners [x, y, z] in its own frame, in any order.")
+          .format();
+  return {.schema = written.schema,
+          .read =
+              [written](const YamlNode& node, Complaints& complaints, physics::Hull& hull) {
+                Points points;
+                if (!written.read(node, complaints, points)) return false;
+                physics::MadeHull made = physics::MakeHull(points.points_m);
+                if (made.hull) {
+                  hull = std::move(*made.hull);
+                  return true;
+                }
+                const YamlNode& list = *node.Find("points_m");
+                const YamlNode& wrong = made.point < 0 ? list : list.children[static_cast<std::size_t>(made.point)];
+                complaints.Add(wrong.where, "points_m: " + made.problem, made.remedy);
+                return false;
+              },
+          .show = {}};
+}
+
 Format<physics::Tray> TrayFormat() {
   using T = physics::Tray;
   return Record<T>("a tray")
@@ -131,11 +159,12 @@ Format<PartEntry> PartFormat() {
       .Optional("sphere", &P::sphere, SphereFormat(), "Its shape: a sphere.")
       .Optional("cylinder", &P::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")
       .Optional("capsule", &P::capsule, CapsuleFormat(), "Its shape: a capsule, axis along z.")
+      .Optional("hull", &P::hull, HullFormat(), "Its shape: a solid of flat faces, by its corners.")
       .Optional("at_m", &P::at_m, Vector<3>(-kFarthestPartM, kFarthestPartM),
                 "Its centre in the entity's own frame, whose origin is at the entity's at_m.")
       .Optional("rpy_deg", &P::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw in degrees: turns about the entity's x, then y, then z axis.")
-      .ExactlyOneOf({"box", "sphere", "cylinder", "capsule"})
+      .ExactlyOneOf({"box", "sphere", "cylinder", "capsule", "hull"})
       .format();
 }
 

@@ -15,6 +15,7 @@ Format<physics::Tray> TrayFormat();
 Format<physics::Mug> MugFormat();
 Format<physics::Bowl> BowlFormat();
 Format<physics::Shelf> ShelfFormat();
+Format<physics::Hull> HullFormat();
 Format<GrainsEntry> GrainsFormat();
 Format<PartEntry> PartFormat();
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/episode_file_test.cc
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "harness/episode_file.h"
+#include "harness/kinds.h"
 
 namespace prehend::harness {
 namespace {
@@ -14,6 +16,18 @@ Json ToJson(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; 
 
 bool IsHand(const grammar::CastMember& member) { return member.classes.front() == "Hand"; }
 
+/// Of what is no hand: its own class, what that is a kind of, and what is built in.
+void AddClasses(const std::vector<std::string>& classes, Json& json) {
+  const auto given = std::find_if(classes.begin() + 1, classes.end(), IsBuiltInClass);
+  json["class"] = classes.front();
+  if (given != classes.begin() + 1) json["kinds"] = std::vector<std::string>(classes.begin() + 1, given);
+  json["fixed"] = *given == "Fixed";
+  if (*given == "Jointed") json["jointed"] = true;
+  if (*given == "Entity") json["person"] = true;
+  if (*given == "Grains") json["grains"] = true;
+  if (given + 1 != classes.end() && *(given + 1) == "Abstract") json["abstract"] = *given;
+}
+
 Json MemberJson(const grammar::CastMember& member, const grammar::Cast& cast) {
   Json json = {{"centre_m", ToJson(member.p_BC_m)}, {"size_m", ToJson(2 * member.half_size_m)}};
   if (member.part_of != grammar::kNobody) json["part_of"] = cast.entities[member.part_of].name;
@@ -23,11 +37,8 @@ Json MemberJson(const grammar::CastMember& member, const grammar::Cast& cast) {
     json["hand"] = true;
     json["sensor_sets"] = member.sensor_sets;
   } else {
-    json["class"] = member.classes.front();
-    json["fixed"] = member.classes[1] == "Fixed";
-    if (member.classes[1] == "Jointed") json["jointed"] = true;
-    if (member.classes[1] == "Entity") json["person"] = true;
-    if (member.classes[1] == "Grains") json["grains"] = true;
+    AddClasses(member.classes, json);
+    if (member.round) json["round"] = true;
   }
   return json;
 }

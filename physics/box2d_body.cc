@@ -75,12 +75,13 @@ Box2dBody::Box2dBody(const std::vector<const Body*>& bodies,
   def.angularDamping = static_cast<float>(root.angular_damping_per_s);
   rigid_ = world.CreateBody(&def);
 
-  const Pose X_PW{-root.X_WB.p_m};
+  const Pose X_PW{{-root.X_WB.p_m.x(), 0, -root.X_WB.p_m.z()}};  // what is abstract may stand beside the plane
   for (const Body* body : bodies) X_PB_.push_back(X_PW * body->X_WB);
+  if (root.abstract != Abstract::kNot) return;
   double mass_kg = 0, moment = 0;
   Eigen::Vector3d centre_P = Eigen::Vector3d::Zero();
   for (const RigidMember& member : MembersOf(bodies)) {
-    const Pose X_PS = X_PB_.front() * member.X_RS;
+    const Pose X_PS = X_PB_.front() * member.X_RC;
     const int index = static_cast<int>(indices[member.owner]);
     AddSection(member.placed->shape, X_PS,
                {root.friction, root.restitution, 0, {{.body = index}, root.rolling_friction}},

@@ -15,6 +15,22 @@ namespace {
 constexpr double kSleepSpeed_m_per_s = 0.01;
 constexpr double kSleepTurn_rad_per_s = 0.05;
 
+/// In the frame of its centre of mass and principal axes. Without a margin, which would be outside or cut off corners:
+/// what touches it has one.
+class HullShape final : public btConvexHullShape {
+ public:
+  explicit HullShape(const Hull& hull) : gyration_m2_(ToBullet(hull.gyration_m2)) {
+    for (const Eigen::Vector3d& corner_S : hull.corners_m) addPoint(ToBullet(hull.X_SC.inverse() * corner_S), false);
+    setMargin(0);
+    recalcLocalAabb();
+  }
+  /// Bullet's own is that of the box around it.
+  void calculateLocalInertia(btScalar mass, btVector3& inertia) const override { inertia = mass * gyration_m2_; }
+
+ private:
+  btVector3 gyration_m2_;
+};
+
 struct MakeShapeOf {
   using Result = std::unique_ptr<btCollisionShape>;
 
@@ -28,6 +44,7 @@ struct MakeShapeOf {
   Result operator()(const Capsule& s) const {
     return std::make_unique<btCapsuleShapeZ>(s.radius_m, s.length_m);
   }
+  Result operator()(const Hull& s) const { return std::make_unique<HullShape>(s); }
 
  private:
   template <class BulletShape>
@@ -39,8 +56,8 @@ struct MakeShapeOf {
 };
 
 bool IsSimple(const std::vector<RigidMember>& members) {
-  const Pose& X_RS = members.front().X_RS;
-  return members.size() == 1 && X_RS.p_m.isZero() && X_RS.q.vec().isZero();
+  const Pose& X_RC = members.front().X_RC;
+  return members.size() == 1 && X_RC.p_m.isZero() && X_RC.q.vec().isZero();
 }
 
 /// Bullet's damping is the share of the speed that is lost in a second.
@@ -81,7 +98,7 @@ BulletBody::BulletBody(const std::vector<const Body*>& bodies) {
     btCompoundShape in_root_frame;
     std::vector<btScalar> masses;
     for (std::size_t i = 0; i < members.size(); ++i) {
-      in_root_frame.addChildShape(ToBullet(members[i].X_RS), shapes_[i].get());
+      in_root_frame.addChildShape(ToBullet(members[i].X_RC), shapes_[i].get());
       masses.push_back(members[i].mass_kg);
     }
     btTransform X_RC;
@@ -89,7 +106,7 @@ BulletBody::BulletBody(const std::vector<const Body*>& bodies) {
     if (root.fixed) inertia.setZero();
     auto compound = std::make_unique<btCompoundShape>();
     for (std::size_t i = 0; i < members.size(); ++i)
-      compound->addChildShape(X_RC.inverse() * ToBullet(members[i].X_RS), shapes_[i].get());
+      compound->addChildShape(X_RC.inverse() * ToBullet(members[i].X_RC), shapes_[i].get());
     whole = shapes_.emplace_back(std::move(compound)).get();
     X_CR = FromBullet(X_RC).inverse();
   }

@@ -18,6 +18,7 @@ namespace prehend::physics {
 /// default of 40 mm would swallow fingers.
 inline constexpr double kMargin_m = 0.001;
 
+/// In the frame of its centre of mass: RigidMember::X_RC.
 std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape);
 
 /// Mass, surface, damping and sleep of a body that has this shape, at the origin.

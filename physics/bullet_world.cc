@@ -44,6 +44,7 @@ constexpr int kSolverBatch = 2;
 
 // Collision groups. Fixed bodies need no contacts with each other; every hand has its own bit from
 // kFirstHandGroup.
+constexpr int kNoGroup = 0;  // what is abstract touches nothing, and is not seen
 constexpr int kFixedGroup = 1;
 constexpr int kMovingGroup = 2;
 constexpr int kFirstHandGroup = 4;
@@ -156,7 +157,9 @@ void BulletWorld::AddRigid(const std::vector<std::size_t>& group) {
   for (const std::size_t owner : made->owners())
     sides.push_back({.body = static_cast<int>(group[owner])});
   if (scene_.world.planar) made->KeepInPlane();
-  if (bodies.front()->kinematic)
+  if (bodies.front()->abstract != Abstract::kNot)
+    world_.addRigidBody(&made->rigid(), kNoGroup, kNoGroup);
+  else if (bodies.front()->kinematic)
     world_.addRigidBody(&made->rigid(), kPersonGroup, kMovingGroup);
   else if (bodies.front()->fixed)
     world_.addRigidBody(&made->rigid(), kFixedGroup, ~kFixedGroup);

@@ -12,6 +12,7 @@
 #include "physics/scene.h"
 #include "physics/script.h"
 #include "physics/snapshot.h"
+#include "physics/world.h"
 
 namespace prehend::physics {
 
@@ -26,6 +27,14 @@ struct GazeTarget {
 /// The middle of what is looked at; nothing for what is ahead.
 std::optional<Eigen::Vector3d> PointOf(const GazeTarget& target, const Scene& scene,
                                        const Snapshot& now);
+
+/// The first gaze target of the scene that the ball of her sight meets before what she sees. Gaze targets are no matter,
+/// so that no engine meets them.
+struct TargetSeen {
+  int body = -1;
+  double distance_m = 0;
+};
+std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaze, const SightLine& line = {});
 
 /// Chooses for a person whose eyes lead her hands.
 class GazeLeader {

@@ -35,6 +35,22 @@ struct HalfExtentsIn {
   }
 };
 
+/// World axes-aligned box of a shape that stands at X_WS.
+struct BoundsAt {
+  const Pose& X_WS;
+
+  Eigen::AlignedBox3d operator()(const Hull& hull) const {
+    Eigen::AlignedBox3d bounds;
+    for (const Eigen::Vector3d& corner : hull.corners_m) bounds.extend(X_WS * corner);
+    return bounds;
+  }
+  template <class Symmetric>
+  Eigen::AlignedBox3d operator()(const Symmetric& s) const {
+    const Eigen::Vector3d half = HalfExtentsIn{X_WS.q.toRotationMatrix()}(s);
+    return {Eigen::Vector3d(X_WS.p_m - half), Eigen::Vector3d(X_WS.p_m + half)};
+  }
+};
+
 struct VolumeOfShape {
   static constexpr double kPi = std::numbers::pi;
 
@@ -46,6 +62,7 @@ struct VolumeOfShape {
   double operator()(const Capsule& s) const {
     return (*this)(Sphere{s.radius_m}) + (*this)(Cylinder{s.radius_m, s.length_m});
   }
+  double operator()(const Hull& s) const { return s.volume_m3; }
 };
 
 /// Of a point whose offsets beyond the half sizes are given, one per independent direction.
@@ -67,6 +84,7 @@ struct DistanceOf {
     const double along = std::clamp(p.z(), -s.length_m / 2, s.length_m / 2);
     return (p - along * Eigen::Vector3d::UnitZ()).norm() - s.radius_m;
   }
+  double operator()(const Hull& s) const { return SignedDistance(s, p); }
 };
 
 }  // namespace
@@ -82,8 +100,7 @@ double HalfWidthAlong(const LocalBox& box, const Pose& X_WB, const Eigen::Vector
 }
 
 Eigen::AlignedBox3d WorldBounds(const Shape& shape, const Pose& X_WS) {
-  const Eigen::Vector3d half = std::visit(HalfExtentsIn{X_WS.q.toRotationMatrix()}, shape);
-  return {Eigen::Vector3d(X_WS.p_m - half), Eigen::Vector3d(X_WS.p_m + half)};
+  return std::visit(BoundsAt{X_WS}, shape);
 }
 
 Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB) {
@@ -141,11 +158,13 @@ bool IsRoundAboutVertical(const Body& body, const Pose& X_WB) {
   if (body.shapes.size() != 1) return false;
   const PlacedShape& placed = body.shapes.front();
   if (std::holds_alternative<Sphere>(placed.shape)) return true;
-  if (std::holds_alternative<Box>(placed.shape)) return false;
+  if (std::holds_alternative<Box>(placed.shape) || std::holds_alternative<Hull>(placed.shape)) return false;
   return std::abs(((X_WB * placed.X_BS).q * Eigen::Vector3d::UnitZ()).z()) > kUprightCosine;
 }
 
-bool IsInside(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& p_W_m) {
+bool IsInside(const Body& body, const Pose& X_WB, const Eigen::Vector3d& p_W_m) {
+  if (body.abstract == Abstract::kRegion) return DistanceTo(body, X_WB.inverse() * p_W_m) <= 0;
+  const LocalBox box = BoundingBox(body);
   const Eigen::Vector3d away_m = (X_WB.inverse() * p_W_m - box.p_BC_m).cwiseAbs();
   return (away_m.array() <= box.half_size_m.array()).all();
 }

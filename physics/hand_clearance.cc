@@ -58,6 +58,7 @@ HandClearance::HandClearance(const HandModel& model, const std::vector<double>& 
 double HandClearance::At(const Pose& X_WH, const Scene& scene, const Snapshot& now) const {
   double least = kFar_m;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (scene.bodies[b].abstract != Abstract::kNot) continue;
     for (const PlacedShape& placed : scene.bodies[b].shapes) {
       const Pose X_SH = (now.bodies[b].X_WB * placed.X_BS).inverse() * X_WH;
       if (SignedDistance(placed.shape, X_SH.p_m) > reach_m_ + least) continue;

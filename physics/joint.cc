@@ -30,7 +30,7 @@ double Position(const Scene& scene, const Joint& joint, const Pose& X_WBase, con
 
 }  // namespace
 
-bool IsThing(const Body& body) { return !body.kinematic && !body.grains; }
+bool IsThing(const Body& body) { return !body.kinematic && !body.grains && body.abstract == Abstract::kNot; }
 
 std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body, const Snapshot& snapshot) {
   std::size_t first = 0;

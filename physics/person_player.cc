@@ -245,6 +245,7 @@ GazeState PersonPlayer::See(const World& world) const {
   gaze.body = sight.body;
   gaze.hand = sight.hand;
   gaze.distance_m = sight.distance_m;
+  if (const auto target = TargetInSight(scene_, gaze)) gaze.body = target->body, gaze.hand = -1, gaze.distance_m = target->distance_m;
   return gaze;
 }
 

@@ -28,6 +28,7 @@ struct AxesFit {
   bool operator()(const Sphere&) const { return true; }
   bool operator()(const Cylinder&) const { return InOrAcross(R.col(2)); }
   bool operator()(const Capsule&) const { return InOrAcross(R.col(2)); }
+  bool operator()(const Hull&) const { return false; }  // it need not have one section all along y
 };
 
 /// The two axes of a box that lie in the plane.
@@ -53,6 +54,7 @@ struct OutlineOfShape {
     if (Across(R.col(2))) return Disc(s.radius_m);
     return {centre_m, AngleOf(R.col(2)), {s.length_m / 2, 0}, s.radius_m};
   }
+  Outline operator()(const Hull&) const { return {}; }  // none lies in the plane
 
  private:
   Outline Disc(double radius_m) const { return {centre_m, 0, Eigen::Vector2d::Zero(), radius_m}; }
@@ -80,6 +82,7 @@ struct GyrationAboutY {
     const double apart = Across(R.col(2)) ? 0 : l * l / 4 + 3.0 / 8 * l * r;
     return ball_share * (ball + apart) + (1 - ball_share) * rod;
   }
+  double operator()(const Hull&) const { return 0; }  // none lies in the plane
 };
 
 std::string WhyNotPlanar(const GraspStyle& style) {
@@ -105,10 +108,12 @@ bool LiesInPlane(const Shape& shape, const Pose& X_WS) {
 
 std::string WhyNotPlanar(const Body& body) {
   if (body.grains) return "grains do not stay in the plane";
+  if (body.abstract != Abstract::kNot) return "";  // nothing touches it
   if (!InPlane(body.X_WB.p_m)) return "its centre is off the plane y = 0";
   for (const PlacedShape& placed : body.shapes) {
     const Pose X_WS = body.X_WB * placed.X_BS;
     if (!InPlane(X_WS.p_m)) return "a part of it lies beside the plane y = 0";
+    if (std::holds_alternative<Hull>(placed.shape)) return "a hull has no one section all along y";
     if (!LiesInPlane(placed.shape, X_WS)) return "it is turned out of the plane";
   }
   return "";

@@ -23,6 +23,16 @@ std::vector<std::vector<std::size_t>> RigidGroups(const Scene& scene) {
   return groups;
 }
 
+namespace {
+
+/// Where the centre of mass of a shape is; most shapes have their frame there.
+Pose CentreOf(const Shape& shape, const Pose& X_RS) {
+  const auto* hull = std::get_if<Hull>(&shape);
+  return hull ? X_RS * hull->X_SC : X_RS;  // the others keep their pose to the last bit
+}
+
+}  // namespace
+
 std::vector<RigidMember> MembersOf(const std::vector<const Body*>& bodies) {
   std::vector<RigidMember> members;
   const Pose X_RW = bodies.front()->X_WB.inverse();
@@ -33,9 +43,9 @@ std::vector<RigidMember> MembersOf(const std::vector<const Body*>& bodies) {
     for (const PlacedShape& placed : body.shapes) volume += VolumeOf(placed.shape);
     const double density = (fixed ? 1.0 : body.mass_kg) / volume;
     for (const PlacedShape& placed : body.shapes) {
-      // The root's own shapes keep their pose to the last bit.
+      // So do the root's own shapes.
       const Pose X_RS = i == 0 ? placed.X_BS : X_RW * body.X_WB * placed.X_BS;
-      members.push_back({&placed, i, X_RS, density * VolumeOf(placed.shape)});
+      members.push_back({&placed, i, CentreOf(placed.shape, X_RS), density * VolumeOf(placed.shape)});
     }
   }
   return members;

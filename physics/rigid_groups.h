@@ -18,7 +18,7 @@ std::vector<std::vector<std::size_t>> RigidGroups(const Scene& scene);
 struct RigidMember {
   const PlacedShape* placed = nullptr;
   std::size_t owner = 0;  ///< index into the bodies
-  Pose X_RS;              ///< in the frame of the first body, the root
+  Pose X_RC;              ///< its centre of mass and principal axes, in the frame of the first body, the root
   double mass_kg = 0;     ///< of a fixed body: as if its density were 1
 };
 

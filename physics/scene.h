@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "physics/hand_model.h"
+#include "physics/hull.h"
 #include "physics/pose.h"
 #include "physics/tracking.h"
 
@@ -30,7 +31,7 @@ struct Capsule {  ///< axis along z; length without the caps
   double radius_m = 0.05;
   double length_m = 0.1;
 };
-using Shape = std::variant<Box, Sphere, Cylinder, Capsule>;
+using Shape = std::variant<Box, Sphere, Cylinder, Capsule, Hull>;
 
 struct PlacedShape {
   Shape shape;
@@ -43,10 +44,21 @@ struct Grains {
   std::vector<Eigen::Vector3d> p_WG_m;  ///< their centres before the first tick; at least one
 };
 
+/// What has a place, and perhaps room, but no matter: nothing touches it, no ray of sight meets it, it never moves.
+enum class Abstract {
+  kNot,
+  kRegion,      ///< a box or a ball
+  kGazeTarget,  ///< a ball that eyes can look at
+  kCamera,      ///< looks along its x axis, up is along its z axis
+  kLight
+};
+
 struct Body {
   std::string name;
   std::vector<PlacedShape> shapes;  ///< one, or several for a compound; none of grains
   std::optional<Grains> grains;     ///< it is not one thing but many, which share its mass; only in Bullet
+  Abstract abstract = Abstract::kNot;  ///< then it is also fixed, and has one shape, at its origin
+  double view_deg = 33;                ///< of a camera: how much it sees from below to above
   bool fixed = false;
   bool kinematic = false;  ///< moves as a Person's motion says: pushes, and is never pushed
   double mass_kg = 0;      ///< 0 only for fixed and kinematic bodies
@@ -130,7 +142,7 @@ struct Scene {
   std::vector<Person> persons;
 };
 
-/// A thing can carry others and be grasped; parts of persons and grains cannot.
+/// A thing can carry others and be grasped; parts of persons, grains and what is abstract cannot.
 bool IsThing(const Body& body);
 
 /// Can it be picked up? Not when it is fixed or no thing, nor when a joint ties it to something.

@@ -34,7 +34,7 @@ void SetRoundedBox(const Vector3f& outer_half_m, float rounding_m, Item* item) {
   item->half_size_m = outer_half_m.array() - item->rounding_m;
 }
 
-void SetShape(const physics::Shape& shape, Item* item) {
+void SetShape(const physics::Shape& shape, Item* item, DrawList* list) {
   std::visit(Overloaded{[&](const physics::Box& box) {
                           const Vector3f half = box.size_m.cast<float>() / 2;
                           SetRoundedBox(half, std::min(0.008f, 0.16f * half.minCoeff()), item);
@@ -54,6 +54,12 @@ void SetShape(const physics::Shape& shape, Item* item) {
                           item->primitive = Primitive::kBall;
                           item->rounding_m = static_cast<float>(capsule.radius_m);
                           item->half_size_m = {0, 0, static_cast<float>(capsule.length_m) / 2};
+                        },
+                        [&](const physics::Hull& hull) {
+                          item->primitive = Primitive::kMesh;
+                          item->mesh = static_cast<int>(list->meshes.size());
+                          item->half_size_m.setOnes();
+                          list->meshes.push_back(HullMesh(hull));
                         }},
              shape);
 }
@@ -78,8 +84,25 @@ void AddBody(const physics::Body& body, const physics::Pose& X_WB, const Look& l
              std::vector<Item>* items, DrawList* list) {
   for (const physics::PlacedShape& placed : body.shapes) {
     Item item = MakeItem(ToAffine(X_WB * placed.X_BS), look);
-    SetShape(placed.shape, &item);
+    SetShape(placed.shape, &item, list);
     AddItem(item, items, list);
+  }
+}
+
+/// Regions and gaze targets are seen through; cameras and lights are not seen.
+void AddAbstract(const physics::Body& body, int object, DrawList* list) {
+  constexpr float kAbstractAlpha = 0.22f;
+  using physics::Abstract;
+  if (body.abstract == Abstract::kCamera || body.abstract == Abstract::kLight) return;
+  const Look look{.color = body.abstract == Abstract::kRegion ? Color(0.42f, 0.66f, 1.0f) : Color(0.95f, 0.45f, 0.75f),
+                  .alpha = kAbstractAlpha,
+                  .gloss = 0,
+                  .object = object};
+  for (const physics::PlacedShape& placed : body.shapes) {
+    Item item = MakeItem(ToAffine(body.X_WB * placed.X_BS), look);
+    item.finish = Finish::kRegion;
+    SetShape(placed.shape, &item, list);
+    AddItem(item, &list->markers, list);
   }
 }
 
@@ -90,7 +113,7 @@ void AddGrains(const physics::Grains& grains, const physics::Snapshot& snapshot,
   for (std::size_t i = 0; i < grains.p_WG_m.size(); ++i) {
     const physics::Pose X_WG{moved ? snapshot.grains[first + i] : grains.p_WG_m[i]};
     Item item = MakeItem(ToAffine(X_WG), look);
-    SetShape(physics::Sphere{grains.radius_m}, &item);
+    SetShape(physics::Sphere{grains.radius_m}, &item, list);
     AddItem(item, items, list);
   }
 }
@@ -143,6 +166,10 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Look look{.color = BodyColor(picture, i),
                     .object = AddObject("body:" + scene.bodies[i].name, list)};
+    if (scene.bodies[i].abstract != physics::Abstract::kNot) {
+      AddAbstract(scene.bodies[i], look.object, list);
+      continue;
+    }
     AddBody(scene.bodies[i], BodyPose(scene, picture.snapshot, i), look, &list->solids, list);
     if (const auto& grains = scene.bodies[i].grains) {
       AddGrains(*grains, picture.snapshot, first_grain, look, &list->solids, list);
@@ -223,8 +250,8 @@ void AddItem(const Item& item, std::vector<Item>* items, DrawList* list) {
     return;
   }
   Bounds bounds;
-  if (item.primitive == Primitive::kTube) {
-    for (const Vertex& vertex : list->tubes[item.tube].vertices) bounds.Add(vertex.corner);
+  if (item.primitive == Primitive::kMesh) {
+    for (const Vertex& vertex : list->meshes[item.mesh].vertices) bounds.Add(Vector3f(item.X_WI * vertex.corner));
   } else {
     const Vector3f reach =
         item.X_WI.linear().cwiseAbs() * (item.half_size_m.array() + item.rounding_m).matrix();
@@ -248,6 +275,7 @@ Color BodyColor(const Picture& picture, std::size_t body) {
 DrawList MakeDrawList(const Picture& picture) {
   DrawList list;
   list.objects = {{"background", {}}, {"ground", {}}};
+  if (picture.to_light.allFinite() && picture.to_light.norm() > 0) list.to_light = picture.to_light.normalized();
   if (picture.scene != nullptr) AddBodiesAndHands(picture, &list);
   const float distance = (picture.camera.eye_m - picture.camera.look_at_m).norm();
   const float scale =

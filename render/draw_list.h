@@ -14,7 +14,7 @@
 
 namespace prehend::render {
 
-enum class Primitive { kBox, kBall, kCylinder, kCone, kTube };
+enum class Primitive { kBox, kBall, kCylinder, kCone, kMesh };
 enum class Finish {
   kSolid = 0,
   kGround = 1,
@@ -24,7 +24,7 @@ enum class Finish {
 
 struct Item {
   Primitive primitive = Primitive::kBox;
-  int tube = -1;  ///< index into DrawList::tubes
+  int mesh = -1;  ///< index into DrawList::meshes
   Eigen::Affine3f X_WI = Eigen::Affine3f::Identity();
   Eigen::Vector3f half_size_m = Eigen::Vector3f::Zero();
   float rounding_m = 0;
@@ -44,12 +44,13 @@ struct DrawnObject {
 struct DrawList {
   std::vector<DrawnObject> objects;  ///< 0 is the background, 1 the ground; then bodies, hands,
                                      ///< forearms, paths, ghosts, markers
-  std::vector<Mesh> tubes;
+  std::vector<Mesh> meshes;               ///< of paths and of hulls
   std::vector<Item> solids;               ///< bodies and hands
   std::vector<Item> paths;                ///< seen through solids, faintly
   std::vector<std::vector<Item>> ghosts;  ///< each one translucent as a whole
   std::vector<Item> markers;              ///< translucent
   Bounds bounds;                          ///< of everything but the ground
+  Eigen::Vector3f to_light = Eigen::Vector3f::UnitZ();  ///< unit
 
   int first_body = 2, first_hand = 2;  ///< where bodies and hands start in `objects`
 };

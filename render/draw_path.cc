@@ -49,11 +49,11 @@ float Length(const std::vector<Vector3f>& points) {
 void AddTube(const std::vector<Vector3f>& points, float radius, Item item, DrawList* list) {
   Mesh mesh = TubeMesh(points, kTubeSegments);
   if (mesh.triangles.empty()) return;
-  item.primitive = Primitive::kTube;
-  item.tube = static_cast<int>(list->tubes.size());
+  item.primitive = Primitive::kMesh;
+  item.mesh = static_cast<int>(list->meshes.size());
   item.half_size_m.setOnes();
   item.rounding_m = radius;
-  list->tubes.push_back(std::move(mesh));
+  list->meshes.push_back(std::move(mesh));
   AddItem(item, &list->paths, list);
 }
 

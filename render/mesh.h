@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "physics/scene.h"
+
 namespace prehend::render {
 
 struct Vertex {
@@ -29,6 +31,8 @@ Mesh RoundedBoxMesh(int segments);
 Mesh RoundedCylinderMesh(int segments);
 /// Base of unit radius at z = 0, tip at z = 1.
 Mesh ConeMesh(int segments);
+/// Flat faces; corners are the hull's own, so draw it with half size 1.
+Mesh HullMesh(const physics::Hull& hull);
 /// A tube along the points; corners are the points themselves, so draw it with half size 1. Empty
 /// below two points.
 Mesh TubeMesh(const std::vector<Eigen::Vector3f>& points, int segments);

@@ -103,7 +103,9 @@ std::vector<LabelRequest> RequestLabels(const Picture& picture, const Plan& plan
 // Points along paths, dense enough that a label cannot hide between two.
 std::vector<Vector2f> PathPixels(const Plan& plan) {
   std::vector<Vector2f> pixels;
-  for (const Mesh& tube : plan.list.tubes) {
+  for (const Item& item : plan.list.paths) {
+    if (item.primitive != Primitive::kMesh) continue;
+    const Mesh& tube = plan.list.meshes[static_cast<std::size_t>(item.mesh)];
     for (std::size_t i = 0; i < tube.vertices.size(); i += 13) {
       const std::optional<Vector2f> p = ToPixel(plan.view, tube.vertices[i].corner);
       if (p.has_value()) pixels.push_back(*p);

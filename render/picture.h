@@ -74,6 +74,7 @@ struct Picture {
   std::vector<Ghost> ghosts;
   std::vector<Marker> markers;
   Camera camera;
+  Eigen::Vector3f to_light = {0.38f, -0.42f, 0.82f};  ///< the light comes from far away there
   TimelineStrip strip;
   std::string title;
 };

@@ -55,8 +55,6 @@ std::string SurfaceShader(Finish finish, bool shadows) {
          "\n#define SHADOWS " + (shadows ? "1" : "0") + kSurfaceFragmentShader;
 }
 
-Vector3f ToLight() { return Vector3f(0.38f, -0.42f, 0.82f).normalized(); }
-
 }  // namespace
 
 struct SceneRenderer::Targets {
@@ -69,7 +67,7 @@ struct SceneRenderer::Frame {
   const View& view;
   Focus focus;
   Eigen::Matrix4f world_to_light;
-  std::vector<std::unique_ptr<GpuMesh>> tubes;
+  std::vector<std::unique_ptr<GpuMesh>> meshes;
 };
 
 SceneRenderer::SceneRenderer(const GlFunctions& gl) : gl_(gl) {}
@@ -165,8 +163,8 @@ bool SceneRenderer::PrepareTargets(int width_px, int height_px) {
 
 SceneRenderer::Frame SceneRenderer::MakeFrame(const DrawList& list, const View& view) const {
   const Focus focus = FocusOf(list, view);
-  Frame frame{list, view, focus, WorldToLight(ToLight(), focus.center_m, focus.radius_m), {}};
-  for (const Mesh& tube : list.tubes) frame.tubes.push_back(std::make_unique<GpuMesh>(gl_, tube));
+  Frame frame{list, view, focus, WorldToLight(list.to_light, focus.center_m, focus.radius_m), {}};
+  for (const Mesh& mesh : list.meshes) frame.meshes.push_back(std::make_unique<GpuMesh>(gl_, mesh));
   gl_.Enable(GL_DEPTH_TEST);
   gl_.DepthFunc(GL_LESS);
   gl_.DepthMask(GL_TRUE);
@@ -376,7 +374,7 @@ const Program& SceneRenderer::UseSurface(const Frame& frame,
   surface->Use();
   surface->Set("world_to_clip", frame.view.world_to_clip());
   surface->Set("world_to_light", frame.world_to_light);
-  surface->Set("to_light", ToLight());
+  surface->Set("to_light", frame.list.to_light);
   surface->Set("eye", frame.view.eye_m);
   surface->Set("shadow_map", 0);
   surface->Set("shadow_texel", 1.0f / kShadowSize_px);
@@ -401,8 +399,8 @@ void SceneRenderer::DrawItem(const Program& program, const Frame& frame, const I
       return cylinder_->Draw();
     case Primitive::kCone:
       return cone_->Draw();
-    case Primitive::kTube:
-      return frame.tubes[item.tube]->Draw();
+    case Primitive::kMesh:
+      return frame.meshes[item.mesh]->Draw();
   }
 }
 

@@ -23,9 +23,9 @@ void Declare(CLI::App& options) {
   options.add_option("--at", "the moment: EVENT.begin, EVENT.end, or seconds")
       ->type_name("MOMENT")
       ->expected(1);
-  options.add_option("--camera", "from where")
-      ->expected(1)
-      ->check(CLI::IsMember(CameraWords()));
+  options.add_option("--camera", "from where: front, left, right, top, three_quarter, or a camera of the scenario")
+      ->type_name("CAMERA")
+      ->expected(1);
   DeclareRunOptions(options);
   DeclareFlag(options, "--json", "the run as one JSON object, with the pictures' files");
 }
@@ -37,7 +37,7 @@ std::optional<PictureEntry> AskedPicture(const CLI::App& options, const Scenario
   PictureEntry entry =
       scenario.pictures.empty() ? PictureEntry{.at = {"0", {}}} : scenario.pictures.front();
   entry.at.value = ValueOf(options, "--at", entry.at.value);
-  entry.camera = ValueOf(options, "--camera", entry.camera);
+  entry.camera.value = ValueOf(options, "--camera", entry.camera.value);
   return entry;
 }
 
@@ -62,6 +62,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     if (problem && IsGiven(options, "--at")) {
       return Complain(context, ExitCode::kBadInput, "--at: " + problem->message + "; " + problem->hint);
     }
+    if (const auto why = WhyNoCamera(prepared.value->scenario, asked->camera.value))
+      return Complain(context, ExitCode::kBadInput, "--" + *why);
     prepared.value->scenario.pictures = {std::move(*asked)};
   }
   if (prepared.value->scenario.pictures.empty()) {

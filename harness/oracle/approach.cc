@@ -43,6 +43,7 @@ struct Nearest {
     const double half = capsule.length_m / 2;
     return PulledInto(capsule.radius_m, {0, 0, std::clamp(p.z(), -half, half)}, p);
   }
+  Vector3d operator()(const physics::Hull& hull) const { return physics::NearestIn(hull, p); }
 };
 
 struct Solid {

@@ -183,6 +183,32 @@ TEST(Signals, APartOfAPartIsAPartOfTheWhole) {
   EXPECT_EQ(pairs(), 6u);
 }
 
+TEST(Signals, InsideAsksTheCentreOfTheBox) {
+  const auto program = testing::CompileText("grammar t\nevent e(cup: Cup, tray: Movable) while inside(cup, tray)");
+  Scene scene;
+  CastMember& room = scene.cast.entities[Scene::kTray];
+  room.half_size_m = {0.5, 0.5, 0.1};
+  room.p_BC_m = {0, 0, 0.1};
+  scene.cast.entities[Scene::kCup].p_BC_m = {0, 0, 0.05};
+  const auto holds = [&](const Eigen::Vector3d& p_W_m) {
+    scene.looks[Scene::kCup].p_WB_m = p_W_m;
+    Monitor monitor(program, scene.cast);
+    std::vector<Event> events;
+    monitor.Advance(scene.At(0), events);
+    monitor.Finish(10, events);
+    return !events.empty();
+  };
+  EXPECT_TRUE(holds({0.49, 0.49, 0.14}));
+  EXPECT_FALSE(holds({0.49, 0.49, 0.16})) << "the centre is 5 cm above the origin";
+  scene.looks[Scene::kTray].q_WB = Eigen::AngleAxisd(std::numbers::pi / 4, Eigen::Vector3d::UnitZ());
+  EXPECT_FALSE(holds({0.49, 0.49, 0.05})) << "the tray has turned";
+  EXPECT_TRUE(holds({0.69, 0, 0.05}));
+  room.half_size_m.setConstant(0.5);
+  room.round = true;
+  EXPECT_FALSE(holds({0.3, 0.3, 0.4})) << "a ball has no corners";
+  EXPECT_TRUE(holds({0.3, 0.3, 0.1}));
+}
+
 // Users look signals up in the reference; it lists each of them.
 TEST(Signals, AreAllDocumented) {
   const std::string docs = testing::ReadFile(PREHEND_SOURCE_DIR "/docs/grammar-language.md");

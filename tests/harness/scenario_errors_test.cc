@@ -62,7 +62,7 @@ const Case kCases[] = {
       {"world_is_scalar", "world: {engine: bullet, rate_hz: 480, sensing_hz: 240, seed: 1}", "world: bullet", kRefuses,
        "4:8: world: expected a mapping with the fields of the world, found 'bullet'\n"},
       {"no_shape", "box: {size_m: [0.07, 0.07, 0.20]}, ", "", kRefuses,
-       "7:3: entity 'milk' needs one of the keys box, sphere, cylinder, capsule, tray, mug, bowl, shelf, parts, grains\n"},
+       "7:3: entity 'milk' needs one of the keys box, sphere, cylinder, capsule, hull, tray, mug, bowl, shelf, parts, grains, region, gaze_target, camera, light\n"},
       {"two_shapes", "box: {size_m: [0.07, 0.07, 0.20]}, ", "box: {size_m: [0.07, 0.07, 0.20]}, sphere: {radius_m: 0.1}, ", kRefuses,
        "7:45: entity 'milk' cannot have both 'box' and 'sphere'\n"},
       {"size_zero", "[0.07, 0.07, 0.20]", "[0.07, 0, 0.20]", kRefuses,

@@ -18,9 +18,8 @@ Body Made(const Vessel& vessel) {
 
 /// In the hollow, and clear of the walls and of each other.
 void ExpectLoose(const Body& vessel, const std::vector<Eigen::Vector3d>& grains) {
-  const LocalBox box = BoundingBox(vessel);
   for (std::size_t i = 0; i < grains.size(); ++i) {
-    EXPECT_TRUE(IsInside(box, Pose{}, grains[i]));
+    EXPECT_TRUE(IsInside(vessel, Pose{}, grains[i]));
     EXPECT_GT(DistanceTo(vessel, grains[i]), kRadius_m * 0.99);
     for (std::size_t j = 0; j < i; ++j) ASSERT_GT((grains[i] - grains[j]).norm(), 2 * kRadius_m) << i << " " << j;
   }

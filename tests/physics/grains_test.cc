@@ -37,7 +37,7 @@ TEST(Grains, StayInTheirVessel) {
   ASSERT_EQ(end.grains.size(), static_cast<std::size_t>(kCount));
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& grain : end.grains) {
-    EXPECT_TRUE(IsInside(BoundingBox(scene.bodies[0]), Pose{}, grain)) << grain.transpose();
+    EXPECT_TRUE(IsInside(scene.bodies[0], Pose{}, grain)) << grain.transpose();
     EXPECT_GT(grain.z(), -0.05 + 0.005 + 0.006 - 0.001);
     mean += grain / kCount;
   }

@@ -113,7 +113,7 @@ TEST(DrawListTest, PathHasBeadsInTimeAndAnArrow) {
   PathStretch stretch{.label = "reaching", .points_per_s = 60};
   for (int i = 0; i <= 60; ++i) stretch.points_m.emplace_back(0.01f * static_cast<float>(i), 0, 1);
   DrawList list = MakeDrawList({.path = {stretch}});
-  EXPECT_EQ(Count(list.paths, Primitive::kTube), 1);
+  EXPECT_EQ(Count(list.paths, Primitive::kMesh), 1);
   EXPECT_EQ(Count(list.paths, Primitive::kBall), 6) << "one second, a bead every 0.2 s";
   EXPECT_EQ(Count(list.paths, Primitive::kCone), 1);
   const auto arrow = std::find_if(list.paths.begin(), list.paths.end(),
@@ -131,9 +131,9 @@ TEST(DrawListTest, NeighbouringStretchesAreJoined) {
       second{.label = "b", .points_m = {{0.13f, 0, 0}, {0.2f, 0, 0}}},
       far{.label = "c", .points_m = {{1, 0, 0}, {1.1f, 0, 0}}};
   const DrawList list = MakeDrawList({.path = {first, second, far}});
-  ASSERT_EQ(list.tubes.size(), 3u);
-  EXPECT_EQ(list.tubes[1].vertices.front().corner, Vector3f(0.1f, 0, 0));
-  EXPECT_EQ(list.tubes[2].vertices.front().corner, Vector3f(1, 0, 0));
+  ASSERT_EQ(list.meshes.size(), 3u);
+  EXPECT_EQ(list.meshes[1].vertices.front().corner, Vector3f(0.1f, 0, 0));
+  EXPECT_EQ(list.meshes[2].vertices.front().corner, Vector3f(1, 0, 0));
 }
 
 TEST(DrawListTest, WhatIsNotFiniteIsSkipped) {
@@ -155,7 +155,7 @@ TEST(DrawListTest, WhatIsNotFiniteIsSkipped) {
   EXPECT_TRUE(std::all_of(list.solids.begin(), list.solids.end(), finite));
   EXPECT_TRUE(list.objects[list.first_body + 1].bounds.empty());
   EXPECT_TRUE(list.objects[list.first_body + 2].bounds.empty());
-  EXPECT_TRUE(list.tubes.empty());
+  EXPECT_TRUE(list.meshes.empty());
   EXPECT_TRUE(list.markers.empty());
   EXPECT_TRUE(list.bounds.low_m.allFinite() && list.bounds.high_m.allFinite());
 }
@@ -172,7 +172,7 @@ TEST(DrawListTest, IndicesThatTheSceneDoesNotHaveAreSkipped) {
 TEST(DrawListTest, WithoutASceneThereAreStillPaths) {
   const DrawList list = MakeDrawList(
       {.path = {{"a", {1, 0, 0}, {{0, 0, 0}, {1, 0, 0}}}}, .ghosts = {{.hand = 0, .bodies = {0}}}});
-  EXPECT_EQ(list.tubes.size(), 1u);
+  EXPECT_EQ(list.meshes.size(), 1u);
   EXPECT_TRUE(list.ghosts.empty());
 }
 
