@@ -31,17 +31,6 @@ Format<Vector3d> Direction() {
           .show = vector.show};
 }
 
-template <class T>
-Format<Located<T>> WithPlace(Format<T> format) {
-  return {.schema = format.schema,
-          .read =
-              [format](const YamlNode& node, Complaints& complaints, Located<T>& value) {
-                value.where = node.where;
-                return format.read(node, complaints, value.value);
-              },
-          .show = {}};
-}
-
 Format<PerDigit> PerDigitFormat(double lowest, double highest) {
   return MapOf(Identifier(), WithPlace(ListOf(Number(lowest, highest), 1, 8)), 1, 16);
 }

@@ -39,8 +39,8 @@ std::optional<Hull::Face> FaceThrough(const Points& points, int a, int b, int c)
   return face;
 }
 
-/// All faces, those with many points first. Two faces share an edge at most; what shares more is the same one but for
-/// roundings.
+/// All faces, those with many points first. Two faces share an edge at most; what shares more and looks the same way is the
+/// same one but for roundings.
 std::vector<Hull::Face> FacesOf(const Points& points) {
   const int count = static_cast<int>(points.size());
   std::vector<Hull::Face> found;
@@ -52,7 +52,9 @@ std::vector<Hull::Face> FacesOf(const Points& points) {
                    [](const auto& l, const auto& r) { return l.corners.size() > r.corners.size(); });
   std::vector<Hull::Face> faces;
   const auto same = [](const Hull::Face& l, const Hull::Face& r) {
-    return std::count_if(l.corners.begin(), l.corners.end(), [&](int corner) {
+    constexpr double kSameWay = 0.9999;  // cosine; points are so far apart that roundings turn no face by more
+    return l.nhat_S.dot(r.nhat_S) > kSameWay &&
+           std::count_if(l.corners.begin(), l.corners.end(), [&](int corner) {
              return std::binary_search(r.corners.begin(), r.corners.end(), corner);
            }) > 2;
   };

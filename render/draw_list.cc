@@ -100,7 +100,6 @@ void AddAbstract(const physics::Body& body, int object, DrawList* list) {
                   .object = object};
   for (const physics::PlacedShape& placed : body.shapes) {
     Item item = MakeItem(ToAffine(body.X_WB * placed.X_BS), look);
-    item.finish = Finish::kRegion;
     SetShape(placed.shape, &item, list);
     AddItem(item, &list->markers, list);
   }
