@@ -150,7 +150,9 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scenario.variations = std::move(entry.vary);
   scenario.pictures = std::move(entry.pictures);
   for (const PictureEntry& picture : scenario.pictures) {
-    if (const auto why = WhyNoCamera(scenario, picture.camera.value)) complaints.AddUnknownName(picture.camera.where, *why, picture.camera.value, CamerasOf(scenario));
+    const std::string& camera = picture.camera.value;
+    if (WhyNoCamera(scenario, camera))
+      complaints.AddUnknownName(picture.camera.where, fmt::format("camera: no camera is called '{}'", camera), camera, CamerasOf(scenario));
   }
   if (!complaints.empty()) return AllOf(complaints, in_other_files);
   scenario.warnings = std::move(in_other_files);
