@@ -26,10 +26,12 @@ void KeepJudged(const std::vector<std::string>& wanted, score::JudgedEpisode& ep
 
 }  // namespace
 
-ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request) {
+ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request, bool& bad_input) {
+  bad_input = true;
   const ReadResult<PreparedRun> prepared =
       PrepareRun({.scenario_file = request.scenario_file, .grammar = request.grammars.front()}, request.root);
   if (!prepared.value) return {std::nullopt, prepared.diagnostics};
+  bad_input = false;
   const Scenario& scenario = prepared.value->scenario;
   const RunResult run = RunScenario(scenario, prepared.value->program, {.record = true});
   if (run.status.kind != physics::RunStatus::Kind::kCompleted) {

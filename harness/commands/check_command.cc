@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "harness/commands/command.h"
+#include "harness/commands/number_in.h"
 #include "harness/junit.h"
 #include "harness/report.h"
 #include "harness/run_suite.h"
@@ -66,7 +67,7 @@ void DeclareRunning(CLI::App& options) {
                   "seconds that one scenario may take; otherwise 120")
       ->type_name("S")
       ->expected(1)
-      ->check(CLI::Range(0.1, 86400.0));
+      ->check(NumberIn(0.1, 86400));
   options
       .add_option("--memory-limit-mb",
                   "private memory that one scenario may take; otherwise 1000, 0 is no limit")

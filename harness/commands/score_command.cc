@@ -10,6 +10,7 @@
 
 #include "grammar/program.h"
 #include "harness/commands/command.h"
+#include "harness/commands/number_in.h"
 #include "harness/judge_episode.h"
 #include "harness/load_grammar.h"
 #include "harness/oracle/oracle.h"
@@ -49,14 +50,16 @@ void Declare(CLI::App& options) {
   options.add_option("--collar-ms", "how far off a boundary may be for the scores at a collar; otherwise 50")
       ->type_name("MS")
       ->expected(1)
-      ->check(CLI::Range(0.0, 10000.0));
+      ->check(NumberIn(0, 10000));
   DeclareFlag(options, "--json", "one JSON object instead of tables");
 }
 
-/// What a worker sends: {"problem"} or {"episodes": [{"ticks", "truth", "found", "not_judged"}, ..]}, one per grammar.
+/// What a worker sends: {"problem", "bad_input"} or {"episodes": [{"ticks", "truth", "found", "not_judged"}, ..]}, one per grammar.
 std::string Judged(const JudgeRequest& request) {
-  const auto episodes = JudgeEpisode(request);
-  if (!episodes.value) return Json{{"problem", Format(episodes.diagnostics)}}.dump();
+  bool bad_input = false;
+  const auto episodes = JudgeEpisode(request, bad_input);
+  if (!episodes.value)
+    return Json{{"problem", Format(episodes.diagnostics)}, {"bad_input", bad_input}}.dump();
   Json sent = Json::array();
   for (const JudgedEpisode& episode : *episodes.value) {
     sent.push_back({{"ticks", episode.ticks},
@@ -67,11 +70,11 @@ std::string Judged(const JudgeRequest& request) {
   return Json{{"episodes", std::move(sent)}}.dump();
 }
 
-/// Episodes by grammar; what could not be played is told on `context.err` and counted.
+/// Episodes by grammar; what could not be played is told on `context.err`, and `worst` says what kind it was.
 std::vector<std::vector<JudgedEpisode>> JudgeAll(const ScenarioSelection& selection,
                                                  const std::vector<std::string>& grammars,
                                                  const std::vector<std::string>& events,
-                                                 const CommandContext& context, int& failed) {
+                                                 const CommandContext& context, ExitCode& worst) {
   std::vector<WorkerJob> jobs;
   std::vector<std::string> ids;
   for (const ScenarioFile& file : selection.scenarios) {
@@ -87,7 +90,8 @@ std::vector<std::vector<JudgedEpisode>> JudgeAll(const ScenarioSelection& select
     const Json sent = results[i].finished ? Json::parse(results[i].output) : Json{{"problem", results[i].reason + "\n"}};
     if (sent.contains("problem")) {
       context.err << "prehend: " << ids[i] << " is not scored: " << sent["problem"].get<std::string>();
-      ++failed;
+      const bool bad_input = sent.value("bad_input", false);
+      if (worst != ExitCode::kFailure) worst = bad_input ? ExitCode::kBadInput : ExitCode::kFailure;
       continue;
     }
     for (std::size_t g = 0; g < grammars.size(); ++g) {
@@ -150,8 +154,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
       SelectScenarios(ValuesOf(options, "names"), ValuesOf(options, "--filter"), context.root, problem);
   if (!selection) return Complain(context, ExitCode::kNothing, problem);
 
-  int failed = 0;
-  const auto by_grammar = JudgeAll(*selection, grammars, events, context, failed);
+  ExitCode worst = ExitCode::kAgrees;
+  const auto by_grammar = JudgeAll(*selection, grammars, events, context, worst);
+  if (by_grammar.front().empty()) return worst;  // no table of nothing
   const double collar_s = std::stod(ValueOf(options, "--collar-ms", std::to_string(kDefaultCollar_ms))) / 1000;
   std::vector<score::Score> scores;
   for (std::size_t g = 0; g < grammars.size(); ++g) {
@@ -162,7 +167,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     context.out << ScoresJson(scores, collar_s).dump(2) << "\n";
   else
     Print(scores, collar_s, context.out);
-  return failed == 0 ? ExitCode::kAgrees : ExitCode::kFailure;
+  return worst;
 }
 
 }  // namespace

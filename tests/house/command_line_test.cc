@@ -109,6 +109,8 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
        "prehend: accepting needs a reason: [^]*\n  again: prehend accept carton_rests\n"},
       {"accept rest/* --reason x", 2, "prehend: 'rest/\\*' may mean several scenarios; goldens are accepted one by one, by name\n[^]*"},
       {"new Wrong-Name", 2, "prehend: 'Wrong-Name' is no name of a scenario: a small letter, then [^]*"},
+      {"check --time-limit-s nan", 2, "prehend: --time-limit-s: Value nan is no number\n[^]*"},
+      {"score --collar-ms nan", 2, "prehend: --collar-ms: Value nan is no number\n[^]*"},
       {"check --time-limit-s 0", 2, "prehend: --time-limit-s: Value 0 not in range 0.1 to 86400\n[^]*"},
       {"new carton_rests", 2, "prehend: there is a scenario of this name: [^]*"},
   };

@@ -68,5 +68,14 @@ TEST_F(ScoreCommand, EventsCanBeChosen) {
       << wrong.err;
 }
 
+TEST_F(ScoreCommand, WhatCannotBeReadIsBadInputAndNoTable) {
+  const std::string path = (root_ / "broken.yaml").string();
+  WriteFile(path, "scenario: broken\nentities: [\n");
+  const Said said = Do("score " + path);
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_EQ(said.out, "");
+  EXPECT_NE(said.err.find("is not scored"), std::string::npos) << said.err;
+}
+
 }  // namespace
 }  // namespace prehend::house
