@@ -7,6 +7,8 @@
 
 #include <filesystem>
 
+#include "harness/content_hash.h"
+
 namespace prehend::harness {
 namespace {
 
@@ -27,10 +29,11 @@ std::vector<std::string> WhatChanged(const CheckRecord& last_agreed, const Suspe
   };
   for (const auto& [path, hash] : now.inputs) {
     const auto before = last_agreed.verdict.inputs.find(path);
-    if (before == last_agreed.verdict.inputs.end())
-      add_unless_replaced(path);
-    else if (before->second != hash)
+    if (before == last_agreed.verdict.inputs.end()) {
+      if (hash != kNoFile) add_unless_replaced(path);  // who looks for more files found no more
+    } else if (before->second != hash) {
       add(path);
+    }
   }
   for (const auto& [path, hash] : last_agreed.verdict.inputs) {
     if (!now.inputs.contains(path)) add_unless_replaced(path);

@@ -35,7 +35,7 @@ std::string FileHash(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
   bytes << file.rdbuf();
-  return file.is_open() && !file.bad() ? ContentHash(bytes.view()) : "none";
+  return file.is_open() && !file.bad() ? ContentHash(bytes.view()) : kNoFile;
 }
 
 FileHashes HashFiles(const std::vector<std::string>& paths) {

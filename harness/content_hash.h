@@ -13,7 +13,10 @@ namespace prehend::harness {
 /// FNV-1a of 64 bit, 16 hexadecimal digits. Protects against mistakes, not against attackers.
 std::string ContentHash(std::string_view bytes);
 
-/// Of a file's bytes; "none" when there is no such file or it cannot be read.
+/// Hash of a file that is not there or cannot be read.
+inline constexpr const char* kNoFile = "none";
+
+/// Of a file's bytes, or kNoFile.
 std::string FileHash(const std::string& path);
 
 using FileHashes = std::map<std::string, std::string>;  ///< path -> FileHash(path)
