@@ -35,7 +35,8 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
     const btContactSolverInfo& info, btIDebugDraw* drawer) {
   const btScalar result = btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(
       bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
-  // No row is warm-started, so speeds begin at zero here, and in the end they are what is to be
+  rigid_.Setup(RigidPools());
+  // No row of a multibody is warm-started, so its speeds begin at zero here, and in the end they are what is to be
   // added.
   terms_.clear();
   met_.clear();
@@ -85,11 +86,8 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody* multibody, int solver_bod
         terms_.push_back({speeds + i, m_data.m_jacobians[jacobian + i]});
     side.end_term = static_cast<int>(terms_.size());
   } else if (solver_body >= 0) {
-    side.rigid = &m_tmpSolverBodyPool[solver_body];
-    side.linear = linear;
-    side.angular = angular;
-    side.linear_response = linear * side.rigid->internalGetInvMass();
-    side.angular_response = angular_response;
+    side.rigid = MakeRigidSide(m_tmpSolverBodyPool[solver_body], rigid_.SpeedsOf(solver_body), linear,
+                               angular, angular_response);
   }
   return side;
 }
@@ -102,10 +100,7 @@ void BulletSolver::Meet(btMultiBody& multibody, int speeds) {
 }
 
 btScalar BulletSolver::SpeedAlong(const Side& side) const {
-  if (side.rigid)
-    return side.linear.dot(side.rigid->internalGetDeltaLinearVelocity()) +
-           side.angular.dot(side.rigid->internalGetDeltaAngularVelocity());
-  btScalar speed = 0;
+  btScalar speed = side.rigid.SpeedAlong();
   for (int i = side.first_term; i < side.end_term; ++i) {
     const Term& term = terms_[static_cast<std::size_t>(i)];
     speed += term.factor * m_data.m_deltaVelocities[term.speed];
@@ -125,9 +120,8 @@ btScalar BulletSolver::WantedChange(const Row& row) const {
 }
 
 void BulletSolver::Push(const Side& side, btScalar impulse) {
-  if (side.rigid)
-    side.rigid->internalApplyImpulse(side.linear_response, side.angular_response, impulse);
-  else if (side.speed_count > 0)
+  side.rigid.Push(impulse);
+  if (side.speed_count > 0)
     AddScaled(&m_data.m_deltaVelocitiesUnitImpulse[side.response], impulse, side.speed_count,
               &m_data.m_deltaVelocities[side.speeds]);
 }
@@ -177,14 +171,28 @@ btScalar BulletSolver::SolvePairs(Rows& rows, bool only_pressed) {
   return largest;
 }
 
-btScalar BulletSolver::solveSingleIteration(int iteration, btCollisionObject** bodies,
-                                            int body_count, btPersistentManifold** manifolds,
-                                            int manifold_count, btTypedConstraint** constraints,
-                                            int constraint_count, const btContactSolverInfo& info,
-                                            btIDebugDraw* drawer) {
-  btScalar largest = btSequentialImpulseConstraintSolver::solveSingleIteration(
-      iteration, bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info,
-      drawer);
+RigidRows::Pools BulletSolver::RigidPools() {
+  return {.bodies = m_tmpSolverBodyPool,
+          .joints = m_tmpSolverNonContactConstraintPool,
+          .contacts = m_tmpSolverContactConstraintPool,
+          .frictions = m_tmpSolverContactFrictionConstraintPool,
+          .rolling = m_tmpSolverContactRollingFrictionConstraintPool};
+}
+
+void BulletSolver::solveGroupCacheFriendlySplitImpulseIterations(btCollisionObject**, int,
+                                                                 btPersistentManifold**, int,
+                                                                 btTypedConstraint**, int,
+                                                                 const btContactSolverInfo& info,
+                                                                 btIDebugDraw*) {
+  if (!info.m_splitImpulse) return;
+  for (int i = 0; i < info.m_numIterations; ++i)
+    if (rigid_.SolvePenetrations() <= info.m_leastSquaresResidualThreshold) return;
+}
+
+btScalar BulletSolver::solveSingleIteration(int iteration, btCollisionObject**, int,
+                                            btPersistentManifold**, int, btTypedConstraint**, int,
+                                            const btContactSolverInfo& info, btIDebugDraw*) {
+  btScalar largest = rigid_.Solve(iteration, info.m_numIterations);
   // Joints are gone through to and fro.
   const std::size_t joint_count = joints_.size();
   for (std::size_t i = 0; i < joint_count; ++i)
@@ -205,6 +213,7 @@ btScalar BulletSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies,
                                                      const btContactSolverInfo& info) {
   for (const Rows* rows : {&joints_, &normals_, &frictions_, &rolling_, &spinning_})
     for (const Row& row : *rows) row.source->m_appliedImpulse = row.impulse;
+  rigid_.WriteBack(RigidPools());
   for (const Met& met : met_)
     met.multibody->applyDeltaVeeMultiDof2(&m_data.m_deltaVelocities[met.speeds], 1);
   return btMultiBodyConstraintSolver::solveGroupCacheFriendlyFinish(bodies, body_count, info);

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's solver of multibodies, made faster for hands. Same rows, same order, same
-// arithmetic, hence the same bits; but each row is first written out flat, with the few elements of
-// its Jacobian that are not zero (a joint motor has one, a finger's contact ten of 22), rows whose
-// impulse does not change touch nothing, and velocities reach the multibody once per step.
+// Bullet's solver of multibodies, made faster for hands; rigid_rows.h does so for what is rigid. Same
+// rows, same order, same arithmetic, hence the same bits; but each row is first written out flat, with
+// the few elements of its Jacobian that are not zero (a joint motor has one, a finger's contact ten of
+// 22), rows whose impulse does not change touch nothing, and velocities reach the multibody once per step.
 // Tested by tests/physics/bullet_solver_test.cc
 #pragma once
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 
 #include <vector>
+
+#include "physics/rigid_rows.h"
 
 namespace prehend::physics {
 
@@ -22,6 +24,10 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
                                         btTypedConstraint** constraints, int constraint_count,
                                         const btContactSolverInfo& info,
                                         btIDebugDraw* drawer) override;
+  void solveGroupCacheFriendlySplitImpulseIterations(
+      btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+      int manifold_count, btTypedConstraint** constraints, int constraint_count,
+      const btContactSolverInfo& info, btIDebugDraw* drawer) override;
   /// Squared change of an impulse, the largest of all rows: zero when nothing changed.
   btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
                                 btPersistentManifold** manifolds, int manifold_count,
@@ -42,9 +48,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
     int speeds = 0;                    ///< of the multibody, in m_data.m_deltaVelocities
     int response = 0;     ///< to a unit impulse, in m_data.m_deltaVelocitiesUnitImpulse
     int speed_count = 0;  ///< degrees of freedom; 0 unless it is a multibody
-    btSolverBody* rigid = nullptr;
-    btVector3 linear, angular;  ///< Jacobian of the rigid body
-    btVector3 linear_response, angular_response;
+    RigidSide rigid;
   };
   struct Row {
     Side a, b;
@@ -55,6 +59,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   };
   using Rows = std::vector<Row>;
 
+  RigidRows::Pools RigidPools();
   void Flatten(btMultiBodyConstraintArray& sources, Rows& rows);
   Side MakeSide(btMultiBody* multibody, int solver_body, int jacobian, int speeds,
                 const btVector3& linear, const btVector3& angular,
@@ -75,6 +80,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
     btMultiBody* multibody;
     int speeds;  ///< index of its first in m_data.m_deltaVelocities
   };
+  RigidRows rigid_;
   Rows joints_, normals_, frictions_, rolling_, spinning_;
   std::vector<Term> terms_;
   std::vector<Met> met_;
