@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/bullet_bounces.h"
+
 namespace prehend::physics {
 namespace {
 
@@ -46,6 +48,13 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   Flatten(m_multiBodyTorsionalFrictionContactConstraints, rolling_);
   Flatten(m_multiBodySpinningFrictionContactConstraints, spinning_);
   return result;
+}
+
+void BulletSolver::convertContacts(btPersistentManifold** manifolds, int count,
+                                   const btContactSolverInfo& info) {
+  const TimelyBounces bounces(manifolds, count, info.m_timeStep,
+                              info.m_restitutionVelocityThreshold);
+  btMultiBodyConstraintSolver::convertContacts(manifolds, count, info);
 }
 
 void BulletSolver::Flatten(btMultiBodyConstraintArray& sources, Rows& rows) {

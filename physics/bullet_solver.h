@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's solver of multibodies, made faster for hands; rigid_rows.h does so for what is rigid. Same
-// rows, same order, same arithmetic, hence the same bits; but each row is first written out flat, with
-// the few elements of its Jacobian that are not zero (a joint motor has one, a finger's contact ten of
-// 22), rows whose impulse does not change touch nothing, and velocities reach the multibody once per step.
+// Bullet's solver of multibodies, made faster for hands; rigid_rows.h does so for what is rigid.
+// Same rows, same order, same arithmetic, hence the same bits wherever nothing bounces; but each
+// row is first written out flat, with the few elements of its Jacobian that are not zero (a joint
+// motor has one, a finger's contact ten of 22), rows whose impulse does not change touch nothing,
+// and velocities reach the multibody once per step.
 // Tested by tests/physics/bullet_solver_test.cc
 #pragma once
 
@@ -28,6 +29,9 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
       btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
       int manifold_count, btTypedConstraint** constraints, int constraint_count,
       const btContactSolverInfo& info, btIDebugDraw* drawer) override;
+  /// As Bullet does it, but what bounces does so in time (physics/bullet_bounces.h).
+  void convertContacts(btPersistentManifold** manifolds, int count,
+                       const btContactSolverInfo& info) override;
   /// Squared change of an impulse, the largest of all rows: zero when nothing changed.
   btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
                                 btPersistentManifold** manifolds, int manifold_count,

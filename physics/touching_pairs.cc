@@ -8,9 +8,6 @@
 namespace prehend::physics {
 namespace {
 
-/// Engines keep points that are farther apart; larger values here would report contacts before they
-/// happen.
-constexpr double kTouchDistance_m = 0.0005;
 /// A pair that stops pushing for no longer than this still touches: 8 ms at 480 Hz.
 constexpr int kHoldTicks = 4;
 
@@ -37,7 +34,7 @@ void TouchingPairs::BeginTick(const std::vector<char>& rests) {
 }
 
 void TouchingPairs::Add(ContactPoint point) {
-  if (point.distance_m >= kTouchDistance_m || point.normal_impulse_n_s <= 0) return;
+  if (point.normal_impulse_n_s <= 0) return;
   if (point.b < point.a) {
     std::swap(point.a, point.b);
     point.nhat_BA_W = -point.nhat_BA_W;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// When and how fast things bounce in Bullet. Its solver lets a gap close within the tick at most,
+// which is right for what does not bounce: who is pushed touches in this tick. But it adds the
+// speed after a bounce to that, and so pushes as much as a tick's way too early, and takes gap / dt
+// off the speed. Only for bullet_*.cc. Tested by tests/physics/bounce_test.cc
+#pragma once
+
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
+#include <utility>
+#include <vector>
+
+namespace prehend::physics {
+
+/// While it lives, contacts are as the solver has to see them: a point bounces in the tick in which
+/// its gap closes, as if it were closed already, and not before.
+class TimelyBounces {
+ public:
+  /// `slowest_m_per_s`: slower impacts do not bounce.
+  TimelyBounces(btPersistentManifold* const* manifolds, int count, btScalar dt_s,
+                btScalar slowest_m_per_s);
+  ~TimelyBounces();
+  TimelyBounces(const TimelyBounces&) = delete;
+  TimelyBounces& operator=(const TimelyBounces&) = delete;
+
+ private:
+  std::vector<std::pair<btManifoldPoint*, btScalar>> later_;  ///< and what their restitution is
+};
+
+}  // namespace prehend::physics

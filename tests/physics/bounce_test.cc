@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// A ball that bounces, against free flight: physics/bullet_bounces.h, physics/touching_pairs.h.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+
+#include "physics/box2d_world.h"
+#include "physics/bullet_world.h"
+
+namespace prehend::physics {
+namespace {
+
+constexpr double kGravity = 9.81;
+constexpr double kTick_s = 1.0 / 480;
+
+struct Drop {
+  double radius_m, height_m, restitution;
+};
+
+Scene MakeScene(const Drop& drop, Engine engine) {
+  const Body floor{.name = "floor",
+                   .shapes = {{Box{{2, 2, 0.1}}, {}}},
+                   .fixed = true,
+                   .restitution = 1,
+                   .X_WB = {{0, 0, -0.05}}};
+  const Body ball{.name = "ball",
+                  .shapes = {{Sphere{drop.radius_m}, {}}},
+                  .mass_kg = 0.2,
+                  .restitution = drop.restitution,
+                  .X_WB = {{0, 0, drop.radius_m + drop.height_m}}};
+  Scene scene{.bodies = {floor, ball}};
+  scene.world.planar = engine == Engine::kBox2d;
+  return scene;
+}
+
+/// Seconds at which the ball meets the floor before `until_s`.
+std::vector<double> ContactTimes(const Scene& scene, double until_s) {
+  const auto world = scene.world.planar ? MakeBox2dWorld(scene, {}) : MakeBulletWorld(scene, {});
+  std::vector<double> times_s;
+  Snapshot snapshot;
+  bool touched = false;
+  while (snapshot.tick < until_s * scene.world.rate_hz) {
+    world->Step({});
+    world->Describe(snapshot);
+    const bool touches = !snapshot.contacts.empty();
+    if (touches && !touched)
+      times_s.push_back(static_cast<double>(snapshot.tick) / scene.world.rate_hz);
+    touched = touches;
+  }
+  return times_s;
+}
+
+/// How often it meets the floor in free flight as long as flights last 0.1 s.
+std::size_t CountBounces(const Drop& drop, double fall_s) {
+  std::size_t count = 1;
+  for (double flight_s = 2 * fall_s * drop.restitution; flight_s > 0.1; ++count)
+    flight_s *= drop.restitution;
+  return count;
+}
+
+class BounceTest : public testing::TestWithParam<Engine> {};
+
+INSTANTIATE_TEST_SUITE_P(Worlds, BounceTest, testing::Values(Engine::kBullet, Engine::kBox2d),
+                         [](const auto& engine) {
+                           return engine.param == Engine::kBox2d ? "box2d" : "bullet";
+                         });
+
+TEST_P(BounceTest, EveryBounceIsAContactAtItsTime) {
+  // From 1.4 to 4 m/s: 3 to 8 mm a tick, far more than a contact is deep.
+  for (const double radius_m : {0.03, 0.2})
+    for (const double height_m : {0.1, 0.21, 0.4, 0.8})
+      for (const double restitution : {0.5, 0.81}) {
+        const Drop drop{radius_m, height_m, restitution};
+        SCOPED_TRACE(testing::Message() << radius_m << ' ' << height_m << ' ' << restitution);
+        const std::vector<double> times_s = ContactTimes(MakeScene(drop, GetParam()), 4);
+        const double fall_s = std::sqrt(2 * height_m / kGravity);
+        const std::size_t count = CountBounces(drop, fall_s);
+        ASSERT_GE(times_s.size(), count);
+        EXPECT_NEAR(times_s[0], fall_s, 2 * kTick_s);
+        double flight_s = 2 * fall_s;
+        for (std::size_t i = 1; i < count; ++i) {
+          const double before_s = std::exchange(flight_s, times_s[i] - times_s[i - 1]);
+          EXPECT_NEAR(flight_s, restitution * before_s, 4 * kTick_s) << "flight " << i;
+        }
+      }
+}
+
+}  // namespace
+}  // namespace prehend::physics
