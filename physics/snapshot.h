@@ -45,12 +45,12 @@ struct ContactSide {
   friend auto operator<=>(const ContactSide&, const ContactSide&) = default;
 };
 
-/// A point where surfaces touch in the sense of docs/physics.md: nearer than 0.5 mm and pushed.
+/// A point where surfaces touch in the sense of docs/physics.md: pushed in this tick or just before.
 struct ContactPoint {
   ContactSide a, b;
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d nhat_BA_W = Eigen::Vector3d::UnitZ();  ///< from b into a
-  double distance_m = 0;                                 ///< negative: penetration
+  double distance_m = 0;  ///< before the tick (Bullet) or after it (Box2D); negative: penetration
   double normal_impulse_n_s = 0;                         ///< over this tick
 };
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What counts as touching, the same for every engine. Two surfaces touch when they are nearer than
-// 0.5 mm and push each other; once they do, they touch until neither held for a few ticks, because
-// a resting contact's impulse flickers. Between two that rest nothing changes, and it costs no time.
-// Tested by tests/physics/world_test.cc
+// What counts as touching, the same for every engine. Two surfaces touch in a tick in which momentum
+// passed between them, wherever they were before and after it: a bounce is over within one. Once
+// they touch, they do until they have not pushed for a few ticks, because a resting contact's
+// impulse flickers. Between two that rest nothing changes, and it costs no time.
+// Tested by tests/physics/world_test.cc, bounce_test.cc
 #pragma once
 
 #include <map>
@@ -21,7 +22,7 @@ class TouchingPairs {
   void BeginTick(const std::vector<char>& rests);
   /// Both rest and did so before: there is nothing to add between them.
   bool Rest(const ContactSide& a, const ContactSide& b) const { return Rests(a) && Rests(b); }
-  /// A point that the engine knows; one that does not touch is left out. The sides may come in any
+  /// A point that the engine knows; one that does not push is left out. The sides may come in any
   /// order.
   void Add(ContactPoint point);
   /// After the last point of the tick.
