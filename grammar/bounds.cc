@@ -1,23 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grammar/bounds.h"
 
-#include <limits>
-#include <utility>
-
 namespace prehend::grammar {
 namespace {
-
-// The same for the same expression.
-std::string Signature(const Program& program, int index) {
-  const Node& node = program.nodes[index];
-  std::string text = std::to_string(static_cast<int>(node.op));
-  for (const int role : node.roles) text += "r" + std::to_string(role);
-  text += "s" + std::to_string(node.slot) + "t" + std::to_string(node.name) + "n" + std::to_string(node.number) + "(";
-  for (const int arg : node.args) {
-    if (arg != kNone) text += Signature(program, arg) + ",";
-  }
-  return text + ")";
-}
 
 // `a op b` as `b op a`.
 Op Mirrored(Op op) {
@@ -47,36 +32,67 @@ bool Bounds::Add(int index, bool negated) {
   const Node& node = program_.nodes[index];
   switch (node.op) {
     case Op::kNot: return Add(node.args[0], !negated);
-    case Op::kAnd: return negated || (Add(node.args[0]) && Add(node.args[1]));
-    case Op::kOr: return !negated || (Add(node.args[0], true) && Add(node.args[1], true));
+    case Op::kAnd:
+    case Op::kOr:
+      if ((node.op == Op::kAnd) != negated) return Add(node.args[0], negated) && Add(node.args[1], negated);
+      alternatives_.push_back({index, negated});
+      return true;
     case Op::kLess: case Op::kLessEqual: case Op::kGreater: case Op::kGreaterEqual: case Op::kEqual: case Op::kNotEqual:
-      break;
-    case Op::kBegins: case Op::kEnds: return true;  // a change does not contradict the state
-    default: return Narrow(Signature(program_, index), Op::kEqual, negated ? 0 : 1);
+      return AddComparison(negated ? Negated(node.op) : node.op, node);
+    // What begins is true from now on. What ends is false, but an event may end where its next interval begins.
+    case Op::kBegins: return (negated || Add(node.args[0])) && AddAtom(index, negated);
+    case Op::kEnds: {
+      const bool says_more = !negated && program_.nodes[node.args[0]].op != Op::kHolds;
+      return (!says_more || Add(node.args[0], true)) && AddAtom(index, negated);
+    }
+    default: return AddAtom(index, negated);
   }
-  const Op op = negated ? Negated(node.op) : node.op;
-  const Node& left = program_.nodes[node.args[0]];
-  const Node& right = program_.nodes[node.args[1]];
-  if (right.op == Op::kNumber) return Narrow(Signature(program_, node.args[0]), op, right.number);
-  if (left.op == Op::kNumber) return Narrow(Signature(program_, node.args[1]), Mirrored(op), left.number);
+}
+
+bool Bounds::AddAtom(int index, bool negated) {
+  return Narrow(Signature(program_, index), {.low = 0, .high = 1}, Op::kEqual, negated ? 0 : 1);
+}
+
+bool Bounds::AddComparison(Op op, const Node& comparison) {
+  const int left = comparison.args[0];
+  const int right = comparison.args[1];
+  const Range of_left = RangeOf(program_, rule_, left);
+  const Range of_right = RangeOf(program_, rule_, right);
+  if (Judge(op, of_left, of_right) == Verdict::kNever) return false;
+  if (of_right.IsPoint()) return Narrow(Signature(program_, left), of_left, op, of_right.low);
+  if (of_left.IsPoint()) return Narrow(Signature(program_, right), of_right, Mirrored(op), of_left.low);
   return true;
 }
 
-bool Bounds::Narrow(const std::string& value, Op op, double number) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Limit& limit = limits_.try_emplace(value, Limit{-kInfinity, kInfinity}).first->second;
+bool Bounds::Narrow(const std::string& value, const Range& range, Op op, double number) {
+  Limit& limit = limits_.try_emplace(value, Limit{.range = range}).first->second;
   const bool from_below = op == Op::kGreater || op == Op::kGreaterEqual || op == Op::kEqual;
   const bool from_above = op == Op::kLess || op == Op::kLessEqual || op == Op::kEqual;
-  if (from_below && (number > limit.low || (number == limit.low && op == Op::kGreater))) {
-    limit.low = number;
+  if (from_below && (number > limit.range.low || (number == limit.range.low && op == Op::kGreater))) {
+    limit.range.low = number;
     limit.low_open = op == Op::kGreater;
   }
-  if (from_above && (number < limit.high || (number == limit.high && op == Op::kLess))) {
-    limit.high = number;
+  if (from_above && (number < limit.range.high || (number == limit.range.high && op == Op::kLess))) {
+    limit.range.high = number;
     limit.high_open = op == Op::kLess;
   }
-  if (limit.low == limit.high) return !limit.low_open && !limit.high_open;
-  return limit.low < limit.high;
+  if (limit.range.IsPoint()) return !limit.low_open && !limit.high_open;
+  return limit.range.low < limit.range.high;
+}
+
+bool Bounds::SomeAlternativeFits() const {
+  int budget = 256;
+  return SomeFits(0, budget);
+}
+
+bool Bounds::SomeFits(std::size_t next, int& budget) const {
+  if (next == alternatives_.size() || --budget < 0) return true;
+  const Alternative& chosen = alternatives_[next];
+  for (const int arg : {program_.nodes[chosen.node].args[0], program_.nodes[chosen.node].args[1]}) {
+    Bounds so_far = *this;
+    if (so_far.Add(arg, chosen.negated) && so_far.SomeFits(next + 1, budget)) return true;
+  }
+  return false;
 }
 
 }  // namespace prehend::grammar

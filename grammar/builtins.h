@@ -4,7 +4,7 @@
 // Tested by tests/grammar/signals_test.cc
 #pragma once
 
-#include <optional>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,9 +16,17 @@ namespace prehend::grammar {
 
 enum class Type : std::uint8_t { kTruth, kNumber, kPosition };
 
-/// What an argument must be. The first four are roles of that class.
+/// What an argument must be. The first five are roles of that class.
 /// A window is a constant span of time; a set is the name of a sensor set, or its number.
-enum class Argument : std::uint8_t { kEntity, kHand, kThing, kMovable, kPosition, kLength, kNumber, kWindow, kSet };
+enum class Argument : std::uint8_t { kEntity, kHand, kThing, kMovable, kJointed, kPosition, kLength, kNumber, kWindow, kSet };
+
+/// Between what and what a number lies, both ends included, SI units.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool whole = false;  ///< it counts something
+  bool IsPoint() const { return low == high; }
+};
 
 struct Builtin {
   std::string_view name;
@@ -27,18 +35,14 @@ struct Builtin {
   Dimension dimension;  ///< of a number
   std::vector<Argument> arguments;
   std::string_view meaning;  ///< one line for listings
+  Range range = {};          ///< of a number: what it can be at all
 };
-
-/// What a signal can be at all; nothing for most.
-struct Range {
-  double low = 0;
-  double high = 0;
-};
-std::optional<Range> RangeOf(Op op);
 
 std::span<const Builtin> Builtins();
 
 /// Null when there is none.
 const Builtin* FindBuiltin(std::string_view name);
+/// Null for what is written otherwise.
+const Builtin* FindBuiltin(Op op);
 
 }  // namespace prehend::grammar

@@ -102,6 +102,7 @@ class Compiler {
 
   void CollectParams() {
     for (const Source& source : sources_) {
+      symbols_.files.try_emplace(source.text.file, static_cast<int>(symbols_.files.size()));
       for (const ast::Param& param : source.file.params) {
         const auto [entry, is_new] = symbols_.params.try_emplace(param.name, static_cast<int>(program_.params.size()));
         if (!is_new) {
@@ -192,13 +193,35 @@ class Compiler {
   void CollectDefines() {
     for (const Source& source : sources_) {
       for (const ast::Define& define : source.file.defines) {
-        const bool taken = IsBuiltin(define.name) || symbols_.rules.contains(define.name) || symbols_.params.contains(define.name);
-        if (taken || !symbols_.defines.try_emplace(define.name, DefineSource{&source.text, &define}).second) {
+        const auto rule = symbols_.rules.find(define.name);
+        if (rule != symbols_.rules.end() && IsLater(program_.events[rule->second].file, source.text.file)) {
+          const Located& located = definitions_[rule->second - 1];
+          Complain(*located.source, located.definition->place, "'" + define.name + "' is defined twice",
+                   FirstAt(source.text.file, define.place));
+        } else if (IsBuiltin(define.name) || rule != symbols_.rules.end() || symbols_.IsParamIn(source.text.file, define.name) ||
+                   !symbols_.defines.try_emplace(define.name, DefineSource{&source.text, &define}).second) {
           Complain(source, define.place, "'" + define.name + "' means something already", "choose another name");
         }
         CheckParameters(source, define);
       }
     }
+    CheckParamsAgainstDefines();
+  }
+
+  // Of two that are called the same, whoever comes later is told.
+  void CheckParamsAgainstDefines() {
+    for (const Source& source : sources_) {
+      for (const ast::Param& param : source.file.params) {
+        const auto define = symbols_.defines.find(param.name);
+        if (define == symbols_.defines.end() || !IsLater(source.text.file, define->second.text->file)) continue;
+        Complain(source, param.place, "'" + param.name + "' is defined twice",
+                 FirstAt(define->second.text->file, define->second.define->place));
+      }
+    }
+  }
+
+  bool IsLater(const std::string& file, const std::string& other) const {
+    return symbols_.files.find(file)->second > symbols_.files.find(other)->second;
   }
 
   void CheckParameters(const Source& source, const ast::Define& define) {
@@ -207,7 +230,7 @@ class Compiler {
       if (!names.insert(parameter.name).second) {
         Complain(source, parameter.place, "the parameter '" + parameter.name + "' is named twice");
       }
-      if (symbols_.params.contains(parameter.name)) {
+      if (symbols_.IsParamIn(source.text.file, parameter.name)) {
         Complain(source, parameter.place, "'" + parameter.name + "' is a parameter of the grammar already");
       }
       if (parameter.class_name == "number" || parameter.class_name == "position") continue;
@@ -221,7 +244,7 @@ class Compiler {
   void CheckDefines() {
     Program scratch = program_;
     for (const auto& [name, source] : symbols_.defines) {
-      Symbols symbols{scratch, symbols_.rules, symbols_.params, symbols_.defines, {}, {}, {}, {}};
+      Symbols symbols{scratch, symbols_.rules, symbols_.params, symbols_.files, symbols_.defines, {}, {}, {}, {}};
       scratch.events.resize(program_.events.size());
       scratch.nodes.clear();
       Rule& rule = scratch.events.emplace_back();
@@ -244,14 +267,14 @@ class Compiler {
     std::set<std::string> names;
     for (const ast::Role& role : definition.roles) {
       if (!names.insert(role.name).second) Complain(source, role.place, "the role '" + role.name + "' is named twice");
-      if (symbols_.params.contains(role.name)) {
-        Complain(source, role.place, "'" + role.name + "' is a parameter and cannot be a role too");
+      if (symbols_.IsParamIn(source.text.file, role.name)) {
+        Complain(source, role.place, "'" + role.name + "' is a parameter and cannot be a role too", "call one of them otherwise");
       }
       CheckClassName(source, role);
     }
     if (!definition.symmetric) return;
-    if (definition.roles.size() != 2 || definition.roles[0].class_name != definition.roles[1].class_name) {
-      Complain(source, definition.place, "a symmetric event has two roles of the same class");
+    if (definition.roles.size() < 2 || definition.roles[0].class_name != definition.roles[1].class_name) {
+      Complain(source, definition.place, "the first two roles of a symmetric event are of the same class");
     }
   }
 
@@ -308,17 +331,27 @@ class Compiler {
           continue;
         }
         const int target = rule.references[step.next++].rule;
-        if (marks[target] == Mark::kOpen) return ComplainCycle(target);
+        if (marks[target] == Mark::kOpen) {
+          std::vector<int> circle;
+          for (auto link = path.rbegin(); circle.empty() || circle.back() != target; ++link) circle.push_back(link->rule);
+          return ComplainCycle({circle.rbegin(), circle.rend()});
+        }
         if (marks[target] == Mark::kNew) path.push_back({target});
       }
     }
   }
 
-  void ComplainCycle(int rule) {
-    while (program_.events[rule].hidden) rule = program_.events[rule].references[0].rule;
-    const Rule& circular = program_.events[rule];
-    Complain(*definitions_[rule - 1].source, circular.place, "'" + circular.name + "' refers to itself",
-             "a rule may only use rules that do not use it, directly or through others");
+  // Rules that each use the next one, and the last one the first; those made for an `any` are not told.
+  void ComplainCycle(std::vector<int> circle) {
+    std::erase_if(circle, [&](int rule) { return program_.events[rule].hidden; });
+    const Rule& first = program_.events[circle.front()];
+    std::string hint;
+    for (std::size_t i = 0; circle.size() > 1 && i < circle.size(); ++i) {
+      hint += (i == 0 ? "" : ", ") + program_.events[circle[i]].name + " uses " +
+              program_.events[circle[(i + 1) % circle.size()]].name;
+    }
+    Complain(*definitions_[circle.front() - 1].source, first.place, "'" + first.name + "' refers to itself",
+             hint.empty() ? "a rule may only use rules that do not use it" : hint);
   }
 
   // In the grammar itself; a library may offer more than one uses.
@@ -362,7 +395,7 @@ class Compiler {
   };
   std::vector<Located> definitions_;  // definition i is rule i + 1
   Program program_;
-  Symbols symbols_{program_, {}, {}, {}, {}, {}, {}, {}};
+  Symbols symbols_{program_, {}, {}, {}, {}, {}, {}, {}, {}};
 };
 
 }  // namespace

@@ -193,6 +193,7 @@ class Engine {
   std::vector<Alarm> alarms_;            // a heap, the next one first
   Ring<Retiree> retirees_;               // in the order in which they came to rest
   std::vector<int> scratch_;             // lanes; kept for its memory
+  std::vector<int> told_;                // likewise
   FrameNumber oldest_needed_ = 0;        // of the awake lanes
   FrameNumber oldest_look_needed_ = 0;
   FrameNumber first_needed_ = 0;         // and what they can look back to

@@ -100,6 +100,7 @@ class Combinations {
 
 }  // namespace
 
+// Roles of the composition that the part does not name are free: its interval counts for whoever plays them.
 void Engine::TellCompositions(const Lane& part, const Span& span) {
   for (const PartOf& part_of : RuleOf(part).part_of) {
     const Rule& whole = program_->events[part_of.rule];
@@ -109,13 +110,14 @@ void Engine::TellCompositions(const Lane& part, const Span& span) {
       if (order == 1) std::swap(from[0], from[1]);
       Binding entities = kUnbound;
       for (std::size_t i = 0; i < RuleOf(part).roles.size(); ++i) entities[reference.roles[i]] = from[i];
-      if (order == 1 && whole.symmetric) break;  // the same lane again
-      const int index = lanes_.Ensure(part_of.rule, entities);
-      if (index == kNone) continue;
-      std::vector<Span>& spans = lanes_[index].parts[part_of.part];
-      if (spans.size() == kRememberedSpans) spans.erase(spans.begin());
-      spans.push_back(span);
-      Wake(index);
+      told_.clear();
+      lanes_.EnsureAll(part_of.rule, entities, told_);
+      for (const int index : told_) {
+        std::vector<Span>& spans = lanes_[index].parts[part_of.part];
+        if (spans.size() == kRememberedSpans) spans.erase(spans.begin());
+        spans.push_back(span);
+        Wake(index);
+      }
     }
   }
 }

@@ -62,13 +62,16 @@ void Lanes::BindUnguarded() {
   }
 }
 
+void Lanes::EnsureAll(int rule, Binding entities, std::vector<int>& made) { BindRest(rule, entities, 0, kNone, &made); }
+
 // Fills in the roles from `role` on that are still free, in all ways that fit.
 void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard, std::vector<int>* made) {
   if (too_many_) return;
   if (role == program_.events[rule].roles.size()) {
+    if (Canonical(rule, entities).entities != entities) return;  // of a symmetric pair, the other order is what counts
     const int lane = Ensure(rule, entities);
-    if (lane == kNone || guard == kNone) return;
-    LinkToGuard(lane, guard);
+    if (lane == kNone || made == nullptr) return;
+    if (guard != kNone) LinkToGuard(lane, guard);
     made->push_back(lane);
     return;
   }

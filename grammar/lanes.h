@@ -126,6 +126,8 @@ class Lanes {
     const int found = Find(key);
     return found != kNone ? found : Make(key);
   }
+  /// Likewise, for everybody who can play the roles that are free, and appends them to `made`.
+  void EnsureAll(int rule, Binding entities, std::vector<int>& made);
   /// Makes the lanes that this one guards and appends them to `made`, those that were there already, too.
   void MakeDependents(int lane, std::vector<int>& made);
   /// Frees a lane that nothing but kAny lanes watches. Appends the lanes that it leaves without a watcher.

@@ -17,16 +17,11 @@ constexpr std::size_t kMaxNodes = 10000;
 constexpr std::array<std::string_view, 3> kOverInterval = {"displacement", "rise", "drop"};
 constexpr double kLongest_s = 86400;  // more is a slip of the finger
 
-// `signal op value` for no signal within the range.
-bool NeverHolds(Op op, const Range& range, double value) {
-  switch (op) {
-    case Op::kLess: return range.low >= value;
-    case Op::kLessEqual: return range.low > value;
-    case Op::kGreater: return range.high <= value;
-    case Op::kGreaterEqual: return range.high < value;
-    case Op::kEqual: return value < range.low || value > range.high;
-    default: return false;
-  }
+// The names that stand in it, each once.
+void CollectNames(const Expr& expr, std::vector<std::string>& names) {
+  const bool is_new = std::find(names.begin(), names.end(), expr.text) == names.end();
+  if (expr.kind == Expr::Kind::kName && is_new) names.push_back(expr.text);
+  for (const Expr& arg : expr.args) CollectNames(arg, names);
 }
 
 std::string_view TypeText(Type type) {
@@ -71,6 +66,12 @@ bool ClassesMeet(std::string_view a, std::string_view b) {
 
 bool IsOverInterval(std::string_view name) {
   return std::find(kOverInterval.begin(), kOverInterval.end(), name) != kOverInterval.end();
+}
+
+bool Symbols::IsParamIn(std::string_view file, std::string_view name) const {
+  const auto param = params.find(name);
+  if (param == params.end()) return false;
+  return files.find(program.params[param->second].file)->second <= files.find(file)->second;
 }
 
 Lowering::Lowering(Symbols& symbols, int rule, const GrammarText& source, Diagnostics& diagnostics)
@@ -164,7 +165,7 @@ std::optional<double> Lowering::ConstantOf(const Expr& expr, const Dimension& di
   } else if (node.number < 0) {
     Complain(expr.place, std::string(what) + " cannot be negative");
   } else if (dimension == kSeconds && node.number > kLongest_s) {
-    Complain(expr.place, std::string(what) + " is longer than a day", "times are in s or ms");
+    Complain(expr.place, std::string(what) + " is longer than a day", "a day has 86400 s");
   } else {
     return node.number;
   }
@@ -220,6 +221,11 @@ int Lowering::FindRole(std::string_view name) const {
     if (roles[i].name == name) return static_cast<int>(i);
   }
   return kNone;
+}
+
+int Lowering::FindParam(std::string_view name) const {
+  const auto found = symbols_.params.find(name);
+  return found == symbols_.params.end() ? kNone : found->second;
 }
 
 std::vector<std::string> Lowering::KnownNames(bool calls) const {
@@ -302,9 +308,9 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
     return Bad(expr.place, Quoted(expr.text) + " is a role; a value is needed here",
                "ask for one of its signals: position(" + expr.text + ")");
   }
-  if (const auto param = symbols_.params.find(expr.text); param != symbols_.params.end()) {
-    symbols_.used_params.insert(param->second);
-    const Quantity& value = symbols_.program.params[param->second].value;
+  if (const int param = FindParam(expr.text); param != kNone) {
+    symbols_.used_params.insert(param);
+    const Quantity& value = symbols_.program.params[param].value;
     return NumberNode(value.value, value.dimension, expr.place);
   }
   if (const auto define = symbols_.defines.find(expr.text); define != symbols_.defines.end()) {
@@ -367,6 +373,9 @@ Lowering::Typed Lowering::LowerArithmetic(Op op, const Typed& left, const Typed&
   if (!dimension.IsModest()) return Bad(expr.place, "a unit to such a power means nothing");
   const Node a = symbols_.program.nodes[left.node];
   const Node b = symbols_.program.nodes[right.node];
+  if (op == Op::kDivide && b.op == Op::kNumber && b.number == 0 && !checking_) {
+    return Bad(expr.place, "this is divided by zero", WithParams(expr.args[1], "divide by something else"));
+  }
   if (a.op == Op::kNumber && b.op == Op::kNumber) {
     switch (op) {
       case Op::kAdd: return NumberNode(a.number + b.number, dimension, expr.place);
@@ -380,26 +389,70 @@ Lowering::Typed Lowering::LowerArithmetic(Op op, const Typed& left, const Typed&
           .dimension = dimension};
 }
 
+// What can never or only be true is a mistake. While a definition is checked for itself, its numbers are not known.
 Lowering::Typed Lowering::LowerComparison(Op op, const Typed& left, const Typed& right, const Expr& expr) {
-  const Node& value = symbols_.program.nodes[right.node];
-  const std::optional<Range> range = RangeOf(symbols_.program.nodes[left.node].op);
-  if (!checking_ && range && value.op == Op::kNumber && NeverHolds(op, *range, value.number)) {
-    return Bad(expr.place, "this is never true: " + Quoted(expr.args[0].text) + " goes from " +
-                               QuantityText({range->low, left.dimension}) + " to " +
-                               QuantityText({range->high, left.dimension}));
+  const Program& program = symbols_.program;
+  const Range of_left = RangeOf(program, rule(), left.node);
+  const bool same = Signature(program, left.node) == Signature(program, right.node);
+  const Verdict verdict = same ? Judge(op, {.low = 0, .high = 0}, {.low = 0, .high = 0})
+                               : Judge(op, of_left, RangeOf(program, rule(), right.node));
+  if (verdict == Verdict::kPossible || checking_) {
+    return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}), .type = Type::kTruth};
   }
-  return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}), .type = Type::kTruth};
+  const bool never = verdict == Verdict::kNever;
+  const std::string message = std::string("this is ") + (never ? "never" : "always") + " true: ";
+  if (same) return Bad(expr.place, message + "both sides are the same", "compare it with something else");
+  const std::string sides = WhatSidesCanBe(expr, left, right);
+  if (sides.empty()) return Bad(expr.place, message + "it compares two numbers", WithParams(expr, "compare one of them with a signal"));
+  return Bad(expr.place, message + sides,
+             WithParams(expr, never ? "choose a bound that can be reached" : "leave it out, or choose a bound that can be missed"));
 }
 
-void Lowering::CheckBounds(const Expr& chain, const std::vector<int>& nodes) {
-  if (checking_) return;
-  Bounds bounds(symbols_.program);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (bounds.Add(nodes[i])) continue;
-    Complain(chain.args[i].place, "this is never true together with what stands before it: " + Dump(chain.args[i]),
-             "use 'or', or change one of the bounds");
-    return;
+// Nothing of what is only a number.
+
+std::string Lowering::WhatSidesCanBe(const Expr& comparison, const Typed& left, const Typed& right) {
+  std::string text;
+  const auto add = [&](const Expr& side, const Typed& typed, std::string_view which) {
+    if (symbols_.program.nodes[typed.node].op == Op::kNumber) return;
+    const std::string name = side.kind == Expr::Kind::kCall ? Quoted(side.text) : std::string(which);
+    text += (text.empty() ? "" : ", ") + name + " " +
+            RangeText(RangeOf(symbols_.program, rule(), typed.node), typed.dimension);
+  };
+  add(comparison.args[0], left, "the left side");
+  add(comparison.args[1], right, "the right side");
+  return text;
+}
+
+// What the parameters in it are: whoever sets them from outside does not see it here.
+std::string Lowering::WithParams(const Expr& expr, std::string remedy) const {
+  std::vector<std::string> names;
+  CollectNames(expr, names);
+  std::string text;
+  for (const std::string& name : names) {
+    const int found = FindParam(name);
+    if (found == kNone || FindRole(name) != kNone) continue;
+    const ProgramParam& param = symbols_.program.params[found];
+    text += Quoted(name) + " is " + QuantityText(param.value) + (param.overridden ? ", set from outside; " : "; ");
   }
+  return text + remedy;
+}
+
+// Whether all parts of an `and` can be true at once, and those of an `or` false.
+bool Lowering::ChainIsSound(const Expr& chain, const std::vector<int>& nodes) {
+  if (checking_) return true;
+  const bool is_and = chain.text == "and";
+  const std::string verdict = is_and ? "this is never true" : "this is always true";
+  const std::string remedy = is_and ? "use 'or', or change one of the bounds" : "use 'and', or change one of the bounds";
+  Bounds bounds(symbols_.program, rule());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (bounds.Add(nodes[i], !is_and)) continue;
+    Complain(chain.args[i].place, verdict + " together with what stands before it: " + Dump(chain.args[i]),
+             WithParams(chain.args[i], remedy));
+    return false;
+  }
+  if (bounds.SomeAlternativeFits()) return true;
+  Complain(chain.args[0].place, verdict + ", whichever of its alternatives one takes: " + Dump(chain), WithParams(chain, remedy));
+  return false;
 }
 
 // Long chains become balanced trees, so that walking them never goes deep.
@@ -415,7 +468,7 @@ Lowering::Typed Lowering::LowerChain(const Expr& expr) {
     nodes.push_back(typed.node);
   }
   if (bad) return {.bad = true};
-  if (is_and) CheckBounds(expr, nodes);
+  if (!ChainIsSound(expr, nodes)) return {.bad = true};
   while (nodes.size() > 1) {
     std::vector<int> halved;
     for (std::size_t i = 0; i + 1 < nodes.size(); i += 2) {
@@ -442,6 +495,10 @@ Lowering::Typed Lowering::LowerAnchor(const Expr& expr) {
     return Bad(expr.place, "the interval's " + expr.text + " is not known here",
                at_begin ? "'@begin' can be used after 'to', 'during', 'requires' and 'with'"
                         : "'@end' can be used after 'since', 'requires' and 'with'");
+  }
+  if (expr.args[0].kind == Expr::Kind::kCall && IsOverInterval(expr.args[0].text)) {
+    return Bad(expr.place, Quoted(expr.args[0].text) + " is measured from the interval's begin to now, not at one moment",
+               "leave '@" + expr.text + "' out: " + Dump(expr.args[0]));
   }
   // Inside, the boundary is a single frame: no further anchors.
   const Anchors outer = std::exchange(anchors_, Anchors{});

@@ -28,11 +28,15 @@ struct Symbols {
   Program& program;
   std::map<std::string, int, std::less<>> rules;   ///< name -> index in Program::events
   std::map<std::string, int, std::less<>> params;  ///< name -> index in Program::params
+  std::map<std::string, int, std::less<>> files;   ///< name -> place in the order in which they were read, what is used first
   std::map<std::string, DefineSource, std::less<>> defines;
   std::map<std::pair<int, std::vector<int>>, int> any_rules;  ///< (rule, kept roles) -> rule
   std::map<std::pair<int, std::vector<std::string>>, int> narrowed_rules;  ///< (rule, classes of its roles) -> rule
   std::set<int> used_params;
   std::set<std::string, std::less<>> used_defines;
+
+  /// A parameter of this file or of one that it uses; another file's may be called like something of its own.
+  bool IsParamIn(std::string_view file, std::string_view name) const;
 };
 
 /// True if some entity can be of both classes. Names other than the built-in ones are taken to be Things.
@@ -86,6 +90,8 @@ class Lowering {
 
   bool RoleUsed(std::size_t role) const { return role_used_[role]; }
   void Complain(Place place, std::string message, std::string hint = {});
+  /// How many there were so far.
+  std::size_t complaints() const { return diagnostics_.size(); }
 
  private:
   struct Typed {
@@ -123,7 +129,9 @@ class Lowering {
   Typed LowerArithmetic(Op op, const Typed& left, const Typed& right, const ast::Expr& expr);
   Typed LowerComparison(Op op, const Typed& left, const Typed& right, const ast::Expr& expr);
   Typed LowerChain(const ast::Expr& expr);
-  void CheckBounds(const ast::Expr& chain, const std::vector<int>& nodes);
+  std::string WhatSidesCanBe(const ast::Expr& comparison, const Typed& left, const Typed& right);
+  std::string WithParams(const ast::Expr& expr, std::string remedy) const;
+  bool ChainIsSound(const ast::Expr& chain, const std::vector<int>& nodes);
   Typed LowerEdge(const ast::Expr& expr);
   Typed LowerAnchor(const ast::Expr& expr);
   Typed LowerCall(const ast::Expr& expr);
@@ -150,6 +158,7 @@ class Lowering {
   int AddReference(const Reference& reference);
   int AnchorAtBegin(int node);
   int FindRole(std::string_view name) const;
+  int FindParam(std::string_view name) const;
   std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class, std::string_view callee);
   int AnyRule(int rule, const std::vector<int>& kept);
   int NarrowedRule(int rule, const std::vector<std::string>& classes);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "grammar/lower.h"
+#include "grammar/ranges.h"
 
 namespace prehend::grammar {
 namespace {
@@ -18,6 +19,7 @@ std::string_view ClassOf(Argument argument) {
     case Argument::kHand: return "Hand";
     case Argument::kThing: return "Thing";
     case Argument::kMovable: return "Movable";
+    case Argument::kJointed: return "Jointed";
     default: return "Entity";
   }
 }
@@ -42,7 +44,8 @@ std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wan
   const std::string& class_name = rule().roles[role].class_name;
   if (!ClassesMeet(class_name, wanted_class)) {
     Complain(expr.place, Quoted(callee) + " takes a " + std::string(wanted_class) + " here, but " + Quoted(expr.text) +
-                             " is a " + class_name);
+                             " is a " + class_name,
+             wanted_class == "Jointed" ? "what hangs on a slider or a hinge is Jointed: " + expr.text + ": Jointed" : "");
     return std::nullopt;
   }
   return role;
@@ -89,6 +92,10 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
     }
     const std::optional<int> role = RoleArgument(expr.args[i], wanted[i].class_name, expr.text);
     if (!role) return {.bad = true};
+    if (std::find(reference.roles.begin(), reference.roles.end(), *role) != reference.roles.end()) {
+      return Bad(expr.args[i].place, "this is never true: " + Quoted(expr.args[i].text) + " cannot play two roles of " + Quoted(expr.text),
+                 "name another role, or 'any'");
+    }
     kept.push_back(static_cast<int>(i));
     reference.roles[count++] = *role;
   }
@@ -229,6 +236,13 @@ Lowering::Typed Lowering::LowerIs(const Expr& expr) {
   }
   const std::optional<int> role = RoleArgument(expr.args[0], "Entity", "is");
   if (!role) return {.bad = true};
+  // Within a definition, this depends on who calls it.
+  const std::string& class_name = rule().roles[*role].class_name;
+  const bool both_known = IsBuiltinClass(class_name) && IsBuiltinClass(expr.args[1].text);
+  if ((scope_ == nullptr || checking_) && both_known && !ClassesMeet(class_name, expr.args[1].text)) {
+    return Bad(expr.place, "this is never true: " + Quoted(expr.args[0].text) + " is a " + class_name + ", and no " + class_name +
+                               " is a " + expr.args[1].text);
+  }
   NoteClass(symbols_.program, expr.args[1].text, source_->file, expr.args[1].place);
   symbols_.program.class_names.push_back(expr.args[1].text);
   const int slot = static_cast<int>(symbols_.program.class_names.size()) - 1;
@@ -296,7 +310,7 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
 // sensor_set(hand, thumb, object), or the number of the set, from 1.
 bool Lowering::LowerSet(const Expr& arg, Node& node) {
   constexpr int kMaxSets = 32;
-  const bool is_value = symbols_.params.contains(arg.text) || (scope_ != nullptr && scope_->values.contains(arg.text));
+  const bool is_value = symbols_.IsParamIn(source_->file, arg.text) || (scope_ != nullptr && scope_->values.contains(arg.text));
   const bool is_name = arg.kind == Expr::Kind::kText || (arg.kind == Expr::Kind::kName && !is_value);
   if (is_name) {
     symbols_.program.set_names.push_back(arg.text);
@@ -334,6 +348,11 @@ bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Builtin& bu
         return false;
       }
       if (wanted == Argument::kNumber) result.dimension = number.dimension;
+      const bool is_size = wanted == Argument::kLength && result.type == Type::kTruth;
+      if (is_size && !checking_ && RangeOf(symbols_.program, rule(), number.node).high < 0) {
+        Complain(arg.place, "this is never true: nothing is within a negative length of something", WithParams(arg, "lengths are from 0 m on"));
+        return false;
+      }
       node.args[next_node++] = number.node;
       return true;
     }

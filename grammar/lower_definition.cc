@@ -2,6 +2,10 @@
 #include "grammar/lower_definition.h"
 
 #include <algorithm>
+#include <initializer_list>
+
+#include "grammar/allen_network.h"
+#include "grammar/bounds.h"
 
 namespace prehend::grammar {
 namespace {
@@ -31,6 +35,7 @@ class DefinitionLowering {
         const int until = d_.until ? lowering_.Truth(*d_.until, {}) : kNone;
         Here().first = first;
         Here().second = until;
+        CheckUntil();
         break;
       }
       case Form_::kFromTo: return LowerFromTo();
@@ -42,6 +47,7 @@ class DefinitionLowering {
         for (const ast::Expr& other : d_.outside) {
           const int reference = lowering_.RuleCall(other);
           Here().outside.push_back(reference);
+          CheckRest(other, reference);
         }
         break;
       }
@@ -60,7 +66,56 @@ class DefinitionLowering {
     rule.during = during;
     rule.or_drop = d_.or_drop || d_.absence;
     rule.absence = d_.absence;
+    CheckBegin();
     if (d_.within) LowerWithin(*d_.within);
+  }
+
+  // What is true and what is false at one frame, as far as it is known.
+  struct Claim {
+    int node = kNone;
+    bool negated = false;
+  };
+  bool CanBe(std::initializer_list<Claim> claims) {
+    Bounds bounds(program_, Here());
+    const auto fits = [&](const Claim& claim) { return claim.node == kNone || bounds.Add(claim.node, claim.negated); };
+    return std::all_of(claims.begin(), claims.end(), fits) && bounds.SomeAlternativeFits();
+  }
+
+  void CheckUntil() {
+    const Rule& rule = Here();
+    if (rule.first == kNone || rule.second == kNone || CanBe({{rule.first}, {rule.second, true}})) return;
+    lowering_.Complain(d_.until->place, "nothing ever begins: this holds wherever the condition before it does",
+                       "it begins where that holds and this does not, and lasts until this holds");
+  }
+
+  void CheckBegin() {
+    const Rule& rule = Here();
+    if (rule.first == kNone || rule.second == kNone) return;
+    if (!CanBe({{rule.first}, {rule.second, true}})) {
+      lowering_.Complain(d_.second.place, "nothing ever begins: each begin is such an end, too, at the same frame",
+                         "from one X to the next is 'from X ends to X begins'");
+    } else if (!CanBe({{rule.first}, {rule.second, true}, {rule.during}})) {
+      lowering_.Complain(d_.during->place, "nothing ever begins: this is false wherever it would begin",
+                         "'during' must hold from the begin on");
+    }
+  }
+
+  // Something of each interval must be left.
+  void CheckRest(const ast::Expr& other, int reference) {
+    if (Here().first == kNone || reference == kNone || !Covers(Here().references[reference], Here().references[Here().first])) return;
+    lowering_.Complain(other.place, "nothing is ever left: this takes away all of it", "take away something else");
+  }
+
+  // Whatever interval one of them has, the other one has it, too: it is the same, or "some" of the same.
+  bool Covers(const Reference& other, const Reference& whole) const {
+    if (other.rule == whole.rule) return other.roles == whole.roles;
+    const Rule& some = program_.events[other.rule];
+    if (some.form != Form::kAny || some.references[0].rule != whole.rule) return false;
+    for (std::size_t role = 0; role < kMaxRoles; ++role) {
+      const int kept = some.references[0].roles[role];
+      if (kept != kNone && other.roles[kept] != whole.roles[role]) return false;
+    }
+    return true;
   }
 
   void LowerWithin(const ast::Expr& within) {
@@ -103,6 +158,7 @@ class DefinitionLowering {
 
   void LowerCompose() {
     Here().form = Form::kCompose;
+    const std::size_t before = lowering_.complaints();
     std::vector<std::string> labels;
     if (d_.parts.size() > kMaxParts) {
       return lowering_.Complain(d_.parts[kMaxParts].place, "more than " + std::to_string(kMaxParts) + " parts",
@@ -115,7 +171,6 @@ class DefinitionLowering {
       labels.push_back(part.label);
       const int reference = lowering_.PartCall(part.call);
       if (reference == kNone) continue;
-      CheckPart(part, reference);
       Here().composition.parts.push_back(reference);
     }
     if (labels.size() != Here().composition.parts.size()) return;
@@ -140,16 +195,30 @@ class DefinitionLowering {
       }
       Here().composition.clauses.push_back(clause);
     }
+    if (lowering_.complaints() == before) CheckRelations();
   }
 
-  // All parts are about the same entities: those of the composition.
-  void CheckPart(const ast::Part& part, int reference) {
-    const Binding& named = Here().references[reference].roles;
-    for (std::size_t role = 0; role < Here().roles.size(); ++role) {
-      if (std::find(named.begin(), named.end(), static_cast<int>(role)) != named.end()) continue;
-      lowering_.Complain(part.place, "the part '" + part.label + "' does not name the role '" + Here().roles[role].name + "'",
-                        "every part of a composition names all its roles");
+  void CheckRelations() {
+    constexpr AllenSet kApart = Bit(Allen::kBefore) | Bit(Allen::kMeets) | Bit(Allen::kMetBy) | Bit(Allen::kAfter);
+    constexpr AllenSet kAgainstTime = Bit(Allen::kAfter) | Bit(Allen::kMetBy);
+    const Composition& composition = Here().composition;
+    const int parts = static_cast<int>(composition.parts.size());
+    AllenNetwork network(parts);
+    for (int left = 0; left < parts; ++left) {
+      for (int right = left + 1; right < parts; ++right) {  // intervals of one event do not overlap
+        if (composition.parts[left] == composition.parts[right]) network.Constrain(left, right, kApart | Bit(Allen::kEquals));
+      }
     }
+    for (std::size_t i = 0; i < composition.clauses.size(); ++i) {
+      const Composition::Clause& clause = composition.clauses[i];
+      if (network.Constrain(clause.left, clause.right, clause.relations)) continue;
+      return lowering_.Complain(d_.relations[i].place, "this relation is never true together with what stands before it",
+                                "draw the parts below each other; intervals of one event do not overlap, and a part equals itself");
+    }
+    if (parts == 1 || network.Constrain(0, parts - 1, kAnyRelation & ~kAgainstTime)) return;
+    lowering_.Complain(d_.parts.back().place, "this is never an event: the last part, '" + d_.parts.back().label +
+                                                  "', ends before the first one, '" + d_.parts.front().label + "', begins",
+                       "list the parts as they follow each other in time");
   }
 
   static std::string JoinedAllenNames() {

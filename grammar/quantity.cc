@@ -15,9 +15,10 @@ constexpr std::array kUnits = {
     Unit{"rad", kRadians, 1},     Unit{"deg", kRadians, std::numbers::pi / 180},
 };
 
-void AppendPower(std::string& text, std::string_view name, int power) {
+// As the language has it: m/s/s.
+void AppendPower(std::string& text, char sign, std::string_view name, int power) {
   for (int i = 0; i < power; ++i) {
-    if (!text.empty()) text += '*';
+    if (!text.empty() || sign == '/') text += sign;
     text += name;
   }
 }
@@ -58,15 +59,15 @@ std::string DimensionText(const Dimension& dimension) {
   std::string above;
   std::string below;
   const auto add = [&](std::string_view name, int power) {
-    AppendPower(above, name, power);
-    AppendPower(below, name, -power);
+    AppendPower(above, '*', name, power);
+    AppendPower(below, '/', name, -power);
   };
   add("m", dimension.length);
   add("s", dimension.time);
   add("N", dimension.force);
   add("rad", dimension.angle);
   if (above.empty()) above = "1";
-  return below.empty() ? above : above + "/" + below;
+  return above + below;
 }
 
 std::string QuantityText(const Quantity& quantity) {

@@ -42,7 +42,7 @@ std::vector<int> BindingsThatFit(Hindsight& past, int rule, const Binding& wante
       }
       return true;
     };
-    const bool either_way = asked.symmetric && fits({wanted[1], wanted[0], kNone, kNone});
+    const bool either_way = asked.symmetric && fits({wanted[1], wanted[0], wanted[2], wanted[3]});
     if (lanes.size() < kMostBindings && (fits(wanted) || either_way)) lanes.push_back(lane);
   }
   Binding entities = wanted;

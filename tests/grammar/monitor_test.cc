@@ -146,7 +146,7 @@ event styled(hand: Hand, object: Movable) until touching(hand, object) begins si
 event held(hand: Hand, object: Movable) while sensor_sets(hand, object) >= 1 bridging 20 ms with style = style(hand)
 event carried(hand: Hand, object: Movable) from held(hand, object) begins
   to in_sphere(object, ahead(hand, 1 m), tilt(object) / 1 rad * 1 m) begins during drift_along(object, hand, 1 s) < 1 m/s
-  requires displacement(object, hand) >= 0 m
+  requires displacement(object, hand) < 1000 m
 )");
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::pair<const char*, std::function<void(Scene&, Frame&)>> spoilers[] = {

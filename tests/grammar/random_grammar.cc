@@ -51,9 +51,9 @@ class Maker {
     if (rule.within >= 0) rule.lasting = std::min(rule.lasting, rule.within);
     if (rule.form == Form::kUntil) rule.lasting = std::min(rule.lasting, rule.back);
     if (rule.form != Form::kCompose) MakeConditionsOfTheWhole(rule);
-    rule.roles = rule.form == Form::kCompose ? RolesOf(rule.calls[0]) : RolesOf(rule.first) | RolesOf(rule.second) |
+    rule.roles = RolesOf(rule.first) | RolesOf(rule.second) |
                  RolesOf(rule.during) | RolesOf(rule.requirement) | RolesOf(rule.by) | RolesOf(rule.episode);
-    if (rule.form == Form::kRest) for (const Term& call : rule.calls) rule.roles |= RolesOf(call);
+    for (const Term& call : rule.calls) rule.roles |= RolesOf(call);
     rules_.push_back(std::move(rule));
   }
 
@@ -107,8 +107,9 @@ class Maker {
   void MakeCompose(RandomRule& rule) {
     const unsigned parts = 1 + Below(3);
     unsigned common = 0;
+    const bool each_its_own = Sometimes();
     const auto loses_roles = [&](const Term& part) {  // a composition's roles are all named
-      return rules_[part.which].form == Form::kCompose && rules_[part.which].roles != common;
+      return !each_its_own && rules_[part.which].form == Form::kCompose && rules_[part.which].roles != common;
     };
     do {
       rule.calls.clear();
@@ -118,7 +119,7 @@ class Maker {
         common &= rules_[rule.calls.back().which].roles;
       }
     } while (std::ranges::any_of(rule.calls, loses_roles));
-    for (Term& part : rule.calls) part.named = common;
+    for (Term& part : rule.calls) part.named = each_its_own ? rules_[part.which].roles : common;
     const unsigned clauses = 1 + Below(parts);
     for (unsigned i = 0; i < clauses; ++i) {
       rule.clauses.push_back({.left = Below(parts), .right = Below(parts), .relations = 1 + Below((1U << kAllenNames.size()) - 1)});

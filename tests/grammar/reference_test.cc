@@ -48,9 +48,7 @@ event missed(x: X, p: P, q: Q, r: R)
 event missed_late(x: X, p: P, q: Q) from bridged(x, p) ends without touching(x, q) ends within 4 ms
 event after_missed(x: X, p: P, q: Q, r: R) while missed(x, p, q, r) or in_time(x, p, q, r) bridging 1 ms
 event plain_q(x: X, q: Q) while touching(x, q)
-event about_p(x: X, p: P, q: Q) while touching(x, p) and (touching(x, q) or not touching(x, q))
-event about_q(x: X, p: P, q: Q) while touching(x, q) and (touching(x, p) or not touching(x, p))
-event story(x: X, p: P, q: Q) compose a: about_p(x, p, q), b: about_q(x, p, q) where a before|overlaps|contains|finishes b
+event story(x: X, p: P, q: Q) compose a: plain(x, p), b: plain_q(x, q) where a before|overlaps|contains|finishes b
 event ends_in_r(x: X, p: P, r: R) while touching(x, p) bridging 1 ms requires touching(x, r)
 event anywhere(x: X, p: P) while mixed(x, p, any, any) or late(x, p, any, any)
 )";

@@ -13,7 +13,7 @@ namespace prehend::grammar::testing {
 struct TrialResult {
   std::int64_t ticks = 0;     ///< frames that were shown to monitors
   int grammars = 0;
-  int refused = 0;            ///< random grammars with bounds that exclude each other
+  int refused = 0;            ///< random grammars with conditions that are never or always true
   int mismatches = 0;
   std::string first;          ///< what the first mismatch was
 
