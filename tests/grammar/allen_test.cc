@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "grammar/allen_network.h"
+
 namespace prehend::grammar {
 namespace {
 
@@ -29,6 +31,26 @@ TEST(Allen, ConversesMirror) {
       }
     }
   }
+}
+
+TEST(Allen, RelationsCompose) {
+  EXPECT_EQ(Composed(Bit(Allen::kBefore), Bit(Allen::kBefore)), Bit(Allen::kBefore));
+  EXPECT_EQ(Composed(Bit(Allen::kMeets), Bit(Allen::kDuring)), Bit(Allen::kOverlaps) | Bit(Allen::kStarts) | Bit(Allen::kDuring));
+  EXPECT_EQ(Composed(Bit(Allen::kBefore), Bit(Allen::kAfter)), kAnyRelation);
+  EXPECT_EQ(Inverse(Bit(Allen::kMeets) | Bit(Allen::kDuring)), Bit(Allen::kMetBy) | Bit(Allen::kContains));
+}
+
+TEST(Allen, NetworksAreRefusedThatCannotBe) {
+  AllenNetwork circle(3);
+  EXPECT_TRUE(circle.Constrain(0, 1, Bit(Allen::kBefore) | Bit(Allen::kMeets)));
+  EXPECT_TRUE(circle.Constrain(1, 2, Bit(Allen::kBefore)));
+  EXPECT_FALSE(circle.Constrain(2, 0, Bit(Allen::kBefore) | Bit(Allen::kOverlaps)));
+  AllenNetwork fits(3);
+  EXPECT_TRUE(fits.Constrain(0, 1, Bit(Allen::kContains)));
+  EXPECT_TRUE(fits.Constrain(1, 2, Bit(Allen::kContains)));
+  EXPECT_TRUE(fits.Constrain(0, 2, Bit(Allen::kContains) | Bit(Allen::kBefore)));
+  EXPECT_FALSE(fits.Constrain(2, 0, Bit(Allen::kAfter)));
+  EXPECT_FALSE(AllenNetwork(1).Constrain(0, 0, Bit(Allen::kBefore)));
 }
 
 }  // namespace
