@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "physics/rigid_side.h"
+#include "physics/bullet_rigid_side.h"
 
 namespace prehend::physics {
 

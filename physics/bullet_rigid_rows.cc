@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Method and rows: btSequentialImpulseConstraintSolver of Bullet 3.24 (zlib licence), whose results
 // these are, bit by bit. Tested by tests/physics/bullet_solver_test.cc
-#include "physics/rigid_rows.h"
+#include "physics/bullet_rigid_rows.h"
 
 #include <algorithm>
 #include <limits>
