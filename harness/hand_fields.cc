@@ -201,6 +201,10 @@ Format<StyleEntry> StyleFormat() {
       .format();
 }
 
+Format<std::vector<Named<StyleEntry>>> StylesFormat() {
+  return MapOf(Identifier(), StyleFormat(), 1, 64);
+}
+
 Format<GainsEntry> GainsFormat() {
   return Record<GainsEntry>("the gains")
       .Required("translation", &GainsEntry::translation, TranslationFormat(),
@@ -226,7 +230,21 @@ Format<HandEntry> BuildHandFormat() {
       .Optional("driver", &H::driver, DriverFormat(), "How the joints follow their targets.")
       .Required("digits", &H::digits, MapOf(Identifier(), DigitFormat(), 1, 16),
                 "Fingers and thumb.")
-      .Required("styles", &H::styles, MapOf(Identifier(), StyleFormat(), 1, 64), "Grasps, by name.")
+      .Optional("grasps", &H::grasps, ListOf(WithPlace(Identifier()), 1, 16),
+                "Grasp files in the same folder, by name, without '.grasps.yaml'.")
+      .Optional("styles", &H::styles, StylesFormat(), "Grasps, by name.")
+      .Check([](const YamlNode& node, const H& hand, Complaints& complaints) {
+        if (hand.grasps.empty() && hand.styles.empty())
+          complaints.Add(node.where, "the hand has no style of grasp", "give 'grasps', 'styles' or both");
+      })
+      .format();
+}
+
+Format<GraspsEntry> BuildGraspsFormat() {
+  return Record<GraspsEntry>("the grasps")
+      .Required("grasps", &GraspsEntry::name, Identifier(),
+                "Their name: that of the file without '.grasps.yaml'.")
+      .Required("styles", &GraspsEntry::styles, StylesFormat(), "Grasps, by name.")
       .format();
 }
 
@@ -243,6 +261,11 @@ Format<MirrorEntry> BuildMirrorFormat() {
 
 const Format<HandEntry>& HandFormat() {
   static const Format<HandEntry> format = BuildHandFormat();
+  return format;
+}
+
+const Format<GraspsEntry>& GraspsFormat() {
+  static const Format<GraspsEntry> format = BuildGraspsFormat();
   return format;
 }
 

@@ -79,6 +79,13 @@ struct HandEntry {
   GainsEntry gains;
   physics::JointDriver driver;
   std::vector<Named<DigitEntry>> digits;
+  std::vector<Located<std::string>> grasps;  ///< names of grasp files
+  std::vector<Named<StyleEntry>> styles;
+};
+
+/// A grasp file: styles for hands that have these digits.
+struct GraspsEntry {
+  Located<std::string> name;
   std::vector<Named<StyleEntry>> styles;
 };
 
@@ -91,5 +98,6 @@ struct MirrorEntry {
 // Built once, since that takes longer than reading a hand.
 const Format<HandEntry>& HandFormat();
 const Format<MirrorEntry>& MirrorFormat();
+const Format<GraspsEntry>& GraspsFormat();
 
 }  // namespace prehend::harness

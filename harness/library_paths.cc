@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGrammarEnding = ".grammar";
 constexpr const char* kHandEnding = ".hand.yaml";
+constexpr const char* kGraspsEnding = ".grasps.yaml";
 constexpr const char* kScenarioEnding = ".yaml";
 
 fs::path GrammarFolder(const fs::path& root) { return root / "grammar" / "library"; }
@@ -83,7 +84,9 @@ std::vector<ScenarioFile> ListScenarios(const std::string& root) {
   std::vector<ScenarioFile> scenarios;
   const auto add = [&](const fs::path& in, const std::string& skill) {
     for (const std::string& name : NamesIn(in, kScenarioEnding)) {
-      scenarios.push_back({skill, name, (in / (name + kScenarioEnding)).string()});
+      const std::string file = name + kScenarioEnding;
+      if (file.ends_with(kHandEnding) || file.ends_with(kGraspsEnding)) continue;  // what scenarios use
+      scenarios.push_back({skill, name, (in / file).string()});
     }
   };
   add(folder, "");
@@ -144,17 +147,24 @@ std::string HandPath(const std::string& root, const std::string& name) {
 }
 
 ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>* files) {
-  // Most scenarios have the same hand; its file is read once.
-  const auto known = std::make_shared<std::map<std::string, ReadResult<physics::HandModel>>>();
+  // Most scenarios have the same hand; its files are read once.
+  struct Known {
+    std::vector<std::string> files;
+    ReadResult<physics::HandModel> hand;
+  };
+  const auto known = std::make_shared<std::map<std::string, Known>>();
   return {.grammars = NamesIn(GrammarFolder(root), kGrammarEnding),
           .hands = NamesIn(HandFolder(root), kHandEnding),
-          .read_hand = [root, files, known](const std::string& name_or_path) {
+          .read_hand = [root, files, known](const std::string& name_or_path,
+                                            const std::vector<std::string>& grasps) {
             const bool is_path = name_or_path.ends_with(kScenarioEnding);
             const std::string path = is_path ? name_or_path : HandPath(root, name_or_path);
-            if (files) files->push_back(path);
-            if (is_path) return ReadHandModel(path);
-            const auto found = known->find(path);
-            return found != known->end() ? found->second : known->emplace(path, ReadHandModel(path)).first->second;
+            if (is_path || !grasps.empty()) return ReadHandModel(path, grasps, files);
+            const auto [found, is_new] = known->try_emplace(path);
+            Known& hand = found->second;
+            if (is_new) hand.hand = ReadHandModel(path, {}, &hand.files);
+            if (files) files->insert(files->end(), hand.files.begin(), hand.files.end());
+            return hand.hand;
           },
           .reads_recording = [files](const std::string& path) {
             if (files) files->push_back(path);

@@ -8,20 +8,20 @@
 #include <filesystem>
 #include <numbers>
 
+#include "harness/build_styles.h"
 #include "harness/hand_fields.h"
 #include "harness/record.h"
 
 namespace prehend::harness {
 namespace {
 
+namespace fs = std::filesystem;
+using grammar::Diagnostics;
 using physics::HandModel;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180;
-constexpr const char* kEnding = ".hand.yaml";
-
-bool HasJaw(const DigitEntry& digit) { return digit.jaw.has_value(); }
-bool HasPhalanges(const DigitEntry& digit) { return !HasJaw(digit); }
-std::size_t JointsOf(const DigitEntry& digit) { return HasJaw(digit) ? 1 : digit.phalanges.size(); }
+constexpr const char* kHandEnding = ".hand.yaml";
+constexpr const char* kGraspsEnding = ".grasps.yaml";
 
 /// Turns an entry into a model and complains about names and counts that do not fit together.
 class HandBuilder {
@@ -44,21 +44,13 @@ class HandBuilder {
     model.rotation = entry_.gains.rotation;
     model.driver = entry_.driver;
     for (const auto& digit : entry_.digits) AddDigit(digit, model.links);
-    for (const auto& style : entry_.styles) model.styles.push_back(BuildStyle(style));
+    AddStyles(entry_.digits, entry_.styles, complaints_, model.styles);
     return model;
   }
 
  private:
   int SensorSet(const Located<std::string>& name);
   void AddDigit(const Named<DigitEntry>& digit, std::vector<physics::HandLink>& links);
-  physics::GraspStyle BuildStyle(const Named<StyleEntry>& style);
-  using Concerned = bool (*)(const DigitEntry&);
-  std::vector<std::vector<double>> JointNumbers(const Located<PerDigit>& numbers,
-                                                bool one_is_enough, Concerned concerned);
-  std::vector<std::vector<double>> FramesOf(const Named<StyleEntry>& style);
-  /// False after complaining about a digit that the hand does not have.
-  bool CheckDigitNames(const Located<PerDigit>& numbers);
-
   const HandEntry& entry_;
   Complaints& complaints_;
 };
@@ -108,129 +100,106 @@ void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::
   links.back().slides = true;
 }
 
-bool HandBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
-  std::vector<std::string> names;
-  for (const auto& digit : entry_.digits) names.push_back(digit.name);
-  bool good = true;
-  for (const auto& given : numbers.value) {
-    if (std::find(names.begin(), names.end(), given.name) != names.end()) continue;
-    good = false;
-    complaints_.AddUnknownName(
-        given.name_where, fmt::format("the hand has no digit '{}'", given.name), given.name, names);
-  }
-  return good;
-}
-
-/// One number per joint of every concerned digit; the others stay empty.
-std::vector<std::vector<double>> HandBuilder::JointNumbers(const Located<PerDigit>& numbers,
-                                                           bool one_is_enough,
-                                                           Concerned concerned) {
-  const bool names_are_right = CheckDigitNames(numbers);
-  std::vector<std::vector<double>> all(entry_.digits.size());
-  for (std::size_t i = 0; i < entry_.digits.size(); ++i) {
-    const auto& digit = entry_.digits[i];
-    const auto given =
-        std::find_if(numbers.value.begin(), numbers.value.end(),
-                     [&](const auto& candidate) { return candidate.name == digit.name; });
-    if (!concerned(digit.value)) {
-      if (given != numbers.value.end())
-        complaints_.Add(
-            given->name_where,
-            fmt::format("{}: phalanges belong into frames_deg, jaws into frames_m", digit.name));
-      continue;
-    }
-    if (given == numbers.value.end()) {
-      if (names_are_right)
-        complaints_.Add(numbers.where, fmt::format("there is nothing for digit '{}'", digit.name));
-      continue;
-    }
-    const std::size_t joints = JointsOf(digit.value);
-    std::vector<double> values = given->value.value;
-    if (values.size() == 1 && one_is_enough) values.resize(joints, values.front());
-    if (values.size() != joints) {
-      complaints_.Add(given->value.where,
-                      fmt::format("{}: expected {} {}, one for each joint, found {}", digit.name,
-                                  joints, joints == 1 ? "number" : "numbers", values.size()));
-    }
-    values.resize(joints);
-    all[i] = std::move(values);
-  }
-  return all;
-}
-
-/// From open to closed, one number per link; empty after complaining.
-std::vector<std::vector<double>> HandBuilder::FramesOf(const Named<StyleEntry>& style) {
-  const auto& angles = style.value.frames_deg;
-  const auto& ways = style.value.frames_m;
-  const auto any = [&](Concerned of) {
-    return std::any_of(entry_.digits.begin(), entry_.digits.end(),
-                       [&](const auto& digit) { return of(digit.value); });
-  };
-  const auto missing = [&](const char* key) {
-    complaints_.Add(style.name_where, fmt::format("style '{}' has no '{}'", style.name, key));
-  };
-  if (angles.empty() && any(HasPhalanges)) missing("frames_deg");
-  if (ways.empty() && any(HasJaw)) missing("frames_m");
-  if (!angles.empty() && !ways.empty() && angles.size() != ways.size()) {
-    complaints_.Add(ways.front().where, fmt::format("frames_m: {} frames, but frames_deg has {}",
-                                                    ways.size(), angles.size()));
-    return {};
-  }
-  std::vector<std::vector<double>> frames(std::max(angles.size(), ways.size()));
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    std::vector<std::vector<double>> turned(entry_.digits.size()), slid = turned;
-    if (!angles.empty()) turned = JointNumbers(angles[i], false, HasPhalanges);
-    if (!ways.empty()) slid = JointNumbers(ways[i], false, HasJaw);
-    for (std::size_t k = 0; k < turned.size(); ++k) {
-      for (const double angle : turned[k]) frames[i].push_back(angle * kRadPerDeg);
-      frames[i].insert(frames[i].end(), slid[k].begin(), slid[k].end());
-    }
-  }
-  return frames;
-}
-
-physics::GraspStyle HandBuilder::BuildStyle(const Named<StyleEntry>& style) {
-  physics::GraspStyle built{.name = style.name,
-                            .frames = FramesOf(style),
-                            .grip_axis = style.value.grip.axis,
-                            .post_m = style.value.grip.post_m,
-                            .opening_m = style.value.grip.opening_m,
-                            .above = style.value.above,
-                            .side = style.value.side};
-  const auto all = [](const DigitEntry&) { return true; };
-  for (const auto& effort : JointNumbers(style.value.effort, true, all))
-    built.effort.insert(built.effort.end(), effort.begin(), effort.end());
-  return built;
-}
-
-void CheckName(const std::string& path, const Located<std::string>& name, Complaints& complaints) {
-  const std::string file = std::filesystem::path(path).filename().string();
-  if (file == name.value + kEnding) return;
+/// `key` is the one whose value is the name.
+void CheckName(const std::string& path, const char* ending, const char* key,
+               const Located<std::string>& name, Complaints& complaints) {
+  const std::string file = fs::path(path).filename().string();
+  if (file == name.value + ending) return;
   complaints.Add(
       name.where,
-      fmt::format("hand: the name is '{}', but the file is called '{}'", name.value, file),
+      fmt::format("{}: the name is '{}', but the file is called '{}'", key, name.value, file),
       "rename one of them");
 }
 
-ReadResult<HandModel> ReadMirror(const std::string& path, const YamlDocument& document) {
+/// Reads a hand's files, and keeps account of them.
+class HandReader {
+ public:
+  HandReader(const std::vector<std::string>& more_grasps, std::vector<std::string>* files)
+      : more_grasps_(more_grasps), files_(files) {}
+
+  ReadResult<HandModel> Read(const std::string& path) {
+    ReadResult<YamlDocument> document = ReadFile(path);
+    if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
+    return document.value->root.Find("mirror_of") ? ReadMirror(path, *document.value)
+                                                  : ReadHand(path, *document.value);
+  }
+
+ private:
+  ReadResult<YamlDocument> ReadFile(const std::string& path) {
+    if (files_) files_->push_back(path);
+    return ReadYamlFile(path);
+  }
+  ReadResult<HandModel> ReadHand(const std::string& path, const YamlDocument& document);
+  ReadResult<HandModel> ReadMirror(const std::string& path, const YamlDocument& document);
+  Diagnostics AddGrasps(const std::string& path, const HandEntry& hand, HandModel& model);
+
+  const std::vector<std::string>& more_grasps_;
+  std::vector<std::string>* files_;
+};
+
+/// The styles of a grasp file. Returns what is wrong in it.
+Diagnostics HandReader::AddGrasps(const std::string& path, const HandEntry& hand,
+                                  HandModel& model) {
+  ReadResult<YamlDocument> document = ReadFile(path);
+  if (!document.value) return std::move(document.diagnostics);
+  Complaints complaints(*document.value);
+  GraspsEntry entry;
+  if (GraspsFormat().read(document.value->root, complaints, entry)) {
+    CheckName(path, kGraspsEnding, "grasps", entry.name, complaints);
+    AddStyles(hand.digits, entry.styles, complaints, model.styles);
+  }
+  return complaints.Sorted();
+}
+
+ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDocument& document) {
+  Complaints complaints(document);
+  HandEntry entry;
+  if (!HandFormat().read(document.root, complaints, entry))
+    return {std::nullopt, complaints.Sorted()};
+  CheckName(path, kHandEnding, "hand", entry.name, complaints);
+  HandModel model = HandBuilder(entry, complaints).Build();
+  Diagnostics in_grasps;
+  const auto add = [&](const std::string& grasps) {
+    for (auto& diagnostic : AddGrasps(grasps, entry, model))
+      in_grasps.push_back(std::move(diagnostic));
+  };
+  for (const auto& name : entry.grasps) {
+    const auto grasps = fs::path(path).parent_path() / (name.value + kGraspsEnding);
+    std::error_code error;
+    if (fs::exists(grasps, error))
+      add(grasps.string());
+    else
+      complaints.Add(name.where, fmt::format("grasps: there is no {} beside the hand's file",
+                                             grasps.filename().string()));
+  }
+  for (const std::string& grasps : more_grasps_) add(grasps);
+  Diagnostics diagnostics = complaints.Sorted();
+  diagnostics.insert(diagnostics.end(), in_grasps.begin(), in_grasps.end());
+  if (!diagnostics.empty()) return {std::nullopt, std::move(diagnostics)};
+  return {std::move(model), {}};
+}
+
+ReadResult<HandModel> HandReader::ReadMirror(const std::string& path,
+                                             const YamlDocument& document) {
   Complaints complaints(document);
   MirrorEntry entry;
   if (!MirrorFormat().read(document.root, complaints, entry))
     return {std::nullopt, complaints.Sorted()};
-  CheckName(path, entry.name, complaints);
+  CheckName(path, kHandEnding, "hand", entry.name, complaints);
   if (entry.mirror_of.value == entry.name.value)
     complaints.Add(entry.mirror_of.where, "a hand cannot mirror itself");
   if (!complaints.empty()) return {std::nullopt, complaints.Sorted()};
 
-  const auto original_path =
-      std::filesystem::path(path).parent_path() / (entry.mirror_of.value + kEnding);
-  const ReadResult<YamlDocument> original_file = ReadYamlFile(original_path.string());
-  if (original_file.value && original_file.value->root.Find("mirror_of")) {
+  const std::string original_path =
+      (fs::path(path).parent_path() / (entry.mirror_of.value + kHandEnding)).string();
+  ReadResult<YamlDocument> original_file = ReadFile(original_path);
+  if (!original_file.value) return {std::nullopt, std::move(original_file.diagnostics)};
+  if (original_file.value->root.Find("mirror_of")) {
     complaints.Add(entry.mirror_of.where,
                    fmt::format("'{}' is itself a mirror image", entry.mirror_of.value));
     return {std::nullopt, complaints.Sorted()};
   }
-  ReadResult<HandModel> original = ReadHandModel(original_path.string());
+  ReadResult<HandModel> original = ReadHand(original_path, *original_file.value);
   if (original.value) {
     original.value = physics::Mirrored(std::move(*original.value));
     original.value->name = entry.name.value;
@@ -240,19 +209,10 @@ ReadResult<HandModel> ReadMirror(const std::string& path, const YamlDocument& do
 
 }  // namespace
 
-ReadResult<HandModel> ReadHandModel(const std::string& path) {
-  ReadResult<YamlDocument> document = ReadYamlFile(path);
-  if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
-  if (document.value->root.Find("mirror_of")) return ReadMirror(path, *document.value);
-
-  Complaints complaints(*document.value);
-  HandEntry entry;
-  if (!HandFormat().read(document.value->root, complaints, entry))
-    return {std::nullopt, complaints.Sorted()};
-  CheckName(path, entry.name, complaints);
-  HandModel model = HandBuilder(entry, complaints).Build();
-  if (!complaints.empty()) return {std::nullopt, complaints.Sorted()};
-  return {std::move(model), {}};
+ReadResult<HandModel> ReadHandModel(const std::string& path,
+                                    const std::vector<std::string>& more_grasps,
+                                    std::vector<std::string>* files) {
+  return HandReader(more_grasps, files).Read(path);
 }
 
 }  // namespace prehend::harness

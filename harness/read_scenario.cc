@@ -53,19 +53,25 @@ void CheckNames(const std::string& file, const ScenarioEntry& entry, const Scena
 
 /// The actor's model, or an empty one after complaining; what is wrong in a hand's file goes to
 /// `in_hand_files`.
-physics::HandModel FindHand(const std::string& file, const Located<std::string>& hand,
+physics::HandModel FindHand(const std::string& file, const HandActor& actor,
                             const ScenarioLibrary& library, Complaints& complaints,
                             Diagnostics& in_hand_files) {
+  const Located<std::string>& hand = actor.hand;
   const bool is_file = hand.value.ends_with(".yaml");
   if (!is_file && !Contains(library.hands, hand.value)) {
     complaints.AddUnknownName(hand.where, fmt::format("hand: no hand is called '{}'", hand.value),
                               hand.value, library.hands);
     return {};
   }
-  auto model =
-      library.read_hand(is_file ? (path(file).parent_path() / hand.value).string() : hand.value);
+  const auto beside = [&](const std::string& other) {
+    return (path(file).parent_path() / other).string();
+  };
+  std::vector<std::string> grasps;
+  for (const auto& more : actor.grasps) grasps.push_back(beside(more.value));
+  auto model = library.read_hand(is_file ? beside(hand.value) : hand.value, grasps);
   if (model.value) return std::move(*model.value);
-  complaints.Add(hand.where, fmt::format("hand: '{}' cannot be used, see below", hand.value));
+  const std::string with = grasps.empty() ? "" : " with its grasps";
+  complaints.Add(hand.where, fmt::format("hand: '{}'{} cannot be used, see below", hand.value, with));
   in_hand_files.insert(in_hand_files.end(), model.diagnostics.begin(), model.diagnostics.end());
   return {};
 }
@@ -105,7 +111,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   if (!well_formed) {
     // Names can be looked up without the rest.
     for (const auto& actor : entry.hands) {
-      if (!actor.value.hand.value.empty()) FindHand(file, actor.value.hand, library, complaints, in_other_files);
+      if (!actor.value.hand.value.empty()) FindHand(file, actor.value, library, complaints, in_other_files);
     }
     return AllOf(complaints, in_other_files);
   }
@@ -121,7 +127,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scene.joints = BuildJoints(entry, complaints);
   scenario.body_part_of = PartsOf(entry, complaints);
   for (const auto& actor : entry.hands) {
-    physics::HandModel model = FindHand(file, actor.value.hand, library, complaints, in_other_files);
+    physics::HandModel model = FindHand(file, actor.value, library, complaints, in_other_files);
     const bool known = !model.name.empty();
     scene.hands.push_back(known
                               ? PlaceHand(actor, std::move(model), entry.world.rate_hz, complaints)

@@ -16,8 +16,8 @@ namespace prehend::harness {
 struct ScenarioLibrary {
   std::vector<std::string> grammars;
   std::vector<std::string> hands;
-  /// The model for one of `hands`, or for the path of a .hand.yaml file.
-  std::function<ReadResult<physics::HandModel>(const std::string& name_or_path)> read_hand;
+  /// The model for one of `hands`, or for the path of a .hand.yaml file, with the styles of these .grasps.yaml files.
+  std::function<ReadResult<physics::HandModel>(const std::string& name_or_path, const std::vector<std::string>& grasps)> read_hand;
   /// Told of every recording before it is read; may be empty.
   std::function<void(const std::string& path)> reads_recording = {};
 };

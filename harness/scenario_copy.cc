@@ -48,10 +48,12 @@ std::size_t LengthAt(std::size_t offset, const YamlNode& node, const std::string
   return end + 1 - offset;
 }
 
-/// Calls `visit` for every recording that is named, in the order of the text.
-void ForEachRecording(const YamlNode& node, const std::function<void(const YamlNode&)>& visit) {
-  if (node.kind == YamlNode::Kind::kScalar && node.key == "recording") visit(node);
-  for (const YamlNode& child : node.children) ForEachRecording(child, visit);
+/// Calls `visit` for every file beside the scenario that is named, in the order of the text.
+void ForEachFile(const YamlNode& node, const std::function<void(const YamlNode&)>& visit) {
+  const bool is_hand_file = node.key == "hand" && node.text.ends_with(".hand.yaml");
+  const bool is_grasp_file = node.text.ends_with(".grasps.yaml");
+  if (node.kind == YamlNode::Kind::kScalar && (node.key == "recording" || is_hand_file || is_grasp_file)) visit(node);
+  for (const YamlNode& child : node.children) ForEachFile(child, visit);
 }
 
 struct Edit {
@@ -71,7 +73,7 @@ ReadResult<std::string> CopyOfScenario(const fs::path& from, const std::string& 
     edits.push_back({name, to.stem().string()});
   const fs::path old_folder = fs::absolute(from).lexically_normal().parent_path();
   const fs::path new_folder = fs::absolute(to).lexically_normal().parent_path();
-  ForEachRecording(document.value->root, [&](const YamlNode& node) {
+  ForEachFile(document.value->root, [&](const YamlNode& node) {
     const fs::path file = node.text;
     if (old_folder == new_folder || file.is_absolute()) return;
     edits.push_back({&node, (old_folder / file).lexically_relative(new_folder).generic_string()});

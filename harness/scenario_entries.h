@@ -117,6 +117,7 @@ struct GainsOverride {
 struct HandActor {
   Where where;
   Located<std::string> hand;
+  std::vector<Located<std::string>> grasps;  ///< paths of grasp files, seen from the scenario's folder
   Located<Eigen::Vector3d> at_m;
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
   std::optional<Located<GainsOverride>> gains;

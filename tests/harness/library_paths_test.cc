@@ -16,7 +16,7 @@ class LibraryPaths : public testing::Test {
   void SetUp() override {
     root_ = std::filesystem::path(testing::TempDir()) / ("library_paths_" + std::to_string(getpid()));
     for (const char* file : {"scenarios/lift/cup_is_lifted.yaml", "scenarios/lift/both.yaml", "scenarios/slide/both.yaml",
-                             "scenarios/alone.yaml", "scenarios/invalid/typo.yaml", "scenarios/lift/notes.txt",
+                             "scenarios/alone.yaml", "scenarios/invalid/typo.yaml", "scenarios/lift/notes.txt", "scenarios/lift/my.hand.yaml", "scenarios/lift/my.grasps.yaml",
                              "grammar/library/b.grammar", "grammar/library/a.grammar",
                              "physics/library/human_right.hand.yaml"}) {
       std::filesystem::create_directories((root_ / file).parent_path());
@@ -59,7 +59,7 @@ TEST_F(LibraryPaths, TheLibraryListsGrammarsAndHands) {
   const ScenarioLibrary library = ProjectLibrary(root_);
   EXPECT_EQ(library.grammars, (std::vector<std::string>{"a", "b"}));
   EXPECT_EQ(library.hands, (std::vector<std::string>{"human_right"}));
-  EXPECT_FALSE(library.read_hand("human_right").value);
+  EXPECT_FALSE(library.read_hand("human_right", {}).value);
 }
 
 TEST_F(LibraryPaths, TheRootIsThatOfTheEnvironmentOrAboveTheExecutable) {

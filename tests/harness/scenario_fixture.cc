@@ -24,7 +24,7 @@ pictures:
 ScenarioLibrary ProbeLibrary() {
   return {.grammars = {"pick_and_place"},
           .hands = {"human_left", "human_right"},
-          .read_hand = [](const std::string& name) -> ReadResult<physics::HandModel> {
+          .read_hand = [](const std::string& name, const std::vector<std::string>&) -> ReadResult<physics::HandModel> {
             if (name.ends_with("broken.hand.yaml")) {
               return {std::nullopt, {{.file = name, .place = {3, 4}, .message = "no links", .source_line = {}, .hint = {}}}};
             }

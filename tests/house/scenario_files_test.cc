@@ -29,7 +29,7 @@ TEST(ScenarioFiles, BeginWithTheLineThatEditorsLookFor) {
   const auto files = FilesBelow(kScenarios, ".yaml");
   ASSERT_GE(files.size(), 40u);
   for (const fs::path& file : files) {
-    if (fs::file_size(file) == 0) continue;
+    if (fs::file_size(file) == 0 || file.string().ends_with(".grasps.yaml")) continue;
     const std::string text = ReadFile(file);
     EXPECT_EQ(text.substr(0, text.find('\n')),
               "# yaml-language-server: $schema=../scenario.schema.json")

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grasp styles as they are written -> ordered frames of joint targets, and effort. Tested by
+// tests/harness/read_hand_model_test.cc
+#pragma once
+
+#include <vector>
+
+#include "harness/hand_fields.h"
+
+namespace prehend::harness {
+
+/// Of a hand with these digits. A style of the same name as an earlier one takes its place.
+void AddStyles(const std::vector<Named<DigitEntry>>& digits,
+               const std::vector<Named<StyleEntry>>& styles, Complaints& complaints,
+               std::vector<physics::GraspStyle>& to);
+
+}  // namespace prehend::harness
