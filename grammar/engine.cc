@@ -35,7 +35,7 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
   }
   lanes_.BindUnguarded();
   for (int i = 0; i < lanes_.size(); ++i) Wake(i);
-  if (lanes_.TooMany()) error_ = "more bindings than this monitor can watch; give the roles narrower classes";
+  if (lanes_.TooMany()) error_ = lanes_.WhyTooMany();
 }
 
 void Engine::Wake(int index) {

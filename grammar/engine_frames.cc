@@ -12,8 +12,6 @@ namespace {
 // Far enough from the limits of a Tick that times can be added and subtracted.
 constexpr Tick kLatestTick = 1'000'000'000'000'000;
 
-constexpr const char* kTooMany = "more bindings than this monitor can watch; give the roles narrower classes";
-
 bool Same(const EntityLook& a, const EntityLook& b) {
   return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() && a.v_WB_m_per_s == b.v_WB_m_per_s &&
          a.w_WB_rad_per_s == b.w_WB_rad_per_s && a.joint_position == b.joint_position &&
@@ -126,7 +124,7 @@ void Engine::EndFrame() {
   }
   ForgetThePast();
   FreeLanes();
-  if (lanes_.TooMany()) error_ = kTooMany;
+  if (lanes_.TooMany()) error_ = lanes_.WhyTooMany();
   SortNewEvents();
 }
 

@@ -282,7 +282,7 @@ bool Evaluator::SensorSet(const Node& node, const View& view) const {
   int set = static_cast<int>(node.number) - 1;
   if (node.name != kNone) {
     const std::vector<std::string>& names = cast_.entities[Entity(node, view, 0)].sensor_sets;
-    const auto found = std::find(names.begin(), names.end(), program_.set_names[node.name]);
+    const auto found = std::find(names.begin(), names.end(), program_.sensor_sets[node.name].name);
     set = found == names.end() ? kNone : static_cast<int>(found - names.begin());
   }
   return set >= 0 && set < 32 && ((touch->sensor_sets >> set) & 1U) != 0;

@@ -54,7 +54,7 @@ void Lanes::BindUnguarded() {
       bindings *= static_cast<double>(std::count(role.begin(), role.end(), true));
     }
     if (bindings > kMaxLanes) {
-      too_many_ = true;
+      too_many_ = rule;
       return;
     }
     Binding entities = kUnbound;
@@ -62,11 +62,25 @@ void Lanes::BindUnguarded() {
   }
 }
 
+std::string Lanes::WhyTooMany() const {
+  const Rule& rule = program_.events[too_many_];
+  std::string roles;
+  std::string counts;
+  for (std::size_t i = 0; i < rule.roles.size(); ++i) {
+    const std::vector<bool>& fits = fits_[too_many_][i];
+    const std::string comma = i == 0 ? "" : ", ";
+    roles += comma + rule.roles[i].name + ": " + rule.roles[i].class_name;
+    counts += comma + std::to_string(std::count(fits.begin(), fits.end(), true)) + " for " + rule.roles[i].name;
+  }
+  return "more than " + std::to_string(kMaxLanes) + " bindings with those of '" + rule.name + "(" + roles + ")': there are " + counts +
+         "; give the roles narrower classes";
+}
+
 void Lanes::EnsureAll(int rule, Binding entities, std::vector<int>& made) { BindRest(rule, entities, 0, kNone, &made); }
 
 // Fills in the roles from `role` on that are still free, in all ways that fit.
 void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard, std::vector<int>* made) {
-  if (too_many_) return;
+  if (TooMany()) return;
   if (role == program_.events[rule].roles.size()) {
     if (Canonical(rule, entities).entities != entities) return;  // of a symmetric pair, the other order is what counts
     const int lane = Ensure(rule, entities);
@@ -101,7 +115,7 @@ bool Lanes::Fits(int rule, const Binding& entities) const {
 int Lanes::Make(const LaneKey& key) {
   if (!Fits(key.rule, key.entities)) return kNone;
   if (in_use() >= kMaxLanes) {
-    too_many_ = true;
+    too_many_ = key.rule;
     return kNone;
   }
   if (free_.empty()) {

@@ -132,7 +132,9 @@ class Lanes {
   void MakeDependents(int lane, std::vector<int>& made);
   /// Frees a lane that nothing but kAny lanes watches. Appends the lanes that it leaves without a watcher.
   void Free(int lane, std::vector<int>& orphans);
-  bool TooMany() const { return too_many_; }
+  bool TooMany() const { return too_many_ != kNone; }
+  /// Which rule needs them, and how many can play each of its roles.
+  std::string WhyTooMany() const;
 
   Lane& operator[](int lane) { return lanes_[static_cast<std::size_t>(lane)]; }
   const Lane& operator[](int lane) const { return lanes_[static_cast<std::size_t>(lane)]; }
@@ -217,7 +219,7 @@ class Lanes {
   std::vector<std::vector<Watch>> grip_watchers_;
   std::vector<int> name_rank_;                        // alphabetical order of entities
   std::vector<char> symmetric_;                       // by rule
-  bool too_many_ = false;
+  int too_many_ = kNone;                              // the rule that would have had more than can be
 };
 
 }  // namespace prehend::grammar

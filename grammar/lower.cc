@@ -49,10 +49,16 @@ bool IsBuiltinClass(std::string_view name) {
   return std::find(BuiltinClasses().begin(), BuiltinClasses().end(), name) != BuiltinClasses().end();
 }
 
+int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file, Place place) {
+  const auto same = [&](const Named& named) { return named.name == name && named.file == file; };
+  const auto found = std::ranges::find_if(names, same);
+  const auto index = static_cast<int>(found - names.begin());
+  if (found == names.end()) names.push_back({std::string(name), file, place});
+  return index;
+}
+
 void NoteClass(Program& program, std::string_view name, const std::string& file, Place place) {
-  const auto same = [&](const NamedClass& named) { return named.name == name && named.file == file; };
-  if (IsBuiltinClass(name) || std::ranges::any_of(program.named_classes, same)) return;
-  program.named_classes.push_back({std::string(name), file, place});
+  if (!IsBuiltinClass(name)) NoteName(program.named_classes, name, file, place);
 }
 
 bool ClassesMeet(std::string_view a, std::string_view b) {

@@ -45,7 +45,10 @@ bool ClassesMeet(std::string_view a, std::string_view b);
 bool IsBuiltinClass(std::string_view name);
 const std::vector<std::string>& BuiltinClasses();
 
-/// Remembers a class that stands at a place of a file, once per name and file.
+/// Remembers a name that stands at a place of a file, once per name and file; which of the names it is.
+int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file, Place place);
+
+/// Likewise, a class that stands there, unless it is built in.
 void NoteClass(Program& program, std::string_view name, const std::string& file, Place place);
 
 inline bool StartsWithCapital(std::string_view name) { return !name.empty() && name[0] >= 'A' && name[0] <= 'Z'; }

@@ -313,8 +313,7 @@ bool Lowering::LowerSet(const Expr& arg, Node& node) {
   const bool is_value = symbols_.IsParamIn(source_->file, arg.text) || (scope_ != nullptr && scope_->values.contains(arg.text));
   const bool is_name = arg.kind == Expr::Kind::kText || (arg.kind == Expr::Kind::kName && !is_value);
   if (is_name) {
-    symbols_.program.set_names.push_back(arg.text);
-    node.name = static_cast<int>(symbols_.program.set_names.size()) - 1;
+    node.name = NoteName(symbols_.program.sensor_sets, arg.text, source_->file, arg.place);
     return true;
   }
   const std::optional<double> number = ConstantOf(arg, kPlain, "a sensor set");

@@ -56,7 +56,7 @@ struct Node {
   std::array<int, 4> args = {kNone, kNone, kNone, kNone};  ///< nodes
   std::array<int, 2> roles = {kNone, kNone};               ///< roles of the rule
   int slot = kNone;       ///< reference, anchor or class name
-  int name = kNone;       ///< kSensorSet: index into Program::set_names
+  int name = kNone;       ///< kSensorSet: index into Program::sensor_sets
   double number = 0;      ///< kNumber, kSensorSet, and the windows of kDriftAlong, kTurnRate, kRate
   ByThreshold by_threshold = {};
 };
@@ -190,8 +190,8 @@ struct NodeNote {
   Place place;
 };
 
-/// A class that the text of a grammar names, where it first does in its file.
-struct NamedClass {
+/// What the text of a grammar names and an episode may have or not, where it first stands in its file.
+struct Named {
   std::string name;
   std::string file;
   Place place;
@@ -213,8 +213,8 @@ struct Program {
   std::vector<Node> nodes;
   std::vector<NodeNote> notes;  ///< of the first so many nodes
   std::vector<std::string> class_names;  ///< for kIsA
-  std::vector<std::string> set_names;    ///< for kSensorSet
-  std::vector<NamedClass> named_classes; ///< all but the built-in ones
+  std::vector<Named> sensor_sets;        ///< for kSensorSet
+  std::vector<Named> named_classes;      ///< all but the built-in ones
   Diagnostics warnings;                  ///< what Compile() warned of
   std::vector<ProgramParam> params;
   std::vector<Threshold> thresholds;     ///< at most kMaxThresholds; what is compared with others counts as kAnyChange

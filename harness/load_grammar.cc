@@ -58,18 +58,34 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
   return grammar::Compile({file, std::move(*text.value)}, include, overrides, known);
 }
 
-grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Cast& cast) {
-  std::set<std::string> known;
-  for (const grammar::CastMember& member : cast.entities) known.insert(member.classes.begin(), member.classes.end());
-  grammar::Diagnostics warnings = program.warnings;
-  for (const grammar::NamedClass& named : program.named_classes) {
+namespace {
+
+// What the grammar names and nobody in the episode has.
+void WarnOfStrangers(const std::vector<grammar::Named>& names, const std::set<std::string>& known, std::string_view message,
+                     const std::string& remedy, grammar::Diagnostics& warnings) {
+  for (const grammar::Named& named : names) {
     if (known.contains(named.name)) continue;
     const std::string near = grammar::NearestName(named.name, {known.begin(), known.end()});
     warnings.push_back(grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value.value_or(""), named.place,
-                                             "nobody in this episode is a '" + named.name + "'",
-                                             near.empty() ? "" : "did you mean '" + near + "'?"));
+                                             fmt::format("{} '{}'", message, named.name),
+                                             near.empty() ? remedy : "did you mean '" + near + "'?"));
     warnings.back().is_warning = true;
   }
+}
+
+}  // namespace
+
+grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Cast& cast) {
+  std::set<std::string> classes;
+  std::set<std::string> sensor_sets;
+  for (const grammar::CastMember& member : cast.entities) {
+    classes.insert(member.classes.begin(), member.classes.end());
+    sensor_sets.insert(member.sensor_sets.begin(), member.sensor_sets.end());
+  }
+  grammar::Diagnostics warnings = program.warnings;
+  WarnOfStrangers(program.named_classes, classes, "nobody in this episode is a", "", warnings);
+  WarnOfStrangers(program.sensor_sets, sensor_sets, "no hand of this episode has a sensor set",
+                  sensor_sets.empty() ? "" : fmt::format("there are: {}", fmt::join(sensor_sets, ", ")), warnings);
   return warnings;
 }
 

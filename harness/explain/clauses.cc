@@ -110,9 +110,25 @@ Reason Clauses::Boundary(int lane, const Fate& fate, bool end, const Follow& fol
           .because = follow ? follow(lane, fate, end) : Reasons{}};
 }
 
+// Somebody's class does not fit, or somebody would play two roles.
+Reason Clauses::Impossible(int lane, int slot) {
+  const grammar::Reference& reference = past_.RuleOf(lane).references[slot];
+  const grammar::Rule& rule = past_.program().events[reference.rule];
+  std::string names;
+  std::string why = "an entity would play two roles";
+  for (std::size_t role = 0; role < rule.roles.size(); ++role) {
+    if (reference.roles[role] == kNone) continue;
+    const grammar::CastMember& member = past_.cast().entities[past_.At(lane).entities[reference.roles[role]]];
+    const std::string& wanted = rule.roles[role].class_name;
+    names += (names.empty() ? "" : ", ") + member.name;
+    if (std::ranges::count(member.classes, wanted) == 0) why = fmt::format("{} is no {}", member.name, wanted);
+  }
+  return {.mark = Mark::kHeld, .what = fmt::format("{}({})", rule.name, names), .how = "impossible: " + why};
+}
+
 Reason Clauses::Reference(int lane, int slot, FrameNumber frame, bool truth, const Follow& follow) {
   const int target = past_.Referred(lane, slot);
-  if (target == kNone) return {.mark = Mark::kHeld, .what = "", .how = "impossible: an entity's class does not fit"};
+  if (target == kNone) return Impossible(lane, slot);
   const Fate* begun = past_.LastBegun(target, frame);
   Reason reason{.mark = Mark::kHeld, .what = Label(past_, target), .how = {}, .where = {}, .tick = {}, .reading = {}, .because = {}};
   if (truth && begun != nullptr) {
@@ -176,6 +192,22 @@ Reasons Clauses::Change(int node, const Moment& at, bool truth, const Follow& fo
   return reasons;
 }
 
+// Of a moment that is not now: when it is, the next one first.
+std::string Clauses::WhenInstead(const Node& edge, const Moment& at) {
+  const bool begins = edge.op == Op::kBegins;
+  if ((!begins && edge.op != Op::kEnds) || NodeAt(edge.args[0]).op != Op::kHolds) return {};
+  const int target = past_.Referred(at.lane, NodeAt(edge.args[0]).slot);
+  std::optional<FrameNumber> last;
+  if (target == kNone) return {};
+  for (const Fate& fate : past_.FatesOf(target)) {
+    const FrameNumber frame = begins ? fate.span.begin.frame : fate.span.end.frame;
+    const bool is_one = fate.kind == Fate::Kind::kInterval && (begins || frame < past_.frames());
+    if (is_one && frame > at.frame) return "; it is next at " + Time(frame);
+    if (is_one) last = frame;
+  }
+  return last ? "; it was last at " + Time(*last) : "; it never is";
+}
+
 Reason Clauses::Told(const Clause& clause, const Moment& at) {
   const Node& n = NodeAt(clause.node);
   const bool now = past_.Truth(clause.node, at);
@@ -185,7 +217,7 @@ Reason Clauses::Told(const Clause& clause, const Moment& at) {
     if (reason.mark == Mark::kTurned && at.frame > 0) reason.how += " at " + Time(at.frame);
   } else {
     reason = Measurement(clause, at, std::nullopt);
-    if (reason.how.empty()) reason.how = now ? "true" : "false";
+    if (reason.how.empty()) reason.how = now ? "true" : "false" + WhenInstead(n, at);
   }
   reason.mark = now == clause.truth ? Mark::kHeld : Mark::kFailed;
   return reason;

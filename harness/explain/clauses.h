@@ -59,6 +59,8 @@ class Clauses {
   Reason Measurement(const Clause& clause, const Moment& at, const std::optional<Measured>& before);
   void Collect(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out);
   void Split(int node, bool truth, std::vector<Clause>& out) const;
+  std::string WhenInstead(const grammar::Node& edge, const Moment& at);
+  Reason Impossible(int lane, int slot);
   double NearestMember(int any_lane, grammar::FrameNumber frame, int depth);
   std::string Since(int node, const Moment& at, bool truth);
   const grammar::Node& NodeAt(int node) const { return past_.program().nodes[node]; }

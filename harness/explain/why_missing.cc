@@ -111,6 +111,19 @@ double MissingReasons::RunCloseness(const Fate& fate) {
   }
 }
 
+// When what was waited for came after all, for the first time.
+std::string MissingReasons::HowLate(const Fate& fate) {
+  const Rule& rule = past_.RuleOf(fate.lane);
+  const Tick per_second = past_.cast().ticks_per_second;
+  const auto within = static_cast<Tick>(rule.within_s * static_cast<double>(per_second));
+  for (FrameNumber frame = fate.span.begin.frame + 1; frame < past_.frames(); ++frame) {
+    const Tick late = past_.TickOf(frame) - fate.span.begin.tick - within;
+    if (late <= 0 || !past_.Truth(rule.second, {.lane = fate.lane, .frame = frame, .begin = fate.span.begin.frame})) continue;
+    return "but " + Duration(late, per_second) + " later, at " + clauses_.Time(frame);
+  }
+  return "nor later";
+}
+
 MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
   const int lane = fate.lane;
   const Rule& rule = past_.RuleOf(lane);
@@ -158,11 +171,12 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
       break;
     case Fate::Kind::kTooLate:
       run.how += "dropped";
-      fail("to " + ClauseText(past_, lane, rule.second), "it did not come within " + QuantityText(rule.within_s, grammar::kSeconds));
+      fail("to " + ClauseText(past_, lane, rule.second),
+           "it did not come within " + QuantityText(rule.within_s, grammar::kSeconds) + ", " + HowLate(fate));
       break;
     case Fate::Kind::kCame:
       run.how += "what must not come came";
-      fail("without " + ClauseText(past_, lane, rule.second), "it came after " + lasted);
+      fail("without " + ClauseText(past_, lane, rule.second), "it came after " + lasted + ", at " + At(fate.span.end.tick, per_second));
       break;
     case Fate::Kind::kUnfinished:
       run.how += "dropped";

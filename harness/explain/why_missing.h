@@ -32,6 +32,7 @@ class MissingReasons {
   Blame OfLane(int lane, const Window& window, int depth);
   const grammar::Fate* NearestRun(int lane, const Window& window);
   double RunCloseness(const grammar::Fate& fate);
+  std::string HowLate(const grammar::Fate& fate);
   Blame OfRun(const grammar::Fate& fate, int depth);
   Blame OfForm(int lane, const Window& window, int depth);
   Blame OfWhile(int lane, const Window& window, int depth);

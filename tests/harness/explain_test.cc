@@ -153,7 +153,7 @@ TEST(ExplainMissing, TooLate) {
   stage.Show(10);
   stage.Touch(false);
   stage.Show(3);
-  EXPECT_EQ(WhyNot(stage.Finish(), "answered").because, "to touching(hand, cup) ends: it did not come within 50 ms");
+  EXPECT_EQ(WhyNot(stage.Finish(), "answered").because, "to touching(hand, cup) ends: it did not come within 50 ms, but 50 ms later, at 0.1300 s");
 }
 
 TEST(ExplainMissing, WhatMustNotComeCame) {
@@ -164,7 +164,7 @@ TEST(ExplainMissing, WhatMustNotComeCame) {
   stage.Show(10);
   stage.Touch(true);
   stage.Show(60);
-  EXPECT_EQ(WhyNot(stage.Finish(), "left@80ms").because, "without touching(hand, cup) begins: it came after 100 ms");
+  EXPECT_EQ(WhyNot(stage.Finish(), "left@80ms").because, "without touching(hand, cup) begins: it came after 100 ms, at 0.1300 s");
 }
 
 TEST(ExplainMissing, Dropped) {

@@ -73,6 +73,21 @@ TEST_F(LoadGrammarFiles, WarnsOfClassesThatNobodyHas) {
                    "                                                     ^\n");
 }
 
+TEST_F(LoadGrammarFiles, WarnsOfSensorSetsThatNoHandHas) {
+  const std::string file = Write("g.grammar", "grammar g\nevent held(h: Hand, c: Cup) while sensor_set(h, tumb, c) or "
+                                              "sensor_set(h, \"left wing\", c)\n");
+  const auto loaded = Load(file);
+  ASSERT_TRUE(loaded.program) << Format(loaded.diagnostics);
+  const grammar::Cast cast{.entities = {{.name = "hand", .classes = {"Hand", "Entity"}, .sensor_sets = {"thumb", "palm"}},
+                                        {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}}}};
+  const std::string line = "  event held(h: Hand, c: Cup) while sensor_set(h, tumb, c) or sensor_set(h, \"left wing\", c)\n";
+  EXPECT_EQ(Format(Warnings(*loaded.program, cast)),
+            file + ":2:49: warning: no hand of this episode has a sensor set 'tumb'\n" + line + "  " + std::string(48, ' ') +
+                "^\n  hint: did you mean 'thumb'?\n" +
+            file + ":2:72: warning: no hand of this episode has a sensor set 'left wing'\n" + line + "  " + std::string(71, ' ') +
+                "^\n  hint: there are: palm, thumb\n");
+}
+
 TEST_F(LoadGrammarFiles, LibraryGrammarsGiveNoWarnings) {
   for (const auto& entry : fs::directory_iterator(PREHEND_SOURCE_DIR "/grammar/library")) {
     const auto loaded = Load(entry.path().string());
