@@ -84,7 +84,7 @@ TEST_F(LoadGrammarFiles, WarnsOfSensorSetsThatNoHandHas) {
   EXPECT_EQ(Format(Warnings(*loaded.program, cast)),
             file + ":2:49: warning: no hand of this episode has a sensor set 'tumb'\n" + line + "  " + std::string(48, ' ') +
                 "^\n  hint: did you mean 'thumb'?\n" +
-            file + ":2:72: warning: no hand of this episode has a sensor set 'left wing'\n" + line + "  " + std::string(71, ' ') +
+            file + ":2:75: warning: no hand of this episode has a sensor set 'left wing'\n" + line + "  " + std::string(74, ' ') +
                 "^\n  hint: there are: palm, thumb\n");
 }
 
