@@ -10,9 +10,11 @@
 namespace prehend::physics {
 namespace {
 
-bool Active(const btBroadphaseProxy& proxy) {
-  return static_cast<const btCollisionObject*>(proxy.m_clientObject)->isActive();
+const btCollisionObject& BodyOf(const btBroadphaseProxy& proxy) {
+  return *static_cast<const btCollisionObject*>(proxy.m_clientObject);
 }
+
+bool Active(const btBroadphaseProxy& proxy) { return BodyOf(proxy).isActive(); }
 
 std::pair<int, int> Ids(const btBroadphasePair* pair) {
   return {pair->m_pProxy0->m_uniqueId, pair->m_pProxy1->m_uniqueId};
@@ -29,6 +31,12 @@ void BulletDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache,
   }
   std::ranges::sort(awake_, std::greater<>(), Ids);
   for (btBroadphasePair* pair : awake_) getNearCallback()(*pair, *this, info);
+  const btManifoldArray& manifolds = AwakeManifolds();
+  for (int i = 0; i < manifolds.size(); ++i) normals_.Carry(*manifolds[i]);
+  for (const btBroadphasePair* pair : awake_) {
+    normals_.Remember(BodyOf(*pair->m_pProxy0));
+    normals_.Remember(BodyOf(*pair->m_pProxy1));
+  }
 }
 
 const btManifoldArray& BulletDispatcher::AwakeManifolds() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bullet's narrow phase, for the pairs of which one is awake. Bullet sorts all pairs that overlap
 // in every tick, because determinism needs an order, and then does nothing for those that sleep.
+// Normals of points that stay are turned with their bodies (physics/bullet_normals.h).
 // Only for bullet_*.cc. Tested by tests/physics/world_test.cc
 #pragma once
 
@@ -8,6 +9,8 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include <vector>
+
+#include "physics/bullet_normals.h"
 
 namespace prehend::physics {
 
@@ -27,6 +30,7 @@ class BulletDispatcher final : public btCollisionDispatcher {
 
  private:
   std::vector<btBroadphasePair*> awake_;  ///< of the present tick
+  CarriedNormals normals_;
   btManifoldArray manifolds_;
 };
 

@@ -2,6 +2,7 @@
 // A ball that bounces, against free flight: physics/bullet_bounces.h, physics/touching_pairs.h.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -34,9 +35,13 @@ Scene MakeScene(const Drop& drop, Engine engine) {
   return scene;
 }
 
+std::unique_ptr<World> MakeWorld(const Scene& scene) {
+  return scene.world.planar ? MakeBox2dWorld(scene, {}) : MakeBulletWorld(scene, {});
+}
+
 /// Seconds at which the ball meets the floor before `until_s`.
 std::vector<double> ContactTimes(const Scene& scene, double until_s) {
-  const auto world = scene.world.planar ? MakeBox2dWorld(scene, {}) : MakeBulletWorld(scene, {});
+  const auto world = MakeWorld(scene);
   std::vector<double> times_s;
   Snapshot snapshot;
   bool touched = false;
@@ -84,6 +89,50 @@ TEST_P(BounceTest, EveryBounceIsAContactAtItsTime) {
           EXPECT_NEAR(flight_s, restitution * before_s, 4 * kTick_s) << "flight " << i;
         }
       }
+}
+
+/// Of bodies that nothing touched in this tick, the largest change of speed that is not gravity's.
+double PushFromNowhere(const Snapshot& before, const Snapshot& now) {
+  std::vector<char> touched(now.bodies.size(), 0);
+  for (const auto& part : now.AllContacts())
+    for (const ContactPoint& point : part)
+      for (const ContactSide& side : {point.a, point.b})
+        touched[static_cast<std::size_t>(side.body)] = 1;
+  double most_m_per_s = 0;
+  for (std::size_t i = 1; i < now.bodies.size(); ++i) {  // the floor is the first
+    if (touched[i]) continue;
+    const Eigen::Vector3d fallen(0, 0, -kGravity * kTick_s);
+    const Eigen::Vector3d change = now.bodies[i].v_WB_m_per_s - before.bodies[i].v_WB_m_per_s;
+    most_m_per_s = std::max(most_m_per_s, (change - fallen).norm());
+  }
+  return most_m_per_s;
+}
+
+TEST_P(BounceTest, NothingIsPushedWithoutAContact) {
+  Scene scene = MakeScene({0.04, 0.4, 0.8}, GetParam());
+  for (int i = 0; i < 6; ++i) {
+    const Eigen::AngleAxisd turn(0.3 + 0.4 * i, Eigen::Vector3d::UnitY());
+    std::vector<PlacedShape> shapes;
+    if (i % 2)
+      shapes.push_back({Sphere{0.03}, {}});
+    else
+      shapes.push_back({Box{{0.05 + 0.02 * i, 0.1, 0.08}}, {}});
+    scene.bodies.push_back(
+        {.name = "thing",
+         .shapes = shapes,
+         .mass_kg = 0.1 + 0.1 * i,
+         .restitution = 0.15 * i,
+         .X_WB = {{0.06 * i - 0.2, 0, 0.3 + 0.2 * i}, Eigen::Quaterniond(turn)}});
+  }
+  const auto world = MakeWorld(scene);
+  Snapshot before, now;
+  world->Describe(now);
+  for (int tick = 1; tick <= 2 * 480; ++tick) {
+    before = now;
+    world->Step({});
+    world->Describe(now);
+    ASSERT_LT(PushFromNowhere(before, now), 1e-5) << "tick " << tick;
+  }
 }
 
 }  // namespace
