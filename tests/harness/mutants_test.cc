@@ -105,6 +105,7 @@ const char* const kScenarios[] = {
     "put_down/slow_put_down",
     "pick_up/low_arch_is_a_pick_up",
     "put_down/low_last_approach_is_no_put_down",
+    "grasp/one_of_two_held_things_slides",
     "slide/push_before_the_grasp_is_no_part_of_the_slide",
     "reach/a_grasp_drops_the_reach_for_its_neighbour",
     "recorded/recorded_controller_grasps_the_can",
