@@ -68,4 +68,7 @@ ReadResult<YamlDocument> ReadYamlFile(const std::string& path);
 grammar::Diagnostics ApplyOverride(const std::string& assignment, const nlohmann::ordered_json& schema,
                                    YamlDocument& document);
 
+/// Whether the field that `path` leads to takes whole numbers only, says the JSON Schema.
+bool IsWholeNumber(const std::string& path, const nlohmann::ordered_json& schema, const YamlDocument& document);
+
 }  // namespace prehend::harness

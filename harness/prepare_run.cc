@@ -74,12 +74,13 @@ std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
 
 }  // namespace
 
+bool IsFieldOfScenario(const std::string& name) {
+  return name.find('.') != std::string::npos || ScenarioFormat().schema.at("properties").contains(name);
+}
+
 ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root,
                                    std::vector<std::string>* files) {
-  const Json& fields = ScenarioFormat().schema.at("properties");
-  Settings settings = Split(request.settings, [&](const std::string& name) {
-    return name.find('.') != std::string::npos || fields.contains(name);
-  });
+  Settings settings = Split(request.settings, IsFieldOfScenario);
   if (!settings.diagnostics.empty()) return {std::nullopt, std::move(settings.diagnostics)};
   if (files) files->push_back(request.scenario_file);
   ReadResult<Scenario> scenario =

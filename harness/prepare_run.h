@@ -31,6 +31,9 @@ struct PreparedRun {
 ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root,
                                    std::vector<std::string>* files = nullptr);
 
+/// Whether this name in a setting means a field of the scenario, and not a parameter of its grammar.
+bool IsFieldOfScenario(const std::string& name);
+
 /// "name=value" settings that can only mean parameters of a grammar.
 ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings);
 

@@ -11,6 +11,7 @@
 #include "harness/build_persons.h"
 #include "harness/build_scene.h"
 #include "harness/build_script.h"
+#include "harness/check_draws.h"
 #include "harness/check_planar.h"
 #include "harness/kinds.h"
 #include "harness/recorded_input.h"
@@ -137,7 +138,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scenario.script = BuildScript(entry, scene, complaints);
   scenario.outcomes = BuildOutcomes(entry.outcomes, scene, complaints);
   CheckKinds(entry, complaints);
-  CheckVariations(document, entry.vary, complaints);
+  CheckVariedFields(document, entry.vary, complaints);
   if (scene.world.planar) CheckPlanar(entry, scene, complaints);
   if (complaints.empty()) CheckOverlaps(entry, scene, complaints);
   if (!complaints.empty()) return AllOf(complaints, in_other_files);
@@ -169,10 +170,16 @@ ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocu
                                     const std::vector<std::string>& overrides,
                                     const ScenarioLibrary& library) {
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
-    for (const std::string& assignment : overrides) {
+  for (const std::string& assignment : overrides) {
     if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema, *document.value); !bad.empty()) return {std::nullopt, std::move(bad)};
   }
-  return Resolve(file, *document.value, library);
+  ReadResult<Scenario> scenario = Resolve(file, *document.value, library);
+  if (!scenario.value) return scenario;
+  Diagnostics unreadable =
+      CheckDraws(*document.value, scenario.value->variations,
+                 [&](const YamlDocument& varied) { return Resolve(file, varied, library).diagnostics; });
+  if (!unreadable.empty()) return {std::nullopt, std::move(unreadable)};
+  return scenario;
 }
 
 }  // namespace

@@ -127,16 +127,17 @@ class Suite {
                                                       : fmt::format("last tick {}", last_tick));
       if (!result.said.empty()) verdict.details = "it said:\n" + result.said;
       verdict.ticks = std::max<std::int64_t>(0, last_tick);
-      verdict.command = RepeatCommand(verdict.scenario, request_.changes) + LimitsText();
+      verdict.command = RepeatCommand(verdict.scenario, request_.changes) + HowText();
     }
     verdict.seconds = result.seconds;
     verdict.peak_memory_kib = result.peak_memory_kib;
     return verdict;
   }
 
-  std::string LimitsText() const {
-    return fmt::format(" --time-limit-s {:g} --memory-limit-mb {}", request_.limits.time_limit_s,
-                       request_.limits.memory_limit_bytes / kMegabyte);
+  /// The options that a worker's time and memory depend on.
+  std::string HowText() const {
+    return fmt::format("{} --time-limit-s {:g} --memory-limit-mb {}", request_.pictures ? "" : " --no-pictures",
+                       request_.limits.time_limit_s, request_.limits.memory_limit_bytes / kMegabyte);
   }
 
   std::vector<ScenarioVerdict> Verdicts() {

@@ -20,9 +20,35 @@ constexpr const char* kFailed = "failed";
 constexpr double kTimeLimit_s = 600;
 constexpr std::size_t kMostListed = 20;
 
-/// Fields of the scenario have a dot in their name, parameters of the grammar have none.
-bool IsField(const std::string& setting) {
-  return setting.substr(0, setting.find('=')).find('.') != std::string::npos;
+/// What trials are drawn from; the file is looked at once, before the first of them.
+struct Nominal {
+  PreparedRun run;
+  YamlDocument document;
+};
+
+ReadResult<Nominal> ReadNominal(const RunRequest& request, const std::string& root) {
+  ReadResult<PreparedRun> prepared = PrepareRun(request, root);
+  if (!prepared.value) return {std::nullopt, std::move(prepared.diagnostics)};
+  ReadResult<YamlDocument> document = ReadYamlFile(request.scenario_file);
+  if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
+  for (const std::string& setting : request.settings) {
+    if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
+      (void)ApplyOverride(setting, ScenarioFormat().schema, *document.value);  // PrepareRun() has accepted it
+  }
+  return {Nominal{std::move(*prepared.value), std::move(*document.value)}, {}};
+}
+
+/// What the command line sets is not varied.
+RunRequest WithDraws(const RunRequest& request, const Nominal& nominal, int trial) {
+  const Scenario& scenario = nominal.run.scenario;
+  RunRequest varied = request;
+  for (std::string& drawn : DrawTrial(nominal.document, scenario.variations, scenario.world.seed, trial)) {
+    const std::string field = drawn.substr(0, drawn.find('=') + 1);
+    const bool set = std::ranges::any_of(
+        request.settings, [&](const std::string& given) { return given.starts_with(field); });
+    if (!set) varied.settings.push_back(std::move(drawn));
+  }
+  return varied;
 }
 
 /// Simulates one trial; nobody watches but the outcomes.
@@ -66,34 +92,18 @@ std::size_t CountOf(const std::string& outcome, const TrialReport& report) {
 
 ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root,
                                       int trial) {
-  const ReadResult<PreparedRun> prepared = PrepareRun(request, root);
-  if (!prepared.value) return {std::nullopt, prepared.diagnostics};
-  ReadResult<YamlDocument> document = ReadYamlFile(request.scenario_file);
-  if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
-  const Json& schema = ScenarioFormat().schema;
-  for (const std::string& setting : request.settings) {
-    if (IsField(setting))
-      (void)ApplyOverride(setting, schema, *document.value);  // PrepareRun() has accepted it
-  }
-  const Scenario& scenario = prepared.value->scenario;
-  RunRequest varied = request;
-  for (std::string& drawn :
-       DrawTrial(*document.value, scenario.variations, scenario.world.seed, trial)) {
-    // What the command line sets is not varied.
-    const std::string field = drawn.substr(0, drawn.find('=') + 1);
-    const bool set = std::ranges::any_of(
-        request.settings, [&](const std::string& given) { return given.starts_with(field); });
-    if (!set) varied.settings.push_back(std::move(drawn));
-  }
-  return {std::move(varied), {}};
+  const ReadResult<Nominal> nominal = ReadNominal(request, root);
+  if (!nominal.value) return {std::nullopt, nominal.diagnostics};
+  return {WithDraws(request, *nominal.value, trial), {}};
 }
 
 ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
                                   const TrialSettings& settings,
                                   const std::function<void(int done)>& progress) {
-  const ReadResult<PreparedRun> nominal = PrepareRun(request, root);
+  const ReadResult<Nominal> nominal = ReadNominal(request, root);
   if (!nominal.value) return {std::nullopt, nominal.diagnostics};
-  if (nominal.value->scenario.outcomes.empty()) {
+  const Scenario& scenario = nominal.value->run.scenario;
+  if (scenario.outcomes.empty()) {
     return {std::nullopt,
             {grammar::DiagnosticAt(request.scenario_file, "", {1, 1},
                                    "the scenario has no outcomes, so trials cannot be judged",
@@ -102,9 +112,7 @@ ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& 
   std::vector<WorkerJob> jobs;
   for (int trial = 1; trial <= settings.count; ++trial) {
     jobs.push_back([&, trial]() -> std::string {
-      const auto varied = RequestOfTrial(request, root, trial);
-      const auto prepared =
-          varied.value ? PrepareRun(*varied.value, root) : ReadResult<PreparedRun>{};
+      const auto prepared = PrepareRun(WithDraws(request, *nominal.value, trial), root);
       if (!prepared.value)
         return ToJson({trial, kFailed, "it cannot be read:\n" + grammar::Format(prepared.diagnostics)});
       return ToJson(RunTrial(prepared.value->scenario, trial));
@@ -116,7 +124,7 @@ ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& 
                                       if (progress) progress(++done);
                                     });
   TrialReport report;
-  for (const Outcome& outcome : nominal.value->scenario.outcomes)
+  for (const Outcome& outcome : scenario.outcomes)
     report.outcomes.push_back(outcome.name);
   for (std::size_t i = 0; i < workers.size(); ++i)
     report.results.push_back(FromWorker(static_cast<int>(i) + 1, workers[i]));

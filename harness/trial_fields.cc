@@ -86,31 +86,13 @@ Format<VariationEntry> VariationFormat() {
           if ((*given)[0] > (*given)[1])
             complaints.Add(written->where, std::string(key) + ": expected [least, most]");
         }
+        if (variation.normal && (*variation.normal)[1] < 0)
+          complaints.Add(node.Find("normal")->where, "normal: expected [mean, deviation], and no deviation below 0");
       })
       .format();
 }
 
 Format<std::vector<ConditionEntry>> OutcomeFormat() { return ListOf(ConditionFormat(), 1, 32); }
-
-void CheckVariations(const YamlDocument& document, const std::vector<VariationEntry>& variations,
-                     Complaints& complaints) {
-  for (const VariationEntry& variation : variations) {
-    const bool relative = variation.plus || variation.times;
-    for (const std::string& field : variation.fields) {
-      const std::size_t dot = field.rfind('.');
-      const YamlNode* node = FindField(document.root, field);
-      const YamlNode* parent = dot == std::string::npos
-                                   ? &document.root
-                                   : FindField(document.root, field.substr(0, dot));
-      if (!parent || (!node && (relative || parent->kind != YamlNode::Kind::kMapping))) {
-        complaints.Add(variation.where, fmt::format("fields: the scenario has no '{}'", field),
-                       relative ? "plus and times need a number that is written" : "");
-      } else if (relative && !NumberOf(*node)) {
-        complaints.Add(variation.where, fmt::format("fields: '{}' is no number", field));
-      }
-    }
-  }
-}
 
 namespace {
 

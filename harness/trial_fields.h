@@ -12,11 +12,6 @@ namespace prehend::harness {
 Format<VariationEntry> VariationFormat();
 Format<std::vector<ConditionEntry>> OutcomeFormat();
 
-/// Complains about fields that the scenario does not have, or that are no numbers where numbers are
-/// varied.
-void CheckVariations(const YamlDocument& document, const std::vector<VariationEntry>& variations,
-                     Complaints& complaints);
-
 /// Complains about unknown entities, and about joints that are asked for but not there.
 std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionEntry>>>& entries,
                                    const physics::Scene& scene, Complaints& complaints);

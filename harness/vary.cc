@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "harness/scenario_fields.h"
 #include "harness/yaml_scalar.h"
 #include "physics/random.h"
 
@@ -24,14 +25,18 @@ Random GeneratorFor(std::uint64_t seed, int trial, std::size_t variation) {
   return Random(mixed.Next() ^ variation);
 }
 
-std::string DrawValue(const VariationEntry& variation, double written, Random& random) {
+/// Chance may not leave the bounds that the reader has tried.
+constexpr double kMostDeviations = 3;
+
+Draw DrawFrom(const VariationEntry& variation, Random& random) {
   if (variation.choose) return (*variation.choose)[random.Next() % variation.choose->size()];
-  double value = written;
-  if (variation.uniform) value = random.Between((*variation.uniform)[0], (*variation.uniform)[1]);
-  if (variation.normal) value = random.Normal((*variation.normal)[0], (*variation.normal)[1]);
-  if (variation.plus) value = written + random.Between((*variation.plus)[0], (*variation.plus)[1]);
-  if (variation.times) value = written * random.Between((*variation.times)[0], (*variation.times)[1]);
-  return fmt::format("{:.6f}", value);
+  if (variation.normal) {
+    double deviations = random.Normal(0, 1);
+    while (std::abs(deviations) > kMostDeviations) deviations = random.Normal(0, 1);
+    return (*variation.normal)[0] + deviations * (*variation.normal)[1];
+  }
+  const auto& between = variation.uniform ? variation.uniform : variation.plus ? variation.plus : variation.times;
+  return random.Between((*between)[0], (*between)[1]);
 }
 
 }  // namespace
@@ -52,17 +57,38 @@ std::optional<double> NumberOf(const YamlNode& node) {
   return number && std::abs(*number) <= kLargest ? number : std::nullopt;
 }
 
+Bounds BoundsOf(const VariationEntry& variation) {
+  if (variation.choose) return {"choose", {variation.choose->begin(), variation.choose->end()}};
+  if (variation.normal) {
+    const double mean = (*variation.normal)[0], most = kMostDeviations * (*variation.normal)[1];
+    return {"normal", {mean - most, mean + most}};
+  }
+  const auto from = [](const char* key, const Eigen::Vector2d& range) { return Bounds{key, {range[0], range[1]}}; };
+  if (variation.uniform) return from("uniform", *variation.uniform);
+  return variation.plus ? from("plus", *variation.plus) : from("times", *variation.times);
+}
+
+std::string SettingOf(const YamlDocument& document, const VariationEntry& variation,
+                      const std::string& field, const Draw& draw) {
+  if (const auto* text = std::get_if<std::string>(&draw)) return field + "=" + *text;
+  const YamlNode* node = FindField(document.root, field);
+  const double written = node ? NumberOf(*node).value_or(0) : 0;
+  double value = std::get<double>(draw);
+  if (variation.plus) value = written + value;
+  if (variation.times) value = written * value;
+  if (IsWholeNumber(field, ScenarioFormat().schema, document)) return fmt::format("{}={}", field, std::llround(value));
+  return fmt::format("{}={:.6f}", field, value);
+}
+
 std::vector<std::string> DrawTrial(const YamlDocument& document,
                                    const std::vector<VariationEntry>& variations,
                                    std::uint64_t seed, int trial) {
   std::vector<std::string> settings;
   for (std::size_t i = 0; i < variations.size(); ++i) {
-    for (const std::string& field : variations[i].fields) {
-      Random random = GeneratorFor(seed, trial, i);
-      const YamlNode* node = FindField(document.root, field);
-      const double written = node ? NumberOf(*node).value_or(0) : 0;
-      settings.push_back(field + "=" + DrawValue(variations[i], written, random));
-    }
+    Random random = GeneratorFor(seed, trial, i);
+    const Draw draw = DrawFrom(variations[i], random);
+    for (const std::string& field : variations[i].fields)
+      settings.push_back(SettingOf(document, variations[i], field, draw));
   }
   return settings;
 }

@@ -29,45 +29,50 @@ void Relocate(YamlNode& node, int source, int column_offset) {
   }
 }
 
-/// The schema of the field called `step`; null when it says nothing of one.
-nlohmann::ordered_json FieldSchema(const nlohmann::ordered_json& schema, const std::string& step) {
-  const auto properties = schema.find("properties");
-  if (properties != schema.end() && properties->contains(step)) return (*properties)[step];
-  const auto others = schema.find("additionalProperties");
-  return others != schema.end() && others->is_object() ? *others : nlohmann::ordered_json();
+using Schema = nlohmann::ordered_json;
+
+/// The schema of the field called `step`, or of the item of a list; null when it says nothing of one.
+const Schema* FieldSchema(const Schema* schema, const std::string& step) {
+  if (!schema) return nullptr;
+  const auto properties = schema->find("properties");
+  if (properties != schema->end() && properties->contains(step)) return &(*properties)[step];
+  for (const char* others : {"additionalProperties", "items"}) {
+    const auto found = schema->find(others);
+    if (found != schema->end() && found->is_object()) return &*found;
+  }
+  return nullptr;
 }
 
 /// Of a schema with alternatives (an actor is a hand or a person) the first that knows every key of the node.
-nlohmann::ordered_json Alternative(const nlohmann::ordered_json& schema, const YamlNode& node) {
-  const auto alternatives = schema.find("oneOf");
-  if (alternatives == schema.end()) return schema;
-  for (const nlohmann::ordered_json& alternative : *alternatives) {
+const Schema* Alternative(const Schema* schema, const YamlNode& node) {
+  if (!schema || !schema->contains("oneOf")) return schema;
+  for (const Schema& alternative : (*schema)["oneOf"]) {
     const auto known = alternative.find("properties");
     const bool fits = known != alternative.end() && std::ranges::all_of(node.children, [&](const YamlNode& child) {
       return known->contains(child.key);
     });
-    if (fits) return alternative;
+    if (fits) return &alternative;
   }
   return schema;
 }
 
 /// Whether a field of that name may be left out in the file, and is a mapping.
-bool IsOptionalMapping(const nlohmann::ordered_json& schema, const std::string& step) {
-  const auto properties = schema.find("properties");
-  return properties != schema.end() && properties->contains(step) && (*properties)[step].contains("properties");
+bool IsOptionalMapping(const Schema* schema, const std::string& step) {
+  return schema && schema->contains("properties") && (*schema)["properties"].contains(step) &&
+         (*schema)["properties"][step].contains("properties");
 }
 
 /// What a mapping has, and what its schema says it may have.
-std::vector<std::string> NamesIn(const YamlNode& node, const nlohmann::ordered_json& schema) {
+std::vector<std::string> NamesIn(const YamlNode& node, const Schema* schema) {
   std::vector<std::string> names;
-  if (schema.contains("properties")) {
-    for (const auto& [name, field] : schema["properties"].items()) names.push_back(name);
+  if (schema && schema->contains("properties")) {
+    for (const auto& [name, field] : (*schema)["properties"].items()) names.push_back(name);
   }
   for (const YamlNode& child : node.children) names.push_back(child.key);
   return names;
 }
 
-std::string HintFor(const YamlNode& node, const nlohmann::ordered_json& schema, const std::string& step) {
+std::string HintFor(const YamlNode& node, const Schema* schema, const std::string& step) {
   if (node.kind == Kind::kSequence) return fmt::format("'{}' is a list of {}", node.key, node.children.size());
   const std::string near = grammar::NearestName(step, NamesIn(node, schema));
   return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
@@ -83,8 +88,7 @@ const YamlNode* ChildOf(const YamlNode& node, std::string_view step) {
   return whole && index < node.children.size() ? &node.children[index] : nullptr;
 }
 
-Diagnostics ApplyOverride(const std::string& assignment, const nlohmann::ordered_json& schema,
-                          YamlDocument& document) {
+Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema, YamlDocument& document) {
   const auto complain = [&](std::size_t offset, std::string message, std::string hint) -> Diagnostics {
     return {grammar::DiagnosticAt("--set", assignment, {1, static_cast<int>(offset) + 1}, std::move(message),
                                   std::move(hint))};
@@ -99,7 +103,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const nlohmann::ordered
   document.sources.push_back({"--set", assignment});
   const int source = static_cast<int>(document.sources.size()) - 1;
   YamlNode* node = &document.root;
-  nlohmann::ordered_json known = schema;  // about `node`
+  const Schema* known = &schema;  // about `node`
   for (std::size_t begin = 0; begin <= equals;) {
     const std::size_t end = std::min(assignment.find('.', begin), equals);
     const std::string step = assignment.substr(begin, end - begin);
@@ -126,6 +130,20 @@ Diagnostics ApplyOverride(const std::string& assignment, const nlohmann::ordered
   value.key_where = {source, {1, 1}};
   *node = std::move(value);
   return {};
+}
+
+bool IsWholeNumber(const std::string& path, const Schema& schema, const YamlDocument& document) {
+  const YamlNode* node = &document.root;
+  const Schema* known = &schema;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const std::string step = path.substr(begin, end - begin);
+    known = FieldSchema(known, step);
+    if (node) node = ChildOf(*node, step);
+    if (node) known = Alternative(known, *node);
+    begin = end + 1;
+  }
+  return known && known->value("type", "") == "integer";
 }
 
 }  // namespace prehend::harness

@@ -28,10 +28,6 @@ constexpr int kRoundDirections = 24;
 /// left.
 constexpr double kTooWide = 100;
 
-/// Cost of coming from where the hand does not get as deep as the point that it has to grasp.
-constexpr double kTooDeep = 50;
-constexpr double kDeepEnough_m = 0.01;
-
 /// Cost of a hand that is turned by a right angle about its way: only when upright does not do.
 constexpr double kRolled = 20;
 
@@ -48,6 +44,7 @@ struct Candidate {
   Pose X_WH;
   Eigen::Vector3d toward_W;
   double cost = 0;
+  double beside_m = 0;  ///< from the point to grasp, other than along the grip, to where the fingers close
 };
 
 /// The rotation that takes the orthonormal pair (a_H, b_H) to (a_W, b_W).
@@ -149,12 +146,12 @@ Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quater
   const Eigen::Vector3d centre_H = on_post + style_.grip_axis * half_grip + approach.toward * depth;
 
   Candidate candidate{.X_WH = {point_W - q * centre_H, q}, .toward_W = toward_W};
-  if (!mounted_)
-    candidate.X_WH.p_m.z() = std::max(candidate.X_WH.p_m.z(), lowest_m_ + approach.floor_m);
+  const double raised_m = mounted_ ? 0 : std::max(0.0, lowest_m_ + approach.floor_m - candidate.X_WH.p_m.z());
+  candidate.X_WH.p_m.z() += raised_m;
+  candidate.beside_m = (raised_m * Eigen::Vector3d::UnitZ() - (depth - approach.pads_m) * toward_W).norm();
   candidate.X_WH.p_m += query_.offset_m;
   candidate.cost = RotationVector(q * query_.from.X_WH.q.conjugate()).norm();
   if (2 * half_grip > style_.opening_m) candidate.cost += kTooWide;
-  if (query_.point_m && depth > approach.pads_m + kDeepEnough_m) candidate.cost += kTooDeep;
   return candidate;
 }
 
@@ -185,7 +182,7 @@ std::vector<Candidate> CandidateList::FromSide() const {
   };
   Eigen::Vector3d inwards = target_.centre_W_m - target_.point_W_m;
   inwards.z() = 0;
-  const bool at_rim = inwards.norm() > kDeepEnough_m;
+  const bool at_rim = inwards.norm() > kAtPoint_m;
   for (const double yaw :
        YawsOf(target_.body, target_.X_WB, YawOf(at_rim ? inwards : way), planar_)) {
     const Eigen::Vector3d toward_W = Horizontal(yaw);
@@ -205,6 +202,17 @@ std::vector<Candidate> CandidateList::FromSide() const {
 bool CandidateList::SideIsNatural() const {
   const Eigen::Vector3d size = WorldBounds(target_.body, target_.X_WB).sizes();
   return style_.side && size.z() >= kTall_m && size.z() >= kSlender * std::min(size.x(), size.y());
+}
+
+/// Those that the hand can open for and that grasp the point; when none does, those that come nearest to it.
+void KeepNearest(std::vector<Candidate>& candidates) {
+  const auto is_too_wide = [](const Candidate& candidate) { return candidate.cost >= kTooWide; };
+  if (!std::ranges::all_of(candidates, is_too_wide)) std::erase_if(candidates, is_too_wide);
+  if (candidates.empty()) return;
+  const double nearest_m = std::ranges::min_element(candidates, {}, &Candidate::beside_m)->beside_m;
+  constexpr double kAsNear_m = 0.001;
+  const double most_m = std::max(kAtPoint_m, nearest_m + kAsNear_m);
+  std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.beside_m > most_m; });
 }
 
 std::vector<Candidate> Candidates(const Scene& scene, const Snapshot& now,
@@ -230,6 +238,7 @@ std::vector<Candidate> Candidates(const Scene& scene, const Snapshot& now,
   // An approach that was asked for is kept, unless the style does not have it.
   if (query.approach == Approach::kAuto || first.empty())
     first.insert(first.end(), second.begin(), second.end());
+  if (query.point_m) KeepNearest(first);
   return first;
 }
 
@@ -262,7 +271,9 @@ ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& q
         at_end_m >= kClearEnough_m - query.offset_m.norm() && candidate.cost < kTooWide;
     const double clear_enough_m = std::min(kClearEnough_m, at_end_m);
     for (const Bend& bend : kBends) {
-      ReachPlan plan{.segment = Way(query, candidate, bend), .toward_W = candidate.toward_W};
+      ReachPlan plan{.segment = Way(query, candidate, bend),
+                     .toward_W = candidate.toward_W,
+                     .beside_m = query.point_m ? candidate.beside_m : 0};
       plan.clearance_m = clearance.Along(plan.segment, scene, now);
       plan.found = fits && plan.clearance_m >= clear_enough_m;
       if (plan.found) return plan;

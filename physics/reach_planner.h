@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a hand has to be to grasp an object in a style, and a smooth way to get there without
 // touching anything. Algorithm: list the orientations that suit the object (its faces, or all
-// around when it is round), order them by how far the hand has to turn and to go around, and take
+// around when it is round), keep those whose grip is at the point that was asked for, or else
+// nearest to it, order them by how far the hand has to turn and to go around, and take
 // the first for which one of a few Bezier curves keeps the open hand clear of every body. When none
 // does, the one that stays clearest. Tested by tests/physics/reach_planner_test.cc
 #pragma once
@@ -19,6 +20,7 @@ struct ReachPlan {
   double clearance_m =
       0;  ///< least distance of the open hand to any body on the way; negative: it will touch
   bool found = false;  ///< false: the best of the ways that do not do
+  double beside_m = 0;  ///< how far from the point that was asked for the fingers close
 };
 
 struct ReachQuery {
@@ -32,6 +34,9 @@ struct ReachQuery {
   TargetState from;
   double over_s = 0.8;
 };
+
+/// Nearer than this the fingers close at the point that was asked for.
+inline constexpr double kAtPoint_m = 0.01;
 
 ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& query);
 

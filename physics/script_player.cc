@@ -53,6 +53,17 @@ int HandsOn(int body, const Snapshot& now) {
   return std::max(static_cast<int>(hands.size()), 1);
 }
 
+/// What a person wants to know of a reach that goes on all the same; empty: nothing.
+std::string NoteAbout(const ReachPlan& plan, const ReachStep& reach) {
+  std::string note;
+  if (plan.beside_m > kAtPoint_m)
+    note = "no grip of " + reach.object + " in style " + reach.style + " is at point_m: the nearest is " +
+           std::to_string(std::lround(1000 * plan.beside_m)) + " mm beside it";
+  if (plan.found || plan.clearance_m >= -kNotedTouch_m) return note;
+  return note + (note.empty() ? "" : "; ") + "no way to grasp " + reach.object +
+         " keeps clear of everything: the open hand will push against something";
+}
+
 }  // namespace
 
 /// Turns one step into a motion. An empty `problem` afterwards means that it worked.
@@ -129,9 +140,7 @@ void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
     hand_.style = style;
     hand_.object = object;
     hand_.came_along_W = plan.toward_W;
-    if (!plan.found && plan.clearance_m < -kNotedTouch_m)
-      note_ = "no way to grasp " + reach.object +
-              " keeps clear of everything: the open hand will push against something";
+    note_ = NoteAbout(plan, reach);
     Follow(plan.segment);
   }
 }

@@ -44,7 +44,6 @@ void Declare(CLI::App& options) {
   options
       .add_option("--events", "only these events, for every grammar; otherwise all that docs/events.md defines")
       ->type_name("NAME,..")
-      ->delimiter(',')
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   options.add_option("--collar-ms", "how far off a boundary may be for the scores at a collar; otherwise 50")
@@ -103,11 +102,25 @@ std::vector<std::vector<JudgedEpisode>> JudgeAll(const ScenarioSelection& select
   return by_grammar;
 }
 
+/// Between commas; what is empty stays, so that it can be complained about.
+std::vector<std::string> NamesIn(const std::vector<std::string>& lists) {
+  std::vector<std::string> names;
+  for (const std::string& list : lists) {
+    for (std::size_t begin = 0; begin <= list.size();) {
+      const std::size_t end = std::min(list.find(',', begin), list.size());
+      names.push_back(list.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  return names;
+}
+
 /// Why these events cannot be chosen, or "".
 std::string UnknownEvent(const std::vector<std::string>& events) {
   const std::vector<std::string> known(OracleEvents().begin(), OracleEvents().end());
   for (const std::string& event : events) {
     if (OracleDefines(event)) continue;
+    if (event.empty()) return "--events: a name is missing beside a comma; write NAME,NAME";
     const std::string near = grammar::NearestName(event, known);
     return fmt::format("--events: docs/events.md defines no '{}'; {}", event,
                        near.empty() ? fmt::format("it defines {}", fmt::join(known, ", "))
@@ -140,7 +153,7 @@ void Print(const std::vector<score::Score>& scores, double collar_s, std::ostrea
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   std::vector<std::string> grammars = ValuesOf(options, "--grammar");
   if (grammars.empty()) grammars = {"pick_and_place", "original_2020"};
-  const std::vector<std::string> events = ValuesOf(options, "--events");
+  const std::vector<std::string> events = NamesIn(ValuesOf(options, "--events"));
   if (const std::string unknown = UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);
   std::vector<std::vector<std::string>> not_spoken_of;

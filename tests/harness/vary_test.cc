@@ -93,21 +93,14 @@ TEST(Vary, NormalAndChosenDraws) {
   EXPECT_NEAR(pinches, 200, 40);
 }
 
-TEST(Vary, RefusesFieldsThatAreNotThere) {
-  const std::pair<const char*, const char*> cases[] = {
-      {"- {fields: [entities.mlik.mass_kg], uniform: [0, 1]}",
-       "16:5: fields: the scenario has no 'entities.mlik.mass_kg'\n"},
-      {"- {fields: [entities.milk.friction], times: [0.9, 1.1]}",
-       "16:5: fields: the scenario has no 'entities.milk.friction' | plus and times need a number "
-       "that is written\n"},
-      {"- {fields: [entities.milk.on], plus: [0, 1]}",
-       "16:5: fields: 'entities.milk.on' is no number\n"},
-      {"- {fields: [entities.milk.mass_kg], uniform: [1, 0]}",
-       "16:48: uniform: expected [least, most]\n"},
-      {"- {fields: [entities.milk.mass_kg]}",
-       "16:5: a variation needs one of the keys uniform, normal, plus, times, choose\n"}};
-  for (const auto& [line, complaint] : cases)
-    EXPECT_EQ(Brief(Read("vary:\n  " + std::string(line) + "\n").diagnostics), complaint);
+TEST(Vary, ChanceStaysWithinThreeDeviations) {
+  const std::string vary = "vary:\n  - {fields: [entities.milk.friction], normal: [0.8, 0.2]}\n";
+  for (int trial = 1; trial <= 2000; ++trial) ASSERT_NEAR(NumberIn(Draw(vary, 1, trial)[0]), 0.8, 0.600001);
+}
+
+TEST(Vary, WhereWholeNumbersAreWantedTheNearestIsDrawn) {
+  EXPECT_EQ(Draw("vary:\n  - {fields: [world.seed], uniform: [7.6, 8.4]}\n", 1, 1)[0], "world.seed=8");
+  EXPECT_EQ(Draw("vary:\n  - {fields: [settle_s], uniform: [0.5, 0.5]}\n", 1, 1)[0], "settle_s=0.500000");
 }
 
 }  // namespace

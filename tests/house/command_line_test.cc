@@ -322,7 +322,7 @@ TEST_F(CommandLine, AScenarioThatNeverEndsIsAVerdict) {
       << ended.out;
   EXPECT_NE(
       ended.out.find("again: prehend check rest/carton_rests --set script.0.right_hand.wait_s=600 "
-                     "--time-limit-s 0.2 --memory-limit-mb 1000\n"),
+                     "--no-pictures --time-limit-s 0.2 --memory-limit-mb 1000\n"),
       std::string::npos)
       << ended.out;
 }
