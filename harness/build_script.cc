@@ -127,7 +127,8 @@ struct StepMaker {
     const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
     if (away_m <= kFarthestPointM) return;
     complaints.Add(e.point_m->where,
-                   fmt::format("point_m: the point is {:.3f} m outside of '{}'", away_m, *found),
+                   fmt::format("point_m: the point is {:.1f} mm outside of '{}', more than {:g} mm", 1000 * away_m, *found,
+                               1000 * kFarthestPointM),
                    "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
   }
 
@@ -172,21 +173,23 @@ struct StepMaker {
   }
 };
 
+double DurationOf(const physics::Beat& beat) {
+  double longest_s = 0;
+  for (const physics::Step& step : beat.steps) longest_s = std::max(longest_s, step.over_s);
+  for (const physics::PersonStep& step : beat.person_steps) longest_s = std::max(longest_s, step.over_s);
+  return longest_s;
+}
+
 /// Limits that concern the script as a whole, at the beat where they are passed.
 void CheckLength(const ScenarioEntry& entry, const physics::Script& script,
                  Complaints& complaints) {
   double total_s = script.settle_s;
   std::size_t poses = 0;
   for (std::size_t i = 0; i < script.beats.size(); ++i) {
-    double beat_s = 0;
-    for (const physics::Step& step : script.beats[i].steps) {
-      beat_s = std::max(beat_s, step.over_s);
-    }
     for (const Named<StepEntry>& step : entry.script[i]) {
       if (const auto* given = std::get_if<PosesEntry>(&step.value)) poses += given->poses.size();
     }
-    for (const physics::PersonStep& step : script.beats[i].person_steps) beat_s = std::max(beat_s, step.over_s);
-    total_s += beat_s;
+    total_s += DurationOf(script.beats[i]);
     const Where where = entry.script[i].front().name_where;
     if (total_s > kMaxDurationS) {
       return complaints.Add(
@@ -241,6 +244,12 @@ void CheckOrder(const std::vector<BeatEntry>& script, Complaints& complaints) {
 }
 
 }  // namespace
+
+double DurationOf(const physics::Script& script) {
+  double total_s = script.settle_s;
+  for (const physics::Beat& beat : script.beats) total_s += DurationOf(beat);
+  return total_s;
+}
 
 physics::Pose PoseOf(const PoseEntry& pose) {
   physics::Pose X_WH{pose.at_m};

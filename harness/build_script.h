@@ -14,6 +14,9 @@ namespace prehend::harness {
 /// for theirs.
 physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints);
 
+/// How long the script takes, with what is simulated after it.
+double DurationOf(const physics::Script& script);
+
 /// A way-point as the hand's pose.
 physics::Pose PoseOf(const PoseEntry& pose);
 

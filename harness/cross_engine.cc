@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "harness/run_output.h"
+
 namespace prehend::harness {
 
 const char* NameOf(physics::Engine engine) {
@@ -27,6 +29,20 @@ std::optional<EngineComparison> CompareEngines(const Scenario& scenario,
   const auto tolerance = std::llround(kEngineTolerance_s * timeline.ticks_per_second);
   result.comparison = Compare(expected, result.run.timeline, tolerance);
   return result;
+}
+
+bool Agrees(const EngineComparison& compared) {
+  return compared.run.status.kind == physics::RunStatus::Kind::kCompleted && compared.comparison.Agrees();
+}
+
+std::string EngineDifferenceText(const Scenario& scenario, const EngineComparison& compared,
+                                 const std::string& explain) {
+  if (Agrees(compared)) return "";
+  const std::string other = NameOf(compared.other), again = explain + " --set world.engine=" + other;
+  if (compared.run.status.kind != physics::RunStatus::Kind::kCompleted)
+    return "in " + other + ": " + StatusText(compared.run) + "\nsee: " + again + "\n";
+  return "recognised in " + other + ", expected as recognised in " + NameOf(scenario.scene.world.engine) + ":\n" +
+         DifferenceText(compared.comparison, again);
 }
 
 }  // namespace prehend::harness

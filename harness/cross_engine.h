@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "harness/compare.h"
 #include "harness/run_scenario.h"
@@ -28,5 +29,13 @@ struct EngineComparison {
 std::optional<EngineComparison> CompareEngines(const Scenario& scenario,
                                                std::shared_ptr<const grammar::Program> program,
                                                const grammar::Timeline& timeline);
+
+/// Whether the other engine's run came to its end with the same events.
+bool Agrees(const EngineComparison& compared);
+
+/// In which events the other engine differs and how far, or why it did not come to its end; "" when they agree.
+/// `explain` is the command that asks about the scenario's events.
+std::string EngineDifferenceText(const Scenario& scenario, const EngineComparison& compared,
+                                 const std::string& explain);
 
 }  // namespace prehend::harness

@@ -136,6 +136,22 @@ void GoldenFiles::RemovePending(const std::string& scenario) const {
   fs::remove(PendingPath(scenario), ignored);
 }
 
+fs::path GoldenFiles::EngineDifferencePath(const std::string& scenario) const {
+  return PendingPath(scenario).replace_extension(".engines");
+}
+
+std::string GoldenFiles::ReadEngineDifference(const std::string& scenario) const {
+  return ReadTextFile(EngineDifferencePath(scenario).string()).value.value_or("");
+}
+
+std::string GoldenFiles::WriteEngineDifference(const std::string& scenario, const std::string& text) const {
+  const fs::path file = EngineDifferencePath(scenario);
+  if (!text.empty()) return WriteTextFile(file, text);
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  return "";
+}
+
 std::vector<KeptPicture> GoldenFiles::PicturesOf(const std::string& scenario) const {
   std::vector<KeptPicture> pictures = PicturesIn(GoldenPath(scenario).parent_path(), root_ / "golden");
   std::erase_if(pictures, [&](const KeptPicture& picture) { return picture.scenario != scenario; });

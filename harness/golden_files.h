@@ -45,6 +45,12 @@ class GoldenFiles {
   std::string WriteAccepted(const Golden& golden) const;
   void RemovePending(const std::string& scenario) const;
 
+  /// How a planar scenario differs between the engines, as `check` saw it last; "" where it does not. Writing ""
+  /// removes it.
+  std::filesystem::path EngineDifferencePath(const std::string& scenario) const;
+  std::string ReadEngineDifference(const std::string& scenario) const;
+  std::string WriteEngineDifference(const std::string& scenario, const std::string& text) const;
+
   /// Ids of all goldens, and of all that is pending, sorted.
   std::vector<std::string> List() const;
   std::vector<std::string> ListPending() const;

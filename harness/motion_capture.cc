@@ -15,6 +15,8 @@ namespace prehend::harness {
 namespace {
 
 constexpr double kSPerMs = 1e-3;
+constexpr int kMostButtons = 1000;
+constexpr std::string_view kButtonEvents[] = {"buttonchanged", "buttondown", "buttonup"};
 
 struct XyzEntry {
   double x = 0, y = 0, z = 0;
@@ -97,7 +99,7 @@ class CaptureReader {
       }
       track.samples.push_back({t_s, ToOurAxes(pose), {}, pose.where.place});
     }
-    AddTrigger(ReadPresses(*device, begin_ms), track);
+    AddTrigger(ReadPresses(*device, begin_ms, track.buttons), track);
     return track;
   }
 
@@ -119,34 +121,50 @@ class CaptureReader {
     return nullptr;
   }
 
-  std::optional<double> NumberAt(const YamlNode& node, std::initializer_list<const char*> keys) {
-    const YamlNode* found = FindAll(node, keys);
-    if (!found || found->kind != YamlNode::Kind::kScalar) return std::nullopt;
-    double value = 0;
-    Complaints ignored(document_);
-    if (!Number(-1e15, 1e15).read(*found, ignored, value)) return std::nullopt;
-    return value;
+  /// What an event of a button says; nothing of other events, and after complaining.
+  struct ButtonEvent {
+    std::string name;
+    int id = 0;
+    double at_ms = 0;
+    std::optional<double> value;
+  };
+  std::optional<ButtonEvent> ReadButtonEvent(const YamlNode& event) {
+    const YamlNode* name = event.Find("name");
+    if (!name || std::ranges::count(kButtonEvents, name->text) == 0) return std::nullopt;
+    const YamlNode *id = FindAll(event, {"detail", "id"}), *at = event.Find("timestamp"),
+                   *value = FindAll(event, {"detail", "state", "value"});
+    if (!id || !at) {
+      complaints_.Add(event.where, fmt::format("a '{}' needs a '{}'", name->text, id ? "timestamp" : "detail.id"));
+      return std::nullopt;
+    }
+    ButtonEvent read{.name = name->text};
+    bool good = Integer<int>(0, kMostButtons).read(*id, complaints_, read.id);
+    good &= Number(-1e15, 1e15).read(*at, complaints_, read.at_ms);
+    // Many recordings have lost their values: then there is none, or an empty one.
+    const bool has_value = good && read.id == device_.button && value && value->kind == YamlNode::Kind::kScalar;
+    if (has_value) good &= Number(0, 1).read(*value, complaints_, read.value.emplace());
+    return good ? std::optional(std::move(read)) : std::nullopt;
   }
 
-  /// Events of other buttons and kinds are none of our business. Changes without a value are
-  /// skipped when the button's ups and downs are there.
-  std::vector<Press> ReadPresses(const YamlNode& device, double begin_ms) {
+  /// Changes without a value are skipped when the button's ups and downs are there.
+  std::vector<Press> ReadPresses(const YamlNode& device, double begin_ms, std::set<int>& buttons) {
     std::vector<Press> presses;
     const YamlNode* events = device.Find("events");
     if (!events) return presses;
     bool analog = false;
     for (const YamlNode& event : events->children) {
-      const YamlNode* name = event.Find("name");
-      const auto id = NumberAt(event, {"detail", "id"}), at_ms = NumberAt(event, {"timestamp"});
-      if (!name || !at_ms || id != device_.button) continue;
-      const double t_s = (*at_ms - begin_ms) * kSPerMs;
-      const auto value = NumberAt(event, {"detail", "state", "value"});
-      if (name->text == "buttonchanged" && value) {
+      const auto read = ReadButtonEvent(event);
+      const bool is_change = read && read->name == "buttonchanged";
+      if (!read || (is_change && read->id == device_.button && !read->value)) continue;
+      buttons.insert(read->id);
+      if (read->id != device_.button) continue;
+      const double t_s = (read->at_ms - begin_ms) * kSPerMs;
+      if (is_change) {
         if (!analog) presses.clear();
         analog = true;
-        presses.push_back({t_s, std::clamp(*value, 0.0, 1.0), false});
-      } else if (!analog && (name->text == "buttondown" || name->text == "buttonup")) {
-        presses.push_back({t_s, name->text == "buttondown" ? 1.0 : 0.0, true});
+        presses.push_back({t_s, *read->value, false});
+      } else if (!analog) {
+        presses.push_back({t_s, read->name == "buttondown" ? 1.0 : 0.0, true});
       }
     }
     std::stable_sort(presses.begin(), presses.end(),
@@ -184,7 +202,12 @@ class CaptureReader {
 
 ReadResult<MotionTrack> ReadMotionCapture(const std::string& path, const CapturedDevice& device) {
   ReadResult<YamlDocument> document = ReadYamlFile(path);
-  if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
+  if (!document.value) {
+    for (grammar::Diagnostic& wrong : document.diagnostics) {
+      if (const std::size_t at = wrong.message.find("YAML"); at != std::string::npos) wrong.message.replace(at, 4, "JSON");
+    }
+    return {std::nullopt, std::move(document.diagnostics)};
+  }
   CaptureReader reader(*document.value, device);
   MotionTrack track = reader.Read();
   grammar::Diagnostics diagnostics = reader.diagnostics();

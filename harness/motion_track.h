@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct MotionTrack {
   std::vector<TrackSample> samples;  ///< at least two
   std::string file;
   std::string text;  ///< of the file, for complaints about samples
+  std::set<int> buttons = {};  ///< of a captured device: those that are pressed in it
 };
 
 /// Columns with their units in the header: `t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger`.

@@ -136,7 +136,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   }
   AddPersons(entry, scene, complaints);
   scenario.script = BuildScript(entry, scene, complaints);
-  scenario.outcomes = BuildOutcomes(entry.outcomes, scene, complaints);
+  scenario.outcomes = BuildOutcomes(entry.outcomes, scene, scenario.script, complaints);
   CheckKinds(entry, complaints);
   CheckVariedFields(document, entry.vary, complaints);
   if (scene.world.planar) CheckPlanar(entry, scene, complaints);

@@ -3,6 +3,7 @@
 #include "harness/recorded_input.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -18,12 +19,14 @@ namespace {
 
 using grammar::Diagnostic;
 
+constexpr int kUsualButton = 1;
+
 bool IsCapture(const RecordingEntry& entry) { return entry.recording.value.ends_with(".json"); }
 
 ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingEntry& entry) {
   if (!IsCapture(entry)) return ReadMotionCsv(path);
   return ReadMotionCapture(
-      path, {entry.device->value, entry.button.value_or(Located<int>{1, {}}).value, entry.press_s});
+      path, {entry.device->value, entry.button.value_or(Located<int>{kUsualButton, {}}).value, entry.press_s});
 }
 
 /// Only the samples from from_s to to_s, with times since from_s.
@@ -124,6 +127,7 @@ class RecordingReader {
     if (!CheckKind(entry)) return;
     ReadResult<MotionTrack> track = ReadTrack(PathOf(entry), entry);
     if (!track.value) return Refuse(entry, std::move(track.diagnostics));
+    if (!CheckButton(entry, *track.value)) return;
     if (!Cut(entry, *track.value, complaints_)) return;
     if (!Accept(entry, CheckTrack(*track.value, {entry.most_gap_s, entry.most_jump_m}))) return;
     if (HasRoom(entry, track.value->samples.size())) entry.poses = Place(entry, *track.value);
@@ -198,11 +202,38 @@ class RecordingReader {
     return false;
   }
 
+  /// "left or right", as far as the file can be read.
+  std::string NamesOfDevices(const RecordingEntry& entry) const {
+    const ReadResult<YamlDocument> file = ReadYamlFile(PathOf(entry));
+    if (!file.value || file.value->root.children.empty()) return "right";
+    std::vector<std::string> names;
+    for (const YamlNode& device : file.value->root.children) names.push_back(device.key);
+    return fmt::format("{}", fmt::join(names, " or "));
+  }
+
+  /// A button that is asked for has to be pressed; that the usual one is not, while others are, is odd.
+  bool CheckButton(const RecordingEntry& entry, const MotionTrack& track) {
+    if (!IsCapture(entry) || (!entry.button && track.buttons.empty())) return true;
+    const int wanted = entry.button.value_or(Located<int>{kUsualButton, {}}).value;
+    if (track.buttons.contains(wanted)) return true;
+    const std::string pressed = track.buttons.empty() ? "no button is" : fmt::format("pressed are {}", fmt::join(track.buttons, ", "));
+    const std::string message = fmt::format("button {} of '{}' is never pressed", wanted, entry.device->value);
+    if (entry.button) {
+      complaints_.Add(entry.button->where, "button: " + message, pressed);
+      return false;
+    }
+    Diagnostic odd = grammar::DiagnosticAt(track.file, "", {}, message + ", so the grip stays open",
+                                           pressed + "; say which one is the trigger: button: N");
+    odd.is_warning = true;
+    in_recordings_.push_back(std::move(odd));
+    return true;
+  }
+
   bool CheckKind(const RecordingEntry& entry) {
     const bool capture = IsCapture(entry);
     if (capture && !entry.device) {
-      complaints_.Add(entry.recording.where, "recording: this file has several devices: which one?",
-                      "add device: right");
+      complaints_.Add(entry.recording.where, "recording: which device of the .json file is followed?",
+                      "add device: " + NamesOfDevices(entry));
       return false;
     }
     if (!capture && entry.device)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "harness/build_script.h"
 #include "harness/farthest.h"
 #include "harness/record.h"
 #include "harness/scenario_fields.h"
@@ -99,7 +100,10 @@ namespace {
 /// Names to bodies and joints, as far as the scene has them.
 class ConditionBuilder {
  public:
-  ConditionBuilder(const physics::Scene& scene, Complaints& complaints) : scene_(scene), complaints_(complaints) {
+  ConditionBuilder(const physics::Scene& scene, const physics::Script& script, Complaints& complaints)
+      : scene_(scene), complaints_(complaints), end_s_(DurationOf(script)) {
+    // Every beat ends with a tick.
+    latest_s_ = end_s_ + static_cast<double>(script.beats.size() + 1) / scene.world.rate_hz;
     for (const physics::Body& body : scene.bodies) names_.push_back(body.name);
   }
 
@@ -110,6 +114,9 @@ class ConditionBuilder {
     condition.joint = JointOf(condition.body);
     if ((wanted.joint_above || wanted.joint_below) && condition.joint < 0)
       complaints_.Add(wanted.where, fmt::format("entity: '{}' hangs on no joint", wanted.entity));
+    if (wanted.at_s && *wanted.at_s > latest_s_)
+      complaints_.Add(wanted.where, fmt::format("at_s: {} s is after the end, which is at {:.3f} s", *wanted.at_s, end_s_),
+                      "without at_s it is looked at then");
     if (wanted.inside) condition.vessel = Find("inside", wanted.inside->value, wanted.inside->where);
     return condition;
   }
@@ -131,14 +138,16 @@ class ConditionBuilder {
 
   const physics::Scene& scene_;
   Complaints& complaints_;
+  double end_s_ = 0, latest_s_ = 0;
   std::vector<std::string> names_;
 };
 
 }  // namespace
 
 std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionEntry>>>& entries,
-                                   const physics::Scene& scene, Complaints& complaints) {
-  const ConditionBuilder builder(scene, complaints);
+                                   const physics::Scene& scene, const physics::Script& script,
+                                   Complaints& complaints) {
+  const ConditionBuilder builder(scene, script, complaints);
   std::vector<Outcome> outcomes;
   for (const auto& entry : entries) {
     Outcome& outcome = outcomes.emplace_back();

@@ -6,14 +6,16 @@
 #include "harness/format.h"
 #include "harness/trials.h"
 #include "physics/scene.h"
+#include "physics/script.h"
 
 namespace prehend::harness {
 
 Format<VariationEntry> VariationFormat();
 Format<std::vector<ConditionEntry>> OutcomeFormat();
 
-/// Complains about unknown entities, and about joints that are asked for but not there.
+/// Complains about unknown entities, about joints that are asked for but not there, and about moments after the end.
 std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionEntry>>>& entries,
-                                   const physics::Scene& scene, Complaints& complaints);
+                                   const physics::Scene& scene, const physics::Script& script,
+                                   Complaints& complaints);
 
 }  // namespace prehend::harness

@@ -2,7 +2,9 @@
 // Tested by tests/physics/run_checks_test.cc
 #include "physics/run_checks.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <limits>
 
 namespace prehend::physics {
 namespace {
@@ -36,6 +38,33 @@ std::optional<RunProblem> CheckState(const std::string& name, const BodyState& s
   return std::nullopt;
 }
 
+/// The solver settles what is pressed together in rounds, and too few when one is so many times the other.
+constexpr double kMostMassRatio = 1000;
+
+double MassOf(const Scene& scene, const ContactSide& side) {
+  if (side.hand >= 0) return 0;
+  const Body& body = scene.bodies[static_cast<std::size_t>(side.body)];
+  return body.fixed ? 0 : body.mass_kg;
+}
+
+/// The remedy for two that are deep in each other. A heavy thing presses a light one into a third, too.
+std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const ContactPoint& deep) {
+  double least_kg = std::numeric_limits<double>::infinity(), most_kg = 0;
+  for (const ContactPoint& contact : snapshot.contacts) {
+    const bool is_near = contact.a == deep.a || contact.a == deep.b || contact.b == deep.a || contact.b == deep.b;
+    for (const ContactSide& side : {contact.a, contact.b}) {
+      const double mass_kg = MassOf(scene, side);
+      if (!is_near || mass_kg <= 0) continue;
+      least_kg = std::min(least_kg, mass_kg);
+      most_kg = std::max(most_kg, mass_kg);
+    }
+  }
+  if (most_kg > kMostMassRatio * least_kg)
+    return Say("a mass presses on one that is %.0f times smaller; make them more alike", most_kg / least_kg);
+  return scene.hands.empty() ? "start them apart, or let them meet more slowly"
+                             : "start them apart, or let the hand come more slowly";
+}
+
 const std::string& NameOf(const Scene& scene, const ContactSide& side) {
   return side.hand >= 0 ? scene.hands[static_cast<std::size_t>(side.hand)].name
                         : scene.bodies[static_cast<std::size_t>(side.body)].name;
@@ -56,7 +85,7 @@ std::optional<RunProblem> CheckSnapshot(const Scene& scene, const Snapshot& snap
     return RunProblem{
         NameOf(scene, contact.a),
         Say("it is %.0f mm deep", -1000 * contact.distance_m) + " in " + NameOf(scene, contact.b),
-        "start them apart, or let the hand come more slowly"};
+        AdviceFor(scene, snapshot, contact)};
   }
   return std::nullopt;
 }

@@ -12,6 +12,7 @@
 #include "harness/commands/command.h"
 #include "harness/compare.h"
 #include "harness/content_hash.h"
+#include "harness/cross_engine.h"
 #include "harness/derivation.h"
 #include "harness/golden_files.h"
 #include "harness/oracle_notes.h"
@@ -154,6 +155,20 @@ ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
   return ExitCode::kAgrees;
 }
 
+/// Whatever were accepted, `check` would fail: a planar scenario has the same events in both engines.
+std::optional<ExitCode> RefuseUnlessEnginesAgree(const CommandContext& context, const Played& played) {
+  const auto compared = CompareEngines(played.prepared.scenario, played.prepared.program, played.run.timeline);
+  const std::string text =
+      compared ? EngineDifferenceText(played.prepared.scenario, *compared, ExplainCommand(played.id, {})) : "";
+  (void)GoldenFiles(context.root).WriteEngineDifference(played.id, text);
+  if (text.empty()) return std::nullopt;
+  context.out << text;
+  const bool ended = compared->run.status.kind == physics::RunStatus::Kind::kCompleted;
+  return Complain(context, ended ? ExitCode::kDiffers : ExitCode::kFailure,
+                  std::string(NameOf(compared->other)) + " does not lead to the same events (shown above); nothing was "
+                  "accepted\n  a planar scenario has one golden for both engines: change the scenario until they agree");
+}
+
 ExitCode AcceptEvents(const CLI::App& options, const CommandContext& context,
                       const Played& played) {
   const auto& [id, old, prepared, inputs, run] = played;
@@ -222,7 +237,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     return Complain(context, ExitCode::kFailure,
                     "a run that did not complete is not accepted: " + StatusText(played.run));
   }
-  if (!IsGiven(options, "--pictures")) return AcceptEvents(options, context, played);
+  if (!IsGiven(options, "--pictures")) {
+    if (const auto refused = RefuseUnlessEnginesAgree(context, played)) return *refused;
+    return AcceptEvents(options, context, played);
+  }
   return AcceptPictures(context, ValueOf(options, "--reason"), *played.old,
                         played.prepared.scenario, played.run);
 }

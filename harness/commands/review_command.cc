@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 /// What waits of a scenario, in words.
 struct Review {
   std::string id;
-  std::string kind;  ///< "new", "changed", "same", "picture", "unreadable", "orphan"
+  std::string kind;  ///< "new", "changed", "same", "engines", "picture", "unreadable", "orphan"
   std::string text;  ///< events of a new one, differences, complaints; several lines or empty
   std::string fingerprint = {};  ///< of what is shown; with it `accept` takes nothing else
   bool wants_reason = false;     ///< for what the physical oracle objects to
@@ -102,6 +102,8 @@ void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pendi
                 const std::vector<KeptPicture>& pending_pictures, std::vector<Review>& reviews) {
   if (!file.in_project) return;
   if (is_pending) reviews.push_back(ReviewOf(file, root));
+  if (const std::string engines = GoldenFiles(root).ReadEngineDifference(IdOf(file)); !engines.empty())
+    reviews.push_back({.id = IdOf(file), .kind = "engines", .text = engines});
   for (const KeptPicture& picture : pending_pictures) {
     if (picture.scenario == IdOf(file)) reviews.push_back(PictureReview(picture, root));
   }
@@ -155,6 +157,8 @@ void Print(const std::vector<Review>& reviews, const CommandContext& context) {
           "    if right: prehend accept {} --reviewed {} --reason \"...\"{}\n", review.id,
           review.fingerprint,
           review.wants_reason ? " --against-the-oracle \"EVENT(ROLES): ...\"" : "");
+    if (review.kind == "engines")
+      context.out << "    nothing is accepted of it until both engines agree\n";
     if (review.kind == "picture")
       context.out << fmt::format("    if right: prehend accept {} --pictures --reason \"...\"\n",
                                  review.id);

@@ -151,6 +151,21 @@ TEST(MotionCaptureTest, Refuses) {
   std::string text = kCapture;
   text.replace(text.find("\"timestamp\": 1200"), 17, "\"timestamp\": 1100");
   EXPECT_EQ(complaints(text, "right"), "m.json:4:100: the timestamps must increase from pose to pose\n");
+  EXPECT_EQ(complaints("{\"right\": [", "right"),
+            "m.json:1:1: not valid JSON: a '[' before this is not closed | each '[' needs its ']', each '{' its '}'\n");
+  const auto with_state = [&](const char* state) {
+    std::string changed = kCapture;
+    changed.replace(changed.find("\"state\": {}"), 11, state);
+    return complaints(changed, "right");
+  };
+  EXPECT_EQ(with_state("\"state\": {\"value\": 7}"), "m.json:7:69: value: expected a number from 0 to 1, found '7'\n");
+  const auto with_id = [&](const char* id) {
+    std::string changed = kCapture;
+    changed.replace(changed.find("\"id\": 2"), 7, id);
+    return complaints(changed, "right");
+  };
+  EXPECT_EQ(with_id("\"id\": \"x\""), "m.json:9:42: id: expected a whole number from 0 to 1000, found 'x'\n");
+  EXPECT_EQ(with_id("\"no\": 2"), "m.json:9:3: a 'buttondown' needs a 'detail.id'\n");
 }
 
 TEST(CheckTrackTest, GapsAndJumpsAreToldAndLimited) {

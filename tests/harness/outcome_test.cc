@@ -47,6 +47,12 @@ TEST(Outcome, TheFirstThatHoldsIsTheOne) {
   EXPECT_EQ(Judge(outcomes, {Lying(0.5, 0.1)}), "dropped");
 }
 
+TEST(Outcome, AMomentAfterTheEndIsRefused) {
+  EXPECT_EQ(Brief(Read("  held: [{entity: milk, at_s: 2.5, above_m: 1}]\n").diagnostics),
+            "16:10: at_s: 2.5 s is after the end, which is at 1.900 s | without at_s it is looked at then\n");
+  EXPECT_TRUE(Read("  held: [{entity: milk, at_s: 1.9, above_m: 1}]\n").value);
+}
+
 TEST(Outcome, AMomentIsLookedAtWhenItComes) {
   const std::string outcomes =
       "  held: [{entity: milk, at_s: 0.00625, above_m: 1}, {entity: milk, below_m: 0.9}]\n";  // tick

@@ -93,7 +93,7 @@ TEST_F(RecordedInputTest, Refuses) {
   EXPECT_EQ(ComplaintsAbout("recording: line.txt"),
             "probe.yaml:11:29: recording: expected a .csv, .json or .bvh file, found 'line.txt'\n");
   EXPECT_EQ(ComplaintsAbout("recording: line.json"),
-            "probe.yaml:11:29: recording: this file has several devices: which one? | add device: right\n");
+            "probe.yaml:11:29: recording: which device of the .json file is followed? | add device: right\n");
   EXPECT_EQ(ComplaintsAbout("recording: line.csv, device: right"),
             "probe.yaml:11:47: device: a CSV file has only one\n");
   EXPECT_EQ(ComplaintsAbout("recording: line.csv, button: 1"),
@@ -119,6 +119,27 @@ TEST_F(RecordedInputTest, OddRecordingsAreUsedWithAWarning) {
             "recording with from_s and to_s, or raise most_gap_s\n");
   // What is cut off does not matter.
   EXPECT_TRUE(Read("recording: gap.csv, most_gap_s: 0.1, to_s: 0.02").value);
+}
+
+TEST_F(RecordedInputTest, TheTriggerHasToBeAButtonThatIsPressed) {
+  const auto write = [&](const std::string& events) {
+    const std::string pose = R"({"position": {"x": 0, "y": 1, "z": 0}, "rotation": {"x": 0, "y": 0, "z": 0}, "timestamp": )";
+    std::ofstream(folder_ / "pad.json") << R"({"left": {}, "right": {"poses": [)" << pose << "0}, " << pose << "10}], \"events\": ["
+                                        << events << "]}}";
+  };
+  write(R"({"name": "buttondown", "detail": {"id": 2}, "timestamp": 5})");
+  EXPECT_EQ(ComplaintsAbout("recording: pad.json"),
+            "probe.yaml:11:29: recording: which device of the .json file is followed? | add device: left or right\n");
+  EXPECT_EQ(ComplaintsAbout("recording: pad.json, device: right, button: 3"),
+            "probe.yaml:11:62: button: button 3 of 'right' is never pressed | pressed are 2\n");
+  EXPECT_EQ(ComplaintsAbout("recording: pad.json, device: right, button: 2"), "");
+  const auto odd = Read("recording: pad.json, device: right");
+  ASSERT_TRUE(odd.value && odd.value->warnings.size() == 1) << Brief(odd.diagnostics);
+  EXPECT_EQ(odd.value->warnings[0].message, "button 1 of 'right' is never pressed, so the grip stays open");
+  write("");
+  EXPECT_EQ(ComplaintsAbout("recording: pad.json, device: right, button: 2"),
+            "probe.yaml:11:62: button: button 2 of 'right' is never pressed | no button is\n");
+  EXPECT_TRUE(Read("recording: pad.json, device: right").value->warnings.empty());
 }
 
 /// A person of sticks whose hips go up by 10 and ahead by 100 from the first frame to the third.

@@ -158,7 +158,7 @@ const Case kCases[] = {
       {"unknown_style", "style: wrap", "style: warp", kAccepts,
        "11:38: style: hand 'human_right' has no style 'warp' | did you mean 'wrap'?\n"},
       {"point_elsewhere", "over_s: 0.8", "point_m: [0, 0, 0.2]", kAccepts,
-       "11:53: point_m: the point is 0.100 m outside of 'milk' | point_m is in the entity's own frame: [0, 0, 0] is where its at_m is\n"},
+       "11:53: point_m: the point is 100.0 mm outside of 'milk', more than 5 mm | point_m is in the entity's own frame: [0, 0, 0] is where its at_m is\n"},
       {"no_side_grasp", "style: wrap", "style: pinch, from: side", kAccepts,
        "11:25: style 'pinch' does not grasp from the side\n"},
       {"unknown_approach", "style: wrap", "from: below", kRefuses,

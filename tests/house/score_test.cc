@@ -68,6 +68,14 @@ TEST_F(ScoreCommand, EventsCanBeChosen) {
       << wrong.err;
 }
 
+TEST_F(ScoreCommand, EveryCommaHasNamesBesideIt) {
+  for (const char* events : {"reaching,,", ",reaching", "reaching,,grasping"}) {
+    const Said wrong = Do(std::string("score --events ") + events);
+    EXPECT_EQ(wrong.exit_code, 2) << events;
+    EXPECT_NE(wrong.err.find("--events: a name is missing beside a comma; write NAME,NAME"), std::string::npos) << wrong.err;
+  }
+}
+
 TEST_F(ScoreCommand, WhatCannotBeReadIsBadInputAndNoTable) {
   const std::string path = (root_ / "broken.yaml").string();
   WriteFile(path, "scenario: broken\nentities: [\n");

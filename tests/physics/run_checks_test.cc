@@ -44,5 +44,17 @@ TEST(RunChecksTest, EveryDisasterIsNamedWithItsEntity) {
   }
 }
 
+TEST(RunChecksTest, WhatIsPressedIntoAnotherByAHugeMassIsAdvisedOfIt) {
+  Scene scene;
+  scene.bodies = {{.name = "table", .fixed = true}, {.name = "feather", .mass_kg = 0.001}, {.name = "anvil", .mass_kg = 1000}};
+  Snapshot now;
+  now.bodies.resize(3);
+  now.contacts = {{.a = {.body = 0}, .b = {.body = 1}, .distance_m = -0.03}};
+  EXPECT_EQ(CheckSnapshot(scene, now)->advice, "start them apart, or let them meet more slowly");
+  now.contacts.push_back({.a = {.body = 1}, .b = {.body = 2}});
+  EXPECT_EQ(CheckSnapshot(scene, now)->advice,
+            "a mass presses on one that is 1000000 times smaller; make them more alike");
+}
+
 }  // namespace
 }  // namespace prehend::physics
