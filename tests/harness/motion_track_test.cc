@@ -158,13 +158,13 @@ TEST(MotionCaptureTest, Refuses) {
     changed.replace(changed.find("\"state\": {}"), 11, state);
     return complaints(changed, "right");
   };
-  EXPECT_EQ(with_state("\"state\": {\"value\": 7}"), "m.json:7:69: value: expected a number from 0 to 1, found '7'\n");
+  EXPECT_EQ(with_state("\"state\": {\"value\": 7}"), "m.json:7:68: value: expected a number from 0 to 1, found '7'\n");
   const auto with_id = [&](const char* id) {
     std::string changed = kCapture;
     changed.replace(changed.find("\"id\": 2"), 7, id);
     return complaints(changed, "right");
   };
-  EXPECT_EQ(with_id("\"id\": \"x\""), "m.json:9:42: id: expected a whole number from 0 to 1000, found 'x'\n");
+  EXPECT_EQ(with_id("\"id\": \"x\""), "m.json:9:43: id: expected a whole number from 0 to 1000, found the text 'x'\n");
   EXPECT_EQ(with_id("\"no\": 2"), "m.json:9:3: a 'buttondown' needs a 'detail.id'\n");
 }
 
