@@ -23,7 +23,12 @@ bool Engine::StepFrame(Lane& lane) {
     case Form::kCompose: break;
     case Form::kWhile: decided = StepWhile(lane, lane.next); break;
     case Form::kAny: decided = StepAny(lane, lane.next); break;
-    case Form::kFromTo: decided = StepFromTo(lane, lane.next); break;
+    case Form::kFromTo: {
+      const bool was_open = lane.open;
+      decided = StepFromTo(lane, lane.next);
+      if (was_open && !lane.open) evaluator_.StirUp();  // what may begin the next one was not asked for, so nothing of it would wake
+      break;
+    }
     case Form::kUntilSince: decided = StepUntil(lane, lane.next); break;
     case Form::kRestOf: decided = StepRest(lane, lane.next); break;
   }

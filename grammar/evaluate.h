@@ -54,6 +54,7 @@ class Evaluator {
   /// an instant that is over one frame later, a speed from frame to frame, a window of time.
   bool restless() const { return restless_; }
   void CalmDown() { restless_ = false; }
+  void StirUp() { restless_ = true; }
 
   /// Keeps the values of all anchors of the lane's rule at this frame. False while one is not known.
   [[nodiscard]] bool CaptureAnchors(Lane& lane, FrameNumber frame) const;
