@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "grammar/lanes.h"
 
@@ -14,11 +15,27 @@ void Include(Wait& wait, const Wait& other) {
   wait.until_end_of.insert(other.until_end_of.begin(), other.until_end_of.end());
 }
 
+// The begin or the end of another rule's interval, in the roles of the one that asks.
+struct Edge {
+  Op op = Op::kBegins;
+  int rule = kNone;
+  Binding roles = kUnbound;
+  friend bool operator==(const Edge&, const Edge&) = default;
+};
+
+std::optional<Edge> EdgeOf(const Program& program, const Rule& rule, int index) {
+  const Node& node = program.nodes[index];
+  if (node.op != Op::kBegins && node.op != Op::kEnds) return std::nullopt;
+  const Node& arg = program.nodes[node.args[0]];
+  if (arg.op != Op::kHolds) return std::nullopt;
+  return Edge{node.op, rule.references[arg.slot].rule, rule.references[arg.slot].roles};
+}
+
 // Follows the schedule, so what a rule refers to is known before it.
 class Waits {
  public:
   explicit Waits(const Program& program)
-      : program_(program), end_(program.events.size()), truth_(program.events.size()) {
+      : program_(program), end_(program.events.size()), truth_(program.events.size()), settled_(program.events.size()) {
     for (const int rule : program.schedule) Work(rule);
   }
   const Wait& OfEnd(int rule) const { return end_[rule]; }
@@ -27,28 +44,67 @@ class Waits {
   void Work(int index) {
     const Rule& rule = program_.events[index];
     Wait& end = end_[index];
-    // A composition waits for its parts' ends to be decided, every other rule for truths.
-    const bool composes = rule.form == Form::kCompose;
-    for (std::size_t i = 0; i < rule.references.size(); ++i) {
-      const int target = rule.references[i].rule;
-      Include(end, composes ? end_[target] : truth_[target]);
-      if (composes) end.until_end_of.insert(program_.events[target].name);
-    }
-    end.seconds += rule.bridging_s + rule.looks_around_s;
+    const std::optional<Edge> settling = SettlesWhereItEnds(rule);
+    end = WaitOf(rule, settling);
     if (rule.confirmed_within != kNone) {
       end.until_end_of.insert(program_.events[rule.references[rule.confirmed_within].rule].name);
+    }
+    if (rule.form == Form::kUntilSince) {
+      if (const auto edge = EdgeOf(program_, rule, rule.first)) settled_[index] = Settled{*edge, end};
+    } else if (rule.form == Form::kRestOf) {
+      if (const Settled* whole = SettledBy(rule.references[rule.first])) settled_[index] = Settled{whole->edge, WaitOf(rule, whole->edge)};
     }
     // The truth at a frame may have to wait for more than the end's decision: see engine_events.cc, UpdateKnown.
     Wait& truth = truth_[index];
     truth = end;
+    if (settling) Include(truth, WaitOf(rule, std::nullopt));
     truth.seconds += rule.lasting_s + rule.back_s + std::max(rule.within_s, 0.0);
     const bool decided_at_its_end = rule.or_drop || (rule.requirement != kNone && rule.form != Form::kUntilSince);
     if (decided_at_its_end) truth.until_end_of.insert(rule.name);
   }
 
+  // `until A since F` is not known before an A comes, or the time to look back is over; where an A comes, all before it is.
+  struct Settled {
+    Edge edge;  // the A
+    Wait wait;  // from there on
+  };
+
+  // Null if it is none of that, or of other roles than the rule that asks.
+  const Settled* SettledBy(const Reference& reference) const {
+    const std::optional<Settled>& settled = settled_[static_cast<std::size_t>(reference.rule)];
+    for (std::size_t i = 0; i < program_.events[reference.rule].roles.size(); ++i) {
+      if (reference.roles[i] != static_cast<int>(i)) return nullptr;
+    }
+    return settled ? &*settled : nullptr;
+  }
+
+  // `to R ends`, R ending at such an A: what looks back from the same A needs no time there.
+  std::optional<Edge> SettlesWhereItEnds(const Rule& rule) const {
+    if (rule.form != Form::kFromTo || rule.absence) return std::nullopt;
+    const auto to = EdgeOf(program_, rule, rule.second);
+    if (!to || to->op != Op::kEnds) return std::nullopt;
+    const Settled* settled = SettledBy({.rule = to->rule, .roles = to->roles});
+    return settled != nullptr ? std::optional(settled->edge) : std::nullopt;
+  }
+
+  // For all that the rule asks about. A composition waits for its parts' ends to be decided, every other rule for truths.
+  Wait WaitOf(const Rule& rule, const std::optional<Edge>& settling) const {
+    Wait wait;
+    const bool composes = rule.form == Form::kCompose;
+    for (const Reference& reference : rule.references) {
+      const Settled* settled = settling ? SettledBy(reference) : nullptr;
+      const bool is_settled = settled != nullptr && settled->edge == *settling;
+      Include(wait, is_settled ? settled->wait : composes ? end_[reference.rule] : truth_[reference.rule]);
+      if (composes) wait.until_end_of.insert(program_.events[reference.rule].name);
+    }
+    wait.seconds += rule.bridging_s + rule.looks_around_s;
+    return wait;
+  }
+
   const Program& program_;
   std::vector<Wait> end_;
   std::vector<Wait> truth_;
+  std::vector<std::optional<Settled>> settled_;  // those that are
 };
 
 std::string Watched(const Program& program, const Rule& rule) {

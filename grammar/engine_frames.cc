@@ -26,7 +26,7 @@ bool SamePose(const HandLook& a, const HandSample& b) {
 
 bool Same(const Touch& a, bool swapped, const TouchSample& b) {
   return a.up_on_a == b.up[swapped ? 1 : 0] && a.up_on_b == b.up[swapped ? 0 : 1] && a.normal_force_n == b.force_n &&
-         a.sensor_sets == b.sensor_sets;
+         a.vertical_speed_m_per_s == b.vertical_speed_m_per_s && a.sensor_sets == b.sensor_sets;
 }
 
 }  // namespace
@@ -193,8 +193,9 @@ void Engine::Press(std::span<const Touch> touches) {
     if (lane.touched == now) continue;  // said twice
     lane.touched = now;
     const bool swapped = lane.entities[0] != touch.a;
-    const ThresholdSet beyond = swapped ? thresholds_.OfTouch(touch.up_on_b, touch.up_on_a, touch.normal_force_n, touch.sensor_sets)
-                                        : thresholds_.OfTouch(touch.up_on_a, touch.up_on_b, touch.normal_force_n, touch.sensor_sets);
+    const ThresholdSet beyond =
+        thresholds_.OfTouch(swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b, touch.normal_force_n,
+                            touch.vertical_speed_m_per_s, touch.sensor_sets);
     const ThresholdSet crossed = beyond ^ lane.beyond;
     if (lane.open && (keeps_touches_ ? Same(touch, swapped, lane.touches.back()) : crossed == 0)) continue;
     lane.beyond = beyond;
@@ -212,6 +213,7 @@ void Engine::Keep(Lane& touching, const Touch& touch, bool swapped) {
   sample.frame = history_.now();
   sample.up = swapped ? std::array{touch.up_on_b, touch.up_on_a} : std::array{touch.up_on_a, touch.up_on_b};
   sample.force_n = touch.normal_force_n;
+  sample.vertical_speed_m_per_s = touch.vertical_speed_m_per_s;
   sample.sensor_sets = touch.sensor_sets;
 }
 

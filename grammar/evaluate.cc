@@ -199,6 +199,12 @@ std::optional<double> Evaluator::Number(int index, const View& view) const {
       if (!a || !b) return std::nullopt;
       return (*a - *b).norm();
     }
+    case Op::kDistanceAlong: {
+      const std::optional<Vector3d> a = Position(node.args[0], view);
+      const std::optional<Vector3d> b = Position(node.args[1], view);
+      if (!a || !b) return std::nullopt;
+      return (history_.Look(Entity(node, view, 0), view.frame).q_WB * (*a - *b)).head<2>().norm();
+    }
     case Op::kHeight: {
       const std::optional<Vector3d> position = Position(node.args[0], view);
       if (!position) return std::nullopt;
@@ -250,9 +256,13 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
       const TouchSample* touch = Touch(node, view, swapped);
       return touch == nullptr ? 0 : touch->force_n;
     }
+    case Op::kTouchSpeed: {
+      const TouchSample* touch = Touch(node, view, swapped);
+      return touch == nullptr ? 0 : touch->vertical_speed_m_per_s;
+    }
     case Op::kGap: return Gap(a, b, frame);
     case Op::kClosingSpeed: return ClosingSpeed(a, b, frame);
-    case Op::kSurfaceSpeed: return SurfaceSpeed(a, b, frame);
+    case Op::kSurfaceSpeed: return SurfaceSpeed(a, frame);
     case Op::kSpeed: return history_.Look(a, frame).v_WB_m_per_s.norm();
     case Op::kVerticalSpeed: return history_.Look(a, frame).v_WB_m_per_s.z();
     case Op::kRelativeVerticalSpeed: return RelativeVelocity(a, b, frame).z();
@@ -306,16 +316,15 @@ double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
   return (Gap(hand, object, frame - 1) - Gap(hand, object, frame)) / seconds;
 }
 
-double Evaluator::SurfaceSpeed(int hand, int object, FrameNumber frame) const {
+double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
   restless_ = true;
   if (frame <= history_.first()) return 0;
   const HandSample* now = history_.Hand(hand, frame);
   const HandSample* before = history_.Hand(hand, frame - 1);
   if (now == nullptr || before == nullptr) return 0;
-  const Vector3d object_moved = history_.Look(object, frame).p_WB_m - history_.Look(object, frame - 1).p_WB_m;
   double farthest = 0;
   for (std::size_t i = 0; i < std::min(now->feelers.size(), before->feelers.size()); ++i) {
-    farthest = std::max(farthest, (now->feelers[i].p_W_m - before->feelers[i].p_W_m - object_moved).norm());
+    farthest = std::max(farthest, (now->feelers[i].p_W_m - before->feelers[i].p_W_m).norm());
   }
   return farthest / history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
 }

@@ -68,7 +68,7 @@ class Evaluator {
   double SignalOf(const Node& node, const View& view) const;
   double Gap(int hand, int object, FrameNumber frame) const;
   double ClosingSpeed(int hand, int object, FrameNumber frame) const;
-  double SurfaceSpeed(int hand, int object, FrameNumber frame) const;
+  double SurfaceSpeed(int hand, FrameNumber frame) const;
   bool SensorSet(const Node& node, const View& view) const;
   bool IsInside(const Node& node, const View& view) const;
   double Weight(int entity) const;

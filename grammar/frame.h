@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -69,6 +70,14 @@ struct Feeler {
   double radius_m = 0;
 };
 
+/// How fast, up or down, their material moves against each other at a point, m/s.
+inline double VerticalSpeedBetween(const EntityLook& a, const EntityLook& b, const Eigen::Vector3d& p_W_m) {
+  const auto velocity = [&](const EntityLook& look) -> Eigen::Vector3d {
+    return look.v_WB_m_per_s + look.w_WB_rad_per_s.cross(p_W_m - look.p_WB_m);
+  };
+  return std::abs(velocity(a).z() - velocity(b).z());
+}
+
 /// What is only known of hands.
 struct HandLook {
   int entity = kNobody;
@@ -89,6 +98,9 @@ struct Touch {
   double up_on_a = -1;
   double up_on_b = -1;
   double normal_force_n = 0;
+  /// How fast, up or down, the two surfaces move against each other where the touch bears load:
+  /// about 0 while one stands, tips or rolls on the other, more while they bounce off.
+  double vertical_speed_m_per_s = 0;
   std::uint32_t sensor_sets = 0;  ///< when one of the two is a hand: which of its sensor sets touch
 };
 

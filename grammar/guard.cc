@@ -108,8 +108,8 @@ void FindOpening(const Program& program, Rule& rule, int index) {
 bool IsLook(Op op) {
   switch (op) {
     case Op::kInSphere: case Op::kBoxInSphere: case Op::kInCylinder:
-    case Op::kTrigger: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kGap: case Op::kClosingSpeed: case Op::kSurfaceSpeed:
-    case Op::kDistance: case Op::kHeight: case Op::kSpeed: case Op::kVerticalSpeed: case Op::kRelativeVerticalSpeed:
+    case Op::kTrigger: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kTouchSpeed: case Op::kGap: case Op::kClosingSpeed: case Op::kSurfaceSpeed:
+    case Op::kDistance: case Op::kDistanceAlong: case Op::kHeight: case Op::kSpeed: case Op::kVerticalSpeed: case Op::kRelativeVerticalSpeed:
     case Op::kSpeedAlong: case Op::kDriftAlong: case Op::kTurnRate: case Op::kTilt: case Op::kSensorSet: case Op::kGazed: case Op::kInside:
     case Op::kJointFraction: case Op::kJointAngle: case Op::kJointTravel: case Op::kRate: case Op::kPosition: case Op::kPositionOn: case Op::kAhead: return true;
     default: return false;
@@ -129,7 +129,7 @@ bool AsksTouches(const Program& program, int index) {
   const Node& node = program.nodes[index];
   if (node.by_threshold.value != kNone) return false;
   switch (node.op) {
-    case Op::kSensorSet: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: return true;
+    case Op::kSensorSet: case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kTouchSpeed: return true;
     default: break;
   }
   return std::any_of(node.args.begin(), node.args.end(), [&](int arg) { return AsksTouches(program, arg); });
@@ -175,6 +175,7 @@ std::optional<std::array<Threshold::Value, 2>> MeasuredBy(Op op) {
   switch (op) {
     case Op::kSensorSets: return {{kSensorSets, kSensorSets}};
     case Op::kForceBetween: return {{kForce, kForce}};
+    case Op::kTouchSpeed: return {{kVerticalSpeed, kVerticalSpeed}};
     case Op::kUp: return {{kUpOnFirst, kUpOnSecond}};
     case Op::kTrigger: return {{kTrigger, kTrigger}};
     default: return std::nullopt;
@@ -267,7 +268,7 @@ void WatchEntities(const Program& program, Rule& rule, int index) {
   if (node.by_threshold.value != kNone) return WatchThresholds(program, rule, node.by_threshold);
   switch (node.op) {
     case Op::kHolds: case Op::kPartOf: case Op::kIsA: case Op::kWeight: case Op::kStrength: case Op::kAtBegin: case Op::kAtEnd: return;
-    case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kSensorSet: rule.watches_press |= kAnyChange; return;
+    case Op::kSensorSets: case Op::kUp: case Op::kForceBetween: case Op::kTouchSpeed: case Op::kSensorSet: rule.watches_press |= kAnyChange; return;
     case Op::kTrigger: rule.watches_grips |= kAnyChange; break;
     default: break;
   }

@@ -42,6 +42,7 @@ struct TouchSample {
   FrameNumber frame = 0;
   std::array<double, 2> up = {-1, -1};
   double force_n = 0;
+  double vertical_speed_m_per_s = 0;
   std::uint32_t sensor_sets = 0;
 };
 

@@ -14,7 +14,7 @@ namespace {
 using ast::Expr;
 
 constexpr std::size_t kMaxNodes = 10000;
-constexpr std::array<std::string_view, 3> kOverInterval = {"displacement", "rise", "drop"};
+constexpr std::array<std::string_view, 4> kOverInterval = {"displacement", "displacement_along", "rise", "drop"};
 constexpr double kLongest_s = 86400;  // more is a slip of the finger
 
 // The names that stand in it, each once.

@@ -53,7 +53,7 @@ void NoteClass(Program& program, std::string_view name, const std::string& file,
 
 inline bool StartsWithCapital(std::string_view name) { return !name.empty() && name[0] >= 'A' && name[0] <= 'Z'; }
 
-/// The signals that are measured over an interval: displacement, rise, drop.
+/// The signals that are measured over an interval: displacement, displacement_along, rise, drop.
 bool IsOverInterval(std::string_view name);
 
 inline std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }

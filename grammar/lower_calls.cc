@@ -249,15 +249,16 @@ Lowering::Typed Lowering::LowerIs(const Expr& expr) {
   return {.node = Add({.op = Op::kIsA, .roles = {*role, kNone}, .slot = slot}), .type = Type::kTruth};
 }
 
-// displacement, rise and drop compare this frame with the interval's begin.
+// displacement, displacement_along, rise and drop compare this frame with the interval's begin.
 Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
   if (!anchors_.begin) {
     return Bad(expr.place, Quoted(expr.text) + " is measured over an interval; there is none here",
                "it can be used after 'to', 'during' and 'requires'");
   }
-  const bool is_displacement = expr.text == "displacement";
-  if (expr.args.empty() || expr.args.size() > (is_displacement ? 2 : 1)) {
-    return Bad(expr.place, Quoted(expr.text) + (is_displacement ? " takes one or two roles" : " takes one role"));
+  const bool is_along = expr.text == "displacement_along";
+  const bool is_displacement = is_along || expr.text == "displacement";
+  if (expr.args.size() < (is_along ? 2 : 1) || expr.args.size() > (is_displacement ? 2 : 1)) {
+    return Bad(expr.place, Quoted(expr.text) + (is_along ? " takes two roles" : is_displacement ? " takes one or two roles" : " takes one role"));
   }
   Node now{.op = is_displacement ? (expr.args.size() == 2 ? Op::kPositionOn : Op::kPosition) : Op::kHeight};
   for (std::size_t i = 0; i < expr.args.size(); ++i) {
@@ -271,9 +272,11 @@ Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
   }
   const int here = Add(now);
   const int there = AnchorAtBegin(here);
-  const Op op = is_displacement ? Op::kDistance : Op::kSubtract;
+  const Op op = is_along ? Op::kDistanceAlong : is_displacement ? Op::kDistance : Op::kSubtract;
   const bool falls = expr.text == "drop";
-  return {.node = Add({.op = op, .args = {falls ? there : here, falls ? here : there, kNone, kNone}}),
+  return {.node = Add({.op = op,
+                       .args = {falls ? there : here, falls ? here : there, kNone, kNone},
+                       .roles = {is_along ? now.roles[1] : kNone, kNone}}),
           .type = Type::kNumber,
           .dimension = kMetres};
 }
@@ -299,7 +302,7 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
   attribute_ = in_attribute;
   if (node.op == Op::kRate) result.dimension = Quotient(result.dimension, kSeconds);
   const bool from_touch = node.op == Op::kHolds || node.op == Op::kSensorSets || node.op == Op::kUp ||
-                          node.op == Op::kForceBetween || node.op == Op::kSensorSet;
+                          node.op == Op::kForceBetween || node.op == Op::kTouchSpeed || node.op == Op::kSensorSet;
   if (from_touch) {
     node.slot = AddReference({.rule = kTouchingRule, .roles = {node.roles[0], node.roles[1], kNone, kNone}});
   }

@@ -30,7 +30,8 @@ enum class Op : std::uint8_t {
   kSensorSet,  ///< the set named `name`, or without a name the `number`th
   // Numbers, SI units.
   kNumber, kAdd, kSubtract, kMultiply, kDivide, kNegate, kAbs,
-  kTrigger, kSensorSets, kUp, kForceBetween,
+  kTrigger, kSensorSets, kUp, kForceBetween, kTouchSpeed,
+  kDistanceAlong,  ///< horizontal, between the positions args[0] and args[1] as seen from roles[0]
   kGap, kClosingSpeed, kSurfaceSpeed, kDistance, kHeight, kSpeed, kVerticalSpeed, kRelativeVerticalSpeed, kSpeedAlong,
   kDriftAlong,  ///< over `number` seconds around the frame
   kTilt,

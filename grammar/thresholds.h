@@ -15,7 +15,7 @@ namespace prehend::grammar {
 /// the next larger one). While a value stays on the same side of every threshold, whatever is said by comparing it stays
 /// as it is.
 struct Threshold {
-  enum class Value : std::uint8_t { kSensorSets, kUpOnFirst, kUpOnSecond, kForce, kTrigger };
+  enum class Value : std::uint8_t { kSensorSets, kUpOnFirst, kUpOnSecond, kForce, kVerticalSpeed, kTrigger };
   Value value = Value::kSensorSets;
   double at_least = 0;
   friend bool operator==(const Threshold&, const Threshold&) = default;
@@ -32,12 +32,13 @@ class Thresholds {
   explicit Thresholds(const std::vector<Threshold>& thresholds) {
     for (std::size_t i = 0; i < thresholds.size(); ++i) Add(thresholds[i], ThresholdSet{1} << i);
     for (std::uint32_t sets = 0; sets < sets_.size(); ++sets) sets_[sets] = OfSets(sets);
-    no_touch_ = OfTouch(-1, -1, 0, 0);
+    no_touch_ = OfTouch(-1, -1, 0, 0, 0);
   }
 
   /// Of a touch; bits of other values are not set.
-  ThresholdSet OfTouch(double up_on_first, double up_on_second, double force_n, std::uint32_t sensor_sets) const {
-    const std::array<double, 3> measured = {up_on_first, up_on_second, force_n};
+  ThresholdSet OfTouch(double up_on_first, double up_on_second, double force_n, double vertical_speed_m_per_s,
+                       std::uint32_t sensor_sets) const {
+    const std::array<double, 4> measured = {up_on_first, up_on_second, force_n, vertical_speed_m_per_s};
     ThresholdSet beyond = sensor_sets < sets_.size() ? sets_[sensor_sets] : OfSets(sensor_sets);
     for (const Cut& cut : touches_) beyond |= measured[cut.value] >= cut.at_least ? cut.bit : 0;
     return beyond;
@@ -52,7 +53,7 @@ class Thresholds {
 
  private:
   struct Cut {
-    std::size_t value = 0;  // of a touch: which of the three
+    std::size_t value = 0;  // of a touch: which of the four
     double at_least = 0;
     ThresholdSet bit = 0;
   };
@@ -63,6 +64,7 @@ class Thresholds {
       case Threshold::Value::kUpOnFirst: touches_.push_back({0, threshold.at_least, bit}); break;
       case Threshold::Value::kUpOnSecond: touches_.push_back({1, threshold.at_least, bit}); break;
       case Threshold::Value::kForce: touches_.push_back({2, threshold.at_least, bit}); break;
+      case Threshold::Value::kVerticalSpeed: touches_.push_back({3, threshold.at_least, bit}); break;
       case Threshold::Value::kTrigger: grips_.push_back({0, threshold.at_least, bit}); break;
     }
   }

@@ -69,6 +69,7 @@ struct TouchEntry {
   double up_on_a = 0;
   std::optional<double> up_on_b;
   double force_n = 0;
+  std::optional<double> vertical_speed_m_per_s;
   std::vector<Located<std::string>> sensor_sets;
 };
 struct FrameEntry {
@@ -150,6 +151,7 @@ Format<LineEntry> LineFormat() {
                               .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
                               .Optional("up_on_b", &T::up_on_b, Number(-1, 1), "")
                               .Optional("force_n", &T::force_n, Number(0, 1e9), "")
+                              .Optional("vertical_speed_m_per_s", &T::vertical_speed_m_per_s, Number(0, 1e9), "")
                               .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
                               .format();
   using F = FrameEntry;
@@ -346,6 +348,7 @@ class EpisodeReader {
     if (a == grammar::kNobody || b == grammar::kNobody) return;
     if (a == b) return complaints.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
     grammar::Touch touch{.a = a, .b = b, .up_on_a = entry.up_on_a, .up_on_b = entry.up_on_b.value_or(-entry.up_on_a), .normal_force_n = entry.force_n};
+    touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(SpeedAtTheUpper(touch));
     for (const Located<std::string>& set : entry.sensor_sets) touch.sensor_sets |= SetBit(set, a, b, complaints);
     if (a > b) {
       std::swap(touch.a, touch.b);
@@ -355,6 +358,12 @@ class EpisodeReader {
                                    [&](const grammar::Touch& t) { return t.a == touch.a && t.b == touch.b; });
     if (twice) return complaints.Add(entry.a.where, fmt::format("'{}' and '{}' are said to touch twice", entry.a.value, entry.b.value));
     now_.touches.push_back(touch);
+  }
+
+  /// Where the two touch is not known; the place of the one that the other bears is near it.
+  double SpeedAtTheUpper(const grammar::Touch& touch) const {
+    const grammar::EntityLook &a = now_.entities[static_cast<std::size_t>(touch.a)], &b = now_.entities[static_cast<std::size_t>(touch.b)];
+    return grammar::VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
   }
 
   std::uint32_t SetBit(const Located<std::string>& set, int a, int b, Complaints& complaints) const {

@@ -72,7 +72,7 @@ std::pair<int, int> PairOf(const grammar::Touch& touch) { return {touch.a, touch
 
 bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
   return a.up_on_a == b.up_on_a && a.up_on_b == b.up_on_b && a.normal_force_n == b.normal_force_n &&
-         a.sensor_sets == b.sensor_sets;
+         a.vertical_speed_m_per_s == b.vertical_speed_m_per_s && a.sensor_sets == b.sensor_sets;
 }
 
 }  // namespace
@@ -211,7 +211,7 @@ void Sensing::ReadTouches(Points points, Touches& touches) {
     const int a = EntityOf(contact.a), b = EntityOf(contact.b);
     if (a == b) continue;
     const double up = contact.nhat_BA_W.z();
-    points_.push_back({std::minmax(a, b), a < b ? up : -up, contact.normal_impulse_n_s,
+    points_.push_back({std::minmax(a, b), a < b ? up : -up, contact.normal_impulse_n_s, contact.p_W_m,
                        SensorSetOf(contact.a) | SensorSetOf(contact.b)});
   }
   std::ranges::stable_sort(points_, {}, &PairPoint::pair);
@@ -231,9 +231,23 @@ void Sensing::ReadTouches(Points points, Touches& touches) {
       touch.up_on_b = std::max(touch.up_on_b, -points_[i].up_on_a);
     }
     touch.normal_force_n = load * static_cast<double>(rate_hz_);
+    touch.vertical_speed_m_per_s = VerticalSpeed(std::span(points_).subspan(first, last - first));
     touches.push_back(touch);
     first = last;
   }
+}
+
+double Sensing::VerticalSpeed(std::span<const PairPoint> points) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double load = 0;
+  for (const PairPoint& point : points) {
+    const double bears = point.impulse_n_s * std::abs(point.up_on_a);
+    sum += bears * point.p_W_m;
+    load += bears;
+  }
+  if (load <= 0) return 0;
+  const auto& [a, b] = points.front().pair;
+  return grammar::VerticalSpeedBetween(entities_[static_cast<std::size_t>(a)], entities_[static_cast<std::size_t>(b)], sum / load);
 }
 
 int Sensing::EntityOf(const physics::ContactSide& side) const {

@@ -69,8 +69,12 @@ class Sensing {
     std::pair<int, int> pair;
     double up_on_a = 0;
     double impulse_n_s = 0;
+    Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
     std::uint32_t sensor_sets = 0;
   };
+
+  /// Of the material of the two at the centre of their upright load; 0 if they bear none.
+  double VerticalSpeed(std::span<const PairPoint> points) const;
 
   std::int64_t rate_hz_ = 480;
   std::int64_t sensing_hz_ = 240;

@@ -70,7 +70,8 @@ Json TouchJson(const grammar::Touch& touch, const grammar::Cast& cast) {
                {"b", cast.entities[touch.b].name},
                {"up_on_a", touch.up_on_a},
                {"up_on_b", touch.up_on_b},
-               {"force_n", touch.normal_force_n}};
+               {"force_n", touch.normal_force_n},
+               {"vertical_speed_m_per_s", touch.vertical_speed_m_per_s}};
   for (const int one : {touch.a, touch.b}) {
     const std::vector<std::string>& sets = cast.entities[one].sensor_sets;
     for (std::size_t i = 0; i < sets.size(); ++i) {

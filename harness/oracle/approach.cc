@@ -78,31 +78,30 @@ std::vector<Solid> PartsOf(const physics::HandModel& model, const physics::HandS
   return parts;
 }
 
-/// How fast palm and fingers moved, as seen from the body, since the frame before: the fastest of
-/// them. A hand that only closes its fingers around the object is not idle.
-double Motion_m_per_s(const Recording& recording, int hand, int body, int frame) {
+/// How fast palm and fingers moved since the frame before: the fastest of them. A hand that only
+/// closes its fingers around the object is not idle; one to which the object is brought is.
+double Motion_m_per_s(const Recording& recording, int hand, int frame) {
   const physics::HandState &now = recording.hand(hand, frame),
                            &before = recording.hand(hand, frame - 1);
-  const Vector3d body_moved = recording.place(body, frame) - recording.place(body, frame - 1);
-  double farthest = (now.palm.X_WB.p_m - before.palm.X_WB.p_m - body_moved).norm();
+  double farthest = (now.palm.X_WB.p_m - before.palm.X_WB.p_m).norm();
   for (std::size_t i = 0; i < now.X_WL.size(); ++i)
-    farthest = std::max(farthest, (now.X_WL[i].p_m - before.X_WL[i].p_m - body_moved).norm());
+    farthest = std::max(farthest, (now.X_WL[i].p_m - before.X_WL[i].p_m).norm());
   return farthest / recording.Seconds(frame - 1, frame);
 }
 
 /// The frame at which the hand last stopped idling, or `earliest`: where it began to move, slowly
 /// at first.
-int LastIdleEnd(const Recording& recording, const OracleSettings& settings, int hand, int body,
+int LastIdleEnd(const Recording& recording, const OracleSettings& settings, int hand,
                 int earliest, int touch) {
   int idle_end = earliest;
   int still_since = earliest;
   for (int frame = earliest + 1; frame < touch; ++frame) {
-    if (Motion_m_per_s(recording, hand, body, frame) >= settings.idle_speed_m_per_s)
+    if (Motion_m_per_s(recording, hand, frame) >= settings.idle_speed_m_per_s)
       still_since = frame;
     if (recording.Seconds(still_since, frame) > settings.reach_idle_s) idle_end = frame;
   }
   while (idle_end > earliest &&
-         Motion_m_per_s(recording, hand, body, idle_end) > settings.onset_speed_m_per_s)
+         Motion_m_per_s(recording, hand, idle_end) > settings.onset_speed_m_per_s)
     --idle_end;
   return idle_end;
 }
@@ -158,7 +157,7 @@ int ReachBegin(const Recording& recording, const OracleSettings& settings, int h
          InReachRegion(model, recording.hand(hand, begin - 1), shape,
                        recording.body(body, begin - 1), settings.reach_radius_m))
     --begin;
-  begin = LastIdleEnd(recording, settings, hand, body, begin, touch);
+  begin = LastIdleEnd(recording, settings, hand, begin, touch);
   std::vector<DistanceAt> path;
   for (int frame = begin; frame < touch; ++frame)
     path.push_back(
@@ -167,7 +166,7 @@ int ReachBegin(const Recording& recording, const OracleSettings& settings, int h
   begin += ApproachBegin(path, settings.reach_dead_band_m, settings);
   // Standing still is no reach yet, nor is what settles before the hand moves: it begins with the
   // movement, slowly at first.
-  const auto motion_m_per_s = [&](int frame) { return Motion_m_per_s(recording, hand, body, frame); };
+  const auto motion_m_per_s = [&](int frame) { return Motion_m_per_s(recording, hand, frame); };
   int moves = begin;
   while (moves < touch && motion_m_per_s(moves + 1) < settings.idle_speed_m_per_s) ++moves;
   while (moves > begin && motion_m_per_s(moves) > settings.onset_speed_m_per_s) --moves;

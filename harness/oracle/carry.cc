@@ -58,24 +58,28 @@ class Carrier {
       if (!Covers(spans, frame)) continue;
       const Vector3d velocity =
           RelativeVelocity(recording_.body(grasp_.body, frame), recording_.body(support, frame));
-      const Eigen::Quaterniond& R_WS = recording_.body(support, frame).X_WB.q;
-      const Vector3d way_m = R_WS * (Seen(support, after) - Seen(support, before));
       if (velocity.head<2>().norm() > settings_.slide_speed_m_per_s &&
-          way_m.head<2>().norm() >
+          WayAlong(support, before, after, frame) >
               settings_.slide_speed_m_per_s * recording_.Seconds(before, after))
         return true;
     }
     return false;
   }
 
-  /// How far the object got from where it was at the span's begin, as seen from what supported it
-  /// there.
+  /// The level part of the object's way along a support between two frames, as the support lies at
+  /// frame `at`.
+  double WayAlong(int support, int from, int to, int at) const {
+    const Vector3d way_m = recording_.body(support, at).X_WB.q * (Seen(support, to) - Seen(support, from));
+    return way_m.head<2>().norm();
+  }
+
+  /// How far the object got along what supported it at the span's begin, from where it was then.
   double Displacement(Span span) const {
     double farthest = 0;
     for (const auto& [support, spans] : supports_) {
       if (!Covers(spans, span.begin)) continue;
       for (int frame = span.begin; frame < span.end; ++frame)
-        farthest = std::max(farthest, (Seen(support, frame) - Seen(support, span.begin)).norm());
+        farthest = std::max(farthest, WayAlong(support, span.begin, frame, frame));
     }
     return farthest;
   }

@@ -22,11 +22,11 @@ struct OracleSettings {
   double grasp_bridge_s = 0.060;    ///< a loss of grip on the object that is bridged
 
   double support_up = 0.5;              ///< upward component of the contact normal on the object
-  double support_speed_m_per_s = 0.02;  ///< vertical, relative to the support
+  double support_speed_m_per_s = 0.02;  ///< vertical, of the two surfaces where they touch
   double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
   int grasp_sensor_sets = 2;            ///< of one hand on the object
 
-  double idle_speed_m_per_s = 0.01;  ///< slower is standing still, as seen from the object
+  double idle_speed_m_per_s = 0.01;  ///< slower is standing still
   double onset_speed_m_per_s = 0.001;  ///< a movement begins slowly; slower is not moving yet
   double turn_pause_s = 0.1;         ///< standing still for longer before returning is a pause
 

@@ -21,10 +21,13 @@ Recording MakeRecording(const physics::Scene& scene, std::span<const physics::Sn
   return recording;
 }
 
+Eigen::Vector3d VelocityAt(const physics::BodyState& body, const Eigen::Vector3d& p_W_m) {
+  return body.v_WB_m_per_s + body.w_WB_rad_per_s.cross(p_W_m - body.X_WB.p_m);
+}
+
 Eigen::Vector3d RelativeVelocity(const physics::BodyState& object,
                                  const physics::BodyState& support) {
-  const Eigen::Vector3d arm = object.X_WB.p_m - support.X_WB.p_m;
-  return object.v_WB_m_per_s - support.v_WB_m_per_s - support.w_WB_rad_per_s.cross(arm);
+  return object.v_WB_m_per_s - VelocityAt(support, object.X_WB.p_m);
 }
 
 namespace {
@@ -33,7 +36,8 @@ namespace {
 using Flags = std::map<Pair, std::vector<bool>>;
 
 struct RawTouches {
-  Flags touching, supported, gripped;  ///< gripped: (hand index, body)
+  Flags touching, gripped;  ///< gripped: (hand index, body)
+  Flags borne, at_rest;     ///< (object, support); at rest: it moves neither up nor down on it, at some point
 };
 
 class TouchReader {
@@ -59,8 +63,8 @@ class TouchReader {
     if (a == b) return;
     Mark(raw_.touching, std::minmax(a, b), frame);
     if (IsBody(a) && IsBody(b)) {
-      if (Holds(point.nhat_BA_W.z(), a, b, frame)) Mark(raw_.supported, {a, b}, frame);
-      if (Holds(-point.nhat_BA_W.z(), b, a, frame)) Mark(raw_.supported, {b, a}, frame);
+      ReadSupport(point, point.nhat_BA_W.z(), {a, b}, frame);
+      ReadSupport(point, -point.nhat_BA_W.z(), {b, a}, frame);
     } else if (IsBody(a) || IsBody(b)) {
       const physics::ContactSide& hand = IsBody(a) ? point.b : point.a;
       sensor_sets[{hand.hand, IsBody(a) ? a : b}] |= 1u << SensorSet(hand);
@@ -77,13 +81,20 @@ class TouchReader {
     return side.link < 0 ? model.palm_sensor_set : model.links[side.link].sensor_set;
   }
 
-  /// Whether a point whose normal has this upward component holds the object from below.
-  bool Holds(double up, int object, int support, int frame) const {
+  /// `up`: of the normal on the object, (object, support).
+  void ReadSupport(const physics::ContactPoint& point, double up, Pair pair, int frame) {
+    const auto& [object, support] = pair;
+    if (up < settings_.support_up || !physics::MovesFreely(recording_.scene, object) ||
+        !physics::IsThing(recording_.scene.bodies[static_cast<std::size_t>(support)]))
+      return;
+    Mark(raw_.borne, pair, frame);
     const physics::BodyState &held = recording_.body(object, frame),
                              &by = recording_.body(support, frame);
-    return physics::MovesFreely(recording_.scene, object) &&
-           physics::IsThing(recording_.scene.bodies[static_cast<std::size_t>(support)]) && up >= settings_.support_up &&
-           std::abs(RelativeVelocity(held, by).z()) <= settings_.support_speed_m_per_s;
+    const auto rests_at = [&](const Eigen::Vector3d& p_W_m) {
+      return std::abs((VelocityAt(held, p_W_m) - VelocityAt(by, p_W_m)).z()) <=
+             settings_.support_speed_m_per_s;
+    };
+    if (rests_at(point.p_W_m) || rests_at(held.X_WB.p_m)) Mark(raw_.at_rest, pair, frame);
   }
 
   void Mark(Flags& flags, Pair pair, int frame) const {
@@ -102,6 +113,20 @@ std::map<Pair, Spans> BridgeAll(const Recording& recording, const Flags& flags, 
   for (const auto& [pair, frames] : flags)
     spans[pair] = Bridged(WhereTrue(frames), recording.ticks, recording.Ticks(bridge_s));
   return spans;
+}
+
+/// From where it is at rest on what bears it until that does no more: it may tip or roll in between.
+std::map<Pair, Spans> SupportsOf(const Recording& recording, const RawTouches& raw, double bridge_s) {
+  std::map<Pair, Spans> supports;
+  for (const auto& [pair, at_rest] : raw.at_rest) {
+    Spans spans;
+    for (Span span : WhereTrue(raw.borne.at(pair))) {
+      while (!span.empty() && !at_rest[span.begin]) ++span.begin;
+      if (!span.empty()) spans.push_back(span);
+    }
+    supports[pair] = Bridged(spans, recording.ticks, recording.Ticks(bridge_s));
+  }
+  return supports;
 }
 
 Spans WhereGripIsCommanded(const Recording& recording, const OracleSettings& settings, int hand) {
@@ -128,7 +153,7 @@ Touches FindTouches(const Recording& recording, const OracleSettings& settings) 
   const RawTouches raw = TouchReader(recording, settings).Read();
   Touches touches;
   touches.contacts = BridgeAll(recording, raw.touching, settings.contact_bridge_s);
-  touches.supports = BridgeAll(recording, raw.supported, settings.contact_bridge_s);
+  touches.supports = SupportsOf(recording, raw, settings.contact_bridge_s);
   for (const auto& [pair, frames] : raw.gripped) {
     const auto& [hand, body] = pair;
     const Spans tight = Bridged(WhereTrue(frames), recording.ticks,

@@ -37,6 +37,9 @@ struct Recording {
 
 Recording MakeRecording(const physics::Scene& scene, std::span<const physics::Snapshot> frames);
 
+/// Velocity of the body's material at a point.
+Eigen::Vector3d VelocityAt(const physics::BodyState& body, const Eigen::Vector3d& p_W_m);
+
 /// Velocity of the object's origin relative to the material of `support` that is there at the
 /// moment.
 Eigen::Vector3d RelativeVelocity(const physics::BodyState& object,

@@ -39,7 +39,8 @@ class Differ {
     for (const auto& [pair, touch] : now) {
       const auto old = before_.find(pair);
       const bool is_new = old == before_.end() || old->second.up_on_a != touch.up_on_a ||
-                          old->second.normal_force_n != touch.normal_force_n || old->second.sensor_sets != touch.sensor_sets;
+                          old->second.normal_force_n != touch.normal_force_n ||
+                          old->second.vertical_speed_m_per_s != touch.vertical_speed_m_per_s || old->second.sensor_sets != touch.sensor_sets;
       if (is_new || repeat_) touches_.push_back(touch);
     }
     before_ = std::move(now);

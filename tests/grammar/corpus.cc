@@ -99,6 +99,10 @@ class Stage {
       feelers_[hand.entity] = {.p_W_m = looks_[hand.entity].p_WB_m, .radius_m = 0};
       hand.feelers = {&feelers_[hand.entity], 1};
     }
+    for (Touch& touch : touches_) {
+      const EntityLook &a = looks_[touch.a], &b = looks_[touch.b];
+      touch.vertical_speed_m_per_s = VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
+    }
     std::sort(touches_.begin(), touches_.end(),
               [](const Touch& a, const Touch& b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); });
     return {.tick = tick, .entities = looks_, .hands = hands_, .touches = touches_};

@@ -25,6 +25,7 @@ TEST(Describe, BoundsDecisionsAndHistory) {
   EXPECT_TRUE(Find(d, "grasping").latency.until_end_of.empty());
   EXPECT_EQ(Find(d, "reaching").latency.until_end_of, std::set<std::string>{"contact"});
   EXPECT_DOUBLE_EQ(Find(d, "picking_up").latency.seconds, 3.4);
+  EXPECT_DOUBLE_EQ(Find(d, "putting_down").latency.seconds, 0.1);  // where it lands, all about the way there is known
   EXPECT_DOUBLE_EQ(Find(d, "moving_along").latency.seconds, 0.1 + 0.15 + 0.05);  // support, pause, half a window
   EXPECT_EQ(Find(d, "contact").watched, "pairs that touch");
 }

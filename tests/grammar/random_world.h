@@ -82,7 +82,8 @@ class RandomWorld {
 
   Touch Press(int a, int b) {
     const double up = Choose({-1, 0, 0.49, 0.5, 1});
-    return {.a = a, .b = b, .up_on_a = up, .up_on_b = -up, .normal_force_n = Choose({1, 2}),
+    const double force_n = Choose({1, 2});
+    return {.a = a, .b = b, .up_on_a = up, .up_on_b = -up, .normal_force_n = force_n, .vertical_speed_m_per_s = force_n > 1 ? 0.1 : 0,
             .sensor_sets = a < kHands ? static_cast<std::uint32_t>(random_() % 8) : 0};
   }
 

@@ -29,7 +29,7 @@ Scene KnownScene() {
   s.hand.style = 1;
   s.feeler = {.p_W_m = {0.55, 0.4, 0.2}, .radius_m = 0.01};
   s.touches = {{.a = Scene::kHand, .b = Scene::kCup, .up_on_a = -0.2, .up_on_b = 0.1, .normal_force_n = 3, .sensor_sets = 0b101},
-               {.a = Scene::kCup, .b = Scene::kTray, .up_on_a = 0.9, .up_on_b = -0.9, .normal_force_n = 4}};
+               {.a = Scene::kCup, .b = Scene::kTray, .up_on_a = 0.9, .up_on_b = -0.9, .normal_force_n = 4, .vertical_speed_m_per_s = 0.03}};
   return s;
 }
 
@@ -63,9 +63,11 @@ TEST(Signals, HaveTheirDocumentedValues) {
       {"up(cup, hand)", 0.1, ""},
       {"up(hand, tray)", -1, ""},
       {"force(tray, cup)", 4, "N"},
+      {"touch_speed(tray, cup)", 0.03, "m/s"},
+      {"touch_speed(hand, tray)", 0, "m/s"},
       {"gap(hand, cup)", 0.48, "m"},
       {"closing_speed(hand, cup)", 1, "m/s"},
-      {"surface_speed(hand, cup)", 1, "m/s"},
+      {"surface_speed(hand)", 1, "m/s"},
       {"distance(hand, position(tray))", std::sqrt(1.04), "m"},
       {"height(cup)", 0.2, "m"},
       {"height(ahead(hand, 0.3 m))", 0.2, "m"},

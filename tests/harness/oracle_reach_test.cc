@@ -141,6 +141,25 @@ TEST(OracleReach, BeginsAnewAfterIdlingLongerThanHalfASecond) {
   }
 }
 
+TEST(OracleReach, IsNotTheComingOfTheCup) {
+  Stage stage;
+  stage.hand().palm.X_WB.p_m.x() = 0;
+  stage.Play(1.0, {0, 0, 0}, {{stage.cup, {-0.43, 0, 0}}});
+  Grasp(stage);
+  EXPECT_EQ(Of("grasping(hand, cup)", stage.Truth()).size(), 1u);
+  EXPECT_TRUE(Of("reaching(hand, cup)", stage.Truth()).empty());
+}
+
+TEST(OracleReach, GoesOnWhileFollowingTheCup) {
+  Stage stage;
+  MoveHandTo(stage, kRegionEntry_x_m);
+  const Tick entry = stage.now();
+  stage.Play(1.0, {0.2, 0, 0}, {{stage.cup, {0.2, 0, 0}}});
+  MoveHandTo(stage, 0.65);
+  const Tick touch = Grasp(stage);
+  ExpectNear(Of("reaching(hand, cup)", stage.Truth()), {{entry, touch}});
+}
+
 TEST(OracleReach, GoesOnWhileOnlyTheFingersClose) {
   Stage stage;
   MoveHandTo(stage, kRegionEntry_x_m);

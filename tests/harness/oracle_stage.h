@@ -36,6 +36,7 @@ class Stage {
   struct Contact {
     physics::ContactSide a, b;
     Eigen::Vector3d nhat_BA_W = Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d from_a_m = Eigen::Vector3d::Zero();  ///< from the origin of body a
   };
   static physics::ContactSide BodySide(int body) { return {.body = body}; }
   static physics::ContactSide HandSide(int hand, int sensor_set) {
@@ -126,7 +127,10 @@ class Stage {
     for (int set = 0; set < sets; ++set)
       all.push_back({BodySide(cup), HandSide(0, set), Eigen::Vector3d::UnitX()});
     for (const Contact& contact : all)
-      frame.contacts.push_back({.a = contact.a, .b = contact.b, .nhat_BA_W = contact.nhat_BA_W});
+      frame.contacts.push_back({.a = contact.a,
+                                .b = contact.b,
+                                .p_W_m = body(contact.a.body).X_WB.p_m + contact.from_a_m,
+                                .nhat_BA_W = contact.nhat_BA_W});
     frames_.push_back(frame);
   }
 
