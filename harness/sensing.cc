@@ -16,6 +16,9 @@ constexpr int kPalmFeelersPerSide = 3;
 // objects is lost. Smaller: side contact with one stray point becomes support.
 constexpr double kLoadBearingShare = 0.05;
 
+// Of a touch that pushes no more, as after a bounce, all points count alike.
+constexpr double kJustPushed_n_s = 1e-12;
+
 /// Balls inscribed in the palm's box, in the hand's frame.
 std::vector<grammar::Feeler> PalmFeelers(const physics::HandModel& model) {
   const double radius = model.palm_size_m.z() / 2;
@@ -241,7 +244,7 @@ double Sensing::VerticalSpeed(std::span<const PairPoint> points) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double load = 0;
   for (const PairPoint& point : points) {
-    const double bears = point.impulse_n_s * std::abs(point.up_on_a);
+    const double bears = (point.impulse_n_s + kJustPushed_n_s) * std::abs(point.up_on_a);
     sum += bears * point.p_W_m;
     load += bears;
   }

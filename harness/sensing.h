@@ -73,7 +73,7 @@ class Sensing {
     std::uint32_t sensor_sets = 0;
   };
 
-  /// Of the material of the two at the centre of their upright load; 0 if they bear none.
+  /// Of the material of the two at the centre of their upright load; 0 if they touch side by side.
   double VerticalSpeed(std::span<const PairPoint> points) const;
 
   std::int64_t rate_hz_ = 480;

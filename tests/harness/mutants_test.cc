@@ -33,8 +33,9 @@ const std::vector<Mutant> kMutants = {
      ""},
     {"support waits until all is still", "contact", "support_settled = 2 cm/s",
      "support_settled = 1 mm/s", ""},
-    {"what tips is not supported", "contact", "touch_speed(object, support)",
-     "abs(relative_vertical_speed(object, support))", ""},
+    {"what tips is not supported", "contact", "until not borne(object, support)",
+     "until not (borne(object, support) and abs(relative_vertical_speed(object, support)) <= support_settled)", ""},
+    {"an edge bears nothing", "contact", "touch_speed(object, support) <= support_settled or ", "", ""},
     {"the lower one is supported", "contact", "up(object, support)", "up(support, object)", ""},
     {"one side is a grasp", "grasp", "grip_sides   = 2", "grip_sides   = 1", ""},
     {"three sides are a grasp", "grasp", "grip_sides   = 2", "grip_sides   = 3", ""},
@@ -56,6 +57,8 @@ const std::vector<Mutant> kMutants = {
     {"short slides are none", "pick_and_place", "slide_distance = 2 cm", "slide_distance = 6 cm",
      ""},
     {"there and back is no slide", "pick_and_place", " or got_far(hand, object, support)", "", ""},
+    {"rising is sliding", "pick_and_place", "requires displacement_along(object, support)",
+     "requires displacement(object, support)", ""},
     {"pauses do not end a slide", "pick_and_place", "slide_pause    = 150 ms",
      "slide_pause    = 800 ms", ""},
     {"what was pushed slides from the grasp on", "pick_and_place",
@@ -113,6 +116,7 @@ const char* const kScenarios[] = {
     "reach/a_grasp_drops_the_reach_for_its_neighbour",
     "recorded/recorded_controller_grasps_the_can",
     "slide/there_and_back_is_a_slide",
+    "slide/quick_lift_seen_slowly_is_no_slide",
 };
 
 /// The mutant's program; no value: the mutation did not apply, or made no grammar.
