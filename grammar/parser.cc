@@ -203,7 +203,7 @@ class Parser : public ExpressionParser {
     Accept(",");
     if (Accept("with")) {
       approach.motion = ParseSum();
-      if (!At("slower")) Fail("expected 'slower', found " + Found(), "with surface_speed(hand, object) slower than 1 cm/s");
+      if (!At("slower")) Fail("expected 'slower', found " + Found(), "with surface_speed(hand) slower than 1 cm/s");
     }
     if (!Accept("slower")) return approach;
     Expect("than");
