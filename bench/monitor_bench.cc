@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The monitor alone, on worlds in memory; beside each the same rules by hand. The label is the hash of what was
-// recognised: the two of a pair must show the same one. Figures to look at are ratios within one run.
+// The monitor alone, on worlds in memory; beside each the same rules by hand. The label is the hash
+// of what was recognised: the two of a pair must show the same one. Figures to look at are ratios
+// within one run.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -46,14 +47,25 @@ void FourRules(benchmark::State& state) {
   const ChangeLog log = MakeStations(objects, frames, kPeriod_s);
   Play(state, log, 1.0 * kFourRules * objects * frames, kWatch);
 }
-BENCHMARK(FourRules<ByGrammar>)->Arg(1)->Arg(1024)->Arg(4096)->Arg(65'536)->Unit(benchmark::kMillisecond);
-BENCHMARK(FourRules<ByHand>)->Arg(1)->Arg(1024)->Arg(4096)->Arg(65'536)->Unit(benchmark::kMillisecond);
+BENCHMARK(FourRules<ByGrammar>)
+    ->Arg(1)
+    ->Arg(1024)
+    ->Arg(4096)
+    ->Arg(65'536)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(FourRules<ByHand>)
+    ->Arg(1)
+    ->Arg(1024)
+    ->Arg(4096)
+    ->Arg(65'536)
+    ->Unit(benchmark::kMillisecond);
 
 // Argument: what a touch changes.
 template <auto kWatch>
 void Touches(benchmark::State& state) {
   constexpr int kObjects = 64, kFrames = 2000;
-  const ChangeLog log = MakeFlicker(kObjects, kFrames, kObjects, static_cast<Flicker>(state.range(0)));
+  const ChangeLog log =
+      MakeFlicker(kObjects, kFrames, kObjects, static_cast<Flicker>(state.range(0)));
   Play(state, log, 1.0 * kObjects * (kFrames - 1), kWatch);
 }
 BENCHMARK(Touches<ByGrammar>)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
@@ -63,7 +75,8 @@ BENCHMARK(Touches<ByHand>)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
 template <auto kWatch>
 void Dense(benchmark::State& state) {
   constexpr int kObjects = 1024, kFrames = 1000;
-  const ChangeLog log = MakeFlicker(kObjects, kFrames, kObjects / static_cast<int>(state.range(0)), Flicker::kFact);
+  const ChangeLog log =
+      MakeFlicker(kObjects, kFrames, kObjects / static_cast<int>(state.range(0)), Flicker::kFact);
   Play(state, log, 1.0 * kFourRules * kObjects * (kFrames - 1), kWatch);
 }
 BENCHMARK(Dense<ByGrammar>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMillisecond);
@@ -73,13 +86,16 @@ BENCHMARK(Dense<ByHand>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMillisecond)
 void RecordedCarton(benchmark::State& state) {
   const std::string root = FindProjectRoot().value_or(".");
   const PreparedRun carton =
-      *PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root).value;
+      *PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root)
+           .value;
   const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
   std::size_t events = 0;
-  for (auto _ : state) events = Resegment(carton.scenario, run.recording, carton.program, run.ticks + 1).events.size();
+  for (auto _ : state)
+    events = Resegment(carton.scenario, run.recording, carton.program, run.ticks + 1).events.size();
   state.counters["events"] = static_cast<double>(events);
-  state.counters["times_real_time"] = benchmark::Counter(static_cast<double>(run.ticks) / carton.scenario.world.rate_hz,
-                                                         benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["times_real_time"] =
+      benchmark::Counter(static_cast<double>(run.ticks) / carton.scenario.world.rate_hz,
+                         benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(RecordedCarton)->Unit(benchmark::kMillisecond);
 
@@ -89,7 +105,8 @@ void IdleTick(benchmark::State& state) {
   std::vector<grammar::Event> events;
   monitor.AdvanceBy(log[0], events);
   grammar::Tick tick = 1;
-  for (; tick < 100; ++tick) monitor.AdvanceBy({.tick = tick}, events);  // what is new comes to rest
+  for (; tick < 100; ++tick)
+    monitor.AdvanceBy({.tick = tick}, events);  // what is new comes to rest
   for (auto _ : state) monitor.AdvanceBy({.tick = tick++}, events);
 }
 BENCHMARK(IdleTick)->Arg(1)->Arg(1024)->Arg(65'536);
@@ -104,7 +121,8 @@ void Binding(benchmark::State& state) {
     monitor.AdvanceBy(log[0], events);
     bindings = monitor.lanes_in_use();
   }
-  state.counters["bindings"] = benchmark::Counter(bindings, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["bindings"] =
+      benchmark::Counter(bindings, benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(Binding)->Unit(benchmark::kMicrosecond);
 

@@ -58,8 +58,16 @@ void Asleep(benchmark::State& state) {
 BENCHMARK(Awake<Bare>)->Arg(1000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(Awake<Ours>)->Arg(1000)->Unit(benchmark::kMicrosecond);
 // Letting 5,000 boxes fall asleep takes some seconds each: ./test leaves that size out.
-BENCHMARK(Asleep<Bare>)->Arg(100)->Arg(5000)->Iterations(kTicksAsleep)->Unit(benchmark::kMicrosecond);
-BENCHMARK(Asleep<Ours>)->Arg(100)->Arg(5000)->Iterations(kTicksAsleep)->Unit(benchmark::kMicrosecond);
+BENCHMARK(Asleep<Bare>)
+    ->Arg(100)
+    ->Arg(5000)
+    ->Iterations(kTicksAsleep)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(Asleep<Ours>)
+    ->Arg(100)
+    ->Arg(5000)
+    ->Iterations(kTicksAsleep)
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace prehend::harness

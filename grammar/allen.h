@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Allen's thirteen relations between two intervals, here half-open intervals of ticks: of any two non-empty ones
-// exactly one holds. After J. F. Allen, "Maintaining knowledge about temporal intervals", CACM 26 (1983).
-// Tested by tests/grammar/allen_test.cc
+// Allen's thirteen relations between two intervals, here half-open intervals of ticks: of any two
+// non-empty ones exactly one holds. After J. F. Allen, "Maintaining knowledge about temporal
+// intervals", CACM 26 (1983). Tested by tests/grammar/allen_test.cc
 #pragma once
 
 #include <array>
@@ -14,18 +14,31 @@
 namespace prehend::grammar {
 
 enum class Allen : std::uint8_t {
-  kBefore, kMeets, kOverlaps, kStarts, kDuring, kFinishes, kEquals,
-  kFinishedBy, kContains, kStartedBy, kOverlappedBy, kMetBy, kAfter,
+  kBefore,
+  kMeets,
+  kOverlaps,
+  kStarts,
+  kDuring,
+  kFinishes,
+  kEquals,
+  kFinishedBy,
+  kContains,
+  kStartedBy,
+  kOverlappedBy,
+  kMetBy,
+  kAfter,
 };
 
 /// Bit i stands for relation i.
 using AllenSet = std::uint16_t;
 
 inline constexpr std::array<std::string_view, 13> kAllenNames = {
-    "before", "meets", "overlaps", "starts", "inside", "finishes", "equals",
+    "before",      "meets",    "overlaps",   "starts",        "inside", "finishes", "equals",
     "finished_by", "contains", "started_by", "overlapped_by", "met_by", "after"};
 
-constexpr AllenSet Bit(Allen relation) { return static_cast<AllenSet>(1U << static_cast<unsigned>(relation)); }
+constexpr AllenSet Bit(Allen relation) {
+  return static_cast<AllenSet>(1U << static_cast<unsigned>(relation));
+}
 
 /// How `a` lies to `b`; both must be non-empty.
 constexpr Allen Relate(const Interval& a, const Interval& b) {

@@ -26,7 +26,8 @@ Table MakeTable() {
   for (const Interval& a : all) {
     for (const Interval& b : all) {
       for (const Interval& c : all) {
-        table[static_cast<std::size_t>(Relate(a, b))][static_cast<std::size_t>(Relate(b, c))] |= Bit(Relate(a, c));
+        table[static_cast<std::size_t>(Relate(a, b))][static_cast<std::size_t>(Relate(b, c))] |=
+            Bit(Relate(a, c));
       }
     }
   }
@@ -39,7 +40,8 @@ bool Has(AllenSet relations, std::size_t relation) { return (relations >> relati
 
 AllenSet Inverse(AllenSet relations) {
   AllenSet inverse = 0;
-  for (std::size_t i = 0; i < kRelations; ++i) {  // they are listed so that before and after mirror each other, and so on
+  for (std::size_t i = 0; i < kRelations;
+       ++i) {  // they are listed so that before and after mirror each other, and so on
     if (Has(relations, i)) inverse |= Bit(static_cast<Allen>(kRelations - 1 - i));
   }
   return inverse;

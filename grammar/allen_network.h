@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Relations between several intervals that must hold at once, and whether they can: path consistency over Allen's
-// thirteen relations, after his paper of 1983. What it refuses can never be; a network that it accepts may still, in
-// rare cases, be impossible.
-// Tested by tests/grammar/allen_test.cc
+// Relations between several intervals that must hold at once, and whether they can: path
+// consistency over Allen's thirteen relations, after his paper of 1983. What it refuses can never
+// be; a network that it accepts may still, in rare cases, be impossible. Tested by
+// tests/grammar/allen_test.cc
 #pragma once
 
 #include <vector>
@@ -24,7 +24,8 @@ class AllenNetwork {
   /// So many intervals, about which nothing is known but that each equals itself.
   explicit AllenNetwork(int intervals);
 
-  /// `left` lies to `right` in one of these ways, too. False: together with what was said before, that cannot be.
+  /// `left` lies to `right` in one of these ways, too. False: together with what was said before,
+  /// that cannot be.
   bool Constrain(int left, int right, AllenSet relations);
 
  private:

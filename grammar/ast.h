@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The syntax tree of one grammar file: what was written, names not yet looked up. A value; Dump() shows it as text.
-// Tested by tests/grammar/parser_test.cc
+// The syntax tree of one grammar file: what was written, names not yet looked up. A value; Dump()
+// shows it as text. Tested by tests/grammar/parser_test.cc
 #pragma once
 
 #include <optional>
@@ -83,13 +83,13 @@ struct Definition {
   std::vector<Role> roles;
 
   Form form = Form::kWhile;
-  Expr first;                      ///< while F, from A, until A, rest of E
-  Expr second;                     ///< to B, without B, since F
-  std::optional<Expr> until;       ///< while A until B
-  bool absence = false;            ///< from A without B
-  std::optional<Expr> within;      ///< from .. within t
+  Expr first;                  ///< while F, from A, until A, rest of E
+  Expr second;                 ///< to B, without B, since F
+  std::optional<Expr> until;   ///< while A until B
+  bool absence = false;        ///< from A without B
+  std::optional<Expr> within;  ///< from .. within t
   std::optional<Expr> during;
-  bool or_drop = false;            ///< `during G or drop`
+  bool or_drop = false;  ///< `during G or drop`
   std::optional<Approach> approach;
   Expr at_most_back;
   std::vector<Expr> outside;
@@ -100,11 +100,12 @@ struct Definition {
   std::optional<Expr> lasting;
   std::optional<Expr> requirement;
   std::optional<Confirmation> confirmed;
-  std::optional<Expr> style;       ///< with style = style(hand)
+  std::optional<Expr> style;  ///< with style = style(hand)
   std::vector<Attribute> attributes;
 };
 
-/// `define name(parameters) = body`. A parameter's class may also be a unit, `number` or `position`.
+/// `define name(parameters) = body`. A parameter's class may also be a unit, `number` or
+/// `position`.
 struct Define {
   std::string name;
   Place place;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A growing sequence whose elements stay where they are, in blocks of many: found by a shift and a mask.
-// Tested by tests/grammar/blocks_test.cc
+// A growing sequence whose elements stay where they are, in blocks of many: found by a shift and a
+// mask. Tested by tests/grammar/blocks_test.cc
 #pragma once
 
 #include <array>
@@ -18,7 +18,8 @@ class Blocks {
   const T& operator[](std::size_t i) const { return (*blocks_[i / kBlock])[i % kBlock]; }
 
   T& PushBack() {
-    if (size_ == kBlock * blocks_.size()) blocks_.push_back(std::make_unique<std::array<T, kBlock>>());
+    if (size_ == kBlock * blocks_.size())
+      blocks_.push_back(std::make_unique<std::array<T, kBlock>>());
     return (*this)[size_++];
   }
 

@@ -7,22 +7,33 @@ namespace {
 // `a op b` as `b op a`.
 Op Mirrored(Op op) {
   switch (op) {
-    case Op::kLess: return Op::kGreater;
-    case Op::kLessEqual: return Op::kGreaterEqual;
-    case Op::kGreater: return Op::kLess;
-    case Op::kGreaterEqual: return Op::kLessEqual;
-    default: return op;
+    case Op::kLess:
+      return Op::kGreater;
+    case Op::kLessEqual:
+      return Op::kGreaterEqual;
+    case Op::kGreater:
+      return Op::kLess;
+    case Op::kGreaterEqual:
+      return Op::kLessEqual;
+    default:
+      return op;
   }
 }
 
 Op Negated(Op op) {
   switch (op) {
-    case Op::kLess: return Op::kGreaterEqual;
-    case Op::kLessEqual: return Op::kGreater;
-    case Op::kGreater: return Op::kLessEqual;
-    case Op::kGreaterEqual: return Op::kLess;
-    case Op::kEqual: return Op::kNotEqual;
-    default: return Op::kEqual;
+    case Op::kLess:
+      return Op::kGreaterEqual;
+    case Op::kLessEqual:
+      return Op::kGreater;
+    case Op::kGreater:
+      return Op::kLessEqual;
+    case Op::kGreaterEqual:
+      return Op::kLess;
+    case Op::kEqual:
+      return Op::kNotEqual;
+    default:
+      return Op::kEqual;
   }
 }
 
@@ -31,21 +42,31 @@ Op Negated(Op op) {
 bool Bounds::Add(int index, bool negated) {
   const Node& node = program_.nodes[index];
   switch (node.op) {
-    case Op::kNot: return Add(node.args[0], !negated);
+    case Op::kNot:
+      return Add(node.args[0], !negated);
     case Op::kAnd:
     case Op::kOr:
-      if ((node.op == Op::kAnd) != negated) return Add(node.args[0], negated) && Add(node.args[1], negated);
+      if ((node.op == Op::kAnd) != negated)
+        return Add(node.args[0], negated) && Add(node.args[1], negated);
       alternatives_.push_back({index, negated});
       return true;
-    case Op::kLess: case Op::kLessEqual: case Op::kGreater: case Op::kGreaterEqual: case Op::kEqual: case Op::kNotEqual:
+    case Op::kLess:
+    case Op::kLessEqual:
+    case Op::kGreater:
+    case Op::kGreaterEqual:
+    case Op::kEqual:
+    case Op::kNotEqual:
       return AddComparison(negated ? Negated(node.op) : node.op, node);
-    // What begins is true from now on. What ends is false, but an event may end where its next interval begins.
-    case Op::kBegins: return (negated || Add(node.args[0])) && AddAtom(index, negated);
+    // What begins is true from now on. What ends is false, but an event may end where its next
+    // interval begins.
+    case Op::kBegins:
+      return (negated || Add(node.args[0])) && AddAtom(index, negated);
     case Op::kEnds: {
       const bool says_more = !negated && program_.nodes[node.args[0]].op != Op::kHolds;
       return (!says_more || Add(node.args[0], true)) && AddAtom(index, negated);
     }
-    default: return AddAtom(index, negated);
+    default:
+      return AddAtom(index, negated);
   }
 }
 
@@ -60,7 +81,8 @@ bool Bounds::AddComparison(Op op, const Node& comparison) {
   const Range of_right = RangeOf(program_, rule_, right);
   if (Judge(op, of_left, of_right) == Verdict::kNever) return false;
   if (of_right.IsPoint()) return Narrow(Signature(program_, left), of_left, op, of_right.low);
-  if (of_left.IsPoint()) return Narrow(Signature(program_, right), of_right, Mirrored(op), of_left.low);
+  if (of_left.IsPoint())
+    return Narrow(Signature(program_, right), of_right, Mirrored(op), of_left.low);
   return true;
 }
 
@@ -68,11 +90,13 @@ bool Bounds::Narrow(const std::string& value, const Range& range, Op op, double 
   Limit& limit = limits_.try_emplace(value, Limit{.range = range}).first->second;
   const bool from_below = op == Op::kGreater || op == Op::kGreaterEqual || op == Op::kEqual;
   const bool from_above = op == Op::kLess || op == Op::kLessEqual || op == Op::kEqual;
-  if (from_below && (number > limit.range.low || (number == limit.range.low && op == Op::kGreater))) {
+  if (from_below &&
+      (number > limit.range.low || (number == limit.range.low && op == Op::kGreater))) {
     limit.range.low = number;
     limit.low_open = op == Op::kGreater;
   }
-  if (from_above && (number < limit.range.high || (number == limit.range.high && op == Op::kLess))) {
+  if (from_above &&
+      (number < limit.range.high || (number == limit.range.high && op == Op::kLess))) {
     limit.range.high = number;
     limit.high_open = op == Op::kLess;
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the parts of an `and` say about the same value: `speed(x) > 5 cm/s and speed(x) < 3 cm/s` is never true, and
-// whoever writes it made a mistake. Starts from what each value can be at all. Compares values by how they are written, so
-// it misses what is the same in other words.
-// Tested by tests/grammar/compile_test.cc
+// What the parts of an `and` say about the same value: `speed(x) > 5 cm/s and speed(x) < 3 cm/s` is
+// never true, and whoever writes it made a mistake. Starts from what each value can be at all.
+// Compares values by how they are written, so it misses what is the same in other words. Tested by
+// tests/grammar/compile_test.cc
 #pragma once
 
 #include <map>
@@ -17,9 +17,11 @@ class Bounds {
  public:
   Bounds(const Program& program, const Rule& rule) : program_(program), rule_(rule) {}
 
-  /// Adds what must be so for this truth value to be true. False: it contradicts what was added before.
+  /// Adds what must be so for this truth value to be true. False: it contradicts what was added
+  /// before.
   bool Add(int node, bool negated = false);
-  /// False: whichever of the alternatives (of an `or`) one takes, it contradicts the rest. Gives up where there are very many.
+  /// False: whichever of the alternatives (of an `or`) one takes, it contradicts the rest. Gives up
+  /// where there are very many.
   bool SomeAlternativeFits() const;
 
  private:

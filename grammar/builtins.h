@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The signals and tests that every grammar knows: names, arguments, units. Their meaning is in evaluate.cc and,
-// for users, in docs/grammar-language.md; a test compares the two lists.
-// Tested by tests/grammar/signals_test.cc
+// The signals and tests that every grammar knows: names, arguments, units. Their meaning is in
+// evaluate.cc and, for users, in docs/grammar-language.md; a test compares the two lists. Tested by
+// tests/grammar/signals_test.cc
 #pragma once
 
 #include <limits>
@@ -18,7 +18,18 @@ enum class Type : std::uint8_t { kTruth, kNumber, kPosition };
 
 /// What an argument must be. The first five are roles of that class.
 /// A window is a constant span of time; a set is the name of a sensor set, or its number.
-enum class Argument : std::uint8_t { kEntity, kHand, kThing, kMovable, kJointed, kPosition, kLength, kNumber, kWindow, kSet };
+enum class Argument : std::uint8_t {
+  kEntity,
+  kHand,
+  kThing,
+  kMovable,
+  kJointed,
+  kPosition,
+  kLength,
+  kNumber,
+  kWindow,
+  kSet
+};
 
 /// Between what and what a number lies, both ends included, SI units.
 struct Range {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grammar files -> Program: reads includes, collects parameters and heads, lowers every definition, orders the
-// rules so that each follows those it refers to, and picks each rule's guard.
-// Tested by tests/grammar/compile_test.cc
+// Grammar files -> Program: reads includes, collects parameters and heads, lowers every definition,
+// orders the rules so that each follows those it refers to, and picks each rule's guard. Tested by
+// tests/grammar/compile_test.cc
 #include "grammar/compile.h"
 
 #include <algorithm>
@@ -42,7 +42,8 @@ class Compiler {
     if (diagnostics_.empty()) CheckDefines();
     if (diagnostics_.empty()) LowerAll();
     if (diagnostics_.empty()) Order();
-    if (!diagnostics_.empty()) return {.program = nullptr, .diagnostics = std::move(diagnostics_), .warnings = {}};
+    if (!diagnostics_.empty())
+      return {.program = nullptr, .diagnostics = std::move(diagnostics_), .warnings = {}};
     ChooseGuards(program_);
     WarnOfUnused();
     program_.warnings = warnings_;
@@ -53,8 +54,8 @@ class Compiler {
 
  private:
   void Complain(const Source& source, Place place, std::string message, std::string hint = {}) {
-    diagnostics_.push_back(
-        DiagnosticAt(source.text.file, source.text.text, place, std::move(message), std::move(hint)));
+    diagnostics_.push_back(DiagnosticAt(source.text.file, source.text.text, place,
+                                        std::move(message), std::move(hint)));
   }
 
   // The grammar and everything it uses, each once, what is used first.
@@ -72,7 +73,8 @@ class Compiler {
       const std::string name = use.is_path ? Beside(grammar.file, use.name) : use.name;
       if (!seen.insert(name).second) continue;
       if (seen.size() > kMaxFiles) {
-        Complain(source, use.place, "more than " + std::to_string(kMaxFiles) + " grammars are used together");
+        Complain(source, use.place,
+                 "more than " + std::to_string(kMaxFiles) + " grammars are used together");
         break;
       }
       const std::optional<GrammarText> used = includer_ ? includer_(name) : std::nullopt;
@@ -88,50 +90,60 @@ class Compiler {
 
   // A path is seen from the file that names it, and leads to a file of the same folder or below.
   bool CheckPath(const Source& source, const ast::Use& use) {
-    const bool climbs = use.name.starts_with("/") || ("/" + use.name + "/").find("/../") != std::string::npos;
+    const bool climbs =
+        use.name.starts_with("/") || ("/" + use.name + "/").find("/../") != std::string::npos;
     if (!climbs && use.name.ends_with(".grammar")) return true;
     Complain(source, use.place, "\"" + use.name + "\" is not a file beside this one",
-             "a relative path that ends with .grammar and does not climb: use \"shared/pouring.grammar\"");
+             "a relative path that ends with .grammar and does not climb: use "
+             "\"shared/pouring.grammar\"");
     return false;
   }
 
   static std::string Beside(const std::string& file, const std::string& path) {
     const std::size_t slash = file.rfind('/');
-    return file.substr(0, slash == std::string::npos ? 0 : slash + 1) + path.substr(path.starts_with("./") ? 2 : 0);
+    return file.substr(0, slash == std::string::npos ? 0 : slash + 1) +
+           path.substr(path.starts_with("./") ? 2 : 0);
   }
 
   void CollectParams() {
     for (const Source& source : sources_) {
       symbols_.files.try_emplace(source.text.file, static_cast<int>(symbols_.files.size()));
       for (const ast::Param& param : source.file.params) {
-        const auto [entry, is_new] = symbols_.params.try_emplace(param.name, static_cast<int>(program_.params.size()));
+        const auto [entry, is_new] =
+            symbols_.params.try_emplace(param.name, static_cast<int>(program_.params.size()));
         if (!is_new) {
           const ProgramParam& first = program_.params[entry->second];
-          Complain(source, param.place, "the parameter '" + param.name + "' is defined twice", FirstAt(first.file, first.place));
+          Complain(source, param.place, "the parameter '" + param.name + "' is defined twice",
+                   FirstAt(first.file, first.place));
           continue;
         }
-        program_.params.push_back(
-            {.name = param.name, .value = param.value, .file = source.text.file, .place = param.place});
+        program_.params.push_back({.name = param.name,
+                                   .value = param.value,
+                                   .file = source.text.file,
+                                   .place = param.place});
       }
     }
   }
 
   static std::string FirstAt(const std::string& file, Place place) {
-    return "the first one is at " + file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+    return "the first one is at " + file + ":" + std::to_string(place.line) + ":" +
+           std::to_string(place.column);
   }
 
   void ApplyOverrides() {
     for (const auto& [name, value] : overrides_) {
       const GrammarText text{"parameter " + name, value};
       const auto complain = [&](std::string message, std::string hint) {
-        diagnostics_.push_back(DiagnosticAt(text.file, text.text, {1, 1}, std::move(message), std::move(hint)));
+        diagnostics_.push_back(
+            DiagnosticAt(text.file, text.text, {1, 1}, std::move(message), std::move(hint)));
       };
       const auto found = symbols_.params.find(name);
       if (found == symbols_.params.end()) {
         std::vector<std::string> names;
         for (const auto& [known, index] : symbols_.params) names.push_back(known);
         const std::string near = NearestName(name, names);
-        complain("the grammar has no parameter '" + name + "'", near.empty() ? "" : "did you mean '" + near + "'?");
+        complain("the grammar has no parameter '" + name + "'",
+                 near.empty() ? "" : "did you mean '" + near + "'?");
         continue;
       }
       const std::optional<Quantity> quantity = ParseQuantity(text, diagnostics_);
@@ -157,7 +169,8 @@ class Compiler {
       for (const Definition& definition : source.file.definitions) CollectHead(source, definition);
     }
     if (program_.events.size() == 1 && diagnostics_.empty()) {
-      Complain(sources_.back(), {1, 1}, "the grammar defines no event", "for example: event held(hand: Hand, "
+      Complain(sources_.back(), {1, 1}, "the grammar defines no event",
+               "for example: event held(hand: Hand, "
                "object: Thing) while sensor_sets(hand, object) >= 2");
     }
   }
@@ -165,23 +178,28 @@ class Compiler {
   void CollectHead(const Source& source, const Definition& definition) {
     const int index = static_cast<int>(program_.events.size());
     if (program_.events.size() > kMaxRules) {
-      if (program_.events.size() == kMaxRules + 1) Complain(source, definition.place, "the grammar has more than 1000 rules");
+      if (program_.events.size() == kMaxRules + 1)
+        Complain(source, definition.place, "the grammar has more than 1000 rules");
       return;
     }
     if (IsBuiltin(definition.name)) {
-      return Complain(source, definition.place, "'" + definition.name + "' is a built-in signal", "choose another name");
+      return Complain(source, definition.place, "'" + definition.name + "' is a built-in signal",
+                      "choose another name");
     }
     const auto [entry, is_new] = symbols_.rules.try_emplace(definition.name, index);
     if (!is_new) {
       const Rule& first = program_.events[entry->second];
-      return Complain(source, definition.place, "'" + definition.name + "' is defined twice", FirstAt(first.file, first.place));
+      return Complain(source, definition.place, "'" + definition.name + "' is defined twice",
+                      FirstAt(first.file, first.place));
     }
     Rule rule{.name = definition.name, .file = source.text.file, .place = definition.place};
     rule.printed = definition.is_event;
     rule.symmetric = definition.symmetric;
-    if (definition.form == Definition::Form::kCompose) rule.form = Form::kCompose;  // others must know before it is lowered
+    if (definition.form == Definition::Form::kCompose)
+      rule.form = Form::kCompose;  // others must know before it is lowered
     CheckRoles(source, definition);
-    for (const ast::Role& role : definition.roles) rule.roles.push_back({role.name, role.class_name});
+    for (const ast::Role& role : definition.roles)
+      rule.roles.push_back({role.name, role.class_name});
     program_.events.push_back(std::move(rule));
     definitions_.push_back({&source, &definition});
   }
@@ -194,13 +212,18 @@ class Compiler {
     for (const Source& source : sources_) {
       for (const ast::Define& define : source.file.defines) {
         const auto rule = symbols_.rules.find(define.name);
-        if (rule != symbols_.rules.end() && IsLater(program_.events[rule->second].file, source.text.file)) {
+        if (rule != symbols_.rules.end() &&
+            IsLater(program_.events[rule->second].file, source.text.file)) {
           const Located& located = definitions_[rule->second - 1];
-          Complain(*located.source, located.definition->place, "'" + define.name + "' is defined twice",
+          Complain(*located.source, located.definition->place,
+                   "'" + define.name + "' is defined twice",
                    FirstAt(source.text.file, define.place));
-        } else if (IsBuiltin(define.name) || rule != symbols_.rules.end() || symbols_.IsParamIn(source.text.file, define.name) ||
-                   !symbols_.defines.try_emplace(define.name, DefineSource{&source.text, &define}).second) {
-          Complain(source, define.place, "'" + define.name + "' means something already", "choose another name");
+        } else if (IsBuiltin(define.name) || rule != symbols_.rules.end() ||
+                   symbols_.IsParamIn(source.text.file, define.name) ||
+                   !symbols_.defines.try_emplace(define.name, DefineSource{&source.text, &define})
+                        .second) {
+          Complain(source, define.place, "'" + define.name + "' means something already",
+                   "choose another name");
         }
         CheckParameters(source, define);
       }
@@ -213,7 +236,9 @@ class Compiler {
     for (const Source& source : sources_) {
       for (const ast::Param& param : source.file.params) {
         const auto define = symbols_.defines.find(param.name);
-        if (define == symbols_.defines.end() || !IsLater(source.text.file, define->second.text->file)) continue;
+        if (define == symbols_.defines.end() ||
+            !IsLater(source.text.file, define->second.text->file))
+          continue;
         Complain(source, param.place, "'" + param.name + "' is defined twice",
                  FirstAt(define->second.text->file, define->second.define->place));
       }
@@ -231,7 +256,8 @@ class Compiler {
         Complain(source, parameter.place, "the parameter '" + parameter.name + "' is named twice");
       }
       if (symbols_.IsParamIn(source.text.file, parameter.name)) {
-        Complain(source, parameter.place, "'" + parameter.name + "' is a parameter of the grammar already");
+        Complain(source, parameter.place,
+                 "'" + parameter.name + "' is a parameter of the grammar already");
       }
       if (parameter.class_name == "number" || parameter.class_name == "position") continue;
       std::vector<std::string> others = UnitNames();
@@ -244,7 +270,9 @@ class Compiler {
   void CheckDefines() {
     Program scratch = program_;
     for (const auto& [name, source] : symbols_.defines) {
-      Symbols symbols{scratch, symbols_.rules, symbols_.params, symbols_.files, symbols_.defines, {}, {}, {}, {}};
+      Symbols symbols{
+          scratch, symbols_.rules, symbols_.params, symbols_.files, symbols_.defines, {}, {}, {},
+          {}};
       scratch.events.resize(program_.events.size());
       scratch.nodes.clear();
       Rule& rule = scratch.events.emplace_back();
@@ -254,7 +282,8 @@ class Compiler {
           rule.roles.push_back({parameter.name, parameter.class_name});
         }
       }
-      Lowering(symbols, static_cast<int>(scratch.events.size()) - 1, *source.text, diagnostics_).Check(source);
+      Lowering(symbols, static_cast<int>(scratch.events.size()) - 1, *source.text, diagnostics_)
+          .Check(source);
       symbols_.used_params.merge(symbols.used_params);
       if (!diagnostics_.empty()) return;
     }
@@ -262,37 +291,45 @@ class Compiler {
 
   void CheckRoles(const Source& source, const Definition& definition) {
     if (definition.roles.size() > kMaxRoles) {
-      Complain(source, definition.roles[kMaxRoles].place, "more than " + std::to_string(kMaxRoles) + " roles");
+      Complain(source, definition.roles[kMaxRoles].place,
+               "more than " + std::to_string(kMaxRoles) + " roles");
     }
     std::set<std::string> names;
     for (const ast::Role& role : definition.roles) {
-      if (!names.insert(role.name).second) Complain(source, role.place, "the role '" + role.name + "' is named twice");
+      if (!names.insert(role.name).second)
+        Complain(source, role.place, "the role '" + role.name + "' is named twice");
       if (symbols_.IsParamIn(source.text.file, role.name)) {
-        Complain(source, role.place, "'" + role.name + "' is a parameter and cannot be a role too", "call one of them otherwise");
+        Complain(source, role.place, "'" + role.name + "' is a parameter and cannot be a role too",
+                 "call one of them otherwise");
       }
       CheckClassName(source, role);
     }
     if (!definition.symmetric) return;
-    if (definition.roles.size() < 2 || definition.roles[0].class_name != definition.roles[1].class_name) {
-      Complain(source, definition.place, "the first two roles of a symmetric event are of the same class");
+    if (definition.roles.size() < 2 ||
+        definition.roles[0].class_name != definition.roles[1].class_name) {
+      Complain(source, definition.place,
+               "the first two roles of a symmetric event are of the same class");
     }
   }
 
   // `hand: hand` is meant to be `hand: Hand`; other unknown names may be classes of a scenario.
-  void CheckClassName(const Source& source, const ast::Role& role, std::vector<std::string> known = {}) {
+  void CheckClassName(const Source& source, const ast::Role& role,
+                      std::vector<std::string> known = {}) {
     if (StartsWithCapital(role.class_name)) {
       NoteClass(program_, role.class_name, source.text.file, role.place);
     } else {
       known.insert(known.end(), BuiltinClasses().begin(), BuiltinClasses().end());
       const std::string near = NearestName(role.class_name, known);
-      Complain(source, role.place, "'" + role.class_name + "' is not a class; classes start with a capital letter",
+      Complain(source, role.place,
+               "'" + role.class_name + "' is not a class; classes start with a capital letter",
                near.empty() ? "" : "did you mean '" + near + "'?");
     }
   }
 
   void LowerAll() {
     for (std::size_t i = 0; i < definitions_.size(); ++i) {
-      LowerDefinition(*definitions_[i].source, *definitions_[i].definition, static_cast<int>(i) + 1);
+      LowerDefinition(*definitions_[i].source, *definitions_[i].definition,
+                      static_cast<int>(i) + 1);
     }
   }
 
@@ -303,7 +340,8 @@ class Compiler {
     if (diagnostics_.size() != before) return;
     for (std::size_t i = 0; i < definition.roles.size(); ++i) {
       if (!lowering.RoleUsed(i)) {
-        Complain(source, definition.roles[i].place, "the role '" + definition.roles[i].name + "' is not used",
+        Complain(source, definition.roles[i].place,
+                 "the role '" + definition.roles[i].name + "' is not used",
                  "an event says something about each of its roles; leave this one out or use it");
       }
     }
@@ -333,7 +371,8 @@ class Compiler {
         const int target = rule.references[step.next++].rule;
         if (marks[target] == Mark::kOpen) {
           std::vector<int> circle;
-          for (auto link = path.rbegin(); circle.empty() || circle.back() != target; ++link) circle.push_back(link->rule);
+          for (auto link = path.rbegin(); circle.empty() || circle.back() != target; ++link)
+            circle.push_back(link->rule);
           return ComplainCycle({circle.rbegin(), circle.rend()});
         }
         if (marks[target] == Mark::kNew) path.push_back({target});
@@ -341,7 +380,8 @@ class Compiler {
     }
   }
 
-  // Rules that each use the next one, and the last one the first; those made for an `any` are not told.
+  // Rules that each use the next one, and the last one the first; those made for an `any` are not
+  // told.
   void ComplainCycle(std::vector<int> circle) {
     std::erase_if(circle, [&](int rule) { return program_.events[rule].hidden; });
     const Rule& first = program_.events[circle.front()];
@@ -350,7 +390,8 @@ class Compiler {
       hint += (i == 0 ? "" : ", ") + program_.events[circle[i]].name + " uses " +
               program_.events[circle[(i + 1) % circle.size()]].name;
     }
-    Complain(*definitions_[circle.front() - 1].source, first.place, "'" + first.name + "' refers to itself",
+    Complain(*definitions_[circle.front() - 1].source, first.place,
+             "'" + first.name + "' refers to itself",
              hint.empty() ? "a rule may only use rules that do not use it" : hint);
   }
 
@@ -358,23 +399,27 @@ class Compiler {
   void WarnOfUnused() {
     const Source& own = sources_.back();
     const auto warn = [&](Place place, std::string message, std::string hint) {
-      Diagnostic warning = DiagnosticAt(own.text.file, own.text.text, place, std::move(message), std::move(hint));
+      Diagnostic warning =
+          DiagnosticAt(own.text.file, own.text.text, place, std::move(message), std::move(hint));
       warning.is_warning = true;
       warnings_.push_back(std::move(warning));
     };
     for (const ast::Param& param : own.file.params) {
       if (symbols_.used_params.contains(symbols_.params.find(param.name)->second)) continue;
-      warn(param.place, "the parameter '" + param.name + "' is not used", "use it, or leave it out");
+      warn(param.place, "the parameter '" + param.name + "' is not used",
+           "use it, or leave it out");
     }
     for (const ast::Define& define : own.file.defines) {
       if (symbols_.used_defines.contains(define.name)) continue;
-      warn(define.place, "the definition '" + define.name + "' is not used", "use it, or leave it out");
+      warn(define.place, "the definition '" + define.name + "' is not used",
+           "use it, or leave it out");
     }
     std::vector<bool> reached(program_.events.size());
     for (auto rule = program_.schedule.rbegin(); rule != program_.schedule.rend(); ++rule) {
       if (!reached[*rule] && !program_.events[*rule].printed) continue;
       reached[*rule] = true;
-      for (const Reference& reference : program_.events[*rule].references) reached[reference.rule] = true;
+      for (const Reference& reference : program_.events[*rule].references)
+        reached[reference.rule] = true;
     }
     for (const Definition& definition : own.file.definitions) {
       if (reached[symbols_.rules.find(definition.name)->second]) continue;
@@ -400,12 +445,13 @@ class Compiler {
 
 }  // namespace
 
-CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides) {
+CompileResult Compile(const GrammarText& grammar, const Includer& includer,
+                      const Overrides& overrides) {
   return Compile(grammar, includer, overrides, {});
 }
 
-CompileResult Compile(const GrammarText& grammar, const Includer& includer, const Overrides& overrides,
-                      const std::vector<std::string>& known) {
+CompileResult Compile(const GrammarText& grammar, const Includer& includer,
+                      const Overrides& overrides, const std::vector<std::string>& known) {
   return Compiler(grammar, includer, overrides, known).Run();
 }
 

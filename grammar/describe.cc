@@ -35,7 +35,10 @@ std::optional<Edge> EdgeOf(const Program& program, const Rule& rule, int index) 
 class Waits {
  public:
   explicit Waits(const Program& program)
-      : program_(program), end_(program.events.size()), truth_(program.events.size()), settled_(program.events.size()) {
+      : program_(program),
+        end_(program.events.size()),
+        truth_(program.events.size()),
+        settled_(program.events.size()) {
     for (const int rule : program.schedule) Work(rule);
   }
   const Wait& OfEnd(int rule) const { return end_[rule]; }
@@ -50,20 +53,25 @@ class Waits {
       end.until_end_of.insert(program_.events[rule.references[rule.confirmed_within].rule].name);
     }
     if (rule.form == Form::kUntilSince) {
-      if (const auto edge = EdgeOf(program_, rule, rule.first)) settled_[index] = Settled{*edge, end};
+      if (const auto edge = EdgeOf(program_, rule, rule.first))
+        settled_[index] = Settled{*edge, end};
     } else if (rule.form == Form::kRestOf) {
-      if (const Settled* whole = SettledBy(rule.references[rule.first])) settled_[index] = Settled{whole->edge, WaitOf(rule, whole->edge)};
+      if (const Settled* whole = SettledBy(rule.references[rule.first]))
+        settled_[index] = Settled{whole->edge, WaitOf(rule, whole->edge)};
     }
-    // The truth at a frame may have to wait for more than the end's decision: see engine_events.cc, UpdateKnown.
+    // The truth at a frame may have to wait for more than the end's decision: see engine_events.cc,
+    // UpdateKnown.
     Wait& truth = truth_[index];
     truth = end;
     if (settling) Include(truth, WaitOf(rule, std::nullopt));
     truth.seconds += rule.lasting_s + rule.back_s + std::max(rule.within_s, 0.0);
-    const bool decided_at_its_end = rule.or_drop || (rule.requirement != kNone && rule.form != Form::kUntilSince);
+    const bool decided_at_its_end =
+        rule.or_drop || (rule.requirement != kNone && rule.form != Form::kUntilSince);
     if (decided_at_its_end) truth.until_end_of.insert(rule.name);
   }
 
-  // `until A since F` is not known before an A comes, or the time to look back is over; where an A comes, all before it is.
+  // `until A since F` is not known before an A comes, or the time to look back is over; where an A
+  // comes, all before it is.
   struct Settled {
     Edge edge;  // the A
     Wait wait;  // from there on
@@ -87,14 +95,17 @@ class Waits {
     return settled != nullptr ? std::optional(settled->edge) : std::nullopt;
   }
 
-  // For all that the rule asks about. A composition waits for its parts' ends to be decided, every other rule for truths.
+  // For all that the rule asks about. A composition waits for its parts' ends to be decided, every
+  // other rule for truths.
   Wait WaitOf(const Rule& rule, const std::optional<Edge>& settling) const {
     Wait wait;
     const bool composes = rule.form == Form::kCompose;
     for (const Reference& reference : rule.references) {
       const Settled* settled = settling ? SettledBy(reference) : nullptr;
       const bool is_settled = settled != nullptr && settled->edge == *settling;
-      Include(wait, is_settled ? settled->wait : composes ? end_[reference.rule] : truth_[reference.rule]);
+      Include(wait, is_settled ? settled->wait
+                    : composes ? end_[reference.rule]
+                               : truth_[reference.rule]);
       if (composes) wait.until_end_of.insert(program_.events[reference.rule].name);
     }
     wait.seconds += rule.bridging_s + rule.looks_around_s;
@@ -110,7 +121,8 @@ class Waits {
 std::string Watched(const Program& program, const Rule& rule) {
   if (rule.guard == kNone) {
     std::string text;
-    for (const RuleRole& role : rule.roles) text += (text.empty() ? "every " : " and every ") + role.class_name;
+    for (const RuleRole& role : rule.roles)
+      text += (text.empty() ? "every " : " and every ") + role.class_name;
     return text;
   }
   const Rule& guard = program.events[rule.references[rule.guard].rule];
@@ -119,21 +131,24 @@ std::string Watched(const Program& program, const Rule& rule) {
 
 // A composition remembers so many intervals of each part.
 std::size_t BytesPerBinding(const Rule& rule) {
-  return sizeof(Lane) + rule.references.size() * sizeof(int) + rule.anchors.size() * 3 * sizeof(double) +
+  return sizeof(Lane) + rule.references.size() * sizeof(int) +
+         rule.anchors.size() * 3 * sizeof(double) +
          rule.composition.parts.size() * kRememberedSpans * sizeof(Span);
 }
 
 std::string Head(const Rule& rule) {
   std::string text = rule.symmetric ? "symmetric event " : rule.printed ? "event " : "condition ";
   text += rule.name + "(";
-  for (const RuleRole& role : rule.roles) text += (&role == &rule.roles.front() ? "" : ", ") + role.name + ": " + role.class_name;
+  for (const RuleRole& role : rule.roles)
+    text += (&role == &rule.roles.front() ? "" : ", ") + role.name + ": " + role.class_name;
   return text + ")";
 }
 
 // "at most 0.1 s after it and contact have ended"
 std::string Text(const Wait& wait) {
   const double seconds = std::round(wait.seconds * 1e6) / 1e6;  // a sum's last digits are of no use
-  const std::string when = seconds > 0 ? "at most " + QuantityText({seconds, kSeconds}) + " after " : "when ";
+  const std::string when =
+      seconds > 0 ? "at most " + QuantityText({seconds, kSeconds}) + " after " : "when ";
   std::string who = "it";
   for (const std::string& name : wait.until_end_of) {
     who += (name == *wait.until_end_of.rbegin() ? " and " : ", ") + name;
@@ -148,11 +163,14 @@ std::string ParamsText(const std::vector<ProgramParam>& params) {
     name_width = std::max(name_width, param.name.size());
     value_width = std::max(value_width, QuantityText(param.value).size());
   }
-  const auto padded = [](std::string text, std::size_t width) { return text.append(width - text.size(), ' '); };
+  const auto padded = [](std::string text, std::size_t width) {
+    return text.append(width - text.size(), ' ');
+  };
   std::string text;
   for (const ProgramParam& param : params) {
-    text += "param " + padded(param.name, name_width) + " = " + padded(QuantityText(param.value), value_width) + "  # " +
-            param.file + ":" + std::to_string(param.place.line) + (param.overridden ? ", overridden" : "") + "\n";
+    text += "param " + padded(param.name, name_width) + " = " +
+            padded(QuantityText(param.value), value_width) + "  # " + param.file + ":" +
+            std::to_string(param.place.line) + (param.overridden ? ", overridden" : "") + "\n";
   }
   return text;
 }
@@ -182,16 +200,20 @@ GrammarDescription Describe(const Program& program) {
 std::string Text(const GrammarDescription& description) {
   std::string text = "grammar " + description.name + "\n\n";
   for (const RuleDescription& rule : description.rules) {
-    text += rule.head + "\n    decided: " + Text(rule.latency) + "; watched: " + rule.watched + "\n    memory: at most " +
-            std::to_string(rule.bytes_per_binding) + " bytes per binding";
-    if (rule.bytes_per_interval > 0) text += ", and " + std::to_string(rule.bytes_per_interval) + " for each of its recent intervals";
+    text += rule.head + "\n    decided: " + Text(rule.latency) + "; watched: " + rule.watched +
+            "\n    memory: at most " + std::to_string(rule.bytes_per_binding) +
+            " bytes per binding";
+    if (rule.bytes_per_interval > 0)
+      text +=
+          ", and " + std::to_string(rule.bytes_per_interval) + " for each of its recent intervals";
     text += "\n";
   }
   text += "\n";
   text += ParamsText(description.params);
   text += "\nmemory: poses of the last " + QuantityText({description.history_s, kSeconds}) + ", " +
           std::to_string(description.bytes_per_pose) + " bytes per frame and moving entity, " +
-          std::to_string(description.bytes_per_feeler) + " per frame and feeler of a hand; intervals are recent as long as " +
+          std::to_string(description.bytes_per_feeler) +
+          " per frame and feeler of a hand; intervals are recent as long as " +
           "their poses are kept\n";
   return text;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a compiled grammar recognises and what it costs: its events and parameters, how late each event can be decided,
-// and how much of the past is kept.
-// Tested by tests/grammar/describe_test.cc
+// What a compiled grammar recognises and what it costs: its events and parameters, how late each
+// event can be decided, and how much of the past is kept. Tested by tests/grammar/describe_test.cc
 #pragma once
 
 #include <set>
@@ -12,7 +11,8 @@
 
 namespace prehend::grammar {
 
-/// An upper bound for something that is waited for: this long, and until the named events have ended.
+/// An upper bound for something that is waited for: this long, and until the named events have
+/// ended.
 struct Wait {
   double seconds = 0;
   std::set<std::string> until_end_of;
@@ -21,7 +21,7 @@ struct Wait {
 struct RuleDescription {
   std::string head;  ///< "event grasping(hand: Hand, object: Thing)"
   bool printed = false;
-  Wait latency;      ///< from an interval's end to its decision, besides a frame for each of the waits
+  Wait latency;  ///< from an interval's end to its decision, besides a frame for each of the waits
   std::string watched;  ///< which bindings cost time: "pairs that touch", "every hand and object"
   std::size_t bytes_per_binding = 0;   ///< at most, besides its intervals
   std::size_t bytes_per_interval = 0;  ///< kept for as long as poses are, if others ask for them
@@ -31,9 +31,9 @@ struct GrammarDescription {
   std::string name;
   std::vector<RuleDescription> rules;  ///< in the order of the files; no hidden ones
   std::vector<ProgramParam> params;
-  double history_s = 0;                ///< how long poses are kept
-  std::size_t bytes_per_pose = 0;      ///< kept per frame and entity that is awake
-  std::size_t bytes_per_feeler = 0;    ///< kept per frame and feeler of a hand
+  double history_s = 0;              ///< how long poses are kept
+  std::size_t bytes_per_pose = 0;    ///< kept per frame and entity that is awake
+  std::size_t bytes_per_feeler = 0;  ///< kept per frame and feeler of a hand
 };
 
 GrammarDescription Describe(const Program& program);

@@ -8,7 +8,8 @@
 namespace prehend::grammar {
 namespace {
 
-// Longer lines are cut to a window around the caret, so that an error in a one-line 50 MB file stays readable.
+// Longer lines are cut to a window around the caret, so that an error in a one-line 50 MB file
+// stays readable.
 constexpr std::size_t kMaxShownBytes = 120;
 constexpr std::size_t kShownBeforeCaret = 60;
 
@@ -24,7 +25,8 @@ std::string Printable(std::string_view text) {
 
 bool IsContinuationByte(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
 
-// The source line and the caret line below it. Tabs are repeated, so the caret stands right at any tab width.
+// The source line and the caret line below it. Tabs are repeated, so the caret stands right at any
+// tab width.
 std::string CaretBlock(std::string_view line, int column) {
   const std::size_t caret = std::min<std::size_t>(column > 0 ? column - 1 : 0, line.size());
   std::size_t first = 0;
@@ -33,7 +35,8 @@ std::string CaretBlock(std::string_view line, int column) {
   const bool cut_end = line.size() - first > kMaxShownBytes;
   const std::string lead = first > 0 ? "..." : "";
 
-  std::string block = "  " + lead + Printable(line.substr(first, kMaxShownBytes)) + (cut_end ? "..." : "") + "\n";
+  std::string block =
+      "  " + lead + Printable(line.substr(first, kMaxShownBytes)) + (cut_end ? "..." : "") + "\n";
   block += "  " + std::string(lead.size(), ' ');
   for (const char c : line.substr(first, caret - first)) {
     if (!IsContinuationByte(c)) block += c == '\t' ? '\t' : ' ';
@@ -54,7 +57,8 @@ std::string_view LineOf(std::string_view text, int line) {
   return rest;
 }
 
-// Optimal string alignment distance by rows: Levenshtein's, with two swapped neighbours counted as one mistake.
+// Optimal string alignment distance by rows: Levenshtein's, with two swapped neighbours counted as
+// one mistake.
 std::size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last, last, row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
@@ -76,10 +80,12 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
 std::string Format(const Diagnostic& diagnostic) {
   std::string text = diagnostic.file;
   if (diagnostic.place.line > 0) {
-    text += ":" + std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column);
+    text +=
+        ":" + std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column);
   }
   text += (diagnostic.is_warning ? ": warning: " : ": error: ") + diagnostic.message + "\n";
-  if (!diagnostic.source_line.empty()) text += CaretBlock(diagnostic.source_line, diagnostic.place.column);
+  if (!diagnostic.source_line.empty())
+    text += CaretBlock(diagnostic.source_line, diagnostic.place.column);
   if (!diagnostic.hint.empty()) text += "  hint: " + diagnostic.hint + "\n";
   return text;
 }
@@ -90,8 +96,8 @@ std::string Format(const Diagnostics& diagnostics) {
   return text;
 }
 
-Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place place, std::string message,
-                        std::string hint) {
+Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place place,
+                        std::string message, std::string hint) {
   return {.file = std::string(file),
           .place = place,
           .message = std::move(message),

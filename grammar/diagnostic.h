@@ -10,7 +10,8 @@
 
 namespace prehend::grammar {
 
-/// A place in a text; line and column count from 1, column in bytes. Line 0 means "the file as a whole".
+/// A place in a text; line and column count from 1, column in bytes. Line 0 means "the file as a
+/// whole".
 struct Place {
   int line = 0;
   int column = 0;
@@ -27,19 +28,19 @@ struct Diagnostic {
 
 using Diagnostics = std::vector<Diagnostic>;
 
-/// `file:line:column: error: message` (or `warning:`), then the source line and a caret below it (tabs kept, very long lines
-/// cut around the caret), then the hint. Ends with a newline.
+/// `file:line:column: error: message` (or `warning:`), then the source line and a caret below it
+/// (tabs kept, very long lines cut around the caret), then the hint. Ends with a newline.
 std::string Format(const Diagnostic& diagnostic);
 
 /// All of them, one after another.
 std::string Format(const Diagnostics& diagnostics);
 
 /// Builds a diagnostic at a place of `text`, filling in the source line.
-Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place place, std::string message,
-                        std::string hint = {});
+Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place place,
+                        std::string message, std::string hint = {});
 
-/// The candidate with the smallest edit distance to `name`, or "" when none is near enough to be worth
-/// suggesting (distance above a third of the longer name's length).
+/// The candidate with the smallest edit distance to `name`, or "" when none is near enough to be
+/// worth suggesting (distance above a third of the longer name's length).
 std::string NearestName(std::string_view name, const std::vector<std::string>& candidates);
 
 }  // namespace prehend::grammar

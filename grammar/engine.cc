@@ -29,9 +29,10 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
                            .back = history_.AtMostTicks(rule.back_s),
                            .within = rule.within_s < 0 ? -1 : history_.AtMostTicks(rule.within_s)});
     // A requirement or an attribute is asked for where the run ended, when its gap is too long.
-    const double waits_s = rule.requirement == kNone && rule.attributes.empty() ? 0 : rule.bridging_s;
-    longest_look_back_ =
-        std::max(longest_look_back_, history_.AtLeastTicks(rule.back_s + rule.looks_around_s + waits_s));
+    const double waits_s =
+        rule.requirement == kNone && rule.attributes.empty() ? 0 : rule.bridging_s;
+    longest_look_back_ = std::max(
+        longest_look_back_, history_.AtLeastTicks(rule.back_s + rule.looks_around_s + waits_s));
   }
   lanes_.BindUnguarded();
   for (int i = 0; i < lanes_.size(); ++i) Wake(i);
@@ -54,12 +55,16 @@ void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
 }
 
 // What is not open does not begin while its guard rests, whatever else happens.
-bool Engine::MayStir(const Lane& lane) const { return lane.open || (MayBegin(lane) && !lanes_.GuardRests(lane)); }
+bool Engine::MayStir(const Lane& lane) const {
+  return lane.open || (MayBegin(lane) && !lanes_.GuardRests(lane));
+}
 
-// Something must be measured where this lane begins, and it is known. At the end of the episode touches are over.
+// Something must be measured where this lane begins, and it is known. At the end of the episode
+// touches are over.
 bool Engine::CanMeasure(const Lane& lane) const {
   const MeasuredPart& part = RuleOf(lane).measured;
-  return !part.is_empty() && !finishing_ && (part.touch == kNone || lane.references[part.touch] != kNone);
+  return !part.is_empty() && !finishing_ &&
+         (part.touch == kNone || lane.references[part.touch] != kNone);
 }
 
 // What must be so of a touch and of a grip is so now.
@@ -68,11 +73,12 @@ bool Engine::IsMeasured(const Lane& lane) const {
   const int hand = part.hand == kNone ? kNobody : lane.entities[part.hand];
   if (part.touch == kNone) return part.grip.Fit(grips_[hand]);
   const Lane& touch = lanes_[lane.references[part.touch]];
-  return IsMeasured(part, hand, touch, part.first != kNone && touch.entities[0] != lane.entities[part.first]);
+  return IsMeasured(part, hand, touch,
+                    part.first != kNone && touch.entities[0] != lane.entities[part.first]);
 }
 
-// A resting lane would find what it found before: what must be measured for it to begin is not, or nothing else matters
-// and that is as it was.
+// A resting lane would find what it found before: what must be measured for it to begin is not, or
+// nothing else matters and that is as it was.
 bool Engine::SaysTheSame(const Lane& lane) const {
   if (!CanMeasure(lane)) return false;
   if (lane.open) return RuleOf(lane).measured.whole && IsMeasured(lane) == !lane.in_gap;
@@ -85,7 +91,8 @@ bool Engine::MomentMayCome(const Lane& lane) const {
   const int event = lane.references[rule.opened_by];
   if (event == kNone) return true;  // nobody would wake this lane, as it has not asked yet
   const FrameNumber now = history_.now();
-  return (rule.opened_by_end ? lanes_.EndsAt(event, now) : lanes_.BeginsAt(event, now)) != Kleene::kFalse;
+  return (rule.opened_by_end ? lanes_.EndsAt(event, now) : lanes_.BeginsAt(event, now)) !=
+         Kleene::kFalse;
 }
 
 // The truth of this lane is another one than in the frame before.
@@ -105,7 +112,7 @@ void Engine::Tell(Lane& lane) {
       if (watching.open || watcher.guarded || !lanes_.GuardRests(watching)) Wake(watcher.lane);
     } else if (!lane.open && watcher.guarded) {
       // The guard has held up to the frame before; a moment here may still be told of.
-      watcher.guarded_begin && lane.told == Kleene::kFalse ? RestOn(watching) : Wake(watcher.lane);
+      watcher.guarded_begin&& lane.told == Kleene::kFalse ? RestOn(watching) : Wake(watcher.lane);
     }
   }
 }
@@ -115,7 +122,8 @@ void Engine::TellIfChanged(Lane& lane) {
   const FrameNumber now = history_.now();
   const Kleene truth = lanes_.TruthAt(lane.index, now);
   const bool at_an_edge = (lane.open && lane.begin.frame == now) ||
-                          (!lane.past.empty() && (lane.past.back().end.frame == now || lane.past.back().begin.frame == now));
+                          (!lane.past.empty() && (lane.past.back().end.frame == now ||
+                                                  lane.past.back().begin.frame == now));
   if (truth == lane.told && !at_an_edge) return;
   lane.told = truth;
   Tell(lane);
@@ -134,26 +142,33 @@ void Engine::RingAlarms() {
   }
 }
 
-// Every frame is decided, and the next one says the same unless something changes or an alarm rings.
-// A form that is not listed here never rests while it is open.
+// Every frame is decided, and the next one says the same unless something changes or an alarm
+// rings. A form that is not listed here never rests while it is open.
 bool Engine::MayRest(const Lane& lane) {
   const Rule& rule = RuleOf(lane);
   if (lane.next <= history_.now() || !lane.pending.empty() || evaluator_.restless()) return false;
   switch (rule.form) {
-    case Form::kCompose: return true;
+    case Form::kCompose:
+      return true;
     case Form::kFromTo:
-      // What must not come may still come at the deadline; what should have come is too late after it.
+      // What must not come may still come at the deadline; what should have come is too late after
+      // it.
       if (lane.open && TicksOf(lane).within >= 0) {
         WakeAt(lane.begin.tick + TicksOf(lane).within + (rule.absence ? 0 : 1), lane.index);
       }
       return true;
-    case Form::kRestOf: return true;
-    case Form::kUntilSince: return !rule.referenced || lane.approach_from > history_.now();
+    case Form::kRestOf:
+      return true;
+    case Form::kUntilSince:
+      return !rule.referenced || lane.approach_from > history_.now();
     case Form::kWhile:
-    case Form::kAny: break;
-    default: return !lane.open && lanes_.GuardRests(lane);
+    case Form::kAny:
+      break;
+    default:
+      return !lane.open && lanes_.GuardRests(lane);
   }
-  const bool time_makes_certain = rule.referenced && rule.requirement == kNone && rule.confirmed_by == kNone;
+  const bool time_makes_certain =
+      rule.referenced && rule.requirement == kNone && rule.confirmed_by == kNone;
   if (lane.in_gap) {
     WakeAt(lane.gap.tick + TicksOf(lane).bridging, lane.index);
   } else if (lane.open && !lane.certain && time_makes_certain) {
@@ -182,10 +197,12 @@ void Engine::StepRule(int rule) {
       Rest(lane);
       return true;
     }
-    // What ended at a gap may be asked for what it was like there when it is known that nothing bridges the gap.
+    // What ended at a gap may be asked for what it was like there when it is known that nothing
+    // bridges the gap.
     const FrameNumber needed = lane.in_gap ? lane.gap.frame : lane.next;
     oldest_needed_ = std::min(oldest_needed_, needed);
-    for (const Pending& pending : lane.pending) oldest_needed_ = std::min(oldest_needed_, pending.next);
+    for (const Pending& pending : lane.pending)
+      oldest_needed_ = std::min(oldest_needed_, pending.next);
     if (RuleOf(lane).uses_looks) oldest_look_needed_ = std::min(oldest_look_needed_, needed);
     return false;
   });
@@ -232,20 +249,25 @@ void Engine::FreeOrRetire(std::vector<int>& candidates) {
 bool Engine::CanBeFreed(const Lane& lane) const {
   const Form form = RuleOf(lane).form;
   if (form != Form::kTouching && !lanes_.GuardRests(lane)) return false;
-  // Compositions remember; and whoever asks about this lane must be woken by it, unless it is made to be.
+  // Compositions remember; and whoever asks about this lane must be woken by it, unless it is made
+  // to be.
   const auto remembers = [](const std::vector<Span>& spans) { return !spans.empty(); };
-  const auto depends = [&](const Watcher& watcher) { return RuleOf(lanes_[watcher.lane]).form != Form::kAny; };
+  const auto depends = [&](const Watcher& watcher) {
+    return RuleOf(lanes_[watcher.lane]).form != Form::kAny;
+  };
   return std::none_of(lane.parts.begin(), lane.parts.end(), remembers) && !MayOverlap(lane) &&
          std::none_of(lane.watchers.begin(), lane.watchers.end(), depends);
 }
 
-// A first part is on its way that may begin before the end of the last composition, which has to be remembered then.
+// A first part is on its way that may begin before the end of the last composition, which has to be
+// remembered then.
 bool Engine::MayOverlap(const Lane& lane) const {
   if (RuleOf(lane).form != Form::kCompose) return false;
   const int index = lanes_.Find(lane, RuleOf(lane).composition.parts.front());
   if (index == kNone) return false;
   const Lane& first = lanes_[index];
-  return first.open || first.awake || !first.pending.empty() || RuleOf(first).form == Form::kCompose;
+  return first.open || first.awake || !first.pending.empty() ||
+         RuleOf(first).form == Form::kCompose;
 }
 
 }  // namespace prehend::grammar

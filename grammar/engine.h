@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The online engine behind Monitor.
 //
-// Needs: the same intervals as the meaning table in docs/grammar-language.md gives for the whole episode, each as
-// soon as no future can change it.
-// Algorithm: rules are stepped in the order of Program::schedule, each awake lane frame by frame, but only up to the
-// first frame where its condition is not known yet; Lane::known says up to where a lane's own truth is final. So a
-// lane that waits (a gap that may be bridged, an approach that may end in a landing) delays only the lanes that ask
-// about just those frames.
-// A lane rests as soon as its newest frame is decided and nothing but a change can decide otherwise: what it asks about
-// wakes it. What time alone changes is either an alarm (the end of a gap, the shortest duration) or, where a value
-// moves by itself (Evaluator::restless), keeps the lane awake. So a frame costs as much as changes in it.
-// Data structures: lanes.h (state per binding), history.h (the frames that some lane may still ask for).
+// Needs: the same intervals as the meaning table in docs/grammar-language.md gives for the whole
+// episode, each as soon as no future can change it. Algorithm: rules are stepped in the order of
+// Program::schedule, each awake lane frame by frame, but only up to the first frame where its
+// condition is not known yet; Lane::known says up to where a lane's own truth is final. So a lane
+// that waits (a gap that may be bridged, an approach that may end in a landing) delays only the
+// lanes that ask about just those frames. A lane rests as soon as its newest frame is decided and
+// nothing but a change can decide otherwise: what it asks about wakes it. What time alone changes
+// is either an alarm (the end of a gap, the shortest duration) or, where a value moves by itself
+// (Evaluator::restless), keeps the lane awake. So a frame costs as much as changes in it. Data
+// structures: lanes.h (state per binding), history.h (the frames that some lane may still ask for).
 // Tested by tests/grammar/monitor_test.cc and the corpus in tests/grammar/corpus/
 #pragma once
 
@@ -39,7 +39,8 @@ class Engine {
   void Finish(Tick end, std::vector<Event>& out);
   int lanes_in_use() const { return lanes_.in_use(); }
 
-  // For hindsight.h. From now on nothing is forgotten, and what becomes of each run is noted. Before the first frame.
+  // For hindsight.h. From now on nothing is forgotten, and what becomes of each run is noted.
+  // Before the first frame.
   void Remember(Fates& fates) {
     fates_ = &fates;
     recalls_touches_ = keeps_touches_ = true;
@@ -97,16 +98,19 @@ class Engine {
   bool MayStir(const Lane& lane) const;
   bool CanMeasure(const Lane& lane) const;
   bool IsMeasured(const Lane& lane) const;
-  /// Likewise, of a grip, if there is one, and a touch, which names the two the other way round than the rule if `turned`.
+  /// Likewise, of a grip, if there is one, and a touch, which names the two the other way round
+  /// than the rule if `turned`.
   bool IsMeasured(const MeasuredPart& part, int hand, const Lane& touch, bool turned) const {
     if (hand != kNobody && !part.grip.Fit(grips_[hand])) return false;
     if (!touch.open) return !part.must_touch && part.press[0].Fit(thresholds_.OfNoTouch());
     return part.press[turned ? 1 : 0].Fit(touch.beyond);
   }
   bool SaysTheSame(const Lane& lane) const;
-  /// What begins with a moment does not begin at others. That moment may be told of later in this frame; whoever tells
-  /// of it asks again.
-  bool MayBegin(const Lane& lane) const { return lane.moment >= history_.now() && MomentMayCome(lane); }
+  /// What begins with a moment does not begin at others. That moment may be told of later in this
+  /// frame; whoever tells of it asks again.
+  bool MayBegin(const Lane& lane) const {
+    return lane.moment >= history_.now() && MomentMayCome(lane);
+  }
   bool MomentMayCome(const Lane& lane) const;
   void Tell(Lane& lane);
   void TellIfChanged(Lane& lane);
@@ -143,13 +147,16 @@ class Engine {
   bool StepUntil(Lane& lane, FrameNumber frame);
 
   WalkBack ApproachBegin(Lane& lane, FrameNumber end) const;
-  std::optional<double> ApproachSpeed(Lane& lane, FrameNumber frame, FrameNumber end, double way) const;
+  std::optional<double> ApproachSpeed(Lane& lane, FrameNumber frame, FrameNumber end,
+                                      double way) const;
 
   // From a run to an event.
   [[nodiscard]] bool Open(Lane& lane, FrameNumber frame);
   void Begin(Lane& lane, FrameNumber frame);
   int StyleAt(const Lane& lane, FrameNumber frame) const {
-    return RuleOf(lane).style_role == kNone ? kNobody : StyleOfHand(lane.entities[RuleOf(lane).style_role], frame);
+    return RuleOf(lane).style_role == kNone
+               ? kNobody
+               : StyleOfHand(lane.entities[RuleOf(lane).style_role], frame);
   }
   int StyleOfHand(int hand, FrameNumber frame) const;
   bool Close(Lane& lane, Moment end, bool open_end = false);
@@ -157,13 +164,17 @@ class Engine {
   void ResolvePending(Lane& lane);
   void Emit(Lane& lane, const Pending& finished);
   void Keep(Lane& lane, const Span& span);
-  Tick DecidedAt(const Lane& lane, const Span& span) const { return RuleOf(lane).absence ? DeadlineOf(span) : decided_; }
+  Tick DecidedAt(const Lane& lane, const Span& span) const {
+    return RuleOf(lane).absence ? DeadlineOf(span) : decided_;
+  }
   Tick DeadlineOf(const Span& span) const;
   void UpdateKnown(Lane& lane);
   bool RunIsCertain(const Lane& lane) const;
   void FinishLane(Lane& lane, Moment end);
-  void Note(const Lane& lane, Fate::Kind kind, const Span& span, FrameNumber cause = kNever, const WalkBack& walk = {}) {
-    if (fates_ != nullptr) fates_->push_back({kind, lane.index, span, cause, DecidedAt(lane, span), walk});
+  void Note(const Lane& lane, Fate::Kind kind, const Span& span, FrameNumber cause = kNever,
+            const WalkBack& walk = {}) {
+    if (fates_ != nullptr)
+      fates_->push_back({kind, lane.index, span, cause, DecidedAt(lane, span), walk});
   }
 
   // Compositions are told of each finished interval of their parts.
@@ -183,20 +194,21 @@ class Engine {
   Evaluator evaluator_;
   std::vector<RuleTicks> rule_ticks_;
   Thresholds thresholds_;
-  bool recalls_touches_ = false;  // which thresholds they were beyond
-  bool keeps_touches_ = false;    // and all that they measured
+  bool recalls_touches_ = false;     // which thresholds they were beyond
+  bool keeps_touches_ = false;       // and all that they measured
   std::vector<ThresholdSet> grips_;  // by entity: what its grip is beyond now
   Tick longest_look_back_ = 0;
   std::vector<std::vector<int>> awake_;  // by rule
   std::vector<int> touching_;            // the pairs that touch now
-  std::vector<int> pressed_;             // the lanes of the touches that a frame tells of, kNone: there is none yet
-  std::vector<Alarm> alarms_;            // a heap, the next one first
-  Ring<Retiree> retirees_;               // in the order in which they came to rest
-  std::vector<int> scratch_;             // lanes; kept for its memory
-  std::vector<int> told_;                // likewise
-  FrameNumber oldest_needed_ = 0;        // of the awake lanes
+  std::vector<int>
+      pressed_;  // the lanes of the touches that a frame tells of, kNone: there is none yet
+  std::vector<Alarm> alarms_;      // a heap, the next one first
+  Ring<Retiree> retirees_;         // in the order in which they came to rest
+  std::vector<int> scratch_;       // lanes; kept for its memory
+  std::vector<int> told_;          // likewise
+  FrameNumber oldest_needed_ = 0;  // of the awake lanes
   FrameNumber oldest_look_needed_ = 0;
-  FrameNumber first_needed_ = 0;         // and what they can look back to
+  FrameNumber first_needed_ = 0;  // and what they can look back to
   FrameNumber first_look_needed_ = 0;
   bool finishing_ = false;
   Tick decided_ = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a run of frames to an event: minimum duration, requirement, confirmation, and what is known of it meanwhile.
+// From a run of frames to an event: minimum duration, requirement, confirmation, and what is known
+// of it meanwhile.
 #include <algorithm>
 
 #include "grammar/engine.h"
@@ -49,7 +50,8 @@ bool Engine::Conclude(Lane& lane, const Span& span) {
   Pending finished{.span = span, .style = lane.style, .next = span.end.frame};
   for (std::size_t i = 0; i < rule.attributes.size(); ++i) {
     const FrameNumber last = std::min(span.end.frame, history_.now());
-    const std::optional<double> value = evaluator_.Number(rule.attributes[i].node, {lane, last, last});
+    const std::optional<double> value =
+        evaluator_.Number(rule.attributes[i].node, {lane, last, last});
     if (!value) return false;
     finished.attributes[i] = *value;
   }
@@ -61,14 +63,16 @@ bool Engine::Conclude(Lane& lane, const Span& span) {
   return true;
 }
 
-// An interval is confirmed when the other event begins at or after its end while the episode has held all the time.
+// An interval is confirmed when the other event begins at or after its end while the episode has
+// held all the time.
 void Engine::ResolvePending(Lane& lane) {
   const Rule& rule = RuleOf(lane);
   std::erase_if(lane.pending, [&](Pending& pending) {
     for (; pending.next <= history_.now(); ++pending.next) {
       const Evaluator::View view{lane, pending.next};
       const Kleene within = evaluator_.Holds(rule.confirmed_within, view);
-      if (within == Kleene::kFalse) Note(lane, Fate::Kind::kUnconfirmed, pending.span, pending.next);
+      if (within == Kleene::kFalse)
+        Note(lane, Fate::Kind::kUnconfirmed, pending.span, pending.next);
       if (within == Kleene::kFalse) return true;
       const Kleene begins = evaluator_.Begins(rule.confirmed_by, view);
       if (And(within, begins) == Kleene::kTrue) {
@@ -104,7 +108,8 @@ void Engine::Keep(Lane& lane, const Span& span) {
   lane.past.PushBack() = span;
 }
 
-// A deadline that passes between two frames decides at once; the later frame only tells that time went on.
+// A deadline that passes between two frames decides at once; the later frame only tells that time
+// went on.
 Tick Engine::DeadlineOf(const Span& span) const {
   const FrameNumber before = finishing_ ? history_.now() : history_.now() - 1;
   const bool just_passed = before >= history_.first() && span.end.tick > history_.At(before).tick;
@@ -113,7 +118,8 @@ Tick Engine::DeadlineOf(const Span& span) const {
 
 bool Engine::RunIsCertain(const Lane& lane) const {
   const Rule& rule = RuleOf(lane);
-  if (rule.requirement != kNone || rule.confirmed_by != kNone || rule.or_drop || rule.within_s >= 0) return false;
+  if (rule.requirement != kNone || rule.confirmed_by != kNone || rule.or_drop || rule.within_s >= 0)
+    return false;
   const Tick earliest_end = lane.in_gap ? lane.gap.tick : history_.At(lane.next - 1).tick + 1;
   return earliest_end - lane.begin.tick >= TicksOf(lane).lasting;
 }
@@ -127,12 +133,14 @@ void Engine::UpdateKnown(Lane& lane) {
     lane.known = lane.certain ? certain_end : lane.begin.frame;
   }
   if (rule.form == Form::kUntilSince && rule.referenced && lane.next > history_.first()) {
-    // A later interval ends after the last frame seen and reaches back no further than its rule says.
+    // A later interval ends after the last frame seen and reaches back no further than its rule
+    // says.
     const Tick last = history_.At(lane.next - 1).tick;
     const FrameNumber reach = history_.FirstNotBefore(last + 1 - TicksOf(lane).back);
     lane.known = std::min(lane.next, std::max(lane.approach_from, reach));
   }
-  for (const Pending& pending : lane.pending) lane.known = std::min(lane.known, pending.span.begin.frame);
+  for (const Pending& pending : lane.pending)
+    lane.known = std::min(lane.known, pending.span.begin.frame);
 }
 
 // The last frames are decided, then what is open ends with the episode.
@@ -146,8 +154,10 @@ void Engine::FinishLane(Lane& lane, Moment end) {
   } else if (lane.open) {
     Note(lane, Fate::Kind::kUnfinished, {lane.begin, end});
   }
-  ResolvePending(lane);  // a gap that nothing bridges any more ends an interval that others may have confirmed
-  for (const Pending& pending : lane.pending) Note(lane, Fate::Kind::kUnconfirmed, pending.span, end.frame);
+  ResolvePending(
+      lane);  // a gap that nothing bridges any more ends an interval that others may have confirmed
+  for (const Pending& pending : lane.pending)
+    Note(lane, Fate::Kind::kUnconfirmed, pending.span, end.frame);
   lane.open = lane.in_gap = lane.awake = false;
   lane.pending.clear();
   lane.known = kNever;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How each form of rule looks at one frame. The meaning of the forms is the table in docs/grammar-language.md.
+// How each form of rule looks at one frame. The meaning of the forms is the table in
+// docs/grammar-language.md.
 #include <algorithm>
 
 #include "grammar/engine.h"
@@ -20,33 +21,50 @@ bool Engine::StepFrame(Lane& lane) {
   evaluator_.CalmDown();
   switch (RuleOf(lane).form) {
     case Form::kTouching:
-    case Form::kCompose: break;
-    case Form::kWhile: decided = StepWhile(lane, lane.next); break;
-    case Form::kAny: decided = StepAny(lane, lane.next); break;
+    case Form::kCompose:
+      break;
+    case Form::kWhile:
+      decided = StepWhile(lane, lane.next);
+      break;
+    case Form::kAny:
+      decided = StepAny(lane, lane.next);
+      break;
     case Form::kFromTo: {
       const bool was_open = lane.open;
       decided = StepFromTo(lane, lane.next);
-      if (was_open && !lane.open) evaluator_.StirUp();  // what may begin the next one was not asked for, so nothing of it would wake
+      if (was_open && !lane.open)
+        evaluator_.StirUp();  // what may begin the next one was not asked for, so nothing of it
+                              // would wake
       break;
     }
-    case Form::kUntilSince: decided = StepUntil(lane, lane.next); break;
-    case Form::kRestOf: decided = StepRest(lane, lane.next); break;
+    case Form::kUntilSince:
+      decided = StepUntil(lane, lane.next);
+      break;
+    case Form::kRestOf:
+      decided = StepRest(lane, lane.next);
+      break;
   }
   if (decided) ++lane.next;
   return decided;
 }
 
-// Most looks find everything as it was: the lane rests on, and there is nothing to tell and nothing to wait for. If
-// something is new, the frame may have been stepped, and the rest is left to StepLane.
+// Most looks find everything as it was: the lane rests on, and there is nothing to tell and nothing
+// to wait for. If something is new, the frame may have been stepped, and the rest is left to
+// StepLane.
 bool Engine::LooksTheSame(Lane& lane) {
   const Rule& rule = RuleOf(lane);
   const FrameNumber now = history_.now();
-  const auto settled = [&] { return lane.pending.empty() && (!lane.open || (lane.certain && !lane.in_gap)); };
-  const bool waits = rule.form == Form::kCompose || (rule.form == Form::kUntilSince && rule.referenced) || rule.within_s >= 0;
-  if (lane.next != now || waits || !settled() || (rule.referenced && lane.told != Known(lane.open))) return false;
+  const auto settled = [&] {
+    return lane.pending.empty() && (!lane.open || (lane.certain && !lane.in_gap));
+  };
+  const bool waits = rule.form == Form::kCompose ||
+                     (rule.form == Form::kUntilSince && rule.referenced) || rule.within_s >= 0;
+  if (lane.next != now || waits || !settled() || (rule.referenced && lane.told != Known(lane.open)))
+    return false;
   const bool was_open = lane.open;
   if (!StepFrame(lane) || evaluator_.restless()) return false;
-  return lane.open == was_open && settled() && (!lane.open || lane.begin.frame != now) && lane.last_end != now;
+  return lane.open == was_open && settled() && (!lane.open || lane.begin.frame != now) &&
+         lane.last_end != now;
 }
 
 bool Engine::StepWhile(Lane& lane, FrameNumber frame) {
@@ -76,7 +94,8 @@ bool Engine::StepRun(Lane& lane, FrameNumber frame, Kleene truth) {
   const Moment now = history_.At(frame);
   const Tick bridging = TicksOf(lane).bridging;
   if (truth == Kleene::kTrue) {
-    if (lane.open && lane.in_gap && now.tick - lane.gap.tick > bridging && !Close(lane, lane.gap)) return false;
+    if (lane.open && lane.in_gap && now.tick - lane.gap.tick > bridging && !Close(lane, lane.gap))
+      return false;
     if (!lane.open && !Open(lane, frame)) return false;
     lane.in_gap = false;
   } else if (lane.open) {
@@ -84,7 +103,8 @@ bool Engine::StepRun(Lane& lane, FrameNumber frame, Kleene truth) {
       lane.in_gap = true;
       lane.gap = now;
     }
-    // Later frames are later by a tick at least, so a gap of this length cannot be bridged any more.
+    // Later frames are later by a tick at least, so a gap of this length cannot be bridged any
+    // more.
     if (now.tick - lane.gap.tick >= bridging) return Close(lane, lane.gap);
   }
   return true;
@@ -101,16 +121,21 @@ bool Engine::StepRest(Lane& lane, FrameNumber frame) {
   const Kleene truth = And(whole, Not(others));
   if (truth == Kleene::kUnknown) return false;
   // Two wholes that abut are two, and so are their rests.
-  const bool new_whole = truth == Kleene::kTrue && evaluator_.Begins(rule.first, view) == Kleene::kTrue;
-  if (lane.open && (truth == Kleene::kFalse || new_whole) && !Close(lane, history_.At(frame))) return false;
+  const bool new_whole =
+      truth == Kleene::kTrue && evaluator_.Begins(rule.first, view) == Kleene::kTrue;
+  if (lane.open && (truth == Kleene::kFalse || new_whole) && !Close(lane, history_.At(frame)))
+    return false;
   return truth != Kleene::kTrue || lane.open || Open(lane, frame);
 }
 
 bool Engine::StepFromTo(Lane& lane, FrameNumber frame) {
   const Rule& rule = RuleOf(lane);
   const Evaluator::View view{lane, frame};
-  const auto during = [&] { return rule.during == kNone ? Kleene::kTrue : evaluator_.Truth(rule.during, view); };
-  if (lane.open && TicksOf(lane).within >= 0 && !MeetDeadline(lane, history_.At(frame))) return false;
+  const auto during = [&] {
+    return rule.during == kNone ? Kleene::kTrue : evaluator_.Truth(rule.during, view);
+  };
+  if (lane.open && TicksOf(lane).within >= 0 && !MeetDeadline(lane, history_.At(frame)))
+    return false;
   if (lane.open) {
     const Kleene closes = evaluator_.Truth(rule.second, view);
     if (closes == Kleene::kTrue && rule.absence) {
@@ -140,7 +165,8 @@ bool Engine::StepFromTo(Lane& lane, FrameNumber frame) {
   return closes == Kleene::kTrue || Open(lane, frame);
 }
 
-// What is open, but waits no longer: without the end that it waited for, it is dropped, or that is what it is about.
+// What is open, but waits no longer: without the end that it waited for, it is dropped, or that is
+// what it is about.
 bool Engine::MeetDeadline(Lane& lane, Moment now) {
   const Rule& rule = RuleOf(lane);
   const Tick deadline = lane.begin.tick + TicksOf(lane).within;
@@ -175,15 +201,18 @@ bool Engine::StepUntil(Lane& lane, FrameNumber frame) {
     lane.last_end = lane.approach_from = frame;
   }
   if (!rule.referenced) return true;
-  if (evaluator_.Truth(rule.second, {lane, frame}) == Kleene::kFalse) lane.approach_from = frame + 1;
-  while (lane.approach_from < frame && evaluator_.TooFarApart(rule.second, lane, lane.approach_from, frame)) {
+  if (evaluator_.Truth(rule.second, {lane, frame}) == Kleene::kFalse)
+    lane.approach_from = frame + 1;
+  while (lane.approach_from < frame &&
+         evaluator_.TooFarApart(rule.second, lane, lane.approach_from, frame)) {
     ++lane.approach_from;
   }
   return true;
 }
 
 // How fast it moves from this frame to the next, on which the signal falls by `way`.
-std::optional<double> Engine::ApproachSpeed(Lane& lane, FrameNumber frame, FrameNumber end, double way) const {
+std::optional<double> Engine::ApproachSpeed(Lane& lane, FrameNumber frame, FrameNumber end,
+                                            double way) const {
   const Rule& rule = RuleOf(lane);
   if (rule.motion != kNone) return evaluator_.Number(rule.motion, {lane, frame + 1, end});
   return way / history_.Seconds(history_.At(frame + 1).tick - history_.At(frame).tick);
@@ -200,8 +229,9 @@ WalkBack Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
                            : earliest == 0                           ? Stop::kFirstFrame
                                                                      : Stop::kTooFarBack;
   const WalkBack unknown{.begin = kNever};
-  FrameNumber begin = end;  // the earliest frame of movement; if pauses do not count, the earliest frame
-  FrameNumber turn = end;   // the movement that began from the farthest point
+  FrameNumber begin =
+      end;  // the earliest frame of movement; if pauses do not count, the earliest frame
+  FrameNumber turn = end;           // the movement that began from the farthest point
   std::optional<double> after = 0;  // the signal one frame later
   if (rule.approach != kNone) after = evaluator_.Number(rule.approach, {lane, end, end});
   if (!after) return unknown;
@@ -224,10 +254,12 @@ WalkBack Engine::ApproachBegin(Lane& lane, FrameNumber end) const {
     if (!speed) return unknown;
     if (*speed >= rule.speed) {
       last_progress = frame;
-    } else if (rule.idle_s >= 0 && history_.At(last_progress).tick - history_.At(frame).tick > TicksOf(lane).idle) {
+    } else if (rule.idle_s >= 0 &&
+               history_.At(last_progress).tick - history_.At(frame).tick > TicksOf(lane).idle) {
       return {begin, Stop::kIdle, last_progress};
     }
-    // The slow start of a movement belongs to it, as long as it is a tenth of the speed that counts.
+    // The slow start of a movement belongs to it, as long as it is a tenth of the speed that
+    // counts.
     const auto moves = [&](FrameNumber since) {
       return *speed >= rule.speed || (since == frame + 1 && *speed > rule.speed / 10);
     };

@@ -24,9 +24,12 @@ bool IsPosition(const Program& program, int node) {
   switch (program.nodes[node].op) {
     case Op::kPosition:
     case Op::kPositionOn:
-    case Op::kAhead: return true;
-    case Op::kAtEnd: return IsPosition(program, program.nodes[node].args[0]);
-    default: return false;
+    case Op::kAhead:
+      return true;
+    case Op::kAtEnd:
+      return IsPosition(program, program.nodes[node].args[0]);
+    default:
+      return false;
   }
 }
 
@@ -52,27 +55,38 @@ Kleene Evaluator::Truth(int index, const View& view) const {
       const Kleene left = Truth(node.args[0], view);
       return left == Kleene::kTrue ? left : Or(left, Truth(node.args[1], view));
     }
-    case Op::kNot: return Not(Truth(node.args[0], view));
-    case Op::kHolds: return Holds(node.slot, view);
+    case Op::kNot:
+      return Not(Truth(node.args[0], view));
+    case Op::kHolds:
+      return Holds(node.slot, view);
     case Op::kBegins:
-    case Op::kEnds: return Edge(node, view);
+    case Op::kEnds:
+      return Edge(node, view);
     case Op::kInSphere:
     case Op::kBoxInSphere:
     case Op::kInCylinder: {
       const std::optional<Reach> reach = ReachOf(node, view);
       return reach ? Known(reach->IsInside()) : Kleene::kUnknown;
     }
-    case Op::kInside: return Known(IsInside(node, view));
-    case Op::kPartOf: return Known(IsPartOf(cast_, Entity(node, view, 0), Entity(node, view, 1)));
-    case Op::kGazed: return Known(history_.Look(Entity(node, view, 0), view.frame).gazes_at == Entity(node, view, 1));
-    case Op::kSensorSet: return Known(SensorSet(node, view));
-    case Op::kIsA: return Known(lanes_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));
-    default: return Compare(node, view);
+    case Op::kInside:
+      return Known(IsInside(node, view));
+    case Op::kPartOf:
+      return Known(IsPartOf(cast_, Entity(node, view, 0), Entity(node, view, 1)));
+    case Op::kGazed:
+      return Known(history_.Look(Entity(node, view, 0), view.frame).gazes_at ==
+                   Entity(node, view, 1));
+    case Op::kSensorSet:
+      return Known(SensorSet(node, view));
+    case Op::kIsA:
+      return Known(lanes_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));
+    default:
+      return Compare(node, view);
   }
 }
 
 bool Evaluator::IsInside(const Node& node, const View& view) const {
-  const auto who = static_cast<std::size_t>(Entity(node, view, 0)), room = static_cast<std::size_t>(Entity(node, view, 1));
+  const auto who = static_cast<std::size_t>(Entity(node, view, 0)),
+             room = static_cast<std::size_t>(Entity(node, view, 1));
   const CastMember& of = cast_.entities[room];
   const EntityLook& look = history_.Look(static_cast<int>(who), view.frame);
   const EntityLook& at = history_.Look(static_cast<int>(room), view.frame);
@@ -96,21 +110,26 @@ Kleene Evaluator::AtAnInstant(Kleene truth) const {
   return truth;
 }
 
-// Of a reference: one of its intervals begins or ends here. Of any other condition: it changes here.
+// Of a reference: one of its intervals begins or ends here. Of any other condition: it changes
+// here.
 Kleene Evaluator::Edge(const Node& node, const View& view) const {
   const bool begins = node.op == Op::kBegins;
   const Node& arg = program_.nodes[node.args[0]];
   if (arg.op == Op::kHolds) {
     const int lane = lanes_.Resolve(view.lane, arg.slot);
-    return AtAnInstant(begins ? lanes_.BeginsAt(lane, view.frame) : lanes_.EndsAt(lane, view.frame));
+    return AtAnInstant(begins ? lanes_.BeginsAt(lane, view.frame)
+                              : lanes_.EndsAt(lane, view.frame));
   }
   const Kleene now = Truth(node.args[0], view);
   const Kleene wanted = begins ? now : Not(now);
   if (wanted == Kleene::kFalse) return wanted;
-  restless_ = restless_ || now == Kleene::kUnknown;  // even if there is no change here, the next frame looks back at it
+  restless_ =
+      restless_ ||
+      now == Kleene::kUnknown;  // even if there is no change here, the next frame looks back at it
   const bool is_first = view.frame == 0;
   Kleene before = Kleene::kFalse;
-  if (!is_first) before = Truth(node.args[0], {.lane = view.lane, .frame = view.frame - 1, .end = view.end});
+  if (!is_first)
+    before = Truth(node.args[0], {.lane = view.lane, .frame = view.frame - 1, .end = view.end});
   return AtAnInstant(And(wanted, begins ? Not(before) : before));
 }
 
@@ -125,7 +144,9 @@ Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const
   } else {
     const Lane* touching = Touching(value, view, swapped);
     const bool is_now = view.frame == history_.now() && touching != nullptr && touching->open;
-    beyond = touching == nullptr ? thresholds_.OfNoTouch() : is_now ? touching->beyond : SampleAt(touching->beyonds, view.frame).beyond;
+    beyond = touching == nullptr ? thresholds_.OfNoTouch()
+             : is_now            ? touching->beyond
+                                 : SampleAt(touching->beyonds, view.frame).beyond;
   }
   return Known((((beyond >> by.thresholds[swapped ? 1 : 0]) & 1) != 0) == by.beyond);
 }
@@ -137,12 +158,18 @@ Kleene Evaluator::Compare(const Node& node, const View& view) const {
   const std::optional<double> right = Number(node.args[1], view);
   if (!right) return Kleene::kUnknown;
   switch (node.op) {
-    case Op::kLess: return Known(*left < *right);
-    case Op::kLessEqual: return Known(*left <= *right);
-    case Op::kGreater: return Known(*left > *right);
-    case Op::kGreaterEqual: return Known(*left >= *right);
-    case Op::kEqual: return Known(*left == *right);
-    default: return Known(*left != *right);
+    case Op::kLess:
+      return Known(*left < *right);
+    case Op::kLessEqual:
+      return Known(*left <= *right);
+    case Op::kGreater:
+      return Known(*left > *right);
+    case Op::kGreaterEqual:
+      return Known(*left >= *right);
+    case Op::kEqual:
+      return Known(*left == *right);
+    default:
+      return Known(*left != *right);
   }
 }
 
@@ -153,7 +180,8 @@ std::optional<Evaluator::Reach> Evaluator::ReachOf(const Node& node, const View&
   if (!centre || !radius) return std::nullopt;
   if (box) {
     const int entity = Entity(node, view, 0);
-    const double distance = DistanceToBox(*centre, cast_.entities[entity], history_.Look(entity, view.frame));
+    const double distance =
+        DistanceToBox(*centre, cast_.entities[entity], history_.Look(entity, view.frame));
     return Reach{.distance_m = distance, .radius_m = *radius};
   }
   const std::optional<Vector3d> point = Position(node.args[0], view);
@@ -171,10 +199,12 @@ std::optional<Evaluator::Reach> Evaluator::ReachOf(const Node& node, const View&
 bool Evaluator::TooFarApart(int index, Lane& lane, FrameNumber early, FrameNumber late) const {
   const Node& node = program_.nodes[index];
   if (node.op == Op::kAnd) {
-    return TooFarApart(node.args[0], lane, early, late) || TooFarApart(node.args[1], lane, early, late);
+    return TooFarApart(node.args[0], lane, early, late) ||
+           TooFarApart(node.args[1], lane, early, late);
   }
   const bool sphere = node.op == Op::kInSphere;
-  if ((!sphere && node.op != Op::kInCylinder) || program_.nodes[node.args[1]].op != Op::kAtEnd) return false;
+  if ((!sphere && node.op != Op::kInCylinder) || program_.nodes[node.args[1]].op != Op::kAtEnd)
+    return false;
   const std::optional<Vector3d> from = Position(node.args[0], {.lane = lane, .frame = early});
   const std::optional<Vector3d> to = Position(node.args[0], {.lane = lane, .frame = late});
   const std::optional<double> radius = Number(node.args[2], {.lane = lane, .frame = late});
@@ -188,8 +218,10 @@ bool Evaluator::TooFarApart(int index, Lane& lane, FrameNumber early, FrameNumbe
 std::optional<double> Evaluator::Number(int index, const View& view) const {
   const Node& node = program_.nodes[index];
   switch (node.op) {
-    case Op::kNumber: return node.number;
-    case Op::kAtBegin: return view.lane.anchors[3 * node.slot];
+    case Op::kNumber:
+      return node.number;
+    case Op::kAtBegin:
+      return view.lane.anchors[3 * node.slot];
     case Op::kAtEnd:
       if (!view.end) return std::nullopt;
       return Number(node.args[0], {.lane = view.lane, .frame = *view.end, .end = view.end});
@@ -210,12 +242,21 @@ std::optional<double> Evaluator::Number(int index, const View& view) const {
       if (!position) return std::nullopt;
       return position->z();
     }
-    case Op::kAdd: case Op::kSubtract: case Op::kMultiply: case Op::kDivide: case Op::kNegate: case Op::kAbs:
+    case Op::kAdd:
+    case Op::kSubtract:
+    case Op::kMultiply:
+    case Op::kDivide:
+    case Op::kNegate:
+    case Op::kAbs:
       return Arithmetic(node, view);
-    case Op::kDriftAlong: return DriftAlong(node, view);
-    case Op::kTurnRate: return TurnRate(node, view);
-    case Op::kRate: return Rate(node, view);
-    default: return SignalOf(node, view);
+    case Op::kDriftAlong:
+      return DriftAlong(node, view);
+    case Op::kTurnRate:
+      return TurnRate(node, view);
+    case Op::kRate:
+      return Rate(node, view);
+    default:
+      return SignalOf(node, view);
   }
 }
 
@@ -227,10 +268,14 @@ std::optional<double> Evaluator::Arithmetic(const Node& node, const View& view) 
   const std::optional<double> right = Number(node.args[1], view);
   if (!right) return std::nullopt;
   switch (node.op) {
-    case Op::kAdd: return *left + *right;
-    case Op::kSubtract: return *left - *right;
-    case Op::kMultiply: return *left * *right;
-    default: return *left / *right;
+    case Op::kAdd:
+      return *left + *right;
+    case Op::kSubtract:
+      return *left - *right;
+    case Op::kMultiply:
+      return *left * *right;
+    default:
+      return *left / *right;
   }
 }
 
@@ -260,29 +305,42 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
       const TouchSample* touch = Touch(node, view, swapped);
       return touch == nullptr ? 0 : touch->vertical_speed_m_per_s;
     }
-    case Op::kGap: return Gap(a, b, frame);
-    case Op::kClosingSpeed: return ClosingSpeed(a, b, frame);
-    case Op::kSurfaceSpeed: return SurfaceSpeed(a, frame);
-    case Op::kSpeed: return history_.Look(a, frame).v_WB_m_per_s.norm();
-    case Op::kVerticalSpeed: return history_.Look(a, frame).v_WB_m_per_s.z();
-    case Op::kRelativeVerticalSpeed: return RelativeVelocity(a, b, frame).z();
-    case Op::kSpeedAlong: return RelativeVelocity(a, b, frame).head<2>().norm();
+    case Op::kGap:
+      return Gap(a, b, frame);
+    case Op::kClosingSpeed:
+      return ClosingSpeed(a, b, frame);
+    case Op::kSurfaceSpeed:
+      return SurfaceSpeed(a, frame);
+    case Op::kSpeed:
+      return history_.Look(a, frame).v_WB_m_per_s.norm();
+    case Op::kVerticalSpeed:
+      return history_.Look(a, frame).v_WB_m_per_s.z();
+    case Op::kRelativeVerticalSpeed:
+      return RelativeVelocity(a, b, frame).z();
+    case Op::kSpeedAlong:
+      return RelativeVelocity(a, b, frame).head<2>().norm();
     case Op::kTilt: {
       const double up = (history_.Look(a, frame).q_WB * Vector3d::UnitZ()).z();
       return std::acos(std::clamp(up, -1.0, 1.0));
     }
-    case Op::kJointFraction: return history_.Look(a, frame).joint_fraction;
+    case Op::kJointFraction:
+      return history_.Look(a, frame).joint_fraction;
     case Op::kJointAngle:
-    case Op::kJointTravel: return history_.Look(a, frame).joint_position;
-    case Op::kWeight: return Weight(a);
-    case Op::kStrength: return cast_.entities[a].strength_n > 0 ? cast_.entities[a].strength_n : kBoundless;
-    default: return 0;
+    case Op::kJointTravel:
+      return history_.Look(a, frame).joint_position;
+    case Op::kWeight:
+      return Weight(a);
+    case Op::kStrength:
+      return cast_.entities[a].strength_n > 0 ? cast_.entities[a].strength_n : kBoundless;
+    default:
+      return 0;
   }
 }
 
 double Evaluator::Weight(int entity) const {
   constexpr double kGravity_m_per_s2 = 9.81;
-  return lanes_.IsA(entity, "Fixed") ? kBoundless : cast_.entities[entity].mass_kg * kGravity_m_per_s2;
+  return lanes_.IsA(entity, "Fixed") ? kBoundless
+                                     : cast_.entities[entity].mass_kg * kGravity_m_per_s2;
 }
 
 bool Evaluator::SensorSet(const Node& node, const View& view) const {
@@ -304,7 +362,8 @@ double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
   const EntityLook& look = history_.Look(object, frame);
   double gap = std::numeric_limits<double>::infinity();
   for (const Feeler& feeler : sample->feelers) {
-    gap = std::min(gap, DistanceToBox(feeler.p_W_m, cast_.entities[object], look) - feeler.radius_m);
+    gap =
+        std::min(gap, DistanceToBox(feeler.p_W_m, cast_.entities[object], look) - feeler.radius_m);
   }
   return std::max(gap, 0.0);
 }
@@ -329,13 +388,15 @@ double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
   return farthest / history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
 }
 
-// From the last frame that is half the window earlier to the first one that is half the window later; at the episode's
-// begin and end it is cut off. Nothing while the later frame is still to come.
+// From the last frame that is half the window earlier to the first one that is half the window
+// later; at the episode's begin and end it is cut off. Nothing while the later frame is still to
+// come.
 std::optional<Evaluator::Window> Evaluator::WindowAround(FrameNumber frame, double seconds) const {
   restless_ = true;
   const Tick now = history_.At(frame).tick;
   const Tick half = history_.AtLeastTicks(seconds / 2);
-  const Window window{history_.LastNotAfter(now - half), std::min(history_.FirstNotBefore(now + half), history_.now())};
+  const Window window{history_.LastNotAfter(now - half),
+                      std::min(history_.FirstNotBefore(now + half), history_.now())};
   if (history_.At(window.late).tick < now + half && !history_.complete()) return std::nullopt;
   return window;
 }
@@ -348,17 +409,22 @@ std::optional<double> Evaluator::Rate(const Node& node, const View& view) const 
   const std::optional<Window> window = WindowAround(view.frame, node.number);
   if (!window) return std::nullopt;
   if (window->early == window->late) return 0;
-  const std::optional<double> before = Number(node.args[0], {.lane = view.lane, .frame = window->early, .end = view.end});
-  const std::optional<double> after = Number(node.args[0], {.lane = view.lane, .frame = window->late, .end = view.end});
+  const std::optional<double> before =
+      Number(node.args[0], {.lane = view.lane, .frame = window->early, .end = view.end});
+  const std::optional<double> after =
+      Number(node.args[0], {.lane = view.lane, .frame = window->late, .end = view.end});
   if (!before || !after) return std::nullopt;
   return (*after - *before) / SecondsBetween(window->early, window->late);
 }
 
-// The way of a as seen from b between two frames, turned to where b is now, without its upright part.
-Vector2d Evaluator::WayOn(const Node& node, const View& view, FrameNumber early, FrameNumber late) const {
+// The way of a as seen from b between two frames, turned to where b is now, without its upright
+// part.
+Vector2d Evaluator::WayOn(const Node& node, const View& view, FrameNumber early,
+                          FrameNumber late) const {
   const int a = Entity(node, view, 0);
   const int b = Entity(node, view, 1);
-  const Vector3d way_W = history_.Look(b, view.frame).q_WB * (PositionOn(a, b, late) - PositionOn(a, b, early));
+  const Vector3d way_W =
+      history_.Look(b, view.frame).q_WB * (PositionOn(a, b, late) - PositionOn(a, b, early));
   return way_W.head<2>();
 }
 
@@ -366,10 +432,12 @@ std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) 
   const std::optional<Window> window = WindowAround(view.frame, node.number);
   if (!window) return std::nullopt;
   if (window->early == window->late) return 0;
-  return WayOn(node, view, window->early, window->late).norm() / SecondsBetween(window->early, window->late);
+  return WayOn(node, view, window->early, window->late).norm() /
+         SecondsBetween(window->early, window->late);
 }
 
-// The angle between the way in the first and the way in the second half of the window, per time between their middles.
+// The angle between the way in the first and the way in the second half of the window, per time
+// between their middles.
 std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) const {
   constexpr double kShortest_m = 0.001;  // less has no direction
   const std::optional<Window> window = WindowAround(view.frame, node.number);
@@ -377,7 +445,8 @@ std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) co
   const Vector2d before = WayOn(node, view, window->early, view.frame);
   const Vector2d after = WayOn(node, view, view.frame, window->late);
   if (before.norm() < kShortest_m || after.norm() < kShortest_m) return 0;
-  const double left_rad = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
+  const double left_rad =
+      std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
   return left_rad / (SecondsBetween(window->early, window->late) / 2);
 }
 
@@ -386,7 +455,8 @@ Vector3d Evaluator::PositionOn(int a, int b, FrameNumber frame) const {
   return on.q_WB.conjugate() * (history_.Look(a, frame).p_WB_m - on.p_WB_m);
 }
 
-// Of a's origin, against the point of b that is there: turning counts, so a tray may turn under a cup.
+// Of a's origin, against the point of b that is there: turning counts, so a tray may turn under a
+// cup.
 Vector3d Evaluator::RelativeVelocity(int a, int b, FrameNumber frame) const {
   const EntityLook& look_a = history_.Look(a, frame);
   const EntityLook& look_b = history_.Look(b, frame);
@@ -412,11 +482,13 @@ const TouchSample* Evaluator::Touch(const Node& node, const View& view, bool& sw
 std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
   const Node& node = program_.nodes[index];
   switch (node.op) {
-    case Op::kAtBegin: return Eigen::Map<const Vector3d>(view.lane.anchors.data() + 3 * node.slot);
+    case Op::kAtBegin:
+      return Eigen::Map<const Vector3d>(view.lane.anchors.data() + 3 * node.slot);
     case Op::kAtEnd:
       if (!view.end) return std::nullopt;
       return Position(node.args[0], {.lane = view.lane, .frame = *view.end, .end = view.end});
-    case Op::kPositionOn: return PositionOn(Entity(node, view, 0), Entity(node, view, 1), view.frame);
+    case Op::kPositionOn:
+      return PositionOn(Entity(node, view, 0), Entity(node, view, 1), view.frame);
     case Op::kAhead: {
       const int entity = Entity(node, view, 0);
       const HandSample* hand = history_.Hand(entity, view.frame);
@@ -425,7 +497,8 @@ std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
       const Vector3d ahead_W = hand == nullptr ? Vector3d(Vector3d::UnitX()) : hand->look.ahead_W;
       return history_.Look(entity, view.frame).p_WB_m + *distance * ahead_W;
     }
-    default: return history_.Look(Entity(node, view, 0), view.frame).p_WB_m;
+    default:
+      return history_.Look(Entity(node, view, 0), view.frame).p_WB_m;
   }
 }
 
@@ -436,7 +509,8 @@ bool Evaluator::CaptureAnchors(Lane& lane, FrameNumber frame) const {
     if (IsPosition(program_, anchors[i])) {
       const std::optional<Vector3d> value = Position(anchors[i], view);
       if (!value) return false;
-      std::copy(value->data(), value->data() + 3, lane.anchors.begin() + static_cast<std::ptrdiff_t>(3 * i));
+      std::copy(value->data(), value->data() + 3,
+                lane.anchors.begin() + static_cast<std::ptrdiff_t>(3 * i));
     } else {
       const std::optional<double> value = Number(anchors[i], view);
       if (!value) return false;

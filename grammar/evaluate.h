@@ -25,13 +25,15 @@ class Evaluator {
     std::optional<FrameNumber> end = std::nullopt;
   };
 
-  /// kUnknown while it depends on truths that are not final, on an end that is not known, or on frames to come.
+  /// kUnknown while it depends on truths that are not final, on an end that is not known, or on
+  /// frames to come.
   Kleene Truth(int node, const View& view) const;
   /// nullopt only for values at an end that is not known, or that depend on frames to come.
   std::optional<double> Number(int node, const View& view) const;
   std::optional<Eigen::Vector3d> Position(int node, const View& view) const;
 
-  /// How far something is from the centre of a region, and how far it may be; of a sphere, the height does not count.
+  /// How far something is from the centre of a region, and how far it may be; of a sphere, the
+  /// height does not count.
   struct Reach {
     double distance_m = 0;
     double radius_m = 0;
@@ -46,17 +48,20 @@ class Evaluator {
   Kleene Holds(int slot, const View& view) const;
   Kleene Begins(int slot, const View& view) const;
 
-  /// True if no interval can hold at both frames, wherever it will end: both would have to lie in one region anchored
-  /// at the end, and they are too far apart for that. False if this cannot be told.
+  /// True if no interval can hold at both frames, wherever it will end: both would have to lie in
+  /// one region anchored at the end, and they are too far apart for that. False if this cannot be
+  /// told.
   bool TooFarApart(int node, Lane& lane, FrameNumber early, FrameNumber late) const;
 
-  /// Whether a value asked for since CalmDown() may change with time alone, though nothing that it is made of changes:
-  /// an instant that is over one frame later, a speed from frame to frame, a window of time.
+  /// Whether a value asked for since CalmDown() may change with time alone, though nothing that it
+  /// is made of changes: an instant that is over one frame later, a speed from frame to frame, a
+  /// window of time.
   bool restless() const { return restless_; }
   void CalmDown() { restless_ = false; }
   void StirUp() { restless_ = true; }
 
-  /// Keeps the values of all anchors of the lane's rule at this frame. False while one is not known.
+  /// Keeps the values of all anchors of the lane's rule at this frame. False while one is not
+  /// known.
   [[nodiscard]] bool CaptureAnchors(Lane& lane, FrameNumber frame) const;
 
  private:
@@ -78,7 +83,8 @@ class Evaluator {
   };
   std::optional<Window> WindowAround(FrameNumber frame, double seconds) const;
   double SecondsBetween(FrameNumber early, FrameNumber late) const;
-  Eigen::Vector2d WayOn(const Node& node, const View& view, FrameNumber early, FrameNumber late) const;
+  Eigen::Vector2d WayOn(const Node& node, const View& view, FrameNumber early,
+                        FrameNumber late) const;
   std::optional<double> Rate(const Node& node, const View& view) const;
   std::optional<double> DriftAlong(const Node& node, const View& view) const;
   std::optional<double> TurnRate(const Node& node, const View& view) const;
@@ -86,7 +92,9 @@ class Evaluator {
   Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;
   const Lane* Touching(const Node& node, const View& view, bool& swapped) const;
   const TouchSample* Touch(const Node& node, const View& view, bool& swapped) const;
-  int Entity(const Node& node, const View& view, int i) const { return view.lane.entities[node.roles[i]]; }
+  int Entity(const Node& node, const View& view, int i) const {
+    return view.lane.entities[node.roles[i]];
+  }
 
   const Program& program_;
   const Cast& cast_;

@@ -35,14 +35,21 @@ ExpressionParser::Nested::Nested(ExpressionParser& parser) : parser_(parser) {
 }
 
 void ExpressionParser::FailDeep() {
-  Fail("this is nested more than " + std::to_string(kMaxDepth) + " deep", "name a part of it with `condition`");
+  Fail("this is nested more than " + std::to_string(kMaxDepth) + " deep",
+       "name a part of it with `condition`");
 }
 
-Expr ExpressionParser::Make(Expr::Kind kind, Place place, std::string text, std::vector<Expr> args) {
+Expr ExpressionParser::Make(Expr::Kind kind, Place place, std::string text,
+                            std::vector<Expr> args) {
   int depth = 1;
   for (const Expr& arg : args) depth = std::max(depth, arg.depth + 1);
   if (depth > kMaxDepth) FailDeep();
-  return {.kind = kind, .place = place, .text = std::move(text), .quantity = {}, .args = std::move(args), .depth = depth};
+  return {.kind = kind,
+          .place = place,
+          .text = std::move(text),
+          .quantity = {},
+          .args = std::move(args),
+          .depth = depth};
 }
 
 Expr ExpressionParser::ParseChain(std::string_view word, Expr (ExpressionParser::*operand)()) {
@@ -57,7 +64,8 @@ Expr ExpressionParser::ParseChain(std::string_view word, Expr (ExpressionParser:
   return Make(Expr::Kind::kChain, place, std::string(word), std::move(args));
 }
 
-// `not X begins` is the moment from which X is false: `begins` and `ends` take in a `not` before them.
+// `not X begins` is the moment from which X is false: `begins` and `ends` take in a `not` before
+// them.
 Expr ExpressionParser::ParseEdge() {
   Expr expr = ParseNot();
   if (!At("begins") && !At("ends")) return expr;
@@ -73,9 +81,12 @@ Expr ExpressionParser::ParseNot() {
 }
 
 Expr ExpressionParser::ParseComparison() {
-  static constexpr std::array<std::string_view, 6> kComparisons = {"<=", ">=", "==", "!=", "<", ">"};
+  static constexpr std::array<std::string_view, 6> kComparisons = {
+      "<=", ">=", "==", "!=", "<", ">"};
   Expr left = ParseSum();
-  if (std::none_of(kComparisons.begin(), kComparisons.end(), [&](std::string_view op) { return At(op); })) return left;
+  if (std::none_of(kComparisons.begin(), kComparisons.end(),
+                   [&](std::string_view op) { return At(op); }))
+    return left;
   const Token op = Take();
   return Make(Expr::Kind::kBinary, op.place, op.text, Args(std::move(left), ParseSum()));
 }
@@ -123,7 +134,8 @@ Expr ExpressionParser::ParsePrimary() {
     expr.quantity = ParseSignedQuantity();
     return expr;
   }
-  if (token.kind == Token::Kind::kText) return Make(Expr::Kind::kText, token.place, Take().text, {});
+  if (token.kind == Token::Kind::kText)
+    return Make(Expr::Kind::kText, token.place, Take().text, {});
   if (Accept("(")) {
     Expr inner = ParseExpr();
     Expect(")");
@@ -169,7 +181,8 @@ bool ExpressionParser::AtUnit(std::size_t ahead) const {
   return Peek(ahead).kind == Token::Kind::kName && FindUnit(Peek(ahead).text) != nullptr;
 }
 
-// `3 cm`, `3 cm/s`, `3/s`. A name after a number can only be a unit or the next word of the language.
+// `3 cm`, `3 cm/s`, `3/s`. A name after a number can only be a unit or the next word of the
+// language.
 void ExpressionParser::ParseUnit(Quantity& quantity) {
   const bool starts = Peek().kind == Token::Kind::kName && !IsReserved(Peek().text);
   if (!starts && !(At("/") && AtUnit(1))) return;
@@ -185,7 +198,8 @@ Dimension ExpressionParser::ParseDimension(double& si) {
     if (unit == nullptr) {
       const std::string near = NearestName(Peek().text, UnitNames());
       Fail("unknown unit '" + Peek().text + "'",
-           near.empty() ? "units are m cm mm s ms N rad deg, and their quotients like cm/s" : "did you mean '" + near + "'?");
+           near.empty() ? "units are m cm mm s ms N rad deg, and their quotients like cm/s"
+                        : "did you mean '" + near + "'?");
     }
     SkipOne();
     si = unit->si;

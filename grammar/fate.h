@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of each run of a rule, noted by the engine for those who want to know why. Noting is off unless asked for.
-// Tested by tests/harness/explain_test.cc
+// What became of each run of a rule, noted by the engine for those who want to know why. Noting is
+// off unless asked for. Tested by tests/harness/explain_test.cc
 #pragma once
 
 #include <vector>
@@ -19,7 +19,8 @@ struct WalkBack {
     kReceding,     ///< at `at` the signal is too far below its largest value
     kIdle,         ///< from `at` on it paused for too long
   };
-  FrameNumber begin = 0;  ///< where the interval begins; the end itself: nowhere; kNever: not known yet
+  FrameNumber begin =
+      0;  ///< where the interval begins; the end itself: nowhere; kNever: not known yet
   Stop stop = Stop::kSince;
   FrameNumber at = 0;
 };
@@ -27,9 +28,9 @@ struct WalkBack {
 /// One run, from where it began to where it ended or was given up.
 struct Fate {
   enum class Kind {
-    kInterval,     ///< it is an interval; `cause` is the frame of its confirmation, if it needed one
-    kTooShort,     ///< `lasting`
-    kRefused,      ///< `requires` was false at its end
+    kInterval,  ///< it is an interval; `cause` is the frame of its confirmation, if it needed one
+    kTooShort,  ///< `lasting`
+    kRefused,   ///< `requires` was false at its end
     kUnconfirmed,  ///< `within` ended at `cause`, or the episode did, before `by` began
     kDropped,      ///< `during` was false at `cause`, which came before the end
     kTooLate,      ///< no end `within` the time

@@ -30,8 +30,8 @@ struct CastMember {
   std::string name;
   /// Most specific first, e.g. {"MilkCarton", "Movable", "Thing", "Entity"} or {"Hand", "Entity"}.
   /// The built-in roots are Entity; Hand and Thing (everything that is not a hand); Movable, Fixed
-  /// and Jointed (Things; what hangs on a joint, as a drawer does, is only Jointed); Abstract (no matter: a Region, say)
-  /// and Grains, which are no Things.
+  /// and Jointed (Things; what hangs on a joint, as a drawer does, is only Jointed); Abstract (no
+  /// matter: a Region, say) and Grains, which are no Things.
   std::vector<std::string> classes;
   int part_of = kNobody;
   /// Centre and half sizes of the oriented bounding box, in the entity's own frame, metres.
@@ -40,8 +40,9 @@ struct CastMember {
   bool round = false;  ///< it is the ball in that box: a region may be one
   /// Hands only: names of the sensor sets; bit i of Touch::sensor_sets is set i. At most 32.
   std::vector<std::string> sensor_sets;
-  double mass_kg = 0;     ///< 0: not known, nothing is too heavy
-  double strength_n = 0;  ///< hands only: the weight that it can lift; 0: not known, it lifts everything
+  double mass_kg = 0;  ///< 0: not known, nothing is too heavy
+  double strength_n =
+      0;  ///< hands only: the weight that it can lift; 0: not known, it lifts everything
 };
 
 struct Cast {
@@ -71,7 +72,8 @@ struct Feeler {
 };
 
 /// How fast, up or down, their material moves against each other at a point, m/s.
-inline double VerticalSpeedBetween(const EntityLook& a, const EntityLook& b, const Eigen::Vector3d& p_W_m) {
+inline double VerticalSpeedBetween(const EntityLook& a, const EntityLook& b,
+                                   const Eigen::Vector3d& p_W_m) {
   const auto velocity = [&](const EntityLook& look) -> Eigen::Vector3d {
     return look.v_WB_m_per_s + look.w_WB_rad_per_s.cross(p_W_m - look.p_WB_m);
   };
@@ -125,8 +127,9 @@ struct Parting {
   int b = kNobody;
 };
 
-/// One look at the world as what is new in it: whatever is not mentioned is as it was in the frame before. Before the
-/// first one, everything is at the origin and nothing touches. A pair among both touches and partings touches.
+/// One look at the world as what is new in it: whatever is not mentioned is as it was in the frame
+/// before. Before the first one, everything is at the origin and nothing touches. A pair among both
+/// touches and partings touches.
 struct FrameChanges {
   Tick tick = 0;
   std::span<const EntityChange> entities;  ///< each entity at most once

@@ -5,7 +5,8 @@
 
 namespace prehend::grammar {
 
-Hindsight::Hindsight(std::shared_ptr<const Program> program, Cast cast) : engine_(std::move(program), std::move(cast)) {
+Hindsight::Hindsight(std::shared_ptr<const Program> program, Cast cast)
+    : engine_(std::move(program), std::move(cast)) {
   engine_.Remember(fates_);
 }
 
@@ -31,13 +32,16 @@ void Hindsight::Finish(Tick end) {
     const auto same = [&](const Fate& other) {
       return other.kind == Fate::Kind::kWalkedBack && other.span.end.frame == fate.span.end.frame;
     };
-    if (const auto walk = std::find_if(fates.begin(), fates.end(), same); walk != fates.end()) fate.walk = walk->walk;
+    if (const auto walk = std::find_if(fates.begin(), fates.end(), same); walk != fates.end())
+      fate.walk = walk->walk;
     std::erase_if(fates, same);
     fates.push_back(fate);
   }
   for (std::vector<Fate>& fates : by_lane_) {
     std::erase_if(fates, [](const Fate& fate) { return fate.kind == Fate::Kind::kWalkedBack; });
-    std::stable_sort(fates.begin(), fates.end(), [](const Fate& a, const Fate& b) { return a.span.end.tick < b.span.end.tick; });
+    std::stable_sort(fates.begin(), fates.end(), [](const Fate& a, const Fate& b) {
+      return a.span.end.tick < b.span.end.tick;
+    });
   }
 }
 
@@ -46,7 +50,8 @@ Tick Hindsight::TickOf(FrameNumber frame) const {
 }
 
 FrameNumber Hindsight::FrameAt(Tick tick) const {
-  return std::clamp<FrameNumber>(engine_.history().LastNotAfter(tick), 0, std::max<FrameNumber>(frames() - 1, 0));
+  return std::clamp<FrameNumber>(engine_.history().LastNotAfter(tick), 0,
+                                 std::max<FrameNumber>(frames() - 1, 0));
 }
 
 std::vector<int> Hindsight::LanesOf(int rule) {
@@ -54,7 +59,8 @@ std::vector<int> Hindsight::LanesOf(int rule) {
   for (int lane = 0; lane < engine_.lanes().size(); ++lane) {
     if (At(lane).rule == rule) lanes.push_back(lane);
   }
-  std::sort(lanes.begin(), lanes.end(), [&](int a, int b) { return At(a).entities < At(b).entities; });
+  std::sort(lanes.begin(), lanes.end(),
+            [&](int a, int b) { return At(a).entities < At(b).entities; });
   return lanes;
 }
 
@@ -80,15 +86,20 @@ Evaluator::View Hindsight::View(const Moment& at) {
   Lane& lane = engine_.lanes()[at.lane];
   const FrameNumber last = frames() - 1;
   // After the episode every value is known.
-  if (at.begin) static_cast<void>(engine_.evaluator().CaptureAnchors(lane, std::min(*at.begin, last)));
+  if (at.begin)
+    static_cast<void>(engine_.evaluator().CaptureAnchors(lane, std::min(*at.begin, last)));
   Evaluator::View view{.lane = lane, .frame = std::min(at.frame, last)};
   if (at.end) view.end = std::min(*at.end, last);
   return view;
 }
 
-bool Hindsight::Truth(int node, const Moment& at) { return engine_.evaluator().Truth(node, View(at)) == Kleene::kTrue; }
+bool Hindsight::Truth(int node, const Moment& at) {
+  return engine_.evaluator().Truth(node, View(at)) == Kleene::kTrue;
+}
 
-std::optional<double> Hindsight::Number(int node, const Moment& at) { return engine_.evaluator().Number(node, View(at)); }
+std::optional<double> Hindsight::Number(int node, const Moment& at) {
+  return engine_.evaluator().Number(node, View(at));
+}
 
 std::optional<Evaluator::Reach> Hindsight::ReachOf(int node, const Moment& at) {
   return engine_.evaluator().ReachOf(program().nodes[node], View(at));

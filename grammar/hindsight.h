@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// An episode watched with nothing forgotten: afterwards, every clause of a grammar can be asked for its value at every
-// frame, and every run for what became of it. The values come from the engine's own evaluator, the intervals from the
-// engine itself, so an explanation cannot say anything else than the monitor does.
-// Takes memory for every frame of what moves: for explanations and plots, not for watching.
-// Tested by tests/harness/explain_test.cc
+// An episode watched with nothing forgotten: afterwards, every clause of a grammar can be asked for
+// its value at every frame, and every run for what became of it. The values come from the engine's
+// own evaluator, the intervals from the engine itself, so an explanation cannot say anything else
+// than the monitor does. Takes memory for every frame of what moves: for explanations and plots,
+// not for watching. Tested by tests/harness/explain_test.cc
 #pragma once
 
 #include <memory>
@@ -35,7 +35,8 @@ class Hindsight {
   /// The last frame at or before the tick; the first one if there is none.
   FrameNumber FrameAt(Tick tick) const;
 
-  /// The binding of a rule, whether or not anything ever happened to it; kNone if an entity's class does not fit.
+  /// The binding of a rule, whether or not anything ever happened to it; kNone if an entity's class
+  /// does not fit.
   int LaneOf(int rule, const Binding& entities) { return engine_.lanes().Ensure(rule, entities); }
   /// The binding that a reference of this one means, likewise.
   int Referred(int lane, int slot) { return engine_.lanes().Resolve(engine_.lanes()[lane], slot); }
@@ -51,7 +52,8 @@ class Hindsight {
   /// The interval that contains the frame; null if there is none.
   const Fate* Covering(int lane, FrameNumber frame) const;
 
-  /// A binding at a frame, with the boundaries of the interval that it is asked for, as far as the clause needs them.
+  /// A binding at a frame, with the boundaries of the interval that it is asked for, as far as the
+  /// clause needs them.
   struct Moment {
     int lane = kNone;
     FrameNumber frame = 0;

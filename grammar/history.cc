@@ -72,11 +72,13 @@ FrameNumber History::LastNotAfter(Tick tick) const {
 }
 
 Tick History::AtMostTicks(double seconds) const {
-  return static_cast<Tick>(std::floor(std::min(seconds * ticks_per_second_, kMostTicks) + kRounding));
+  return static_cast<Tick>(
+      std::floor(std::min(seconds * ticks_per_second_, kMostTicks) + kRounding));
 }
 
 Tick History::AtLeastTicks(double seconds) const {
-  return static_cast<Tick>(std::ceil(std::min(seconds * ticks_per_second_, kMostTicks) - kRounding));
+  return static_cast<Tick>(
+      std::ceil(std::min(seconds * ticks_per_second_, kMostTicks) - kRounding));
 }
 
 }  // namespace prehend::grammar

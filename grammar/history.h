@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The recent past, by frame number: ticks of frames, looks of entities and hands. A look is stored only when it changed,
-// so what is at rest takes no space and no time however long the past is kept.
-// Tested by tests/grammar/history_test.cc
+// The recent past, by frame number: ticks of frames, looks of entities and hands. A look is stored
+// only when it changed, so what is at rest takes no space and no time however long the past is
+// kept. Tested by tests/grammar/history_test.cc
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ struct HandSample {
   std::uint64_t beyond = 0;  ///< thresholds of the grammar that its grip is beyond
 };
 
-/// The last sample at or before `frame`, or the first one; the newest is asked for most. Samples are sorted by frame,
-/// and there is one.
+/// The last sample at or before `frame`, or the first one; the newest is asked for most. Samples
+/// are sorted by frame, and there is one.
 template <typename Sample>
 const Sample& SampleAt(const Ring<Sample>& samples, FrameNumber frame) {
   if (samples.back().frame <= frame) return samples.back();
@@ -58,8 +58,8 @@ class History {
   void SetLook(int entity, const EntityLook& look);
   void SetHand(const HandLook& look, std::uint64_t beyond = 0);
 
-  /// Forgets ticks of frames before `ticks` and looks that only frames before `looks` need; of an entity, when its
-  /// next look comes.
+  /// Forgets ticks of frames before `ticks` and looks that only frames before `looks` need; of an
+  /// entity, when its next look comes.
   void Forget(FrameNumber ticks, FrameNumber looks);
   FrameNumber first_look() const { return first_look_; }
 
@@ -70,7 +70,9 @@ class History {
   /// Number of the newest frame; -1 before the first.
   FrameNumber now() const { return count_ - 1; }
   FrameNumber first() const { return count_ - static_cast<FrameNumber>(ticks_.size()); }
-  Moment At(FrameNumber frame) const { return {frame, ticks_[static_cast<std::size_t>(frame - first())]}; }
+  Moment At(FrameNumber frame) const {
+    return {frame, ticks_[static_cast<std::size_t>(frame - first())]};
+  }
   /// The first remembered frame at or after `tick`; now() + 1 if there is none.
   FrameNumber FirstNotBefore(Tick tick) const;
   /// The last remembered frame at or before `tick`; the first one if there is none.
@@ -102,9 +104,9 @@ class History {
   FrameNumber first_look_ = 0;
   bool complete_ = false;
   Ring<Tick> ticks_;
-  std::vector<Ring<LookSample>> looks_;        // by entity
+  std::vector<Ring<LookSample>> looks_;         // by entity
   std::vector<Ring<HandSample>> hand_samples_;  // by hand, in order of first sight
-  std::vector<int> hand_of_entity_;            // index into hand_samples_ or -1
+  std::vector<int> hand_of_entity_;             // index into hand_samples_ or -1
 };
 
 }  // namespace prehend::grammar

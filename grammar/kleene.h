@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Truth that may be unknown yet (Kleene's strong logic): false < unknown < true, `and` is the minimum, `or` the maximum.
+// Truth that may be unknown yet (Kleene's strong logic): false < unknown < true, `and` is the
+// minimum, `or` the maximum.
 #pragma once
 
 #include <algorithm>

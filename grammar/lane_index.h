@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what a lane is about to the lane: hash tables in one block of memory. Looked up only, never walked.
-// Algorithm: linear probing; what is removed is filled by moving the rest of its run up (Knuth, TAOCP 6.4, algorithm R).
-// Tested by tests/grammar/lane_index_test.cc
+// From what a lane is about to the lane: hash tables in one block of memory. Looked up only, never
+// walked. Algorithm: linear probing; what is removed is filled by moving the rest of its run up
+// (Knuth, TAOCP 6.4, algorithm R). Tested by tests/grammar/lane_index_test.cc
 #pragma once
 
 #include <algorithm>
@@ -25,9 +25,11 @@ struct LaneKey {
   }
   std::uint32_t Hash() const {
     const auto pair = [&](int i) {
-      return std::uint64_t{static_cast<std::uint32_t>(entities[i])} << 32 | static_cast<std::uint32_t>(entities[i + 1]);
+      return std::uint64_t{static_cast<std::uint32_t>(entities[i])} << 32 |
+             static_cast<std::uint32_t>(entities[i + 1]);
     };
-    std::uint64_t hash = (pair(0) ^ (static_cast<std::uint64_t>(rule) << 20)) * 0x9E3779B97F4A7C15ULL;
+    std::uint64_t hash =
+        (pair(0) ^ (static_cast<std::uint64_t>(rule) << 20)) * 0x9E3779B97F4A7C15ULL;
     hash = (hash ^ (hash >> 32) ^ pair(2)) * 0xD6E8FEB86659FD93ULL;
     return static_cast<std::uint32_t>(hash >> 32);
   }
@@ -38,9 +40,12 @@ struct PairKey {
   std::uint64_t both = 0;
   PairKey() = default;
   PairKey(int a, int b)
-      : both(std::uint64_t{static_cast<std::uint32_t>(std::min(a, b))} << 32 | static_cast<std::uint32_t>(std::max(a, b))) {}
+      : both(std::uint64_t{static_cast<std::uint32_t>(std::min(a, b))} << 32 |
+             static_cast<std::uint32_t>(std::max(a, b))) {}
   friend bool operator==(const PairKey&, const PairKey&) = default;
-  std::uint32_t Hash() const { return static_cast<std::uint32_t>((both * 0x9E3779B97F4A7C15ULL) >> 32); }
+  std::uint32_t Hash() const {
+    return static_cast<std::uint32_t>((both * 0x9E3779B97F4A7C15ULL) >> 32);
+  }
 };
 
 template <typename Key>
@@ -95,7 +100,8 @@ class LaneIndex {
     slots_[at] = slot;
   }
 
-  static constexpr std::size_t kFewest = 16;  // a power of two, and at most half of the slots are taken
+  static constexpr std::size_t kFewest =
+      16;  // a power of two, and at most half of the slots are taken
   std::vector<Slot> slots_ = std::vector<Slot>(kFewest);
   std::size_t last_ = kFewest - 1;
   std::size_t count_ = 0;

@@ -22,7 +22,8 @@ Lanes::Lanes(const Program& program, const Cast& cast)
   for (const int index : program.schedule) {
     const Rule& rule = program.events[index];
     // Compositions are made when a part has an interval for them.
-    if (rule.guard != kNone && rule.form != Form::kCompose) guarded_[rule.references[rule.guard].rule].push_back(index);
+    if (rule.guard != kNone && rule.form != Form::kCompose)
+      guarded_[rule.references[rule.guard].rule].push_back(index);
   }
   for (const Rule& rule : program.events) {
     symmetric_.push_back(rule.symmetric ? 1 : 0);
@@ -48,7 +49,8 @@ bool Lanes::IsA(int entity, const std::string& class_name) const {
 
 void Lanes::BindUnguarded() {
   for (const int rule : program_.schedule) {
-    if (program_.events[rule].form == Form::kTouching || program_.events[rule].guard != kNone) continue;
+    if (program_.events[rule].form == Form::kTouching || program_.events[rule].guard != kNone)
+      continue;
     double bindings = 1;
     for (const std::vector<bool>& role : fits_[rule]) {
       bindings *= static_cast<double>(std::count(role.begin(), role.end(), true));
@@ -70,19 +72,24 @@ std::string Lanes::WhyTooMany() const {
     const std::vector<bool>& fits = fits_[too_many_][i];
     const std::string comma = i == 0 ? "" : ", ";
     roles += comma + rule.roles[i].name + ": " + rule.roles[i].class_name;
-    counts += comma + std::to_string(std::count(fits.begin(), fits.end(), true)) + " for " + rule.roles[i].name;
+    counts += comma + std::to_string(std::count(fits.begin(), fits.end(), true)) + " for " +
+              rule.roles[i].name;
   }
-  return "more than " + std::to_string(kMaxLanes) + " bindings with those of '" + rule.name + "(" + roles + ")': there are " + counts +
-         "; give the roles narrower classes";
+  return "more than " + std::to_string(kMaxLanes) + " bindings with those of '" + rule.name + "(" +
+         roles + ")': there are " + counts + "; give the roles narrower classes";
 }
 
-void Lanes::EnsureAll(int rule, Binding entities, std::vector<int>& made) { BindRest(rule, entities, 0, kNone, &made); }
+void Lanes::EnsureAll(int rule, Binding entities, std::vector<int>& made) {
+  BindRest(rule, entities, 0, kNone, &made);
+}
 
 // Fills in the roles from `role` on that are still free, in all ways that fit.
-void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard, std::vector<int>* made) {
+void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard,
+                     std::vector<int>* made) {
   if (TooMany()) return;
   if (role == program_.events[rule].roles.size()) {
-    if (Canonical(rule, entities).entities != entities) return;  // of a symmetric pair, the other order is what counts
+    if (Canonical(rule, entities).entities != entities)
+      return;  // of a symmetric pair, the other order is what counts
     const int lane = Ensure(rule, entities);
     if (lane == kNone || made == nullptr) return;
     if (guard != kNone) LinkToGuard(lane, guard);
@@ -95,7 +102,8 @@ void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard, s
   }
   for (std::size_t e = 0; e < cast_.entities.size(); ++e) {
     if (!fits_[rule][role][e]) continue;
-    if (std::find(entities.begin(), entities.end(), static_cast<int>(e)) != entities.end()) continue;
+    if (std::find(entities.begin(), entities.end(), static_cast<int>(e)) != entities.end())
+      continue;
     entities[role] = static_cast<int>(e);
     BindRest(rule, entities, role + 1, guard, made);
     entities[role] = kNobody;
@@ -140,7 +148,8 @@ int Lanes::Make(const LaneKey& key) {
   return lane.index;
 }
 
-// For every rule guarded by this lane's rule: its roles that the guard names are settled, the rest are free.
+// For every rule guarded by this lane's rule: its roles that the guard names are settled, the rest
+// are free.
 void Lanes::MakeDependents(int lane, std::vector<int>& made) {
   const int guard_rule = lanes_[lane].rule;
   const bool both_orders = program_.events[guard_rule].symmetric;
@@ -182,15 +191,17 @@ void Lanes::Refer(Lane& lane, int slot, int target) {
   const Rule& rule = program_.events[lane.rule];
   const MeasuredPart& part = rule.measured;
   Lane& watched = lanes_[target];
-  const bool guarded = slot == rule.guard, opened = slot == rule.opened_by, instant = part.instant && slot == part.touch;
-  watched.watchers.push_back({.lane = lane.index,
-                              .guarded = guarded,
-                              .guarded_begin = guarded && rule.guarded_begin,
-                              .opened = opened,
-                              .turned = instant && part.first != kNone && watched.entities[0] != lane.entities[part.first],
-                              .press = rule.watches_press,
-                              .instant = instant ? &part : nullptr,
-                              .hand = instant && part.hand != kNone ? lane.entities[part.hand] : kNobody});
+  const bool guarded = slot == rule.guard, opened = slot == rule.opened_by,
+             instant = part.instant && slot == part.touch;
+  watched.watchers.push_back(
+      {.lane = lane.index,
+       .guarded = guarded,
+       .guarded_begin = guarded && rule.guarded_begin,
+       .opened = opened,
+       .turned = instant && part.first != kNone && watched.entities[0] != lane.entities[part.first],
+       .press = rule.watches_press,
+       .instant = instant ? &part : nullptr,
+       .hand = instant && part.hand != kNone ? lane.entities[part.hand] : kNobody});
   if (opened && !watched.awake) lane.moment = -1;  // else it may be on its way
 }
 
@@ -198,7 +209,8 @@ void Lanes::WatchEntities(Lane& lane) {
   const Rule& rule = program_.events[lane.rule];
   for (std::size_t role = 0; role < rule.roles.size(); ++role) {
     if (!rule.watches_pose[role] && !rule.watches_grip[role]) continue;
-    std::vector<Watch>& watchers = (rule.watches_pose[role] ? pose_watchers_ : grip_watchers_)[lane.entities[role]];
+    std::vector<Watch>& watchers =
+        (rule.watches_pose[role] ? pose_watchers_ : grip_watchers_)[lane.entities[role]];
     lane.watch_places[role] = static_cast<int>(watchers.size());
     watchers.push_back({lane.index, static_cast<int>(role)});
   }
@@ -208,7 +220,8 @@ void Lanes::UnwatchEntities(const Lane& lane) {
   const Rule& rule = program_.events[lane.rule];
   for (std::size_t role = 0; role < rule.roles.size(); ++role) {
     if (!rule.watches_pose[role] && !rule.watches_grip[role]) continue;
-    std::vector<Watch>& watchers = (rule.watches_pose[role] ? pose_watchers_ : grip_watchers_)[lane.entities[role]];
+    std::vector<Watch>& watchers =
+        (rule.watches_pose[role] ? pose_watchers_ : grip_watchers_)[lane.entities[role]];
     const Watch last = watchers.back();
     watchers[lane.watch_places[role]] = last;
     lanes_[last.lane].watch_places[last.role] = lane.watch_places[role];
@@ -216,7 +229,8 @@ void Lanes::UnwatchEntities(const Lane& lane) {
   }
 }
 
-// Before `lane` is freed: it is no watcher any more, and has to be made again when its guard holds again.
+// Before `lane` is freed: it is no watcher any more, and has to be made again when its guard holds
+// again.
 void Lanes::Unlink(int index, int watcher, std::vector<int>& orphans) {
   Lane& lane = lanes_[index];
   std::erase_if(lane.watchers, [&](const Watcher& one) { return one.lane == watcher; });

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lanes: one per rule and binding, each with the state of its rule for these entities.
 //
-// A lane is *awake* while there is something to look at in the next frame, else it rests: its condition is what it was,
-// and nobody looks at it until something it is made of changes. So each lane knows who asks about it (its watchers),
-// and each entity which lanes look at it.
-// A lane exists from when its guard first held, or when somebody first asked, until nothing about it is true, open,
-// undecided or within the remembered past. Its place is used again.
-// Tested by tests/grammar/monitor_test.cc and tests/grammar/restless_test.cc
+// A lane is *awake* while there is something to look at in the next frame, else it rests: its
+// condition is what it was, and nobody looks at it until something it is made of changes. So each
+// lane knows who asks about it (its watchers), and each entity which lanes look at it. A lane
+// exists from when its guard first held, or when somebody first asked, until nothing about it is
+// true, open, undecided or within the remembered past. Its place is used again. Tested by
+// tests/grammar/monitor_test.cc and tests/grammar/restless_test.cc
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,9 @@ struct Span {
   Moment completed = {};  ///< of a composition: where its last part ends, if that is later
 
   /// From here on it is known.
-  Moment Complete() const { return completed.tick > end.tick && completed.frame > 0 ? completed : end; }
+  Moment Complete() const {
+    return completed.tick > end.tick && completed.frame > 0 ? completed : end;
+  }
 };
 
 /// Of each part of a composition only the last ones are kept.
@@ -52,7 +54,8 @@ struct BeyondSample {
   ThresholdSet beyond = 0;
 };
 
-/// A lane that asks about another one, and as what: all that is needed to see that it need not be looked at.
+/// A lane that asks about another one, and as what: all that is needed to see that it need not be
+/// looked at.
 struct Watcher {
   int lane = kNone;
   bool guarded = false;        ///< the other one is its guard
@@ -60,8 +63,9 @@ struct Watcher {
   bool opened = false;         ///< nothing of it begins but with a moment of the other one
   bool turned = false;         ///< `instant` names the two of the touch the other way round
   ThresholdSet press = 0;      ///< what matters to it of how the two touch
-  const MeasuredPart* instant = nullptr;  ///< of its rule, if that is instant and the other one is its touch
-  int hand = kNobody;                     ///< whose grip `instant` asks for
+  const MeasuredPart* instant =
+      nullptr;         ///< of its rule, if that is instant and the other one is its touch
+  int hand = kNobody;  ///< whose grip `instant` asks for
 };
 
 /// A finished interval that waits for its confirmation.
@@ -76,36 +80,39 @@ struct Pending {
 struct alignas(64) Lane : LaneKey {  // rule kNone: the lane is free
   int index = kNone;
   bool awake = false;
-  bool open = false;     ///< a run has begun
-  bool certain = false;  ///< the open run will be an interval whatever comes
-  bool in_gap = false;   ///< the run may have ended at `gap`
+  bool open = false;             ///< a run has begun
+  bool certain = false;          ///< the open run will be an interval whatever comes
+  bool in_gap = false;           ///< the run may have ended at `gap`
   bool dependents_made = false;  ///< the lanes that this one guards are there
   bool retiring = false;         ///< waits to be freed
   Kleene told = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
   FrameNumber known = kNever;    ///< truth is final before this frame
   Moment begin;
-  FrameNumber moment = kNever;   ///< Rule::opened_by: nothing begins after this frame until its next change
+  FrameNumber moment =
+      kNever;  ///< Rule::opened_by: nothing begins after this frame until its next change
   // The second line: what a touch is looked at for.
-  FrameNumber touched = -1;        ///< kTouching only: the last frame that said so
-  ThresholdSet beyond = 0;         ///< kTouching only, while it is open: of the newest sample
-  std::vector<Watcher> watchers;   ///< lanes to wake when the truth of this one changes
-  Ring<BeyondSample> beyonds;      ///< kTouching only, where they change
+  FrameNumber touched = -1;       ///< kTouching only: the last frame that said so
+  ThresholdSet beyond = 0;        ///< kTouching only, while it is open: of the newest sample
+  std::vector<Watcher> watchers;  ///< lanes to wake when the truth of this one changes
+  Ring<BeyondSample> beyonds;     ///< kTouching only, where they change
   // The third line: what lanes are stepped with.
-  FrameNumber next = 0;            ///< first frame not yet looked at; nothing while at rest
+  FrameNumber next = 0;  ///< first frame not yet looked at; nothing while at rest
   FrameNumber resting_since = 0;
-  Ring<Span> past;                 ///< intervals, as long as somebody may ask
-  std::vector<int> references;     ///< lanes, one per Rule::references; kNone: not asked for yet
+  Ring<Span> past;              ///< intervals, as long as somebody may ask
+  std::vector<int> references;  ///< lanes, one per Rule::references; kNone: not asked for yet
   // The rest.
   std::vector<Pending> pending;
   Moment gap;
-  std::vector<double> anchors;  ///< three numbers per Rule::anchors
-  Ring<TouchSample> touches;    ///< kTouching only, where they change, if a rule asks for them
+  std::vector<double> anchors;     ///< three numbers per Rule::anchors
+  Ring<TouchSample> touches;       ///< kTouching only, where they change, if a rule asks for them
   std::size_t touching_place = 0;  ///< kTouching only: where among those that touch now
   int style = kNobody;
-  std::array<int, kMaxRoles> watch_places = kUnbound;  ///< by role: where in the list of the entity's watchers
+  std::array<int, kMaxRoles> watch_places =
+      kUnbound;                   ///< by role: where in the list of the entity's watchers
   FrameNumber approach_from = 0;  ///< kUntilSince: no later interval reaches back before this frame
-  FrameNumber last_end = 0;       ///< kUntilSince: frame of the previous `until`; kCompose: end of the previous one
-  std::vector<int> members;       ///< kAny only: the lanes of which one must hold
+  FrameNumber last_end =
+      0;  ///< kUntilSince: frame of the previous `until`; kCompose: end of the previous one
+  std::vector<int> members;              ///< kAny only: the lanes of which one must hold
   std::vector<std::vector<Span>> parts;  ///< kCompose: finished intervals of each part
 };
 
@@ -121,7 +128,8 @@ class Lanes {
 
   /// Binds the rules that have no guard.
   void BindUnguarded();
-  /// Makes the lane, at rest, if it is not there. kNone if an entity's class does not fit, or there are TooMany().
+  /// Makes the lane, at rest, if it is not there. kNone if an entity's class does not fit, or there
+  /// are TooMany().
   int Ensure(int rule, const Binding& entities) {
     const LaneKey key = Canonical(rule, entities);
     const int found = Find(key);
@@ -129,9 +137,11 @@ class Lanes {
   }
   /// Likewise, for everybody who can play the roles that are free, and appends them to `made`.
   void EnsureAll(int rule, Binding entities, std::vector<int>& made);
-  /// Makes the lanes that this one guards and appends them to `made`, those that were there already, too.
+  /// Makes the lanes that this one guards and appends them to `made`, those that were there
+  /// already, too.
   void MakeDependents(int lane, std::vector<int>& made);
-  /// Frees a lane that nothing but kAny lanes watches. Appends the lanes that it leaves without a watcher.
+  /// Frees a lane that nothing but kAny lanes watches. Appends the lanes that it leaves without a
+  /// watcher.
   void Free(int lane, std::vector<int>& orphans);
   bool TooMany() const { return too_many_ != kNone; }
   /// Which rule needs them, and how many can play each of its roles.
@@ -143,7 +153,8 @@ class Lanes {
   int size() const { return static_cast<int>(lanes_.size()); }
   int in_use() const { return static_cast<int>(lanes_.size() - free_.size()); }
 
-  /// The lane that reference `slot` of `lane` means, made if need be; from now on its changes wake this one.
+  /// The lane that reference `slot` of `lane` means, made if need be; from now on its changes wake
+  /// this one.
   int Resolve(Lane& lane, int slot);
   /// Likewise, kNone if it is not there.
   int Find(const Lane& lane, int slot) const { return Find(Referred(lane, slot)); }
@@ -166,7 +177,9 @@ class Lanes {
     const Lane& lane = lanes_[index];
     if (frame >= lane.known) return Kleene::kUnknown;
     if (lane.open && lane.certain && frame >= lane.begin.frame) return Kleene::kTrue;
-    return AnyPast(lane, [frame](const Span& past) { return frame >= past.begin.frame && frame < past.end.frame; });
+    return AnyPast(lane, [frame](const Span& past) {
+      return frame >= past.begin.frame && frame < past.end.frame;
+    });
   }
   Kleene BeginsAt(int index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
@@ -191,7 +204,8 @@ class Lanes {
   }
   int Make(const LaneKey& key);
   int Find(const LaneKey& key) const {
-    return key.rule == kTouchingRule ? FindTouch(key.entities[0], key.entities[1]) : index_.Find(key);
+    return key.rule == kTouchingRule ? FindTouch(key.entities[0], key.entities[1])
+                                     : index_.Find(key);
   }
   void Refer(Lane& lane, int slot, int target);
   LaneKey Referred(const Lane& lane, int slot) const;
@@ -213,14 +227,14 @@ class Lanes {
   Blocks<Lane> lanes_;  // a lane stays where it is when others are made
   std::vector<int> free_;
   LaneIndex<LaneKey> index_;
-  LaneIndex<PairKey> touches_;  // the lanes of kTouchingRule
+  LaneIndex<PairKey> touches_;                        // the lanes of kTouchingRule
   std::vector<std::vector<int>> guarded_;             // by rule: the rules it guards
   std::vector<std::vector<std::vector<bool>>> fits_;  // by rule, role, entity
   std::vector<std::vector<Watch>> pose_watchers_;     // by entity
   std::vector<std::vector<Watch>> grip_watchers_;
-  std::vector<int> name_rank_;                        // alphabetical order of entities
-  std::vector<char> symmetric_;                       // by rule
-  int too_many_ = kNone;                              // the rule that would have had more than can be
+  std::vector<int> name_rank_;   // alphabetical order of entities
+  std::vector<char> symmetric_;  // by rule
+  int too_many_ = kNone;         // the rule that would have had more than can be
 };
 
 }  // namespace prehend::grammar

@@ -13,9 +13,12 @@ constexpr std::size_t kMaxFileBytes = std::size_t{1} << 20;
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-// Length of the UTF-8 sequence that starts at `i`, 0 if there is none (overlong forms and surrogates count as none).
+// Length of the UTF-8 sequence that starts at `i`, 0 if there is none (overlong forms and
+// surrogates count as none).
 std::size_t Utf8Length(std::string_view text, std::size_t i) {
-  const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0; };
+  const auto byte = [&](std::size_t k) {
+    return k < text.size() ? static_cast<unsigned char>(text[k]) : 0;
+  };
   const auto follows = [&](std::size_t k) { return (byte(k) & 0xc0) == 0x80; };
   const int lead = byte(i);
   if (lead < 0x80) return 1;
@@ -38,7 +41,8 @@ std::string WhyNotText(std::string_view text) {
   if (text.size() > kMaxFileBytes) return "the file is larger than 1 MiB; is this a grammar?";
   for (std::size_t i = 0; i < text.size();) {
     const auto byte = static_cast<unsigned char>(text[i]);
-    if (byte < 0x20 && byte != '\n' && byte != '\r' && byte != '\t') return "this is a binary file, not a grammar";
+    if (byte < 0x20 && byte != '\n' && byte != '\r' && byte != '\t')
+      return "this is a binary file, not a grammar";
     const std::size_t length = Utf8Length(text, i);
     if (length == 0) return "the file is not valid UTF-8 text";
     i += length;
@@ -48,7 +52,8 @@ std::string WhyNotText(std::string_view text) {
 
 class Lexer {
  public:
-  Lexer(const GrammarText& grammar, Diagnostics& diagnostics) : grammar_(grammar), diagnostics_(diagnostics) {}
+  Lexer(const GrammarText& grammar, Diagnostics& diagnostics)
+      : grammar_(grammar), diagnostics_(diagnostics) {}
 
   std::vector<Token> Run() {
     for (SkipBlanks(); at_ < text().size(); SkipBlanks()) Next();
@@ -58,7 +63,9 @@ class Lexer {
 
  private:
   std::string_view text() const { return grammar_.text; }
-  char Peek(std::size_t ahead = 0) const { return at_ + ahead < text().size() ? text()[at_ + ahead] : '\0'; }
+  char Peek(std::size_t ahead = 0) const {
+    return at_ + ahead < text().size() ? text()[at_ + ahead] : '\0';
+  }
   Place Here() const { return {line_, static_cast<int>(at_ - line_begin_) + 1}; }
 
   void SkipBlanks() {
@@ -112,7 +119,8 @@ class Lexer {
     while (at_ + length < text().size() && Peek(length) != '"' && Peek(length) != '\n') ++length;
     const bool closed = Peek(length) == '"' && at_ + length < text().size();
     if (!closed) Complain("this quote is not closed on its line");
-    tokens_.push_back({Token::Kind::kText, std::string(text().substr(at_ + 1, length - 1)), Here()});
+    tokens_.push_back(
+        {Token::Kind::kText, std::string(text().substr(at_ + 1, length - 1)), Here()});
     at_ += length + (closed ? 1 : 0);
   }
 
@@ -141,7 +149,8 @@ class Lexer {
   }
 
   void Complain(std::string message, std::string hint = {}) {
-    diagnostics_.push_back(DiagnosticAt(grammar_.file, text(), Here(), std::move(message), std::move(hint)));
+    diagnostics_.push_back(
+        DiagnosticAt(grammar_.file, text(), Here(), std::move(message), std::move(hint)));
   }
 
   const GrammarText& grammar_;
@@ -156,7 +165,11 @@ class Lexer {
 
 std::vector<Token> Tokenize(const GrammarText& grammar, Diagnostics& diagnostics) {
   if (std::string why = WhyNotText(grammar.text); !why.empty()) {
-    diagnostics.push_back({.file = grammar.file, .place = {}, .message = std::move(why), .source_line = {}, .hint = {}});
+    diagnostics.push_back({.file = grammar.file,
+                           .place = {},
+                           .message = std::move(why),
+                           .source_line = {},
+                           .hint = {}});
     return {Token{}};
   }
   return Lexer(grammar, diagnostics).Run();

@@ -19,7 +19,8 @@ struct Token {
   double number = 0;
 };
 
-/// The last token is always kEnd. Text that is too large, binary or not UTF-8 yields one diagnostic and no tokens.
+/// The last token is always kEnd. Text that is too large, binary or not UTF-8 yields one diagnostic
+/// and no tokens.
 std::vector<Token> Tokenize(const GrammarText& grammar, Diagnostics& diagnostics);
 
 }  // namespace prehend::grammar

@@ -14,7 +14,8 @@ namespace {
 using ast::Expr;
 
 constexpr std::size_t kMaxNodes = 10000;
-constexpr std::array<std::string_view, 4> kOverInterval = {"displacement", "displacement_along", "rise", "drop"};
+constexpr std::array<std::string_view, 4> kOverInterval = {"displacement", "displacement_along",
+                                                           "rise", "drop"};
 constexpr double kLongest_s = 86400;  // more is a slip of the finger
 
 // The names that stand in it, each once.
@@ -26,9 +27,12 @@ void CollectNames(const Expr& expr, std::vector<std::string>& names) {
 
 std::string_view TypeText(Type type) {
   switch (type) {
-    case Type::kTruth: return "true or false";
-    case Type::kNumber: return "a number";
-    case Type::kPosition: return "a position";
+    case Type::kTruth:
+      return "true or false";
+    case Type::kNumber:
+      return "a number";
+    case Type::kPosition:
+      return "a position";
   }
   return "";
 }
@@ -41,15 +45,18 @@ std::string Suggest(std::string_view name, const std::vector<std::string>& known
 }
 
 const std::vector<std::string>& BuiltinClasses() {
-  static const std::vector<std::string> kClasses = {"Entity", "Hand", "Thing", "Movable", "Fixed", "Jointed"};
+  static const std::vector<std::string> kClasses = {"Entity",  "Hand",  "Thing",
+                                                    "Movable", "Fixed", "Jointed"};
   return kClasses;
 }
 
 bool IsBuiltinClass(std::string_view name) {
-  return std::find(BuiltinClasses().begin(), BuiltinClasses().end(), name) != BuiltinClasses().end();
+  return std::find(BuiltinClasses().begin(), BuiltinClasses().end(), name) !=
+         BuiltinClasses().end();
 }
 
-int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file, Place place) {
+int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file,
+             Place place) {
   const auto same = [&](const Named& named) { return named.name == name && named.file == file; };
   const auto found = std::ranges::find_if(names, same);
   const auto index = static_cast<int>(found - names.begin());
@@ -88,7 +95,8 @@ Lowering::Lowering(Symbols& symbols, int rule, const GrammarText& source, Diagno
       role_used_(symbols.program.events[rule].roles.size()) {}
 
 void Lowering::Complain(Place place, std::string message, std::string hint) {
-  diagnostics_.push_back(DiagnosticAt(source_->file, source_->text, place, std::move(message), std::move(hint)));
+  diagnostics_.push_back(
+      DiagnosticAt(source_->file, source_->text, place, std::move(message), std::move(hint)));
 }
 
 Lowering::Typed Lowering::Bad(Place place, std::string message, std::string hint) {
@@ -107,7 +115,8 @@ int Lowering::Instant(const Expr& expr, Anchors anchors) {
   const Typed typed = TruthValue(expr);
   if (typed.bad) return kNone;
   if (!typed.instant) {
-    Complain(expr.place, "this holds for a while, but a moment is needed here", "add 'begins' or 'ends': X begins");
+    Complain(expr.place, "this holds for a while, but a moment is needed here",
+             "add 'begins' or 'ends': X begins");
     return kNone;
   }
   return typed.node;
@@ -115,14 +124,16 @@ int Lowering::Instant(const Expr& expr, Anchors anchors) {
 
 int Lowering::RuleCall(const Expr& expr) {
   if (expr.kind != Expr::Kind::kCall || (FindBuiltin(expr.text) && expr.text != "touching")) {
-    Complain(expr.place, "an event or condition with its roles is needed here", "for example: grasping(hand, object)");
+    Complain(expr.place, "an event or condition with its roles is needed here",
+             "for example: grasping(hand, object)");
     return kNone;
   }
   const Typed typed = Lower(expr);
   if (typed.bad) return kNone;
   const Node& node = symbols_.program.nodes[typed.node];
   if (node.op == Op::kHolds) return node.slot;
-  Complain(expr.place, "an event or condition is needed here, " + Quoted(expr.text) + " is none", "define it as a condition: condition near(..) while ..");
+  Complain(expr.place, "an event or condition is needed here, " + Quoted(expr.text) + " is none",
+           "define it as a condition: condition near(..) while ..");
   return kNone;
 }
 
@@ -159,15 +170,16 @@ double Lowering::Span(const Expr& expr, std::string_view what) {
   return seconds.value_or(0);
 }
 
-std::optional<double> Lowering::ConstantOf(const Expr& expr, const Dimension& dimension, std::string_view what) {
+std::optional<double> Lowering::ConstantOf(const Expr& expr, const Dimension& dimension,
+                                           std::string_view what) {
   const Typed typed = Number(expr);
   if (typed.bad) return std::nullopt;
   const Node& node = symbols_.program.nodes[typed.node];
   if (node.op != Op::kNumber) {
     Complain(expr.place, std::string(what) + " must be a number or a parameter");
   } else if (!(typed.dimension == dimension)) {
-    Complain(expr.place,
-             std::string(what) + " is in " + DimensionText(dimension) + ", this is " + DimensionText(typed.dimension));
+    Complain(expr.place, std::string(what) + " is in " + DimensionText(dimension) + ", this is " +
+                             DimensionText(typed.dimension));
   } else if (node.number < 0) {
     Complain(expr.place, std::string(what) + " cannot be negative");
   } else if (dimension == kSeconds && node.number > kLongest_s) {
@@ -178,7 +190,9 @@ std::optional<double> Lowering::ConstantOf(const Expr& expr, const Dimension& di
   return std::nullopt;
 }
 
-int Lowering::HandRole(const Expr& expr) { return RoleArgument(expr, "Hand", "style").value_or(kNone); }
+int Lowering::HandRole(const Expr& expr) {
+  return RoleArgument(expr, "Hand", "style").value_or(kNone);
+}
 
 int Lowering::Add(Node node) {
   std::vector<Node>& nodes = symbols_.program.nodes;
@@ -186,7 +200,8 @@ int Lowering::Add(Node node) {
     nodes.push_back(node);
   } else if (!full_) {
     full_ = true;
-    Complain(rule().place, "the grammar has more than " + std::to_string(kMaxNodes) + " expressions");
+    Complain(rule().place,
+             "the grammar has more than " + std::to_string(kMaxNodes) + " expressions");
   }
   return static_cast<int>(nodes.size()) - 1;
 }
@@ -199,14 +214,18 @@ int Lowering::AddSignal(Node node) {
 }
 
 Lowering::Typed Lowering::NumberNode(double value, const Dimension& dimension, Place place) {
-  if (!std::isfinite(value)) return Bad(place, "this number is not finite", "is something divided by zero?");
-  return {.node = Add({.op = Op::kNumber, .number = value}), .type = Type::kNumber, .dimension = dimension};
+  if (!std::isfinite(value))
+    return Bad(place, "this number is not finite", "is something divided by zero?");
+  return {.node = Add({.op = Op::kNumber, .number = value}),
+          .type = Type::kNumber,
+          .dimension = dimension};
 }
 
 int Lowering::AddReference(const Reference& reference) {
   std::vector<Reference>& all = rule().references;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].rule == reference.rule && all[i].roles == reference.roles) return static_cast<int>(i);
+    if (all[i].rule == reference.rule && all[i].roles == reference.roles)
+      return static_cast<int>(i);
   }
   all.push_back(reference);
   return static_cast<int>(all.size()) - 1;
@@ -264,15 +283,24 @@ Lowering::Typed Lowering::Lower(const Expr& expr) {
 
 Lowering::Typed Lowering::LowerKind(const Expr& expr) {
   switch (expr.kind) {
-    case Expr::Kind::kQuantity: return NumberNode(expr.quantity.value, expr.quantity.dimension, expr.place);
-    case Expr::Kind::kName: return LowerName(expr);
-    case Expr::Kind::kText: return Bad(expr.place, "a value is needed here, not a text");
-    case Expr::Kind::kCall: return LowerCall(expr);
-    case Expr::Kind::kUnary: return LowerUnary(expr);
-    case Expr::Kind::kBinary: return LowerBinary(expr);
-    case Expr::Kind::kChain: return LowerChain(expr);
-    case Expr::Kind::kEdge: return LowerEdge(expr);
-    case Expr::Kind::kAnchor: return LowerAnchor(expr);
+    case Expr::Kind::kQuantity:
+      return NumberNode(expr.quantity.value, expr.quantity.dimension, expr.place);
+    case Expr::Kind::kName:
+      return LowerName(expr);
+    case Expr::Kind::kText:
+      return Bad(expr.place, "a value is needed here, not a text");
+    case Expr::Kind::kCall:
+      return LowerCall(expr);
+    case Expr::Kind::kUnary:
+      return LowerUnary(expr);
+    case Expr::Kind::kBinary:
+      return LowerBinary(expr);
+    case Expr::Kind::kChain:
+      return LowerChain(expr);
+    case Expr::Kind::kEdge:
+      return LowerEdge(expr);
+    case Expr::Kind::kAnchor:
+      return LowerAnchor(expr);
   }
   return {.bad = true};
 }
@@ -280,8 +308,9 @@ Lowering::Typed Lowering::LowerKind(const Expr& expr) {
 Lowering::Typed Lowering::TruthValue(const Expr& expr) {
   const Typed typed = Lower(expr);
   if (typed.bad || typed.type == Type::kTruth) return typed;
-  return Bad(expr.place, "a condition is needed here, this is " + std::string(TypeText(typed.type)),
-             typed.type == Type::kNumber ? "compare it with something: speed(object) > 2 cm/s" : "");
+  return Bad(
+      expr.place, "a condition is needed here, this is " + std::string(TypeText(typed.type)),
+      typed.type == Type::kNumber ? "compare it with something: speed(object) > 2 cm/s" : "");
 }
 
 Lowering::Typed Lowering::Number(const Expr& expr) {
@@ -308,7 +337,8 @@ Lowering::Typed Lowering::Position(const Expr& expr) {
 
 Lowering::Typed Lowering::LowerName(const Expr& expr) {
   if (scope_ != nullptr) {
-    if (const auto value = scope_->values.find(expr.text); value != scope_->values.end()) return LowerValue(value->second);
+    if (const auto value = scope_->values.find(expr.text); value != scope_->values.end())
+      return LowerValue(value->second);
   }
   if (FindRole(expr.text) != kNone) {
     return Bad(expr.place, Quoted(expr.text) + " is a role; a value is needed here",
@@ -327,15 +357,17 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
                "for example: supported_by(object, any)");
   }
   const bool is_call = FindBuiltin(expr.text) != nullptr || symbols_.rules.contains(expr.text);
-  return Bad(expr.place, "unknown name " + Quoted(expr.text),
-             is_call ? "say of whom: " + expr.text + "(object)" : Suggest(expr.text, KnownNames(false)));
+  return Bad(
+      expr.place, "unknown name " + Quoted(expr.text),
+      is_call ? "say of whom: " + expr.text + "(object)" : Suggest(expr.text, KnownNames(false)));
 }
 
 Lowering::Typed Lowering::LowerUnary(const Expr& expr) {
   if (expr.text == "not") {
     const Typed arg = TruthValue(expr.args[0]);
     if (arg.bad) return arg;
-    return {.node = Add({.op = Op::kNot, .args = {arg.node, kNone, kNone, kNone}}), .type = Type::kTruth};
+    return {.node = Add({.op = Op::kNot, .args = {arg.node, kNone, kNone, kNone}}),
+            .type = Type::kTruth};
   }
   Typed arg = Number(expr.args[0]);
   if (arg.bad) return arg;
@@ -346,33 +378,39 @@ Lowering::Typed Lowering::LowerUnary(const Expr& expr) {
 }
 
 Lowering::Typed Lowering::LowerBinary(const Expr& expr) {
-  static constexpr std::array<std::pair<std::string_view, Op>, 10> kOps = {{{"+", Op::kAdd},
-                                                                            {"-", Op::kSubtract},
-                                                                            {"*", Op::kMultiply},
-                                                                            {"/", Op::kDivide},
-                                                                            {"<", Op::kLess},
-                                                                            {"<=", Op::kLessEqual},
-                                                                            {">", Op::kGreater},
-                                                                            {">=", Op::kGreaterEqual},
-                                                                            {"==", Op::kEqual},
-                                                                            {"!=", Op::kNotEqual}}};
-  const Op op = std::find_if(kOps.begin(), kOps.end(), [&](const auto& entry) { return entry.first == expr.text; })->second;
+  static constexpr std::array<std::pair<std::string_view, Op>, 10> kOps = {
+      {{"+", Op::kAdd},
+       {"-", Op::kSubtract},
+       {"*", Op::kMultiply},
+       {"/", Op::kDivide},
+       {"<", Op::kLess},
+       {"<=", Op::kLessEqual},
+       {">", Op::kGreater},
+       {">=", Op::kGreaterEqual},
+       {"==", Op::kEqual},
+       {"!=", Op::kNotEqual}}};
+  const Op op = std::find_if(kOps.begin(), kOps.end(), [&](const auto& entry) {
+                  return entry.first == expr.text;
+                })->second;
   const Typed left = Number(expr.args[0]);
   const Typed right = Number(expr.args[1]);
   if (left.bad || right.bad) return {.bad = true};
   const bool scales = op == Op::kMultiply || op == Op::kDivide;
   if (!scales && !(left.dimension == right.dimension)) {
     const bool sum = op == Op::kAdd || op == Op::kSubtract;
-    return Bad(expr.place, std::string(sum ? "cannot combine " : "cannot compare ") + DimensionText(left.dimension) +
-                               " with " + DimensionText(right.dimension),
-               right.dimension == kPlain ? "the right side needs a unit" : "both sides must have the same unit");
+    return Bad(expr.place,
+               std::string(sum ? "cannot combine " : "cannot compare ") +
+                   DimensionText(left.dimension) + " with " + DimensionText(right.dimension),
+               right.dimension == kPlain ? "the right side needs a unit"
+                                         : "both sides must have the same unit");
   }
   if (op >= Op::kLess && op <= Op::kNotEqual) return LowerComparison(op, left, right, expr);
   return LowerArithmetic(op, left, right, expr);
 }
 
 // What only depends on parameters is one number, so that it can stand where a constant must.
-Lowering::Typed Lowering::LowerArithmetic(Op op, const Typed& left, const Typed& right, const Expr& expr) {
+Lowering::Typed Lowering::LowerArithmetic(Op op, const Typed& left, const Typed& right,
+                                          const Expr& expr) {
   Dimension dimension = left.dimension;
   if (op == Op::kMultiply) dimension = Product(left.dimension, right.dimension);
   if (op == Op::kDivide) dimension = Quotient(left.dimension, right.dimension);
@@ -380,14 +418,19 @@ Lowering::Typed Lowering::LowerArithmetic(Op op, const Typed& left, const Typed&
   const Node a = symbols_.program.nodes[left.node];
   const Node b = symbols_.program.nodes[right.node];
   if (op == Op::kDivide && b.op == Op::kNumber && b.number == 0 && !checking_) {
-    return Bad(expr.place, "this is divided by zero", WithParams(expr.args[1], "divide by something else"));
+    return Bad(expr.place, "this is divided by zero",
+               WithParams(expr.args[1], "divide by something else"));
   }
   if (a.op == Op::kNumber && b.op == Op::kNumber) {
     switch (op) {
-      case Op::kAdd: return NumberNode(a.number + b.number, dimension, expr.place);
-      case Op::kSubtract: return NumberNode(a.number - b.number, dimension, expr.place);
-      case Op::kMultiply: return NumberNode(a.number * b.number, dimension, expr.place);
-      default: return NumberNode(a.number / b.number, dimension, expr.place);
+      case Op::kAdd:
+        return NumberNode(a.number + b.number, dimension, expr.place);
+      case Op::kSubtract:
+        return NumberNode(a.number - b.number, dimension, expr.place);
+      case Op::kMultiply:
+        return NumberNode(a.number * b.number, dimension, expr.place);
+      default:
+        return NumberNode(a.number / b.number, dimension, expr.place);
     }
   }
   return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}),
@@ -395,32 +438,41 @@ Lowering::Typed Lowering::LowerArithmetic(Op op, const Typed& left, const Typed&
           .dimension = dimension};
 }
 
-// What can never or only be true is a mistake. While a definition is checked for itself, its numbers are not known.
-Lowering::Typed Lowering::LowerComparison(Op op, const Typed& left, const Typed& right, const Expr& expr) {
+// What can never or only be true is a mistake. While a definition is checked for itself, its
+// numbers are not known.
+Lowering::Typed Lowering::LowerComparison(Op op, const Typed& left, const Typed& right,
+                                          const Expr& expr) {
   const Program& program = symbols_.program;
   const Range of_left = RangeOf(program, rule(), left.node);
   const bool same = Signature(program, left.node) == Signature(program, right.node);
   const Verdict verdict = same ? Judge(op, {.low = 0, .high = 0}, {.low = 0, .high = 0})
                                : Judge(op, of_left, RangeOf(program, rule(), right.node));
   if (verdict == Verdict::kPossible || checking_) {
-    return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}), .type = Type::kTruth};
+    return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}),
+            .type = Type::kTruth};
   }
   const bool never = verdict == Verdict::kNever;
   const std::string message = std::string("this is ") + (never ? "never" : "always") + " true: ";
-  if (same) return Bad(expr.place, message + "both sides are the same", "compare it with something else");
+  if (same)
+    return Bad(expr.place, message + "both sides are the same", "compare it with something else");
   const std::string sides = WhatSidesCanBe(expr, left, right);
-  if (sides.empty()) return Bad(expr.place, message + "it compares two numbers", WithParams(expr, "compare one of them with a signal"));
+  if (sides.empty())
+    return Bad(expr.place, message + "it compares two numbers",
+               WithParams(expr, "compare one of them with a signal"));
   return Bad(expr.place, message + sides,
-             WithParams(expr, never ? "choose a bound that can be reached" : "leave it out, or choose a bound that can be missed"));
+             WithParams(expr, never ? "choose a bound that can be reached"
+                                    : "leave it out, or choose a bound that can be missed"));
 }
 
 // Nothing of what is only a number.
 
-std::string Lowering::WhatSidesCanBe(const Expr& comparison, const Typed& left, const Typed& right) {
+std::string Lowering::WhatSidesCanBe(const Expr& comparison, const Typed& left,
+                                     const Typed& right) {
   std::string text;
   const auto add = [&](const Expr& side, const Typed& typed, std::string_view which) {
     if (symbols_.program.nodes[typed.node].op == Op::kNumber) return;
-    const std::string name = side.kind == Expr::Kind::kCall ? Quoted(side.text) : std::string(which);
+    const std::string name =
+        side.kind == Expr::Kind::kCall ? Quoted(side.text) : std::string(which);
     text += (text.empty() ? "" : ", ") + name + " " +
             RangeText(RangeOf(symbols_.program, rule(), typed.node), typed.dimension);
   };
@@ -438,7 +490,8 @@ std::string Lowering::WithParams(const Expr& expr, std::string remedy) const {
     const int found = FindParam(name);
     if (found == kNone || FindRole(name) != kNone) continue;
     const ProgramParam& param = symbols_.program.params[found];
-    text += Quoted(name) + " is " + QuantityText(param.value) + (param.overridden ? ", set from outside; " : "; ");
+    text += Quoted(name) + " is " + QuantityText(param.value) +
+            (param.overridden ? ", set from outside; " : "; ");
   }
   return text + remedy;
 }
@@ -448,16 +501,20 @@ bool Lowering::ChainIsSound(const Expr& chain, const std::vector<int>& nodes) {
   if (checking_) return true;
   const bool is_and = chain.text == "and";
   const std::string verdict = is_and ? "this is never true" : "this is always true";
-  const std::string remedy = is_and ? "use 'or', or change one of the bounds" : "use 'and', or change one of the bounds";
+  const std::string remedy =
+      is_and ? "use 'or', or change one of the bounds" : "use 'and', or change one of the bounds";
   Bounds bounds(symbols_.program, rule());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (bounds.Add(nodes[i], !is_and)) continue;
-    Complain(chain.args[i].place, verdict + " together with what stands before it: " + Dump(chain.args[i]),
+    Complain(chain.args[i].place,
+             verdict + " together with what stands before it: " + Dump(chain.args[i]),
              WithParams(chain.args[i], remedy));
     return false;
   }
   if (bounds.SomeAlternativeFits()) return true;
-  Complain(chain.args[0].place, verdict + ", whichever of its alternatives one takes: " + Dump(chain), WithParams(chain, remedy));
+  Complain(chain.args[0].place,
+           verdict + ", whichever of its alternatives one takes: " + Dump(chain),
+           WithParams(chain, remedy));
   return false;
 }
 
@@ -478,7 +535,8 @@ Lowering::Typed Lowering::LowerChain(const Expr& expr) {
   while (nodes.size() > 1) {
     std::vector<int> halved;
     for (std::size_t i = 0; i + 1 < nodes.size(); i += 2) {
-      halved.push_back(Add({.op = is_and ? Op::kAnd : Op::kOr, .args = {nodes[i], nodes[i + 1], kNone, kNone}}));
+      halved.push_back(
+          Add({.op = is_and ? Op::kAnd : Op::kOr, .args = {nodes[i], nodes[i + 1], kNone, kNone}}));
     }
     if (nodes.size() % 2 == 1) halved.push_back(nodes.back());
     nodes = std::move(halved);
@@ -492,7 +550,9 @@ Lowering::Typed Lowering::LowerEdge(const Expr& expr) {
   if (arg.bad) return arg;
   if (arg.instant) return Bad(expr.place, "this is a moment already; it cannot begin or end");
   const Op op = expr.text == "begins" ? Op::kBegins : Op::kEnds;
-  return {.node = Add({.op = op, .args = {arg.node, kNone, kNone, kNone}}), .type = Type::kTruth, .instant = true};
+  return {.node = Add({.op = op, .args = {arg.node, kNone, kNone, kNone}}),
+          .type = Type::kTruth,
+          .instant = true};
 }
 
 Lowering::Typed Lowering::LowerAnchor(const Expr& expr) {
@@ -503,7 +563,9 @@ Lowering::Typed Lowering::LowerAnchor(const Expr& expr) {
                         : "'@end' can be used after 'since', 'requires' and 'with'");
   }
   if (expr.args[0].kind == Expr::Kind::kCall && IsOverInterval(expr.args[0].text)) {
-    return Bad(expr.place, Quoted(expr.args[0].text) + " is measured from the interval's begin to now, not at one moment",
+    return Bad(expr.place,
+               Quoted(expr.args[0].text) +
+                   " is measured from the interval's begin to now, not at one moment",
                "leave '@" + expr.text + "' out: " + Dump(expr.args[0]));
   }
   // Inside, the boundary is a single frame: no further anchors.
@@ -514,9 +576,11 @@ Lowering::Typed Lowering::LowerAnchor(const Expr& expr) {
   attribute_ = in_attribute;
   if (arg.bad) return arg;
   if (arg.type == Type::kTruth) {
-    return Bad(expr.place, "'@" + expr.text + "' takes a number or a position, this is true or false");
+    return Bad(expr.place,
+               "'@" + expr.text + "' takes a number or a position, this is true or false");
   }
-  arg.node = at_begin ? AnchorAtBegin(arg.node) : Add({.op = Op::kAtEnd, .args = {arg.node, kNone, kNone, kNone}});
+  arg.node = at_begin ? AnchorAtBegin(arg.node)
+                      : Add({.op = Op::kAtEnd, .args = {arg.node, kNone, kNone, kNone}});
   return arg;
 }
 

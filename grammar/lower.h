@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Expressions of one rule: looks names up, checks types and units, and appends nodes to the program.
-// Needs the heads of all rules, so that rules may refer to later ones.
-// Tested by tests/grammar/compile_test.cc
+// Expressions of one rule: looks names up, checks types and units, and appends nodes to the
+// program. Needs the heads of all rules, so that rules may refer to later ones. Tested by
+// tests/grammar/compile_test.cc
 #pragma once
 
 #include <map>
@@ -28,30 +28,38 @@ struct Symbols {
   Program& program;
   std::map<std::string, int, std::less<>> rules;   ///< name -> index in Program::events
   std::map<std::string, int, std::less<>> params;  ///< name -> index in Program::params
-  std::map<std::string, int, std::less<>> files;   ///< name -> place in the order in which they were read, what is used first
+  std::map<std::string, int, std::less<>>
+      files;  ///< name -> place in the order in which they were read, what is used first
   std::map<std::string, DefineSource, std::less<>> defines;
   std::map<std::pair<int, std::vector<int>>, int> any_rules;  ///< (rule, kept roles) -> rule
-  std::map<std::pair<int, std::vector<std::string>>, int> narrowed_rules;  ///< (rule, classes of its roles) -> rule
+  std::map<std::pair<int, std::vector<std::string>>, int>
+      narrowed_rules;  ///< (rule, classes of its roles) -> rule
   std::set<int> used_params;
   std::set<std::string, std::less<>> used_defines;
 
-  /// A parameter of this file or of one that it uses; another file's may be called like something of its own.
+  /// A parameter of this file or of one that it uses; another file's may be called like something
+  /// of its own.
   bool IsParamIn(std::string_view file, std::string_view name) const;
 };
 
-/// True if some entity can be of both classes. Names other than the built-in ones are taken to be Things.
+/// True if some entity can be of both classes. Names other than the built-in ones are taken to be
+/// Things.
 bool ClassesMeet(std::string_view a, std::string_view b);
 
 bool IsBuiltinClass(std::string_view name);
 const std::vector<std::string>& BuiltinClasses();
 
-/// Remembers a name that stands at a place of a file, once per name and file; which of the names it is.
-int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file, Place place);
+/// Remembers a name that stands at a place of a file, once per name and file; which of the names it
+/// is.
+int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file,
+             Place place);
 
 /// Likewise, a class that stands there, unless it is built in.
 void NoteClass(Program& program, std::string_view name, const std::string& file, Place place);
 
-inline bool StartsWithCapital(std::string_view name) { return !name.empty() && name[0] >= 'A' && name[0] <= 'Z'; }
+inline bool StartsWithCapital(std::string_view name) {
+  return !name.empty() && name[0] >= 'A' && name[0] <= 'Z';
+}
 
 /// The signals that are measured over an interval: displacement, displacement_along, rise, drop.
 bool IsOverInterval(std::string_view name);
@@ -81,7 +89,8 @@ class Lowering {
   int PartCall(const ast::Expr& expr);
   /// A number; its dimension is written to `dimension`.
   int Signal(const ast::Expr& expr, Anchors anchors, Dimension& dimension);
-  /// A number to be asked for where the interval ends: signals as they were at its begin, `x@end` as they are.
+  /// A number to be asked for where the interval ends: signals as they were at its begin, `x@end`
+  /// as they are.
   int Attribute(const ast::Expr& expr, Dimension& dimension);
   /// A number that only depends on parameters, zero or more.
   double Constant(const ast::Expr& expr, const Dimension& dimension, std::string_view what);
@@ -110,7 +119,7 @@ class Lowering {
       const ast::Expr* expr = nullptr;  ///< the argument, and where it was written
       const GrammarText* source = nullptr;
       const Scope* scope = nullptr;
-      Typed stand_in = {};              ///< without an argument
+      Typed stand_in = {};  ///< without an argument
     };
     std::string_view define;
     const Scope* outer = nullptr;
@@ -142,15 +151,17 @@ class Lowering {
   Typed LowerDefine(const DefineSource& source, const ast::Expr& expr);
   Typed LowerBody(const DefineSource& source, const Scope& scope);
   Typed LowerValue(const Scope::Value& value);
-  bool BindParameter(const DefineSource& source, std::size_t index, const ast::Expr& arg, Scope& scope);
+  bool BindParameter(const DefineSource& source, std::size_t index, const ast::Expr& arg,
+                     Scope& scope);
   Typed LowerBuiltin(const Builtin& builtin, const ast::Expr& expr);
   Typed LowerOverInterval(const ast::Expr& expr);
   Typed LowerIs(const ast::Expr& expr);
-  bool LowerArgument(const ast::Expr& arg, Argument wanted, const Builtin& builtin, Node& node, int& next_node,
-                     int& next_role, Typed& result);
+  bool LowerArgument(const ast::Expr& arg, Argument wanted, const Builtin& builtin, Node& node,
+                     int& next_node, int& next_role, Typed& result);
   bool LowerSet(const ast::Expr& arg, Node& node);
 
-  std::optional<double> ConstantOf(const ast::Expr& expr, const Dimension& dimension, std::string_view what);
+  std::optional<double> ConstantOf(const ast::Expr& expr, const Dimension& dimension,
+                                   std::string_view what);
   Typed Bad(Place place, std::string message, std::string hint = {});
   Typed Number(const ast::Expr& expr);
   Typed Position(const ast::Expr& expr);
@@ -162,7 +173,8 @@ class Lowering {
   int AnchorAtBegin(int node);
   int FindRole(std::string_view name) const;
   int FindParam(std::string_view name) const;
-  std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class, std::string_view callee);
+  std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class,
+                                  std::string_view callee);
   int AnyRule(int rule, const std::vector<int>& kept);
   int NarrowedRule(int rule, const std::vector<std::string>& classes);
   std::vector<std::string> KnownNames(bool calls) const;

@@ -38,8 +38,10 @@ class DefinitionLowering {
         CheckUntil();
         break;
       }
-      case Form_::kFromTo: return LowerFromTo();
-      case Form_::kUntilSince: return LowerUntilSince();
+      case Form_::kFromTo:
+        return LowerFromTo();
+      case Form_::kUntilSince:
+        return LowerUntilSince();
       case Form_::kRestOf: {
         Here().form = Form::kRestOf;
         const int first = lowering_.RuleCall(d_.first);
@@ -51,7 +53,8 @@ class DefinitionLowering {
         }
         break;
       }
-      case Form_::kCompose: return LowerCompose();
+      case Form_::kCompose:
+        return LowerCompose();
     }
   }
 
@@ -77,14 +80,18 @@ class DefinitionLowering {
   };
   bool CanBe(std::initializer_list<Claim> claims) {
     Bounds bounds(program_, Here());
-    const auto fits = [&](const Claim& claim) { return claim.node == kNone || bounds.Add(claim.node, claim.negated); };
+    const auto fits = [&](const Claim& claim) {
+      return claim.node == kNone || bounds.Add(claim.node, claim.negated);
+    };
     return std::all_of(claims.begin(), claims.end(), fits) && bounds.SomeAlternativeFits();
   }
 
   void CheckUntil() {
     const Rule& rule = Here();
-    if (rule.first == kNone || rule.second == kNone || CanBe({{rule.first}, {rule.second, true}})) return;
-    lowering_.Complain(d_.until->place, "nothing ever begins: this holds wherever the condition before it does",
+    if (rule.first == kNone || rule.second == kNone || CanBe({{rule.first}, {rule.second, true}}))
+      return;
+    lowering_.Complain(d_.until->place,
+                       "nothing ever begins: this holds wherever the condition before it does",
                        "it begins where that holds and this does not, and lasts until this holds");
   }
 
@@ -92,21 +99,27 @@ class DefinitionLowering {
     const Rule& rule = Here();
     if (rule.first == kNone || rule.second == kNone) return;
     if (!CanBe({{rule.first}, {rule.second, true}})) {
-      lowering_.Complain(d_.second.place, "nothing ever begins: each begin is such an end, too, at the same frame",
+      lowering_.Complain(d_.second.place,
+                         "nothing ever begins: each begin is such an end, too, at the same frame",
                          "from one X to the next is 'from X ends to X begins'");
     } else if (!CanBe({{rule.first}, {rule.second, true}, {rule.during}})) {
-      lowering_.Complain(d_.during->place, "nothing ever begins: this is false wherever it would begin",
+      lowering_.Complain(d_.during->place,
+                         "nothing ever begins: this is false wherever it would begin",
                          "'during' must hold from the begin on");
     }
   }
 
   // Something of each interval must be left.
   void CheckRest(const ast::Expr& other, int reference) {
-    if (Here().first == kNone || reference == kNone || !Covers(Here().references[reference], Here().references[Here().first])) return;
-    lowering_.Complain(other.place, "nothing is ever left: this takes away all of it", "take away something else");
+    if (Here().first == kNone || reference == kNone ||
+        !Covers(Here().references[reference], Here().references[Here().first]))
+      return;
+    lowering_.Complain(other.place, "nothing is ever left: this takes away all of it",
+                       "take away something else");
   }
 
-  // Whatever interval one of them has, the other one has it, too: it is the same, or "some" of the same.
+  // Whatever interval one of them has, the other one has it, too: it is the same, or "some" of the
+  // same.
   bool Covers(const Reference& other, const Reference& whole) const {
     if (other.rule == whole.rule) return other.roles == whole.roles;
     const Rule& some = program_.events[other.rule];
@@ -143,7 +156,8 @@ class DefinitionLowering {
     Dimension motion_dimension = Quotient(dimension, kSeconds);
     double speed = 0;
     double idle_s = -1;
-    if (approach.motion) motion = lowering_.Signal(*approach.motion, {.end = true}, motion_dimension);
+    if (approach.motion)
+      motion = lowering_.Signal(*approach.motion, {.end = true}, motion_dimension);
     if (approach.speed) {
       speed = lowering_.Constant(*approach.speed, motion_dimension, "'slower than'");
       idle_s = lowering_.Constant(*approach.idle, kSeconds, "'slower than .. at most'");
@@ -161,8 +175,9 @@ class DefinitionLowering {
     const std::size_t before = lowering_.complaints();
     std::vector<std::string> labels;
     if (d_.parts.size() > kMaxParts) {
-      return lowering_.Complain(d_.parts[kMaxParts].place, "more than " + std::to_string(kMaxParts) + " parts",
-                               "compose some of them into an event of its own");
+      return lowering_.Complain(d_.parts[kMaxParts].place,
+                                "more than " + std::to_string(kMaxParts) + " parts",
+                                "compose some of them into an event of its own");
     }
     for (const ast::Part& part : d_.parts) {
       if (std::find(labels.begin(), labels.end(), part.label) != labels.end()) {
@@ -178,17 +193,19 @@ class DefinitionLowering {
       const auto found = std::find(labels.begin(), labels.end(), label);
       if (found == labels.end()) {
         const std::string near = NearestName(label, labels);
-        lowering_.Complain(place, "no part is labelled '" + label + "'", near.empty() ? "" : "did you mean '" + near + "'?");
+        lowering_.Complain(place, "no part is labelled '" + label + "'",
+                           near.empty() ? "" : "did you mean '" + near + "'?");
       }
       return static_cast<int>(found - labels.begin());
     };
     for (const ast::Relation& relation : d_.relations) {
-      Composition::Clause clause{.left = find(relation.left, relation.place), .right = find(relation.right, relation.place)};
+      Composition::Clause clause{.left = find(relation.left, relation.place),
+                                 .right = find(relation.right, relation.place)};
       for (const std::string& name : relation.relations) {
         const std::optional<Allen> allen = AllenNamed(name);
         if (!allen) {
           lowering_.Complain(relation.place, "'" + name + "' is none of Allen's relations",
-                            "they are " + JoinedAllenNames());
+                             "they are " + JoinedAllenNames());
           continue;
         }
         clause.relations |= Bit(*allen);
@@ -199,38 +216,45 @@ class DefinitionLowering {
   }
 
   void CheckRelations() {
-    constexpr AllenSet kApart = Bit(Allen::kBefore) | Bit(Allen::kMeets) | Bit(Allen::kMetBy) | Bit(Allen::kAfter);
+    constexpr AllenSet kApart =
+        Bit(Allen::kBefore) | Bit(Allen::kMeets) | Bit(Allen::kMetBy) | Bit(Allen::kAfter);
     constexpr AllenSet kAgainstTime = Bit(Allen::kAfter) | Bit(Allen::kMetBy);
     const Composition& composition = Here().composition;
     const int parts = static_cast<int>(composition.parts.size());
     AllenNetwork network(parts);
     for (int left = 0; left < parts; ++left) {
       for (int right = left + 1; right < parts; ++right) {  // intervals of one event do not overlap
-        if (composition.parts[left] == composition.parts[right]) network.Constrain(left, right, kApart | Bit(Allen::kEquals));
+        if (composition.parts[left] == composition.parts[right])
+          network.Constrain(left, right, kApart | Bit(Allen::kEquals));
       }
     }
     for (std::size_t i = 0; i < composition.clauses.size(); ++i) {
       const Composition::Clause& clause = composition.clauses[i];
       if (network.Constrain(clause.left, clause.right, clause.relations)) continue;
-      return lowering_.Complain(d_.relations[i].place, "this relation is never true together with what stands before it",
-                                "draw the parts below each other; intervals of one event do not overlap, and a part equals itself");
+      return lowering_.Complain(d_.relations[i].place,
+                                "this relation is never true together with what stands before it",
+                                "draw the parts below each other; intervals of one event do not "
+                                "overlap, and a part equals itself");
     }
     if (parts == 1 || network.Constrain(0, parts - 1, kAnyRelation & ~kAgainstTime)) return;
-    lowering_.Complain(d_.parts.back().place, "this is never an event: the last part, '" + d_.parts.back().label +
-                                                  "', ends before the first one, '" + d_.parts.front().label + "', begins",
+    lowering_.Complain(d_.parts.back().place,
+                       "this is never an event: the last part, '" + d_.parts.back().label +
+                           "', ends before the first one, '" + d_.parts.front().label + "', begins",
                        "list the parts as they follow each other in time");
   }
 
   static std::string JoinedAllenNames() {
     std::string text;
-    for (const std::string_view name : kAllenNames) text += (text.empty() ? "" : ", ") + std::string(name);
+    for (const std::string_view name : kAllenNames)
+      text += (text.empty() ? "" : ", ") + std::string(name);
     return text;
   }
 
   void LowerModifiers() {
     if (d_.bridging) {
       if (d_.form != Definition::Form::kWhile) {
-        lowering_.Complain(d_.bridging->place, "'bridging' goes with 'while' only", "put the bridged part into a condition of its own");
+        lowering_.Complain(d_.bridging->place, "'bridging' goes with 'while' only",
+                           "put the bridged part into a condition of its own");
       }
       const double bridging_s = lowering_.Constant(*d_.bridging, kSeconds, "'bridging'");
       Here().bridging_s = bridging_s;
@@ -240,9 +264,12 @@ class DefinitionLowering {
       Here().lasting_s = lasting_s;
       CheckLasting(*d_.lasting);
     }
-    if (d_.form == Definition::Form::kCompose && (d_.requirement || d_.confirmed || d_.style || !d_.attributes.empty())) {
-      lowering_.Complain(d_.place, "a composition takes no 'requires', no 'confirmed by' and no attributes of its own",
-                         "put it into one of the parts");
+    if (d_.form == Definition::Form::kCompose &&
+        (d_.requirement || d_.confirmed || d_.style || !d_.attributes.empty())) {
+      lowering_.Complain(
+          d_.place,
+          "a composition takes no 'requires', no 'confirmed by' and no attributes of its own",
+          "put it into one of the parts");
     }
     if (d_.requirement) {
       const int requirement = lowering_.Truth(*d_.requirement, {.begin = true, .end = true});
@@ -267,9 +294,11 @@ class DefinitionLowering {
     const bool looks_back = d_.form == Definition::Form::kUntilSince;
     const double most_s = looks_back ? rule.back_s : rule.within_s;
     if (most_s <= 0 || rule.lasting_s <= most_s) return;
-    lowering_.Complain(lasting.place, "no interval lasts so long: this one looks at most " + QuantityText({most_s, kSeconds}) +
-                                          (looks_back ? " back" : " ahead"),
-                       looks_back ? "look further back, or ask for less" : "wait longer, or ask for less");
+    lowering_.Complain(
+        lasting.place,
+        "no interval lasts so long: this one looks at most " + QuantityText({most_s, kSeconds}) +
+            (looks_back ? " back" : " ahead"),
+        looks_back ? "look further back, or ask for less" : "wait longer, or ask for less");
   }
 
   void LowerAttributes() {
@@ -281,8 +310,11 @@ class DefinitionLowering {
       const std::vector<RuleRole>& roles = Here().roles;
       const std::vector<RuleAttribute>& others = Here().attributes;
       const auto same = [&](const auto& named) { return named.name == attribute.name; };
-      if (std::any_of(roles.begin(), roles.end(), same) || std::any_of(others.begin(), others.end(), same)) {
-        lowering_.Complain(attribute.place, "'" + attribute.name + "' is a role or an attribute already", "choose another name");
+      if (std::any_of(roles.begin(), roles.end(), same) ||
+          std::any_of(others.begin(), others.end(), same)) {
+        lowering_.Complain(attribute.place,
+                           "'" + attribute.name + "' is a role or an attribute already",
+                           "choose another name");
       }
       Dimension dimension;
       const int node = lowering_.Attribute(attribute.value, dimension);
@@ -298,7 +330,8 @@ class DefinitionLowering {
 
 }  // namespace
 
-void LowerDefinitionInto(Program& program, int index, const ast::Definition& definition, Lowering& lowering) {
+void LowerDefinitionInto(Program& program, int index, const ast::Definition& definition,
+                         Lowering& lowering) {
   DefinitionLowering(program, index, definition, lowering).Run();
 }
 

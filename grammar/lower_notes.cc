@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stood in the grammar for a node: its text with the rule's roles as {0}, {1}, .., its unit and its place.
-// Tested by tests/harness/explain_test.cc
+// What stood in the grammar for a node: its text with the rule's roles as {0}, {1}, .., its unit
+// and its place. Tested by tests/harness/explain_test.cc
 #include <utility>
 
 #include "grammar/lower.h"
@@ -14,9 +14,11 @@ constexpr std::size_t kMaxText = 200;  // bytes; a longer one is cut, it would n
 
 }  // namespace
 
-// Chains are explained by what they are made of. What is within stands first: the body of a definition, not its call.
+// Chains are explained by what they are made of. What is within stands first: the body of a
+// definition, not its call.
 void Lowering::Note(const Expr& expr, const Typed& typed) {
-  const bool is_chain = expr.kind == Expr::Kind::kChain || (expr.kind == Expr::Kind::kUnary && expr.text == "not");
+  const bool is_chain =
+      expr.kind == Expr::Kind::kChain || (expr.kind == Expr::Kind::kUnary && expr.text == "not");
   if (is_chain || checking_ || typed.node == kNone) return;
   std::vector<NodeNote>& notes = symbols_.program.notes;
   notes.resize(symbols_.program.nodes.size());
@@ -27,12 +29,16 @@ void Lowering::Note(const Expr& expr, const Typed& typed) {
     text.resize(kMaxText);
     text += "..";
   }
-  note = {.text = std::move(text), .dimension = typed.dimension, .file = source_->file, .place = expr.place};
+  note = {.text = std::move(text),
+          .dimension = typed.dimension,
+          .file = source_->file,
+          .place = expr.place};
 }
 
 std::string Lowering::TextOfName(const Expr& expr) {
   if (scope_ != nullptr) {
-    if (const auto value = scope_->values.find(expr.text); value != scope_->values.end() && value->second.expr != nullptr) {
+    if (const auto value = scope_->values.find(expr.text);
+        value != scope_->values.end() && value->second.expr != nullptr) {
       const Scope* const inner = std::exchange(scope_, value->second.scope);
       std::string text = Bracketed(*value->second.expr);
       scope_ = inner;
@@ -44,7 +50,8 @@ std::string Lowering::TextOfName(const Expr& expr) {
 }
 
 std::string Lowering::Bracketed(const Expr& expr) {
-  const bool needs = expr.kind == Expr::Kind::kBinary || expr.kind == Expr::Kind::kChain || expr.kind == Expr::Kind::kEdge;
+  const bool needs = expr.kind == Expr::Kind::kBinary || expr.kind == Expr::Kind::kChain ||
+                     expr.kind == Expr::Kind::kEdge;
   return needs ? "(" + TextOf(expr) + ")" : TextOf(expr);
 }
 
@@ -58,21 +65,29 @@ std::string Lowering::TextOf(const Expr& expr) {
     return text;
   };
   switch (expr.kind) {
-    case Expr::Kind::kQuantity: return QuantityText(expr.quantity);
-    case Expr::Kind::kName: return TextOfName(expr);
-    case Expr::Kind::kText: return '"' + expr.text + '"';
-    case Expr::Kind::kCall: return expr.text + "(" + joined(", ", false) + ")";
-    case Expr::Kind::kUnary: return expr.text + (expr.text == "not" ? " " : "") + Bracketed(expr.args[0]);
+    case Expr::Kind::kQuantity:
+      return QuantityText(expr.quantity);
+    case Expr::Kind::kName:
+      return TextOfName(expr);
+    case Expr::Kind::kText:
+      return '"' + expr.text + '"';
+    case Expr::Kind::kCall:
+      return expr.text + "(" + joined(", ", false) + ")";
+    case Expr::Kind::kUnary:
+      return expr.text + (expr.text == "not" ? " " : "") + Bracketed(expr.args[0]);
     case Expr::Kind::kBinary: {
-      const bool is_comparison = std::string_view("<>=!").find(expr.text[0]) != std::string_view::npos;
+      const bool is_comparison =
+          std::string_view("<>=!").find(expr.text[0]) != std::string_view::npos;
       return joined(" " + expr.text + " ", !is_comparison);  // arithmetic binds tighter
     }
-    case Expr::Kind::kChain: return joined(" " + expr.text + " ", true);
+    case Expr::Kind::kChain:
+      return joined(" " + expr.text + " ", true);
     case Expr::Kind::kEdge: {
       const bool is_chain = expr.args[0].kind == Expr::Kind::kChain;
       return (is_chain ? Bracketed(expr.args[0]) : TextOf(expr.args[0])) + " " + expr.text;
     }
-    case Expr::Kind::kAnchor: return Bracketed(expr.args[0]) + "@" + expr.text;
+    case Expr::Kind::kAnchor:
+      return Bracketed(expr.args[0]) + "@" + expr.text;
   }
   return {};
 }

@@ -17,8 +17,12 @@ Monitor::Monitor(Monitor&&) noexcept = default;
 Monitor& Monitor::operator=(Monitor&&) noexcept = default;
 
 const std::string& Monitor::error() const { return state_->engine.error(); }
-void Monitor::Advance(const Frame& frame, std::vector<Event>& out) { state_->engine.Advance(frame, out); }
-void Monitor::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) { state_->engine.AdvanceBy(changes, out); }
+void Monitor::Advance(const Frame& frame, std::vector<Event>& out) {
+  state_->engine.Advance(frame, out);
+}
+void Monitor::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
+  state_->engine.AdvanceBy(changes, out);
+}
 void Monitor::Finish(Tick end, std::vector<Event>& out) { state_->engine.Finish(end, out); }
 int Monitor::lanes_in_use() const { return state_->engine.lanes_in_use(); }
 

@@ -70,7 +70,8 @@ class Monitor {
   /// Looks at one frame and appends the events that became certain, ordered by (decided, begin,
   /// rule, roles).
   void Advance(const Frame& frame, std::vector<Event>& out);
-  /// The same for a frame that is given by what is new in it; costs time for changes only. Both kinds may be mixed.
+  /// The same for a frame that is given by what is new in it; costs time for changes only. Both
+  /// kinds may be mixed.
   void AdvanceBy(const FrameChanges& changes, std::vector<Event>& out);
 
   /// The episode ends at `end`, the first tick that no longer belongs to it: closes what is open.

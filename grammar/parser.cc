@@ -65,9 +65,11 @@ class Parser : public ExpressionParser {
         file.definitions.push_back(ParseDefinition());
       }
     } else if (Accept("grammar")) {
-      FailAt(place, "a second 'grammar' line", "one file holds one grammar; `use NAME` reads another one");
+      FailAt(place, "a second 'grammar' line",
+             "one file holds one grammar; `use NAME` reads another one");
     } else {
-      Fail("expected 'use', 'param', 'define', 'condition' or 'event', found " + Found(), WordHint());
+      Fail("expected 'use', 'param', 'define', 'condition' or 'event', found " + Found(),
+           WordHint());
     }
   }
 
@@ -167,12 +169,15 @@ class Parser : public ExpressionParser {
     definition.form = Definition::Form::kFromTo;
     definition.first = ParseExpr();
     definition.absence = Accept("without");
-    if (!definition.absence) Expect("to", "say what ends it: from A to B, or what must not come: from A without B within t");
+    if (!definition.absence)
+      Expect("to",
+             "say what ends it: from A to B, or what must not come: from A without B within t");
     definition.second = ParseExpr();
     if (Accept("within")) {
       definition.within = ParseSum();
     } else if (definition.absence) {
-      Fail("expected 'within', found " + Found(), "say how long to wait: from A without B within 2 s");
+      Fail("expected 'within', found " + Found(),
+           "say how long to wait: from A without B within 2 s");
     }
     if (!Accept("during")) return;
     definition.during = ParseExpr();
@@ -188,7 +193,9 @@ class Parser : public ExpressionParser {
     Expect("since");
     definition.second = ParseExpr();
     if (Accept("approaching")) definition.approach = ParseApproach();
-    if (!At("at")) Fail("expected 'at most .. back', found " + Found(), "say how far back to look: at most 10 s back");
+    if (!At("at"))
+      Fail("expected 'at most .. back', found " + Found(),
+           "say how far back to look: at most 10 s back");
     ExpectAtMost();
     definition.at_most_back = ParseSum();
     Expect("back");
@@ -203,7 +210,8 @@ class Parser : public ExpressionParser {
     Accept(",");
     if (Accept("with")) {
       approach.motion = ParseSum();
-      if (!At("slower")) Fail("expected 'slower', found " + Found(), "with surface_speed(hand) slower than 1 cm/s");
+      if (!At("slower"))
+        Fail("expected 'slower', found " + Found(), "with surface_speed(hand) slower than 1 cm/s");
     }
     if (!Accept("slower")) return approach;
     Expect("than");
@@ -236,7 +244,8 @@ class Parser : public ExpressionParser {
 
   template <typename T>
   void Once(std::optional<T>& slot, T value, const Token& word) {
-    if (slot) FailAt(word.place, "a second '" + word.text + "' in one definition", "keep one of the two");
+    if (slot)
+      FailAt(word.place, "a second '" + word.text + "' in one definition", "keep one of the two");
     slot = std::move(value);
   }
 
@@ -252,7 +261,9 @@ class Parser : public ExpressionParser {
       Expect("by");
       ast::Confirmation confirmation;
       confirmation.by = ParsePostfix();
-      Expect("within", "say how long to wait: confirmed by grasping(hand, object) within contact(hand, object)");
+      Expect(
+          "within",
+          "say how long to wait: confirmed by grasping(hand, object) within contact(hand, object)");
       confirmation.within = ParsePostfix();
       Once(definition.confirmed, std::move(confirmation), word);
     } else if (Accept("with")) {

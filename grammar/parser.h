@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grammar text -> syntax tree, by recursive descent. After an error it goes on at the next definition, so that
-// one reading reports several mistakes. The syntax is the EBNF in docs/grammar-language.md.
-// Tested by tests/grammar/parser_test.cc
+// Grammar text -> syntax tree, by recursive descent. After an error it goes on at the next
+// definition, so that one reading reports several mistakes. The syntax is the EBNF in
+// docs/grammar-language.md. Tested by tests/grammar/parser_test.cc
 #pragma once
 
 #include <string_view>

@@ -9,10 +9,10 @@ namespace prehend::grammar {
 namespace {
 
 constexpr std::array kUnits = {
-    Unit{"m", kMetres, 1},      Unit{"cm", kMetres, 0.01}, Unit{"mm", kMetres, 0.001},
-    Unit{"s", kSeconds, 1},    Unit{"ms", kSeconds, 0.001},
-    Unit{"N", kNewtons, 1},
-    Unit{"rad", kRadians, 1},     Unit{"deg", kRadians, std::numbers::pi / 180},
+    Unit{"m", kMetres, 1},       Unit{"cm", kMetres, 0.01},
+    Unit{"mm", kMetres, 0.001},  Unit{"s", kSeconds, 1},
+    Unit{"ms", kSeconds, 0.001}, Unit{"N", kNewtons, 1},
+    Unit{"rad", kRadians, 1},    Unit{"deg", kRadians, std::numbers::pi / 180},
 };
 
 // As the language has it: m/s/s.
@@ -72,7 +72,8 @@ std::string DimensionText(const Dimension& dimension) {
 
 std::string QuantityText(const Quantity& quantity) {
   std::array<char, 32> digits{};
-  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), quantity.value);
+  const auto [end, error] =
+      std::to_chars(digits.data(), digits.data() + digits.size(), quantity.value);
   std::string text(digits.data(), end);
   if (quantity.dimension != kPlain) text += " " + DimensionText(quantity.dimension);
   return text;

@@ -9,9 +9,11 @@
 namespace prehend::grammar {
 namespace {
 
-// The smallest range with all of them in it; everything if one of them means nothing, as infinity minus infinity does.
+// The smallest range with all of them in it; everything if one of them means nothing, as infinity
+// minus infinity does.
 Range Around(std::initializer_list<double> values) {
-  if (std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); })) return {};
+  if (std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
+    return {};
   return {.low = std::min(values), .high = std::max(values)};
 }
 
@@ -25,7 +27,8 @@ Range Over(const Range& a, const Range& b) {
 }
 
 Range Magnitude(const Range& a) {
-  const double nearest = a.low <= 0 && a.high >= 0 ? 0 : std::min(std::abs(a.low), std::abs(a.high));
+  const double nearest =
+      a.low <= 0 && a.high >= 0 ? 0 : std::min(std::abs(a.low), std::abs(a.high));
   return {.low = nearest, .high = std::max(std::abs(a.low), std::abs(a.high)), .whole = a.whole};
 }
 
@@ -54,7 +57,8 @@ Range RangeOf(const Program& program, const Rule& rule, int index) {
   const Node& node = program.nodes[index];
   const auto arg = [&](std::size_t i) { return RangeOf(program, rule, node.args[i]); };
   switch (node.op) {
-    case Op::kNumber: return {.low = node.number, .high = node.number};
+    case Op::kNumber:
+      return {.low = node.number, .high = node.number};
     case Op::kAdd: {
       const Range a = arg(0);
       const Range b = arg(1);
@@ -65,13 +69,20 @@ Range RangeOf(const Program& program, const Rule& rule, int index) {
       const Range b = arg(1);
       return Around({a.low - b.high, a.high - b.low});
     }
-    case Op::kMultiply: return Times(arg(0), arg(1));
-    case Op::kDivide: return Over(arg(0), arg(1));
-    case Op::kNegate: return Times(arg(0), {.low = -1, .high = -1});
-    case Op::kAbs: return Magnitude(arg(0));
-    case Op::kAtBegin: return RangeOf(program, rule, rule.anchors[node.slot]);
-    case Op::kAtEnd: return arg(0);
-    default: return OfSignal(node);
+    case Op::kMultiply:
+      return Times(arg(0), arg(1));
+    case Op::kDivide:
+      return Over(arg(0), arg(1));
+    case Op::kNegate:
+      return Times(arg(0), {.low = -1, .high = -1});
+    case Op::kAbs:
+      return Magnitude(arg(0));
+    case Op::kAtBegin:
+      return RangeOf(program, rule, rule.anchors[node.slot]);
+    case Op::kAtEnd:
+      return arg(0);
+    default:
+      return OfSignal(node);
   }
 }
 
@@ -80,26 +91,35 @@ Verdict Judge(Op op, const Range& left, const Range& right) {
     case Op::kLess:
       if (left.low >= right.high) return Verdict::kNever;
       return left.high < right.low ? Verdict::kAlways : Verdict::kPossible;
-    case Op::kLessEqual: return Opposite(Judge(Op::kLess, right, left));
-    case Op::kGreater: return Judge(Op::kLess, right, left);
-    case Op::kGreaterEqual: return Opposite(Judge(Op::kLess, left, right));
+    case Op::kLessEqual:
+      return Opposite(Judge(Op::kLess, right, left));
+    case Op::kGreater:
+      return Judge(Op::kLess, right, left);
+    case Op::kGreaterEqual:
+      return Opposite(Judge(Op::kLess, left, right));
     case Op::kEqual:
-      if (left.low > right.high || left.high < right.low || Misses(left, right) || Misses(right, left)) return Verdict::kNever;
+      if (left.low > right.high || left.high < right.low || Misses(left, right) ||
+          Misses(right, left))
+        return Verdict::kNever;
       return left.IsPoint() && right.IsPoint() ? Verdict::kAlways : Verdict::kPossible;
-    default: return Opposite(Judge(Op::kEqual, left, right));
+    default:
+      return Opposite(Judge(Op::kEqual, left, right));
   }
 }
 
 std::string RangeText(const Range& range, const Dimension& dimension) {
   const auto text = [&](double value) {
-    std::string quantity = QuantityText({value * (dimension.angle == 1 ? 180 / std::numbers::pi : 1), dimension});
-    if (dimension.angle == 1) quantity.replace(quantity.find("rad"), 3, "deg");  // as people write angles
+    std::string quantity =
+        QuantityText({value * (dimension.angle == 1 ? 180 / std::numbers::pi : 1), dimension});
+    if (dimension.angle == 1)
+      quantity.replace(quantity.find("rad"), 3, "deg");  // as people write angles
     return quantity;
   };
   const bool from_below = std::isfinite(range.low);
   const bool from_above = std::isfinite(range.high);
   const std::string counted = range.whole ? " in whole numbers" : "";
-  if (from_below && from_above) return "goes from " + text(range.low) + " to " + text(range.high) + counted;
+  if (from_below && from_above)
+    return "goes from " + text(range.low) + " to " + text(range.high) + counted;
   if (from_below) return "is never below " + text(range.low);
   return from_above ? "is never above " + text(range.high) : "can be any number";
 }
@@ -108,7 +128,8 @@ std::string Signature(const Program& program, int index) {
   const Node& node = program.nodes[index];
   std::string text = std::to_string(static_cast<int>(node.op));
   for (const int role : node.roles) text += "r" + std::to_string(role);
-  text += "s" + std::to_string(node.slot) + "t" + std::to_string(node.name) + "n" + QuantityText({node.number, kPlain}) + "(";
+  text += "s" + std::to_string(node.slot) + "t" + std::to_string(node.name) + "n" +
+          QuantityText({node.number, kPlain}) + "(";
   for (const int arg : node.args) {
     if (arg != kNone) text += Signature(program, arg) + ",";
   }

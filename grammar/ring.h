@@ -25,7 +25,8 @@ class Ring {
   T& back() { return (*this)[size_ - 1]; }
   const T& back() const { return (*this)[size_ - 1]; }
 
-  /// A new last element. It holds whatever an earlier element left there, so that its memory is used again.
+  /// A new last element. It holds whatever an earlier element left there, so that its memory is
+  /// used again.
   T& PushBack() {
     if (size_ == capacity_) Grow();
     ++size_;
@@ -42,7 +43,9 @@ class Ring {
   void Clear() { front_ = size_ = 0; }
 
  private:
-  std::uint32_t Slot(std::size_t i) const { return (front_ + static_cast<std::uint32_t>(i)) & (capacity_ - 1); }
+  std::uint32_t Slot(std::size_t i) const {
+    return (front_ + static_cast<std::uint32_t>(i)) & (capacity_ - 1);
+  }
 
   void Grow() {
     const std::uint32_t capacity = slots_ == nullptr ? 2 : 2 * capacity_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of a grammar's thresholds a touch or a grip is beyond: what is measured is compared once, where it is seen.
-// Tested by tests/grammar/thresholds_test.cc
+// Which of a grammar's thresholds a touch or a grip is beyond: what is measured is compared once,
+// where it is seen. Tested by tests/grammar/thresholds_test.cc
 #pragma once
 
 #include <array>
@@ -11,11 +11,18 @@
 
 namespace prehend::grammar {
 
-/// A number that a measured value is compared with: it is beyond the threshold if it is at least that number (for `> x`,
-/// the next larger one). While a value stays on the same side of every threshold, whatever is said by comparing it stays
-/// as it is.
+/// A number that a measured value is compared with: it is beyond the threshold if it is at least
+/// that number (for `> x`, the next larger one). While a value stays on the same side of every
+/// threshold, whatever is said by comparing it stays as it is.
 struct Threshold {
-  enum class Value : std::uint8_t { kSensorSets, kUpOnFirst, kUpOnSecond, kForce, kVerticalSpeed, kTrigger };
+  enum class Value : std::uint8_t {
+    kSensorSets,
+    kUpOnFirst,
+    kUpOnSecond,
+    kForce,
+    kVerticalSpeed,
+    kTrigger
+  };
   Value value = Value::kSensorSets;
   double at_least = 0;
   friend bool operator==(const Threshold&, const Threshold&) = default;
@@ -36,9 +43,10 @@ class Thresholds {
   }
 
   /// Of a touch; bits of other values are not set.
-  ThresholdSet OfTouch(double up_on_first, double up_on_second, double force_n, double vertical_speed_m_per_s,
-                       std::uint32_t sensor_sets) const {
-    const std::array<double, 4> measured = {up_on_first, up_on_second, force_n, vertical_speed_m_per_s};
+  ThresholdSet OfTouch(double up_on_first, double up_on_second, double force_n,
+                       double vertical_speed_m_per_s, std::uint32_t sensor_sets) const {
+    const std::array<double, 4> measured = {up_on_first, up_on_second, force_n,
+                                            vertical_speed_m_per_s};
     ThresholdSet beyond = sensor_sets < sets_.size() ? sets_[sensor_sets] : OfSets(sensor_sets);
     for (const Cut& cut : touches_) beyond |= measured[cut.value] >= cut.at_least ? cut.bit : 0;
     return beyond;
@@ -60,17 +68,30 @@ class Thresholds {
 
   void Add(const Threshold& threshold, ThresholdSet bit) {
     switch (threshold.value) {
-      case Threshold::Value::kSensorSets: set_counts_.push_back({0, threshold.at_least, bit}); break;
-      case Threshold::Value::kUpOnFirst: touches_.push_back({0, threshold.at_least, bit}); break;
-      case Threshold::Value::kUpOnSecond: touches_.push_back({1, threshold.at_least, bit}); break;
-      case Threshold::Value::kForce: touches_.push_back({2, threshold.at_least, bit}); break;
-      case Threshold::Value::kVerticalSpeed: touches_.push_back({3, threshold.at_least, bit}); break;
-      case Threshold::Value::kTrigger: grips_.push_back({0, threshold.at_least, bit}); break;
+      case Threshold::Value::kSensorSets:
+        set_counts_.push_back({0, threshold.at_least, bit});
+        break;
+      case Threshold::Value::kUpOnFirst:
+        touches_.push_back({0, threshold.at_least, bit});
+        break;
+      case Threshold::Value::kUpOnSecond:
+        touches_.push_back({1, threshold.at_least, bit});
+        break;
+      case Threshold::Value::kForce:
+        touches_.push_back({2, threshold.at_least, bit});
+        break;
+      case Threshold::Value::kVerticalSpeed:
+        touches_.push_back({3, threshold.at_least, bit});
+        break;
+      case Threshold::Value::kTrigger:
+        grips_.push_back({0, threshold.at_least, bit});
+        break;
     }
   }
   ThresholdSet OfSets(std::uint32_t sensor_sets) const {
     ThresholdSet beyond = 0;
-    for (const Cut& cut : set_counts_) beyond |= std::popcount(sensor_sets) >= cut.at_least ? cut.bit : 0;
+    for (const Cut& cut : set_counts_)
+      beyond |= std::popcount(sensor_sets) >= cut.at_least ? cut.bit : 0;
     return beyond;
   }
 

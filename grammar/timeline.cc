@@ -38,7 +38,8 @@ Timeline NameEvents(const Program& program, const Cast& cast, const std::vector<
     }
     for (std::size_t i = 0; i < rule.attributes.size(); ++i) {
       const RuleAttribute& attribute = rule.attributes[i];
-      const std::string unit = attribute.dimension == kPlain ? "" : DimensionText(attribute.dimension);
+      const std::string unit =
+          attribute.dimension == kPlain ? "" : DimensionText(attribute.dimension);
       named.values.push_back({attribute.name, event.attributes[i], unit});
     }
     timeline.events.push_back(std::move(named));
@@ -48,7 +49,9 @@ Timeline NameEvents(const Program& program, const Cast& cast, const std::vector<
 }
 
 void Sort(Timeline& timeline) {
-  const auto key = [](const NamedEvent& e) { return std::tie(e.interval.begin, e.interval.end, e.event, e.roles); };
+  const auto key = [](const NamedEvent& e) {
+    return std::tie(e.interval.begin, e.interval.end, e.event, e.roles);
+  };
   std::stable_sort(timeline.events.begin(), timeline.events.end(),
                    [&](const NamedEvent& a, const NamedEvent& b) { return key(a) < key(b); });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events with names instead of numbers, in one canonical order: what is printed, stored and compared.
-// Tested by tests/grammar/timeline_test.cc
+// Events with names instead of numbers, in one canonical order: what is printed, stored and
+// compared. Tested by tests/grammar/timeline_test.cc
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 namespace prehend::grammar {
 
 struct Role {
-  std::string name;   ///< as in the rule's head: hand, object, a, b, support; or an attribute: style
+  std::string name;  ///< as in the rule's head: hand, object, a, b, support; or an attribute: style
   std::string value;  ///< an entity's name, or the attribute's value
   friend auto operator<=>(const Role&, const Role&) = default;
 };

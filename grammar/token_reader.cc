@@ -12,9 +12,11 @@ namespace {
 constexpr std::array<std::string_view, 7> kItemWords = {"grammar",   "use",   "param",    "define",
                                                         "condition", "event", "symmetric"};
 constexpr std::array<std::string_view, 33> kOtherWords = {
-    "while",  "from", "to",       "during", "until", "since",  "at",       "most",        "back",     "rest",  "of",
-    "outside", "compose", "where", "bridging", "lasting", "requires", "confirmed", "by", "within",   "with",  "without",
-    "approaching", "receding", "slower", "than", "begins", "ends",   "and",      "or",          "not",      "any",   "style"};
+    "while",    "from",        "to",       "during",    "until",   "since",   "at",
+    "most",     "back",        "rest",     "of",        "outside", "compose", "where",
+    "bridging", "lasting",     "requires", "confirmed", "by",      "within",  "with",
+    "without",  "approaching", "receding", "slower",    "than",    "begins",  "ends",
+    "and",      "or",          "not",      "any",       "style"};
 
 /// What people write who are used to other languages, and how it is said here.
 struct Habit {
@@ -44,13 +46,16 @@ bool IsItemWord(std::string_view word) {
 }  // namespace
 
 bool IsReserved(std::string_view word) {
-  return IsItemWord(word) || std::find(kOtherWords.begin(), kOtherWords.end(), word) != kOtherWords.end();
+  return IsItemWord(word) ||
+         std::find(kOtherWords.begin(), kOtherWords.end(), word) != kOtherWords.end();
 }
 
 TokenReader::TokenReader(const GrammarText& grammar, Diagnostics& diagnostics)
     : grammar_(grammar), diagnostics_(diagnostics), tokens_(Tokenize(grammar, diagnostics)) {}
 
-const Token& TokenReader::Peek(std::size_t ahead) const { return tokens_[std::min(at_ + ahead, tokens_.size() - 1)]; }
+const Token& TokenReader::Peek(std::size_t ahead) const {
+  return tokens_[std::min(at_ + ahead, tokens_.size() - 1)];
+}
 
 bool TokenReader::At(std::string_view text, std::size_t ahead) const {
   const Token::Kind kind = Peek(ahead).kind;
@@ -79,12 +84,14 @@ void TokenReader::Fail(std::string message, std::string hint) {
 }
 
 void TokenReader::FailAt(Place place, std::string message, std::string hint) {
-  diagnostics_.push_back(DiagnosticAt(grammar_.file, grammar_.text, place, std::move(message), std::move(hint)));
+  diagnostics_.push_back(
+      DiagnosticAt(grammar_.file, grammar_.text, place, std::move(message), std::move(hint)));
   throw ParseStop{};
 }
 
 void TokenReader::Expect(std::string_view text, std::string hint) {
-  if (!Accept(text)) Fail("expected '" + std::string(text) + "', found " + Found(), std::move(hint));
+  if (!Accept(text))
+    Fail("expected '" + std::string(text) + "', found " + Found(), std::move(hint));
 }
 
 void TokenReader::ExpectAtMost() {
@@ -93,16 +100,20 @@ void TokenReader::ExpectAtMost() {
 }
 
 std::string TokenReader::ExpectName(std::string_view what) {
-  if (Peek().kind != Token::Kind::kName) Fail("expected " + std::string(what) + ", found " + Found());
+  if (Peek().kind != Token::Kind::kName)
+    Fail("expected " + std::string(what) + ", found " + Found());
   if (IsReserved(Peek().text)) {
-    Fail("'" + Peek().text + "' is a word of the language and cannot be " + std::string(what), "choose another name");
+    Fail("'" + Peek().text + "' is a word of the language and cannot be " + std::string(what),
+         "choose another name");
   }
   return Take().text;
 }
 
 std::string TokenReader::WordHint() const {
-  const std::string_view found = At("=") && At(">", 1) ? std::string_view("=>") : std::string_view(Peek().text);
-  const auto habit = std::find_if(kHabits.begin(), kHabits.end(), [&](const Habit& h) { return h.found == found; });
+  const std::string_view found =
+      At("=") && At(">", 1) ? std::string_view("=>") : std::string_view(Peek().text);
+  const auto habit = std::find_if(kHabits.begin(), kHabits.end(),
+                                  [&](const Habit& h) { return h.found == found; });
   if (habit != kHabits.end()) return std::string(habit->hint);
   std::vector<std::string> words(kItemWords.begin(), kItemWords.end());
   words.insert(words.end(), kOtherWords.begin(), kOtherWords.end());

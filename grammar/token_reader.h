@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A grammar's tokens one after another, and what to say about one that does not fit. Part of the parser.
-// Tested by tests/grammar/parser_test.cc
+// A grammar's tokens one after another, and what to say about one that does not fit. Part of the
+// parser. Tested by tests/grammar/parser_test.cc
 #pragma once
 
 #include <string>
@@ -23,7 +23,9 @@ class TokenReader {
   bool AtEnd() const { return Peek().kind == Token::Kind::kEnd; }
   bool At(std::string_view text, std::size_t ahead = 0) const;
   Token Take();
-  void SkipOne() { if (!AtEnd()) ++at_; }
+  void SkipOne() {
+    if (!AtEnd()) ++at_;
+  }
   bool Accept(std::string_view text);
   std::string Found() const;
 
@@ -32,8 +34,8 @@ class TokenReader {
   void Expect(std::string_view text, std::string hint = {});
   void ExpectAtMost();
   std::string ExpectName(std::string_view what);
-  /// How it is said here when the next token is a word of other languages; "did you mean 'event'?" when it is nearly one
-  /// of this language.
+  /// How it is said here when the next token is a word of other languages; "did you mean 'event'?"
+  /// when it is nearly one of this language.
   std::string WordHint() const;
   void SkipToItem();
   void SkipToEnd() { at_ = tokens_.size() - 1; }

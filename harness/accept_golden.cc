@@ -20,7 +20,8 @@ using Lines = std::vector<std::string>;
 /// With what a golden keeps of it, and the digits.
 grammar::NamedEvent AsWritten(grammar::NamedEvent event) {
   event.decided = 0;
-  for (grammar::NamedValue& value : event.values) value.value = std::stod(fmt::format("{:.4g}", value.value));
+  for (grammar::NamedValue& value : event.values)
+    value.value = std::stod(fmt::format("{:.4g}", value.value));
   return event;
 }
 
@@ -78,7 +79,8 @@ class TakeOver {
   }
 
  private:
-  /// Where boundaries moved within the tolerance, nobody was shown that they did: such a line stays.
+  /// Where boundaries moved within the tolerance, nobody was shown that they did: such a line
+  /// stays.
   GoldenEvent LineOf(const Pairing& pairing, const GoldenEvent* partner) const {
     const bool agrees = pairing.agreement == LineVerdict::kMatched;
     if (partner && agrees && same_ticks_) return *partner;
@@ -106,7 +108,8 @@ class TakeOver {
   }
 
   bool IsNear(const grammar::NamedEvent& a, const grammar::NamedEvent& b) const {
-    return a.Label() == b.Label() && std::abs(a.interval.begin - b.interval.begin) <= proposal_.tolerance &&
+    return a.Label() == b.Label() &&
+           std::abs(a.interval.begin - b.interval.begin) <= proposal_.tolerance &&
            std::abs(a.interval.end - b.interval.end) <= proposal_.tolerance;
   }
 

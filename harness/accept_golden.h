@@ -23,9 +23,10 @@ struct Proposal {
   grammar::Tick tolerance = 0;           ///< of lines without their own, in ticks of the run
 };
 
-/// Lines that agree within their tolerance stay as they are. Of the others comments and tolerances stay with the event
-/// they belong to; comments above events that are gone stand at the end, below a line that says which event that was.
-/// What the oracle sees otherwise keeps the reason that people gave for it; what it did not before has kReasonWanted.
+/// Lines that agree within their tolerance stay as they are. Of the others comments and tolerances
+/// stay with the event they belong to; comments above events that are gone stand at the end, below
+/// a line that says which event that was. What the oracle sees otherwise keeps the reason that
+/// people gave for it; what it did not before has kReasonWanted.
 Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
                      const Proposal& proposal);
 

@@ -78,10 +78,12 @@ Format<HandActor> HandActorFormat() {
       .Required("hand", &A::hand,
                 Word("[A-Za-z0-9_./-]+", "a hand like 'human_right', or a .hand.yaml file", 255),
                 "A hand of the library, or a .hand.yaml file beside the scenario.")
-      .Optional("grasps", &A::grasps,
-                ListOf(WithPlace(Word("[A-Za-z0-9_./-]+\\.grasps\\.yaml", "a .grasps.yaml file", 255)), 1, 16),
-                "Files of grasp styles beside the scenario, which the hand has, too; one of the same "
-                "name as an earlier one takes its place.")
+      .Optional(
+          "grasps", &A::grasps,
+          ListOf(WithPlace(Word("[A-Za-z0-9_./-]+\\.grasps\\.yaml", "a .grasps.yaml file", 255)), 1,
+                 16),
+          "Files of grasp styles beside the scenario, which the hand has, too; one of the same "
+          "name as an earlier one takes its place.")
       .Required("at_m", &A::at_m, Position(),
                 "World coordinates of the palm's centre at the start.")
       .Optional("rpy_deg", &A::rpy_deg, Vector<3>(-360, 360),

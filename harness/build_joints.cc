@@ -107,9 +107,11 @@ std::vector<physics::Joint> BuildJoints(const ScenarioEntry& entry, Complaints& 
                      fmt::format("give '{}' 'fixed: true' instead", entry.entities[i].name));
     }
     if (AbstractOf(entry.entities[base].value) != physics::Abstract::kNot)
-      complaints.Add(written->to->where, fmt::format("{}: '{}' is no matter: nothing hangs on it", written->key, written->to->value));
+      complaints.Add(written->to->where, fmt::format("{}: '{}' is no matter: nothing hangs on it",
+                                                     written->key, written->to->value));
     if (entry.entities[base].value.grains)
-      complaints.Add(written->to->where, fmt::format("{}: '{}' is grains, which carry nothing", written->key, written->to->value));
+      complaints.Add(written->to->where, fmt::format("{}: '{}' is grains, which carry nothing",
+                                                     written->key, written->to->value));
     physics::Joint& joint = joints.emplace_back(MakeJoint(*written));
     joint.body = static_cast<int>(i);
     joint.base = static_cast<int>(base);

@@ -69,16 +69,19 @@ struct PersonStepMaker {
  private:
   /// Whether a body is her head or another part of her; those of a person follow her head.
   bool IsHers(std::size_t body) const {
-    const auto next = std::ranges::find_if(scene.persons, [&](const physics::Person& other) { return other.head > person.head; });
-    const std::size_t end = next == scene.persons.end() ? scene.bodies.size() : static_cast<std::size_t>(next->head);
+    const auto next = std::ranges::find_if(
+        scene.persons, [&](const physics::Person& other) { return other.head > person.head; });
+    const std::size_t end =
+        next == scene.persons.end() ? scene.bodies.size() : static_cast<std::size_t>(next->head);
     return body >= static_cast<std::size_t>(person.head) && body < end;
   }
 
   void CheckSeen(const Located<std::string>& name) const {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
       if (scene.bodies[i].name == name.value && IsHers(i))
-        return complaints.Add(name.where, fmt::format("look_at: '{}' cannot look at herself", person.name),
-                              "she looks at things, hands and other persons, or at a point: look_at_m");
+        return complaints.Add(
+            name.where, fmt::format("look_at: '{}' cannot look at herself", person.name),
+            "she looks at things, hands and other persons, or at a point: look_at_m");
     }
     std::vector<std::string> names;
     for (const physics::Body& body : scene.bodies) names.push_back(body.name);

@@ -60,7 +60,8 @@ physics::Body MakeBody(const Named<EntityEntry>& named) {
   const bool rolls = entity.sphere || entity.grains;
   body.rolling_friction =
       entity.rolling_friction.value_or(rolls ? kDefaultSphereRollingFriction : 0);
-  if (entity.grains) body.grains = physics::Grains{.radius_m = entity.grains->radius_m, .p_WG_m = {}};
+  if (entity.grains)
+    body.grains = physics::Grains{.radius_m = entity.grains->radius_m, .p_WG_m = {}};
   body.restitution = entity.restitution;
   body.linear_damping_per_s = entity.linear_damping_per_s;
   body.angular_damping_per_s = entity.angular_damping_per_s;
@@ -145,12 +146,15 @@ class Stacking {
     const char* key = entity.in ? "in" : "on";
     const auto found = index_.find(below->value);
     if (found == index_.end()) {
-      complaints_.AddUnknownName(below->where, fmt::format("{}: no entity is called '{}'", key, below->value),
+      complaints_.AddUnknownName(below->where,
+                                 fmt::format("{}: no entity is called '{}'", key, below->value),
                                  below->value, names_);
       return std::nullopt;
     }
     if (const std::string what = WhyNoThing(bodies[found->second]); !what.empty()) {
-      complaints_.Add(below->where, fmt::format("{}: '{}' is {}, which carr{} nothing", key, below->value, what, what == "grains" ? "y" : "ies"));
+      complaints_.Add(below->where,
+                      fmt::format("{}: '{}' is {}, which carr{} nothing", key, below->value, what,
+                                  what == "grains" ? "y" : "ies"));
       return std::nullopt;
     }
     return found->second;
@@ -170,23 +174,30 @@ class Stacking {
     const physics::Body* vessel = Placed(entity.in);
     if (!vessel || !entity.grains) return;  // was complained about
     if (Uprightness(*vessel) < kUpright) {
-      return complaints_.Add(entity.in->where, fmt::format("in: '{}' does not stand upright", vessel->name));
+      return complaints_.Add(entity.in->where,
+                             fmt::format("in: '{}' does not stand upright", vessel->name));
     }
     constexpr int kMostGrains = 500;
     grains_so_far_ += entity.grains->count;
     if (grains_so_far_ > kMostGrains) {
-      return complaints_.Add(entity.in->where, fmt::format("more than {} grains in the scenario", kMostGrains));
+      return complaints_.Add(entity.in->where,
+                             fmt::format("more than {} grains in the scenario", kMostGrains));
     }
-    const std::uint64_t seed = physics::Random(entry_.world.seed ^ physics::Random(i).Next()).Next();
+    const std::uint64_t seed =
+        physics::Random(entry_.world.seed ^ physics::Random(i).Next()).Next();
     const GrainsEntry& grains = *entity.grains;
-    for (const Vector3d& p_B_m : physics::FillVessel(*vessel, grains.radius_m, grains.count, seed)) {
+    for (const Vector3d& p_B_m :
+         physics::FillVessel(*vessel, grains.radius_m, grains.count, seed)) {
       body.grains->p_WG_m.push_back(vessel->X_WB * p_B_m);
       body.X_WB.p_m += body.grains->p_WG_m.back() / grains.count;
     }
-    if (const std::size_t fit = body.grains->p_WG_m.size(); fit < static_cast<std::size_t>(grains.count)) {
+    if (const std::size_t fit = body.grains->p_WG_m.size();
+        fit < static_cast<std::size_t>(grains.count)) {
       complaints_.Add(entity.in->where,
-                      fmt::format("in: {} of {} grains fit into '{}' below its rim", fit, grains.count, vessel->name),
-                      "take fewer, smaller ones, or a larger vessel; its hollow is around the vertical through its at_m");
+                      fmt::format("in: {} of {} grains fit into '{}' below its rim", fit,
+                                  grains.count, vessel->name),
+                      "take fewer, smaller ones, or a larger vessel; its hollow is around the "
+                      "vertical through its at_m");
     }
   }
 

@@ -52,7 +52,8 @@ struct StepMaker {
     CheckEntity("reach", e.reach);
     const Where where =
         e.style.where.place.line > 0 ? e.style.where : e.reach.where;  // the default has no place
-    if (const physics::GraspStyle* style = FindStyle(e.style.value, where)) CheckApproach(e, *style);
+    if (const physics::GraspStyle* style = FindStyle(e.style.value, where))
+      CheckApproach(e, *style);
     CheckPoint(e);
     physics::ReachStep reach{e.reach.value, e.style.value, e.from, e.offset_m.value, {}};
     if (e.point_m) reach.point_m = e.point_m->value;
@@ -96,7 +97,8 @@ struct StepMaker {
   }
   template <class PersonEntry>
   physics::Step operator()(const PersonEntry&) const {
-    complaints.Add(written.name_where, fmt::format("'{}' is a hand, and this step is for persons", written.name),
+    complaints.Add(written.name_where,
+                   fmt::format("'{}' is a hand, and this step is for persons", written.name),
                    "hands reach, close, move; persons look, walk, lean");
     return {};
   }
@@ -109,8 +111,9 @@ struct StepMaker {
       const auto index = static_cast<std::size_t>(found - entities.begin());
       const std::string what = index < scene.bodies.size() ? WhyNoThing(scene.bodies[index]) : "";
       if (!what.empty())
-        complaints.Add(name.where, fmt::format("{}: '{}' is {}, and no thing", key, name.value, what),
-                       what == "grains" ? "name the vessel that they are in" : "nothing touches it");
+        complaints.Add(
+            name.where, fmt::format("{}: '{}' is {}, and no thing", key, name.value, what),
+            what == "grains" ? "name the vessel that they are in" : "nothing touches it");
       return;
     }
     complaints.AddUnknownName(name.where,
@@ -127,8 +130,8 @@ struct StepMaker {
     const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
     if (away_m <= kFarthestPointM) return;
     complaints.Add(e.point_m->where,
-                   fmt::format("point_m: the point is {:.1f} mm outside of '{}', more than {:g} mm", 1000 * away_m, *found,
-                               1000 * kFarthestPointM),
+                   fmt::format("point_m: the point is {:.1f} mm outside of '{}', more than {:g} mm",
+                               1000 * away_m, *found, 1000 * kFarthestPointM),
                    "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
   }
 
@@ -176,7 +179,8 @@ struct StepMaker {
 double DurationOf(const physics::Beat& beat) {
   double longest_s = 0;
   for (const physics::Step& step : beat.steps) longest_s = std::max(longest_s, step.over_s);
-  for (const physics::PersonStep& step : beat.person_steps) longest_s = std::max(longest_s, step.over_s);
+  for (const physics::PersonStep& step : beat.person_steps)
+    longest_s = std::max(longest_s, step.over_s);
   return longest_s;
 }
 
@@ -227,7 +231,8 @@ void CheckOrder(const std::vector<BeatEntry>& script, Complaints& complaints) {
         for (const PoseEntry& pose : poses->poses) hand.closed |= pose.trigger.value_or(0) > 0;
       }
       if (const auto* recording = std::get_if<RecordingEntry>(&step.value)) {
-        for (const physics::TimedPose& pose : recording->poses) hand.closed |= pose.trigger.value_or(0) > 0;
+        for (const physics::TimedPose& pose : recording->poses)
+          hand.closed |= pose.trigger.value_or(0) > 0;
       }
       if (const auto* carry = std::get_if<CarryEntry>(&step.value)) {
         check_holds("carry_to_m", step, carry->where);
@@ -279,8 +284,10 @@ physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& sc
                                   NamesOf(entry.actors));
       }
       const bool known = hand >= 0 && hand < static_cast<int>(scene.hands.size());
-      const physics::HandModel* model = known ? &scene.hands[static_cast<std::size_t>(hand)].model : nullptr;
-      physics::Step step = std::visit(StepMaker{entities, scene, model, named, complaints}, named.value);
+      const physics::HandModel* model =
+          known ? &scene.hands[static_cast<std::size_t>(hand)].model : nullptr;
+      physics::Step step =
+          std::visit(StepMaker{entities, scene, model, named, complaints}, named.value);
       step.hand = hand;
       beat.steps.push_back(std::move(step));
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the written steps to physics::Script: names become indices, roll-pitch-yaw becomes quaternions.
-// Tested by tests/harness/read_scenario_test.cc
+// From the written steps to physics::Script: names become indices, roll-pitch-yaw becomes
+// quaternions. Tested by tests/harness/read_scenario_test.cc
 #pragma once
 
 #include "harness/complaints.h"
@@ -9,10 +9,11 @@
 
 namespace prehend::harness {
 
-/// Complains about unknown actors, entities and styles, about approaches a style does not have, and about a script
-/// that is too long. `scene` has the hands and persons of `entry`, in that order; hands without styles are not checked
-/// for theirs.
-physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints);
+/// Complains about unknown actors, entities and styles, about approaches a style does not have, and
+/// about a script that is too long. `scene` has the hands and persons of `entry`, in that order;
+/// hands without styles are not checked for theirs.
+physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene,
+                            Complaints& complaints);
 
 /// How long the script takes, with what is simulated after it.
 double DurationOf(const physics::Script& script);

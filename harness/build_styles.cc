@@ -50,8 +50,8 @@ bool StyleBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
 
 /// One number per joint of every concerned digit; the others stay empty.
 std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDigit>& numbers,
-                                                           bool one_is_enough,
-                                                           Concerned concerned) {
+                                                            bool one_is_enough,
+                                                            Concerned concerned) {
   const bool names_are_right = CheckDigitNames(numbers);
   std::vector<std::vector<double>> all(digits_.size());
   for (std::size_t i = 0; i < digits_.size(); ++i) {

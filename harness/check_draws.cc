@@ -24,7 +24,9 @@ Where PlaceOfField(const YamlDocument& document, std::size_t variation, std::siz
 /// Two paths to one place ("at_m.0", "at_m.00") are the same field.
 std::string CanonicalPath(const YamlNode& root, const std::string& path) {
   const YamlNode* node = FindField(root, path);
-  return node ? fmt::format("{}:{}:{}", node->where.source, node->where.place.line, node->where.place.column) : path;
+  return node ? fmt::format("{}:{}:{}", node->where.source, node->where.place.line,
+                            node->where.place.column)
+              : path;
 }
 
 bool IsSetOnCommandLine(const YamlDocument& document, const std::string& field) {
@@ -57,7 +59,8 @@ class DrawChecker {
       for (const std::string& field : variation.fields) {
         if (IsSetOnCommandLine(document_, field)) continue;
         setting = SettingOf(document_, variation, field, bounds.draws[bound]);
-        (void)ApplyOverride(setting, ScenarioFormat().schema, varied);  // CheckVariedFields() has tried the path
+        (void)ApplyOverride(setting, ScenarioFormat().schema,
+                            varied);  // CheckVariedFields() has tried the path
       }
       if (setting.empty()) return;
       const grammar::Diagnostics wrong = read_(varied);
@@ -94,11 +97,14 @@ void CheckVariedFields(const YamlDocument& document, const std::vector<Variation
         continue;
       }
       if (!varied.insert(CanonicalPath(document.root, field)).second)
-        complaints.Add(where, fmt::format("fields: '{}' is varied twice", field), "give it one distribution");
+        complaints.Add(where, fmt::format("fields: '{}' is varied twice", field),
+                       "give it one distribution");
       const YamlNode* node = FindField(document.root, field);
-      const grammar::Diagnostics nowhere = ApplyOverride(field + "=0", ScenarioFormat().schema, tried);
+      const grammar::Diagnostics nowhere =
+          ApplyOverride(field + "=0", ScenarioFormat().schema, tried);
       if (!nowhere.empty() || (relative && !node)) {
-        const std::string hint = nowhere.empty() ? "plus and times need a number that is written" : nowhere.front().hint;
+        const std::string hint =
+            nowhere.empty() ? "plus and times need a number that is written" : nowhere.front().hint;
         complaints.Add(where, fmt::format("fields: the scenario has no '{}'", field), hint);
       } else if (relative && !NumberOf(*node)) {
         complaints.Add(where, fmt::format("fields: '{}' is no number", field));
@@ -107,8 +113,8 @@ void CheckVariedFields(const YamlDocument& document, const std::vector<Variation
   }
 }
 
-grammar::Diagnostics CheckDraws(const YamlDocument& document, const std::vector<VariationEntry>& variations,
-                                const Reader& read) {
+grammar::Diagnostics CheckDraws(const YamlDocument& document,
+                                const std::vector<VariationEntry>& variations, const Reader& read) {
   DrawChecker checker(document, read);
   for (std::size_t i = 0; i < variations.size(); ++i) checker.Check(variations[i], i);
   return checker.Sorted();

@@ -93,18 +93,20 @@ void Complain(const Occupant& later, const Occupant& earlier, double depth_m,
               Complaints& complaints) {
   const double depth_mm = depth_m * 1000;
   if (later.person) {
-    complaints.Add(later.where,
-                   fmt::format("'{}' starts inside '{}', {:.0f} mm deep", later.name, earlier.name, depth_mm),
-                   "let her stand elsewhere");
+    complaints.Add(
+        later.where,
+        fmt::format("'{}' starts inside '{}', {:.0f} mm deep", later.name, earlier.name, depth_mm),
+        "let her stand elsewhere");
   } else if (later.hand) {
     complaints.Add(later.where,
                    fmt::format("actor '{}' starts inside '{}', {:.0f} mm deep", later.name,
                                earlier.name, depth_mm),
                    "let the hand start in free space");
   } else if (earlier.grains || later.grains) {
-    complaints.Add(later.where,
-                   fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),
-                   "grains lie around the vertical axis of their vessel: leave that free");
+    complaints.Add(
+        later.where,
+        fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),
+        "grains lie around the vertical axis of their vessel: leave that free");
   } else {
     complaints.Add(
         later.where,
@@ -118,7 +120,8 @@ Where WhereOf(const ScenarioEntry& entry, const physics::Scene& scene, std::size
   if (body < entry.entities.size()) return PlaceOf(entry.entities[body].value);
   Where where;
   for (std::size_t i = 0; i < scene.persons.size(); ++i) {
-    if (static_cast<std::size_t>(scene.persons[i].head) <= body) where = entry.persons[i].value.at_m.where;
+    if (static_cast<std::size_t>(scene.persons[i].head) <= body)
+      where = entry.persons[i].value.at_m.where;
   }
   return where;
 }

@@ -14,7 +14,8 @@
 
 namespace prehend::harness {
 
-/// The last time that a scenario agreed with its golden: it passed, or what it yielded was accepted.
+/// The last time that a scenario agreed with its golden: it passed, or what it yielded was
+/// accepted.
 struct CheckRecord {
   std::string program;      ///< ProgramHash() of then
   bool passed = true;       ///< checked; what was only accepted has to be checked yet

@@ -71,11 +71,13 @@ void Draw(const CheckRequest& request, const Scenario& scenario, const RunResult
     Fail(verdict, ExitCode::kFailure, "no picture", "no picture: " + drawn.error + "\n");
 }
 
-/// Whether it is played as its file says: what differs can be accepted, what is not asked for is not.
+/// Whether it is played as its file says: what differs can be accepted, what is not asked for is
+/// not.
 bool AsItsFileSays(const CheckRequest& request) { return OptionsOf(request.run).empty(); }
 
 /// Keeps a picture that differs, and where it does, for `review`. The lines that say where.
-std::string LeavePicture(const CheckRequest& request, const std::string& golden, const fs::path& drawn) {
+std::string LeavePicture(const CheckRequest& request, const std::string& golden,
+                         const fs::path& drawn) {
   if (request.is_trial) return "";
   const GoldenFiles files(request.root);
   const std::string name = drawn.filename().string();
@@ -85,15 +87,22 @@ std::string LeavePicture(const CheckRequest& request, const std::string& golden,
   files.RemovePendingPicture(request.id, name);
   fs::create_directories(pending.parent_path(), ignored);
   fs::copy_file(drawn, pending, ignored);
-  return WritePictureDifference(golden, drawn.string(), difference) ? "  difference " + difference + "\n" : "";
+  return WritePictureDifference(golden, drawn.string(), difference)
+             ? "  difference " + difference + "\n"
+             : "";
 }
 
-/// Says what differs; MergeRepeats() decides what that means. Pictures that nobody asks for fail at once.
-void JudgePictures(const CheckRequest& request, const Scenario& scenario, ScenarioVerdict& verdict) {
+/// Says what differs; MergeRepeats() decides what that means. Pictures that nobody asks for fail at
+/// once.
+void JudgePictures(const CheckRequest& request, const Scenario& scenario,
+                   ScenarioVerdict& verdict) {
   if (!request.has_golden) return;
   const GoldenFiles files(request.root);
-  const std::string accept = AsItsFileSays(request)
-      ? fmt::format("  accept it with: prehend accept {} --pictures --reason \"...\"\n", ShellWord(request.id)) : "";
+  const std::string accept =
+      AsItsFileSays(request)
+          ? fmt::format("  accept it with: prehend accept {} --pictures --reason \"...\"\n",
+                        ShellWord(request.id))
+          : "";
   for (const ReportedPicture& picture : verdict.pictures) {
     const fs::path drawn = fs::path(request.report_folder) / picture.file;
     const std::string name = drawn.filename().string();
@@ -110,10 +119,11 @@ void JudgePictures(const CheckRequest& request, const Scenario& scenario, Scenar
                     LeavePicture(request, golden, drawn), accept);
   }
   if (!AsItsFileSays(request)) return;
-  for (const fs::path& unasked : UnaskedPictures(request.id, scenario.pictures.size(), request.root)) {
+  for (const fs::path& unasked :
+       UnaskedPictures(request.id, scenario.pictures.size(), request.root)) {
     Fail(verdict, ExitCode::kDiffers, "a golden picture that the scenario does not ask for",
-         UnaskedText(unasked, scenario.pictures.size()) + "\n  remove it, or: prehend accept " + ShellWord(request.id) +
-             " --pictures --reason \"...\"\n");
+         UnaskedText(unasked, scenario.pictures.size()) + "\n  remove it, or: prehend accept " +
+             ShellWord(request.id) + " --pictures --reason \"...\"\n");
   }
 }
 
@@ -183,22 +193,26 @@ std::string Blame(const CheckRequest& request, const Scenario& scenario, const R
 }
 
 /// There is nothing to compare with.
-void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending, const std::string& objections,
-                        ScenarioVerdict& verdict) {
+void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending,
+                        const std::string& objections, ScenarioVerdict& verdict) {
   LeavePending(request, pending);
   verdict.details += objections;
   if (verdict.verdict != Verdict::kPassed) return;
   verdict.verdict = Verdict::kPending;
   verdict.exit_code = ExitCode::kPending;
-  verdict.reason = request.has_golden ? "no golden yet" : "no golden: only scenarios below scenarios/ have one";
-  if (request.has_golden && AsItsFileSays(request)) verdict.command = "prehend review " + ShellWord(request.id);
+  verdict.reason =
+      request.has_golden ? "no golden yet" : "no golden: only scenarios below scenarios/ have one";
+  if (request.has_golden && AsItsFileSays(request))
+    verdict.command = "prehend review " + ShellWord(request.id);
 }
 
 /// What differs, with the facts around the first of it, and whose doing it is.
-void TellDifferences(const CheckRequest& request, const PreparedRun& prepared, const RunResult& watched,
-                     const Comparison& comparison, ScenarioVerdict& verdict) {
+void TellDifferences(const CheckRequest& request, const PreparedRun& prepared,
+                     const RunResult& watched, const Comparison& comparison,
+                     ScenarioVerdict& verdict) {
   verdict.blame = Blame(request, prepared.scenario, watched, verdict.inputs);
-  const std::string facts = FactsAround(prepared.scenario, watched.recording, *comparison.FirstDivergence());
+  const std::string facts =
+      FactsAround(prepared.scenario, watched.recording, *comparison.FirstDivergence());
   verdict.differences = DifferencesJson(comparison, ExplainCommand(request.id, request.run));
   verdict.relations = RelationsJson(comparison);
   const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
@@ -212,7 +226,9 @@ void TellDifferences(const CheckRequest& request, const PreparedRun& prepared, c
 /// Compares the plain run; the watched one has the recording.
 void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared,
                         const RunResult& watched, const RunResult& run, ScenarioVerdict& verdict) {
-  const ReadResult<Golden> golden = request.has_golden ? GoldenFiles(request.root).ReadGoldenOf(request.id) : ReadResult<Golden>{};
+  const ReadResult<Golden> golden = request.has_golden
+                                        ? GoldenFiles(request.root).ReadGoldenOf(request.id)
+                                        : ReadResult<Golden>{};
   if (!golden.diagnostics.empty()) {
     return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read",
                 Format(golden.diagnostics));
@@ -229,7 +245,8 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
   if (!golden.value) return JudgeWithoutGolden(request, pending, Text(objections), verdict);
   verdict.headroom = HeadroomText(comparison);
   verdict.boundaries = Boundaries(comparison);
-  if (comparison.Agrees() && objections.empty()) return GoldenFiles(request.root).RemovePending(request.id);
+  if (comparison.Agrees() && objections.empty())
+    return GoldenFiles(request.root).RemovePending(request.id);
   LeavePending(request, pending);
   if (!comparison.Agrees()) TellDifferences(request, prepared, watched, comparison, verdict);
   if (!objections.empty()) Fail(verdict, ExitCode::kDiffers, Summary(objections), Text(objections));
@@ -238,13 +255,15 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
 std::vector<std::string> FilesOfGolden(const CheckRequest& request) {
   const GoldenFiles goldens(request.root);
   std::vector<std::string> files = {goldens.GoldenPath(request.id).string()};
-  for (const KeptPicture& picture : goldens.PicturesOf(request.id)) files.push_back(picture.path.string());
+  for (const KeptPicture& picture : goldens.PicturesOf(request.id))
+    files.push_back(picture.path.string());
   return files;
 }
 
-/// The goldens of the pictures that a scenario asks for, and of one more, which nobody asks for; whether they are there
-/// or not: one that appears changes the verdict.
-void AddPictures(const CheckRequest& request, const Scenario& scenario, std::vector<std::string>& files) {
+/// The goldens of the pictures that a scenario asks for, and of one more, which nobody asks for;
+/// whether they are there or not: one that appears changes the verdict.
+void AddPictures(const CheckRequest& request, const Scenario& scenario,
+                 std::vector<std::string>& files) {
   for (std::size_t i = 1; i <= scenario.pictures.size() + 1; ++i) {
     const std::string file = scenario.name + (i == 1 ? "" : "-" + std::to_string(i)) + ".png";
     files.push_back(GoldenFiles(request.root).PicturePath(request.id, file).string());
@@ -255,8 +274,9 @@ void AddPictures(const CheckRequest& request, const Scenario& scenario, std::vec
 void JudgeOtherEngine(const CheckRequest& request, const PreparedRun& prepared,
                       const RunResult& run, ScenarioVerdict& verdict) {
   const auto compared = CompareEngines(prepared.scenario, prepared.program, run.timeline);
-  const std::string text =
-      compared ? EngineDifferenceText(prepared.scenario, *compared, ExplainCommand(request.id, request.run)) : "";
+  const std::string text = compared ? EngineDifferenceText(prepared.scenario, *compared,
+                                                           ExplainCommand(request.id, request.run))
+                                    : "";
   // Whether it could be written is only news to `review`; `accept` plays both engines itself.
   if (!request.is_trial) (void)GoldenFiles(request.root).WriteEngineDifference(request.id, text);
   if (text.empty()) return;
@@ -271,7 +291,8 @@ void JudgeOtherEngine(const CheckRequest& request, const PreparedRun& prepared,
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
   ScenarioVerdict verdict{.scenario = request.id, .shows = {}, .verdict = Verdict::kPassed};
   verdict.command = RepeatCommand(request.id, request.run);
-  std::vector<std::string> files = request.has_golden ? FilesOfGolden(request) : std::vector<std::string>();
+  std::vector<std::string> files =
+      request.has_golden ? FilesOfGolden(request) : std::vector<std::string>();
   const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root, &files);
   if (prepared.value && request.has_golden) AddPictures(request, prepared.value->scenario, files);
   verdict.inputs = HashFiles(files);

@@ -18,9 +18,9 @@ struct CheckRequest {
   std::string root;           ///< the project's
   std::string report_folder;  ///< pictures go to its folder `pictures`
   bool pictures = true;
-  bool is_trial = false;  ///< leave nothing behind: neither a pending golden nor a trace
+  bool is_trial = false;   ///< leave nothing behind: neither a pending golden nor a trace
   bool has_golden = true;  ///< or may have one; false: it is not of the project
-  std::string program;    ///< ProgramHash(), for the blame
+  std::string program;     ///< ProgramHash(), for the blame
   SharedTicks::Tick* last_tick = nullptr;  ///< told how far the run came; may be null
 };
 

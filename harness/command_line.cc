@@ -19,9 +19,9 @@ namespace prehend::harness {
 namespace {
 
 std::vector<Command> Commands() {
-  return {ListCommand(),   ValidateCommand(), RunCommand(), CheckCommand(),
-          AcceptCommand(), ReviewCommand(),   RenderCommand(), NewCommand(), SchemaCommand(), BenchCommand(),
-          ResegmentCommand(), ScoreCommand(), ExplainCommand(), TracksCommand()};
+  return {ListCommand(),      ValidateCommand(), RunCommand(),     CheckCommand(),  AcceptCommand(),
+          ReviewCommand(),    RenderCommand(),   NewCommand(),     SchemaCommand(), BenchCommand(),
+          ResegmentCommand(), ScoreCommand(),    ExplainCommand(), TracksCommand()};
 }
 
 bool IsSet(const char* variable) {
@@ -67,7 +67,8 @@ void Declare(CLI::App& app, const std::vector<Command>& commands) {
   app.footer(
       "Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 simulation or internal failure,\n"
       "4 nothing selected or found, 5 goldens wait for acceptance.\n"
-      "PREHEND_HOME names the project's folder; otherwise it is the one above the program, or the working folder.");
+      "PREHEND_HOME names the project's folder; otherwise it is the one above the program, or the "
+      "working folder.");
   app.allow_extras();
   for (const Command& command : commands) {
     CLI::App* options = app.add_subcommand(command.name, command.summary);
@@ -139,10 +140,13 @@ ExitCode Dispatch(const CLI::App& app, const std::vector<Command>& commands,
   const auto root = FindProjectRoot();
   if (!root) {
     const char* const home = std::getenv("PREHEND_HOME");
-    return Complain(context, ExitCode::kBadInput,
-                    home && *home ? "PREHEND_HOME is " + ShellWord(home) + ", which has no grammar/library"
-                                  : std::string("the project's folder was not found (it has grammar/library); go there or "
-                                                "set PREHEND_HOME"));
+    return Complain(
+        context, ExitCode::kBadInput,
+        home && *home
+            ? "PREHEND_HOME is " + ShellWord(home) + ", which has no grammar/library"
+            : std::string(
+                  "the project's folder was not found (it has grammar/library); go there or "
+                  "set PREHEND_HOME"));
   }
   context.root = *root;
   for (const Command& command : commands) {
@@ -170,7 +174,8 @@ ExitCode RunCommandLine(int argc, const char* const* argv) {
     return ExitCode::kAgrees;
   } catch (const CLI::ParseError& error) {
     const auto chosen = app.get_subcommands();
-    return UsageError(WithShortNumbers(error.what()), chosen.empty() ? "" : chosen.front()->get_name());
+    return UsageError(WithShortNumbers(error.what()),
+                      chosen.empty() ? "" : chosen.front()->get_name());
   } catch (const std::exception& problem) {
     std::cerr << "prehend: internal error: " << problem.what() << "\n  again: " << command_line
               << "\n";

@@ -79,7 +79,8 @@ struct Comparison {
   int Count(LineVerdict agreement) const;
   const Headroom* Tightest() const;        ///< null without matched events
   const Pairing* FirstDivergence() const;  ///< null when all agree
-  std::vector<const Pairing*> Differing() const;  ///< first divergence first; pieces are told of by one
+  std::vector<const Pairing*> Differing()
+      const;  ///< first divergence first; pieces are told of by one
 };
 
 /// Compares in the ticks of `actual`; `default_tolerance` (ticks) is for golden lines without their
@@ -103,7 +104,8 @@ std::string DifferenceText(const Comparison& comparison, std::string_view comman
 /// What `prehend explain` is to be asked about a difference: "--event 'sliding hand cup @0.1000s'".
 std::string QuestionAbout(const Pairing& pairing, grammar::Tick ticks_per_second);
 
-/// The same differences, and the relations that changed, as lists for programs: keys in docs/regression-suite.md.
+/// The same differences, and the relations that changed, as lists for programs: keys in
+/// docs/regression-suite.md.
 nlohmann::ordered_json DifferencesJson(const Comparison& comparison, std::string_view command);
 nlohmann::ordered_json RelationsJson(const Comparison& comparison);
 

@@ -21,7 +21,8 @@ Json SideJson(const std::optional<grammar::NamedEvent>& event, Tick ticks_per_se
 
 Json PairingJson(const Pairing& pairing, Tick ticks_per_second, std::string_view command) {
   const auto offset_ms = [&](Tick ticks) {
-    return pairing.expected && pairing.actual ? Json(MillisecondsOf(ticks, ticks_per_second)) : Json(nullptr);
+    return pairing.expected && pairing.actual ? Json(MillisecondsOf(ticks, ticks_per_second))
+                                              : Json(nullptr);
   };
   const auto seconds = [&](Tick tick) { return MillisecondsOf(tick, ticks_per_second) / 1000; };
   Json pieces = Json::array();

@@ -12,8 +12,8 @@ namespace prehend::harness {
 
 void Complaints::Add(Where where, std::string message, std::string hint) {
   const YamlSource& source = document_.sources[static_cast<std::size_t>(where.source)];
-  found_.emplace_back(
-      where, grammar::DiagnosticAt(source.name, source.text, where.place, std::move(message), std::move(hint)));
+  found_.emplace_back(where, grammar::DiagnosticAt(source.name, source.text, where.place,
+                                                   std::move(message), std::move(hint)));
 }
 
 void Complaints::AddUnknownName(Where where, std::string message, const std::string& name,
@@ -32,7 +32,9 @@ void Complaints::AddUnknownName(Where where, std::string message, const std::str
 grammar::Diagnostics Complaints::Sorted() const {
   auto sorted = found_;
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
-    const auto key = [](const Where& w) { return std::tuple(w.source, w.place.line, w.place.column); };
+    const auto key = [](const Where& w) {
+      return std::tuple(w.source, w.place.line, w.place.column);
+    };
     return key(a.first) < key(b.first);
   });
   grammar::Diagnostics diagnostics;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects what is wrong with one document while it is read, in any order, and hands it over sorted by place.
-// Tested by tests/harness/field_table_test.cc
+// Collects what is wrong with one document while it is read, in any order, and hands it over sorted
+// by place. Tested by tests/harness/field_table_test.cc
 #pragma once
 
 #include <string>

@@ -40,7 +40,8 @@ bool IsSeen(const physics::Body& body) {
 
 /// From the middle of the things to the first light; nothing when there is none.
 std::optional<Eigen::Vector3f> ToLight(const physics::Scene& scene) {
-  const auto light = std::ranges::find(scene.bodies, physics::Abstract::kLight, &physics::Body::abstract);
+  const auto light =
+      std::ranges::find(scene.bodies, physics::Abstract::kLight, &physics::Body::abstract);
   if (light == scene.bodies.end()) return std::nullopt;
   Eigen::AlignedBox3d things;
   for (const physics::Body& body : scene.bodies)
@@ -178,8 +179,8 @@ std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunRe
   return markers;
 }
 
-/// Events that are neither drawn as rows of hands and supports nor everywhere all the time: those of
-/// grammars about something else. In the order in which they first happen.
+/// Events that are neither drawn as rows of hands and supports nor everywhere all the time: those
+/// of grammars about something else. In the order in which they first happen.
 std::vector<std::string> OtherEvents(const grammar::Timeline& timeline) {
   std::vector<std::string> names;
   for (const grammar::NamedEvent& event : timeline.events) {
@@ -261,7 +262,8 @@ render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& pi
     for (const Eigen::Vector3f& point : stretch.points_m) box.extend(point);
   for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
     const physics::LocalBox local = physics::BoundingBox(scenario.scene.bodies[i]);
-    if (local.half_size_m.maxCoeff() * 2 > kSceneryFromM || !IsSeen(scenario.scene.bodies[i])) continue;
+    if (local.half_size_m.maxCoeff() * 2 > kSceneryFromM || !IsSeen(scenario.scene.bodies[i]))
+      continue;
     for (const physics::Snapshot* snapshot : {&picture.snapshot}) {
       const Eigen::Vector3f centre = (snapshot->bodies[i].X_WB * local.p_BC_m).cast<float>();
       const float reach = static_cast<float>(local.half_size_m.norm());

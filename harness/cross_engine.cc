@@ -32,17 +32,19 @@ std::optional<EngineComparison> CompareEngines(const Scenario& scenario,
 }
 
 bool Agrees(const EngineComparison& compared) {
-  return compared.run.status.kind == physics::RunStatus::Kind::kCompleted && compared.comparison.Agrees();
+  return compared.run.status.kind == physics::RunStatus::Kind::kCompleted &&
+         compared.comparison.Agrees();
 }
 
 std::string EngineDifferenceText(const Scenario& scenario, const EngineComparison& compared,
                                  const std::string& explain) {
   if (Agrees(compared)) return "";
-  const std::string other = NameOf(compared.other), again = explain + " --set world.engine=" + other;
+  const std::string other = NameOf(compared.other),
+                    again = explain + " --set world.engine=" + other;
   if (compared.run.status.kind != physics::RunStatus::Kind::kCompleted)
     return "in " + other + ": " + StatusText(compared.run) + "\nsee: " + again + "\n";
-  return "recognised in " + other + ", expected as recognised in " + NameOf(scenario.scene.world.engine) + ":\n" +
-         DifferenceText(compared.comparison, again);
+  return "recognised in " + other + ", expected as recognised in " +
+         NameOf(scenario.scene.world.engine) + ":\n" + DifferenceText(compared.comparison, again);
 }
 
 }  // namespace prehend::harness

@@ -33,8 +33,8 @@ std::optional<EngineComparison> CompareEngines(const Scenario& scenario,
 /// Whether the other engine's run came to its end with the same events.
 bool Agrees(const EngineComparison& compared);
 
-/// In which events the other engine differs and how far, or why it did not come to its end; "" when they agree.
-/// `explain` is the command that asks about the scenario's events.
+/// In which events the other engine differs and how far, or why it did not come to its end; "" when
+/// they agree. `explain` is the command that asks about the scenario's events.
 std::string EngineDifferenceText(const Scenario& scenario, const EngineComparison& compared,
                                  const std::string& explain);
 

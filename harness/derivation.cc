@@ -15,8 +15,10 @@
 
 namespace prehend::harness {
 
-Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program, const RunResult& run) {
-  Judged judged{.truth = TrueTimeline(scenario, run.recording, run.ticks + 1), .found = run.timeline};
+Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
+                      const RunResult& run) {
+  Judged judged{.truth = TrueTimeline(scenario, run.recording, run.ticks + 1),
+                .found = run.timeline};
   std::erase_if(judged.found.events, [](const auto& event) { return !OracleDefines(event.event); });
   // A grammar is not blamed for events that it does not speak of.
   std::erase_if(judged.truth.events, [&](const auto& event) {
@@ -64,12 +66,14 @@ Derivation Derive(const Scenario& scenario, const grammar::Program& program, con
   const std::string unjudged =
       others == 0 ? "" : fmt::format(" ({} events of other kinds not judged)", others);
   const std::string unseen =
-      agreement.missing() == 0 ? "" : fmt::format("; {} that follow are not recognised", agreement.missing());
-  derivation.lines.push_back(
-      fmt::format("{}{} of {} events follow from the definitions of docs/events.md, boundaries at "
-                  "most {:.1f} ms off{}{}",
-                  kOracleLine, agreement.matched(), judged.events.size(),
-                  MillisecondsOf(agreement.largest_offset(), agreement.ticks_per_second), unseen, unjudged));
+      agreement.missing() == 0
+          ? ""
+          : fmt::format("; {} that follow are not recognised", agreement.missing());
+  derivation.lines.push_back(fmt::format(
+      "{}{} of {} events follow from the definitions of docs/events.md, boundaries at "
+      "most {:.1f} ms off{}{}",
+      kOracleLine, agreement.matched(), judged.events.size(),
+      MillisecondsOf(agreement.largest_offset(), agreement.ticks_per_second), unseen, unjudged));
   return derivation;
 }
 

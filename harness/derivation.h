@@ -14,7 +14,8 @@ namespace prehend::harness {
 /// people's.
 inline constexpr const char* kOracleLine = "oracle: ";
 
-/// An event that the run and the oracle see otherwise: a recognised one, or one that is the oracle's alone.
+/// An event that the run and the oracle see otherwise: a recognised one, or one that is the
+/// oracle's alone.
 struct OracleNote {
   grammar::NamedEvent event;
   std::string text;  ///< GoldenEvent::oracle
@@ -32,7 +33,8 @@ struct Judged {
   grammar::Timeline truth, found;
 };
 /// The run must have been recorded.
-Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program, const RunResult& run);
+Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
+                      const RunResult& run);
 
 /// The run must have been recorded. Events that the oracle has no definition for are not judged,
 /// and counted.

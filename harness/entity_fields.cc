@@ -88,7 +88,8 @@ Format<JointEntry> BallJointFormat() {
 
 void CheckClass(const EntityEntry& entity, Complaints& complaints) {
   if (!IsBuiltInClass(entity.class_name.value)) return;
-  complaints.Add(entity.class_name.where, "class: '" + entity.class_name.value + "' is built in and given anyway",
+  complaints.Add(entity.class_name.where,
+                 "class: '" + entity.class_name.value + "' is built in and given anyway",
                  "name what the thing is, for example Cup");
 }
 
@@ -118,13 +119,17 @@ void CheckJoint(const YamlNode& node, const EntityEntry& entity, Complaints& com
 void CheckGrains(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
   const std::string title = "entity '" + node.key + "'";
   if (entity.in && !entity.grains)
-    complaints.Add(entity.in->where, "in: only grains are put into something", "for a thing: 'on', with at_m: [x, y]");
+    complaints.Add(entity.in->where, "in: only grains are put into something",
+                   "for a thing: 'on', with at_m: [x, y]");
   if (!entity.grains) return;
   if (!entity.in)
-    complaints.Add(node.key_where, title + " is grains: it needs the key 'in'", "the vessel that they fill");
-  for (const char* key : {"fixed", "part_of", "fixed_to", "slider", "hinge", "ball_joint", "on", "at_m", "rpy_deg", "yaw_deg"}) {
+    complaints.Add(node.key_where, title + " is grains: it needs the key 'in'",
+                   "the vessel that they fill");
+  for (const char* key : {"fixed", "part_of", "fixed_to", "slider", "hinge", "ball_joint", "on",
+                          "at_m", "rpy_deg", "yaw_deg"}) {
     if (const YamlNode* given = node.Find(key))
-      complaints.Add(given->key_where, std::string(key) + ": grains have none; they lie loose in their vessel");
+      complaints.Add(given->key_where,
+                     std::string(key) + ": grains have none; they lie loose in their vessel");
   }
 }
 
@@ -177,13 +182,17 @@ Format<EntityEntry> EntityFormat() {
                 "Its shape: boards between two sides; a cupboard has two.")
       .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMostParts),
                 "Its shape: several shapes, rigidly together.")
-      .Optional("grains", &E::grains, GrainsFormat(), "Many loose balls in a vessel, seen as one entity.")
+      .Optional("grains", &E::grains, GrainsFormat(),
+                "Many loose balls in a vessel, seen as one entity.")
       .Optional("region", &E::region, RegionFormat(), "No matter: a box or a ball of space.")
-      .Optional("gaze_target", &E::gaze_target, GazeTargetFormat(), "No matter: a place that eyes can look at.")
+      .Optional("gaze_target", &E::gaze_target, GazeTargetFormat(),
+                "No matter: a place that eyes can look at.")
       .Optional("camera", &E::camera, CameraFormat(), "No matter: from where pictures can be made.")
-      .Optional("light", &E::light, LightFormat(), "No matter: from where the light of pictures comes.")
+      .Optional("light", &E::light, LightFormat(),
+                "No matter: from where the light of pictures comes.")
       .Optional("fixed", &E::fixed, Flag(), "True: never moves and has no mass.")
-      .Optional("mass_kg", &E::mass_kg, Number(0.001, 1000), "Mass; required unless fixed or abstract. Of grains: of all together.")
+      .Optional("mass_kg", &E::mass_kg, Number(0.001, 1000),
+                "Mass; required unless fixed or abstract. Of grains: of all together.")
       .Optional("friction", &E::friction, Number(0, 5),
                 "Coulomb friction; that of two bodies is multiplied. Default 0.8.")
       .Optional("rolling_friction", &E::rolling_friction, Number(0, 1),
@@ -195,7 +204,8 @@ Format<EntityEntry> EntityFormat() {
       .Optional("angular_damping_per_s", &E::angular_damping_per_s, Number(0, 100),
                 "Rate at which its turning decays.")
       .Optional("on", &E::on, Identifier(), "The entity it stands on; then at_m is [x, y].")
-      .Optional("in", &E::in, Identifier(), "Of grains: the vessel that they fill; instead of at_m.")
+      .Optional("in", &E::in, Identifier(),
+                "Of grains: the vessel that they fill; instead of at_m.")
       .Optional("fixed_to", &E::fixed_to, Identifier(),
                 "The entity that it is glued to: both move as one.")
       .Optional("slider", &E::slider, SliderFormat(),
@@ -208,9 +218,8 @@ Format<EntityEntry> EntityFormat() {
       .Optional("rpy_deg", &E::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis.")
       .Optional("yaw_deg", &E::yaw_deg, Number(-360, 360), "Turn about the vertical, degrees.")
-      .ExactlyOneOf(
-          {"box", "sphere", "cylinder", "capsule", "hull", "tray", "mug", "bowl", "shelf", "parts", "grains", "region",
-           "gaze_target", "camera", "light"})
+      .ExactlyOneOf({"box", "sphere", "cylinder", "capsule", "hull", "tray", "mug", "bowl", "shelf",
+                     "parts", "grains", "region", "gaze_target", "camera", "light"})
       .ExactlyOneOf({"at_m", "in"})
       .AtMostOneOf({"rpy_deg", "yaw_deg"})
       .AtMostOneOf({"fixed_to", "slider", "hinge", "ball_joint"})

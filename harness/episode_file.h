@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An episode as a file: who takes part, then one line per frame, each a JSON object (JSON Lines). What a grammar needs to
-// segment it again, and nothing more: docs/recording-format.md. Written by `prehend run --record`, by trackers, by hand.
-// Tested by tests/harness/episode_file_test.cc
+// An episode as a file: who takes part, then one line per frame, each a JSON object (JSON Lines).
+// What a grammar needs to segment it again, and nothing more: docs/recording-format.md. Written by
+// `prehend run --record`, by trackers, by hand. Tested by tests/harness/episode_file_test.cc
 #pragma once
 
 #include <ostream>
@@ -29,7 +29,7 @@ struct EpisodeHeader {
 struct EpisodeFrame {
   grammar::Tick tick = 0;
   std::vector<grammar::EntityLook> entities;
-  std::vector<grammar::HandLook> hands;  ///< their own spans are empty, see `feelers`
+  std::vector<grammar::HandLook> hands;               ///< their own spans are empty, see `feelers`
   std::vector<std::vector<grammar::Feeler>> feelers;  ///< per hand
   std::vector<grammar::Touch> touches;
 

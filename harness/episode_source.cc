@@ -22,11 +22,15 @@ bool IsRecording(const std::string& typed) {
 }
 
 ReadResult<EpisodeSource> OpenScenario(const std::string& file, const std::string& grammar,
-                                       const std::vector<std::string>& settings, const std::string& root) {
+                                       const std::vector<std::string>& settings,
+                                       const std::string& root) {
   ReadResult<PreparedRun> prepared = PrepareRun({file, grammar, settings}, root);
   if (!prepared.value) return {std::nullopt, std::move(prepared.diagnostics)};
   const Scenario& scenario = prepared.value->scenario;
-  EpisodeSource source{.name = scenario.name, .program = prepared.value->program, .cast = MakeCast(scenario), .play = {}};
+  EpisodeSource source{.name = scenario.name,
+                       .program = prepared.value->program,
+                       .cast = MakeCast(scenario),
+                       .play = {}};
   source.play = [run = std::move(*prepared.value)](const EpisodeSource::Watcher& watch) {
     const RunResult result = RunScenario(run.scenario, run.program, {.watch = watch});
     const bool completed = result.status.kind == physics::RunStatus::Kind::kCompleted;
@@ -36,15 +40,20 @@ ReadResult<EpisodeSource> OpenScenario(const std::string& file, const std::strin
 }
 
 ReadResult<EpisodeSource> OpenRecording(const std::string& file, const std::string& grammar,
-                                        const std::vector<std::string>& settings, const std::string& root) {
+                                        const std::vector<std::string>& settings,
+                                        const std::string& root) {
   ReadResult<Episode> episode = ReadEpisode(file);
   if (!episode.value) return {std::nullopt, std::move(episode.diagnostics)};
   ReadResult<grammar::Overrides> parameters = ParameterSettings(settings);
   if (!parameters.value) return {std::nullopt, std::move(parameters.diagnostics)};
   const EpisodeHeader& header = episode.value->header;
-  grammar::CompileResult compiled = LoadGrammar(root, grammar.empty() ? header.grammar : grammar, *parameters.value);
+  grammar::CompileResult compiled =
+      LoadGrammar(root, grammar.empty() ? header.grammar : grammar, *parameters.value);
   if (!compiled.program) return {std::nullopt, std::move(compiled.diagnostics)};
-  EpisodeSource source{.name = header.episode, .program = std::move(compiled.program), .cast = header.cast, .play = {}};
+  EpisodeSource source{.name = header.episode,
+                       .program = std::move(compiled.program),
+                       .cast = header.cast,
+                       .play = {}};
   source.play = [recorded = std::move(*episode.value)](const EpisodeSource::Watcher& watch) {
     for (EpisodeFrame frame : recorded.frames) watch(frame.View());
     return EpisodeSource::Played{recorded.end_tick, ""};

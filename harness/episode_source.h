@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An episode to look at once more, from a scenario that is played or from a recording, with the grammar that watches it.
-// Tested by tests/house/explain_command_test.cc
+// An episode to look at once more, from a scenario that is played or from a recording, with the
+// grammar that watches it. Tested by tests/house/explain_command_test.cc
 #pragma once
 
 #include <functional>
@@ -26,13 +26,17 @@ struct EpisodeSource {
   std::function<Played(const Watcher&)> play;  ///< shows every frame
 };
 
-/// Whether what was typed is a recording (docs/recording-format.md) and no scenario: a file that begins with `{`.
+/// Whether what was typed is a recording (docs/recording-format.md) and no scenario: a file that
+/// begins with `{`.
 bool IsRecording(const std::string& typed);
 
-/// `grammar` empty: the episode's own. `settings` as for `prehend run --set`; of a recording, only parameters.
+/// `grammar` empty: the episode's own. `settings` as for `prehend run --set`; of a recording, only
+/// parameters.
 ReadResult<EpisodeSource> OpenScenario(const std::string& file, const std::string& grammar,
-                                       const std::vector<std::string>& settings, const std::string& root);
+                                       const std::vector<std::string>& settings,
+                                       const std::string& root);
 ReadResult<EpisodeSource> OpenRecording(const std::string& file, const std::string& grammar,
-                                        const std::vector<std::string>& settings, const std::string& root);
+                                        const std::vector<std::string>& settings,
+                                        const std::string& root);
 
 }  // namespace prehend::harness

@@ -31,7 +31,8 @@ struct Touching {
 /// Of what was expected and of what was recognised instead.
 std::set<int> Participants(const Pairing& difference, const grammar::Cast& cast) {
   std::set<int> ids;
-  for (const std::optional<grammar::NamedEvent>* side : {&difference.expected, &difference.actual}) {
+  for (const std::optional<grammar::NamedEvent>* side :
+       {&difference.expected, &difference.actual}) {
     if (!*side) continue;
     for (std::size_t i = 0; i < cast.entities.size(); ++i) {
       const bool takes_part = std::ranges::any_of(

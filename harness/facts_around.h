@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What could be observed where a difference begins: where the participants of both its sides are, how
-// fast they move, and who touches them. Shown beside the first difference. Tested by
+// What could be observed where a difference begins: where the participants of both its sides are,
+// how fast they move, and who touches them. Shown beside the first difference. Tested by
 // tests/harness/facts_around_test.cc
 #pragma once
 

@@ -18,7 +18,8 @@ namespace {
 
 std::string LabelOf(const YamlNode& node) { return node.key.empty() ? "" : node.key + ": "; }
 
-/// POSIX, since std::regex recurses once per character, and since pattern and text are short. Null for no pattern.
+/// POSIX, since std::regex recurses once per character, and since pattern and text are short. Null
+/// for no pattern.
 std::shared_ptr<const regex_t> Compiled(const std::string& pattern) {
   auto compiled = std::make_unique<regex_t>();
   if (regcomp(compiled.get(), pattern.c_str(), REG_EXTENDED | REG_NOSUB) != 0) return nullptr;
@@ -28,23 +29,28 @@ std::shared_ptr<const regex_t> Compiled(const std::string& pattern) {
           }};
 }
 
-/// Characters below a blank can only come from escapes in quotes; a NUL would hide the rest of the text.
+/// Characters below a blank can only come from escapes in quotes; a NUL would hide the rest of the
+/// text.
 bool Matches(const regex_t* pattern, const std::string& text) {
-  return pattern && text.find('\0') == std::string::npos && regexec(pattern, text.c_str(), 0, nullptr, 0) == 0;
+  return pattern && text.find('\0') == std::string::npos &&
+         regexec(pattern, text.c_str(), 0, nullptr, 0) == 0;
 }
 
 /// From escapes like "\x1b" in quotes; they would garble a terminal.
 bool HasControlCharacters(const std::string& text) {
-  return std::any_of(text.begin(), text.end(),
-                     [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7F; });
+  return std::any_of(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7F;
+  });
 }
 
 /// The node's text when it is unmistakably a string, else a complaint.
-std::optional<std::string> StringOf(const YamlNode& node, Complaints& complaints, const std::string& wanted) {
+std::optional<std::string> StringOf(const YamlNode& node, Complaints& complaints,
+                                    const std::string& wanted) {
   if (node.kind == YamlNode::Kind::kScalar) {
     ScalarMeaning meaning = MeaningOf(node);
     if (meaning.string && HasControlCharacters(*meaning.string)) {
-      complaints.Add(node.where, fmt::format("{}expected {}, found control characters", LabelOf(node), wanted));
+      complaints.Add(node.where,
+                     fmt::format("{}expected {}, found control characters", LabelOf(node), wanted));
       return std::nullopt;
     }
     if (meaning.string) return std::move(meaning.string);
@@ -73,15 +79,20 @@ std::string NumberRemedy(const YamlNode& node) {
   const std::string& text = node.text;
   const std::size_t end = std::min(text.find_first_not_of("+-.0123456789eE"), text.size());
   double ignored = 0;
-  const bool begins_with_number = end < text.size() && std::from_chars(text.data(), text.data() + end, ignored).ec == std::errc();
+  const bool begins_with_number =
+      end < text.size() &&
+      std::from_chars(text.data(), text.data() + end, ignored).ec == std::errc();
   if (!begins_with_number) return "";
-  return text[end] == ',' ? "decimals have a point: 0.5" : "write the number alone; its unit is the last word of the key";
+  return text[end] == ',' ? "decimals have a point: 0.5"
+                          : "write the number alone; its unit is the last word of the key";
 }
 
 bool ComplainNumberWanted(const YamlNode& node, Complaints& complaints, const std::string& wanted) {
   const std::string remedy = NumberRemedy(node);
   if (remedy.empty() || !MeaningOf(node).string) return ComplainWanted(node, complaints, wanted);
-  complaints.Add(node.where, fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)), remedy);
+  complaints.Add(node.where,
+                 fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
+                 remedy);
   return false;
 }
 
@@ -100,7 +111,8 @@ Json ShowString(const std::string& value) { return Json(value); }
 }  // namespace
 
 bool ComplainWanted(const YamlNode& node, Complaints& complaints, const std::string& wanted) {
-  std::string message = fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node));
+  std::string message =
+      fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node));
   std::string hint;
   if (node.kind == YamlNode::Kind::kScalar) {
     const ScalarMeaning meaning = MeaningOf(node);
@@ -113,10 +125,12 @@ bool ComplainWanted(const YamlNode& node, Complaints& complaints, const std::str
 
 bool IsListOf(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
   if (node.kind == YamlNode::Kind::kSequence) return HasSize(node, complaints, least, most);
-  return ComplainWanted(node, complaints, least == most ? fmt::format("a list of {}", least) : "a list");
+  return ComplainWanted(node, complaints,
+                        least == most ? fmt::format("a list of {}", least) : "a list");
 }
 
-bool IsMappingOf(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
+bool IsMappingOf(const YamlNode& node, Complaints& complaints, std::size_t least,
+                 std::size_t most) {
   if (node.kind == YamlNode::Kind::kMapping) return HasSize(node, complaints, least, most);
   return ComplainWanted(node, complaints, "a mapping from names");
 }
@@ -147,7 +161,8 @@ Format<std::int64_t> Integer64(std::int64_t lowest, std::int64_t highest) {
                   return ComplainWanted(node, complaints, wanted);
                 }
                 const auto whole = static_cast<std::int64_t>(*meaning->number);
-                if (whole < lowest || whole > highest) return ComplainWanted(node, complaints, wanted);
+                if (whole < lowest || whole > highest)
+                  return ComplainWanted(node, complaints, wanted);
                 value = whole;
                 return true;
               },
@@ -174,22 +189,26 @@ Format<std::string> Text(std::size_t max_length) {
               [=](const YamlNode& node, Complaints& complaints, std::string& value) {
                 auto text = StringOf(node, complaints, wanted);
                 if (!text) return false;
-                if (text->empty() || text->size() > max_length) return ComplainWanted(node, complaints, wanted);
+                if (text->empty() || text->size() > max_length)
+                  return ComplainWanted(node, complaints, wanted);
                 value = std::move(*text);
                 return true;
               },
           .show = ShowString};
 }
 
-Format<std::string> Word(const std::string& pattern, const std::string& wanted, std::size_t max_length) {
+Format<std::string> Word(const std::string& pattern, const std::string& wanted,
+                         std::size_t max_length) {
   const std::string whole = "^(" + pattern + ")$";
   return {.schema = {{"type", "string"}, {"pattern", whole}, {"maxLength", max_length}},
           .read =
-              [=, matcher = Compiled(whole)](const YamlNode& node, Complaints& complaints, std::string& value) {
+              [=, matcher = Compiled(whole)](const YamlNode& node, Complaints& complaints,
+                                             std::string& value) {
                 auto text = StringOf(node, complaints, wanted);
                 if (!text) return false;
                 if (text->size() > max_length) {
-                  return ComplainWanted(node, complaints, fmt::format("{} of at most {} bytes", wanted, max_length));
+                  return ComplainWanted(node, complaints,
+                                        fmt::format("{} of at most {} bytes", wanted, max_length));
                 }
                 if (!Matches(matcher.get(), *text)) return ComplainWanted(node, complaints, wanted);
                 value = std::move(*text);
@@ -210,9 +229,10 @@ Format<std::string> Choice(std::vector<std::string> words) {
                 if (!text) return false;
                 if (std::find(words.begin(), words.end(), *text) == words.end()) {
                   const std::string near = grammar::NearestName(*text, words);
-                  complaints.Add(node.where,
-                                 fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
-                                 near.empty() ? "" : fmt::format("did you mean '{}'?", near));
+                  complaints.Add(
+                      node.where,
+                      fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
+                      near.empty() ? "" : fmt::format("did you mean '{}'?", near));
                   return false;
                 }
                 value = std::move(*text);

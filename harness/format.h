@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a value is written in YAML: one object that both reads it and states its JSON Schema, so that the two cannot
-// disagree. This file has the formats of single values and of lists and mappings of them; harness/record.h has
-// the format of a struct.
+// How a value is written in YAML: one object that both reads it and states its JSON Schema, so that
+// the two cannot disagree. This file has the formats of single values and of lists and mappings of
+// them; harness/record.h has the format of a struct.
 //
 // How to use it, for a file of your own:
 //
 //   Format<Wheel> WheelFormat() {
 //     return Record<Wheel>("a wheel")
 //         .Required("radius_m", &Wheel::radius_m, Number(0.01, 2), "Distance from axle to tread.")
-//         .Optional("spokes", &Wheel::spokes, Integer<int>(0, 100), "How many; the default is that of Wheel{}.")
-//         .format();
+//         .Optional("spokes", &Wheel::spokes, Integer<int>(0, 100), "How many; the default is that
+//         of Wheel{}.") .format();
 //   }
 //   ReadResult<YamlDocument> document = ReadYamlFile(path);
 //   if (document.value) ReadResult<Wheel> wheel = ReadDocument(*document.value, WheelFormat());
 //
-// Members may be T, std::optional<T>, Located<T> (remembers its place, for checks across fields; see Complaints)
-// or std::optional<Located<T>>. A struct with a member `Where where` learns its own place.
-// Tested by tests/harness/field_table_test.cc
+// Members may be T, std::optional<T>, Located<T> (remembers its place, for checks across fields;
+// see Complaints) or std::optional<Located<T>>. A struct with a member `Where where` learns its own
+// place. Tested by tests/harness/field_table_test.cc
 #pragma once
 
 #include <Eigen/Core>
@@ -61,9 +61,10 @@ Format<double> Number(double lowest, double highest);
 Format<bool> Flag();
 /// One or more lines for people, not empty.
 Format<std::string> Text(std::size_t max_length = 500);
-/// A string that matches `pattern` as a whole; `wanted` describes it: "a name like 'milk_carton'". The pattern must mean
-/// the same to POSIX (the reader) and to ECMAScript (the schema).
-Format<std::string> Word(const std::string& pattern, const std::string& wanted, std::size_t max_length = 64);
+/// A string that matches `pattern` as a whole; `wanted` describes it: "a name like 'milk_carton'".
+/// The pattern must mean the same to POSIX (the reader) and to ECMAScript (the schema).
+Format<std::string> Word(const std::string& pattern, const std::string& wanted,
+                         std::size_t max_length = 64);
 /// snake_case, as entities, actors and files are called.
 Format<std::string> Identifier();
 /// One of a few words.
@@ -75,7 +76,8 @@ bool IsMappingOf(const YamlNode& node, Complaints& complaints, std::size_t least
 
 template <class Int>
 Format<Int> Integer(Int lowest, Int highest) {
-  const auto wide = Integer64(static_cast<std::int64_t>(lowest), static_cast<std::int64_t>(highest));
+  const auto wide =
+      Integer64(static_cast<std::int64_t>(lowest), static_cast<std::int64_t>(highest));
   return {.schema = wide.schema,
           .read =
               [wide](const YamlNode& node, Complaints& complaints, Int& value) {
@@ -114,25 +116,29 @@ Format<T> Choice(std::vector<std::pair<std::string, T>> meanings) {
 
 template <class T>
 Format<std::vector<T>> ListOf(Format<T> item, std::size_t least, std::size_t most) {
-  return {.schema = {{"type", "array"}, {"items", item.schema}, {"minItems", least}, {"maxItems", most}},
-          .read =
-              [item, least, most](const YamlNode& node, Complaints& complaints, std::vector<T>& list) {
-                list.clear();
-                if (!IsListOf(node, complaints, least, most)) return false;
-                bool good = true;
-                for (const YamlNode& child : node.children) {
-                  T value{};
-                  good &= item.read(child, complaints, value);
-                  list.push_back(std::move(value));
-                }
-                return good;
-              },
-          .show =
-              [item](const std::vector<T>& list) {
-                Json shown = Json::array();
-                for (const T& value : list) shown.push_back(item.show ? item.show(value) : Json());
-                return shown;
-              }};
+  return {
+      .schema = {{"type", "array"},
+                 {"items", item.schema},
+                 {"minItems", least},
+                 {"maxItems", most}},
+      .read =
+          [item, least, most](const YamlNode& node, Complaints& complaints, std::vector<T>& list) {
+            list.clear();
+            if (!IsListOf(node, complaints, least, most)) return false;
+            bool good = true;
+            for (const YamlNode& child : node.children) {
+              T value{};
+              good &= item.read(child, complaints, value);
+              list.push_back(std::move(value));
+            }
+            return good;
+          },
+      .show =
+          [item](const std::vector<T>& list) {
+            Json shown = Json::array();
+            for (const T& value : list) shown.push_back(item.show ? item.show(value) : Json());
+            return shown;
+          }};
 }
 
 /// A value that remembers where it was written, for members that are lists or mappings of such.
@@ -168,7 +174,8 @@ Format<Eigen::Matrix<double, N, 1>> Vector(double lowest, double highest) {
 
 /// A mapping from names to values, in the order of the file.
 template <class T>
-Format<std::vector<Named<T>>> MapOf(Format<std::string> name, Format<T> item, std::size_t least, std::size_t most) {
+Format<std::vector<Named<T>>> MapOf(Format<std::string> name, Format<T> item, std::size_t least,
+                                    std::size_t most) {
   return {.schema = {{"type", "object"},
                      {"propertyNames", name.schema},
                      {"additionalProperties", item.schema},

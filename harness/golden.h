@@ -16,10 +16,10 @@
 //
 // NAME~NUMBER is a value of the event, which agrees within 5 % or 0.001; accepted=2 says that this
 // line is as the second of the accepted lines made it (otherwise the first);
-// oracle=none because "..", or oracle=+29.2/+0.0ms because "..", that the physical oracle sees no such
-// event, or other boundaries, and why the line is right nevertheless; oracle=only because "..", that only
-// the oracle sees this event: nobody expects it to be recognised.
-// Tested by tests/harness/golden_test.cc
+// oracle=none because "..", or oracle=+29.2/+0.0ms because "..", that the physical oracle sees no
+// such event, or other boundaries, and why the line is right nevertheless; oracle=only because
+// "..", that only the oracle sees this event: nobody expects it to be recognised. Tested by
+// tests/harness/golden_test.cc
 #pragma once
 
 #include <optional>
@@ -51,8 +51,8 @@ struct GoldenEvent {
   friend bool operator==(const GoldenEvent& a, const GoldenEvent& b);
 };
 
-/// How much later, in ms, the begin and end of a line with the note "+29.2/-4.2ms" are than the oracle's; nothing of
-/// another note.
+/// How much later, in ms, the begin and end of a line with the note "+29.2/-4.2ms" are than the
+/// oracle's; nothing of another note.
 std::optional<std::pair<double, double>> NoteOffsets_ms(std::string_view note);
 
 struct Acceptance {
@@ -77,7 +77,8 @@ struct Golden {
 /// `file` is only named in the diagnostics.
 ReadResult<Golden> ReadGolden(std::string_view file, std::string_view text);
 
-/// ReadGolden(WriteGolden(x)) == x. Lines that were read stay as they were written; others are canonical.
+/// ReadGolden(WriteGolden(x)) == x. Lines that were read stay as they were written; others are
+/// canonical.
 std::string WriteGolden(const Golden& golden);
 
 /// The events that it expects, alone.

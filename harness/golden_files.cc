@@ -25,7 +25,8 @@ ReadResult<Golden> ReadFrom(const fs::path& path, const std::string& scenario) {
   if (!text.value) return {std::nullopt, std::move(text.diagnostics)};
   ReadResult<Golden> golden = ReadGolden(path.string(), *text.value);
   if (!golden.value) return golden;
-  grammar::Diagnostics other = OfAnotherScenario(path.string(), *text.value, *golden.value, scenario);
+  grammar::Diagnostics other =
+      OfAnotherScenario(path.string(), *text.value, *golden.value, scenario);
   if (!other.empty()) return {std::nullopt, std::move(other)};
   return golden;
 }
@@ -42,7 +43,8 @@ std::vector<std::string> IdsBelow(const fs::path& folder) {
   return scenarios;
 }
 
-/// Its number: "cup" and "cup-2" are 1 and 2; 0 when it is no name of a picture ("cup-two", "cup.difference").
+/// Its number: "cup" and "cup-2" are 1 and 2; 0 when it is no name of a picture ("cup-two",
+/// "cup.difference").
 int PictureNumber(const std::string& stem, std::string& name) {
   const std::size_t dash = stem.find('-');
   name = stem.substr(0, dash);
@@ -80,7 +82,8 @@ std::vector<KeptPicture> PicturesBelow(const fs::path& above) {
     if (entry.is_directory(ignored)) folders.push_back(entry.path());
   }
   std::ranges::sort(folders);
-  for (const fs::path& folder : folders) std::ranges::move(PicturesIn(folder, above), std::back_inserter(pictures));
+  for (const fs::path& folder : folders)
+    std::ranges::move(PicturesIn(folder, above), std::back_inserter(pictures));
   return pictures;
 }
 
@@ -93,10 +96,11 @@ grammar::Place ScenarioLine(std::string_view text) {
   return {line, static_cast<int>(kKey.size()) + 1};
 }
 
-grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view text, const Golden& golden,
-                                       const std::string& scenario) {
+grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view text,
+                                       const Golden& golden, const std::string& scenario) {
   if (golden.scenario == scenario) return {};
-  const std::string message = "this golden says it is of '" + golden.scenario + "', not of '" + scenario + "'";
+  const std::string message =
+      "this golden says it is of '" + golden.scenario + "', not of '" + scenario + "'";
   return {grammar::DiagnosticAt(file, text, ScenarioLine(text), message,
                                 "if it was moved here with its scenario, write that name")};
 }
@@ -144,7 +148,8 @@ std::string GoldenFiles::ReadEngineDifference(const std::string& scenario) const
   return ReadTextFile(EngineDifferencePath(scenario).string()).value.value_or("");
 }
 
-std::string GoldenFiles::WriteEngineDifference(const std::string& scenario, const std::string& text) const {
+std::string GoldenFiles::WriteEngineDifference(const std::string& scenario,
+                                               const std::string& text) const {
   const fs::path file = EngineDifferencePath(scenario);
   if (!text.empty()) return WriteTextFile(file, text);
   std::error_code ignored;
@@ -153,14 +158,17 @@ std::string GoldenFiles::WriteEngineDifference(const std::string& scenario, cons
 }
 
 std::vector<KeptPicture> GoldenFiles::PicturesOf(const std::string& scenario) const {
-  std::vector<KeptPicture> pictures = PicturesIn(GoldenPath(scenario).parent_path(), root_ / "golden");
+  std::vector<KeptPicture> pictures =
+      PicturesIn(GoldenPath(scenario).parent_path(), root_ / "golden");
   std::erase_if(pictures, [&](const KeptPicture& picture) { return picture.scenario != scenario; });
   return pictures;
 }
 
 std::vector<KeptPicture> GoldenFiles::Pictures() const { return PicturesBelow(root_ / "golden"); }
 
-std::vector<KeptPicture> GoldenFiles::PendingPictures() const { return PicturesBelow(root_ / "build" / "pending"); }
+std::vector<KeptPicture> GoldenFiles::PendingPictures() const {
+  return PicturesBelow(root_ / "build" / "pending");
+}
 
 fs::path GoldenFiles::DifferencePath(const std::string& scenario, const std::string& file) const {
   return PendingPicturePath(scenario, file).replace_extension(kDifference);

@@ -13,7 +13,8 @@
 
 namespace prehend::harness {
 
-/// A picture in golden/ or in build/pending/: NAME.png is the first of its scenario, NAME-2.png the second.
+/// A picture in golden/ or in build/pending/: NAME.png is the first of its scenario, NAME-2.png the
+/// second.
 struct KeptPicture {
   std::string scenario;  ///< skill/name
   int number = 1;
@@ -21,8 +22,8 @@ struct KeptPicture {
 };
 
 /// That a golden says of itself that it is of another scenario; nothing when it does not.
-grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view text, const Golden& golden,
-                                       const std::string& scenario);
+grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view text,
+                                       const Golden& golden, const std::string& scenario);
 
 /// Where the name stands in the line "# scenario: ..".
 grammar::Place ScenarioLine(std::string_view text);
@@ -45,8 +46,8 @@ class GoldenFiles {
   std::string WriteAccepted(const Golden& golden) const;
   void RemovePending(const std::string& scenario) const;
 
-  /// How a planar scenario differs between the engines, as `check` saw it last; "" where it does not. Writing ""
-  /// removes it.
+  /// How a planar scenario differs between the engines, as `check` saw it last; "" where it does
+  /// not. Writing "" removes it.
   std::filesystem::path EngineDifferencePath(const std::string& scenario) const;
   std::string ReadEngineDifference(const std::string& scenario) const;
   std::string WriteEngineDifference(const std::string& scenario, const std::string& text) const;
@@ -64,7 +65,8 @@ class GoldenFiles {
   std::vector<KeptPicture> Pictures() const;
 
   /// A picture that differs from its golden waits there, and beside it what shows where.
-  std::filesystem::path PendingPicturePath(const std::string& scenario, const std::string& file) const {
+  std::filesystem::path PendingPicturePath(const std::string& scenario,
+                                           const std::string& file) const {
     return PendingPath(scenario).parent_path() / file;
   }
   std::filesystem::path DifferencePath(const std::string& scenario, const std::string& file) const;

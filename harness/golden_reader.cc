@@ -201,7 +201,8 @@ class GoldenReader {
       } else if (!AtEnd() && line_[column_] == '~') {
         if (!ReadValue(line, key, word_column)) return false;
       } else if (AtEnd() || line_[column_] != '=') {
-        return Fail(fmt::format("expected '=' after '{}'", key), "ROLE=NAME without blanks, or open_end");
+        return Fail(fmt::format("expected '=' after '{}'", key),
+                    "ROLE=NAME without blanks, or open_end");
       } else if (++column_; key == "tolerance") {
         if (!ReadTolerance(line)) return false;
         explained = key;

@@ -235,7 +235,8 @@ Format<HandEntry> BuildHandFormat() {
       .Optional("styles", &H::styles, StylesFormat(), "Grasps, by name.")
       .Check([](const YamlNode& node, const H& hand, Complaints& complaints) {
         if (hand.grasps.empty() && hand.styles.empty())
-          complaints.Add(node.where, "the hand has no style of grasp", "give 'grasps', 'styles' or both");
+          complaints.Add(node.where, "the hand has no style of grasp",
+                         "give 'grasps', 'styles' or both");
       })
       .format();
 }

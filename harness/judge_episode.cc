@@ -15,7 +15,8 @@ namespace {
 /// Leaves what is judged, and counts what nobody knows the truth of.
 void KeepJudged(const std::vector<std::string>& wanted, score::JudgedEpisode& episode) {
   const auto is_left_out = [&](const grammar::NamedEvent& event) {
-    return !OracleDefines(event.event) || (!wanted.empty() && std::ranges::find(wanted, event.event) == wanted.end());
+    return !OracleDefines(event.event) ||
+           (!wanted.empty() && std::ranges::find(wanted, event.event) == wanted.end());
   };
   for (const grammar::NamedEvent& event : episode.found.events) {
     if (!OracleDefines(event.event)) ++episode.not_judged[event.event];
@@ -26,16 +27,22 @@ void KeepJudged(const std::vector<std::string>& wanted, score::JudgedEpisode& ep
 
 }  // namespace
 
-ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request, bool& bad_input) {
+ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request,
+                                                           bool& bad_input) {
   bad_input = true;
-  const ReadResult<PreparedRun> prepared =
-      PrepareRun({.scenario_file = request.scenario_file, .grammar = request.grammars.front()}, request.root);
+  const ReadResult<PreparedRun> prepared = PrepareRun(
+      {.scenario_file = request.scenario_file, .grammar = request.grammars.front()}, request.root);
   if (!prepared.value) return {std::nullopt, prepared.diagnostics};
   bad_input = false;
   const Scenario& scenario = prepared.value->scenario;
   const RunResult run = RunScenario(scenario, prepared.value->program, {.record = true});
   if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
-    return {std::nullopt, {{.file = request.scenario_file, .place = {}, .message = StatusText(run), .source_line = {}, .hint = {}}}};
+    return {std::nullopt,
+            {{.file = request.scenario_file,
+              .place = {},
+              .message = StatusText(run),
+              .source_line = {},
+              .hint = {}}}};
   }
   const grammar::Tick end = run.ticks + 1;
   const grammar::Timeline truth = TrueTimeline(scenario, run.recording, end);

@@ -19,9 +19,10 @@ struct JudgeRequest {
   std::vector<std::string> events;    ///< only these are judged; none: all that the oracle defines
 };
 
-/// One judged episode per grammar, all with the same truth: a grammar that is silent about a kind of event, or misspells
-/// it, has missed what happened. Without value: what cannot be read
+/// One judged episode per grammar, all with the same truth: a grammar that is silent about a kind
+/// of event, or misspells it, has missed what happened. Without value: what cannot be read
 /// (`bad_input`), or why the run did not complete.
-ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request, bool& bad_input);
+ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request,
+                                                           bool& bad_input);
 
 }  // namespace prehend::harness

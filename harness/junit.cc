@@ -19,9 +19,8 @@ namespace {
 /// For attributes and content; what XML 1.0 cannot hold is left out.
 std::string EscapeXml(std::string_view text) {
   std::string allowed;
-  std::ranges::copy_if(text, std::back_inserter(allowed), [](unsigned char c) {
-    return c >= 0x20 || c == '\n' || c == '\t';
-  });
+  std::ranges::copy_if(text, std::back_inserter(allowed),
+                       [](unsigned char c) { return c >= 0x20 || c == '\n' || c == '\t'; });
   return EscapeHtml(allowed);
 }
 
@@ -37,14 +36,17 @@ std::string_view Element(const ScenarioVerdict& verdict) {
 /// "0.0042..0.3021 s", or "nothing".
 std::string SideText(const nlohmann::ordered_json& side) {
   if (side.is_null()) return "nothing";
-  return fmt::format("{:.4f}..{:.4f} s", side.at("begin_s").get<double>(), side.at("end_s").get<double>());
+  return fmt::format("{:.4f}..{:.4f} s", side.at("begin_s").get<double>(),
+                     side.at("end_s").get<double>());
 }
 
 /// "supported_by(carton, table)"
 std::string LabelOf(const nlohmann::ordered_json& difference) {
-  const nlohmann::ordered_json& side = difference.at(difference.at("expected").is_null() ? "recognised" : "expected");
+  const nlohmann::ordered_json& side =
+      difference.at(difference.at("expected").is_null() ? "recognised" : "expected");
   std::vector<std::string> roles;
-  for (const auto& [name, value] : side.at("roles").items()) roles.push_back(value.get<std::string>());
+  for (const auto& [name, value] : side.at("roles").items())
+    roles.push_back(value.get<std::string>());
   return fmt::format("{}({})", difference.at("event").get<std::string>(), fmt::join(roles, ", "));
 }
 
@@ -55,12 +57,14 @@ std::string Message(const ScenarioVerdict& verdict) {
     return first.empty() ? verdict.reason : verdict.reason + "; first: " + first;
   }
   const nlohmann::ordered_json& difference = verdict.differences.front();
-  std::string text = fmt::format("{}; first: {} {}: expected {}, recognised {}", verdict.reason,
-                                 difference.at("kind").get<std::string>(), LabelOf(difference),
-                                 SideText(difference.at("expected")), SideText(difference.at("recognised")));
+  std::string text =
+      fmt::format("{}; first: {} {}: expected {}, recognised {}", verdict.reason,
+                  difference.at("kind").get<std::string>(), LabelOf(difference),
+                  SideText(difference.at("expected")), SideText(difference.at("recognised")));
   if (!difference.at("begin_ms").is_null())
-    text += fmt::format(", begin {:+.1f} ms, end {:+.1f} ms", difference.at("begin_ms").get<double>(),
-                        difference.at("end_ms").get<double>());
+    text +=
+        fmt::format(", begin {:+.1f} ms, end {:+.1f} ms", difference.at("begin_ms").get<double>(),
+                    difference.at("end_ms").get<double>());
   for (const auto& change : difference.at("changes")) text += ", " + change.get<std::string>();
   return text;
 }
@@ -71,8 +75,7 @@ std::string Outcome(const ScenarioVerdict& verdict) {
   if (element == "skipped") return "      <skipped message=\"nothing changed since it passed\"/>\n";
   return fmt::format("      <{0} type=\"{1}\" message=\"{2}\">{3}{4}: {5}\n</{0}>\n", element,
                      Name(verdict.verdict), EscapeXml(Message(verdict)), EscapeXml(verdict.details),
-                     CommandLabel(verdict),
-                     EscapeXml(verdict.command));
+                     CommandLabel(verdict), EscapeXml(verdict.command));
 }
 
 std::string Case(const ScenarioVerdict& verdict) {

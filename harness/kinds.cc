@@ -20,11 +20,16 @@ std::vector<std::string> BuiltInClassesOf(const physics::Scene& scene, std::size
   using physics::Abstract;
   const physics::Body& is = scene.bodies[body];
   switch (is.abstract) {
-    case Abstract::kRegion: return {"Region", "Abstract", "Entity"};
-    case Abstract::kGazeTarget: return {"GazeTarget", "Abstract", "Entity"};
-    case Abstract::kCamera: return {"Camera", "Abstract", "Entity"};
-    case Abstract::kLight: return {"Light", "Abstract", "Entity"};
-    case Abstract::kNot: break;
+    case Abstract::kRegion:
+      return {"Region", "Abstract", "Entity"};
+    case Abstract::kGazeTarget:
+      return {"GazeTarget", "Abstract", "Entity"};
+    case Abstract::kCamera:
+      return {"Camera", "Abstract", "Entity"};
+    case Abstract::kLight:
+      return {"Light", "Abstract", "Entity"};
+    case Abstract::kNot:
+      break;
   }
   if (is.grains) return {"Grains", "Entity"};
   if (!physics::IsThing(is)) return {"Entity"};
@@ -32,8 +37,10 @@ std::vector<std::string> BuiltInClassesOf(const physics::Scene& scene, std::size
 }
 
 /// The class that this one is a kind of; nullptr when that is not said.
-const Named<Located<std::string>>* KindOf(const ScenarioEntry& entry, const std::string& class_name) {
-  const auto found = std::ranges::find(entry.classes, class_name, &Named<Located<std::string>>::name);
+const Named<Located<std::string>>* KindOf(const ScenarioEntry& entry,
+                                          const std::string& class_name) {
+  const auto found =
+      std::ranges::find(entry.classes, class_name, &Named<Located<std::string>>::name);
   return found == entry.classes.end() ? nullptr : &*found;
 }
 
@@ -49,8 +56,9 @@ bool IsKindOfItself(const ScenarioEntry& entry, const Named<Located<std::string>
 }  // namespace
 
 bool IsBuiltInClass(const std::string& name) {
-  static const std::set<std::string> names = {"Entity", "Thing",    "Movable", "Fixed",  "Jointed",    "Hand",   "Person",
-                                              "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera", "Light"};
+  static const std::set<std::string> names = {
+      "Entity",   "Thing",  "Movable",  "Fixed",  "Jointed",    "Hand",   "Person",
+      "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera", "Light"};
   return names.contains(name);
 }
 
@@ -59,18 +67,24 @@ void CheckKinds(const ScenarioEntry& entry, Complaints& complaints) {
   for (const auto& entity : entry.entities) used.push_back(entity.value.class_name.value);
   for (const auto& kind : entry.classes) used.push_back(kind.value.value);
   for (const auto& kind : entry.classes) {
-    for (const auto& [name, where] : {std::pair{kind.name, kind.name_where}, std::pair{kind.value.value, kind.value.where}}) {
+    for (const auto& [name, where] :
+         {std::pair{kind.name, kind.name_where}, std::pair{kind.value.value, kind.value.where}}) {
       if (IsBuiltInClass(name))
-        complaints.Add(where, fmt::format("classes: '{}' is built in and given anyway", name), "kinds are classes of your own: 'Cup: Container'");
+        complaints.Add(where, fmt::format("classes: '{}' is built in and given anyway", name),
+                       "kinds are classes of your own: 'Cup: Container'");
     }
     if (std::ranges::find(used, kind.name) == used.end())
-      complaints.AddUnknownName(kind.name_where, fmt::format("classes: no entity is of the class '{}'", kind.name), kind.name, used);
+      complaints.AddUnknownName(kind.name_where,
+                                fmt::format("classes: no entity is of the class '{}'", kind.name),
+                                kind.name, used);
     if (IsKindOfItself(entry, kind))
-      complaints.Add(kind.value.where, fmt::format("classes: '{}' is, directly or not, a kind of itself", kind.name));
+      complaints.Add(kind.value.where,
+                     fmt::format("classes: '{}' is, directly or not, a kind of itself", kind.name));
   }
 }
 
-std::vector<std::string> WithKinds(const std::string& class_name, const std::vector<KindEntry>& kinds) {
+std::vector<std::string> WithKinds(const std::string& class_name,
+                                   const std::vector<KindEntry>& kinds) {
   std::vector<std::string> all = {class_name};
   while (all.size() <= kinds.size()) {
     const auto found = std::ranges::find(kinds, all.back(), &KindEntry::name);
@@ -82,7 +96,8 @@ std::vector<std::string> WithKinds(const std::string& class_name, const std::vec
 
 std::vector<std::string> ClassesOf(const Scenario& scenario, std::size_t body) {
   std::vector<std::string> classes = WithKinds(scenario.body_classes[body], scenario.kinds);
-  for (std::string& given : BuiltInClassesOf(scenario.scene, body)) classes.push_back(std::move(given));
+  for (std::string& given : BuiltInClassesOf(scenario.scene, body))
+    classes.push_back(std::move(given));
   return classes;
 }
 

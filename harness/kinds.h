@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Classes of entities and what they are kinds of: those that are built in, and those that a scenario writes.
-// Tested by tests/harness/kinds_test.cc
+// Classes of entities and what they are kinds of: those that are built in, and those that a
+// scenario writes. Tested by tests/harness/kinds_test.cc
 #pragma once
 
 #include "harness/complaints.h"
@@ -15,9 +15,11 @@ bool IsBuiltInClass(const std::string& name);
 void CheckKinds(const ScenarioEntry& entry, Complaints& complaints);
 
 /// A class and all that it is a kind of, the most special first.
-std::vector<std::string> WithKinds(const std::string& class_name, const std::vector<KindEntry>& kinds);
+std::vector<std::string> WithKinds(const std::string& class_name,
+                                   const std::vector<KindEntry>& kinds);
 
-/// All classes of a body of the scenario, most special first: its own and its kinds, then those that are built in.
+/// All classes of a body of the scenario, most special first: its own and its kinds, then those
+/// that are built in.
 std::vector<std::string> ClassesOf(const Scenario& scenario, std::size_t body);
 
 }  // namespace prehend::harness

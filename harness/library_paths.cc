@@ -47,7 +47,8 @@ std::vector<std::string> NamesIn(const fs::path& folder, std::string_view ending
   return names;
 }
 
-/// The shortest of the names that contain a part; "" when none does, or when the part is of nearly all names.
+/// The shortest of the names that contain a part; "" when none does, or when the part is of nearly
+/// all names.
 std::string ShortestWith(const std::string& part, const std::vector<std::string>& names) {
   constexpr std::size_t kShortestPart = 3;
   std::string shortest;
@@ -59,7 +60,8 @@ std::string ShortestWith(const std::string& part, const std::vector<std::string>
   return shortest;
 }
 
-std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scenarios, const std::string& typed) {
+std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scenarios,
+                                          const std::string& typed) {
   std::vector<const ScenarioFile*> matching;
   for (const ScenarioFile& scenario : scenarios) {
     if (typed == scenario.name || typed == IdOf(scenario)) matching.push_back(&scenario);
@@ -72,7 +74,8 @@ std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scena
 std::optional<std::string> FindProjectRoot() {
   std::error_code error;
   if (const char* home = std::getenv("PREHEND_HOME"); home && *home) {
-    return fs::is_directory(GrammarFolder(home), error) ? std::optional<std::string>(home) : std::nullopt;
+    return fs::is_directory(GrammarFolder(home), error) ? std::optional<std::string>(home)
+                                                        : std::nullopt;
   }
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   if (auto root = RootAbove(executable.parent_path())) return root;
@@ -85,7 +88,8 @@ std::vector<ScenarioFile> ListScenarios(const std::string& root) {
   const auto add = [&](const fs::path& in, const std::string& skill) {
     for (const std::string& name : NamesIn(in, kScenarioEnding)) {
       const std::string file = name + kScenarioEnding;
-      if (file.ends_with(kHandEnding) || file.ends_with(kGraspsEnding)) continue;  // what scenarios use
+      if (file.ends_with(kHandEnding) || file.ends_with(kGraspsEnding))
+        continue;  // what scenarios use
       scenarios.push_back({skill, name, (in / file).string()});
     }
   };
@@ -101,7 +105,8 @@ std::vector<ScenarioFile> ListScenarios(const std::string& root) {
   return scenarios;
 }
 
-std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed) {
+std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenarios,
+                                        const std::string& typed) {
   const auto matching = Matching(scenarios, typed);
   if (matching.size() == 1) return matching.front()->path;
   std::error_code error;
@@ -155,20 +160,22 @@ ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>
   const auto known = std::make_shared<std::map<std::string, Known>>();
   return {.grammars = NamesIn(GrammarFolder(root), kGrammarEnding),
           .hands = NamesIn(HandFolder(root), kHandEnding),
-          .read_hand = [root, files, known](const std::string& name_or_path,
-                                            const std::vector<std::string>& grasps) {
-            const bool is_path = name_or_path.ends_with(kScenarioEnding);
-            const std::string path = is_path ? name_or_path : HandPath(root, name_or_path);
-            if (is_path || !grasps.empty()) return ReadHandModel(path, grasps, files);
-            const auto [found, is_new] = known->try_emplace(path);
-            Known& hand = found->second;
-            if (is_new) hand.hand = ReadHandModel(path, {}, &hand.files);
-            if (files) files->insert(files->end(), hand.files.begin(), hand.files.end());
-            return hand.hand;
-          },
-          .reads_recording = [files](const std::string& path) {
-            if (files) files->push_back(path);
-          }};
+          .read_hand =
+              [root, files, known](const std::string& name_or_path,
+                                   const std::vector<std::string>& grasps) {
+                const bool is_path = name_or_path.ends_with(kScenarioEnding);
+                const std::string path = is_path ? name_or_path : HandPath(root, name_or_path);
+                if (is_path || !grasps.empty()) return ReadHandModel(path, grasps, files);
+                const auto [found, is_new] = known->try_emplace(path);
+                Known& hand = found->second;
+                if (is_new) hand.hand = ReadHandModel(path, {}, &hand.files);
+                if (files) files->insert(files->end(), hand.files.begin(), hand.files.end());
+                return hand.hand;
+              },
+          .reads_recording =
+              [files](const std::string& path) {
+                if (files) files->push_back(path);
+              }};
 }
 
 }  // namespace prehend::harness

@@ -38,16 +38,18 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
     const bool is_name = file != name_or_path;
     if (is_name && std::ranges::count(known, name_or_path) == 0) {
       const std::string near = grammar::NearestName(name_or_path, known);
-      text.diagnostics.front().hint =
-          near.empty() ? fmt::format("there are: {}", fmt::join(known, ", ")) : fmt::format("did you mean '{}'?", near);
+      text.diagnostics.front().hint = near.empty()
+                                          ? fmt::format("there are: {}", fmt::join(known, ", "))
+                                          : fmt::format("did you mean '{}'?", near);
     }
     return {nullptr, std::move(text.diagnostics)};
   }
   const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
     const std::string name(used);
     const std::string beside = (fs::path(file).parent_path() / (name + ".grammar")).string();
-    const std::vector<std::string> candidates =
-        name.ends_with(".grammar") ? std::vector{name} : std::vector{beside, GrammarPath(root, name)};
+    const std::vector<std::string> candidates = name.ends_with(".grammar")
+                                                    ? std::vector{name}
+                                                    : std::vector{beside, GrammarPath(root, name)};
     for (const std::string& candidate : candidates) {
       note(candidate);
       ReadResult<std::string> found = ReadTextFile(candidate);
@@ -61,14 +63,16 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
 namespace {
 
 // What the grammar names and nobody in the episode has.
-void WarnOfStrangers(const std::vector<grammar::Named>& names, const std::set<std::string>& known, std::string_view message,
-                     const std::string& remedy, grammar::Diagnostics& warnings) {
+void WarnOfStrangers(const std::vector<grammar::Named>& names, const std::set<std::string>& known,
+                     std::string_view message, const std::string& remedy,
+                     grammar::Diagnostics& warnings) {
   for (const grammar::Named& named : names) {
     if (known.contains(named.name)) continue;
     const std::string near = grammar::NearestName(named.name, {known.begin(), known.end()});
-    warnings.push_back(grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value.value_or(""), named.place,
-                                             fmt::format("{} '{}'", message, named.name),
-                                             near.empty() ? remedy : "did you mean '" + near + "'?"));
+    warnings.push_back(
+        grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value.value_or(""), named.place,
+                              fmt::format("{} '{}'", message, named.name),
+                              near.empty() ? remedy : "did you mean '" + near + "'?"));
     warnings.back().is_warning = true;
   }
 }
@@ -84,8 +88,10 @@ grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Ca
   }
   grammar::Diagnostics warnings = program.warnings;
   WarnOfStrangers(program.named_classes, classes, "nobody in this episode is a", "", warnings);
-  WarnOfStrangers(program.sensor_sets, sensor_sets, "no hand of this episode has a sensor set",
-                  sensor_sets.empty() ? "" : fmt::format("there are: {}", fmt::join(sensor_sets, ", ")), warnings);
+  WarnOfStrangers(
+      program.sensor_sets, sensor_sets, "no hand of this episode has a sensor set",
+      sensor_sets.empty() ? "" : fmt::format("there are: {}", fmt::join(sensor_sets, ", ")),
+      warnings);
   return warnings;
 }
 

@@ -18,8 +18,8 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
                                    const grammar::Overrides& overrides = {},
                                    std::vector<std::string>* files = nullptr);
 
-/// What is allowed and yet looks like a mistake: names that are not used; classes that nobody of the cast has, so that the
-/// rules about them never see anybody.
+/// What is allowed and yet looks like a mistake: names that are not used; classes that nobody of
+/// the cast has, so that the rules about them never see anybody.
 grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Cast& cast);
 
 }  // namespace prehend::harness

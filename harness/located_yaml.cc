@@ -2,9 +2,10 @@
 // Tested by tests/harness/located_yaml_test.cc
 //
 // Needs: yaml-cpp's event interface (YAML::Parser, YAML::EventHandler).
-// Assumptions about yaml-cpp 0.7: marks count bytes from 0; the mark of a node with a tag or anchor is that of the
-// tag or anchor; the mark of an absent value is that of the next token; OnSequenceStart and OnMapStart come before
-// the parser recurses, so throwing there bounds its stack.
+// Assumptions about yaml-cpp 0.7: marks count bytes from 0; the mark of a node with a tag or anchor
+// is that of the tag or anchor; the mark of an absent value is that of the next token;
+// OnSequenceStart and OnMapStart come before the parser recurses, so throwing there bounds its
+// stack.
 #include "harness/located_yaml.h"
 
 #include <fmt/format.h>
@@ -37,7 +38,8 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (++documents_ < 2) return;
-    Complain(PlaceOf(mark), "a second document begins here", "one file holds one document; remove the '---'");
+    Complain(PlaceOf(mark), "a second document begins here",
+             "one file holds one document; remove the '---'");
     throw Stop{};
   }
   void OnDocumentEnd() override {}
@@ -45,7 +47,8 @@ class TreeBuilder : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
     YamlNode node = NewNode(Kind::kNull, mark);
     for (const char* spelling : {"~", "null", "Null", "NULL"}) {
-      if (text_.compare(Offset(mark), std::char_traits<char>::length(spelling), spelling) == 0) node.text = spelling;
+      if (text_.compare(Offset(mark), std::char_traits<char>::length(spelling), spelling) == 0)
+        node.text = spelling;
     }
     const bool absent = node.text.empty();
     if (absent && !open_.empty() && open_.back().has_key) node.where = open_.back().key_where;
@@ -55,7 +58,8 @@ class TreeBuilder : public YAML::EventHandler {
     Complain(PlaceOf(mark), "aliases ('*name') are not supported", "write the value out");
     Attach(NewNode(Kind::kNull, mark));
   }
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& value) override {
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                const std::string& value) override {
     YamlNode node = NewNode(Kind::kScalar, mark);
     node.text = value;
     node.quoted = tag == "!";  // yaml-cpp's way to say so; explicit tags were refused by NewNode()
@@ -68,7 +72,8 @@ class TreeBuilder : public YAML::EventHandler {
                        YAML::EmitterStyle::value) override {
     Open(NewNode(Kind::kSequence, mark));
   }
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
     Open(NewNode(Kind::kMapping, mark));
   }
   void OnSequenceEnd() override { Close(); }
@@ -96,7 +101,8 @@ class TreeBuilder : public YAML::EventHandler {
     return std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), text_.size());
   }
 
-  /// Whether the quotation that opens here is closed; yaml-cpp takes the end of the file for its end.
+  /// Whether the quotation that opens here is closed; yaml-cpp takes the end of the file for its
+  /// end.
   bool IsClosed(std::size_t open) const {
     const char quote = open < text_.size() ? text_[open] : '\0';
     if (quote != '"' && quote != '\'') return true;  // a block scalar
@@ -115,7 +121,8 @@ class TreeBuilder : public YAML::EventHandler {
     const std::size_t offset = Offset(mark);
     const char first = offset < text_.size() ? text_[offset] : '\0';
     if (first == '!') Complain(PlaceOf(mark), "tags ('!name') are not supported", "remove the tag");
-    if (first == '&') Complain(PlaceOf(mark), "anchors ('&name') are not supported", "write values out where used");
+    if (first == '&')
+      Complain(PlaceOf(mark), "anchors ('&name') are not supported", "write values out where used");
     YamlNode node;
     node.kind = kind;
     node.where.place = PlaceOf(mark);
@@ -128,7 +135,8 @@ class TreeBuilder : public YAML::EventHandler {
       throw Stop{};
     }
     Label(node);
-    open_.push_back({.node = std::move(node), .has_key = false, .key = {}, .key_where = {}, .seen = {}});
+    open_.push_back(
+        {.node = std::move(node), .has_key = false, .key = {}, .key_where = {}, .seen = {}});
   }
 
   void Close() {
@@ -145,7 +153,8 @@ class TreeBuilder : public YAML::EventHandler {
     if (open_.empty()) return;
     const Opened& parent = open_.back();
     const bool in_mapping = parent.node.kind == Kind::kMapping;
-    node.key = in_mapping ? parent.key : fmt::format("{}[{}]", parent.node.key, parent.node.children.size());
+    node.key = in_mapping ? parent.key
+                          : fmt::format("{}[{}]", parent.node.key, parent.node.children.size());
     node.key_where = in_mapping ? parent.key_where : node.where;
   }
 
@@ -171,7 +180,8 @@ class TreeBuilder : public YAML::EventHandler {
       Complain(node.where.place, "a key is missing here", "");
     } else if (!mapping.seen.insert(node.text).second) {
       Complain(node.where.place, fmt::format("duplicate key '{}'", node.text),
-               fmt::format("first given in line {}", mapping.node.Find(node.text)->key_where.place.line));
+               fmt::format("first given in line {}",
+                           mapping.node.Find(node.text)->key_where.place.line));
     }
     mapping.has_key = true;
     mapping.key = node.text;
@@ -189,29 +199,36 @@ Diagnostics CheckTabs(const std::string& file, const std::string& text) {
   const auto tab = text.find('\t');
   if (tab == std::string::npos) return {};
   const auto line_start = tab == 0 ? 0 : text.rfind('\n', tab) + 1;
-  const int line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(tab), '\n'));
+  const int line =
+      1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(tab), '\n'));
   return {DiagnosticAt(file, text, {line, static_cast<int>(tab - line_start) + 1}, "tab character",
                        "indent and separate with spaces")};
 }
 
 std::string_view LineOf(std::string_view text, int line) {
-  for (; line > 1 && !text.empty(); --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  for (; line > 1 && !text.empty(); --line)
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
   return text.substr(0, text.find('\n'));
 }
 
 /// What yaml-cpp says of a syntax error, as message and hint for people who don't write parsers.
-std::pair<std::string, std::string> InPlainWords(const std::string& message, std::string_view text, Place place) {
+std::pair<std::string, std::string> InPlainWords(const std::string& message, std::string_view text,
+                                                 Place place) {
   struct Words {
     const char *said, *message, *hint;
   };
   const std::string_view line = LineOf(text, place.line);
-  const std::size_t column = std::min(line.size(), static_cast<std::size_t>(std::max(1, place.column)) - 1);
+  const std::size_t column =
+      std::min(line.size(), static_cast<std::size_t>(std::max(1, place.column)) - 1);
   const std::string_view before = line.substr(0, column);
   if (line.substr(column).starts_with(':') && before.find(": ") != std::string_view::npos) {
-    return {"not valid YAML: a second ':' in what is one text", "text with ': ' in it goes in quotes, like \"first: second\""};
+    return {"not valid YAML: a second ':' in what is one text",
+            "text with ': ' in it goes in quotes, like \"first: second\""};
   }
-  if (message == "end of map not found" && before.find_first_not_of(' ') != std::string_view::npos) {
-    return {"not valid YAML: this cannot stand behind what is before it", "text that begins with a quote ends with it; put all of it in quotes"};
+  if (message == "end of map not found" &&
+      before.find_first_not_of(' ') != std::string_view::npos) {
+    return {"not valid YAML: this cannot stand behind what is before it",
+            "text that begins with a quote ends with it; put all of it in quotes"};
   }
   constexpr const char* kBrackets = "each '[' needs its ']', each '{' its '}'";
   constexpr const char* kIndent = "what belongs together begins in the same column";
@@ -220,13 +237,18 @@ std::pair<std::string, std::string> InPlainWords(const std::string& message, std
       {"end of sequence flow not found", "a '[' before this is not closed", kBrackets},
       {"end of map flow not found", "a '{' before this is not closed", kBrackets},
       {"end of map not found", "this line is indented otherwise than those it belongs to", kIndent},
-      {"end of sequence not found", "this line is indented otherwise than those it belongs to", kIndent},
-      {"illegal map value", "no ':' is expected here", "a key begins a line, or stands in '{}'; text with ': ' goes in quotes"},
-      {"alias not found after *", "no text begins with '*'", "text with special characters goes in quotes"},
-      {"anchor not found after &", "no text begins with '&'", "text with special characters goes in quotes"},
+      {"end of sequence not found", "this line is indented otherwise than those it belongs to",
+       kIndent},
+      {"illegal map value", "no ':' is expected here",
+       "a key begins a line, or stands in '{}'; text with ': ' goes in quotes"},
+      {"alias not found after *", "no text begins with '*'",
+       "text with special characters goes in quotes"},
+      {"anchor not found after &", "no text begins with '&'",
+       "text with special characters goes in quotes"},
       {"the referenced anchor is not defined", "aliases ('*name') are not supported",
        "write the value out; text that begins with '*' goes in quotes"},
-      {"unknown token", "no YAML begins with this character", "text with special characters goes in quotes"},
+      {"unknown token", "no YAML begins with this character",
+       "text with special characters goes in quotes"},
   };
   for (const Words& words : kWords) {
     if (message == words.said) return {std::string("not valid YAML: ") + words.message, words.hint};
@@ -258,7 +280,8 @@ ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
     // The builder has said why.
   } catch (const YAML::Exception& error) {
     builder.diagnostics.clear();  // they may be consequences
-    const Place place = error.mark.is_null() ? Place{} : Place{error.mark.line + 1, error.mark.column + 1};
+    const Place place =
+        error.mark.is_null() ? Place{} : Place{error.mark.line + 1, error.mark.column + 1};
     const auto [message, hint] = InPlainWords(error.msg, text, place);
     builder.Complain(place, message, hint);
   }

@@ -56,7 +56,8 @@ Moment FindMoment(const std::string& text, const RunResult& run) {
     return {run.ticks, fmt::format("{} s is after the end", text)};
   }
   for (const grammar::NamedEvent& event : run.timeline.events) {
-    if (event.event == moment->event) return {moment->end ? event.interval.end : event.interval.begin, ""};
+    if (event.event == moment->event)
+      return {moment->end ? event.interval.end : event.interval.begin, ""};
   }
   return {run.ticks, fmt::format("{} did not happen", text)};
 }

@@ -28,8 +28,8 @@ struct MomentProblem {
 };
 std::optional<MomentProblem> WhyNoMoment(const std::string& text, const grammar::Program& program);
 
-/// The tick that the text names; the first such event counts. When it did not happen, or is later than the episode,
-/// the end of the run, and `missed` says why.
+/// The tick that the text names; the first such event counts. When it did not happen, or is later
+/// than the episode, the end of the run, and `missed` says why.
 struct Moment {
   grammar::Tick tick = 0;
   std::string missed;

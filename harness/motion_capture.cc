@@ -134,14 +134,16 @@ class CaptureReader {
     const YamlNode *id = FindAll(event, {"detail", "id"}), *at = event.Find("timestamp"),
                    *value = FindAll(event, {"detail", "state", "value"});
     if (!id || !at) {
-      complaints_.Add(event.where, fmt::format("a '{}' needs a '{}'", name->text, id ? "timestamp" : "detail.id"));
+      complaints_.Add(event.where, fmt::format("a '{}' needs a '{}'", name->text,
+                                               id ? "timestamp" : "detail.id"));
       return std::nullopt;
     }
     ButtonEvent read{.name = name->text};
     bool good = Integer<int>(0, kMostButtons).read(*id, complaints_, read.id);
     good &= Number(-1e15, 1e15).read(*at, complaints_, read.at_ms);
     // Many recordings have lost their values: then there is none, or an empty one.
-    const bool has_value = good && read.id == device_.button && value && value->kind == YamlNode::Kind::kScalar;
+    const bool has_value =
+        good && read.id == device_.button && value && value->kind == YamlNode::Kind::kScalar;
     if (has_value) good &= Number(0, 1).read(*value, complaints_, read.value.emplace());
     return good ? std::optional(std::move(read)) : std::nullopt;
   }
@@ -204,7 +206,8 @@ ReadResult<MotionTrack> ReadMotionCapture(const std::string& path, const Capture
   ReadResult<YamlDocument> document = ReadYamlFile(path);
   if (!document.value) {
     for (grammar::Diagnostic& wrong : document.diagnostics) {
-      if (const std::size_t at = wrong.message.find("YAML"); at != std::string::npos) wrong.message.replace(at, 4, "JSON");
+      if (const std::size_t at = wrong.message.find("YAML"); at != std::string::npos)
+        wrong.message.replace(at, 4, "JSON");
     }
     return {std::nullopt, std::move(document.diagnostics)};
   }

@@ -28,7 +28,7 @@ struct TrackSample {
 struct MotionTrack {
   std::vector<TrackSample> samples;  ///< at least two
   std::string file;
-  std::string text;  ///< of the file, for complaints about samples
+  std::string text;            ///< of the file, for complaints about samples
   std::set<int> buttons = {};  ///< of a captured device: those that are pressed in it
 };
 

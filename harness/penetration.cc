@@ -48,7 +48,9 @@ Vector3d NearestInBox(const PlacedSolid& solid, const Vector3d& p_W) {
 /// The directions of the edges of a hull; of other shapes their axes.
 std::vector<Vector3d> EdgesOf(const PlacedSolid& solid) {
   const auto* hull = std::get_if<physics::Hull>(&solid.shape);
-  std::vector<Vector3d> edges = hull ? physics::EdgesOf(*hull) : std::vector<Vector3d>{Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
+  std::vector<Vector3d> edges =
+      hull ? physics::EdgesOf(*hull)
+           : std::vector<Vector3d>{Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
   for (Vector3d& edge : edges) edge = solid.X_WS.q * edge;
   return edges;
 }
@@ -62,7 +64,8 @@ void AddAxesOfHulls(const PlacedSolid& a, const PlacedSolid& b, std::vector<Vect
     any = true;
     for (const auto& face : hull->faces) axes.push_back(solid->X_WS.q * face.nhat_S);
     const Vector3d other_W = (solid == &a ? b : a).X_WS.p_m;
-    axes.push_back(other_W - solid->X_WS * physics::NearestIn(*hull, solid->X_WS.inverse() * other_W));
+    axes.push_back(other_W -
+                   solid->X_WS * physics::NearestIn(*hull, solid->X_WS.inverse() * other_W));
   }
   if (!any) return;
   const std::vector<Vector3d> edges_b = EdgesOf(b);

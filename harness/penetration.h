@@ -12,8 +12,9 @@ struct PlacedSolid {
   physics::Pose X_WS;
 };
 
-/// Depth in metres, negative or zero when apart. By separating axes (Gottschalk et al. 1996) over the exact extents of
-/// the shapes; exact for boxes, spheres and hulls, at most slightly too deep for tilted cylinders.
+/// Depth in metres, negative or zero when apart. By separating axes (Gottschalk et al. 1996) over
+/// the exact extents of the shapes; exact for boxes, spheres and hulls, at most slightly too deep
+/// for tilted cylinders.
 double Penetration(const PlacedSolid& a, const PlacedSolid& b);
 
 }  // namespace prehend::harness

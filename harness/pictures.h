@@ -39,7 +39,9 @@ PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const 
 /// in some colour (smoothed edges and another rasteriser do less). "" or what is different.
 std::string PictureDifference(const std::string& golden_file, const std::string& drawn_file);
 
-/// Writes the golden in pale grey with every pixel that differs in red; both must have one size. False when it cannot.
-bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file, const std::string& file);
+/// Writes the golden in pale grey with every pixel that differs in red; both must have one size.
+/// False when it cannot.
+bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,
+                            const std::string& file);
 
 }  // namespace prehend::harness

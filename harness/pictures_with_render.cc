@@ -33,7 +33,9 @@ bool SameSize(const render::Image& a, const render::Image& b) {
 /// The pixel whose red is the i-th byte.
 bool Differs(const render::Image& golden, const render::Image& drawn, std::size_t i) {
   constexpr int kMostColour = 24;
-  const auto far_apart = [&](std::size_t k) { return std::abs(int{golden.rgb[k]} - int{drawn.rgb[k]}) > kMostColour; };
+  const auto far_apart = [&](std::size_t k) {
+    return std::abs(int{golden.rgb[k]} - int{drawn.rgb[k]}) > kMostColour;
+  };
   return far_apart(i) || far_apart(i + 1) || far_apart(i + 2);
 }
 
@@ -69,8 +71,8 @@ std::string PictureDifference(const std::string& golden_file, const std::string&
   const render::Image golden = render::ReadPng(golden_file), drawn = render::ReadPng(drawn_file);
   if (golden.rgb.empty()) return golden_file + " cannot be read";
   if (!SameSize(golden, drawn)) {
-    return fmt::format("it has {} x {} pixels, its golden {} x {}", drawn.width_px, drawn.height_px, golden.width_px,
-                       golden.height_px);
+    return fmt::format("it has {} x {} pixels, its golden {} x {}", drawn.width_px, drawn.height_px,
+                       golden.width_px, golden.height_px);
   }
   std::size_t differing = 0;
   for (std::size_t i = 0; i < golden.rgb.size(); i += 3) differing += Differs(golden, drawn, i);
@@ -81,7 +83,8 @@ std::string PictureDifference(const std::string& golden_file, const std::string&
                      100 * kMostPixels);
 }
 
-bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file, const std::string& file) {
+bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,
+                            const std::string& file) {
   render::Image golden = render::ReadPng(golden_file);
   const render::Image drawn = render::ReadPng(drawn_file);
   if (golden.rgb.empty() || !SameSize(golden, drawn)) return false;

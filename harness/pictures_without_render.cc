@@ -20,6 +20,8 @@ PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureEntry&
 
 std::string PictureDifference(const std::string&, const std::string&) { return ""; }
 
-bool WritePictureDifference(const std::string&, const std::string&, const std::string&) { return false; }
+bool WritePictureDifference(const std::string&, const std::string&, const std::string&) {
+  return false;
+}
 
 }  // namespace prehend::harness

@@ -23,7 +23,8 @@ struct Settings {
 };
 
 /// `is_field`: whether a name means a field of the scenario.
-Settings Split(const std::vector<std::string>& settings, const std::function<bool(const std::string&)>& is_field) {
+Settings Split(const std::vector<std::string>& settings,
+               const std::function<bool(const std::string&)>& is_field) {
   Settings split;
   std::set<std::string> seen;
   for (const std::string& setting : settings) {
@@ -54,18 +55,19 @@ grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Prog
     const bool in_file = picture.at.where.source == 0;
     const ReadResult<std::string> text =
         in_file ? ReadTextFile(scenario.file) : ReadResult<std::string>{};
-    diagnostics.push_back(grammar::DiagnosticAt(in_file ? scenario.file : "--set", text.value.value_or(""),
-                                                picture.at.where.place, "at: " + problem->message,
-                                                problem->hint));
+    diagnostics.push_back(grammar::DiagnosticAt(in_file ? scenario.file : "--set",
+                                                text.value.value_or(""), picture.at.where.place,
+                                                "at: " + problem->message, problem->hint));
   }
   return diagnostics;
 }
 
-/// The grammar that a scenario asks for which cannot be read, so that all that is wrong is told at once; "" when that is
-/// not known, or when there is none of this name, which the reader has said.
+/// The grammar that a scenario asks for which cannot be read, so that all that is wrong is told at
+/// once; "" when that is not known, or when there is none of this name, which the reader has said.
 std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
   const ReadResult<YamlDocument> document = ReadYamlFile(request.scenario_file);
-  const bool is_set = std::ranges::any_of(request.settings, [](const auto& set) { return set.starts_with("grammar="); });
+  const bool is_set = std::ranges::any_of(
+      request.settings, [](const auto& set) { return set.starts_with("grammar="); });
   if (!document.value || is_set) return "";
   const YamlNode* node = document.value->root.Find("grammar");
   const std::string name = node ? node->text : ScenarioEntry{}.grammar.value;
@@ -75,7 +77,8 @@ std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
 }  // namespace
 
 bool IsFieldOfScenario(const std::string& name) {
-  return name.find('.') != std::string::npos || ScenarioFormat().schema.at("properties").contains(name);
+  return name.find('.') != std::string::npos ||
+         ScenarioFormat().schema.at("properties").contains(name);
 }
 
 ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root,
@@ -88,8 +91,9 @@ ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string&
   const std::string grammar = !request.grammar.empty() ? request.grammar
                               : scenario.value         ? scenario.value->grammar
                                                        : GrammarNamedIn(request, root);
-  grammar::CompileResult compiled =
-      grammar.empty() ? grammar::CompileResult{} : LoadGrammar(root, grammar, settings.of_grammar, files);
+  grammar::CompileResult compiled = grammar.empty()
+                                        ? grammar::CompileResult{}
+                                        : LoadGrammar(root, grammar, settings.of_grammar, files);
   if (!scenario.value || !compiled.program) {
     grammar::Diagnostics diagnostics = std::move(scenario.diagnostics);
     std::ranges::move(compiled.diagnostics, std::back_inserter(diagnostics));

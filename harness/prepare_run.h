@@ -24,14 +24,16 @@ struct RunRequest {
 struct PreparedRun {
   Scenario scenario;  ///< its `grammar` is what the one that is used calls itself
   std::shared_ptr<const grammar::Program> program;
-  grammar::Diagnostics warnings;  ///< of scenario and grammar: what is allowed and yet looks like a mistake
+  grammar::Diagnostics
+      warnings;  ///< of scenario and grammar: what is allowed and yet looks like a mistake
 };
 
 /// `files` gets every path that was looked at, also when the result is no run.
 ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root,
                                    std::vector<std::string>* files = nullptr);
 
-/// Whether this name in a setting means a field of the scenario, and not a parameter of its grammar.
+/// Whether this name in a setting means a field of the scenario, and not a parameter of its
+/// grammar.
 bool IsFieldOfScenario(const std::string& name);
 
 /// "name=value" settings that can only mean parameters of a grammar.

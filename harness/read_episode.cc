@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads an episode line by line with the same field tables and complaints as a scenario: JSON is YAML, too.
-// Tested by tests/harness/episode_file_test.cc
+// Reads an episode line by line with the same field tables and complaints as a scenario: JSON is
+// YAML, too. Tested by tests/harness/episode_file_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -90,24 +90,26 @@ Format<Eigen::Vector3d> Velocity() { return Vector<3>(-kFastest, kFastest); }
 
 Format<HeaderEntry> HeaderFormat() {
   using M = MemberEntry;
-  const Format<M> member = Record<M>("entity")
-                               .NamedByKey()
-                               .Optional("class", &M::class_name, ClassName(), "")
-                               .Optional("fixed", &M::fixed, Flag(), "")
-                               .Optional("jointed", &M::jointed, Flag(), "")
-                               .Optional("person", &M::person, Flag(), "")
-                               .Optional("grains", &M::grains, Flag(), "")
-                               .Optional("abstract", &M::abstract, Choice({"Region", "GazeTarget", "Camera", "Light"}), "")
-                               .Optional("round", &M::round, Flag(), "")
-                               .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxKinds), "")
-                               .Optional("hand", &M::hand, Flag(), "")
-                               .Optional("centre_m", &M::centre_m, Position(), "")
-                               .Required("size_m", &M::size_m, Vector<3>(0, kFarthestM), "")
-                               .Optional("mass_kg", &M::mass_kg, Number(0, 1e6), "")
-                               .Optional("strength_n", &M::strength_n, Number(0, 1e6), "")
-                               .Optional("part_of", &M::part_of, Name(), "")
-                               .Optional("sensor_sets", &M::sensor_sets, ListOf(Name(), 1, kMaxSets), "")
-                               .format();
+  const Format<M> member =
+      Record<M>("entity")
+          .NamedByKey()
+          .Optional("class", &M::class_name, ClassName(), "")
+          .Optional("fixed", &M::fixed, Flag(), "")
+          .Optional("jointed", &M::jointed, Flag(), "")
+          .Optional("person", &M::person, Flag(), "")
+          .Optional("grains", &M::grains, Flag(), "")
+          .Optional("abstract", &M::abstract, Choice({"Region", "GazeTarget", "Camera", "Light"}),
+                    "")
+          .Optional("round", &M::round, Flag(), "")
+          .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxKinds), "")
+          .Optional("hand", &M::hand, Flag(), "")
+          .Optional("centre_m", &M::centre_m, Position(), "")
+          .Required("size_m", &M::size_m, Vector<3>(0, kFarthestM), "")
+          .Optional("mass_kg", &M::mass_kg, Number(0, 1e6), "")
+          .Optional("strength_n", &M::strength_n, Number(0, 1e6), "")
+          .Optional("part_of", &M::part_of, Name(), "")
+          .Optional("sensor_sets", &M::sensor_sets, ListOf(Name(), 1, kMaxSets), "")
+          .format();
   using H = HeaderEntry;
   return Record<H>("the first line")
       .Required("recording", &H::version, Integer<int>(kEpisodeVersion, kEpisodeVersion), "")
@@ -132,39 +134,48 @@ Format<LineEntry> LineFormat() {
                              .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
                              .Optional("gazes_at", &L::gazes_at, Name(), "")
                              .Check([](const YamlNode&, const L& l, Complaints& complaints) {
-                               if (!l.quat_wxyz || std::abs(l.quat_wxyz->value.norm() - 1) < 0.01) return;
-                               complaints.Add(l.quat_wxyz->where, "quat_wxyz: expected a unit quaternion [w, x, y, z]");
+                               if (!l.quat_wxyz || std::abs(l.quat_wxyz->value.norm() - 1) < 0.01)
+                                 return;
+                               complaints.Add(l.quat_wxyz->where,
+                                              "quat_wxyz: expected a unit quaternion [w, x, y, z]");
                              })
                              .format();
   using H = HandEntry;
-  const Format<H> hand = Record<H>("hand")
-                             .NamedByKey()
-                             .Optional("trigger", &H::trigger, Number(0, 1), "")
-                             .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
-                             .Optional("feelers_m", &H::feelers_m, ListOf(Vector<4>(-kFarthestM, kFarthestM), 1, kMaxFeelers), "")
-                             .Optional("style", &H::style, Name(), "")
-                             .format();
+  const Format<H> hand =
+      Record<H>("hand")
+          .NamedByKey()
+          .Optional("trigger", &H::trigger, Number(0, 1), "")
+          .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
+          .Optional("feelers_m", &H::feelers_m,
+                    ListOf(Vector<4>(-kFarthestM, kFarthestM), 1, kMaxFeelers), "")
+          .Optional("style", &H::style, Name(), "")
+          .format();
   using T = TouchEntry;
-  const Format<T> touch = Record<T>("a touch")
-                              .Required("a", &T::a, Name(), "")
-                              .Required("b", &T::b, Name(), "")
-                              .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
-                              .Optional("up_on_b", &T::up_on_b, Number(-1, 1), "")
-                              .Optional("force_n", &T::force_n, Number(0, 1e9), "")
-                              .Optional("vertical_speed_m_per_s", &T::vertical_speed_m_per_s, Number(0, 1e9), "")
-                              .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
-                              .format();
+  const Format<T> touch =
+      Record<T>("a touch")
+          .Required("a", &T::a, Name(), "")
+          .Required("b", &T::b, Name(), "")
+          .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
+          .Optional("up_on_b", &T::up_on_b, Number(-1, 1), "")
+          .Optional("force_n", &T::force_n, Number(0, 1e9), "")
+          .Optional("vertical_speed_m_per_s", &T::vertical_speed_m_per_s, Number(0, 1e9), "")
+          .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
+          .format();
   using F = FrameEntry;
   const auto tick = Integer64(-kLatestTick, kLatestTick);
   return ByKey<LineEntry>(
-      "a line", {{"tick", AsAlternative<LineEntry>(Record<F>("a frame")
-                                                       .Required("tick", &F::tick, tick, "")
-                                                       .Optional("looks", &F::looks, MapOf(Name(), look, 0, kMaxMembers), "")
-                                                       .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
-                                                       .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
-                                                       .format())},
-                 {"end_tick", AsAlternative<LineEntry>(
-                                  Record<EndEntry>("the last line").Required("end_tick", &EndEntry::end_tick, tick, "").format())}});
+      "a line",
+      {{"tick", AsAlternative<LineEntry>(
+                    Record<F>("a frame")
+                        .Required("tick", &F::tick, tick, "")
+                        .Optional("looks", &F::looks, MapOf(Name(), look, 0, kMaxMembers), "")
+                        .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
+                        .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
+                        .format())},
+       {"end_tick",
+        AsAlternative<LineEntry>(Record<EndEntry>("the last line")
+                                     .Required("end_tick", &EndEntry::end_tick, tick, "")
+                                     .format())}});
 }
 
 /// Reads line after line into an episode; the first line that is wrong ends it.
@@ -183,7 +194,8 @@ class EpisodeReader {
     Complaints complaints(*document.value);
     if (!header_) {
       HeaderEntry header;
-      if (HeaderFormat().read(document.value->root, complaints, header)) TakeHeader(header, complaints);
+      if (HeaderFormat().read(document.value->root, complaints, header))
+        TakeHeader(header, complaints);
       header_ = true;
     } else {
       LineEntry line;
@@ -197,12 +209,18 @@ class EpisodeReader {
   void Finish() {
     if (!diagnostics.empty()) return;
     if (!header_) return Report("the file is empty", "");
-    if (episode.frames.empty()) return Report("the recording has no frames", "each line after the first is one: {\"tick\": 0, ...}");
+    if (episode.frames.empty())
+      return Report("the recording has no frames",
+                    "each line after the first is one: {\"tick\": 0, ...}");
     if (!ended_) episode.end_tick = episode.frames.back().tick + 1;
   }
 
   void Report(std::string message, std::string hint) {
-    diagnostics.push_back({.file = file_, .place = {std::max(line_, 1), 1}, .message = std::move(message), .source_line = {}, .hint = std::move(hint)});
+    diagnostics.push_back({.file = file_,
+                           .place = {std::max(line_, 1), 1},
+                           .message = std::move(message),
+                           .source_line = {},
+                           .hint = std::move(hint)});
   }
 
  private:
@@ -250,7 +268,10 @@ class EpisodeReader {
     } else if (m.grains) {
       classes.emplace_back("Grains");
     } else if (!m.person) {
-      classes.insert(classes.end(), {m.fixed ? "Fixed" : m.jointed ? "Jointed" : "Movable", "Thing"});
+      classes.insert(classes.end(), {m.fixed     ? "Fixed"
+                                     : m.jointed ? "Jointed"
+                                                 : "Movable",
+                                     "Thing"});
     }
     classes.emplace_back("Entity");
     return classes;
@@ -268,7 +289,9 @@ class EpisodeReader {
     ended_ = true;
     episode.end_tick = entry.end_tick.value;
     if (!episode.frames.empty() && episode.end_tick <= episode.frames.back().tick) {
-      complaints.Add(entry.end_tick.where, fmt::format("end_tick must be after the last frame, tick {}", episode.frames.back().tick));
+      complaints.Add(entry.end_tick.where,
+                     fmt::format("end_tick must be after the last frame, tick {}",
+                                 episode.frames.back().tick));
     }
   }
 
@@ -277,11 +300,15 @@ class EpisodeReader {
     const bool first = episode.frames.empty();
     if (ended_) return complaints.Add(entry.tick.where, "a frame after the line with 'end_tick'");
     if (!first && tick <= before) {
-      return complaints.Add(entry.tick.where, fmt::format("the ticks must increase: {} comes after {}", tick, before));
+      return complaints.Add(
+          entry.tick.where,
+          fmt::format("the ticks must increase: {} comes after {}", tick, before));
     }
-    const double dt_s = static_cast<double>(tick - before) / static_cast<double>(episode.header.cast.ticks_per_second);
+    const double dt_s = static_cast<double>(tick - before) /
+                        static_cast<double>(episode.header.cast.ticks_per_second);
     now_.tick = tick;
-    for (grammar::EntityLook& look : now_.entities) look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
+    for (grammar::EntityLook& look : now_.entities)
+      look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
     for (const Named<LookEntry>& look : entry.looks) {
       const int index = IndexOf(look.name, look.name_where, complaints);
       if (index == grammar::kNobody) continue;
@@ -293,10 +320,12 @@ class EpisodeReader {
     for (const Named<HandEntry>& hand : entry.hands) TakeHand(hand, complaints);
     now_.touches.clear();
     for (const TouchEntry& touch : entry.touches) TakeTouch(touch, complaints);
-    std::sort(now_.touches.begin(), now_.touches.end(),
-              [](const auto& a, const auto& b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); });
+    std::sort(now_.touches.begin(), now_.touches.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.a, a.b) < std::pair(b.a, b.b);
+    });
     episode.frames.push_back(now_);
-    if (episode.frames.size() > kMaxEpisodeFrames) complaints.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
+    if (episode.frames.size() > kMaxEpisodeFrames)
+      complaints.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
   }
 
   /// Velocities that are not given are those from the previous look to this one.
@@ -324,54 +353,75 @@ class EpisodeReader {
     const int entity = IndexOf(named.name, named.name_where, complaints);
     if (entity == grammar::kNobody) return;
     const auto found = std::find(hands_.begin(), hands_.end(), entity);
-    if (found == hands_.end()) return complaints.Add(named.name_where, fmt::format("'{}' is no hand", named.name), "its entity has no 'hand: true'");
+    if (found == hands_.end())
+      return complaints.Add(named.name_where, fmt::format("'{}' is no hand", named.name),
+                            "its entity has no 'hand: true'");
     const auto slot = static_cast<std::size_t>(found - hands_.begin());
     const HandEntry& entry = named.value;
     const grammar::EntityLook& look = now_.entities[static_cast<std::size_t>(entity)];
     grammar::HandLook& hand = now_.hands[slot];
     hand.trigger = entry.trigger;
-    hand.ahead_W = entry.ahead && !entry.ahead->isZero() ? entry.ahead->normalized() : look.q_WB * Eigen::Vector3d::UnitX();
+    hand.ahead_W = entry.ahead && !entry.ahead->isZero() ? entry.ahead->normalized()
+                                                         : look.q_WB * Eigen::Vector3d::UnitX();
     if (entry.style) {
       const std::vector<std::string>& styles = episode.header.cast.styles;
       const auto style = std::find(styles.begin(), styles.end(), entry.style->value);
-      if (style == styles.end()) complaints.AddUnknownName(entry.style->where, fmt::format("no style is called '{}'", entry.style->value), entry.style->value, styles);
+      if (style == styles.end())
+        complaints.AddUnknownName(entry.style->where,
+                                  fmt::format("no style is called '{}'", entry.style->value),
+                                  entry.style->value, styles);
       hand.style = static_cast<int>(style - styles.begin());
     }
     std::vector<grammar::Feeler>& feelers = now_.feelers[slot];
     feelers.clear();
-    for (const Eigen::Vector4d& f : entry.feelers_m) feelers.push_back({f.head<3>(), std::max(f[3], 0.0)});
+    for (const Eigen::Vector4d& f : entry.feelers_m)
+      feelers.push_back({f.head<3>(), std::max(f[3], 0.0)});
     if (feelers.empty()) feelers.push_back({look.p_WB_m, 0});
   }
 
   void TakeTouch(const TouchEntry& entry, Complaints& complaints) {
-    int a = IndexOf(entry.a.value, entry.a.where, complaints), b = IndexOf(entry.b.value, entry.b.where, complaints);
+    int a = IndexOf(entry.a.value, entry.a.where, complaints),
+        b = IndexOf(entry.b.value, entry.b.where, complaints);
     if (a == grammar::kNobody || b == grammar::kNobody) return;
-    if (a == b) return complaints.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
-    grammar::Touch touch{.a = a, .b = b, .up_on_a = entry.up_on_a, .up_on_b = entry.up_on_b.value_or(-entry.up_on_a), .normal_force_n = entry.force_n};
+    if (a == b)
+      return complaints.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
+    grammar::Touch touch{.a = a,
+                         .b = b,
+                         .up_on_a = entry.up_on_a,
+                         .up_on_b = entry.up_on_b.value_or(-entry.up_on_a),
+                         .normal_force_n = entry.force_n};
     touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(SpeedAtTheUpper(touch));
-    for (const Located<std::string>& set : entry.sensor_sets) touch.sensor_sets |= SetBit(set, a, b, complaints);
+    for (const Located<std::string>& set : entry.sensor_sets)
+      touch.sensor_sets |= SetBit(set, a, b, complaints);
     if (a > b) {
       std::swap(touch.a, touch.b);
       std::swap(touch.up_on_a, touch.up_on_b);
     }
-    const bool twice = std::any_of(now_.touches.begin(), now_.touches.end(),
-                                   [&](const grammar::Touch& t) { return t.a == touch.a && t.b == touch.b; });
-    if (twice) return complaints.Add(entry.a.where, fmt::format("'{}' and '{}' are said to touch twice", entry.a.value, entry.b.value));
+    const bool twice =
+        std::any_of(now_.touches.begin(), now_.touches.end(),
+                    [&](const grammar::Touch& t) { return t.a == touch.a && t.b == touch.b; });
+    if (twice)
+      return complaints.Add(entry.a.where, fmt::format("'{}' and '{}' are said to touch twice",
+                                                       entry.a.value, entry.b.value));
     now_.touches.push_back(touch);
   }
 
   /// Where the two touch is not known; the place of the one that the other bears is near it.
   double SpeedAtTheUpper(const grammar::Touch& touch) const {
-    const grammar::EntityLook &a = now_.entities[static_cast<std::size_t>(touch.a)], &b = now_.entities[static_cast<std::size_t>(touch.b)];
+    const grammar::EntityLook &a = now_.entities[static_cast<std::size_t>(touch.a)],
+                              &b = now_.entities[static_cast<std::size_t>(touch.b)];
     return grammar::VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
   }
 
-  std::uint32_t SetBit(const Located<std::string>& set, int a, int b, Complaints& complaints) const {
+  std::uint32_t SetBit(const Located<std::string>& set, int a, int b,
+                       Complaints& complaints) const {
     const std::vector<grammar::CastMember>& members = episode.header.cast.entities;
-    const std::vector<std::string>& sets = !members[a].sensor_sets.empty() ? members[a].sensor_sets : members[b].sensor_sets;
+    const std::vector<std::string>& sets =
+        !members[a].sensor_sets.empty() ? members[a].sensor_sets : members[b].sensor_sets;
     const auto found = std::find(sets.begin(), sets.end(), set.value);
     if (found != sets.end()) return std::uint32_t{1} << (found - sets.begin());
-    complaints.AddUnknownName(set.where, fmt::format("no sensor set is called '{}'", set.value), set.value, sets);
+    complaints.AddUnknownName(set.where, fmt::format("no sensor set is called '{}'", set.value),
+                              set.value, sets);
     return 0;
   }
 
@@ -395,27 +445,39 @@ ReadResult<Episode> ReadEpisode(const std::string& path) {
   EpisodeReader reader(path);
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    reader.diagnostics.push_back({.file = path, .place = {}, .message = std::filesystem::exists(path, error) ? "is not a regular file" : "no such file", .source_line = {}, .hint = {}});
+    reader.diagnostics.push_back(
+        {.file = path,
+         .place = {},
+         .message = std::filesystem::exists(path, error) ? "is not a regular file" : "no such file",
+         .source_line = {},
+         .hint = {}});
     return {std::nullopt, std::move(reader.diagnostics)};
   }
   if (const auto size = std::filesystem::file_size(path, error); error || size > kMaxEpisodeBytes) {
-    reader.diagnostics.push_back({.file = path,
-                                  .place = {},
-                                  .message = fmt::format("is larger than {} MiB", kMaxEpisodeBytes >> 20),
-                                  .source_line = {},
-                                  .hint = {}});
+    reader.diagnostics.push_back(
+        {.file = path,
+         .place = {},
+         .message = fmt::format("is larger than {} MiB", kMaxEpisodeBytes >> 20),
+         .source_line = {},
+         .hint = {}});
     return {std::nullopt, std::move(reader.diagnostics)};
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
-    reader.diagnostics.push_back({.file = path, .place = {}, .message = std::string("cannot be read: ") + std::strerror(errno), .source_line = {}, .hint = {}});
+    reader.diagnostics.push_back({.file = path,
+                                  .place = {},
+                                  .message = std::string("cannot be read: ") + std::strerror(errno),
+                                  .source_line = {},
+                                  .hint = {}});
     return {std::nullopt, std::move(reader.diagnostics)};
   }
   for (std::string line; reader.diagnostics.empty() && std::getline(stream, line);) {
     if (line.ends_with('\r')) line.pop_back();  // written on Windows
     if (line.size() > kMaxEpisodeLineBytes) {
       reader.TakeLine(" ");
-      reader.Report(fmt::format("a line of {} bytes; at most {} are read", line.size(), kMaxEpisodeLineBytes), "one frame per line");
+      reader.Report(
+          fmt::format("a line of {} bytes; at most {} are read", line.size(), kMaxEpisodeLineBytes),
+          "one frame per line");
       break;
     }
     reader.TakeLine(line);

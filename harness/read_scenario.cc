@@ -16,8 +16,8 @@
 #include "harness/kinds.h"
 #include "harness/recorded_input.h"
 #include "harness/scenario_fields.h"
-#include "harness/trial_fields.h"
 #include "harness/text_file.h"
+#include "harness/trial_fields.h"
 
 namespace prehend::harness {
 namespace {
@@ -72,7 +72,8 @@ physics::HandModel FindHand(const std::string& file, const HandActor& actor,
   auto model = library.read_hand(is_file ? beside(hand.value) : hand.value, grasps);
   if (model.value) return std::move(*model.value);
   const std::string with = grasps.empty() ? "" : " with its grasps";
-  complaints.Add(hand.where, fmt::format("hand: '{}'{} cannot be used, see below", hand.value, with));
+  complaints.Add(hand.where,
+                 fmt::format("hand: '{}'{} cannot be used, see below", hand.value, with));
   in_hand_files.insert(in_hand_files.end(), model.diagnostics.begin(), model.diagnostics.end());
   return {};
 }
@@ -86,9 +87,9 @@ std::string SkillOf(const std::string& file) {
 void AddPersonClasses(Scenario& scenario) {
   for (std::size_t i = scenario.body_classes.size(); i < scenario.scene.bodies.size(); ++i) {
     const auto& persons = scenario.scene.persons;
-    const auto owner = std::find_if(persons.rbegin(), persons.rend(), [&](const physics::Person& person) {
-      return static_cast<std::size_t>(person.head) <= i;
-    });
+    const auto owner = std::find_if(
+        persons.rbegin(), persons.rend(),
+        [&](const physics::Person& person) { return static_cast<std::size_t>(person.head) <= i; });
     const bool is_head = static_cast<std::size_t>(owner->head) == i;
     scenario.body_classes.push_back(is_head ? "Person" : "BodyPart");
     scenario.body_part_of.push_back(is_head ? grammar::kNobody : owner->head);
@@ -112,7 +113,8 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   if (!well_formed) {
     // Names can be looked up without the rest.
     for (const auto& actor : entry.hands) {
-      if (!actor.value.hand.value.empty()) FindHand(file, actor.value, library, complaints, in_other_files);
+      if (!actor.value.hand.value.empty())
+        FindHand(file, actor.value, library, complaints, in_other_files);
     }
     return AllOf(complaints, in_other_files);
   }
@@ -159,7 +161,9 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   for (const PictureEntry& picture : scenario.pictures) {
     const std::string& camera = picture.camera.value;
     if (WhyNoCamera(scenario, camera))
-      complaints.AddUnknownName(picture.camera.where, fmt::format("camera: no camera is called '{}'", camera), camera, CamerasOf(scenario));
+      complaints.AddUnknownName(picture.camera.where,
+                                fmt::format("camera: no camera is called '{}'", camera), camera,
+                                CamerasOf(scenario));
   }
   if (!complaints.empty()) return AllOf(complaints, in_other_files);
   scenario.warnings = std::move(in_other_files);
@@ -171,13 +175,15 @@ ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocu
                                     const ScenarioLibrary& library) {
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
   for (const std::string& assignment : overrides) {
-    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema, *document.value); !bad.empty()) return {std::nullopt, std::move(bad)};
+    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema, *document.value);
+        !bad.empty())
+      return {std::nullopt, std::move(bad)};
   }
   ReadResult<Scenario> scenario = Resolve(file, *document.value, library);
   if (!scenario.value) return scenario;
-  Diagnostics unreadable =
-      CheckDraws(*document.value, scenario.value->variations,
-                 [&](const YamlDocument& varied) { return Resolve(file, varied, library).diagnostics; });
+  Diagnostics unreadable = CheckDraws(
+      *document.value, scenario.value->variations,
+      [&](const YamlDocument& varied) { return Resolve(file, varied, library).diagnostics; });
   if (!unreadable.empty()) return {std::nullopt, std::move(unreadable)};
   return scenario;
 }

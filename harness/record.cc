@@ -13,18 +13,19 @@ namespace {
 
 /// The key without its unit: "mass_kg" -> "mass". Units are the last words of a key.
 std::string WithoutUnit(const std::string& key) {
-  static constexpr std::string_view kUnits[] = {"_m",  "_mm", "_cm",  "_km",  "_kg",  "_g",  "_s",   "_ms",
-                                                "_hz", "_n",  "_deg", "_rad", "_nm",  "_in", "_lb",  "_inch",
-                                                "_meters", "_metres", "_seconds", "_degrees"};
+  static constexpr std::string_view kUnits[] = {
+      "_m",   "_mm",  "_cm", "_km", "_kg", "_g",    "_s",      "_ms",     "_hz",      "_n",
+      "_deg", "_rad", "_nm", "_in", "_lb", "_inch", "_meters", "_metres", "_seconds", "_degrees"};
   for (const std::string_view unit : kUnits) {
-    if (key.size() > unit.size() && key.ends_with(unit)) return key.substr(0, key.size() - unit.size());
+    if (key.size() > unit.size() && key.ends_with(unit))
+      return key.substr(0, key.size() - unit.size());
   }
   return key;
 }
 
 /// Returns the known key that was probably meant, or "".
-std::string ComplainUnknownKey(const YamlNode& child, const std::string& title, const std::vector<std::string>& known,
-                               Complaints& complaints) {
+std::string ComplainUnknownKey(const YamlNode& child, const std::string& title,
+                               const std::vector<std::string>& known, Complaints& complaints) {
   const std::string message = fmt::format("unknown key '{}' in {}", child.key, title);
   const auto same_stem = std::find_if(known.begin(), known.end(), [&](const std::string& key) {
     return WithoutUnit(key) == WithoutUnit(child.key);
@@ -40,7 +41,8 @@ std::string ComplainUnknownKey(const YamlNode& child, const std::string& title, 
 /// Where a complaint about the whole of a mapping is best seen: at its name, if it has one.
 Where HeadOf(const YamlNode& node) {
   const bool in_list = node.key.ends_with(']');
-  return node.key.empty() || in_list || node.key_where.place.line == 0 ? node.where : node.key_where;
+  return node.key.empty() || in_list || node.key_where.place.line == 0 ? node.where
+                                                                       : node.key_where;
 }
 
 std::vector<std::string> KeysPresent(const YamlNode& node, const std::vector<std::string>& keys) {
@@ -60,7 +62,8 @@ std::string RecordRules::TitleOf(const YamlNode& node) const {
 }
 
 Json RecordRules::Schema() const {
-  Json schema = {{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+  Json schema = {
+      {"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
   Json required = Json::array();
   for (const Field& field : fields) {
     schema["properties"][field.key] = field.schema;
@@ -75,7 +78,8 @@ Json RecordRules::Schema() const {
   }
   for (const auto& keys : at_most_one) {
     for (std::size_t i = 0; i < keys.size(); ++i) {
-      for (std::size_t j = i + 1; j < keys.size(); ++j) all_of.push_back({{"not", Requires({keys[i], keys[j]})}});
+      for (std::size_t j = i + 1; j < keys.size(); ++j)
+        all_of.push_back({{"not", Requires({keys[i], keys[j]})}});
     }
   }
   if (!all_of.empty()) schema["allOf"] = std::move(all_of);
@@ -84,7 +88,8 @@ Json RecordRules::Schema() const {
 
 bool RecordRules::CheckKeys(const YamlNode& node, Complaints& complaints) const {
   if (node.kind != YamlNode::Kind::kMapping) {
-    return ComplainWanted(node, complaints, fmt::format("a mapping with the fields of {}", TitleOf(node)));
+    return ComplainWanted(node, complaints,
+                          fmt::format("a mapping with the fields of {}", TitleOf(node)));
   }
   std::vector<std::string> known;
   for (const Field& field : fields) known.push_back(field.key);
@@ -101,17 +106,20 @@ bool RecordRules::CheckKeys(const YamlNode& node, Complaints& complaints) const 
     good = false;
   }
   for (const auto& keys : exactly_one) {
-    const bool misspelt = std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return meant.contains(key); });
+    const bool misspelt =
+        std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return meant.contains(key); });
     if (misspelt || !KeysPresent(node, keys).empty()) continue;
-    complaints.Add(HeadOf(node), fmt::format("{} needs one of the keys {}", TitleOf(node), fmt::join(keys, ", ")));
+    complaints.Add(HeadOf(node), fmt::format("{} needs one of the keys {}", TitleOf(node),
+                                             fmt::join(keys, ", ")));
     good = false;
   }
   for (const auto* groups : {&exactly_one, &at_most_one}) {
     for (const auto& keys : *groups) {
       const auto present = KeysPresent(node, keys);
       if (present.size() < 2) continue;
-      complaints.Add(node.Find(present[1])->key_where,
-                     fmt::format("{} cannot have both '{}' and '{}'", TitleOf(node), present[0], present[1]));
+      complaints.Add(
+          node.Find(present[1])->key_where,
+          fmt::format("{} cannot have both '{}' and '{}'", TitleOf(node), present[0], present[1]));
       good = false;
     }
   }
@@ -126,17 +134,20 @@ std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& nou
   }
   const auto present = KeysPresent(node, cases);
   if (present.size() == 1) {
-    return static_cast<std::size_t>(std::find(cases.begin(), cases.end(), present[0]) - cases.begin());
+    return static_cast<std::size_t>(std::find(cases.begin(), cases.end(), present[0]) -
+                                    cases.begin());
   }
   if (present.size() > 1) {
-    complaints.Add(node.Find(present[1])->key_where,
-                   fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
+    complaints.Add(
+        node.Find(present[1])->key_where,
+        fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
     return std::nullopt;
   }
   const std::string first = node.children.empty() ? "" : node.children[0].key;
-  complaints.AddUnknownName(node.children.empty() ? node.where : node.children[0].key_where,
-                            fmt::format("{} needs one of the keys {}", noun, fmt::join(cases, ", ")), first,
-                            grammar::NearestName(first, cases).empty() ? std::vector<std::string>{} : cases);
+  complaints.AddUnknownName(
+      node.children.empty() ? node.where : node.children[0].key_where,
+      fmt::format("{} needs one of the keys {}", noun, fmt::join(cases, ", ")), first,
+      grammar::NearestName(first, cases).empty() ? std::vector<std::string>{} : cases);
   return std::nullopt;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The field table of a struct: every field is declared once, with key, member, format and a sentence for people;
-// reader and JSON Schema follow from it. See harness/format.h for how to use it.
-// Tested by tests/harness/field_table_test.cc
+// The field table of a struct: every field is declared once, with key, member, format and a
+// sentence for people; reader and JSON Schema follow from it. See harness/format.h for how to use
+// it. Tested by tests/harness/field_table_test.cc
 #pragma once
 
 #include <concepts>
@@ -23,7 +23,8 @@ struct RecordRules {
     bool required = false;
     Json schema;
   };
-  std::string noun;  ///< with its article, or without it when the record is named by its key: "entity"
+  std::string
+      noun;  ///< with its article, or without it when the record is named by its key: "entity"
   bool named_by_key = false;
   std::vector<Field> fields;
   std::vector<std::vector<std::string>> exactly_one;  ///< of these keys
@@ -32,7 +33,8 @@ struct RecordRules {
   /// "a box", or "entity 'milk'".
   std::string TitleOf(const YamlNode& node) const;
   Json Schema() const;
-  /// Complains when the node is no mapping, and about unknown and missing keys. False after complaining.
+  /// Complains when the node is no mapping, and about unknown and missing keys. False after
+  /// complaining.
   bool CheckKeys(const YamlNode& node, Complaints& complaints) const;
 };
 
@@ -101,7 +103,8 @@ class Record {
     member = {std::forward<F>(read), node.where};
   }
   template <class F>
-  static void Store(F&& read, const YamlNode& node, std::optional<Located<std::decay_t<F>>>& member) {
+  static void Store(F&& read, const YamlNode& node,
+                    std::optional<Located<std::decay_t<F>>>& member) {
     member = Located<std::decay_t<F>>{std::forward<F>(read), node.where};
   }
 
@@ -113,23 +116,26 @@ class Record {
   }
 
   template <class M, class F>
-  Record& Add(const std::string& key, bool required, M T::*member, Format<F> format, const std::string& doc) {
+  Record& Add(const std::string& key, bool required, M T::*member, Format<F> format,
+              const std::string& doc) {
     Json schema = {{"description", doc}};
     schema.update(format.schema);
     if (!required) ShowDefault(T{}.*member, format, schema);
     state_.rules.fields.push_back({key, required, std::move(schema)});
-    state_.readers.push_back([member, format](const YamlNode& node, Complaints& complaints, T& value) {
-      F read{};
-      if constexpr (std::same_as<M, F>) read = value.*member;  // keeps what an inner record does not mention
-      if (!format.read(node, complaints, read)) return false;
-      Store(std::move(read), node, value.*member);
-      return true;
-    });
+    state_.readers.push_back(
+        [member, format](const YamlNode& node, Complaints& complaints, T& value) {
+          F read{};
+          if constexpr (std::same_as<M, F>)
+            read = value.*member;  // keeps what an inner record does not mention
+          if (!format.read(node, complaints, read)) return false;
+          Store(std::move(read), node, value.*member);
+          return true;
+        });
     return *this;
   }
 
   static bool Read(const State& state, const YamlNode& node, Complaints& complaints, T& value) {
-    if constexpr (requires(T& t) { t.where = Where{}; }) value.where = node.where;
+    if constexpr (requires(T & t) { t.where = Where{}; }) value.where = node.where;
     if (node.kind != YamlNode::Kind::kMapping) return state.rules.CheckKeys(node, complaints);
     bool good = state.rules.CheckKeys(node, complaints);
     for (std::size_t i = 0; i < state.readers.size(); ++i) {

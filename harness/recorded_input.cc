@@ -26,7 +26,8 @@ bool IsCapture(const RecordingEntry& entry) { return entry.recording.value.ends_
 ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingEntry& entry) {
   if (!IsCapture(entry)) return ReadMotionCsv(path);
   return ReadMotionCapture(
-      path, {entry.device->value, entry.button.value_or(Located<int>{kUsualButton, {}}).value, entry.press_s});
+      path, {entry.device->value, entry.button.value_or(Located<int>{kUsualButton, {}}).value,
+             entry.press_s});
 }
 
 /// Only the samples from from_s to to_s, with times since from_s.
@@ -211,13 +212,17 @@ class RecordingReader {
     return fmt::format("{}", fmt::join(names, " or "));
   }
 
-  /// A button that is asked for has to be pressed; that the usual one is not, while others are, is odd.
+  /// A button that is asked for has to be pressed; that the usual one is not, while others are, is
+  /// odd.
   bool CheckButton(const RecordingEntry& entry, const MotionTrack& track) {
     if (!IsCapture(entry) || (!entry.button && track.buttons.empty())) return true;
     const int wanted = entry.button.value_or(Located<int>{kUsualButton, {}}).value;
     if (track.buttons.contains(wanted)) return true;
-    const std::string pressed = track.buttons.empty() ? "no button is" : fmt::format("pressed are {}", fmt::join(track.buttons, ", "));
-    const std::string message = fmt::format("button {} of '{}' is never pressed", wanted, entry.device->value);
+    const std::string pressed = track.buttons.empty()
+                                    ? "no button is"
+                                    : fmt::format("pressed are {}", fmt::join(track.buttons, ", "));
+    const std::string message =
+        fmt::format("button {} of '{}' is never pressed", wanted, entry.device->value);
     if (entry.button) {
       complaints_.Add(entry.button->where, "button: " + message, pressed);
       return false;
@@ -232,7 +237,8 @@ class RecordingReader {
   bool CheckKind(const RecordingEntry& entry) {
     const bool capture = IsCapture(entry);
     if (capture && !entry.device) {
-      complaints_.Add(entry.recording.where, "recording: which device of the .json file is followed?",
+      complaints_.Add(entry.recording.where,
+                      "recording: which device of the .json file is followed?",
                       "add device: " + NamesOfDevices(entry));
       return false;
     }

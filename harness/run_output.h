@@ -23,7 +23,8 @@ std::string RunTable(const RunResult& run);
 std::vector<std::string> NoteLines(const Scenario& scenario, const RunResult& run);
 
 /// {"scenario", "status", "ticks_per_second", "ticks", "state_hash", "grammar", "events": [...]}; a
-/// failed run has "failure": {"tick", "entity", "reason", "advice"}, a judged one "outcome", one with notes "notes".
+/// failed run has "failure": {"tick", "entity", "reason", "advice"}, a judged one "outcome", one
+/// with notes "notes".
 OrderedJson RunJson(const Scenario& scenario, const RunResult& run);
 
 /// "0x" and 16 digits: 64 bits don't fit into a JSON number.

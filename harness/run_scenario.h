@@ -18,10 +18,10 @@
 namespace prehend::harness {
 
 struct RunOptions {
-  bool record = false;   ///< keep a snapshot per sensed frame (pictures, oracle)
+  bool record = false;  ///< keep a snapshot per sensed frame (pictures, oracle)
   std::function<void(const grammar::Frame&)> watch;  ///< shown every sensed frame; may be empty
-  bool judge = false;    ///< by the scenario's outcomes
-  bool measure = false;  ///< clock physics, sensing and grammar apart
+  bool judge = false;                                ///< by the scenario's outcomes
+  bool measure = false;                              ///< clock physics, sensing and grammar apart
 };
 
 /// Where the time of a run went; all zero unless measured.
@@ -43,7 +43,8 @@ struct RunResult {
 RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                       const RunOptions& options = {});
 
-/// What another grammar makes of the same episode, without simulating it again. `recording` has the sensed snapshots.
+/// What another grammar makes of the same episode, without simulating it again. `recording` has the
+/// sensed snapshots.
 grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
                             std::shared_ptr<const grammar::Program> program, grammar::Tick end);
 

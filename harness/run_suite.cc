@@ -48,9 +48,7 @@ class Suite {
   }
 
  private:
-  std::string Id(std::size_t scenario) const {
-    return IdOf(scenarios_[scenario]);
-  }
+  std::string Id(std::size_t scenario) const { return IdOf(scenarios_[scenario]); }
 
   /// Only these have goldens, and are remembered from one check to the next.
   bool InProject(std::size_t scenario) const { return scenarios_[scenario].in_project; }
@@ -101,15 +99,16 @@ class Suite {
   WorkerJob Job(const Turn& turn, SharedTicks::Tick& last_tick) const {
     RunRequest run = request_.changes;
     run.scenario_file = scenarios_[turn.scenario].path;
-    const CheckRequest check{.run = std::move(run),
-                             .id = Id(turn.scenario),
-                             .root = request_.root,
-                             .report_folder = request_.report_folder,
-                             .pictures = request_.pictures && turn.repetition == 0,
-                             .is_trial = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
-                             .has_golden = InProject(turn.scenario),
-                             .program = program_,
-                             .last_tick = &last_tick};
+    const CheckRequest check{
+        .run = std::move(run),
+        .id = Id(turn.scenario),
+        .root = request_.root,
+        .report_folder = request_.report_folder,
+        .pictures = request_.pictures && turn.repetition == 0,
+        .is_trial = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
+        .has_golden = InProject(turn.scenario),
+        .program = program_,
+        .last_tick = &last_tick};
     return [check] { return ToJson(CheckScenario(check)).dump(); };
   }
 
@@ -136,8 +135,9 @@ class Suite {
 
   /// The options that a worker's time and memory depend on.
   std::string HowText() const {
-    return fmt::format("{} --time-limit-s {:g} --memory-limit-mb {}", request_.pictures ? "" : " --no-pictures",
-                       request_.limits.time_limit_s, request_.limits.memory_limit_bytes / kMegabyte);
+    return fmt::format("{} --time-limit-s {:g} --memory-limit-mb {}",
+                       request_.pictures ? "" : " --no-pictures", request_.limits.time_limit_s,
+                       request_.limits.memory_limit_bytes / kMegabyte);
   }
 
   std::vector<ScenarioVerdict> Verdicts() {

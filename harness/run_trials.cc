@@ -33,7 +33,8 @@ ReadResult<Nominal> ReadNominal(const RunRequest& request, const std::string& ro
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
   for (const std::string& setting : request.settings) {
     if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
-      (void)ApplyOverride(setting, ScenarioFormat().schema, *document.value);  // PrepareRun() has accepted it
+      (void)ApplyOverride(setting, ScenarioFormat().schema,
+                          *document.value);  // PrepareRun() has accepted it
   }
   return {Nominal{std::move(*prepared.value), std::move(*document.value)}, {}};
 }
@@ -42,7 +43,8 @@ ReadResult<Nominal> ReadNominal(const RunRequest& request, const std::string& ro
 RunRequest WithDraws(const RunRequest& request, const Nominal& nominal, int trial) {
   const Scenario& scenario = nominal.run.scenario;
   RunRequest varied = request;
-  for (std::string& drawn : DrawTrial(nominal.document, scenario.variations, scenario.world.seed, trial)) {
+  for (std::string& drawn :
+       DrawTrial(nominal.document, scenario.variations, scenario.world.seed, trial)) {
     const std::string field = drawn.substr(0, drawn.find('=') + 1);
     const bool set = std::ranges::any_of(
         request.settings, [&](const std::string& given) { return given.starts_with(field); });
@@ -85,7 +87,8 @@ std::vector<std::string> AllOutcomes(const TrialReport& report) {
 }
 
 std::size_t CountOf(const std::string& outcome, const TrialReport& report) {
-  return static_cast<std::size_t>(std::ranges::count(report.results, outcome, &TrialResult::outcome));
+  return static_cast<std::size_t>(
+      std::ranges::count(report.results, outcome, &TrialResult::outcome));
 }
 
 }  // namespace
@@ -114,7 +117,8 @@ ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& 
     jobs.push_back([&, trial]() -> std::string {
       const auto prepared = PrepareRun(WithDraws(request, *nominal.value, trial), root);
       if (!prepared.value)
-        return ToJson({trial, kFailed, "it cannot be read:\n" + grammar::Format(prepared.diagnostics)});
+        return ToJson(
+            {trial, kFailed, "it cannot be read:\n" + grammar::Format(prepared.diagnostics)});
       return ToJson(RunTrial(prepared.value->scenario, trial));
     });
   }
@@ -124,8 +128,7 @@ ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& 
                                       if (progress) progress(++done);
                                     });
   TrialReport report;
-  for (const Outcome& outcome : scenario.outcomes)
-    report.outcomes.push_back(outcome.name);
+  for (const Outcome& outcome : scenario.outcomes) report.outcomes.push_back(outcome.name);
   for (std::size_t i = 0; i < workers.size(); ++i)
     report.results.push_back(FromWorker(static_cast<int>(i) + 1, workers[i]));
   return {std::move(report), {}};
@@ -135,8 +138,11 @@ nlohmann::ordered_json TrialJson(const TrialReport& report) {
   nlohmann::ordered_json outcomes, results = nlohmann::ordered_json::array();
   for (const std::string& name : AllOutcomes(report)) outcomes[name] = CountOf(name, report);
   for (const TrialResult& result : report.results)
-    results.push_back({{"trial", result.trial}, {"outcome", result.outcome}, {"reason", result.reason}});
-  return {{"trials", report.results.size()}, {"outcomes", std::move(outcomes)}, {"results", std::move(results)}};
+    results.push_back(
+        {{"trial", result.trial}, {"outcome", result.outcome}, {"reason", result.reason}});
+  return {{"trials", report.results.size()},
+          {"outcomes", std::move(outcomes)},
+          {"results", std::move(results)}};
 }
 
 std::string TrialTable(const TrialReport& report, const std::string& command) {

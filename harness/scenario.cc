@@ -42,7 +42,8 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     member.part_of = scenario.body_part_of[i];
     member.p_BC_m = box.p_BC_m;
     member.half_size_m = box.half_size_m;
-    member.round = body.abstract == physics::Abstract::kRegion && std::holds_alternative<physics::Sphere>(body.shapes.front().shape);
+    member.round = body.abstract == physics::Abstract::kRegion &&
+                   std::holds_alternative<physics::Sphere>(body.shapes.front().shape);
     member.mass_kg = body.fixed ? 0 : body.mass_kg;
   }
   for (const physics::Hand& hand : scenario.scene.hands) {

@@ -32,10 +32,13 @@ struct KindEntry {
 };
 
 struct PictureEntry {
-  Located<std::string> at;  ///< "reaching.begin", "putting_down.end", or a time: "1.25"; see harness/moment.h
-  Located<std::string> camera{"three_quarter", {}};  ///< one of CameraWords(), or an entity that is a camera
+  Located<std::string>
+      at;  ///< "reaching.begin", "putting_down.end", or a time: "1.25"; see harness/moment.h
+  Located<std::string> camera{"three_quarter",
+                              {}};  ///< one of CameraWords(), or an entity that is a camera
 };
-/// Cameras that every scenario has; the same as render::CameraNames(), which is there only with the render room.
+/// Cameras that every scenario has; the same as render::CameraNames(), which is there only with the
+/// render room.
 const std::vector<std::string>& CameraWords();
 
 /// A whole scenario, read, checked and resolved: entities and actors are already bodies and hands.

@@ -52,7 +52,9 @@ std::size_t LengthAt(std::size_t offset, const YamlNode& node, const std::string
 void ForEachFile(const YamlNode& node, const std::function<void(const YamlNode&)>& visit) {
   const bool is_hand_file = node.key == "hand" && node.text.ends_with(".hand.yaml");
   const bool is_grasp_file = node.text.ends_with(".grasps.yaml");
-  if (node.kind == YamlNode::Kind::kScalar && (node.key == "recording" || is_hand_file || is_grasp_file)) visit(node);
+  if (node.kind == YamlNode::Kind::kScalar &&
+      (node.key == "recording" || is_hand_file || is_grasp_file))
+    visit(node);
   for (const YamlNode& child : node.children) ForEachFile(child, visit);
 }
 

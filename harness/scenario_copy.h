@@ -11,8 +11,8 @@
 namespace prehend::harness {
 
 /// `text` of the scenario `from` as it has to stand in `to`: it says the name of that file, and
-/// what lies beside `from`, its recordings, hands and grasps, is found from there. Complains about YAML that cannot
-/// be read.
+/// what lies beside `from`, its recordings, hands and grasps, is found from there. Complains about
+/// YAML that cannot be read.
 ReadResult<std::string> CopyOfScenario(const std::filesystem::path& from, const std::string& text,
                                        const std::filesystem::path& to);
 

@@ -98,7 +98,11 @@ struct EntityEntry {
 
 inline physics::Abstract AbstractOf(const EntityEntry& entity) {
   using enum physics::Abstract;
-  return entity.region ? kRegion : entity.gaze_target ? kGazeTarget : entity.camera ? kCamera : entity.light ? kLight : kNot;
+  return entity.region        ? kRegion
+         : entity.gaze_target ? kGazeTarget
+         : entity.camera      ? kCamera
+         : entity.light       ? kLight
+                              : kNot;
 }
 
 /// Where it is said where it is.
@@ -117,7 +121,8 @@ struct GainsOverride {
 struct HandActor {
   Where where;
   Located<std::string> hand;
-  std::vector<Located<std::string>> grasps;  ///< paths of grasp files, seen from the scenario's folder
+  std::vector<Located<std::string>>
+      grasps;  ///< paths of grasp files, seen from the scenario's folder
   Located<Eigen::Vector3d> at_m;
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
   std::optional<Located<GainsOverride>> gains;
@@ -212,7 +217,8 @@ struct RecordingEntry {
   double most_gap_s = 0.25;
   double most_jump_m = 0.1;
   std::optional<Located<double>> scale;  ///< metres per unit of a .bvh file
-  // What harness/recorded_input.h makes of the file: poses of the palm or head, or figures of a body.
+  // What harness/recorded_input.h makes of the file: poses of the palm or head, or figures of a
+  // body.
   std::vector<physics::TimedPose> poses;
   std::vector<physics::TimedFigure> figures;
 };
@@ -254,8 +260,8 @@ struct MoveLimbEntry {
 
 using StepEntry = std::variant<WaitEntry, ReachEntry, CloseEntry, OpenEntry, LiftEntry, MoveEntry,
                                CarryEntry, PlaceEntry, RetreatEntry, FollowJointEntry, PosesEntry,
-                               RecordingEntry, LookAtEntry, LookAtPointEntry, EyesEntry, WalkEntry, TurnEntry,
-                               LeanEntry, SwayEntry, MoveLimbEntry>;
+                               RecordingEntry, LookAtEntry, LookAtPointEntry, EyesEntry, WalkEntry,
+                               TurnEntry, LeanEntry, SwayEntry, MoveLimbEntry>;
 
 /// One item of the script: what each named actor does at the same time.
 using BeatEntry = std::vector<Named<StepEntry>>;

@@ -49,7 +49,9 @@ Format<WorldEntry> WorldFormat() {
 
 constexpr std::size_t kMaxKinds = 100;
 
-Format<std::string> ClassName() { return Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'"); }
+Format<std::string> ClassName() {
+  return Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'");
+}
 
 /// A moment is an event's boundary or a time; PictureEntry keeps both as text.
 Format<std::string> MomentFormat() {
@@ -72,8 +74,9 @@ Format<PictureEntry> PictureFormat() {
   return Record<PictureEntry>("a picture")
       .Required("at", &PictureEntry::at, MomentFormat(),
                 "When: an event's 'begin' or 'end', or seconds.")
-      .Optional("camera", &PictureEntry::camera, Identifier(),
-                "From where: front, left, right, top, three_quarter, or an entity that is a camera.")
+      .Optional(
+          "camera", &PictureEntry::camera, Identifier(),
+          "From where: front, left, right, top, three_quarter, or an entity that is a camera.")
       .format();
 }
 

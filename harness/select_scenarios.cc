@@ -27,34 +27,42 @@ bool HasTag(const ScenarioFile& file, const std::string& tag, const ScenarioLibr
          std::count(scenario.value->tags.begin(), scenario.value->tags.end(), tag) > 0;
 }
 
-bool PassesFilter(const ScenarioFile& file, const std::string& filter, const ScenarioLibrary& library) {
+bool PassesFilter(const ScenarioFile& file, const std::string& filter,
+                  const ScenarioLibrary& library) {
   if (filter.starts_with('!')) return !PassesFilter(file, filter.substr(1), library);
   if (filter.starts_with(kTag)) return HasTag(file, filter.substr(kTag.size()), library);
   return Matches(filter, file);
 }
 
 /// "" or that nothing passes a filter that is not a "not", with the nearest tag.
-std::string WhyNonePasses(const std::string& filter, const std::vector<ScenarioFile>& all, const ScenarioLibrary& library) {
+std::string WhyNonePasses(const std::string& filter, const std::vector<ScenarioFile>& all,
+                          const ScenarioLibrary& library) {
   if (filter.starts_with('!')) return "";
-  const bool some = std::ranges::any_of(all, [&](const auto& file) { return PassesFilter(file, filter, library); });
-  if (some || !filter.starts_with(kTag)) return some ? "" : "--filter: no scenario matches '" + filter + "'";
+  const bool some = std::ranges::any_of(
+      all, [&](const auto& file) { return PassesFilter(file, filter, library); });
+  if (some || !filter.starts_with(kTag))
+    return some ? "" : "--filter: no scenario matches '" + filter + "'";
   std::vector<std::string> tags;
   for (const ScenarioFile& file : all) {
     const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, library);
-    if (scenario.value) tags.insert(tags.end(), scenario.value->tags.begin(), scenario.value->tags.end());
+    if (scenario.value)
+      tags.insert(tags.end(), scenario.value->tags.begin(), scenario.value->tags.end());
   }
   const std::string tag = filter.substr(kTag.size());
   const std::string near = grammar::NearestName(tag, tags);
-  return "--filter: no scenario has the tag '" + tag + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+  return "--filter: no scenario has the tag '" + tag + "'" +
+         (near.empty() ? "" : "; did you mean '" + near + "'?");
 }
 
 bool IsFile(const std::string& typed) {
   std::error_code error;
-  const bool is_there = std::filesystem::exists(typed, error) && !std::filesystem::is_directory(typed, error);
+  const bool is_there =
+      std::filesystem::exists(typed, error) && !std::filesystem::is_directory(typed, error);
   return is_there || typed.ends_with(".yaml") || typed.ends_with(".yml");
 }
 
-/// Scenarios that nobody's pattern matches, in words. A folder is not a pattern, but its scenarios have one.
+/// Scenarios that nobody's pattern matches, in words. A folder is not a pattern, but its scenarios
+/// have one.
 std::string WhyNoMatch(const std::string& typed, const std::vector<ScenarioFile>& all) {
   std::string folder = typed.starts_with("scenarios/") ? typed.substr(10) : typed;
   if (const std::size_t slash = folder.find('/'); slash != std::string::npos) folder.resize(slash);
@@ -66,7 +74,8 @@ std::string WhyNoMatch(const std::string& typed, const std::vector<ScenarioFile>
                          : HintForScenario(all, typed);
   const std::string near = grammar::NearestName(folder, skills);
   if (hint.empty() && !near.empty()) hint = "did you mean '" + near + "/*'?";
-  return "no scenario matches '" + typed + "'" + (hint.empty() ? "" : "; " + hint) + " ('prehend list' shows all)";
+  return "no scenario matches '" + typed + "'" + (hint.empty() ? "" : "; " + hint) +
+         " ('prehend list' shows all)";
 }
 
 }  // namespace
@@ -87,14 +96,19 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
     }
     named.push_back(ScenarioAt(all, pattern));
   }
-  std::ranges::sort(named, {}, [](const ScenarioFile& file) { return std::tuple(!file.in_project, file.skill, file.name, file.path); });
+  std::ranges::sort(named, {}, [](const ScenarioFile& file) {
+    return std::tuple(!file.in_project, file.skill, file.name, file.path);
+  });
   const auto repeated = std::ranges::unique(named, {}, &ScenarioFile::path);
   named.erase(repeated.begin(), repeated.end());
   const ScenarioLibrary library = ProjectLibrary(root);
   ScenarioSelection selection;
-  std::ranges::copy_if(named, std::back_inserter(selection.scenarios), [&](const ScenarioFile& file) {
-    return std::ranges::all_of(filters, [&](const std::string& filter) { return PassesFilter(file, filter, library); });
-  });
+  std::ranges::copy_if(named, std::back_inserter(selection.scenarios),
+                       [&](const ScenarioFile& file) {
+                         return std::ranges::all_of(filters, [&](const std::string& filter) {
+                           return PassesFilter(file, filter, library);
+                         });
+                       });
   if (patterns.empty() && filters.empty()) selection.orphans = OrphansAmong(all, root);
   if (!selection.scenarios.empty() || !selection.orphans.empty()) return selection;
   problem = "no scenario is selected";

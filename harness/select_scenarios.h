@@ -17,9 +17,9 @@ struct ScenarioSelection {
   std::vector<Orphan> orphans;  ///< looked for when nothing narrows the selection
 };
 
-/// `patterns` are globs over names and skill/name, or files; none means all. A scenario must pass each of
-/// `filters`, which are globs, too, or tag:NAME; with a leading '!' it must not match. When a
-/// pattern matches nothing, or nothing is left, `problem` says so.
+/// `patterns` are globs over names and skill/name, or files; none means all. A scenario must pass
+/// each of `filters`, which are globs, too, or tag:NAME; with a leading '!' it must not match. When
+/// a pattern matches nothing, or nothing is left, `problem` says so.
 std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
                                                  const std::vector<std::string>& filters,
                                                  const std::string& root, std::string& problem);

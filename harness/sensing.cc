@@ -151,8 +151,9 @@ void Sensing::SenseBodies(const physics::Snapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.gazes.size(); ++i) {
     const physics::GazeState& gaze = snapshot.gazes[i];
     grammar::EntityLook look = entities_[static_cast<std::size_t>(heads_[i])];
-    look.gazes_at =
-        gaze.hand >= 0 ? body_count_ + gaze.hand : gaze.body >= 0 ? gaze.body : grammar::kNobody;
+    look.gazes_at = gaze.hand >= 0   ? body_count_ + gaze.hand
+                    : gaze.body >= 0 ? gaze.body
+                                     : grammar::kNobody;
     Show(heads_[i], look);
   }
 }
@@ -173,8 +174,7 @@ void Sensing::SenseHands(const physics::Snapshot& snapshot) {
     Show(entity, LookAt(hand.palm));
     const auto style = static_cast<std::size_t>(hand.style);
     const int named = style < geometry.styles.size() ? geometry.styles[style] : grammar::kNobody;
-    hands_[h] = {entity, hand.trigger, named, hand.palm.X_WB.q * geometry.model.ahead,
-                 feelers};
+    hands_[h] = {entity, hand.trigger, named, hand.palm.X_WB.q * geometry.model.ahead, feelers};
   }
 }
 
@@ -214,8 +214,8 @@ void Sensing::ReadTouches(Points points, Touches& touches) {
     const int a = EntityOf(contact.a), b = EntityOf(contact.b);
     if (a == b) continue;
     const double up = contact.nhat_BA_W.z();
-    points_.push_back({std::minmax(a, b), a < b ? up : -up, contact.normal_impulse_n_s, contact.p_W_m,
-                       SensorSetOf(contact.a) | SensorSetOf(contact.b)});
+    points_.push_back({std::minmax(a, b), a < b ? up : -up, contact.normal_impulse_n_s,
+                       contact.p_W_m, SensorSetOf(contact.a) | SensorSetOf(contact.b)});
   }
   std::ranges::stable_sort(points_, {}, &PairPoint::pair);
 
@@ -250,7 +250,8 @@ double Sensing::VerticalSpeed(std::span<const PairPoint> points) const {
   }
   if (load <= 0) return 0;
   const auto& [a, b] = points.front().pair;
-  return grammar::VerticalSpeedBetween(entities_[static_cast<std::size_t>(a)], entities_[static_cast<std::size_t>(b)], sum / load);
+  return grammar::VerticalSpeedBetween(entities_[static_cast<std::size_t>(a)],
+                                       entities_[static_cast<std::size_t>(b)], sum / load);
 }
 
 int Sensing::EntityOf(const physics::ContactSide& side) const {

@@ -33,9 +33,9 @@ class Sensing {
     return tick * sensing_hz_ / rate_hz_ > (tick - 1) * sensing_hz_ / rate_hz_;
   }
 
-  /// What differs from the snapshot of this run that was sensed before, at first from nothing at all.
-  /// Lives until the next call. Allocates nothing once it has seen the largest number of contacts,
-  /// while nobody falls asleep or wakes.
+  /// What differs from the snapshot of this run that was sensed before, at first from nothing at
+  /// all. Lives until the next call. Allocates nothing once it has seen the largest number of
+  /// contacts, while nobody falls asleep or wakes.
   grammar::FrameChanges SenseChanges(const physics::Snapshot& snapshot);
   /// Everything as sensed last. Lives until the next call.
   grammar::Frame Whole();
@@ -93,7 +93,7 @@ class Sensing {
   };
   SensedTouches now_, before_;
   std::shared_ptr<const std::vector<physics::ContactPoint>> resting_points_;
-  Touches touches_;  ///< all of them, when asked for
+  Touches touches_;         ///< all of them, when asked for
   std::int64_t tick_ = -1;  ///< of the last snapshot
 
   std::vector<int> shown_;  ///< entities that look different

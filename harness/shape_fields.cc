@@ -62,7 +62,8 @@ Format<physics::Hull> HullFormat() {
   const Format<Points> written =
       Record<Points>("a hull")
           .Required("points_m", &Points::points_m,
-                    ListOf(Vector<3>(-kFarthestPartM, kFarthestPartM), physics::kFewestHullPoints, physics::kMostHullPoints),
+                    ListOf(Vector<3>(-kFarthestPartM, kFarthestPartM), physics::kFewestHullPoints,
+                           physics::kMostHullPoints),
                     "Its corners [x, y, z] in its own frame, in any order.")
           .format();
   return {.schema = written.schema,
@@ -76,7 +77,8 @@ Format<physics::Hull> HullFormat() {
                   return true;
                 }
                 const YamlNode& list = *node.Find("points_m");
-                const YamlNode& wrong = made.point < 0 ? list : list.children[static_cast<std::size_t>(made.point)];
+                const YamlNode& wrong =
+                    made.point < 0 ? list : list.children[static_cast<std::size_t>(made.point)];
                 complaints.Add(wrong.where, "points_m: " + made.problem, made.remedy);
                 return false;
               },
@@ -148,7 +150,8 @@ Format<GrainsEntry> GrainsFormat() {
   constexpr double kSmallestGrainM = 0.002, kLargestGrainM = 0.05;
   return Record<G>("grains")
       .Required("count", &G::count, Integer<int>(1, kMostGrains), "How many.")
-      .Required("radius_m", &G::radius_m, Number(kSmallestGrainM, kLargestGrainM), "Radius of each.")
+      .Required("radius_m", &G::radius_m, Number(kSmallestGrainM, kLargestGrainM),
+                "Radius of each.")
       .format();
 }
 

@@ -15,7 +15,7 @@ namespace prehend::harness {
 namespace {
 
 constexpr double kLongestMoveM = 10;
-constexpr double kMostSwayM = 0.4;  // farther, nobody stays on her feet
+constexpr double kMostSwayM = 0.4;   // farther, nobody stays on her feet
 constexpr double kShortestS = 0.01;  // below, no human hand moves
 constexpr double kLongestS = 600;
 
@@ -148,7 +148,8 @@ Format<StepEntry> RecordingFormat() {
                     "The motion is shifted so that the palm starts here; default: not shifted.")
           .Optional("yaw_deg", &R::yaw_deg, Number(-360, 360),
                     "The motion is turned by this about the vertical, before it is shifted.")
-          .Optional("palm_m", &R::palm_m, Vector<3>(-1, 1), "The palm's centre, in the device's axes.")
+          .Optional("palm_m", &R::palm_m, Vector<3>(-1, 1),
+                    "The palm's centre, in the device's axes.")
           .Optional("palm_rpy_deg", &R::palm_rpy_deg, Vector<3>(-360, 360),
                     "How the palm is turned against the device.")
           .Optional("join_s", &R::join_s, Number(0, 60),
@@ -213,20 +214,21 @@ Format<StepEntry> StepFormat() {
        {"recording", RecordingFormat()},
        {"look_at", TimedStep("look_at", &LookAtEntry::look_at, Identifier(),
                              "The entity or hand that a person looks at from now on.")},
-       {"look_at_m", TimedStep("look_at_m", &LookAtPointEntry::look_at_m,
-                               Vector<3>(-kFarthestM, kFarthestM),
-                               "The place that a person looks at from now on.")},
+       {"look_at_m",
+        TimedStep("look_at_m", &LookAtPointEntry::look_at_m, Vector<3>(-kFarthestM, kFarthestM),
+                  "The place that a person looks at from now on.")},
        {"eyes", TimedStep("eyes", &EyesEntry::eyes, EyesFormat(),
                           "A person's eyes lead her hands again, or look ahead.")},
-       {"walk_to_m", TimedStep("walk_to_m", &WalkEntry::walk_to_m,
-                               Vector<2>(-kFarthestM, kFarthestM),
-                               "The place between a person's feet goes to this [x, y].")},
+       {"walk_to_m",
+        TimedStep("walk_to_m", &WalkEntry::walk_to_m, Vector<2>(-kFarthestM, kFarthestM),
+                  "The place between a person's feet goes to this [x, y].")},
        {"turn_to_deg", TimedStep("turn_to_deg", &TurnEntry::turn_to_deg, Number(-360, 360),
                                  "A person turns to this yaw.")},
        {"lean_deg", TimedStep("lean_deg", &LeanEntry::lean_deg, Number(-30, 90),
                               "A person's trunk leans forwards by this.")},
-       {"sway_by_m", TimedStep("sway_by_m", &SwayEntry::sway_by_m, Vector<2>(-kMostSwayM, kMostSwayM),
-                               "A person's hips go this far [ahead, left] of over her feet.")},
+       {"sway_by_m",
+        TimedStep("sway_by_m", &SwayEntry::sway_by_m, Vector<2>(-kMostSwayM, kMostSwayM),
+                  "A person's hips go this far [ahead, left] of over her feet.")},
        {"move_limb", MoveLimbFormat()}});
 }
 

@@ -17,7 +17,8 @@ namespace {
 using grammar::Diagnostic;
 using grammar::Diagnostics;
 
-/// Bytes of the well-formed UTF-8 sequence that starts `text`, 0 when there is none (Unicode 15, table 3-7).
+/// Bytes of the well-formed UTF-8 sequence that starts `text`, 0 when there is none (Unicode 15,
+/// table 3-7).
 std::size_t Utf8Length(std::string_view text) {
   const auto byte = [&](std::size_t i) -> unsigned {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
@@ -45,7 +46,8 @@ bool IsControl(char c) {
 }
 
 /// The line is left out of these complaints: printing it could garble a terminal.
-Diagnostic NotText(const std::string& file, std::string_view text, std::size_t offset, std::string message) {
+Diagnostic NotText(const std::string& file, std::string_view text, std::size_t offset,
+                   std::string message) {
   const auto before = text.substr(0, offset);
   const auto line_start = before.rfind('\n') + 1;  // npos + 1 == 0: the first line
   const int line = 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n'));
@@ -71,16 +73,17 @@ std::string WithUnixLineEnds(std::string text) {
 std::string WhyNotReadable(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) return error && error != std::errc::no_such_file_or_directory
-                                                   ? "cannot be read: " + error.message()
-                                                   : "no such file";
+  if (!std::filesystem::exists(status))
+    return error && error != std::errc::no_such_file_or_directory
+               ? "cannot be read: " + error.message()
+               : "no such file";
   if (std::filesystem::is_directory(status)) return "is a directory, not a file";
   if (!std::filesystem::is_regular_file(status)) return "is not a regular file";
   const auto size = std::filesystem::file_size(path, error);
   if (error) return "cannot be read: " + error.message();
   if (size > kMaxTextFileBytes) {
-    return fmt::format("is too large: {:.1f} MiB, at most {} MiB are read", static_cast<double>(size) / (1 << 20),
-                       kMaxTextFileBytes >> 20);
+    return fmt::format("is too large: {:.1f} MiB, at most {} MiB are read",
+                       static_cast<double>(size) / (1 << 20), kMaxTextFileBytes >> 20);
   }
   return {};
 }
@@ -88,7 +91,9 @@ std::string WhyNotReadable(const std::string& path) {
 }  // namespace
 
 Diagnostics CheckText(const std::string& file, std::string_view text) {
-  if (text.empty()) return {{.file = file, .place = {}, .message = "the file is empty", .source_line = {}, .hint = {}}};
+  if (text.empty())
+    return {
+        {.file = file, .place = {}, .message = "the file is empty", .source_line = {}, .hint = {}}};
   for (std::size_t i = 0; i < text.size();) {
     if (IsControl(text[i])) {
       return {NotText(file, text, i,
@@ -97,8 +102,9 @@ Diagnostics CheckText(const std::string& file, std::string_view text) {
     }
     const std::size_t length = Utf8Length(text.substr(i));
     if (length == 0) {
-      return {NotText(file, text, i,
-                      fmt::format("byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[i])))};
+      return {
+          NotText(file, text, i,
+                  fmt::format("byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[i])))};
     }
     i += length;
   }
@@ -117,7 +123,8 @@ ReadResult<std::string> ReadTextFile(const std::string& path) {
   if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));
   std::string text = WithUnixLineEnds({std::istreambuf_iterator<char>(stream), {}});
   if (stream.bad()) return refuse("cannot be read to its end");
-  if (auto diagnostics = CheckText(path, text); !diagnostics.empty()) return {std::nullopt, std::move(diagnostics)};
+  if (auto diagnostics = CheckText(path, text); !diagnostics.empty())
+    return {std::nullopt, std::move(diagnostics)};
   return {std::move(text), {}};
 }
 

@@ -14,8 +14,9 @@ namespace prehend::harness {
 /// Enough for 10,000 entities on a line each; a larger file is a mistake and would only cost time.
 inline constexpr std::uintmax_t kMaxTextFileBytes = 4u << 20;
 
-/// The text, with a byte order mark dropped and CR LF turned into LF. Complains about a missing, unreadable or
-/// oversized file (by its size, without reading it), a directory or device, and about what CheckText() refuses.
+/// The text, with a byte order mark dropped and CR LF turned into LF. Complains about a missing,
+/// unreadable or oversized file (by its size, without reading it), a directory or device, and about
+/// what CheckText() refuses.
 ReadResult<std::string> ReadTextFile(const std::string& path);
 
 /// Complains when the text is empty, is not UTF-8, or holds control characters (a binary file).

@@ -31,7 +31,8 @@ Json EventJson(const grammar::NamedEvent& event, grammar::Tick ticks_per_second)
 
 Json TimelineJson(const grammar::Timeline& timeline) {
   Json events = Json::array();
-  for (const grammar::NamedEvent& event : timeline.events) events.push_back(EventJson(event, timeline.ticks_per_second));
+  for (const grammar::NamedEvent& event : timeline.events)
+    events.push_back(EventJson(event, timeline.ticks_per_second));
   return {{"ticks_per_second", timeline.ticks_per_second}, {"events", std::move(events)}};
 }
 

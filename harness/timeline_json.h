@@ -9,8 +9,8 @@
 
 namespace prehend::harness {
 
-/// {"event", "roles": {..}, "attributes": {..}, "begin_tick", "end_tick", "begin_s", "end_s", "decided_tick", "open_end"};
-/// attributes are words (style) or numbers in SI units.
+/// {"event", "roles": {..}, "attributes": {..}, "begin_tick", "end_tick", "begin_s", "end_s",
+/// "decided_tick", "open_end"}; attributes are words (style) or numbers in SI units.
 nlohmann::ordered_json EventJson(const grammar::NamedEvent& event, grammar::Tick ticks_per_second);
 
 /// {"ticks_per_second", "events": [..]}; both directions.

@@ -55,7 +55,8 @@ Format<ConditionEntry> ConditionFormat() {
                 "Its joint stands above this fraction of its range.")
       .Optional("joint_below", &C::joint_below, fraction,
                 "Its joint stands below this fraction of its range.")
-      .Optional("inside", &C::inside, Identifier(), "Its centre is in the bounding box of this entity.")
+      .Optional("inside", &C::inside, Identifier(),
+                "Its centre is in the bounding box of this entity.")
       .Optional("share", &C::share, fraction, "Of grains: at least this share of them is inside.")
       .format();
 }
@@ -88,7 +89,8 @@ Format<VariationEntry> VariationFormat() {
             complaints.Add(written->where, std::string(key) + ": expected [least, most]");
         }
         if (variation.normal && (*variation.normal)[1] < 0)
-          complaints.Add(node.Find("normal")->where, "normal: expected [mean, deviation], and no deviation below 0");
+          complaints.Add(node.Find("normal")->where,
+                         "normal: expected [mean, deviation], and no deviation below 0");
       })
       .format();
 }
@@ -100,7 +102,8 @@ namespace {
 /// Names to bodies and joints, as far as the scene has them.
 class ConditionBuilder {
  public:
-  ConditionBuilder(const physics::Scene& scene, const physics::Script& script, Complaints& complaints)
+  ConditionBuilder(const physics::Scene& scene, const physics::Script& script,
+                   Complaints& complaints)
       : scene_(scene), complaints_(complaints), end_s_(DurationOf(script)) {
     // Every beat ends with a tick.
     latest_s_ = end_s_ + static_cast<double>(script.beats.size() + 1) / scene.world.rate_hz;
@@ -115,9 +118,12 @@ class ConditionBuilder {
     if ((wanted.joint_above || wanted.joint_below) && condition.joint < 0)
       complaints_.Add(wanted.where, fmt::format("entity: '{}' hangs on no joint", wanted.entity));
     if (wanted.at_s && *wanted.at_s > latest_s_)
-      complaints_.Add(wanted.where, fmt::format("at_s: {} s is after the end, which is at {:.3f} s", *wanted.at_s, end_s_),
-                      "without at_s it is looked at then");
-    if (wanted.inside) condition.vessel = Find("inside", wanted.inside->value, wanted.inside->where);
+      complaints_.Add(
+          wanted.where,
+          fmt::format("at_s: {} s is after the end, which is at {:.3f} s", *wanted.at_s, end_s_),
+          "without at_s it is looked at then");
+    if (wanted.inside)
+      condition.vessel = Find("inside", wanted.inside->value, wanted.inside->where);
     return condition;
   }
 
@@ -126,13 +132,15 @@ class ConditionBuilder {
   int Find(const char* key, const std::string& name, const Where& where) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     if (found != names_.end()) return static_cast<int>(found - names_.begin());
-    complaints_.AddUnknownName(where, fmt::format("{}: no entity is called '{}'", key, name), name, names_);
+    complaints_.AddUnknownName(where, fmt::format("{}: no entity is called '{}'", key, name), name,
+                               names_);
     return -1;
   }
 
   int JointOf(int body) const {
-    const auto joint = std::find_if(scene_.joints.begin(), scene_.joints.end(),
-                                    [&](const physics::Joint& candidate) { return candidate.body == body; });
+    const auto joint =
+        std::find_if(scene_.joints.begin(), scene_.joints.end(),
+                     [&](const physics::Joint& candidate) { return candidate.body == body; });
     return joint == scene_.joints.end() ? -1 : static_cast<int>(joint - scene_.joints.begin());
   }
 
@@ -153,7 +161,8 @@ std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<Condition
     Outcome& outcome = outcomes.emplace_back();
     outcome.name = entry.name;
     for (const ConditionEntry& wanted : entry.value) {
-      if (auto condition = builder.Build(wanted)) outcome.conditions.push_back(std::move(*condition));
+      if (auto condition = builder.Build(wanted))
+        outcome.conditions.push_back(std::move(*condition));
     }
   }
   return outcomes;

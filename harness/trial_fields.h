@@ -13,7 +13,8 @@ namespace prehend::harness {
 Format<VariationEntry> VariationFormat();
 Format<std::vector<ConditionEntry>> OutcomeFormat();
 
-/// Complains about unknown entities, about joints that are asked for but not there, and about moments after the end.
+/// Complains about unknown entities, about joints that are asked for but not there, and about
+/// moments after the end.
 std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionEntry>>>& entries,
                                    const physics::Scene& scene, const physics::Script& script,
                                    Complaints& complaints);

@@ -38,8 +38,9 @@ struct ConditionEntry {
   std::optional<double> tilt_below_deg, tilt_above_deg;  ///< since it was placed
   std::optional<double> slower_than_m_per_s;
   std::optional<double> joint_above, joint_below;  ///< fraction of its joint's range
-  std::optional<Located<std::string>> inside;      ///< its centre is in the bounding box of this entity ...
-  double share = 1;                                ///< ... or, of grains, at least this share of them
+  std::optional<Located<std::string>>
+      inside;        ///< its centre is in the bounding box of this entity ...
+  double share = 1;  ///< ... or, of grains, at least this share of them
 };
 
 /// An outcome whose entities are resolved; it holds when all its conditions do.

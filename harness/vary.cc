@@ -35,7 +35,9 @@ Draw DrawFrom(const VariationEntry& variation, Random& random) {
     while (std::abs(deviations) > kMostDeviations) deviations = random.Normal(0, 1);
     return (*variation.normal)[0] + deviations * (*variation.normal)[1];
   }
-  const auto& between = variation.uniform ? variation.uniform : variation.plus ? variation.plus : variation.times;
+  const auto& between = variation.uniform ? variation.uniform
+                        : variation.plus  ? variation.plus
+                                          : variation.times;
   return random.Between((*between)[0], (*between)[1]);
 }
 
@@ -63,7 +65,9 @@ Bounds BoundsOf(const VariationEntry& variation) {
     const double mean = (*variation.normal)[0], most = kMostDeviations * (*variation.normal)[1];
     return {"normal", {mean - most, mean + most}};
   }
-  const auto from = [](const char* key, const Eigen::Vector2d& range) { return Bounds{key, {range[0], range[1]}}; };
+  const auto from = [](const char* key, const Eigen::Vector2d& range) {
+    return Bounds{key, {range[0], range[1]}};
+  };
   if (variation.uniform) return from("uniform", *variation.uniform);
   return variation.plus ? from("plus", *variation.plus) : from("times", *variation.times);
 }
@@ -76,7 +80,8 @@ std::string SettingOf(const YamlDocument& document, const VariationEntry& variat
   double value = std::get<double>(draw);
   if (variation.plus) value = written + value;
   if (variation.times) value = written * value;
-  if (IsWholeNumber(field, ScenarioFormat().schema, document)) return fmt::format("{}={}", field, std::llround(value));
+  if (IsWholeNumber(field, ScenarioFormat().schema, document))
+    return fmt::format("{}={}", field, std::llround(value));
   return fmt::format("{}={:.6f}", field, value);
 }
 

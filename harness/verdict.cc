@@ -32,7 +32,9 @@ std::string_view Name(Verdict verdict) {
 }
 
 std::string_view CommandLabel(const ScenarioVerdict& verdict) {
-  return verdict.verdict == Verdict::kPending && verdict.command.starts_with("prehend review") ? "next" : "again";
+  return verdict.verdict == Verdict::kPending && verdict.command.starts_with("prehend review")
+             ? "next"
+             : "again";
 }
 
 Json ToJson(const ScenarioVerdict& verdict) {

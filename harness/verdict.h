@@ -42,11 +42,11 @@ struct ScenarioVerdict {
   Verdict verdict = Verdict::kFailed;
   ExitCode exit_code = ExitCode::kAgrees;  ///< what a check of this scenario alone ends with
   std::string reason;                      ///< one line; empty when passed
-  std::string details;   ///< differences, violations, diagnostics; several lines or empty
+  std::string details;  ///< differences, violations, diagnostics; several lines or empty
   nlohmann::ordered_json differences = nlohmann::ordered_json::array();  ///< DifferencesJson()
   nlohmann::ordered_json relations = nlohmann::ordered_json::array();    ///< RelationsJson()
-  std::string blame;     ///< BlameText(): whose doing the differences are; or empty
-  std::string headroom;  ///< HeadroomText()
+  std::string blame;                     ///< BlameText(): whose doing the differences are; or empty
+  std::string headroom;                  ///< HeadroomText()
   std::vector<BoundaryRoom> boundaries;  ///< of all matched events
   std::string command;                   ///< shows it again; of what is pending, what to accept
   std::string state_hash;
@@ -66,9 +66,9 @@ std::string_view CommandLabel(const ScenarioVerdict& verdict);
 nlohmann::ordered_json ToJson(const ScenarioVerdict& verdict);
 ScenarioVerdict VerdictFromJson(const nlohmann::ordered_json& json);
 
-/// What runs of one scenario, or a single one, come to: their common verdict, or kFlaky when they differ in
-/// anything but time, memory and pictures. Of these the largest is kept. What passed in all fails when
-/// a picture differs. Needs at least one.
+/// What runs of one scenario, or a single one, come to: their common verdict, or kFlaky when they
+/// differ in anything but time, memory and pictures. Of these the largest is kept. What passed in
+/// all fails when a picture differs. Needs at least one.
 ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs);
 
 struct Tally {

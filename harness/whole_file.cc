@@ -20,14 +20,14 @@ constexpr std::size_t kBuffer_bytes = 1 << 16;
 constexpr mode_t kReadAndWrite = 0666;  // less what the user's mask forbids
 
 std::optional<struct stat> StatusOf(const fs::path& path) {
-  struct stat status{};
+  struct stat status {};
   return stat(path.c_str(), &status) == 0 ? std::optional(status) : std::nullopt;
 }
 
 /// Standard output or standard error, when the path is another name of it.
 std::optional<int> OwnOutput(const struct stat& status) {
   for (const int own : {STDOUT_FILENO, STDERR_FILENO}) {
-    struct stat other{};
+    struct stat other {};
     if (fstat(own, &other) == 0 && other.st_dev == status.st_dev && other.st_ino == status.st_ino)
       return own;
   }
@@ -53,9 +53,7 @@ std::string MakeFolderOf(const fs::path& path) {
 
 }  // namespace
 
-FileBuffer::FileBuffer() : kept_(kBuffer_bytes) {
-  setp(kept_.data(), kept_.data() + kept_.size());
-}
+FileBuffer::FileBuffer() : kept_(kBuffer_bytes) { setp(kept_.data(), kept_.data() + kept_.size()); }
 
 FileBuffer::~FileBuffer() {
   if (descriptor_ >= 0) close(descriptor_);
@@ -141,7 +139,9 @@ std::string WhyNotWritable(const fs::path& path) {
   const auto status = StatusOf(path);
   const bool may_wait = status && S_ISFIFO(status->st_mode);
   if (!may_wait) return WholeFile(path).problem();
-  return access(path.c_str(), W_OK) == 0 ? "" : "cannot write " + path.string() + ": " + std::strerror(errno);
+  return access(path.c_str(), W_OK) == 0
+             ? ""
+             : "cannot write " + path.string() + ": " + std::strerror(errno);
 }
 
 std::string WriteTextFile(const fs::path& path, std::string_view text) {

@@ -68,7 +68,8 @@ bool IsLackOfMemory(const std::system_error& problem) {
          problem.code() == std::errc::resource_unavailable_try_again;
 }
 
-/// "crashed (segmentation fault, signal 11)". SIGKILL is the system's, too, when the machine has no memory left.
+/// "crashed (segmentation fault, signal 11)". SIGKILL is the system's, too, when the machine has no
+/// memory left.
 std::string SignalText(int signal) {
   switch (signal) {
     case SIGSEGV:
@@ -232,7 +233,8 @@ class Pool {
   static std::string WhatItSaid(const Worker& worker) {
     const off_t size = std::max<off_t>(0, lseek(worker.said, 0, SEEK_END));
     std::string said(static_cast<std::size_t>(std::min(size, kMostSaid_bytes)), '\0');
-    const ssize_t count = pread(worker.said, said.data(), said.size(), size - static_cast<off_t>(said.size()));
+    const ssize_t count =
+        pread(worker.said, said.data(), said.size(), size - static_cast<off_t>(said.size()));
     said.resize(static_cast<std::size_t>(std::max<ssize_t>(0, count)));
     close(worker.said);
     return said;
@@ -240,13 +242,11 @@ class Pool {
 
   std::string EndReason(const Worker& worker, int status) const {
     if (worker.killed) return fmt::format("no end after {:g} s", limits_.time_limit_s);
-    if (WIFSIGNALED(status))
-      return SignalText(WTERMSIG(status));
+    if (WIFSIGNALED(status)) return SignalText(WTERMSIG(status));
     if (WEXITSTATUS(status) == kJobOutOfMemory) {
-      return limits_.memory_limit_bytes == 0
-                 ? "no memory is left"
-                 : fmt::format("it needs more memory than {} MB",
-                               limits_.memory_limit_bytes / kMegabyte);
+      return limits_.memory_limit_bytes == 0 ? "no memory is left"
+                                             : fmt::format("it needs more memory than {} MB",
+                                                           limits_.memory_limit_bytes / kMegabyte);
     }
     if (WEXITSTATUS(status) == kNoMemoryToStart) {
       return fmt::format("{} MB of memory are too little for it to start, which takes {:.0f} MB",

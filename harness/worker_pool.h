@@ -22,9 +22,10 @@ struct WorkerLimits {
 struct WorkerResult {
   bool finished = false;  ///< false: crashed, killed, out of time or memory
   std::string output;     ///< what the job returned; empty unless finished
-  std::string reason;  ///< "crashed (segmentation fault, signal 11)", "no end after 60 s", "it needs more
-                       ///< memory than 1000 MB"; empty when finished
-  std::string said;    ///< the end of what a job that failed wrote to standard error; not when memory ran out
+  std::string reason;     ///< "crashed (segmentation fault, signal 11)", "no end after 60 s", "it
+                          ///< needs more memory than 1000 MB"; empty when finished
+  std::string
+      said;  ///< the end of what a job that failed wrote to standard error; not when memory ran out
   double seconds = 0;
   std::int64_t peak_memory_kib = 0;
 };

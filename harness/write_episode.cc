@@ -20,7 +20,8 @@ bool IsHand(const grammar::CastMember& member) { return member.classes.front() =
 void AddClasses(const std::vector<std::string>& classes, Json& json) {
   const auto given = std::find_if(classes.begin() + 1, classes.end(), IsBuiltInClass);
   json["class"] = classes.front();
-  if (given != classes.begin() + 1) json["kinds"] = std::vector<std::string>(classes.begin() + 1, given);
+  if (given != classes.begin() + 1)
+    json["kinds"] = std::vector<std::string>(classes.begin() + 1, given);
   json["fixed"] = *given == "Fixed";
   if (*given == "Jointed") json["jointed"] = true;
   if (*given == "Entity") json["person"] = true;
@@ -60,18 +61,19 @@ Json HandJson(const grammar::HandLook& hand, const grammar::Cast& cast) {
   for (const grammar::Feeler& feeler : hand.feelers) {
     feelers.push_back({feeler.p_W_m.x(), feeler.p_W_m.y(), feeler.p_W_m.z(), feeler.radius_m});
   }
-  Json json = {{"trigger", hand.trigger}, {"ahead", ToJson(hand.ahead_W)}, {"feelers_m", std::move(feelers)}};
-  if (hand.style >= 0 && hand.style < static_cast<int>(cast.styles.size())) json["style"] = cast.styles[hand.style];
+  Json json = {{"trigger", hand.trigger},
+               {"ahead", ToJson(hand.ahead_W)},
+               {"feelers_m", std::move(feelers)}};
+  if (hand.style >= 0 && hand.style < static_cast<int>(cast.styles.size()))
+    json["style"] = cast.styles[hand.style];
   return json;
 }
 
 Json TouchJson(const grammar::Touch& touch, const grammar::Cast& cast) {
-  Json json = {{"a", cast.entities[touch.a].name},
-               {"b", cast.entities[touch.b].name},
-               {"up_on_a", touch.up_on_a},
-               {"up_on_b", touch.up_on_b},
-               {"force_n", touch.normal_force_n},
-               {"vertical_speed_m_per_s", touch.vertical_speed_m_per_s}};
+  Json json = {
+      {"a", cast.entities[touch.a].name}, {"b", cast.entities[touch.b].name},
+      {"up_on_a", touch.up_on_a},         {"up_on_b", touch.up_on_b},
+      {"force_n", touch.normal_force_n},  {"vertical_speed_m_per_s", touch.vertical_speed_m_per_s}};
   for (const int one : {touch.a, touch.b}) {
     const std::vector<std::string>& sets = cast.entities[one].sensor_sets;
     for (std::size_t i = 0; i < sets.size(); ++i) {
@@ -87,13 +89,11 @@ Json TouchJson(const grammar::Touch& touch, const grammar::Cast& cast) {
 EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
     : out_(out), cast_(header.cast), shown_(header.cast.entities.size()) {
   Json entities = Json::object();
-  for (const grammar::CastMember& member : cast_.entities) entities[member.name] = MemberJson(member, cast_);
-  out_ << Json{{"recording", kEpisodeVersion},
-               {"episode", header.episode},
-               {"grammar", header.grammar},
-               {"ticks_per_second", cast_.ticks_per_second},
-               {"styles", cast_.styles},
-               {"entities", std::move(entities)}}
+  for (const grammar::CastMember& member : cast_.entities)
+    entities[member.name] = MemberJson(member, cast_);
+  out_ << Json{{"recording", kEpisodeVersion}, {"episode", header.episode},
+               {"grammar", header.grammar},    {"ticks_per_second", cast_.ticks_per_second},
+               {"styles", cast_.styles},       {"entities", std::move(entities)}}
               .dump()
        << "\n";
 }
@@ -108,13 +108,19 @@ void EpisodeWriter::Write(const grammar::Frame& frame) {
     shown_[i] = std::move(text);
   }
   Json hands = Json::object(), touches = Json::array();
-  for (const grammar::HandLook& hand : frame.hands) hands[cast_.entities[hand.entity].name] = HandJson(hand, cast_);
+  for (const grammar::HandLook& hand : frame.hands)
+    hands[cast_.entities[hand.entity].name] = HandJson(hand, cast_);
   for (const grammar::Touch& touch : frame.touches) touches.push_back(TouchJson(touch, cast_));
-  out_ << Json{{"tick", frame.tick}, {"looks", std::move(looks)}, {"hands", std::move(hands)}, {"touches", std::move(touches)}}
+  out_ << Json{{"tick", frame.tick},
+               {"looks", std::move(looks)},
+               {"hands", std::move(hands)},
+               {"touches", std::move(touches)}}
               .dump()
        << "\n";
 }
 
-void EpisodeWriter::Finish(grammar::Tick end_tick) { out_ << Json{{"end_tick", end_tick}}.dump() << "\n"; }
+void EpisodeWriter::Finish(grammar::Tick end_tick) {
+  out_ << Json{{"end_tick", end_tick}}.dump() << "\n";
+}
 
 }  // namespace prehend::harness

@@ -31,7 +31,8 @@ void Relocate(YamlNode& node, int source, int column_offset) {
 
 using Schema = nlohmann::ordered_json;
 
-/// The schema of the field called `step`, or of the item of a list; null when it says nothing of one.
+/// The schema of the field called `step`, or of the item of a list; null when it says nothing of
+/// one.
 const Schema* FieldSchema(const Schema* schema, const std::string& step) {
   if (!schema) return nullptr;
   const auto properties = schema->find("properties");
@@ -43,14 +44,16 @@ const Schema* FieldSchema(const Schema* schema, const std::string& step) {
   return nullptr;
 }
 
-/// Of a schema with alternatives (an actor is a hand or a person) the first that knows every key of the node.
+/// Of a schema with alternatives (an actor is a hand or a person) the first that knows every key of
+/// the node.
 const Schema* Alternative(const Schema* schema, const YamlNode& node) {
   if (!schema || !schema->contains("oneOf")) return schema;
   for (const Schema& alternative : (*schema)["oneOf"]) {
     const auto known = alternative.find("properties");
-    const bool fits = known != alternative.end() && std::ranges::all_of(node.children, [&](const YamlNode& child) {
-      return known->contains(child.key);
-    });
+    const bool fits = known != alternative.end() &&
+                      std::ranges::all_of(node.children, [&](const YamlNode& child) {
+                        return known->contains(child.key);
+                      });
     if (fits) return &alternative;
   }
   return schema;
@@ -73,7 +76,8 @@ std::vector<std::string> NamesIn(const YamlNode& node, const Schema* schema) {
 }
 
 std::string HintFor(const YamlNode& node, const Schema* schema, const std::string& step) {
-  if (node.kind == Kind::kSequence) return fmt::format("'{}' is a list of {}", node.key, node.children.size());
+  if (node.kind == Kind::kSequence)
+    return fmt::format("'{}' is a list of {}", node.key, node.children.size());
   const std::string near = grammar::NearestName(step, NamesIn(node, schema));
   return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
 }
@@ -88,10 +92,12 @@ const YamlNode* ChildOf(const YamlNode& node, std::string_view step) {
   return whole && index < node.children.size() ? &node.children[index] : nullptr;
 }
 
-Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema, YamlDocument& document) {
-  const auto complain = [&](std::size_t offset, std::string message, std::string hint) -> Diagnostics {
-    return {grammar::DiagnosticAt("--set", assignment, {1, static_cast<int>(offset) + 1}, std::move(message),
-                                  std::move(hint))};
+Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema,
+                          YamlDocument& document) {
+  const auto complain = [&](std::size_t offset, std::string message,
+                            std::string hint) -> Diagnostics {
+    return {grammar::DiagnosticAt("--set", assignment, {1, static_cast<int>(offset) + 1},
+                                  std::move(message), std::move(hint))};
   };
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size()) {
@@ -111,7 +117,8 @@ Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema, Y
     const bool last = end == equals;
     const bool may_add = node->kind == Kind::kMapping && (last || IsOptionalMapping(known, step));
     if (!child && !may_add) {
-      return complain(begin, fmt::format("nothing is called '{}' here", step), HintFor(*node, known, step));
+      return complain(begin, fmt::format("nothing is called '{}' here", step),
+                      HintFor(*node, known, step));
     }
     if (!child) {
       child = &node->children.emplace_back();

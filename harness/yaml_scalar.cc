@@ -20,7 +20,8 @@ std::size_t Digits(std::string_view text, std::size_t at) {
   return n;
 }
 
-/// A number as JSON writes it (RFC 8259): all YAML readers agree about these, and from_chars() reads them.
+/// A number as JSON writes it (RFC 8259): all YAML readers agree about these, and from_chars()
+/// reads them.
 struct JsonNumber {
   bool matches = false;
   bool integer = false;
@@ -68,21 +69,28 @@ ScalarMeaning Ambiguous(std::string reason, std::string remedy) {
 
 /// Scalars that only look like a number, or are one to some readers only.
 std::optional<ScalarMeaning> AmbiguousNumber(const std::string& text) {
-  const std::string_view unsigned_text = std::string_view(text).substr(text.find_first_not_of("+-") == 1 ? 1 : 0);
+  const std::string_view unsigned_text =
+      std::string_view(text).substr(text.find_first_not_of("+-") == 1 ? 1 : 0);
   const std::string lower = LowerCase(unsigned_text);
   static constexpr std::string_view kNotFinite[] = {"nan", ".nan", "inf", ".inf", "infinity"};
   if (OneOf(lower, kNotFinite)) return Ambiguous("not a finite number", "write a finite number");
-  if (lower.empty() || !(IsDigit(lower[0]) || (lower[0] == '.' && lower.size() > 1 && IsDigit(lower[1])))) return {};
+  if (lower.empty() ||
+      !(IsDigit(lower[0]) || (lower[0] == '.' && lower.size() > 1 && IsDigit(lower[1]))))
+    return {};
 
-  const auto only = [&](std::string_view allowed) { return lower.find_first_not_of(allowed) == std::string::npos; };
+  const auto only = [&](std::string_view allowed) {
+    return lower.find_first_not_of(allowed) == std::string::npos;
+  };
   if (lower.starts_with("0x") || lower.starts_with("0o") || lower.starts_with("0b")) {
     return Ambiguous("a number in another base to some YAML readers", "write a decimal number");
   }
   if (only("0123456789_.") && lower.find('_') != std::string::npos) {
-    return Ambiguous("'_' is a separator to some YAML readers only", "write the digits without '_'");
+    return Ambiguous("'_' is a separator to some YAML readers only",
+                     "write the digits without '_'");
   }
   if (only("0123456789:.") && lower.find(':') != std::string::npos) {
-    return Ambiguous("a number in base 60 to some YAML readers", "write seconds as a decimal number, or quote it");
+    return Ambiguous("a number in base 60 to some YAML readers",
+                     "write seconds as a decimal number, or quote it");
   }
   if (only("0123456789") && lower[0] == '0') {
     const std::size_t significant = std::min(lower.find_first_not_of('0'), lower.size() - 1);
@@ -91,7 +99,8 @@ std::optional<ScalarMeaning> AmbiguousNumber(const std::string& text) {
   }
   if (text[0] == '+') return Ambiguous("a number with a plus sign", "leave the '+' out");
   if (only("0123456789.") && std::count(lower.begin(), lower.end(), '.') == 1) {
-    return Ambiguous("a number without a digit on both sides of the point", "write for example 0.5 or 5.0");
+    return Ambiguous("a number without a digit on both sides of the point",
+                     "write for example 0.5 or 5.0");
   }
   return {};
 }
@@ -108,7 +117,8 @@ ScalarMeaning MeaningOf(const YamlNode& node) {
   if (const JsonNumber match = MatchJsonNumber(text); match.matches) {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || !std::isfinite(value)) return Ambiguous("outside the range of numbers", "");
+    if (error != std::errc() || !std::isfinite(value))
+      return Ambiguous("outside the range of numbers", "");
     meaning.number = value;
     meaning.integer = match.integer;
     return meaning;
@@ -121,7 +131,8 @@ ScalarMeaning MeaningOf(const YamlNode& node) {
   static constexpr std::string_view kTrue[] = {"yes", "on", "y", "true"};
   static constexpr std::string_view kFalse[] = {"no", "off", "n", "false"};
   if (OneOf(lower, kTrue) || OneOf(lower, kFalse)) {
-    return Ambiguous("true or false to some YAML readers", "write a number, true or false, or text in quotes");
+    return Ambiguous("true or false to some YAML readers",
+                     "write a number, true or false, or text in quotes");
   }
   if (auto number = AmbiguousNumber(text)) return *number;
   meaning.string = text;

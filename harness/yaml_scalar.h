@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a plain YAML scalar means, when all YAML versions agree about it. YAML 1.1 and 1.2 read `no`, `010`, `1:30` or
-// `1_000` differently, so these are refused wherever a value is wanted; the writer says what is meant.
-// Tested by tests/harness/yaml_scalar_test.cc
+// What a plain YAML scalar means, when all YAML versions agree about it. YAML 1.1 and 1.2 read
+// `no`, `010`, `1:30` or `1_000` differently, so these are refused wherever a value is wanted; the
+// writer says what is meant. Tested by tests/harness/yaml_scalar_test.cc
 #pragma once
 
 #include <optional>

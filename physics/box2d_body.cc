@@ -75,7 +75,8 @@ Box2dBody::Box2dBody(const std::vector<const Body*>& bodies,
   def.angularDamping = static_cast<float>(root.angular_damping_per_s);
   rigid_ = world.CreateBody(&def);
 
-  const Pose X_PW{{-root.X_WB.p_m.x(), 0, -root.X_WB.p_m.z()}};  // what is abstract may stand beside the plane
+  const Pose X_PW{
+      {-root.X_WB.p_m.x(), 0, -root.X_WB.p_m.z()}};  // what is abstract may stand beside the plane
   for (const Body* body : bodies) X_PB_.push_back(X_PW * body->X_WB);
   if (root.abstract != Abstract::kNot) return;
   double mass_kg = 0, moment = 0;

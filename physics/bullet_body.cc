@@ -15,17 +15,20 @@ namespace {
 constexpr double kSleepSpeed_m_per_s = 0.01;
 constexpr double kSleepTurn_rad_per_s = 0.05;
 
-/// In the frame of its centre of mass and principal axes. Without a margin, which would be outside or cut off corners:
-/// what touches it has one.
+/// In the frame of its centre of mass and principal axes. Without a margin, which would be outside
+/// or cut off corners: what touches it has one.
 class HullShape final : public btConvexHullShape {
  public:
   explicit HullShape(const Hull& hull) : gyration_m2_(ToBullet(hull.gyration_m2)) {
-    for (const Eigen::Vector3d& corner_S : hull.corners_m) addPoint(ToBullet(hull.X_SC.inverse() * corner_S), false);
+    for (const Eigen::Vector3d& corner_S : hull.corners_m)
+      addPoint(ToBullet(hull.X_SC.inverse() * corner_S), false);
     setMargin(0);
     recalcLocalAabb();
   }
   /// Bullet's own is that of the box around it.
-  void calculateLocalInertia(btScalar mass, btVector3& inertia) const override { inertia = mass * gyration_m2_; }
+  void calculateLocalInertia(btScalar mass, btVector3& inertia) const override {
+    inertia = mass * gyration_m2_;
+  }
 
  private:
   btVector3 gyration_m2_;

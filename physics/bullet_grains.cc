@@ -25,7 +25,8 @@ BulletGrains::BulletGrains(const Body& body) : shape_(body.grains->radius_m) {
   btVector3 inertia;
   shape_.calculateLocalInertia(grain.mass_kg, inertia);
   btRigidBody::btRigidBodyConstructionInfo info = RigidInfo(grain, &shape_, inertia);
-  // Grains tremble in a heap and turn fast for their size: with the limits of things no heap would ever sleep.
+  // Grains tremble in a heap and turn fast for their size: with the limits of things no heap would
+  // ever sleep.
   info.m_linearSleepingThreshold = kSleepSpeed_m_per_s;
   info.m_angularSleepingThreshold = kSleepSpeed_m_per_s / body.grains->radius_m;
   for (const Eigen::Vector3d& p_WG_m : body.grains->p_WG_m) {
@@ -36,7 +37,8 @@ BulletGrains::BulletGrains(const Body& body) : shape_(body.grains->radius_m) {
 
 void BulletGrains::StopLost() {
   for (const auto& rigid : rigids_) {
-    const bool lost = rigid->isActive() && rigid->getWorldTransform().getOrigin().length() > kLost_m;
+    const bool lost =
+        rigid->isActive() && rigid->getWorldTransform().getOrigin().length() > kLost_m;
     if (!lost) continue;
     rigid->setLinearVelocity({0, 0, 0});
     rigid->setAngularVelocity({0, 0, 0});
@@ -45,7 +47,8 @@ void BulletGrains::StopLost() {
 }
 
 bool BulletGrains::rests() const {
-  return std::none_of(rigids_.begin(), rigids_.end(), [](const auto& rigid) { return rigid->isActive(); });
+  return std::none_of(rigids_.begin(), rigids_.end(),
+                      [](const auto& rigid) { return rigid->isActive(); });
 }
 
 BodyState BulletGrains::Mean() const {
@@ -59,7 +62,8 @@ BodyState BulletGrains::Mean() const {
 }
 
 void BulletGrains::AppendCentres(std::vector<Eigen::Vector3d>& centres_W_m) const {
-  for (const auto& rigid : rigids_) centres_W_m.push_back(FromBullet(rigid->getWorldTransform().getOrigin()));
+  for (const auto& rigid : rigids_)
+    centres_W_m.push_back(FromBullet(rigid->getWorldTransform().getOrigin()));
 }
 
 }  // namespace prehend::physics

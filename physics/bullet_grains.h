@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grains of one body: as many Bullet balls, which share a shape. Only for bullet_*.cc. Tested by
-// tests/physics/grains_test.cc
+// The grains of one body: as many Bullet balls, which share a shape. Only for bullet_*.cc. Tested
+// by tests/physics/grains_test.cc
 #pragma once
 
 #include <btBulletDynamicsCommon.h>

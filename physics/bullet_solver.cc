@@ -38,8 +38,8 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   const btScalar result = btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(
       bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
   rigid_.Setup(RigidPools());
-  // No row of a multibody is warm-started, so its speeds begin at zero here, and in the end they are what is to be
-  // added.
+  // No row of a multibody is warm-started, so its speeds begin at zero here, and in the end they
+  // are what is to be added.
   terms_.clear();
   met_.clear();
   Flatten(m_multiBodyNonContactConstraints, joints_);
@@ -95,8 +95,8 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody* multibody, int solver_bod
         terms_.push_back({speeds + i, m_data.m_jacobians[jacobian + i]});
     side.end_term = static_cast<int>(terms_.size());
   } else if (solver_body >= 0) {
-    side.rigid = MakeRigidSide(m_tmpSolverBodyPool[solver_body], rigid_.SpeedsOf(solver_body), linear,
-                               angular, angular_response);
+    side.rigid = MakeRigidSide(m_tmpSolverBodyPool[solver_body], rigid_.SpeedsOf(solver_body),
+                               linear, angular, angular_response);
   }
   return side;
 }

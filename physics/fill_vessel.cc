@@ -80,7 +80,8 @@ class Filling {
       if (!IsOver(p_B_m)) return false;
       if (!IsClear(p_B_m)) continue;
       layer.push_back(Shaken(p_B_m));
-      for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(0, 1), std::pair(-1, 0), std::pair(0, -1)}) {
+      for (const auto& [dx, dy] :
+           {std::pair(1, 0), std::pair(0, 1), std::pair(-1, 0), std::pair(0, -1)}) {
         const std::pair neighbour(cell.first + dx, cell.second + dy);
         if (seen.insert(neighbour).second) next.push_back(neighbour);
       }
@@ -101,7 +102,8 @@ class Filling {
 
 }  // namespace
 
-std::vector<Vector3d> FillVessel(const Body& vessel, double radius_m, int count, std::uint64_t seed) {
+std::vector<Vector3d> FillVessel(const Body& vessel, double radius_m, int count,
+                                 std::uint64_t seed) {
   return Filling(vessel, radius_m, static_cast<std::size_t>(count), seed).Fill();
 }
 

@@ -47,7 +47,8 @@ std::optional<Vector3d> PointOf(const GazeTarget& target, const Scene& scene, co
   return std::nullopt;
 }
 
-std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaze, const SightLine& line) {
+std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaze,
+                                        const SightLine& line) {
   std::optional<TargetSeen> seen;
   double nearest_m = gaze.body < 0 && gaze.hand < 0 ? line.length_m : gaze.distance_m;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -57,7 +58,8 @@ std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaz
     const Vector3d way = body.X_WB.p_m - gaze.p_WE_m;
     const double along_m = way.dot(gaze.toward_W), beside2 = way.squaredNorm() - along_m * along_m;
     if (along_m < 0 || beside2 > reach_m * reach_m) continue;
-    const double distance_m = std::max(0.0, along_m - std::sqrt(reach_m * reach_m - std::max(0.0, beside2)));
+    const double distance_m =
+        std::max(0.0, along_m - std::sqrt(reach_m * reach_m - std::max(0.0, beside2)));
     if (distance_m >= nearest_m) continue;
     nearest_m = distance_m;
     seen = TargetSeen{static_cast<int>(i), distance_m};

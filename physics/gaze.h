@@ -28,13 +28,14 @@ struct GazeTarget {
 std::optional<Eigen::Vector3d> PointOf(const GazeTarget& target, const Scene& scene,
                                        const Snapshot& now);
 
-/// The first gaze target of the scene that the ball of her sight meets before what she sees. Gaze targets are no matter,
-/// so that no engine meets them.
+/// The first gaze target of the scene that the ball of her sight meets before what she sees. Gaze
+/// targets are no matter, so that no engine meets them.
 struct TargetSeen {
   int body = -1;
   double distance_m = 0;
 };
-std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaze, const SightLine& line = {});
+std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaze,
+                                        const SightLine& line = {});
 
 /// Chooses for a person whose eyes lead her hands.
 class GazeLeader {

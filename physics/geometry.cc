@@ -158,7 +158,8 @@ bool IsRoundAboutVertical(const Body& body, const Pose& X_WB) {
   if (body.shapes.size() != 1) return false;
   const PlacedShape& placed = body.shapes.front();
   if (std::holds_alternative<Sphere>(placed.shape)) return true;
-  if (std::holds_alternative<Box>(placed.shape) || std::holds_alternative<Hull>(placed.shape)) return false;
+  if (std::holds_alternative<Box>(placed.shape) || std::holds_alternative<Hull>(placed.shape))
+    return false;
   return std::abs(((X_WB * placed.X_BS).q * Eigen::Vector3d::UnitZ()).z()) > kUprightCosine;
 }
 

@@ -15,7 +15,8 @@ int FindBody(const Scene& scene, const std::string& name);
 /// How far the body reaches from its bounding box' centre in a world direction (unit), metres.
 double HalfWidthAlong(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& direction_W);
 
-/// Is the point in the body that stands at X_WB: in its bounding box, of a region in the region itself?
+/// Is the point in the body that stands at X_WB: in its bounding box, of a region in the region
+/// itself?
 bool IsInside(const Body& body, const Pose& X_WB, const Eigen::Vector3d& p_W_m);
 
 /// World axes-aligned box of a shape that stands at X_WS.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Convex hulls: a solid of flat faces, given by its corners. No engine involved. Faces come from all planes through three
-// points that have no point outside, which is exact and quick enough for 64 points.
-// Tested by tests/physics/hull_test.cc
+// Convex hulls: a solid of flat faces, given by its corners. No engine involved. Faces come from
+// all planes through three points that have no point outside, which is exact and quick enough for
+// 64 points. Tested by tests/physics/hull_test.cc
 #pragma once
 
 #include <optional>
@@ -17,13 +17,14 @@ struct Hull {
   struct Face {
     std::vector<int> corners;  ///< indices into corners_m, counter-clockwise from outside
     Eigen::Vector3d nhat_S = Eigen::Vector3d::UnitZ();  ///< outwards
-    double offset_m = 0;       ///< of the face's plane from the origin, along nhat_S
+    double offset_m = 0;  ///< of the face's plane from the origin, along nhat_S
   };
   std::vector<Eigen::Vector3d> corners_m;
   std::vector<Face> faces;
   double volume_m3 = 0;
   Pose X_SC;  ///< centre of mass and principal axes
-  Eigen::Vector3d gyration_m2 = Eigen::Vector3d::Zero();  ///< moments of inertia about the axes of C, per mass
+  Eigen::Vector3d gyration_m2 =
+      Eigen::Vector3d::Zero();  ///< moments of inertia about the axes of C, per mass
 };
 
 inline constexpr int kFewestHullPoints = 4;

@@ -30,9 +30,12 @@ double Position(const Scene& scene, const Joint& joint, const Pose& X_WBase, con
 
 }  // namespace
 
-bool IsThing(const Body& body) { return !body.kinematic && !body.grains && body.abstract == Abstract::kNot; }
+bool IsThing(const Body& body) {
+  return !body.kinematic && !body.grains && body.abstract == Abstract::kNot;
+}
 
-std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body, const Snapshot& snapshot) {
+std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body,
+                                          const Snapshot& snapshot) {
   std::size_t first = 0;
   for (std::size_t i = 0; i < body; ++i)
     if (const auto& other = scene.bodies[i].grains) first += other->p_WG_m.size();

@@ -158,8 +158,9 @@ double PersonPlayer::ResistanceTo(int limb, const Snapshot& now) const {
 }
 
 void PersonPlayer::Yield(int limb, const Snapshot& now) {
-  // Resistance grows with the speed, so that speed is taken which keeps it at the limit. From there the
-  // limb takes up its pace again by equal shares: what resisted at a slow pace is met at a slow one.
+  // Resistance grows with the speed, so that speed is taken which keeps it at the limit. From there
+  // the limb takes up its pace again by equal shares: what resisted at a slow pace is met at a slow
+  // one.
   constexpr double kGrow_s = 0.1, kLeastPace = 0.01;
   const double dt_s = 1.0 / scene_.world.rate_hz;
   LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
@@ -245,7 +246,8 @@ GazeState PersonPlayer::See(const World& world) const {
   gaze.body = sight.body;
   gaze.hand = sight.hand;
   gaze.distance_m = sight.distance_m;
-  if (const auto target = TargetInSight(scene_, gaze)) gaze.body = target->body, gaze.hand = -1, gaze.distance_m = target->distance_m;
+  if (const auto target = TargetInSight(scene_, gaze))
+    gaze.body = target->body, gaze.hand = -1, gaze.distance_m = target->distance_m;
   return gaze;
 }
 

@@ -44,7 +44,8 @@ struct Candidate {
   Pose X_WH;
   Eigen::Vector3d toward_W;
   double cost = 0;
-  double beside_m = 0;  ///< from the point to grasp, other than along the grip, to where the fingers close
+  double beside_m =
+      0;  ///< from the point to grasp, other than along the grip, to where the fingers close
 };
 
 /// The rotation that takes the orthonormal pair (a_H, b_H) to (a_W, b_W).
@@ -146,9 +147,11 @@ Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quater
   const Eigen::Vector3d centre_H = on_post + style_.grip_axis * half_grip + approach.toward * depth;
 
   Candidate candidate{.X_WH = {point_W - q * centre_H, q}, .toward_W = toward_W};
-  const double raised_m = mounted_ ? 0 : std::max(0.0, lowest_m_ + approach.floor_m - candidate.X_WH.p_m.z());
+  const double raised_m =
+      mounted_ ? 0 : std::max(0.0, lowest_m_ + approach.floor_m - candidate.X_WH.p_m.z());
   candidate.X_WH.p_m.z() += raised_m;
-  candidate.beside_m = (raised_m * Eigen::Vector3d::UnitZ() - (depth - approach.pads_m) * toward_W).norm();
+  candidate.beside_m =
+      (raised_m * Eigen::Vector3d::UnitZ() - (depth - approach.pads_m) * toward_W).norm();
   candidate.X_WH.p_m += query_.offset_m;
   candidate.cost = RotationVector(q * query_.from.X_WH.q.conjugate()).norm();
   if (2 * half_grip > style_.opening_m) candidate.cost += kTooWide;
@@ -204,7 +207,8 @@ bool CandidateList::SideIsNatural() const {
   return style_.side && size.z() >= kTall_m && size.z() >= kSlender * std::min(size.x(), size.y());
 }
 
-/// Those that the hand can open for and that grasp the point; when none does, those that come nearest to it.
+/// Those that the hand can open for and that grasp the point; when none does, those that come
+/// nearest to it.
 void KeepNearest(std::vector<Candidate>& candidates) {
   const auto is_too_wide = [](const Candidate& candidate) { return candidate.cost >= kTooWide; };
   if (!std::ranges::all_of(candidates, is_too_wide)) std::erase_if(candidates, is_too_wide);
@@ -212,7 +216,8 @@ void KeepNearest(std::vector<Candidate>& candidates) {
   const double nearest_m = std::ranges::min_element(candidates, {}, &Candidate::beside_m)->beside_m;
   constexpr double kAsNear_m = 0.001;
   const double most_m = std::max(kAtPoint_m, nearest_m + kAsNear_m);
-  std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.beside_m > most_m; });
+  std::erase_if(candidates,
+                [&](const Candidate& candidate) { return candidate.beside_m > most_m; });
 }
 
 std::vector<Candidate> Candidates(const Scene& scene, const Snapshot& now,

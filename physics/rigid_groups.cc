@@ -45,7 +45,8 @@ std::vector<RigidMember> MembersOf(const std::vector<const Body*>& bodies) {
     for (const PlacedShape& placed : body.shapes) {
       // So do the root's own shapes.
       const Pose X_RS = i == 0 ? placed.X_BS : X_RW * body.X_WB * placed.X_BS;
-      members.push_back({&placed, i, CentreOf(placed.shape, X_RS), density * VolumeOf(placed.shape)});
+      members.push_back(
+          {&placed, i, CentreOf(placed.shape, X_RS), density * VolumeOf(placed.shape)});
     }
   }
   return members;

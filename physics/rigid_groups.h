@@ -18,8 +18,8 @@ std::vector<std::vector<std::size_t>> RigidGroups(const Scene& scene);
 struct RigidMember {
   const PlacedShape* placed = nullptr;
   std::size_t owner = 0;  ///< index into the bodies
-  Pose X_RC;              ///< its centre of mass and principal axes, in the frame of the first body, the root
-  double mass_kg = 0;     ///< of a fixed body: as if its density were 1
+  Pose X_RC;  ///< its centre of mass and principal axes, in the frame of the first body, the root
+  double mass_kg = 0;  ///< of a fixed body: as if its density were 1
 };
 
 /// The mass of a body is spread evenly over its shapes' volumes. The bodies outlive the result.

@@ -38,7 +38,8 @@ std::optional<RunProblem> CheckState(const std::string& name, const BodyState& s
   return std::nullopt;
 }
 
-/// The solver settles what is pressed together in rounds, and too few when one is so many times the other.
+/// The solver settles what is pressed together in rounds, and too few when one is so many times the
+/// other.
 constexpr double kMostMassRatio = 1000;
 
 double MassOf(const Scene& scene, const ContactSide& side) {
@@ -47,11 +48,13 @@ double MassOf(const Scene& scene, const ContactSide& side) {
   return body.fixed ? 0 : body.mass_kg;
 }
 
-/// The remedy for two that are deep in each other. A heavy thing presses a light one into a third, too.
+/// The remedy for two that are deep in each other. A heavy thing presses a light one into a third,
+/// too.
 std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const ContactPoint& deep) {
   double least_kg = std::numeric_limits<double>::infinity(), most_kg = 0;
   for (const ContactPoint& contact : snapshot.contacts) {
-    const bool is_near = contact.a == deep.a || contact.a == deep.b || contact.b == deep.a || contact.b == deep.b;
+    const bool is_near =
+        contact.a == deep.a || contact.a == deep.b || contact.b == deep.a || contact.b == deep.b;
     for (const ContactSide& side : {contact.a, contact.b}) {
       const double mass_kg = MassOf(scene, side);
       if (!is_near || mass_kg <= 0) continue;
@@ -60,7 +63,8 @@ std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const Contac
     }
   }
   if (most_kg > kMostMassRatio * least_kg)
-    return Say("a mass presses on one that is %.0f times smaller; make them more alike", most_kg / least_kg);
+    return Say("a mass presses on one that is %.0f times smaller; make them more alike",
+               most_kg / least_kg);
   return scene.hands.empty() ? "start them apart, or let them meet more slowly"
                              : "start them apart, or let the hand come more slowly";
 }

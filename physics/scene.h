@@ -44,7 +44,8 @@ struct Grains {
   std::vector<Eigen::Vector3d> p_WG_m;  ///< their centres before the first tick; at least one
 };
 
-/// What has a place, and perhaps room, but no matter: nothing touches it, no ray of sight meets it, it never moves.
+/// What has a place, and perhaps room, but no matter: nothing touches it, no ray of sight meets it,
+/// it never moves.
 enum class Abstract {
   kNot,
   kRegion,      ///< a box or a ball
@@ -56,7 +57,8 @@ enum class Abstract {
 struct Body {
   std::string name;
   std::vector<PlacedShape> shapes;  ///< one, or several for a compound; none of grains
-  std::optional<Grains> grains;     ///< it is not one thing but many, which share its mass; only in Bullet
+  std::optional<Grains>
+      grains;  ///< it is not one thing but many, which share its mass; only in Bullet
   Abstract abstract = Abstract::kNot;  ///< then it is also fixed, and has one shape, at its origin
   double view_deg = 33;                ///< of a camera: how much it sees from below to above
   bool fixed = false;
@@ -100,7 +102,8 @@ struct Hand {
   std::string name;
   HandModel model;
   Pose X_WH;
-  std::optional<Tracking> tracking = std::nullopt;  ///< none: the tracked target is where the script wants it
+  std::optional<Tracking> tracking =
+      std::nullopt;  ///< none: the tracked target is where the script wants it
 };
 
 /// Where a person looks when nobody tells her to.
@@ -118,7 +121,7 @@ struct Person {
   double height_m = 1.75;  ///< standing, from the floor to the crown
   Pose X_WS;               ///< where she stands: between her feet on the floor, x ahead, z up
   Eyes eyes = Eyes::kLead;
-  int right_hand = -1;     ///< index into Scene::hands: the hand that her arm follows; -1: none
+  int right_hand = -1;  ///< index into Scene::hands: the hand that her arm follows; -1: none
   int left_hand = -1;
 };
 

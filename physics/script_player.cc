@@ -57,8 +57,9 @@ int HandsOn(int body, const Snapshot& now) {
 std::string NoteAbout(const ReachPlan& plan, const ReachStep& reach) {
   std::string note;
   if (plan.beside_m > kAtPoint_m)
-    note = "no grip of " + reach.object + " in style " + reach.style + " is at point_m: the nearest is " +
-           std::to_string(std::lround(1000 * plan.beside_m)) + " mm beside it";
+    note = "no grip of " + reach.object + " in style " + reach.style +
+           " is at point_m: the nearest is " + std::to_string(std::lround(1000 * plan.beside_m)) +
+           " mm beside it";
   if (plan.found || plan.clearance_m >= -kNotedTouch_m) return note;
   return note + (note.empty() ? "" : "; ") + "no way to grasp " + reach.object +
          " keeps clear of everything: the open hand will push against something";

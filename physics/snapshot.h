@@ -45,28 +45,30 @@ struct ContactSide {
   friend auto operator<=>(const ContactSide&, const ContactSide&) = default;
 };
 
-/// A point where surfaces touch in the sense of docs/physics.md: pushed in this tick or just before.
+/// A point where surfaces touch in the sense of docs/physics.md: pushed in this tick or just
+/// before.
 struct ContactPoint {
   ContactSide a, b;
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d nhat_BA_W = Eigen::Vector3d::UnitZ();  ///< from b into a
   double distance_m = 0;  ///< before the tick (Bullet) or after it (Box2D); negative: penetration
-  double normal_impulse_n_s = 0;                         ///< over this tick
+  double normal_impulse_n_s = 0;  ///< over this tick
 };
 
 /// Where a person looks, in the order of Scene::persons.
 struct GazeState {
-  Eigen::Vector3d p_WE_m = Eigen::Vector3d::Zero();    ///< between the eyes
+  Eigen::Vector3d p_WE_m = Eigen::Vector3d::Zero();     ///< between the eyes
   Eigen::Vector3d toward_W = Eigen::Vector3d::UnitX();  ///< unit
-  int body = -1;                                       ///< what she sees there; -1: no body
-  int hand = -1;                                       ///< or no hand
-  double distance_m = 0;                               ///< to what she sees
+  int body = -1;                                        ///< what she sees there; -1: no body
+  int hand = -1;                                        ///< or no hand
+  double distance_m = 0;                                ///< to what she sees
 };
 
 struct Snapshot {
   std::int64_t tick = 0;  ///< physics steps done; 0 is the scene as placed
   std::vector<BodyState> bodies;
-  std::vector<Eigen::Vector3d> grains;  ///< centres in the world, of one body with grains after the other
+  std::vector<Eigen::Vector3d>
+      grains;  ///< centres in the world, of one body with grains after the other
   std::vector<JointState> joints;
   std::vector<HandState> hands;
   std::vector<GazeState> gazes;
@@ -89,6 +91,7 @@ struct Snapshot {
 
 struct Scene;
 /// Where the grains of a body of the scene are; where they were placed, if the snapshot has none.
-std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body, const Snapshot& snapshot);
+std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body,
+                                          const Snapshot& snapshot);
 
 }  // namespace prehend::physics

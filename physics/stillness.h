@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who rests, and since when: what nobody needs to look at again. Tested by tests/physics/world_test.cc
+// Who rests, and since when: what nobody needs to look at again. Tested by
+// tests/physics/world_test.cc
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What counts as touching, the same for every engine. Two surfaces touch in a tick in which momentum
-// passed between them, wherever they were before and after it: a bounce is over within one. Once
-// they touch, they do until they have not pushed for a few ticks, because a resting contact's
-// impulse flickers. Between two that rest nothing changes, and it costs no time.
-// Tested by tests/physics/world_test.cc, bounce_test.cc
+// What counts as touching, the same for every engine. Two surfaces touch in a tick in which
+// momentum passed between them, wherever they were before and after it: a bounce is over within
+// one. Once they touch, they do until they have not pushed for a few ticks, because a resting
+// contact's impulse flickers. Between two that rest nothing changes, and it costs no time. Tested
+// by tests/physics/world_test.cc, bounce_test.cc
 #pragma once
 
 #include <map>
@@ -45,10 +45,10 @@ class TouchingPairs {
   bool MovePairs(Pairs& from, Pairs& to, bool that_rest);
   void ShareResting();
 
-  Pairs pairs_;    ///< of which one may move
-  Pairs resting_;  ///< the others
-  std::vector<char> rests_;   ///< by body, after this tick
-  std::vector<char> rested_;  ///< after the tick before, too
+  Pairs pairs_;                                              ///< of which one may move
+  Pairs resting_;                                            ///< the others
+  std::vector<char> rests_;                                  ///< by body, after this tick
+  std::vector<char> rested_;                                 ///< after the tick before, too
   std::shared_ptr<const std::vector<ContactPoint>> shared_;  ///< the points of `resting_`
 };
 

@@ -94,7 +94,8 @@ void AddAbstract(const physics::Body& body, int object, DrawList* list) {
   constexpr float kAbstractAlpha = 0.22f;
   using physics::Abstract;
   if (body.abstract == Abstract::kCamera || body.abstract == Abstract::kLight) return;
-  const Look look{.color = body.abstract == Abstract::kRegion ? Color(0.42f, 0.66f, 1.0f) : Color(0.95f, 0.45f, 0.75f),
+  const Look look{.color = body.abstract == Abstract::kRegion ? Color(0.42f, 0.66f, 1.0f)
+                                                              : Color(0.95f, 0.45f, 0.75f),
                   .alpha = kAbstractAlpha,
                   .gloss = 0,
                   .object = object};
@@ -105,7 +106,8 @@ void AddAbstract(const physics::Body& body, int object, DrawList* list) {
   }
 }
 
-/// `first`: which of the snapshot's grains is the first of these; a snapshot without them: they are as placed.
+/// `first`: which of the snapshot's grains is the first of these; a snapshot without them: they are
+/// as placed.
 void AddGrains(const physics::Grains& grains, const physics::Snapshot& snapshot, std::size_t first,
                const Look& look, std::vector<Item>* items, DrawList* list) {
   const bool moved = first + grains.p_WG_m.size() <= snapshot.grains.size();
@@ -250,7 +252,8 @@ void AddItem(const Item& item, std::vector<Item>* items, DrawList* list) {
   }
   Bounds bounds;
   if (item.primitive == Primitive::kMesh) {
-    for (const Vertex& vertex : list->meshes[item.mesh].vertices) bounds.Add(Vector3f(item.X_WI * vertex.corner));
+    for (const Vertex& vertex : list->meshes[item.mesh].vertices)
+      bounds.Add(Vector3f(item.X_WI * vertex.corner));
   } else {
     const Vector3f reach =
         item.X_WI.linear().cwiseAbs() * (item.half_size_m.array() + item.rounding_m).matrix();
@@ -274,7 +277,8 @@ Color BodyColor(const Picture& picture, std::size_t body) {
 DrawList MakeDrawList(const Picture& picture) {
   DrawList list;
   list.objects = {{"background", {}}, {"ground", {}}};
-  if (picture.to_light.allFinite() && picture.to_light.norm() > 0) list.to_light = picture.to_light.normalized();
+  if (picture.to_light.allFinite() && picture.to_light.norm() > 0)
+    list.to_light = picture.to_light.normalized();
   if (picture.scene != nullptr) AddBodiesAndHands(picture, &list);
   const float distance = (picture.camera.eye_m - picture.camera.look_at_m).norm();
   const float scale =

@@ -44,12 +44,12 @@ struct DrawnObject {
 struct DrawList {
   std::vector<DrawnObject> objects;  ///< 0 is the background, 1 the ground; then bodies, hands,
                                      ///< forearms, paths, ghosts, markers
-  std::vector<Mesh> meshes;               ///< of paths and of hulls
-  std::vector<Item> solids;               ///< bodies and hands
-  std::vector<Item> paths;                ///< seen through solids, faintly
-  std::vector<std::vector<Item>> ghosts;  ///< each one translucent as a whole
-  std::vector<Item> markers;              ///< translucent
-  Bounds bounds;                          ///< of everything but the ground
+  std::vector<Mesh> meshes;          ///< of paths and of hulls
+  std::vector<Item> solids;          ///< bodies and hands
+  std::vector<Item> paths;           ///< seen through solids, faintly
+  std::vector<std::vector<Item>> ghosts;                ///< each one translucent as a whole
+  std::vector<Item> markers;                            ///< translucent
+  Bounds bounds;                                        ///< of everything but the ground
   Eigen::Vector3f to_light = Eigen::Vector3f::UnitZ();  ///< unit
 
   int first_body = 2, first_hand = 2;  ///< where bodies and hands start in `objects`

@@ -51,7 +51,8 @@ bool WritePng(const Image& image, const std::string& path) {
   if (image.width_px <= 0 || image.rgb.size() != 3ull * image.width_px * image.height_px)
     return false;
   File file(std::fopen(path.c_str(), "wb"));
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, FailSilently, StaySilent);
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, FailSilently, StaySilent);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   const bool written =
       file != nullptr && info != nullptr && WriteRows(png, info, image, file.get());

@@ -25,8 +25,8 @@ void main() {
 }
 )";
 
-// A program for each FINISH (0 solid, 1 ground, 2 region, whose rim is brighter than its middle, 3 flat colour), with
-// or without SHADOWS: a rasteriser in software runs both sides of every branch.
+// A program for each FINISH (0 solid, 1 ground, 2 region, whose rim is brighter than its middle, 3
+// flat colour), with or without SHADOWS: a rasteriser in software runs both sides of every branch.
 const char* const kSurfaceFragmentShader = R"(
 in vec3 p_W, n_W;
 in vec4 p_light;

@@ -10,8 +10,8 @@ inline constexpr int kRendererVersion = 2;
 
 extern const char* const
     kSolidVertexShader;  ///< corner * half_size + direction * rounding, to world and clip
-extern const char* const
-    kSurfaceFragmentShader;  ///< light, shadow, ground grid, region rim; wants a version, FINISH and SHADOWS before it
+extern const char* const kSurfaceFragmentShader;  ///< light, shadow, ground grid, region rim; wants
+                                                  ///< a version, FINISH and SHADOWS before it
 extern const char* const kDepthFragmentShader;    ///< nothing but depth
 extern const char* const kIdFragmentShader;       ///< the object's number
 extern const char* const kScreenVertexShader;     ///< one triangle over the whole target

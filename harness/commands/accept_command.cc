@@ -155,18 +155,24 @@ ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
   return ExitCode::kAgrees;
 }
 
-/// Whatever were accepted, `check` would fail: a planar scenario has the same events in both engines.
-std::optional<ExitCode> RefuseUnlessEnginesAgree(const CommandContext& context, const Played& played) {
-  const auto compared = CompareEngines(played.prepared.scenario, played.prepared.program, played.run.timeline);
-  const std::string text =
-      compared ? EngineDifferenceText(played.prepared.scenario, *compared, ExplainCommand(played.id, {})) : "";
+/// Whatever were accepted, `check` would fail: a planar scenario has the same events in both
+/// engines.
+std::optional<ExitCode> RefuseUnlessEnginesAgree(const CommandContext& context,
+                                                 const Played& played) {
+  const auto compared =
+      CompareEngines(played.prepared.scenario, played.prepared.program, played.run.timeline);
+  const std::string text = compared ? EngineDifferenceText(played.prepared.scenario, *compared,
+                                                           ExplainCommand(played.id, {}))
+                                    : "";
   (void)GoldenFiles(context.root).WriteEngineDifference(played.id, text);
   if (text.empty()) return std::nullopt;
   context.out << text;
   const bool ended = compared->run.status.kind == physics::RunStatus::Kind::kCompleted;
   return Complain(context, ended ? ExitCode::kDiffers : ExitCode::kFailure,
-                  std::string(NameOf(compared->other)) + " does not lead to the same events (shown above); nothing was "
-                  "accepted\n  a planar scenario has one golden for both engines: change the scenario until they agree");
+                  std::string(NameOf(compared->other)) +
+                      " does not lead to the same events (shown above); nothing was "
+                      "accepted\n  a planar scenario has one golden for both engines: change the "
+                      "scenario until they agree");
 }
 
 ExitCode AcceptEvents(const CLI::App& options, const CommandContext& context,
@@ -208,8 +214,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!refusal.empty()) return Complain(context, ExitCode::kBadInput, refusal);
   const std::string typed = ValueOf(options, "scenario");
   if (typed.find_first_of("*?[") != std::string::npos)
-    return Complain(context, ExitCode::kBadInput,
-                    "'" + typed + "' may mean several scenarios; goldens are accepted one by one, by name");
+    return Complain(
+        context, ExitCode::kBadInput,
+        "'" + typed + "' may mean several scenarios; goldens are accepted one by one, by name");
   const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return ExitCode::kNothing;
   if (!file->in_project) {

@@ -64,9 +64,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const ReadResult<std::vector<SpeedFigure>> measured =
       MeasureSpeed(context.root, IsGiven(options, "--quick"));
   if (!measured.value) return Complain(context, measured.diagnostics);
-  std::vector<std::vector<std::string>> rows = {
-      {"what", "takes", "per", "per_second", "times_by_hand", "events/s", "times_real_time",
-       "of_physics", "result"}};
+  std::vector<std::vector<std::string>> rows = {{"what", "takes", "per", "per_second",
+                                                 "times_by_hand", "events/s", "times_real_time",
+                                                 "of_physics", "result"}};
   OrderedJson list = OrderedJson::array();
   for (const SpeedFigure& figure : *measured.value) {
     rows.push_back(Cells(figure));
@@ -76,7 +76,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     context.out << OrderedJson{{"figures", list}}.dump(2) << "\n";
   } else {
     for (const std::string& line : AlignColumns(rows)) context.out << line << "\n";
-    context.out << "One core. times_by_hand: the same rules as automata written by hand, in the same run.\n";
+    context.out << "One core. times_by_hand: the same rules as automata written by hand, in the "
+                   "same run.\n";
   }
   const bool agrees = std::ranges::all_of(*measured.value, &SpeedFigure::agrees);
   if (agrees) return ExitCode::kAgrees;

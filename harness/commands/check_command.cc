@@ -34,7 +34,9 @@ void DeclareSelection(CLI::App& options) {
     const std::size_t word = text.starts_with("!") ? 1 : 0;
     const bool of_tag = text.compare(word, 4, "tag:") == 0;
     if (text.empty() || text.size() > word + (of_tag ? 4 : 0)) return std::string();
-    return "'" + text + "' is followed by " + (of_tag ? "a tag, like " : "what must not match, like ") + text + (of_tag ? "smoke" : "reach/*");
+    return "'" + text + "' is followed by " +
+           (of_tag ? "a tag, like " : "what must not match, like ") + text +
+           (of_tag ? "smoke" : "reach/*");
   };
   options
       .add_option("--filter",

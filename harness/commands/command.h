@@ -73,7 +73,8 @@ RunRequest RequestOf(const CLI::App& options, const std::string& scenario_file);
 std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
                                                    const CommandContext& context);
 
-/// The episode that was typed for `scenario`, a scenario or a recording, with the run options; otherwise says why not.
+/// The episode that was typed for `scenario`, a scenario or a recording, with the run options;
+/// otherwise says why not.
 struct OpenedEpisode {
   std::optional<EpisodeSource> value;
   ExitCode exit_code = ExitCode::kAgrees;

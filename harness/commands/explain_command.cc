@@ -20,8 +20,11 @@ using explain::Ask;
 using explain::WhyEvent;
 
 void Declare(CLI::App& options) {
-  options.add_option("scenario", "a name, skill/name or a file; or a recording")->required()->expected(1);
-  options.add_option("--event", "one that happened: reaching@1.24s, 'sliding right_hand milk @2.0s'")
+  options.add_option("scenario", "a name, skill/name or a file; or a recording")
+      ->required()
+      ->expected(1);
+  options
+      .add_option("--event", "one that happened: reaching@1.24s, 'sliding right_hand milk @2.0s'")
       ->type_name("EVENT[@TIME]")
       ->expected(1);
   options.add_option("--expected", "one that did not: 'sliding right_hand milk @2.0s'")
@@ -32,7 +35,9 @@ void Declare(CLI::App& options) {
 }
 
 OrderedJson ToJson(const std::string& episode, const grammar::Hindsight& past) {
-  return {{"episode", episode}, {"grammar", past.program().name}, {"ticks_per_second", past.cast().ticks_per_second}};
+  return {{"episode", episode},
+          {"grammar", past.program().name},
+          {"ticks_per_second", past.cast().ticks_per_second}};
 }
 
 OrderedJson ToJson(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_second) {
@@ -41,18 +46,24 @@ OrderedJson ToJson(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_
   return list;
 }
 
-void PrintEvents(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_second, std::ostream& out) {
-  for (const WhyEvent& why : events) out << (&why == &events.front() ? "" : "\n") << explain::Text(why, ticks_per_second);
+void PrintEvents(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_second,
+                 std::ostream& out) {
+  for (const WhyEvent& why : events)
+    out << (&why == &events.front() ? "" : "\n") << explain::Text(why, ticks_per_second);
 }
 
-ExitCode ComplainOfNone(const CLI::App& options, grammar::Hindsight& past, const Ask& ask, const CommandContext& context) {
+ExitCode ComplainOfNone(const CLI::App& options, grammar::Hindsight& past, const Ask& ask,
+                        const CommandContext& context) {
   const std::string typed = ValueOf(options, "--event");
   const std::vector<WhyEvent> nearest = explain::NearestEvents(past, ask);
-  std::string message = fmt::format("--event: there is no '{}'{}", typed, nearest.empty() ? " in the whole episode" : "; the nearest:");
+  std::string message = fmt::format("--event: there is no '{}'{}", typed,
+                                    nearest.empty() ? " in the whole episode" : "; the nearest:");
   for (const WhyEvent& other : nearest) {
-    message += fmt::format("\n  {}  {}", other.event, IntervalText(other.interval, past.cast().ticks_per_second));
+    message += fmt::format("\n  {}  {}", other.event,
+                           IntervalText(other.interval, past.cast().ticks_per_second));
   }
-  message += fmt::format("\n  why not: prehend explain {} --expected {}", ShellWord(ValueOf(options, "scenario")), ShellWord(typed));
+  message += fmt::format("\n  why not: prehend explain {} --expected {}",
+                         ShellWord(ValueOf(options, "scenario")), ShellWord(typed));
   return Complain(context, ExitCode::kNothing, message);
 }
 
@@ -62,8 +73,8 @@ struct Question {
   std::optional<Ask> expected;
 };
 
-ExitCode Answer(const CLI::App& options, const CommandContext& context, const std::string& episode, const Question& question,
-                grammar::Hindsight& past) {
+ExitCode Answer(const CLI::App& options, const CommandContext& context, const std::string& episode,
+                const Question& question, grammar::Hindsight& past) {
   const grammar::Tick per_second = past.cast().ticks_per_second;
   const bool as_json = IsGiven(options, "--json");
   OrderedJson json = ToJson(episode, past);
@@ -87,7 +98,8 @@ ExitCode Answer(const CLI::App& options, const CommandContext& context, const st
   } else {
     const std::vector<WhyEvent> events = explain::ExplainAll(past);
     json["events"] = ToJson(events, per_second);
-    if (!as_json && events.empty()) context.out << "nothing was recognised; --expected EVENT says why\n";
+    if (!as_json && events.empty())
+      context.out << "nothing was recognised; --expected EVENT says why\n";
     if (!as_json && !events.empty()) context.out << explain::Table(events, per_second);
   }
   if (as_json) context.out << json.dump(2) << "\n";
@@ -96,15 +108,18 @@ ExitCode Answer(const CLI::App& options, const CommandContext& context, const st
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (IsGiven(options, "--event") && IsGiven(options, "--expected")) {
-    return Complain(context, ExitCode::kBadInput, "--event and --expected are two questions; ask one at a time");
+    return Complain(context, ExitCode::kBadInput,
+                    "--event and --expected are two questions; ask one at a time");
   }
   const auto source = OpenEpisodeOrComplain(options, context);
   if (!source.value) return source.exit_code;
 
   Question question;
-  for (const auto& [option, ask] : {std::pair{"--event", &question.event}, std::pair{"--expected", &question.expected}}) {
+  for (const auto& [option, ask] :
+       {std::pair{"--event", &question.event}, std::pair{"--expected", &question.expected}}) {
     if (!IsGiven(options, option)) continue;
-    const ReadResult<Ask> read = explain::ParseAsk(option, ValueOf(options, option), *source.value->program, source.value->cast);
+    const ReadResult<Ask> read = explain::ParseAsk(option, ValueOf(options, option),
+                                                   *source.value->program, source.value->cast);
     if (!read.value) return Complain(context, read.diagnostics);
     *ask = *read.value;
   }

@@ -92,10 +92,12 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const std::string typed = ValueOf(options, "name");
   static const std::regex well_formed("([a-z][a-z0-9_]{0,63}/)?[a-z][a-z0-9_]{0,63}");
   if (!std::regex_match(typed, well_formed)) {
-    return Complain(context, ExitCode::kBadInput,
-                    "'" + typed +
-                        "' is no name of a scenario: a small letter, then small letters, digits and '_', at most 64; "
-                        "a folder may stand in front, like slide_then_transport or slide/slide_then_transport");
+    return Complain(
+        context, ExitCode::kBadInput,
+        "'" + typed +
+            "' is no name of a scenario: a small letter, then small letters, digits and '_', at "
+            "most 64; "
+            "a folder may stand in front, like slide_then_transport or slide/slide_then_transport");
   }
   namespace fs = std::filesystem;
   const fs::path scenarios = fs::path(context.root) / "scenarios";

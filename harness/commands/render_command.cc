@@ -23,7 +23,9 @@ void Declare(CLI::App& options) {
   options.add_option("--at", "the moment: EVENT.begin, EVENT.end, or seconds")
       ->type_name("MOMENT")
       ->expected(1);
-  options.add_option("--camera", "from where: front, left, right, top, three_quarter, or a camera of the scenario")
+  options
+      .add_option("--camera",
+                  "from where: front, left, right, top, three_quarter, or a camera of the scenario")
       ->type_name("CAMERA")
       ->expected(1);
   DeclareRunOptions(options);
@@ -60,7 +62,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (auto asked = AskedPicture(options, prepared.value->scenario)) {
     const auto problem = WhyNoMoment(asked->at.value, *prepared.value->program);
     if (problem && IsGiven(options, "--at")) {
-      return Complain(context, ExitCode::kBadInput, "--at: " + problem->message + "; " + problem->hint);
+      return Complain(context, ExitCode::kBadInput,
+                      "--at: " + problem->message + "; " + problem->hint);
     }
     if (const auto why = WhyNoCamera(prepared.value->scenario, asked->camera.value))
       return Complain(context, ExitCode::kBadInput, "--" + *why);
@@ -81,7 +84,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const PictureResult drawn = Draw(options, *file, *prepared.value, run, context.root);
   for (const WrittenPicture& picture : drawn.pictures) {
     if (!picture.missed.empty())
-      context.err << "prehend: warning: " << picture.file << ": " << picture.missed << "; it shows the end\n";
+      context.err << "prehend: warning: " << picture.file << ": " << picture.missed
+                  << "; it shows the end\n";
   }
   if (IsGiven(options, "--json")) {
     OrderedJson json = RunJson(prepared.value->scenario, run);

@@ -15,7 +15,9 @@ namespace prehend::harness {
 namespace {
 
 void Declare(CLI::App& options) {
-  options.add_option("recording", "a file from 'prehend run --record', or from you: docs/recording-format.md")
+  options
+      .add_option("recording",
+                  "a file from 'prehend run --record', or from you: docs/recording-format.md")
       ->required()
       ->expected(1);
   options.add_option("--grammar", "another grammar: a name of the library or a .grammar file")
@@ -33,8 +35,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!episode.value) return Complain(context, episode.diagnostics);
   ReadResult<grammar::Overrides> settings = ParameterSettings(ValuesOf(options, "--set"));
   if (!settings.value) return Complain(context, settings.diagnostics);
-  const grammar::CompileResult compiled =
-      LoadGrammar(context.root, ValueOf(options, "--grammar", episode.value->header.grammar), *settings.value);
+  const grammar::CompileResult compiled = LoadGrammar(
+      context.root, ValueOf(options, "--grammar", episode.value->header.grammar), *settings.value);
   if (!compiled.program) return Complain(context, compiled.diagnostics);
 
   const grammar::Cast& cast = episode.value->header.cast;
@@ -44,7 +46,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   for (EpisodeFrame& frame : episode.value->frames) monitor.Advance(frame.View(), events);
   monitor.Finish(episode.value->end_tick, events);
   if (!monitor.error().empty()) {
-    return Complain(context, ExitCode::kBadInput, "the grammar cannot watch this recording: " + monitor.error());
+    return Complain(context, ExitCode::kBadInput,
+                    "the grammar cannot watch this recording: " + monitor.error());
   }
   RunResult run;
   run.status.kind = physics::RunStatus::Kind::kCompleted;

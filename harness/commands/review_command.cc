@@ -102,7 +102,8 @@ void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pendi
                 const std::vector<KeptPicture>& pending_pictures, std::vector<Review>& reviews) {
   if (!file.in_project) return;
   if (is_pending) reviews.push_back(ReviewOf(file, root));
-  if (const std::string engines = GoldenFiles(root).ReadEngineDifference(IdOf(file)); !engines.empty())
+  if (const std::string engines = GoldenFiles(root).ReadEngineDifference(IdOf(file));
+      !engines.empty())
     reviews.push_back({.id = IdOf(file), .kind = "engines", .text = engines});
   for (const KeptPicture& picture : pending_pictures) {
     if (picture.scenario == IdOf(file)) reviews.push_back(PictureReview(picture, root));
@@ -133,8 +134,12 @@ std::optional<std::vector<Review>> Reviews(const CLI::App& options, const Comman
   if (!patterns.empty()) return reviews;
   for (const std::string& id : pending) {
     const std::string file = GoldenFiles(context.root).PendingPath(id).string();
-    reviews.push_back(
-        {id, "orphan", "pending, but there is no such scenario: remove " + file + "\n", "", false, {file}});
+    reviews.push_back({id,
+                       "orphan",
+                       "pending, but there is no such scenario: remove " + file + "\n",
+                       "",
+                       false,
+                       {file}});
   }
   for (const Orphan& orphan : selection ? selection->orphans : std::vector<Orphan>()) {
     Review review{orphan.scenario, "orphan", Text(orphan)};

@@ -33,27 +33,35 @@ void Declare(CLI::App& options) {
       ->expected(-1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   options
-      .add_option("--filter", "only those that match this glob, or have tag:NAME; see prehend check --help")
+      .add_option("--filter",
+                  "only those that match this glob, or have tag:NAME; see prehend check --help")
       ->type_name("[!]GLOB|[!]tag:NAME")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  options.add_option("--grammar", "a grammar to score, may be given again; otherwise pick_and_place and original_2020")
+  options
+      .add_option(
+          "--grammar",
+          "a grammar to score, may be given again; otherwise pick_and_place and original_2020")
       ->type_name("NAME|FILE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   options
-      .add_option("--events", "only these events, for every grammar; otherwise all that docs/events.md defines")
+      .add_option("--events",
+                  "only these events, for every grammar; otherwise all that docs/events.md defines")
       ->type_name("NAME,..")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  options.add_option("--collar-ms", "how far off a boundary may be for the scores at a collar; otherwise 50")
+  options
+      .add_option("--collar-ms",
+                  "how far off a boundary may be for the scores at a collar; otherwise 50")
       ->type_name("MS")
       ->expected(1)
       ->check(NumberIn(0, 10000));
   DeclareFlag(options, "--json", "one JSON object instead of tables");
 }
 
-/// What a worker sends: {"problem", "bad_input"} or {"episodes": [{"ticks", "truth", "found", "not_judged"}, ..]}, one per grammar.
+/// What a worker sends: {"problem", "bad_input"} or {"episodes": [{"ticks", "truth", "found",
+/// "not_judged"}, ..]}, one per grammar.
 std::string Judged(const JudgeRequest& request) {
   bool bad_input = false;
   const auto episodes = JudgeEpisode(request, bad_input);
@@ -69,7 +77,8 @@ std::string Judged(const JudgeRequest& request) {
   return Json{{"episodes", std::move(sent)}}.dump();
 }
 
-/// Episodes by grammar; what could not be played is told on `context.err`, and `worst` says what kind it was.
+/// Episodes by grammar; what could not be played is told on `context.err`, and `worst` says what
+/// kind it was.
 std::vector<std::vector<JudgedEpisode>> JudgeAll(const ScenarioSelection& selection,
                                                  const std::vector<std::string>& grammars,
                                                  const std::vector<std::string>& events,
@@ -81,14 +90,17 @@ std::vector<std::vector<JudgedEpisode>> JudgeAll(const ScenarioSelection& select
     const JudgeRequest request{file.path, ids.back(), context.root, grammars, events};
     jobs.push_back([request] { return Judged(request); });
   }
-  const WorkerLimits limits{.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency())),
-                            .time_limit_s = kTimeLimit_s};
+  const WorkerLimits limits{
+      .jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency())),
+      .time_limit_s = kTimeLimit_s};
   const std::vector<WorkerResult> results = RunInWorkers(jobs, limits);
   std::vector<std::vector<JudgedEpisode>> by_grammar(grammars.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
-    const Json sent = results[i].finished ? Json::parse(results[i].output) : Json{{"problem", results[i].reason + "\n"}};
+    const Json sent = results[i].finished ? Json::parse(results[i].output)
+                                          : Json{{"problem", results[i].reason + "\n"}};
     if (sent.contains("problem")) {
-      context.err << "prehend: " << ids[i] << " is not scored: " << sent["problem"].get<std::string>();
+      context.err << "prehend: " << ids[i]
+                  << " is not scored: " << sent["problem"].get<std::string>();
       const bool bad_input = sent.value("bad_input", false);
       if (worst != ExitCode::kFailure) worst = bad_input ? ExitCode::kBadInput : ExitCode::kFailure;
       continue;
@@ -130,7 +142,8 @@ std::string UnknownEvent(const std::vector<std::string>& events) {
 }
 
 /// Of the judged events those that no rule of the grammar prints.
-std::vector<std::string> NotSpokenOf(const grammar::Program& program, const std::vector<std::string>& events) {
+std::vector<std::string> NotSpokenOf(const grammar::Program& program,
+                                     const std::vector<std::string>& events) {
   std::vector<std::string> silent;
   for (const std::string_view event : OracleEvents()) {
     const bool judged = events.empty() || std::ranges::find(events, event) != events.end();
@@ -145,9 +158,12 @@ std::vector<std::string> NotSpokenOf(const grammar::Program& program, const std:
 void Print(const std::vector<score::Score>& scores, double collar_s, std::ostream& out) {
   for (const score::Score& one : scores) out << ScoreTable(one, collar_s) << "\n";
   if (scores.size() > 1) out << SideBySide(scores, collar_s) << "\n";
-  out << "C correct, D deleted, F fragmented, M merged, FM both, I' inserted (Ward et al. 2011); boundary errors are\n"
-         "found - true: median / 95th percentile / largest, the last two by magnitude; late: from an event's end to its\n"
-         "decision, median / 95th percentile / largest. Every grammar is scored on the same true events.\n";
+  out << "C correct, D deleted, F fragmented, M merged, FM both, I' inserted (Ward et al. 2011); "
+         "boundary errors are\n"
+         "found - true: median / 95th percentile / largest, the last two by magnitude; late: from "
+         "an event's end to its\n"
+         "decision, median / 95th percentile / largest. Every grammar is scored on the same true "
+         "events.\n";
 }
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
@@ -163,14 +179,15 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     not_spoken_of.push_back(NotSpokenOf(*compiled.program, events));
   }
   std::string problem;
-  const auto selection =
-      SelectScenarios(ValuesOf(options, "names"), ValuesOf(options, "--filter"), context.root, problem);
+  const auto selection = SelectScenarios(ValuesOf(options, "names"), ValuesOf(options, "--filter"),
+                                         context.root, problem);
   if (!selection) return Complain(context, ExitCode::kNothing, problem);
 
   ExitCode worst = ExitCode::kAgrees;
   const auto by_grammar = JudgeAll(*selection, grammars, events, context, worst);
   if (by_grammar.front().empty()) return worst;  // no table of nothing
-  const double collar_s = std::stod(ValueOf(options, "--collar-ms", std::to_string(kDefaultCollar_ms))) / 1000;
+  const double collar_s =
+      std::stod(ValueOf(options, "--collar-ms", std::to_string(kDefaultCollar_ms))) / 1000;
   std::vector<score::Score> scores;
   for (std::size_t g = 0; g < grammars.size(); ++g) {
     scores.push_back(ScoreOf(grammars[g], by_grammar[g], collar_s));

@@ -16,9 +16,15 @@ namespace prehend::harness {
 namespace {
 
 void Declare(CLI::App& options) {
-  options.add_option("scenario", "a name, skill/name or a file; or a recording")->required()->expected(1);
-  options.add_option("-o,--output", "the file to write, .csv or .json; otherwise CSV is printed")->type_name("FILE")->expected(1);
-  options.add_option("--only", "an event, condition or signal (speed_along), may be given again; otherwise all")
+  options.add_option("scenario", "a name, skill/name or a file; or a recording")
+      ->required()
+      ->expected(1);
+  options.add_option("-o,--output", "the file to write, .csv or .json; otherwise CSV is printed")
+      ->type_name("FILE")
+      ->expected(1);
+  options
+      .add_option("--only",
+                  "an event, condition or signal (speed_along), may be given again; otherwise all")
       ->type_name("NAME")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -32,8 +38,11 @@ std::string WhyNotKnown(const std::vector<std::string>& only, const grammar::Pro
   for (const std::string& name : only) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const std::string near = grammar::NearestName(name, known);
-    return fmt::format("--only: found '{}', wanted an event, condition or signal of grammar '{}'; {}", name, program.name,
-                       near.empty() ? fmt::format("there are: {}", fmt::join(known, ", ")) : fmt::format("did you mean '{}'?", near));
+    return fmt::format(
+        "--only: found '{}', wanted an event, condition or signal of grammar '{}'; {}", name,
+        program.name,
+        near.empty() ? fmt::format("there are: {}", fmt::join(known, ", "))
+                     : fmt::format("did you mean '{}'?", near));
   }
   return "";
 }
@@ -42,10 +51,13 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const std::string output = ValueOf(options, "--output");
   const bool as_json = IsGiven(options, "--json") || output.ends_with(".json");
   if (!output.empty() && !output.ends_with(".json") && !output.ends_with(".csv")) {
-    return Complain(context, ExitCode::kBadInput, fmt::format("--output: found '{}', wanted a file that ends with .csv or .json", output));
+    return Complain(
+        context, ExitCode::kBadInput,
+        fmt::format("--output: found '{}', wanted a file that ends with .csv or .json", output));
   }
   if (IsGiven(options, "--json") && output.ends_with(".csv")) {
-    return Complain(context, ExitCode::kBadInput, "--json and a file that ends with .csv contradict each other");
+    return Complain(context, ExitCode::kBadInput,
+                    "--json and a file that ends with .csv contradict each other");
   }
   const OpenedEpisode source = OpenEpisodeOrComplain(options, context);
   if (!source.value) return source.exit_code;
@@ -56,7 +68,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   // What cannot be written is refused before the episode is played.
   std::optional<WholeFile> file;
   if (!output.empty()) file.emplace(output);
-  if (file && !file->problem().empty()) return Complain(context, ExitCode::kBadInput, "--output: " + file->problem());
+  if (file && !file->problem().empty())
+    return Complain(context, ExitCode::kBadInput, "--output: " + file->problem());
 
   const explain::Watched watched = explain::Watch(*source.value);
   if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
@@ -71,9 +84,11 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (file) {
     const std::string problem = file->Commit();
     if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--output: " + problem);
-    context.out << fmt::format("{}: {} tracks, {} frames\n", output, tracks.tracks.size(), tracks.ticks.size());
+    context.out << fmt::format("{}: {} tracks, {} frames\n", output, tracks.tracks.size(),
+                               tracks.ticks.size());
   }
-  return watched.failure.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, watched.failure);
+  return watched.failure.empty() ? ExitCode::kAgrees
+                                 : Complain(context, ExitCode::kFailure, watched.failure);
 }
 
 }  // namespace

@@ -9,7 +9,8 @@ void Warn(const CommandContext& context, const grammar::Diagnostics& warnings) {
   if (!warnings.empty()) context.err << Format(warnings);
 }
 
-void WarnOf(const grammar::Program& program, const grammar::Cast& cast, const CommandContext& context) {
+void WarnOf(const grammar::Program& program, const grammar::Cast& cast,
+            const CommandContext& context) {
   Warn(context, Warnings(program, cast));
 }
 

@@ -23,7 +23,8 @@ struct Word {
 
 class AskReader {
  public:
-  AskReader(const std::string& option, const std::string& text, const grammar::Program& program, const grammar::Cast& cast)
+  AskReader(const std::string& option, const std::string& text, const grammar::Program& program,
+            const grammar::Cast& cast)
       : option_(option), text_(text), program_(program), cast_(cast) {}
 
   ReadResult<Ask> Read() {
@@ -53,7 +54,8 @@ class AskReader {
   }
 
   void Complain(int column, std::string message, std::string hint = {}) {
-    diagnostics_.push_back(grammar::DiagnosticAt(option_, text_, {1, column}, std::move(message), std::move(hint)));
+    diagnostics_.push_back(
+        grammar::DiagnosticAt(option_, text_, {1, column}, std::move(message), std::move(hint)));
   }
 
   static std::string Hint(const std::string& name, const std::vector<std::string>& known) {
@@ -79,7 +81,9 @@ class AskReader {
     }
     if (ask_.rule != kNone) return true;
     std::sort(names.begin(), names.end());
-    Complain(word.column, fmt::format("found '{}', wanted an event or condition of grammar '{}'", word.text, program_.name),
+    Complain(word.column,
+             fmt::format("found '{}', wanted an event or condition of grammar '{}'", word.text,
+                         program_.name),
              Hint(word.text, names));
     return false;
   }
@@ -95,14 +99,16 @@ class AskReader {
       for (const grammar::RuleRole& known : rule.roles) roles.push_back(known.name);
       const auto found = std::find(roles.begin(), roles.end(), role);
       if (found == roles.end()) {
-        return Complain(column, fmt::format("found '{}', wanted a role of '{}'", role, rule.name), Hint(role, roles));
+        return Complain(column, fmt::format("found '{}', wanted a role of '{}'", role, rule.name),
+                        Hint(role, roles));
       }
       place = static_cast<std::size_t>(found - roles.begin());
       entity = word.text.substr(equals + 1);
       column += static_cast<int>(equals) + 1;
     }
     if (place >= rule.roles.size()) {
-      return Complain(column, fmt::format("found '{}', but '{}' has {} roles", entity, rule.name, rule.roles.size()));
+      return Complain(column, fmt::format("found '{}', but '{}' has {} roles", entity, rule.name,
+                                          rule.roles.size()));
     }
     if (entity != "any") ReadEntity(rule, place, entity, column);
   }
@@ -112,14 +118,16 @@ class AskReader {
     for (const grammar::CastMember& member : cast_.entities) names.push_back(member.name);
     const auto found = std::find(names.begin(), names.end(), entity);
     if (found == names.end()) {
-      return Complain(column, fmt::format("found '{}', wanted an entity of the episode", entity), Hint(entity, names));
+      return Complain(column, fmt::format("found '{}', wanted an entity of the episode", entity),
+                      Hint(entity, names));
     }
     const int index = static_cast<int>(found - names.begin());
     const std::vector<std::string>& classes = cast_.entities[index].classes;
     const std::string& wanted = rule.roles[place].class_name;
     if (std::find(classes.begin(), classes.end(), wanted) == classes.end()) {
-      return Complain(column, fmt::format("found '{}', a {}; the role '{}' of '{}' wants a {}", entity, classes.front(),
-                                          rule.roles[place].name, rule.name, wanted));
+      return Complain(column,
+                      fmt::format("found '{}', a {}; the role '{}' of '{}' wants a {}", entity,
+                                  classes.front(), rule.roles[place].name, rule.name, wanted));
     }
     if (ask_.entities[place] != kNone) {
       return Complain(column, fmt::format("the role '{}' is named twice", rule.roles[place].name));
@@ -140,7 +148,9 @@ class AskReader {
     unit.erase(0, std::min(unit.find_first_not_of(' '), unit.size()));
     const bool is_time = parsed.ec == std::errc() && std::isfinite(value) && value >= 0;
     if (!is_time || (!unit.empty() && unit != "s" && unit != "ms")) {
-      return Complain(column, fmt::format("found '{}', wanted a time from the episode's begin", text), "for example: @1.24s, @1240 ms");
+      return Complain(column,
+                      fmt::format("found '{}', wanted a time from the episode's begin", text),
+                      "for example: @1.24s, @1240 ms");
     }
     ask_.time_s = unit == "ms" ? value / 1000 : value;
   }
@@ -155,8 +165,8 @@ class AskReader {
 
 }  // namespace
 
-ReadResult<Ask> ParseAsk(const std::string& option, const std::string& text, const grammar::Program& program,
-                         const grammar::Cast& cast) {
+ReadResult<Ask> ParseAsk(const std::string& option, const std::string& text,
+                         const grammar::Program& program, const grammar::Cast& cast) {
   return AskReader(option, text, program, cast).Read();
 }
 

@@ -17,7 +17,8 @@ void Fill(Hindsight& past, int rule, Binding& entities, std::size_t role, std::v
   if (lanes.size() >= kMostBindings) return;
   if (role == roles) {
     const int lane = past.LaneOf(rule, entities);
-    if (lane != kNone && std::find(lanes.begin(), lanes.end(), lane) == lanes.end()) lanes.push_back(lane);
+    if (lane != kNone && std::find(lanes.begin(), lanes.end(), lane) == lanes.end())
+      lanes.push_back(lane);
     return;
   }
   if (entities[role] != kNone) return Fill(past, rule, entities, role + 1, lanes);

@@ -19,7 +19,9 @@ using grammar::Node;
 using grammar::Op;
 using Mark = Reason::Mark;
 
-std::string Clauses::Time(FrameNumber frame) { return At(past_.TickOf(frame), past_.cast().ticks_per_second); }
+std::string Clauses::Time(FrameNumber frame) {
+  return At(past_.TickOf(frame), past_.cast().ticks_per_second);
+}
 
 void Clauses::Split(int node, bool truth, std::vector<Clause>& out) const {
   const Node& n = NodeAt(node);
@@ -47,18 +49,27 @@ std::optional<Clauses::Measured> Clauses::Measure(int node, const Moment& at) {
   const auto reach = past_.ReachOf(node, at);
   if (!reach) return std::nullopt;
   const Measured across{reach->distance_m, reach->radius_m, grammar::kMetres, " from the centre"};
-  const Measured upright{reach->height_m, reach->most_height_m, grammar::kMetres, " above or below the centre"};
+  const Measured upright{reach->height_m, reach->most_height_m, grammar::kMetres,
+                         " above or below the centre"};
   if (n.op != Op::kInCylinder) return across;
   // The side of the cylinder that is nearest to being crossed, or is crossed most.
-  return reach->distance_m - reach->radius_m >= reach->height_m - reach->most_height_m ? across : upright;
+  return reach->distance_m - reach->radius_m >= reach->height_m - reach->most_height_m ? across
+                                                                                       : upright;
 }
 
-Reason Clauses::Measurement(const Clause& clause, const Moment& at, const std::optional<Measured>& before) {
-  Reason reason{.mark = Mark::kHeld, .what = ClauseText(past_, at.lane, clause.node), .how = {}, .where = {},
-                .tick = past_.TickOf(at.frame), .reading = {}, .because = {}};
+Reason Clauses::Measurement(const Clause& clause, const Moment& at,
+                            const std::optional<Measured>& before) {
+  Reason reason{.mark = Mark::kHeld,
+                .what = ClauseText(past_, at.lane, clause.node),
+                .how = {},
+                .where = {},
+                .tick = past_.TickOf(at.frame),
+                .reading = {},
+                .because = {}};
   const std::optional<Measured> now = Measure(clause.node, at);
   if (!now) return reason;
-  const std::string unit = now->dimension == grammar::kPlain ? "" : grammar::DimensionText(now->dimension);
+  const std::string unit =
+      now->dimension == grammar::kPlain ? "" : grammar::DimensionText(now->dimension);
   reason.reading = Reading{now->value, now->limit, unit};
   const ValueTexts texts = Compared(now->value, now->limit, now->dimension);
   const bool is_region = !now->of.empty();
@@ -78,10 +89,12 @@ Reason Clauses::Measurement(const Clause& clause, const Moment& at, const std::o
 }
 
 std::string Clauses::Since(int node, const Moment& at, bool truth) {
-  const FrameNumber floor = AsksFor(past_.program(), node, Op::kAtBegin) && at.begin ? *at.begin : 0;
+  const FrameNumber floor =
+      AsksFor(past_.program(), node, Op::kAtBegin) && at.begin ? *at.begin : 0;
   FrameNumber first = at.frame;
   Moment earlier = at;
-  for (earlier.frame = at.frame - 1; earlier.frame >= floor && past_.Truth(node, earlier) == truth; --earlier.frame) {
+  for (earlier.frame = at.frame - 1; earlier.frame >= floor && past_.Truth(node, earlier) == truth;
+       --earlier.frame) {
     first = earlier.frame;
   }
   return first == 0 ? "from the first frame on" : "since " + Time(first);
@@ -93,7 +106,8 @@ Reason Clauses::Leaf(int node, const Moment& at, bool truth, bool brief) {
   const bool turned = at.frame > 0 && past_.Truth(node, earlier) != truth;
   Reason reason = Measurement({node, truth}, at, turned ? Measure(node, earlier) : std::nullopt);
   reason.mark = turned || at.frame == 0 ? Mark::kTurned : Mark::kHeld;
-  if (reason.how.empty()) reason.how = std::string(turned ? "became " : "") + (truth ? "true" : "false");
+  if (reason.how.empty())
+    reason.how = std::string(turned ? "became " : "") + (truth ? "true" : "false");
   if (!turned && !brief) reason.how += ", " + Since(node, at, truth);
   return reason;
 }
@@ -103,7 +117,9 @@ Reason Clauses::Boundary(int lane, const Fate& fate, bool end, const Follow& fol
   const FrameNumber frame = end ? fate.span.end.frame : fate.span.begin.frame;
   return {.mark = Mark::kTurned,
           .what = Label(past_, lane),
-          .how = end ? "ended" : frame == 0 ? "held from the first frame on" : "began",
+          .how = end          ? "ended"
+                 : frame == 0 ? "held from the first frame on"
+                              : "began",
           .where = rule.form == grammar::Form::kTouching ? "" : Source(rule.file, rule.place),
           .tick = past_.TickOf(frame),
           .reading = {},
@@ -118,26 +134,39 @@ Reason Clauses::Impossible(int lane, int slot) {
   std::string why = "an entity would play two roles";
   for (std::size_t role = 0; role < rule.roles.size(); ++role) {
     if (reference.roles[role] == kNone) continue;
-    const grammar::CastMember& member = past_.cast().entities[past_.At(lane).entities[reference.roles[role]]];
+    const grammar::CastMember& member =
+        past_.cast().entities[past_.At(lane).entities[reference.roles[role]]];
     const std::string& wanted = rule.roles[role].class_name;
     names += (names.empty() ? "" : ", ") + member.name;
-    if (std::ranges::count(member.classes, wanted) == 0) why = fmt::format("{} is no {}", member.name, wanted);
+    if (std::ranges::count(member.classes, wanted) == 0)
+      why = fmt::format("{} is no {}", member.name, wanted);
   }
-  return {.mark = Mark::kHeld, .what = fmt::format("{}({})", rule.name, names), .how = "impossible: " + why};
+  return {.mark = Mark::kHeld,
+          .what = fmt::format("{}({})", rule.name, names),
+          .how = "impossible: " + why};
 }
 
 Reason Clauses::Reference(int lane, int slot, FrameNumber frame, bool truth, const Follow& follow) {
   const int target = past_.Referred(lane, slot);
   if (target == kNone) return Impossible(lane, slot);
   const Fate* begun = past_.LastBegun(target, frame);
-  Reason reason{.mark = Mark::kHeld, .what = Label(past_, target), .how = {}, .where = {}, .tick = {}, .reading = {}, .because = {}};
+  Reason reason{.mark = Mark::kHeld,
+                .what = Label(past_, target),
+                .how = {},
+                .where = {},
+                .tick = {},
+                .reading = {},
+                .because = {}};
   if (truth && begun != nullptr) {
     if (begun->span.begin.frame == frame) return Boundary(target, *begun, false, follow);
-    reason.how = begun->span.begin.frame == 0 ? "held from the first frame on" : "held since " + Time(begun->span.begin.frame);
+    reason.how = begun->span.begin.frame == 0 ? "held from the first frame on"
+                                              : "held since " + Time(begun->span.begin.frame);
     reason.tick = begun->span.begin.tick;
   } else {
-    if (begun != nullptr && begun->span.end.frame == frame) return Boundary(target, *begun, true, follow);
-    reason.how = begun == nullptr ? "never held so far" : "had ended at " + Time(begun->span.end.frame);
+    if (begun != nullptr && begun->span.end.frame == frame)
+      return Boundary(target, *begun, true, follow);
+    reason.how =
+        begun == nullptr ? "never held so far" : "had ended at " + Time(begun->span.end.frame);
     if (begun != nullptr) reason.tick = begun->span.end.tick;
     for (const Fate& next : past_.FatesOf(target)) {
       if (next.kind != Fate::Kind::kInterval || next.span.begin.frame <= frame) continue;
@@ -149,12 +178,15 @@ Reason Clauses::Reference(int lane, int slot, FrameNumber frame, bool truth, con
 }
 
 // Of a reference, a boundary of its interval; of any other condition, its clauses.
-void Clauses::Edge(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out) {
+void Clauses::Edge(int node, const Moment& at, bool truth, const Follow& follow, bool brief,
+                   Reasons& out) {
   const Node& n = NodeAt(node);
   const bool end = n.op == Op::kEnds;
   const Node& arg = NodeAt(n.args[0]);
   if (!truth) {
-    out.push_back({.mark = Mark::kHeld, .what = ClauseText(past_, at.lane, node), .how = "not at this moment"});
+    out.push_back({.mark = Mark::kHeld,
+                   .what = ClauseText(past_, at.lane, node),
+                   .how = "not at this moment"});
   } else if (arg.op != Op::kHolds) {
     Collect(n.args[0], at, !end, follow, brief, out);
   } else {
@@ -168,10 +200,12 @@ void Clauses::Edge(int node, const Moment& at, bool truth, const Follow& follow,
 }
 
 // A conjunction is true because all its parts are, and false because of those that are not.
-void Clauses::Collect(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out) {
+void Clauses::Collect(int node, const Moment& at, bool truth, const Follow& follow, bool brief,
+                      Reasons& out) {
   const Node& n = NodeAt(node);
   switch (n.op) {
-    case Op::kNot: return Collect(n.args[0], at, !truth, follow, brief, out);
+    case Op::kNot:
+      return Collect(n.args[0], at, !truth, follow, brief, out);
     case Op::kAnd:
     case Op::kOr:
       for (const int arg : {n.args[0], n.args[1]}) {
@@ -179,16 +213,20 @@ void Clauses::Collect(int node, const Moment& at, bool truth, const Follow& foll
       }
       return;
     case Op::kBegins:
-    case Op::kEnds: return Edge(node, at, truth, follow, brief, out);
-    case Op::kHolds: return out.push_back(Reference(at.lane, n.slot, at.frame, truth, follow));
-    default: return out.push_back(Leaf(node, at, truth, brief));
+    case Op::kEnds:
+      return Edge(node, at, truth, follow, brief, out);
+    case Op::kHolds:
+      return out.push_back(Reference(at.lane, n.slot, at.frame, truth, follow));
+    default:
+      return out.push_back(Leaf(node, at, truth, brief));
   }
 }
 
 Reasons Clauses::Change(int node, const Moment& at, bool truth, const Follow& follow, bool brief) {
   Reasons reasons;
   Collect(node, at, truth, follow, brief, reasons);
-  if (brief) std::erase_if(reasons, [](const Reason& reason) { return reason.mark != Mark::kTurned; });
+  if (brief)
+    std::erase_if(reasons, [](const Reason& reason) { return reason.mark != Mark::kTurned; });
   return reasons;
 }
 
@@ -234,7 +272,8 @@ double Clauses::NearestMember(int any_lane, FrameNumber frame, int depth) {
   for (const int member : past_.At(any_lane).members) {
     const grammar::Rule& rule = past_.RuleOf(member);
     if (rule.form != grammar::Form::kWhile) continue;
-    nearest = std::max(nearest, 0.9 * Nearness(rule.first, {.lane = member, .frame = frame}, true, depth));
+    nearest = std::max(nearest,
+                       0.9 * Nearness(rule.first, {.lane = member, .frame = frame}, true, depth));
   }
   return nearest;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clauses of a condition at a frame: which of them made it true or false, with what they measured.
-// Knows the forms of the language, no rule.
-// Tested by tests/harness/explain_test.cc
+// The clauses of a condition at a frame: which of them made it true or false, with what they
+// measured. Knows the forms of the language, no rule. Tested by tests/harness/explain_test.cc
 #pragma once
 
 #include <functional>
@@ -21,11 +20,12 @@ class Clauses {
 
   explicit Clauses(grammar::Hindsight& past) : past_(past) {}
 
-  /// The clauses that make the node what it is at the frame: true, or false. What became so at this very frame is
-  /// followed. `brief` leaves out what was so already.
+  /// The clauses that make the node what it is at the frame: true, or false. What became so at this
+  /// very frame is followed. `brief` leaves out what was so already.
   Reasons Change(int node, const Moment& at, bool truth, const Follow& follow, bool brief = false);
   /// The same for a reference of the binding.
-  Reason Reference(int lane, int slot, grammar::FrameNumber frame, bool truth, const Follow& follow);
+  Reason Reference(int lane, int slot, grammar::FrameNumber frame, bool truth,
+                   const Follow& follow);
 
   /// Every clause of the node, as it was at the frame: those that are not `truth` have failed.
   Reasons State(int node, const Moment& at, bool truth);
@@ -57,7 +57,8 @@ class Clauses {
   void Edge(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out);
   Reason Leaf(int node, const Moment& at, bool truth, bool brief);
   Reason Measurement(const Clause& clause, const Moment& at, const std::optional<Measured>& before);
-  void Collect(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out);
+  void Collect(int node, const Moment& at, bool truth, const Follow& follow, bool brief,
+               Reasons& out);
   void Split(int node, bool truth, std::vector<Clause>& out) const;
   std::string WhenInstead(const grammar::Node& edge, const Moment& at);
   Reason Impossible(int lane, int slot);

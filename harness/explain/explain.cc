@@ -26,15 +26,20 @@ std::vector<const Fate*> IntervalsOf(Hindsight& past, const Ask& ask) {
     }
   }
   std::stable_sort(intervals.begin(), intervals.end(), [](const Fate* a, const Fate* b) {
-    return std::tie(a->span.begin.tick, a->span.end.tick) < std::tie(b->span.begin.tick, b->span.end.tick);
+    return std::tie(a->span.begin.tick, a->span.end.tick) <
+           std::tie(b->span.begin.tick, b->span.end.tick);
   });
   return intervals;
 }
 
-Tick TickOf(const Ask& ask, const Hindsight& past) { return TickAt(*ask.time_s, past.cast().ticks_per_second); }
+Tick TickOf(const Ask& ask, const Hindsight& past) {
+  return TickAt(*ask.time_s, past.cast().ticks_per_second);
+}
 
 // A time that was read off a table is rounded, so the end counts, too.
-bool Contains(const Fate& fate, Tick tick) { return fate.span.begin.tick <= tick + 1 && tick <= fate.span.end.tick; }
+bool Contains(const Fate& fate, Tick tick) {
+  return fate.span.begin.tick <= tick + 1 && tick <= fate.span.end.tick;
+}
 
 }  // namespace
 
@@ -50,7 +55,8 @@ std::vector<WhyEvent> ExplainAll(Hindsight& past) {
     }
   }
   std::stable_sort(events.begin(), events.end(), [](const WhyEvent& a, const WhyEvent& b) {
-    return std::tie(a.interval.begin, a.interval.end, a.event) < std::tie(b.interval.begin, b.interval.end, b.event);
+    return std::tie(a.interval.begin, a.interval.end, a.event) <
+           std::tie(b.interval.begin, b.interval.end, b.event);
   });
   return events;
 }
@@ -59,7 +65,8 @@ std::vector<WhyEvent> ExplainEvents(Hindsight& past, const Ask& ask) {
   std::vector<WhyEvent> events;
   EventReasons reasons(past);
   for (const Fate* fate : IntervalsOf(past, ask)) {
-    if (!ask.time_s || Contains(*fate, TickOf(ask, past))) events.push_back(reasons.Explain(fate->lane, *fate));
+    if (!ask.time_s || Contains(*fate, TickOf(ask, past)))
+      events.push_back(reasons.Explain(fate->lane, *fate));
   }
   return events;
 }
@@ -72,7 +79,8 @@ std::vector<WhyEvent> NearestEvents(Hindsight& past, const Ask& ask) {
     const Tick tick = TickOf(ask, past);
     return std::max({Tick{0}, fate->span.begin.tick - tick, tick - fate->span.end.tick});
   };
-  std::stable_sort(intervals.begin(), intervals.end(), [&](const Fate* a, const Fate* b) { return away(a) < away(b); });
+  std::stable_sort(intervals.begin(), intervals.end(),
+                   [&](const Fate* a, const Fate* b) { return away(a) < away(b); });
   if (intervals.size() > kMost) intervals.resize(kMost);
   std::vector<WhyEvent> events;
   EventReasons reasons(past);

@@ -15,9 +15,11 @@ namespace prehend::harness::explain {
 
 /// Every event of the episode in the order of time, with what turned at its boundaries.
 std::vector<WhyEvent> ExplainAll(grammar::Hindsight& past);
-/// The intervals that are asked for, in the order of time: those that contain its moment, if it has one.
+/// The intervals that are asked for, in the order of time: those that contain its moment, if it has
+/// one.
 std::vector<WhyEvent> ExplainEvents(grammar::Hindsight& past, const Ask& ask);
-/// The intervals of the asked name and entities that are nearest to its moment, at most three; without reasons.
+/// The intervals of the asked name and entities that are nearest to its moment, at most three;
+/// without reasons.
 std::vector<WhyEvent> NearestEvents(grammar::Hindsight& past, const Ask& ask);
 /// Why there is none.
 WhyMissing ExplainMissing(grammar::Hindsight& past, const Ask& ask);

@@ -13,15 +13,21 @@ using grammar::Tick;
 
 const char* Name(Reason::Mark mark) {
   switch (mark) {
-    case Reason::Mark::kTurned: return "turned";
-    case Reason::Mark::kHeld: return "held";
-    case Reason::Mark::kFailed: return "failed";
-    case Reason::Mark::kNote: return "note";
+    case Reason::Mark::kTurned:
+      return "turned";
+    case Reason::Mark::kHeld:
+      return "held";
+    case Reason::Mark::kFailed:
+      return "failed";
+    case Reason::Mark::kNote:
+      return "note";
   }
   return "";
 }
 
-double Seconds(Tick tick, Tick ticks_per_second) { return static_cast<double>(tick) / static_cast<double>(ticks_per_second); }
+double Seconds(Tick tick, Tick ticks_per_second) {
+  return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
+}
 
 // JSON has no infinity.
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -68,7 +74,8 @@ Json ToJson(const WhyMissing& why, Tick ticks_per_second) {
   json["reasons"] = ToJson(why.reasons, ticks_per_second);
   Json nearest = Json::array();
   for (const WhyEvent& other : why.nearest) {
-    nearest.push_back({{"begin_s", Seconds(other.interval.begin, ticks_per_second)}, {"end_s", Seconds(other.interval.end, ticks_per_second)}});
+    nearest.push_back({{"begin_s", Seconds(other.interval.begin, ticks_per_second)},
+                       {"end_s", Seconds(other.interval.end, ticks_per_second)}});
   }
   json["happened_at"] = std::move(nearest);
   return json;

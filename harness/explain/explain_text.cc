@@ -19,10 +19,14 @@ constexpr std::size_t kWidest = 70;  // what stands beyond starts a column of it
 
 char Sign(Mark mark) {
   switch (mark) {
-    case Mark::kTurned: return '>';
-    case Mark::kHeld: return '=';
-    case Mark::kFailed: return '-';
-    case Mark::kNote: return ' ';
+    case Mark::kTurned:
+      return '>';
+    case Mark::kHeld:
+      return '=';
+    case Mark::kFailed:
+      return '-';
+    case Mark::kNote:
+      return ' ';
   }
   return ' ';
 }
@@ -95,12 +99,14 @@ std::string Late(const WhyEvent& why, Tick ticks_per_second) {
 }  // namespace
 
 std::string Text(const WhyEvent& why, Tick ticks_per_second) {
-  std::string text = fmt::format("{}  {}{}  ({})\n", why.event, IntervalText(why.interval, ticks_per_second),
-                                 why.open_end ? ", open end" : "", why.where);
+  std::string text =
+      fmt::format("{}  {}{}  ({})\n", why.event, IntervalText(why.interval, ticks_per_second),
+                  why.open_end ? ", open end" : "", why.where);
   text += Tree("  began at " + At(why.interval.begin, ticks_per_second), why.began);
   text += Tree("  ended at " + At(why.interval.end, ticks_per_second), why.ended);
   text += Tree("  counts", why.counted);
-  const std::string decided = "  decided at " + At(why.decided, ticks_per_second) + ", " + Late(why, ticks_per_second);
+  const std::string decided =
+      "  decided at " + At(why.decided, ticks_per_second) + ", " + Late(why, ticks_per_second);
   return text + (why.waited.empty() ? decided + "\n" : Tree(decided, why.waited));
 }
 
@@ -116,10 +122,12 @@ std::string Text(const WhyMissing& why, Tick ticks_per_second) {
 }
 
 std::string Table(const std::vector<WhyEvent>& events, Tick ticks_per_second) {
-  std::vector<std::vector<std::string>> rows = {{"event", "begin_s", "end_s", "began", "ended", "decided"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"event", "begin_s", "end_s", "began", "ended", "decided"}};
   for (const WhyEvent& why : events) {
-    rows.push_back({why.event, SecondsText(why.interval.begin, ticks_per_second), SecondsText(why.interval.end, ticks_per_second),
-                    InOneLine(why.began), InOneLine(why.ended), Late(why, ticks_per_second)});
+    rows.push_back({why.event, SecondsText(why.interval.begin, ticks_per_second),
+                    SecondsText(why.interval.end, ticks_per_second), InOneLine(why.began),
+                    InOneLine(why.ended), Late(why, ticks_per_second)});
   }
   std::string text;
   for (const std::string& line : AlignColumns(rows)) text += line + "\n";

@@ -9,23 +9,28 @@
 
 namespace prehend::harness::explain {
 
-inline bool IsComparison(grammar::Op op) { return op >= grammar::Op::kLess && op <= grammar::Op::kNotEqual; }
+inline bool IsComparison(grammar::Op op) {
+  return op >= grammar::Op::kLess && op <= grammar::Op::kNotEqual;
+}
 
 inline bool IsRegion(grammar::Op op) {
-  return op == grammar::Op::kInSphere || op == grammar::Op::kBoxInSphere || op == grammar::Op::kInCylinder;
+  return op == grammar::Op::kInSphere || op == grammar::Op::kBoxInSphere ||
+         op == grammar::Op::kInCylinder;
 }
 
 /// What stood in the grammar for a node; nothing for those that the compiler added.
 inline const grammar::NodeNote& NoteOf(const grammar::Program& program, int node) {
   static const grammar::NodeNote kNothing;
-  return node >= 0 && node < static_cast<int>(program.notes.size()) ? program.notes[node] : kNothing;
+  return node >= 0 && node < static_cast<int>(program.notes.size()) ? program.notes[node]
+                                                                    : kNothing;
 }
 
 /// Whether a value at the interval's begin or end (kAtBegin, kAtEnd) is part of it.
 inline bool AsksFor(const grammar::Program& program, int node, grammar::Op op) {
   if (node == grammar::kNone) return false;
   const grammar::Node& n = program.nodes[node];
-  return n.op == op || std::any_of(n.args.begin(), n.args.end(), [&](int arg) { return AsksFor(program, arg, op); });
+  return n.op == op || std::any_of(n.args.begin(), n.args.end(),
+                                   [&](int arg) { return AsksFor(program, arg, op); });
 }
 
 }  // namespace prehend::harness::explain

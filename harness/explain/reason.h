@@ -26,9 +26,9 @@ struct Reason {
     kNote,    ///< says more about what stands above it
   };
   Mark mark = Mark::kNote;
-  std::string what;  ///< the clause: "grasping(right_hand, milk)"
-  std::string how;   ///< "rose to 31 mm, above 20 mm"
-  std::string where;  ///< of a rule: "pick_and_place.grammar:57"
+  std::string what;                   ///< the clause: "grasping(right_hand, milk)"
+  std::string how;                    ///< "rose to 31 mm, above 20 mm"
+  std::string where;                  ///< of a rule: "pick_and_place.grammar:57"
   std::optional<grammar::Tick> tick;  ///< when
   std::optional<Reading> reading;
   std::vector<Reason> because;
@@ -53,9 +53,10 @@ struct WhyMissing {
   std::string event;
   std::string where;
   std::optional<grammar::Tick> expected_at;
-  std::string because;   ///< the first clause that failed, in one sentence
+  std::string because;  ///< the first clause that failed, in one sentence
   Reasons reasons;
-  std::vector<WhyEvent> nearest;  ///< of the same name and entities, at other times; without reasons
+  std::vector<WhyEvent>
+      nearest;  ///< of the same name and entities, at other times; without reasons
 };
 
 }  // namespace prehend::harness::explain

@@ -24,7 +24,8 @@ using grammar::Op;
 using grammar::Program;
 using grammar::Rule;
 
-/// A number of one rule that can be plotted: a side of a comparison, or how far something is from a region's centre.
+/// A number of one rule that can be plotted: a side of a comparison, or how far something is from a
+/// region's centre.
 struct Signal {
   enum class What { kNumber, kDistance, kHeight };
   int node = kNone;
@@ -41,7 +42,8 @@ void CollectSignals(const Program& program, int node, std::vector<Signal>& signa
   } else if (IsRegion(n.op)) {
     signals.push_back({node, Signal::What::kDistance});
     if (n.op == Op::kInCylinder) signals.push_back({node, Signal::What::kHeight});
-  } else if (n.op == Op::kAnd || n.op == Op::kOr || n.op == Op::kNot || n.op == Op::kBegins || n.op == Op::kEnds) {
+  } else if (n.op == Op::kAnd || n.op == Op::kOr || n.op == Op::kNot || n.op == Op::kBegins ||
+             n.op == Op::kEnds) {
     CollectSignals(program, n.args[0], signals);
     CollectSignals(program, n.args[1], signals);
   }
@@ -50,11 +52,13 @@ void CollectSignals(const Program& program, int node, std::vector<Signal>& signa
 std::vector<Signal> SignalsOf(const Program& program, const Rule& rule) {
   std::vector<Signal> signals;
   if (rule.form != grammar::Form::kRestOf) CollectSignals(program, rule.first, signals);
-  for (const int node : {rule.second, rule.during, rule.requirement}) CollectSignals(program, node, signals);
+  for (const int node : {rule.second, rule.during, rule.requirement})
+    CollectSignals(program, node, signals);
   for (const int node : {rule.approach, rule.motion}) {
     if (node != kNone) signals.push_back({node});
   }
-  for (const grammar::RuleAttribute& attribute : rule.attributes) signals.push_back({attribute.node});
+  for (const grammar::RuleAttribute& attribute : rule.attributes)
+    signals.push_back({attribute.node});
   return signals;
 }
 
@@ -70,7 +74,8 @@ class Collector {
  public:
   Collector(Hindsight& past, const std::set<std::string>& only) : past_(past), only_(only) {
     tracks_.ticks_per_second = past.cast().ticks_per_second;
-    for (FrameNumber frame = 0; frame < past.frames(); ++frame) tracks_.ticks.push_back(past.TickOf(frame));
+    for (FrameNumber frame = 0; frame < past.frames(); ++frame)
+      tracks_.ticks.push_back(past.TickOf(frame));
   }
 
   Tracks Collect() {
@@ -90,7 +95,9 @@ class Collector {
   std::vector<std::optional<double>>* Add(std::string name, Track::Kind kind, std::string unit) {
     const std::size_t values = (tracks_.tracks.size() + 1) * tracks_.ticks.size();
     if (tracks_.tracks.size() == kMostTracks || values > kMostTrackValues) {
-      tracks_.problem = fmt::format("more than {} tracks, or {} values; ask for some of them with --only", kMostTracks, kMostTrackValues);
+      tracks_.problem =
+          fmt::format("more than {} tracks, or {} values; ask for some of them with --only",
+                      kMostTracks, kMostTrackValues);
       return nullptr;
     }
     if (!names_.insert(name).second) return nullptr;
@@ -100,7 +107,8 @@ class Collector {
   }
 
   void AddIntervals(int rule) {
-    const Track::Kind kind = past_.program().events[rule].printed ? Track::Kind::kEvent : Track::Kind::kCondition;
+    const Track::Kind kind =
+        past_.program().events[rule].printed ? Track::Kind::kEvent : Track::Kind::kCondition;
     for (const int lane : past_.LanesOf(rule)) {
       auto* values = tracks_.problem.empty() ? Add(Label(past_, lane), kind, "") : nullptr;
       if (values == nullptr) continue;
@@ -125,16 +133,19 @@ class Collector {
 
   void AddSignal(int lane, const Signal& signal) {
     const Program& program = past_.program();
-    const bool anchored = AsksFor(program, signal.node, Op::kAtBegin) || AsksFor(program, signal.node, Op::kAtEnd);
+    const bool anchored =
+        AsksFor(program, signal.node, Op::kAtBegin) || AsksFor(program, signal.node, Op::kAtEnd);
     std::string name = ClauseText(past_, lane, signal.node);
     if (name.empty()) return;
     if (signal.what == Signal::What::kDistance) name += ": from the centre";
     if (signal.what == Signal::What::kHeight) name += ": above or below the centre";
     // What is measured from an interval's boundary is another thing in each rule.
     if (anchored) name = RuleName(past_, lane) + ": " + name;
-    const grammar::Dimension& dimension =
-        signal.what == Signal::What::kNumber ? NoteOf(program, signal.node).dimension : grammar::kMetres;
-    auto* values = Add(std::move(name), Track::Kind::kSignal, dimension == grammar::kPlain ? "" : grammar::DimensionText(dimension));
+    const grammar::Dimension& dimension = signal.what == Signal::What::kNumber
+                                              ? NoteOf(program, signal.node).dimension
+                                              : grammar::kMetres;
+    auto* values = Add(std::move(name), Track::Kind::kSignal,
+                       dimension == grammar::kPlain ? "" : grammar::DimensionText(dimension));
     if (values == nullptr) return;
     if (!anchored) return Fill(signal, 0, past_.frames(), {.lane = lane}, *values);
     for (const Fate& fate : past_.FatesOf(lane)) {
@@ -150,7 +161,8 @@ class Collector {
       if (signal.what == Signal::What::kNumber) {
         values[at.frame] = past_.Number(signal.node, at);
       } else if (const auto reach = past_.ReachOf(signal.node, at)) {
-        values[at.frame] = signal.what == Signal::What::kDistance ? reach->distance_m : reach->height_m;
+        values[at.frame] =
+            signal.what == Signal::What::kDistance ? reach->distance_m : reach->height_m;
       }
     }
   }
@@ -163,9 +175,12 @@ class Collector {
 
 const char* Name(Track::Kind kind) {
   switch (kind) {
-    case Track::Kind::kEvent: return "event";
-    case Track::Kind::kCondition: return "condition";
-    case Track::Kind::kSignal: return "signal";
+    case Track::Kind::kEvent:
+      return "event";
+    case Track::Kind::kCondition:
+      return "condition";
+    case Track::Kind::kSignal:
+      return "signal";
   }
   return "";
 }
@@ -190,14 +205,18 @@ std::vector<std::string> TrackNames(const Program& program) {
   return {names.begin(), names.end()};
 }
 
-Tracks CollectTracks(Hindsight& past, const std::set<std::string>& only) { return Collector(past, only).Collect(); }
+Tracks CollectTracks(Hindsight& past, const std::set<std::string>& only) {
+  return Collector(past, only).Collect();
+}
 
 void WriteCsv(const Tracks& tracks, std::ostream& out) {
   std::string row = "time_s,tick";
-  for (const Track& track : tracks.tracks) row += "," + CsvCell(track.name + (track.unit.empty() ? "" : " [" + track.unit + "]"));
+  for (const Track& track : tracks.tracks)
+    row += "," + CsvCell(track.name + (track.unit.empty() ? "" : " [" + track.unit + "]"));
   out << row << "\n";
   for (std::size_t frame = 0; frame < tracks.ticks.size(); ++frame) {
-    row = fmt::format("{},{}", SecondsText(tracks.ticks[frame], tracks.ticks_per_second), tracks.ticks[frame]);
+    row = fmt::format("{},{}", SecondsText(tracks.ticks[frame], tracks.ticks_per_second),
+                      tracks.ticks[frame]);
     for (const Track& track : tracks.tracks) {
       row += ",";
       if (track.values[frame]) row += fmt::format("{}", *track.values[frame]);
@@ -206,7 +225,8 @@ void WriteCsv(const Tracks& tracks, std::ostream& out) {
   }
 }
 
-void WriteJson(const Tracks& tracks, const std::string& episode, const std::string& grammar, std::ostream& out) {
+void WriteJson(const Tracks& tracks, const std::string& episode, const std::string& grammar,
+               std::ostream& out) {
   nlohmann::ordered_json json = {{"episode", episode},
                                  {"grammar", grammar},
                                  {"ticks_per_second", tracks.ticks_per_second},
@@ -215,9 +235,13 @@ void WriteJson(const Tracks& tracks, const std::string& episode, const std::stri
   for (const Track& track : tracks.tracks) {
     nlohmann::ordered_json values = nlohmann::ordered_json::array();
     for (const std::optional<double>& value : track.values) {
-      values.push_back(value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr));
+      values.push_back(value && std::isfinite(*value) ? nlohmann::ordered_json(*value)
+                                                      : nlohmann::ordered_json(nullptr));
     }
-    json["tracks"].push_back({{"name", track.name}, {"kind", Name(track.kind)}, {"unit", track.unit}, {"values", std::move(values)}});
+    json["tracks"].push_back({{"name", track.name},
+                              {"kind", Name(track.kind)},
+                              {"unit", track.unit},
+                              {"values", std::move(values)}});
   }
   out << json.dump() << "\n";
 }

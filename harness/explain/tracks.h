@@ -22,7 +22,8 @@ struct Track {
   std::string name;  ///< "grasping(right_hand, milk)", "speed_along(milk, table)"
   Kind kind = Kind::kSignal;
   std::string unit;  ///< SI; empty for a plain number and for what is 0 or 1
-  std::vector<std::optional<double>> values;  ///< nothing where it has none: of an interval, outside of it
+  std::vector<std::optional<double>>
+      values;  ///< nothing where it has none: of an interval, outside of it
 };
 
 struct Tracks {
@@ -32,15 +33,19 @@ struct Tracks {
   std::string problem;  ///< empty, or why there are too many of them
 };
 
-/// What can be asked for: names of events, conditions, and of what signals begin with ("speed_along").
+/// What can be asked for: names of events, conditions, and of what signals begin with
+/// ("speed_along").
 std::vector<std::string> TrackNames(const grammar::Program& program);
 
 /// `only`: these names; empty: all.
 Tracks CollectTracks(grammar::Hindsight& past, const std::set<std::string>& only);
 
-/// One line per frame: time_s, tick, and a column per track, the unit in brackets. Values that are none are empty.
+/// One line per frame: time_s, tick, and a column per track, the unit in brackets. Values that are
+/// none are empty.
 void WriteCsv(const Tracks& tracks, std::ostream& out);
-/// {"episode", "grammar", "ticks_per_second", "tick": [..], "tracks": [{"name", "kind", "unit", "values": [..]}]}
-void WriteJson(const Tracks& tracks, const std::string& episode, const std::string& grammar, std::ostream& out);
+/// {"episode", "grammar", "ticks_per_second", "tick": [..], "tracks": [{"name", "kind", "unit",
+/// "values": [..]}]}
+void WriteJson(const Tracks& tracks, const std::string& episode, const std::string& grammar,
+               std::ostream& out);
 
 }  // namespace prehend::harness::explain

@@ -20,7 +20,9 @@ Watched Watch(const EpisodeSource& source) {
   if (!past.error().empty()) {
     watched.problem = "the grammar cannot watch this episode: " + past.error();
   } else if (too_long) {
-    watched.problem = fmt::format("the episode has more than {} frames, and all of them would have to be remembered", kMostFrames);
+    watched.problem = fmt::format(
+        "the episode has more than {} frames, and all of them would have to be remembered",
+        kMostFrames);
   } else if (past.frames() == 0) {
     watched.problem = "the episode has no frames";
   }

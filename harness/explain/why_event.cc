@@ -27,12 +27,20 @@ namespace {
 constexpr int kDeepest = 8;  // rules behind rules
 
 Reason Remark(std::string what, std::string how = {}) {
-  return {.mark = Mark::kNote, .what = std::move(what), .how = std::move(how), .where = {}, .tick = {}, .reading = {}, .because = {}};
+  return {.mark = Mark::kNote,
+          .what = std::move(what),
+          .how = std::move(how),
+          .where = {},
+          .tick = {},
+          .reading = {},
+          .because = {}};
 }
 
 }  // namespace
 
-std::string EventReasons::Seconds(double seconds) const { return QuantityText(seconds, grammar::kSeconds); }
+std::string EventReasons::Seconds(double seconds) const {
+  return QuantityText(seconds, grammar::kSeconds);
+}
 
 Clauses::Follow EventReasons::FollowFrom(int depth) {
   return [this, depth](int lane, const Fate& fate, bool end) {
@@ -49,11 +57,14 @@ Reasons EventReasons::Begin(int lane, const Fate& fate, int depth) {
   const Rule& rule = past_.RuleOf(lane);
   const FrameNumber begin = fate.span.begin.frame;
   switch (rule.form) {
-    case Form::kTouching: return {};
-    case Form::kAny: return BeginOrEndOfAny(lane, begin, false, depth);
+    case Form::kTouching:
+      return {};
+    case Form::kAny:
+      return BeginOrEndOfAny(lane, begin, false, depth);
     case Form::kWhile: {
       Reasons reasons = Change(rule.first, {.lane = lane, .frame = begin}, true, depth);
-      for (Reason& reason : Change(rule.second, {.lane = lane, .frame = begin}, false, depth)) reasons.push_back(std::move(reason));
+      for (Reason& reason : Change(rule.second, {.lane = lane, .frame = begin}, false, depth))
+        reasons.push_back(std::move(reason));
       return reasons;
     }
     case Form::kFromTo: {
@@ -61,13 +72,17 @@ Reasons EventReasons::Begin(int lane, const Fate& fate, int depth) {
       Reasons reasons = Change(rule.first, at, true, depth);
       for (Reason& reason : Change(rule.during, at, true, kDeepest)) {
         const auto same = [&](const Reason& other) { return other.what == reason.what; };
-        if (std::none_of(reasons.begin(), reasons.end(), same)) reasons.push_back(std::move(reason));
+        if (std::none_of(reasons.begin(), reasons.end(), same))
+          reasons.push_back(std::move(reason));
       }
       return reasons;
     }
-    case Form::kUntilSince: return BeginOfWalk(lane, fate, depth);
-    case Form::kRestOf: return BeginOrEndOfRest(lane, begin, true, depth);
-    case Form::kCompose: return Parts(lane, fate, depth);
+    case Form::kUntilSince:
+      return BeginOfWalk(lane, fate, depth);
+    case Form::kRestOf:
+      return BeginOrEndOfRest(lane, begin, true, depth);
+    case Form::kCompose:
+      return Parts(lane, fate, depth);
   }
   return {};
 }
@@ -78,23 +93,29 @@ Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
   const FrameNumber end = fate.span.end.frame;
   if (end >= past_.frames()) return {Remark("the episode ends here")};
   switch (rule.form) {
-    case Form::kTouching: return {};
-    case Form::kAny: return BeginOrEndOfAny(lane, end, true, depth);
+    case Form::kTouching:
+      return {};
+    case Form::kAny:
+      return BeginOrEndOfAny(lane, end, true, depth);
     case Form::kWhile: {
       const bool hysteresis = rule.second != kNone;
-      return Change(hysteresis ? rule.second : rule.first, {.lane = lane, .frame = end}, hysteresis, depth);
+      return Change(hysteresis ? rule.second : rule.first, {.lane = lane, .frame = end}, hysteresis,
+                    depth);
     }
     case Form::kFromTo: {
       const Moment at{.lane = lane, .frame = end, .begin = begin};
-      if (rule.absence && fate.span.end.tick >= fate.span.begin.tick && !past_.Truth(rule.second, at)) {
+      if (rule.absence && fate.span.end.tick >= fate.span.begin.tick &&
+          !past_.Truth(rule.second, at)) {
         const bool in_time = rule.during == kNone || past_.Truth(rule.during, at);
         if (in_time) return {Remark("nothing came within " + Seconds(rule.within_s))};
       }
       const bool closed = past_.Truth(rule.second, at);
       return Change(closed ? rule.second : rule.during, at, closed, depth);
     }
-    case Form::kUntilSince: return Change(rule.first, {.lane = lane, .frame = end}, true, depth);
-    case Form::kRestOf: return BeginOrEndOfRest(lane, end, false, depth);
+    case Form::kUntilSince:
+      return Change(rule.first, {.lane = lane, .frame = end}, true, depth);
+    case Form::kRestOf:
+      return BeginOrEndOfRest(lane, end, false, depth);
     case Form::kCompose: {
       std::vector<const Fate*> parts;
       if (!ChooseParts(lane, fate, parts)) return {};
@@ -113,20 +134,31 @@ Reasons EventReasons::BeginOfWalk(int lane, const Fate& fate, int depth) {
   const FrameNumber begin = fate.span.begin.frame;
   const FrameNumber end = fate.span.end.frame;
   const FrameNumber at = fate.walk.at;
-  const auto signal = [&](FrameNumber frame) { return past_.Number(rule.approach, {.lane = lane, .frame = frame, .end = end}).value_or(0); };
+  const auto signal = [&](FrameNumber frame) {
+    return past_.Number(rule.approach, {.lane = lane, .frame = frame, .end = end}).value_or(0);
+  };
   const auto text = [&](double value) {
     return QuantityText(value, NoteOf(past_.program(), rule.approach).dimension);
   };
   Reasons reasons;
   switch (fate.walk.stop) {
-    case WalkBack::Stop::kFirstFrame: reasons = {Remark("it held from the first frame on")}; break;
-    case WalkBack::Stop::kPreviousEnd: reasons = {Remark("the one before ended here")}; break;
-    case WalkBack::Stop::kTooFarBack: reasons = {Remark("it looks at most " + Seconds(rule.back_s) + " back")}; break;
-    case WalkBack::Stop::kSince: reasons = Change(rule.second, {.lane = lane, .frame = at + 1, .end = end}, true, depth); break;
+    case WalkBack::Stop::kFirstFrame:
+      reasons = {Remark("it held from the first frame on")};
+      break;
+    case WalkBack::Stop::kPreviousEnd:
+      reasons = {Remark("the one before ended here")};
+      break;
+    case WalkBack::Stop::kTooFarBack:
+      reasons = {Remark("it looks at most " + Seconds(rule.back_s) + " back")};
+      break;
+    case WalkBack::Stop::kSince:
+      reasons = Change(rule.second, {.lane = lane, .frame = at + 1, .end = end}, true, depth);
+      break;
     case WalkBack::Stop::kReceding:
-      reasons = {Remark("the approach turns here: " + ClauseText(past_, lane, rule.approach),
-                        fmt::format("is {}; at {} it was {}, and it may recede by at most {}", text(signal(begin)),
-                                    clauses_.Time(at), text(signal(at)), text(rule.slack)))};
+      reasons = {Remark(
+          "the approach turns here: " + ClauseText(past_, lane, rule.approach),
+          fmt::format("is {}; at {} it was {}, and it may recede by at most {}",
+                      text(signal(begin)), clauses_.Time(at), text(signal(at)), text(rule.slack)))};
       reasons.front().mark = Mark::kTurned;
       break;
     case WalkBack::Stop::kIdle:
@@ -134,14 +166,18 @@ Reasons EventReasons::BeginOfWalk(int lane, const Fate& fate, int depth) {
       reasons.front().mark = Mark::kTurned;
       break;
   }
-  const bool later = fate.walk.stop != WalkBack::Stop::kReceding && fate.walk.stop != WalkBack::Stop::kIdle &&
+  const bool later = fate.walk.stop != WalkBack::Stop::kReceding &&
+                     fate.walk.stop != WalkBack::Stop::kIdle &&
                      begin > at + (fate.walk.stop == WalkBack::Stop::kSince ? 1 : 0);
   if (!later || rule.approach == kNone) return reasons;
   const grammar::Dimension of_signal = NoteOf(past_.program(), rule.approach).dimension;
-  const grammar::Dimension dimension = rule.motion == kNone ? grammar::Quotient(of_signal, grammar::kSeconds)
-                                                            : NoteOf(past_.program(), rule.motion).dimension;
-  Reason moved = Remark(ClauseText(past_, lane, rule.motion == kNone ? rule.approach : rule.motion) + " moves from here on",
-                        "not slower than " + QuantityText(rule.speed, dimension));
+  const grammar::Dimension dimension = rule.motion == kNone
+                                           ? grammar::Quotient(of_signal, grammar::kSeconds)
+                                           : NoteOf(past_.program(), rule.motion).dimension;
+  Reason moved =
+      Remark(ClauseText(past_, lane, rule.motion == kNone ? rule.approach : rule.motion) +
+                 " moves from here on",
+             "not slower than " + QuantityText(rule.speed, dimension));
   moved.mark = Mark::kTurned;
   reasons.insert(reasons.begin(), std::move(moved));
   return reasons;
@@ -166,7 +202,8 @@ Reasons EventReasons::BeginOrEndOfRest(int lane, FrameNumber frame, bool begins,
 Reasons EventReasons::BeginOrEndOfAny(int lane, FrameNumber frame, bool end, int depth) {
   Reasons reasons;
   std::vector<int> members = past_.At(lane).members;
-  std::sort(members.begin(), members.end(), [&](int a, int b) { return past_.At(a).entities < past_.At(b).entities; });
+  std::sort(members.begin(), members.end(),
+            [&](int a, int b) { return past_.At(a).entities < past_.At(b).entities; });
   for (const int member : members) {
     for (const Fate& fate : past_.FatesOf(member)) {
       const FrameNumber boundary = end ? fate.span.end.frame : fate.span.begin.frame;
@@ -192,12 +229,16 @@ bool EventReasons::ChooseParts(int lane, const Fate& whole, std::vector<const Fa
   for (const Fate& fate : past_.FatesOf(target)) {
     if (fate.kind != Fate::Kind::kInterval) continue;
     if (part == 0 && fate.span.begin.frame != whole.span.begin.frame) continue;
-    if (part + 1 == composition.parts.size() && fate.span.end.frame != whole.span.end.frame) continue;
+    if (part + 1 == composition.parts.size() && fate.span.end.frame != whole.span.end.frame)
+      continue;
     chosen.push_back(&fate);
     const auto holds = [&](const grammar::Composition::Clause& clause) {
       if (std::max(clause.left, clause.right) != static_cast<int>(part)) return true;
-      const auto ticks = [&](int i) { return grammar::Interval{chosen[i]->span.begin.tick, chosen[i]->span.end.tick}; };
-      return (grammar::Bit(grammar::Relate(ticks(clause.left), ticks(clause.right))) & clause.relations) != 0;
+      const auto ticks = [&](int i) {
+        return grammar::Interval{chosen[i]->span.begin.tick, chosen[i]->span.end.tick};
+      };
+      return (grammar::Bit(grammar::Relate(ticks(clause.left), ticks(clause.right))) &
+              clause.relations) != 0;
     };
     const bool fits = std::all_of(composition.clauses.begin(), composition.clauses.end(), holds);
     if (fits && ChooseParts(lane, whole, chosen)) return true;
@@ -211,10 +252,12 @@ Reasons EventReasons::Parts(int lane, const Fate& fate, int depth) {
   Reasons reasons;
   if (!ChooseParts(lane, fate, chosen)) return reasons;
   for (const Fate* part : chosen) {
-    Reason reason = Remark("part " + Label(past_, part->lane),
-                           IntervalText({part->span.begin.tick, part->span.end.tick}, past_.cast().ticks_per_second));
+    Reason reason = Remark(
+        "part " + Label(past_, part->lane),
+        IntervalText({part->span.begin.tick, part->span.end.tick}, past_.cast().ticks_per_second));
     if (part == chosen.front()) reason.mark = Mark::kTurned;
-    if (part == chosen.front() && depth < kDeepest) reason.because = Begin(part->lane, *part, depth + 1);
+    if (part == chosen.front() && depth < kDeepest)
+      reason.because = Begin(part->lane, *part, depth + 1);
     reasons.push_back(std::move(reason));
   }
   return reasons;
@@ -225,8 +268,9 @@ Reasons EventReasons::Counted(int lane, const Fate& fate) {
   const Tick per_second = past_.cast().ticks_per_second;
   Reasons reasons;
   if (rule.lasting_s > 0) {
-    reasons.push_back(Remark("lasting " + Seconds(rule.lasting_s),
-                             "it lasted " + Duration(fate.span.end.tick - fate.span.begin.tick, per_second)));
+    reasons.push_back(
+        Remark("lasting " + Seconds(rule.lasting_s),
+               "it lasted " + Duration(fate.span.end.tick - fate.span.begin.tick, per_second)));
   }
   if (rule.requirement != kNone) {
     const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
@@ -239,8 +283,9 @@ Reasons EventReasons::Counted(int lane, const Fate& fate) {
   if (rule.confirmed_by != kNone && fate.cause != grammar::kNever) {
     const int by = past_.Referred(lane, rule.confirmed_by);
     const int within = past_.Referred(lane, rule.confirmed_within);
-    reasons.push_back(Remark("confirmed by " + Label(past_, by),
-                             "it began at " + clauses_.Time(fate.cause) + ", while " + Label(past_, within) + " held"));
+    reasons.push_back(Remark(
+        "confirmed by " + Label(past_, by),
+        "it began at " + clauses_.Time(fate.cause) + ", while " + Label(past_, within) + " held"));
   }
   return reasons;
 }
@@ -252,10 +297,12 @@ Reasons EventReasons::Waited(int lane, const Fate& fate, int depth) {
   Reasons reasons;
   if (fate.decided <= end || depth >= kDeepest) return reasons;
   if (rule.bridging_s > 0 && !fate.span.open_end) {
-    reasons.push_back(Remark(Label(past_, lane), "a gap of up to " + Seconds(rule.bridging_s) + " would have been bridged"));
+    reasons.push_back(Remark(Label(past_, lane), "a gap of up to " + Seconds(rule.bridging_s) +
+                                                     " would have been bridged"));
   }
   if (rule.looks_around_s > 0 && !fate.span.open_end) {
-    reasons.push_back(Remark(Label(past_, lane), "a signal over a window looks " + Seconds(rule.looks_around_s) + " ahead"));
+    reasons.push_back(Remark(Label(past_, lane), "a signal over a window looks " +
+                                                     Seconds(rule.looks_around_s) + " ahead"));
   }
   if (rule.confirmed_by != kNone && fate.cause != grammar::kNever) {
     reasons.push_back(Remark(Label(past_, past_.Referred(lane, rule.confirmed_by)),
@@ -265,7 +312,8 @@ Reasons EventReasons::Waited(int lane, const Fate& fate, int depth) {
   return reasons;
 }
 
-// How far back it may turn out to have held: it looks back itself, or begins with what does. 0: not at all.
+// How far back it may turn out to have held: it looks back itself, or begins with what does. 0: not
+// at all.
 double EventReasons::LooksBack_s(int lane) {
   const Rule& rule = past_.RuleOf(lane);
   if (rule.form == Form::kUntilSince) return rule.back_s;
@@ -276,7 +324,8 @@ double EventReasons::LooksBack_s(int lane) {
   return target == kNone ? 0 : LooksBack_s(target);
 }
 
-// What it refers to and was known at that very moment only; or what might still have come in that time.
+// What it refers to and was known at that very moment only; or what might still have come in that
+// time.
 Reasons EventReasons::WaitedFor(int lane, const Fate& fate, int depth) {
   const Rule& rule = past_.RuleOf(lane);
   std::vector<int> targets = past_.At(lane).members;
@@ -287,7 +336,9 @@ Reasons EventReasons::WaitedFor(int lane, const Fate& fate, int depth) {
   Reasons reasons;
   for (const int target : targets) {
     const std::vector<Fate>& fates = past_.FatesOf(target);
-    const auto only_then = [&](const Fate& other) { return other.decided == fate.decided && other.span.end.tick < other.decided; };
+    const auto only_then = [&](const Fate& other) {
+      return other.decided == fate.decided && other.span.end.tick < other.decided;
+    };
     const auto other = std::find_if(fates.begin(), fates.end(), only_then);
     if (other == fates.end()) continue;
     Reason reason = Remark(Label(past_, target), "was decided only then");
@@ -297,8 +348,10 @@ Reasons EventReasons::WaitedFor(int lane, const Fate& fate, int depth) {
   for (const int target : targets) {
     const double back_s = LooksBack_s(target);
     if (!reasons.empty() || back_s <= 0) continue;
-    reasons.push_back(Remark(Label(past_, target), "might still have turned out to hold: it is known from its end on, and looks back up to " +
-                                                       Seconds(back_s)));
+    reasons.push_back(Remark(
+        Label(past_, target),
+        "might still have turned out to hold: it is known from its end on, and looks back up to " +
+            Seconds(back_s)));
   }
   return reasons;
 }

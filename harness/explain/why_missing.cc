@@ -21,7 +21,7 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr int kDeepest = 8;  // rules behind rules
+constexpr int kDeepest = 8;         // rules behind rules
 constexpr double kAround_s = 0.25;  // a person's or a golden's idea of a moment is not exact
 
 // The innermost clause that failed first.
@@ -53,20 +53,31 @@ WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<
     blamed = lane;
   }
   const Rule& rule = past_.RuleOf(blamed);
-  WhyMissing why{.event = Label(past_, blamed), .where = Source(rule.file, rule.place), .expected_at = {}, .because = {},
-                 .reasons = std::move(worst->reasons), .nearest = {}};
+  WhyMissing why{.event = Label(past_, blamed),
+                 .where = Source(rule.file, rule.place),
+                 .expected_at = {},
+                 .because = {},
+                 .reasons = std::move(worst->reasons),
+                 .nearest = {}};
   if (at) why.expected_at = past_.TickOf(*at);
   if (const Reason* failure = FirstFailure(why.reasons)) {
     why.because = failure->what + (failure->how.empty() ? "" : ": " + failure->how);
     if (!failure->because.empty() && failure->because.front().mark == Mark::kTurned) {
       why.because += ": " + failure->because.front().what + " " + failure->because.front().how;
     }
-    if (failure->tick && failure->reading) why.because += ", at " + At(*failure->tick, past_.cast().ticks_per_second);
+    if (failure->tick && failure->reading)
+      why.because += ", at " + At(*failure->tick, past_.cast().ticks_per_second);
   }
   for (const Fate& fate : past_.FatesOf(blamed)) {
     if (fate.kind != Fate::Kind::kInterval) continue;
-    why.nearest.push_back({.event = why.event, .where = why.where, .interval = {fate.span.begin.tick, fate.span.end.tick},
-                           .decided = fate.decided, .open_end = fate.span.open_end, .began = {}, .ended = {}, .counted = {},
+    why.nearest.push_back({.event = why.event,
+                           .where = why.where,
+                           .interval = {fate.span.begin.tick, fate.span.end.tick},
+                           .decided = fate.decided,
+                           .open_end = fate.span.open_end,
+                           .began = {},
+                           .ended = {},
+                           .counted = {},
                            .waited = {}});
   }
   return why;
@@ -78,14 +89,16 @@ MissingReasons::Blame MissingReasons::OfLane(int lane, const Window& window, int
   return OfForm(lane, window, depth);
 }
 
-// Of the runs within the window that came to nothing, the one that was nearest to being an interval.
+// Of the runs within the window that came to nothing, the one that was nearest to being an
+// interval.
 const Fate* MissingReasons::NearestRun(int lane, const Window& window) {
   const Fate* nearest = nullptr;
   double closeness = 0;
   for (const Fate& fate : past_.FatesOf(lane)) {
     const bool within = fate.span.begin.frame <= window.last && fate.span.end.frame >= window.first;
     if (fate.kind == Fate::Kind::kInterval || !within) continue;
-    const bool covers = window.at && fate.span.begin.frame <= *window.at && *window.at < fate.span.end.frame;
+    const bool covers =
+        window.at && fate.span.begin.frame <= *window.at && *window.at < fate.span.end.frame;
     const double here = RunCloseness(fate) + (covers ? 1 : 0);
     if (nearest != nullptr && here <= closeness) continue;
     nearest = &fate;
@@ -100,14 +113,19 @@ double MissingReasons::RunCloseness(const Fate& fate) {
   const double lasted_s = static_cast<double>(fate.span.end.tick - fate.span.begin.tick) /
                           static_cast<double>(past_.cast().ticks_per_second);
   switch (fate.kind) {
-    case Fate::Kind::kTooShort: return 1 + 0.5 * lasted_s / rule.lasting_s;
+    case Fate::Kind::kTooShort:
+      return 1 + 0.5 * lasted_s / rule.lasting_s;
     case Fate::Kind::kRefused: {
-      const Moment at{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
+      const Moment at{
+          .lane = fate.lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
       return 1 + 0.9 * clauses_.Nearness(rule.requirement, at, true);
     }
-    case Fate::Kind::kUnconfirmed: return 1.9;
-    case Fate::Kind::kNothingBack: return 1;
-    default: return 1.5;
+    case Fate::Kind::kUnconfirmed:
+      return 1.9;
+    case Fate::Kind::kNothingBack:
+      return 1;
+    default:
+      return 1.5;
   }
 }
 
@@ -118,7 +136,10 @@ std::string MissingReasons::HowLate(const Fate& fate) {
   const auto within = static_cast<Tick>(rule.within_s * static_cast<double>(per_second));
   for (FrameNumber frame = fate.span.begin.frame + 1; frame < past_.frames(); ++frame) {
     const Tick late = past_.TickOf(frame) - fate.span.begin.tick - within;
-    if (late <= 0 || !past_.Truth(rule.second, {.lane = fate.lane, .frame = frame, .begin = fate.span.begin.frame})) continue;
+    if (late <= 0 ||
+        !past_.Truth(rule.second,
+                     {.lane = fate.lane, .frame = frame, .begin = fate.span.begin.frame}))
+      continue;
     return "but " + Duration(late, per_second) + " later, at " + clauses_.Time(frame);
   }
   return "nor later";
@@ -131,9 +152,14 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
   const FrameNumber begin = fate.span.begin.frame;
   const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
   const Moment at_end{.lane = lane, .frame = last, .begin = begin, .end = last};
-  Reason run{.mark = Mark::kFailed, .what = Label(past_, lane),
-             .how = "from " + clauses_.Time(begin) + " to " + At(fate.span.end.tick, per_second) + ": ",
-             .where = Source(rule.file, rule.place), .tick = fate.span.begin.tick, .reading = {}, .because = {}};
+  Reason run{
+      .mark = Mark::kFailed,
+      .what = Label(past_, lane),
+      .how = "from " + clauses_.Time(begin) + " to " + At(fate.span.end.tick, per_second) + ": ",
+      .where = Source(rule.file, rule.place),
+      .tick = fate.span.begin.tick,
+      .reading = {},
+      .because = {}};
   const auto fail = [&](std::string what, std::string how) {
     run.because.push_back({.mark = Mark::kFailed, .what = std::move(what), .how = std::move(how)});
   };
@@ -147,7 +173,8 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
   switch (fate.kind) {
     case Fate::Kind::kTooShort:
       run.how += "too short";
-      fail("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds), "it lasted only " + lasted);
+      fail("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds),
+           "it lasted only " + lasted);
       break;
     case Fate::Kind::kRefused:
       run.how += "not what is required";
@@ -159,7 +186,8 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
       const int within = past_.Referred(lane, rule.confirmed_within);
       const bool episode = fate.cause >= past_.frames();
       fail("confirmed by " + Label(past_, by),
-           "it did not begin before " + (episode ? std::string("the episode ended") : Label(past_, within) + " was over") +
+           "it did not begin before " +
+               (episode ? std::string("the episode ended") : Label(past_, within) + " was over") +
                " at " + clauses_.Time(fate.cause));
       const Window wait{fate.span.end.frame, std::min(fate.cause, past_.frames() - 1)};
       run.because.back().because = OfLane(by, wait, depth + 1).reasons;
@@ -172,11 +200,13 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
     case Fate::Kind::kTooLate:
       run.how += "dropped";
       fail("to " + ClauseText(past_, lane, rule.second),
-           "it did not come within " + QuantityText(rule.within_s, grammar::kSeconds) + ", " + HowLate(fate));
+           "it did not come within " + QuantityText(rule.within_s, grammar::kSeconds) + ", " +
+               HowLate(fate));
       break;
     case Fate::Kind::kCame:
       run.how += "what must not come came";
-      fail("without " + ClauseText(past_, lane, rule.second), "it came after " + lasted + ", at " + At(fate.span.end.tick, per_second));
+      fail("without " + ClauseText(past_, lane, rule.second),
+           "it came after " + lasted + ", at " + At(fate.span.end.tick, per_second));
       break;
     case Fate::Kind::kUnfinished:
       run.how += "dropped";
@@ -185,18 +215,22 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
     case Fate::Kind::kNothingBack: {
       run.how = "nothing before its end at " + clauses_.Time(fate.span.end.frame);
       const FrameNumber before = std::max<FrameNumber>(last - 1, 0);
-      Reasons state = clauses_.State(rule.second, {.lane = lane, .frame = before, .end = last}, true);
+      Reasons state =
+          clauses_.State(rule.second, {.lane = lane, .frame = before, .end = last}, true);
       for (Reason& reason : state) {
         reason.what = "since " + reason.what;
         run.because.push_back(std::move(reason));
       }
       break;
     }
-    default: break;
+    default:
+      break;
   }
   const bool has_end = fate.kind == Fate::Kind::kTooShort || fate.kind == Fate::Kind::kRefused;
   if (has_end) {
-    Reason ended{.mark = Mark::kNote, .what = "it ended there", .because = events_.End(lane, fate, kDeepest - 1)};
+    Reason ended{.mark = Mark::kNote,
+                 .what = "it ended there",
+                 .because = events_.End(lane, fate, kDeepest - 1)};
     run.because.push_back(std::move(ended));
   }
   return {{std::move(run)}, RunCloseness(fate)};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why an interval that was expected is none: the run that nearly was one and what it lacked, or else the first clause that
-// failed where the condition came closest, into the rules that it refers to.
-// Tested by tests/harness/explain_test.cc
+// Why an interval that was expected is none: the run that nearly was one and what it lacked, or
+// else the first clause that failed where the condition came closest, into the rules that it refers
+// to. Tested by tests/harness/explain_test.cc
 #pragma once
 
 #include "harness/explain/why_event.h"
@@ -12,7 +12,8 @@ class MissingReasons {
  public:
   explicit MissingReasons(grammar::Hindsight& past) : past_(past), clauses_(past), events_(past) {}
 
-  /// Of the bindings the one that came closest. `at`: where it should have been; otherwise anywhere.
+  /// Of the bindings the one that came closest. `at`: where it should have been; otherwise
+  /// anywhere.
   WhyMissing Explain(const std::vector<int>& lanes, std::optional<grammar::FrameNumber> at);
 
  private:
@@ -45,7 +46,8 @@ class MissingReasons {
 
   /// The clauses of a condition where they came closest to holding, the first failed one followed.
   Blame OfClauses(int node, Moment at, const Window& window, int depth);
-  void Follow(Reason& reason, int target, grammar::FrameNumber frame, const Window& window, int depth);
+  void Follow(Reason& reason, int target, grammar::FrameNumber frame, const Window& window,
+              int depth);
   Reason ClosestApproach(int lane, const Window& window);
   grammar::FrameNumber Closest(int node, Moment at, const Window& window);
   /// The moment never came.

@@ -24,11 +24,16 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr FrameNumber kMostLooks = 2000;  // of a long window only so many frames are looked at
+constexpr FrameNumber kMostLooks = 2000;   // of a long window only so many frames are looked at
 constexpr std::size_t kMostIntervals = 4;  // are listed
 
 Reason Failed(std::string what, std::string how, Reasons because = {}) {
-  return {.mark = Mark::kFailed, .what = std::move(what), .how = std::move(how), .where = {}, .tick = {}, .reading = {},
+  return {.mark = Mark::kFailed,
+          .what = std::move(what),
+          .how = std::move(how),
+          .where = {},
+          .tick = {},
+          .reading = {},
           .because = std::move(because)};
 }
 
@@ -41,27 +46,37 @@ Reason MissingReasons::Intervals(int lane, std::string how) {
     if (fate.kind != Fate::Kind::kInterval) continue;
     if (count++ == kMostIntervals) how += ", ..";
     if (count > kMostIntervals) continue;
-    how += (count == 1 ? " " : ", ") + IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second);
+    how += (count == 1 ? " " : ", ") +
+           IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second);
   }
   return {.mark = Mark::kNote, .what = Label(past_, lane), .how = count == 0 ? "never" : how};
 }
 
 MissingReasons::Blame MissingReasons::OfForm(int lane, const Window& window, int depth) {
   switch (past_.RuleOf(lane).form) {
-    case Form::kTouching: return OfFact(lane, window);
-    case Form::kAny: return OfAny(lane, window, depth);
-    case Form::kWhile: return OfWhile(lane, window, depth);
-    case Form::kFromTo: return OfFromTo(lane, window, depth);
-    case Form::kUntilSince: return OfUntil(lane, window, depth);
-    case Form::kRestOf: return OfRest(lane, window, depth);
-    case Form::kCompose: return OfCompose(lane, window, depth);
+    case Form::kTouching:
+      return OfFact(lane, window);
+    case Form::kAny:
+      return OfAny(lane, window, depth);
+    case Form::kWhile:
+      return OfWhile(lane, window, depth);
+    case Form::kFromTo:
+      return OfFromTo(lane, window, depth);
+    case Form::kUntilSince:
+      return OfUntil(lane, window, depth);
+    case Form::kRestOf:
+      return OfRest(lane, window, depth);
+    case Form::kCompose:
+      return OfCompose(lane, window, depth);
   }
   return {};
 }
 
 MissingReasons::Blame MissingReasons::OfFact(int lane, const Window& window) {
   const bool at = window.at.has_value();
-  Reason reason = Failed(Label(past_, lane), at ? "they did not touch at " + clauses_.Time(*window.at) : "they did not touch");
+  Reason reason =
+      Failed(Label(past_, lane),
+             at ? "they did not touch at " + clauses_.Time(*window.at) : "they did not touch");
   if (!past_.FatesOf(lane).empty()) reason.because.push_back(Intervals(lane, "they touched"));
   return {{std::move(reason)}, 0};
 }
@@ -97,7 +112,8 @@ FrameNumber MissingReasons::Closest(int node, Moment at, const Window& window) {
   return closest;
 }
 
-MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Window& window, int depth) {
+MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Window& window,
+                                                int depth) {
   at.frame = Closest(node, at, window);
   Blame blame{.reasons = {}, .closeness = clauses_.Nearness(node, at, true)};
   bool followed = false;
@@ -114,8 +130,10 @@ MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Windo
   return blame;
 }
 
-// Into the rule that is to blame. What never held is looked for everywhere, if no moment was asked for.
-void MissingReasons::Follow(Reason& reason, int target, FrameNumber frame, const Window& window, int depth) {
+// Into the rule that is to blame. What never held is looked for everywhere, if no moment was asked
+// for.
+void MissingReasons::Follow(Reason& reason, int target, FrameNumber frame, const Window& window,
+                            int depth) {
   if (target == kNone || past_.RuleOf(target).form == Form::kTouching) return;
   const bool never = past_.LastBegun(target, past_.frames()) == nullptr;
   Reasons behind = OfLane(target, never && !window.at ? window : Around(frame), depth + 1).reasons;
@@ -131,13 +149,15 @@ MissingReasons::Blame MissingReasons::OfWhile(int lane, const Window& window, in
   const Rule& rule = past_.RuleOf(lane);
   Blame inner = OfClauses(rule.first, {.lane = lane}, window, depth);
   const FrameNumber closest = Closest(rule.first, {.lane = lane}, window);
-  Reason reason = Failed(Label(past_, lane), "came closest at " + clauses_.Time(closest), std::move(inner.reasons));
+  Reason reason = Failed(Label(past_, lane), "came closest at " + clauses_.Time(closest),
+                         std::move(inner.reasons));
   reason.where = Source(rule.file, rule.place);
   reason.tick = past_.TickOf(closest);
   return {{std::move(reason)}, inner.closeness};
 }
 
-MissingReasons::Blame MissingReasons::OfMoment(int node, int lane, const Window& window, int depth) {
+MissingReasons::Blame MissingReasons::OfMoment(int node, int lane, const Window& window,
+                                               int depth) {
   // Some of it happened, but not all at once.
   const Moment at{.lane = lane, .frame = Closest(node, {.lane = lane}, window)};
   if (past_.program().nodes[node].op == Op::kAnd && clauses_.Nearness(node, at, true) >= 0.5) {
@@ -170,7 +190,9 @@ MissingReasons::Blame MissingReasons::OfFromTo(int lane, const Window& window, i
   // The last moment that should have begun it.
   const FrameNumber until = window.at.value_or(window.last);
   FrameNumber from = until;
-  const auto begins = [&](FrameNumber frame) { return past_.Truth(rule.first, {.lane = lane, .frame = frame, .begin = frame}); };
+  const auto begins = [&](FrameNumber frame) {
+    return past_.Truth(rule.first, {.lane = lane, .frame = frame, .begin = frame});
+  };
   while (from >= 0 && !begins(from)) --from;
   Reason reason = Failed(Label(past_, lane), "", {});
   reason.where = Source(rule.file, rule.place);
@@ -178,7 +200,8 @@ MissingReasons::Blame MissingReasons::OfFromTo(int lane, const Window& window, i
     const std::string text = ClauseText(past_, lane, rule.first);
     Blame blame = OfMoment(rule.first, lane, window, depth);
     reason.how = "nothing began it";
-    reason.because = {Failed(text.empty() ? "what begins it" : "from " + text, "did not happen up to " + clauses_.Time(until),
+    reason.because = {Failed(text.empty() ? "what begins it" : "from " + text,
+                             "did not happen up to " + clauses_.Time(until),
                              std::move(blame.reasons))};
     return {{std::move(reason)}, 0.5 * blame.closeness};
   }
@@ -197,7 +220,8 @@ MissingReasons::Blame MissingReasons::OfFromTo(int lane, const Window& window, i
       reason.because.push_back(std::move(state));
     }
   } else {
-    reason.because = {Failed("to " + ClauseText(past_, lane, rule.second), "was at the same moment, and that is no interval")};
+    reason.because = {Failed("to " + ClauseText(past_, lane, rule.second),
+                             "was at the same moment, and that is no interval")};
   }
   return {{std::move(reason)}, 0.8};
 }
@@ -207,7 +231,8 @@ Reason MissingReasons::ClosestApproach(int lane, const Window& window) {
   Reason reason{.mark = Mark::kNote, .what = ClauseText(past_, lane, rule.approach)};
   double smallest = 0;
   for (FrameNumber frame = window.first; frame <= window.last; ++frame) {
-    const double value = past_.Number(rule.approach, {.lane = lane, .frame = frame, .end = window.last}).value_or(0);
+    const double value =
+        past_.Number(rule.approach, {.lane = lane, .frame = frame, .end = window.last}).value_or(0);
     if (reason.tick && value >= smallest) continue;
     smallest = value;
     reason.tick = past_.TickOf(frame);
@@ -230,11 +255,13 @@ MissingReasons::Blame MissingReasons::OfUntil(int lane, const Window& window, in
     return {{std::move(reason)}, 0.9};
   }
   const std::string text = ClauseText(past_, lane, rule.first);
-  Blame blame = OfMoment(rule.first, lane, window.at ? Window{*window.at, past_.frames() - 1} : window, depth);
+  Blame blame = OfMoment(rule.first, lane,
+                         window.at ? Window{*window.at, past_.frames() - 1} : window, depth);
   reason.how = "nothing ended it";
-  reason.because = {Failed(text.empty() ? "what ends it" : "until " + text,
-                           window.at ? "did not happen at or after " + clauses_.Time(*window.at) : "never happened",
-                           std::move(blame.reasons))};
+  reason.because = {Failed(
+      text.empty() ? "what ends it" : "until " + text,
+      window.at ? "did not happen at or after " + clauses_.Time(*window.at) : "never happened",
+      std::move(blame.reasons))};
   if (rule.approach != kNone) reason.because.push_back(ClosestApproach(lane, window));
   return {{std::move(reason)}, 0.5 * blame.closeness};
 }
@@ -244,13 +271,16 @@ MissingReasons::Blame MissingReasons::OfRest(int lane, const Window& window, int
   const int whole = past_.Referred(lane, rule.first);
   Reason reason = Failed(Label(past_, lane), "", {});
   reason.where = Source(rule.file, rule.place);
-  const auto covers = [&](int target, FrameNumber frame) { return target != kNone && past_.Covering(target, frame) != nullptr; };
+  const auto covers = [&](int target, FrameNumber frame) {
+    return target != kNone && past_.Covering(target, frame) != nullptr;
+  };
   FrameNumber frame = window.at.value_or(window.first);
   for (; !window.at && frame < window.last && !covers(whole, frame); ++frame) {
   }
   if (!covers(whole, frame)) {
     reason.how = "is a rest of " + (whole == kNone ? "nothing" : Label(past_, whole));
-    Reason missing = Failed(whole == kNone ? "it" : Label(past_, whole), window.at ? "did not hold at " + clauses_.Time(frame) : "never held",
+    Reason missing = Failed(whole == kNone ? "it" : Label(past_, whole),
+                            window.at ? "did not hold at " + clauses_.Time(frame) : "never held",
                             OfLane(whole, window, depth + 1).reasons);
     reason.because = {std::move(missing)};
     return {{std::move(reason)}, 0.1};
@@ -261,9 +291,13 @@ MissingReasons::Blame MissingReasons::OfRest(int lane, const Window& window, int
     if (!covers(target, frame)) continue;
     const Fate& fate = *past_.Covering(target, frame);
     Reason covered = Failed("outside " + Label(past_, target),
-                            "it held " + IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second));
+                            "it held " + IntervalText({fate.span.begin.tick, fate.span.end.tick},
+                                                      past_.cast().ticks_per_second));
     if (past_.RuleOf(target).form == Form::kUntilSince) {
-      const Moment at{.lane = target, .frame = frame, .begin = fate.span.begin.frame, .end = fate.span.end.frame};
+      const Moment at{.lane = target,
+                      .frame = frame,
+                      .begin = fate.span.begin.frame,
+                      .end = fate.span.end.frame};
       covered.because = clauses_.State(past_.RuleOf(target).second, at, true);
     }
     reason.because.push_back(std::move(covered));
@@ -304,7 +338,9 @@ MissingReasons::Blame MissingReasons::OfCompose(int lane, const Window& window, 
   }
   for (const grammar::Composition::Clause& clause : rule.composition.clauses) {
     if (!complete) break;
-    const auto ticks = [](const Fate& fate) { return grammar::Interval{fate.span.begin.tick, fate.span.end.tick}; };
+    const auto ticks = [](const Fate& fate) {
+      return grammar::Interval{fate.span.begin.tick, fate.span.end.tick};
+    };
     bool holds = false;
     std::string relation;
     for (const Fate& left : past_.FatesOf(parts[clause.left])) {
@@ -318,10 +354,12 @@ MissingReasons::Blame MissingReasons::OfCompose(int lane, const Window& window, 
     if (holds) continue;
     std::string wanted;
     for (std::size_t i = 0; i < grammar::kAllenNames.size(); ++i) {
-      if ((clause.relations >> i & 1U) != 0) wanted += (wanted.empty() ? "" : "|") + std::string(grammar::kAllenNames[i]);
+      if ((clause.relations >> i & 1U) != 0)
+        wanted += (wanted.empty() ? "" : "|") + std::string(grammar::kAllenNames[i]);
     }
-    reason.because.push_back(Failed(Label(past_, parts[clause.left]) + " " + wanted + " " + Label(past_, parts[clause.right]),
-                                    "it is " + relation));
+    reason.because.push_back(Failed(
+        Label(past_, parts[clause.left]) + " " + wanted + " " + Label(past_, parts[clause.right]),
+        "it is " + relation));
   }
   return {{std::move(reason)}, complete ? 0.9 : 0.4};
 }

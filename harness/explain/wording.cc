@@ -20,16 +20,20 @@ using grammar::Rule;
 using grammar::Tick;
 
 std::string QuantityText(double value, const Dimension& dimension, int digits) {
-  const auto with = [&](double scaled, const char* unit) { return fmt::format("{:.{}g}{}", scaled, digits, unit); };
+  const auto with = [&](double scaled, const char* unit) {
+    return fmt::format("{:.{}g}{}", scaled, digits, unit);
+  };
   // Rounding noise is no value.
   if (std::abs(value) < 1e-9) value = 0;
   if (dimension == grammar::kPlain) return with(value, "");
   const bool small = std::abs(value) < 1;
   if (dimension == grammar::kMetres) return small ? with(value * 1000, " mm") : with(value, " m");
-  if (dimension == grammar::kMetresPerSecond) return small ? with(value * 1000, " mm/s") : with(value, " m/s");
+  if (dimension == grammar::kMetresPerSecond)
+    return small ? with(value * 1000, " mm/s") : with(value, " m/s");
   if (dimension == grammar::kSeconds) return small ? with(value * 1000, " ms") : with(value, " s");
   if (dimension == grammar::kRadians) return with(value * 180 / std::numbers::pi, " deg");
-  if (dimension == grammar::Quotient(grammar::kRadians, grammar::kSeconds)) return with(value * 180 / std::numbers::pi, " deg/s");
+  if (dimension == grammar::Quotient(grammar::kRadians, grammar::kSeconds))
+    return with(value * 180 / std::numbers::pi, " deg/s");
   return with(value, (" " + grammar::DimensionText(dimension)).c_str());
 }
 
@@ -45,10 +49,13 @@ ValueTexts Compared(double value, double limit, const Dimension& dimension) {
   return texts;
 }
 
-std::string At(Tick tick, Tick ticks_per_second) { return SecondsText(tick, ticks_per_second) + " s"; }
+std::string At(Tick tick, Tick ticks_per_second) {
+  return SecondsText(tick, ticks_per_second) + " s";
+}
 
 std::string Duration(Tick ticks, Tick ticks_per_second) {
-  return QuantityText(static_cast<double>(ticks) / static_cast<double>(ticks_per_second), grammar::kSeconds);
+  return QuantityText(static_cast<double>(ticks) / static_cast<double>(ticks_per_second),
+                      grammar::kSeconds);
 }
 
 const std::string& RuleName(Hindsight& past, int lane) { return past.RuleOf(lane).name; }
@@ -61,15 +68,18 @@ std::string Label(Hindsight& past, int lane) {
   std::string roles;
   for (std::size_t i = 0; i < named.roles.size(); ++i) {
     const int role = is_any ? rule.references[0].roles[i] : static_cast<int>(i);
-    const std::string class_name = named.hidden ? " " + named.roles[i].class_name : "";  // `any Cup`
-    roles += (i == 0 ? "" : ", ") + (role == kNone ? "any" + class_name : past.cast().entities[entities[role]].name);
+    const std::string class_name =
+        named.hidden ? " " + named.roles[i].class_name : "";  // `any Cup`
+    roles += (i == 0 ? "" : ", ") +
+             (role == kNone ? "any" + class_name : past.cast().entities[entities[role]].name);
   }
   return rule.name + "(" + roles + ")";
 }
 
 std::string Source(const std::string& file, const Place& place) {
   const std::size_t slash = file.rfind('/');
-  return fmt::format("{}:{}", slash == std::string::npos ? file : file.substr(slash + 1), place.line);
+  return fmt::format("{}:{}", slash == std::string::npos ? file : file.substr(slash + 1),
+                     place.line);
 }
 
 std::string ClauseText(Hindsight& past, int lane, int node) {

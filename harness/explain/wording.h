@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How measured values and clauses are written for people: "31 mm", "speed_along(milk, table) >= slide_speed".
-// Tested by tests/harness/explain_test.cc
+// How measured values and clauses are written for people: "31 mm", "speed_along(milk, table) >=
+// slide_speed". Tested by tests/harness/explain_test.cc
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace prehend::harness::explain {
 
-/// In the unit that reads best, three significant digits, more if asked for: "31 mm", "1.5 m/s", "28.6 deg", "2".
+/// In the unit that reads best, three significant digits, more if asked for: "31 mm", "1.5 m/s",
+/// "28.6 deg", "2".
 std::string QuantityText(double value, const grammar::Dimension& dimension, int digits = 3);
 
 /// Two values that differ are written so that they can be told apart.

@@ -46,8 +46,8 @@ Agreement Agree(const grammar::Timeline& truth, const grammar::Timeline& found,
 
 /// One line per event that is missing, extra or off by more than `tolerance`; empty when there is
 /// none. E.g.
-///   off      reaching(right_hand, milk)  true 1.0000..2.0000 s  found 1.0250..2.0000 s  begin +25.0 ms, end +0.0 ms
-///   missing  sliding(right_hand, milk)   true 2.5000..3.0000 s
+///   off      reaching(right_hand, milk)  true 1.0000..2.0000 s  found 1.0250..2.0000 s  begin
+///   +25.0 ms, end +0.0 ms missing  sliding(right_hand, milk)   true 2.5000..3.0000 s
 std::string DescribeDisagreement(const Agreement& agreement, grammar::Tick tolerance);
 
 }  // namespace prehend::harness

@@ -91,13 +91,12 @@ double Motion_m_per_s(const Recording& recording, int hand, int frame) {
 
 /// The frame at which the hand last stopped idling, or `earliest`: where it began to move, slowly
 /// at first.
-int LastIdleEnd(const Recording& recording, const OracleSettings& settings, int hand,
-                int earliest, int touch) {
+int LastIdleEnd(const Recording& recording, const OracleSettings& settings, int hand, int earliest,
+                int touch) {
   int idle_end = earliest;
   int still_since = earliest;
   for (int frame = earliest + 1; frame < touch; ++frame) {
-    if (Motion_m_per_s(recording, hand, frame) >= settings.idle_speed_m_per_s)
-      still_since = frame;
+    if (Motion_m_per_s(recording, hand, frame) >= settings.idle_speed_m_per_s) still_since = frame;
     if (recording.Seconds(still_since, frame) > settings.reach_idle_s) idle_end = frame;
   }
   while (idle_end > earliest &&

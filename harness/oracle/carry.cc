@@ -46,8 +46,8 @@ class Carrier {
   }
 
   /// Whether the object moves along something that supports it. Its velocity must say so and it
-  /// must get somewhere: a squeezed object trembles faster than it slides. Where it gets is asked of
-  /// the frames before and after, supported or not.
+  /// must get somewhere: a squeezed object trembles faster than it slides. Where it gets is asked
+  /// of the frames before and after, supported or not.
   bool Slides(int frame) const {
     int before = frame, after = frame;
     while (before > 0 && recording_.Seconds(before, frame) < settings_.slide_window_s / 2) --before;
@@ -69,7 +69,8 @@ class Carrier {
   /// The level part of the object's way along a support between two frames, as the support lies at
   /// frame `at`.
   double WayAlong(int support, int from, int to, int at) const {
-    const Vector3d way_m = recording_.body(support, at).X_WB.q * (Seen(support, to) - Seen(support, from));
+    const Vector3d way_m =
+        recording_.body(support, at).X_WB.q * (Seen(support, to) - Seen(support, from));
     return way_m.head<2>().norm();
   }
 
@@ -87,21 +88,21 @@ class Carrier {
   /// `held`: it is grasped and supported.
   void FindSlides(Span held) {
     std::vector<bool> moving(recording_.size());
-    for (int frame = held.begin; frame < held.end; ++frame)
-      moving[frame] = Slides(frame);
+    for (int frame = held.begin; frame < held.end; ++frame) moving[frame] = Slides(frame);
     for (const Span& slide :
          Bridged(WhereTrue(moving), recording_.ticks, recording_.Ticks(settings_.slide_pause_s)))
       if (Displacement(slide) >= settings_.slide_displacement_m) found_.slides.push_back(slide);
   }
 
-  /// The frame in which it lost the support that this hand took it from; no value: it was caught, or
-  /// taken over in the air.
+  /// The frame in which it lost the support that this hand took it from; no value: it was caught,
+  /// or taken over in the air.
   std::optional<int> SupportLoss(const Spans& supported, int unsupported_since) const {
     std::optional<int> loss;
     for (const Span& span : supported)
       if (span.end <= unsupported_since) loss = span.end;
     if (!loss || *loss == unsupported_since) return loss;
-    // A hand that closes may lift what it only touches yet: if it did not get far, that is part of it.
+    // A hand that closes may lift what it only touches yet: if it did not get far, that is part of
+    // it.
     const Region region = PickUpRegion(*loss);
     bool near = *loss >= grasp_.touched_since;
     for (int frame = *loss; near && frame < unsupported_since; ++frame)
@@ -149,9 +150,9 @@ class Carrier {
     return Span{begin, landing};
   }
 
-  /// `loss`: where it lost the support that it was taken from, if it was taken from one. `lands`: it
-  /// is supported after, be it in the very frame in which it is let go. Otherwise it was dropped, or
-  /// held to the end.
+  /// `loss`: where it lost the support that it was taken from, if it was taken from one. `lands`:
+  /// it is supported after, be it in the very frame in which it is let go. Otherwise it was
+  /// dropped, or held to the end.
   void DivideUnsupported(Span unsupported, std::optional<int> loss, bool lands) {
     Span transport = unsupported;
     if (const auto put_down = lands ? PutDown(unsupported) : std::nullopt) {

@@ -26,9 +26,9 @@ struct OracleSettings {
   double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
   int grasp_sensor_sets = 2;            ///< of one hand on the object
 
-  double idle_speed_m_per_s = 0.01;  ///< slower is standing still
+  double idle_speed_m_per_s = 0.01;    ///< slower is standing still
   double onset_speed_m_per_s = 0.001;  ///< a movement begins slowly; slower is not moving yet
-  double turn_pause_s = 0.1;         ///< standing still for longer before returning is a pause
+  double turn_pause_s = 0.1;           ///< standing still for longer before returning is a pause
 
   double reach_radius_m = 0.30;      ///< ball that lies ahead of the palm and touches its centre
   double reach_dead_band_m = 0.025;  ///< moving away by less is not moving away

@@ -37,7 +37,8 @@ using Flags = std::map<Pair, std::vector<bool>>;
 
 struct RawTouches {
   Flags touching, gripped;  ///< gripped: (hand index, body)
-  Flags borne, at_rest;     ///< (object, support); at rest: it moves neither up nor down on it, at some point
+  Flags borne,
+      at_rest;  ///< (object, support); at rest: it moves neither up nor down on it, at some point
 };
 
 class TouchReader {
@@ -115,8 +116,10 @@ std::map<Pair, Spans> BridgeAll(const Recording& recording, const Flags& flags, 
   return spans;
 }
 
-/// From where it is at rest on what bears it until that does no more: it may tip or roll in between.
-std::map<Pair, Spans> SupportsOf(const Recording& recording, const RawTouches& raw, double bridge_s) {
+/// From where it is at rest on what bears it until that does no more: it may tip or roll in
+/// between.
+std::map<Pair, Spans> SupportsOf(const Recording& recording, const RawTouches& raw,
+                                 double bridge_s) {
   std::map<Pair, Spans> supports;
   for (const auto& [pair, at_rest] : raw.at_rest) {
     Spans spans;
@@ -139,7 +142,8 @@ Spans WhereGripIsCommanded(const Recording& recording, const OracleSettings& set
 void SayHowLongTheyTouched(const Recording& recording, Touches& touches) {
   const Grasp* before = nullptr;
   for (Grasp& grasp : touches.grasps) {
-    for (const Span& contact : touches.contacts.at({grasp.body, recording.body_count() + grasp.hand}))
+    for (const Span& contact :
+         touches.contacts.at({grasp.body, recording.body_count() + grasp.hand}))
       if (contact.Contains(grasp.span.begin)) grasp.touched_since = contact.begin;
     const bool again = before && before->hand == grasp.hand && before->body == grasp.body;
     if (again) grasp.touched_since = std::max(grasp.touched_since, before->span.end);
@@ -156,8 +160,8 @@ Touches FindTouches(const Recording& recording, const OracleSettings& settings) 
   touches.supports = SupportsOf(recording, raw, settings.contact_bridge_s);
   for (const auto& [pair, frames] : raw.gripped) {
     const auto& [hand, body] = pair;
-    const Spans tight = Bridged(WhereTrue(frames), recording.ticks,
-                                recording.Ticks(settings.grasp_bridge_s));
+    const Spans tight =
+        Bridged(WhereTrue(frames), recording.ticks, recording.Ticks(settings.grasp_bridge_s));
     // Letting go ends a grasp at once, and none begins before the hand feels the object again.
     for (const Span& squeeze : WhereGripIsCommanded(recording, settings, hand)) {
       for (Span span : Within(tight, squeeze)) {

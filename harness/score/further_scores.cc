@@ -43,7 +43,8 @@ Episode Chained(const std::vector<LabelledEpisode>& episodes, double all_s) {
   for (const LabelledEpisode& episode : episodes) {
     Append(episode.whole.truth, episode.ticks_per_second, chain.ticks, chain.truth);
     Append(episode.whole.prediction, episode.ticks_per_second, chain.ticks, chain.prediction);
-    chain.ticks += std::llround(static_cast<double>(episode.whole.ticks) * kMicrosPerS / episode.ticks_per_second);
+    chain.ticks += std::llround(static_cast<double>(episode.whole.ticks) * kMicrosPerS /
+                                episode.ticks_per_second);
   }
   chain.ticks = std::max<Tick>(chain.ticks, std::llround(all_s * kMicrosPerS));
   return chain;
@@ -51,7 +52,8 @@ Episode Chained(const std::vector<LabelledEpisode>& episodes, double all_s) {
 
 }  // namespace
 
-FurtherScores ScoreFurther(const std::vector<LabelledEpisode>& episodes, double collar_s, double all_s) {
+FurtherScores ScoreFurther(const std::vector<LabelledEpisode>& episodes, double collar_s,
+                           double all_s) {
   Mean map, pairwise, purity, coverage, from_truth_s, from_found_s;
   FurtherScores scores;
   for (const LabelledEpisode& episode : episodes) {

@@ -22,7 +22,8 @@ struct LabelCounts {
   double truths = 0, found = 0, false_predictions = 0;
 };
 
-LabelCounts Count(const Episode& episode, const std::string& label, const IntersectionSettings& settings) {
+LabelCounts Count(const Episode& episode, const std::string& label,
+                  const IntersectionSettings& settings) {
   LabelCounts counts;
   Segments believed;
   for (const Segment& predicted : episode.prediction) {

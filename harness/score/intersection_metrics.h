@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores by how much of an event is covered, which forgive it to be said in pieces (Bilen et al. 2020, "A framework for
-// the robust evaluation of sound event detection"; psds_eval).
-// Tested by tests/harness/score_metrics_test.cc against printouts of the reference program.
+// Scores by how much of an event is covered, which forgive it to be said in pieces (Bilen et al.
+// 2020, "A framework for the robust evaluation of sound event detection"; psds_eval). Tested by
+// tests/harness/score_metrics_test.cc against printouts of the reference program.
 #pragma once
 
 #include "harness/score/segments.h"
@@ -9,19 +9,23 @@
 namespace prehend::harness::score {
 
 struct IntersectionSettings {
-  double detection_covered = 0.5;  ///< share of a prediction that has to lie in true events of its label (DTC)
-  double truth_covered = 0.5;      ///< share of a true event that such predictions have to cover (GTC)
-  double most_false_per_hour = 100;  ///< of one label: with so many false predictions it scores nothing
+  double detection_covered =
+      0.5;  ///< share of a prediction that has to lie in true events of its label (DTC)
+  double truth_covered = 0.5;  ///< share of a true event that such predictions have to cover (GTC)
+  double most_false_per_hour =
+      100;  ///< of one label: with so many false predictions it scores nothing
 };
 
 struct IntersectionScore {
   double macro_f1 = 1;  ///< mean F1 over the labels of the truth
-  /// Mean over the labels of the truth of the share of events that are found, times how far the label is from
-  /// `most_false_per_hour`: the area under the polyphonic ROC of a recogniser with one operating point.
+  /// Mean over the labels of the truth of the share of events that are found, times how far the
+  /// label is from `most_false_per_hour`: the area under the polyphonic ROC of a recogniser with
+  /// one operating point.
   double psds = 1;
 };
 
-/// Both 1 without truth. Predictions with labels that the truth does not have do not count (psds_eval refuses them).
+/// Both 1 without truth. Predictions with labels that the truth does not have do not count
+/// (psds_eval refuses them).
 IntersectionScore ScoreByIntersection(const Episode& episode, double ticks_per_second,
                                       const IntersectionSettings& settings = {});
 

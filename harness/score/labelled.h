@@ -16,7 +16,8 @@ struct LabelledEpisode {
   Episode whole;
   std::vector<Episode> by_label;  ///< one for each label of either side, sorted
 };
-LabelledEpisode Labelled(const grammar::Timeline& truth, const grammar::Timeline& found, grammar::Tick ticks);
+LabelledEpisode Labelled(const grammar::Timeline& truth, const grammar::Timeline& found,
+                         grammar::Tick ticks);
 
 std::vector<grammar::Interval> IntervalsOf(const Segments& segments);
 

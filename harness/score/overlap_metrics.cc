@@ -16,7 +16,9 @@ namespace {
 using grammar::Interval;
 using grammar::Tick;
 
-double Ratio(double part, double whole, double of_nothing) { return whole > 0 ? part / whole : of_nothing; }
+double Ratio(double part, double whole, double of_nothing) {
+  return whole > 0 ? part / whole : of_nothing;
+}
 
 /// Intersection over hull; negative when they lie apart.
 double Closeness(const Interval& a, const Interval& b) {
@@ -24,8 +26,10 @@ double Closeness(const Interval& a, const Interval& b) {
   return static_cast<double>(Overlap(a, b)) / static_cast<double>(hull);
 }
 
-/// Size of the largest matching between `left` and `right` things (augmenting paths). partner[i]: of left i, or -1.
-int LargestMatching(int left, int right, const std::function<bool(int, int)>& fits, std::vector<int>& partner) {
+/// Size of the largest matching between `left` and `right` things (augmenting paths). partner[i]:
+/// of left i, or -1.
+int LargestMatching(int left, int right, const std::function<bool(int, int)>& fits,
+                    std::vector<int>& partner) {
   std::vector<int> taken_by(static_cast<std::size_t>(right), -1);
   std::vector<bool> tried;
   const std::function<bool(int)> place = [&](int i) {
@@ -126,7 +130,8 @@ double EditScore(const Segments& truth, const Segments& prediction) {
   return 100 * (1 - static_cast<double>(row.back()) / static_cast<double>(longer));
 }
 
-double MeanAveragePrecision(const Segments& truth, const Segments& prediction, double least_overlap) {
+double MeanAveragePrecision(const Segments& truth, const Segments& prediction,
+                            double least_overlap) {
   std::map<std::string, std::vector<Interval>> truths;
   for (const Segment& segment : truth) truths[segment.label].push_back(segment.interval);
   double sum = 0;
@@ -137,8 +142,9 @@ double MeanAveragePrecision(const Segments& truth, const Segments& prediction, d
       std::size_t best = wanted.size();
       for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (taken[i] || Closeness(wanted[i], predicted.interval) < least_overlap) continue;
-        const bool closer = best == wanted.size() || Closeness(wanted[i], predicted.interval) >
-                                                         Closeness(wanted[best], predicted.interval);
+        const bool closer =
+            best == wanted.size() ||
+            Closeness(wanted[i], predicted.interval) > Closeness(wanted[best], predicted.interval);
         if (closer) best = i;
       }
       correct.push_back(best < wanted.size());
@@ -158,7 +164,9 @@ FrameCounts& FrameCounts::operator+=(const FrameCounts& other) {
   false_alarm += other.false_alarm;
   return *this;
 }
-double FrameCounts::Accuracy() const { return Ratio(static_cast<double>(equal), static_cast<double>(all), 1); }
+double FrameCounts::Accuracy() const {
+  return Ratio(static_cast<double>(equal), static_cast<double>(all), 1);
+}
 double FrameCounts::AccuracyInTruth() const {
   return Ratio(static_cast<double>(correct), static_cast<double>(InTruth()), 1);
 }
@@ -167,7 +175,8 @@ double FrameCounts::ErrorRate() const {
                false_alarm == 0 ? 0 : 1);
 }
 double FrameCounts::DetectionErrorRate() const {
-  return Ratio(static_cast<double>(missed + false_alarm), static_cast<double>(InTruth()), false_alarm == 0 ? 0 : 1);
+  return Ratio(static_cast<double>(missed + false_alarm), static_cast<double>(InTruth()),
+               false_alarm == 0 ? 0 : 1);
 }
 double FrameCounts::F1() const {
   const auto wrong = static_cast<double>(2 * confused + missed + false_alarm);
@@ -177,9 +186,11 @@ double FrameCounts::F1() const {
 FrameCounts CountFrames(const Episode& episode, Tick collar) {
   std::set<Tick> cuts = {0, episode.ticks}, boundaries;
   for (const Segments* side : {&episode.truth, &episode.prediction}) {
-    for (const Segment& segment : *side) cuts.insert({segment.interval.begin, segment.interval.end});
+    for (const Segment& segment : *side)
+      cuts.insert({segment.interval.begin, segment.interval.end});
   }
-  for (const Segment& segment : episode.truth) boundaries.insert({segment.interval.begin, segment.interval.end});
+  for (const Segment& segment : episode.truth)
+    boundaries.insert({segment.interval.begin, segment.interval.end});
   for (const Tick boundary : boundaries) cuts.insert({boundary - collar, boundary + collar});
   FrameCounts counts;
   for (auto cut = cuts.begin(); std::next(cut) != cuts.end(); ++cut) {
@@ -187,7 +198,8 @@ FrameCounts CountFrames(const Episode& episode, Tick collar) {
     if (begin < 0 || begin >= episode.ticks) continue;
     const auto near = boundaries.upper_bound(begin - collar);
     if (collar > 0 && near != boundaries.end() && *near - collar <= begin) continue;
-    const std::string *truth = LabelAt(episode.truth, begin), *predicted = LabelAt(episode.prediction, begin);
+    const std::string *truth = LabelAt(episode.truth, begin),
+                      *predicted = LabelAt(episode.prediction, begin);
     const bool equal = truth && predicted ? *truth == *predicted : truth == predicted;
     counts.all += length;
     if (equal) counts.equal += length;
@@ -209,18 +221,21 @@ double EventErrors::ErrorRate() const {
   return Ratio(substituted + Deleted() + Inserted(), truths, predictions == 0 ? 0 : 1);
 }
 
-EventErrors MatchWithCollar(const Segments& truth, const Segments& prediction, double collar, double share) {
+EventErrors MatchWithCollar(const Segments& truth, const Segments& prediction, double collar,
+                            double share) {
   const auto near = [&](int i, int j) {
     const Interval &a = truth[i].interval, &b = prediction[j].interval;
     const double slack = std::max(collar, share * static_cast<double>(Length(a)));
     return static_cast<double>(std::abs(a.begin - b.begin)) <= collar &&
            static_cast<double>(std::abs(a.end - b.end)) <= slack;
   };
-  const int truths = static_cast<int>(truth.size()), predictions = static_cast<int>(prediction.size());
+  const int truths = static_cast<int>(truth.size()),
+            predictions = static_cast<int>(prediction.size());
   std::vector<int> partner;
   EventErrors errors{.truths = truths, .predictions = predictions};
   errors.correct = LargestMatching(
-      truths, predictions, [&](int i, int j) { return truth[i].label == prediction[j].label && near(i, j); }, partner);
+      truths, predictions,
+      [&](int i, int j) { return truth[i].label == prediction[j].label && near(i, j); }, partner);
   const std::set<int> matched(partner.begin(), partner.end());
   std::vector<bool> replaced(truth.size(), false);
   for (int j = 0; j < predictions; ++j) {
@@ -240,7 +255,10 @@ Hits BoundaryHits(const Episode& episode, double window) {
   std::vector<int> partner;
   const int hits = LargestMatching(
       static_cast<int>(truth.size()), static_cast<int>(predicted.size()),
-      [&](int i, int j) { return static_cast<double>(std::abs(truth[i] - predicted[j])) <= window; }, partner);
+      [&](int i, int j) {
+        return static_cast<double>(std::abs(truth[i] - predicted[j])) <= window;
+      },
+      partner);
   return {hits, static_cast<int>(predicted.size()) - hits, static_cast<int>(truth.size()) - hits};
 }
 

@@ -18,7 +18,8 @@ Segments Partition(const Segments& segments, Tick ticks) {
   Segments pieces;
   Tick covered_to = 0;
   for (const Segment& segment : segments) {
-    if (covered_to < segment.interval.begin) pieces.push_back({"", {covered_to, segment.interval.begin}});
+    if (covered_to < segment.interval.begin)
+      pieces.push_back({"", {covered_to, segment.interval.begin}});
     pieces.push_back(segment);
     covered_to = segment.interval.end;
   }
@@ -40,7 +41,9 @@ double MedianDistance(const std::vector<Tick>& from, const std::vector<Tick>& to
   return distances.size() % 2 == 1 ? distances[half] : (distances[half - 1] + distances[half]) / 2;
 }
 
-double PairsIn(Tick frames) { return static_cast<double>(frames) * static_cast<double>(frames - 1) / 2; }
+double PairsIn(Tick frames) {
+  return static_cast<double>(frames) * static_cast<double>(frames - 1) / 2;
+}
 
 template <class Counts>
 double SumOfPairs(const Counts& counts) {
@@ -68,7 +71,8 @@ double PrecisionRecall::F1() const {
 
 std::vector<Tick> InnerBoundaries(const Segments& segments, Tick ticks) {
   std::set<Tick> boundaries;
-  for (const Segment& segment : segments) boundaries.insert({segment.interval.begin, segment.interval.end});
+  for (const Segment& segment : segments)
+    boundaries.insert({segment.interval.begin, segment.interval.end});
   boundaries.erase(0);
   boundaries.erase(ticks);
   return {boundaries.begin(), boundaries.end()};
@@ -91,13 +95,15 @@ PrecisionRecall PairwiseAgreement(const Episode& episode) {
     for (const Segment& piece : pieces)
       both[{one.label, piece.label}] += std::max<Tick>(0, Overlap(one.interval, piece.interval));
   }
-  const double matches = SumOfPairs(both), in_truth = SumOfPairs(truth), in_prediction = SumOfPairs(predicted);
+  const double matches = SumOfPairs(both), in_truth = SumOfPairs(truth),
+               in_prediction = SumOfPairs(predicted);
   return {in_prediction > 0 ? matches / in_prediction : 1, in_truth > 0 ? matches / in_truth : 1};
 }
 
 PrecisionRecall PurityAndCoverage(const Episode& episode) {
   if (episode.ticks == 0) return {};
-  const Segments truth = Partition(episode.truth, episode.ticks), predicted = Partition(episode.prediction, episode.ticks);
+  const Segments truth = Partition(episode.truth, episode.ticks),
+                 predicted = Partition(episode.prediction, episode.ticks);
   const auto all = static_cast<double>(episode.ticks);
   return {Dominated(predicted, truth) / all, Dominated(truth, predicted) / all};
 }

@@ -35,13 +35,14 @@ grammar::Timeline OfKind(const grammar::Timeline& timeline, const std::string& e
 double SecondsOf(const std::vector<JudgedEpisode>& episodes) {
   double seconds = 0;
   for (const JudgedEpisode& episode : episodes)
-    seconds += static_cast<double>(episode.ticks) / static_cast<double>(episode.truth.ticks_per_second);
+    seconds +=
+        static_cast<double>(episode.ticks) / static_cast<double>(episode.truth.ticks_per_second);
   return seconds;
 }
 
 /// Adds what one episode says about one kind of event.
-void AddEpisode(const JudgedEpisode& judged, const LabelledEpisode& episode, const std::string& event, double collar_s,
-                EventScore& score) {
+void AddEpisode(const JudgedEpisode& judged, const LabelledEpisode& episode,
+                const std::string& event, double collar_s, EventScore& score) {
   const double per_s = episode.ticks_per_second;
   const Segments &truth = episode.whole.truth, &found = episode.whole.prediction;
   score.truths += static_cast<int>(truth.size());
@@ -57,8 +58,10 @@ void AddEpisode(const JudgedEpisode& judged, const LabelledEpisode& episode, con
     score.ward.events += ward.events;
     score.frames += CountFrames(label);
   }
-  const grammar::Timeline true_events = OfKind(judged.truth, event), found_events = OfKind(judged.found, event);
-  const Agreement agreement = Agree(true_events, found_events, static_cast<grammar::Tick>(collar_s * per_s));
+  const grammar::Timeline true_events = OfKind(judged.truth, event),
+                          found_events = OfKind(judged.found, event);
+  const Agreement agreement =
+      Agree(true_events, found_events, static_cast<grammar::Tick>(collar_s * per_s));
   for (const LabelAgreement& label : agreement.labels) {
     for (const Match& match : label.matches) {
       score.begin.seconds.push_back(static_cast<double>(match.begin_offset()) / per_s);
@@ -71,12 +74,14 @@ void AddEpisode(const JudgedEpisode& judged, const LabelledEpisode& episode, con
 }
 
 /// All kinds when `event` is empty.
-EventScore ScoreKind(const std::vector<JudgedEpisode>& episodes, const std::string& event, double collar_s) {
+EventScore ScoreKind(const std::vector<JudgedEpisode>& episodes, const std::string& event,
+                     double collar_s) {
   EventScore score{.event = event.empty() ? "all" : event};
   std::vector<LabelledEpisode> labelled;
   double edits = 0;
   for (const JudgedEpisode& judged : episodes) {
-    LabelledEpisode episode = Labelled(OfKind(judged.truth, event), OfKind(judged.found, event), judged.ticks);
+    LabelledEpisode episode =
+        Labelled(OfKind(judged.truth, event), OfKind(judged.found, event), judged.ticks);
     AddEpisode(judged, episode, event, collar_s, score);
     if (episode.by_label.empty()) continue;  // it neither happened nor was said to
     edits += EditScore(episode.whole.truth, episode.whole.prediction);
@@ -97,15 +102,20 @@ double BoundaryErrors::QuantileByMagnitude(double share) const {
 
 double EventScore::LatencyQuantile(double share) const { return Quantile(latency_s, share); }
 
-Score ScoreOf(const std::string& grammar, const std::vector<JudgedEpisode>& episodes, double collar_s) {
+Score ScoreOf(const std::string& grammar, const std::vector<JudgedEpisode>& episodes,
+              double collar_s) {
   std::set<std::string> kinds;
   for (const JudgedEpisode& episode : episodes) {
     for (const auto* side : {&episode.truth, &episode.found}) {
       for (const NamedEvent& event : side->events) kinds.insert(event.event);
     }
   }
-  Score score{.grammar = grammar, .events = {}, .total = ScoreKind(episodes, "", collar_s),
-              .episodes = static_cast<int>(episodes.size()), .not_spoken_of = {}, .not_judged = {}};
+  Score score{.grammar = grammar,
+              .events = {},
+              .total = ScoreKind(episodes, "", collar_s),
+              .episodes = static_cast<int>(episodes.size()),
+              .not_spoken_of = {},
+              .not_judged = {}};
   for (const JudgedEpisode& episode : episodes) {
     for (const auto& [event, times] : episode.not_judged) score.not_judged[event] += times;
   }

@@ -20,14 +20,16 @@ struct JudgedEpisode {
   grammar::Tick ticks = 0;
   grammar::Timeline truth;
   grammar::Timeline found;
-  std::map<std::string, int> not_judged;  ///< how often events were found that nobody knows the truth of
+  std::map<std::string, int>
+      not_judged;  ///< how often events were found that nobody knows the truth of
 };
 
 /// Signed offsets of boundaries (found - true) of the events that were matched, in seconds.
 struct BoundaryErrors {
   std::vector<double> seconds;
 
-  /// Nearest-rank quantiles; 0 without any. Of the signed offsets, and in the order of magnitude, sign kept.
+  /// Nearest-rank quantiles; 0 without any. Of the signed offsets, and in the order of magnitude,
+  /// sign kept.
   double Median() const;
   double QuantileByMagnitude(double share) const;
 };
@@ -52,15 +54,17 @@ struct Score {
   std::vector<EventScore> events;  ///< sorted by name
   EventScore total;
   int episodes = 0;
-  std::vector<std::string> not_spoken_of;  ///< events that are judged, but that no rule of the grammar prints
-  std::map<std::string, int> not_judged;   ///< of all episodes
+  std::vector<std::string>
+      not_spoken_of;  ///< events that are judged, but that no rule of the grammar prints
+  std::map<std::string, int> not_judged;  ///< of all episodes
 };
 
 /// Labels are events with their roles. `collar_s` is for the collar-based scores.
-Score ScoreOf(const std::string& grammar, const std::vector<JudgedEpisode>& episodes, double collar_s);
+Score ScoreOf(const std::string& grammar, const std::vector<JudgedEpisode>& episodes,
+              double collar_s);
 
-/// A table for people: Ward's error row, boundary errors, F1@{10,25,50}, edit, frames, F at the collar, latency; below
-/// it, what the grammar does not speak of, and what is not judged.
+/// A table for people: Ward's error row, boundary errors, F1@{10,25,50}, edit, frames, F at the
+/// collar, latency; below it, what the grammar does not speak of, and what is not judged.
 std::string ScoreTable(const Score& score, double collar_s);
 
 /// The totals of several grammars beside each other, as a Markdown table.

@@ -22,7 +22,8 @@ Json FurtherJson(const EventScore& s) {
           {"boundary_recall", further.boundary_hits.Recall()},
           {"boundary_f1", further.boundary_hits.F1()},
           {"boundary_deviation_s",
-           {{"from_truth", further.deviation_from_truth_s}, {"from_found", further.deviation_from_found_s}}},
+           {{"from_truth", further.deviation_from_truth_s},
+            {"from_found", further.deviation_from_found_s}}},
           {"pairwise_f1", further.pairwise_f1},
           {"purity", further.purity},
           {"coverage", further.coverage},
@@ -54,7 +55,9 @@ Json EventScoreJson(const EventScore& s) {
           {"collar_f", s.within_collar.AsHits().F1()},
           {"collar_error_rate", s.within_collar.ErrorRate()},
           {"latency_s",
-           {{"median", s.LatencyQuantile(0.5)}, {"p95", s.LatencyQuantile(0.95)}, {"max", s.LatencyQuantile(1)}}},
+           {{"median", s.LatencyQuantile(0.5)},
+            {"p95", s.LatencyQuantile(0.95)},
+            {"max", s.LatencyQuantile(1)}}},
           {"further", FurtherJson(s)}};
 }
 

@@ -26,13 +26,30 @@ std::string SignedMs(double seconds) {
 /// "median/p95/max", all signed; the last two in the order of magnitude.
 std::string Milliseconds(const BoundaryErrors& errors) {
   if (errors.seconds.empty()) return "-";
-  return fmt::format("{}/{}/{}", SignedMs(errors.Median()), SignedMs(errors.QuantileByMagnitude(0.95)),
+  return fmt::format("{}/{}/{}", SignedMs(errors.Median()),
+                     SignedMs(errors.QuantileByMagnitude(0.95)),
                      SignedMs(errors.QuantileByMagnitude(1)));
 }
 
 Row Header(double collar_s) {
-  return {"event", "true", "found", "C",   "D",   "F",   "M",    "FM",   "I'",
-          "begin ms", "end ms", "F1@10", "@25", "@50", "edit", "frames", fmt::format("F@{:.0f}ms", kMsPerS * collar_s), "late ms"};
+  return {"event",
+          "true",
+          "found",
+          "C",
+          "D",
+          "F",
+          "M",
+          "FM",
+          "I'",
+          "begin ms",
+          "end ms",
+          "F1@10",
+          "@25",
+          "@50",
+          "edit",
+          "frames",
+          fmt::format("F@{:.0f}ms", kMsPerS * collar_s),
+          "late ms"};
 }
 
 Row RowOf(const EventScore& s) {
@@ -55,9 +72,10 @@ Row RowOf(const EventScore& s) {
           fmt::format("{:.1f}", s.edit),
           Percent(s.frames.Accuracy()),
           Percent(s.within_collar.AsHits().F1()),
-          s.latency_s.empty() ? "-"
-                              : fmt::format("{:.0f}/{:.0f}/{:.0f}", kMsPerS * s.LatencyQuantile(0.5),
-                                            kMsPerS * s.LatencyQuantile(0.95), kMsPerS * s.LatencyQuantile(1))};
+          s.latency_s.empty()
+              ? "-"
+              : fmt::format("{:.0f}/{:.0f}/{:.0f}", kMsPerS * s.LatencyQuantile(0.5),
+                            kMsPerS * s.LatencyQuantile(0.95), kMsPerS * s.LatencyQuantile(1))};
 }
 
 /// Columns two blanks apart; the first one to the left, the others to the right.
@@ -69,7 +87,8 @@ std::string Aligned(const std::vector<Row>& rows) {
   std::string text;
   for (const Row& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
-      text += i == 0 ? fmt::format("{:<{}}", row[i], widths[i]) : fmt::format("  {:>{}}", row[i], widths[i]);
+      text += i == 0 ? fmt::format("{:<{}}", row[i], widths[i])
+                     : fmt::format("  {:>{}}", row[i], widths[i]);
     }
     text += "\n";
   }
@@ -86,14 +105,17 @@ std::string NotSpokenOfText(const Score& score) {
   std::vector<std::string> kinds;
   for (const std::string& event : score.not_spoken_of)
     kinds.push_back(fmt::format("{} ({} true)", event, TruthsOf(score, event)));
-  return fmt::format("not spoken of: {}; no rule prints them, they count as missed\n", fmt::join(kinds, ", "));
+  return fmt::format("not spoken of: {}; no rule prints them, they count as missed\n",
+                     fmt::join(kinds, ", "));
 }
 
 std::string NotJudgedText(const Score& score) {
   if (score.not_judged.empty()) return "";
   std::vector<std::string> kinds;
-  for (const auto& [event, times] : score.not_judged) kinds.push_back(fmt::format("{} ({} found)", event, times));
-  return fmt::format("not judged: {}; docs/events.md does not define them\n", fmt::join(kinds, ", "));
+  for (const auto& [event, times] : score.not_judged)
+    kinds.push_back(fmt::format("{} ({} found)", event, times));
+  return fmt::format("not judged: {}; docs/events.md does not define them\n",
+                     fmt::join(kinds, ", "));
 }
 
 }  // namespace
@@ -102,25 +124,29 @@ std::string ScoreTable(const Score& score, double collar_s) {
   std::vector<Row> rows = {Header(collar_s)};
   for (const EventScore& event : score.events) rows.push_back(RowOf(event));
   rows.push_back(RowOf(score.total));
-  return fmt::format("{}, {} episodes\n{}{}{}", score.grammar, score.episodes, Aligned(rows), NotSpokenOfText(score),
-                     NotJudgedText(score));
+  return fmt::format("{}, {} episodes\n{}{}{}", score.grammar, score.episodes, Aligned(rows),
+                     NotSpokenOfText(score), NotJudgedText(score));
 }
 
 std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
   std::string text = fmt::format(
-      "| grammar | true | not spoken of | correct | deleted | fragmented | merged | inserted | begin, ms | end, ms | F1@10 | F1@25 | F1@50 "
-      "| edit | frames % | F at {:.0f} ms |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "| grammar | true | not spoken of | correct | deleted | fragmented | merged | inserted | "
+      "begin, ms | end, ms | F1@10 | F1@25 | F1@50 "
+      "| edit | frames % | F at {:.0f} ms "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       kMsPerS * collar_s);
   for (const Score& score : scores) {
     const EventScore& s = score.total;
     const WardEvents& ward = s.ward.events;
     int not_spoken_of = 0;
     for (const std::string& event : score.not_spoken_of) not_spoken_of += TruthsOf(score, event);
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1f} | {} | {} |\n", score.grammar,
-                        s.truths, not_spoken_of, ward.correct, ward.deleted, ward.fragmented + ward.fragmented_and_merged, ward.merged,
-                        ward.inserted, Milliseconds(s.begin), Milliseconds(s.end), Percent(s.overlap_10.F1()),
-                        Percent(s.overlap_25.F1()), Percent(s.overlap_50.F1()), s.edit, Percent(s.frames.Accuracy()),
-                        Percent(s.within_collar.AsHits().F1()));
+    text += fmt::format(
+        "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1f} | {} | {} |\n",
+        score.grammar, s.truths, not_spoken_of, ward.correct, ward.deleted,
+        ward.fragmented + ward.fragmented_and_merged, ward.merged, ward.inserted,
+        Milliseconds(s.begin), Milliseconds(s.end), Percent(s.overlap_10.F1()),
+        Percent(s.overlap_25.F1()), Percent(s.overlap_50.F1()), s.edit,
+        Percent(s.frames.Accuracy()), Percent(s.within_collar.AsHits().F1()));
   }
   return text;
 }

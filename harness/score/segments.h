@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is scored: labelled half-open intervals of integer ticks, the truth's and the prediction's, of one episode.
+// What is scored: labelled half-open intervals of integer ticks, the truth's and the prediction's,
+// of one episode.
 #pragma once
 
 #include <string>

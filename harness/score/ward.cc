@@ -23,7 +23,8 @@ struct Piece {
 };
 
 bool Covers(const std::vector<Interval>& side, Tick tick) {
-  return std::any_of(side.begin(), side.end(), [&](const Interval& i) { return i.begin <= tick && tick < i.end; });
+  return std::any_of(side.begin(), side.end(),
+                     [&](const Interval& i) { return i.begin <= tick && tick < i.end; });
 }
 
 std::vector<Piece> Cut(const std::vector<Interval>& truth, const std::vector<Interval>& said) {
@@ -60,14 +61,17 @@ WardTicks CountTicks(const std::vector<Piece>& pieces) {
 }
 
 int Meeting(const Interval& one, const std::vector<Interval>& others) {
-  return static_cast<int>(
-      std::count_if(others.begin(), others.end(), [&](const Interval& other) { return Overlap(one, other) > 0; }));
+  return static_cast<int>(std::count_if(others.begin(), others.end(), [&](const Interval& other) {
+    return Overlap(one, other) > 0;
+  }));
 }
 
 /// Whether one that `one` meets meets others of `one`'s side, too.
-bool SharesPartner(const Interval& one, const std::vector<Interval>& others, const std::vector<Interval>& own) {
-  return std::any_of(others.begin(), others.end(),
-                     [&](const Interval& other) { return Overlap(one, other) > 0 && Meeting(other, own) > 1; });
+bool SharesPartner(const Interval& one, const std::vector<Interval>& others,
+                   const std::vector<Interval>& own) {
+  return std::any_of(others.begin(), others.end(), [&](const Interval& other) {
+    return Overlap(one, other) > 0 && Meeting(other, own) > 1;
+  });
 }
 
 }  // namespace
@@ -105,11 +109,11 @@ Ward CompareByWard(const std::vector<Interval>& truth, const std::vector<Interva
   for (const Interval& one : truth) {
     const int pieces = Meeting(one, said);
     const bool merged = SharesPartner(one, said, truth);
-    ++(pieces == 0             ? events.deleted
-       : pieces > 1 && merged  ? events.fragmented_and_merged
-       : pieces > 1            ? events.fragmented
-       : merged                ? events.merged
-                               : events.correct);
+    ++(pieces == 0            ? events.deleted
+       : pieces > 1 && merged ? events.fragmented_and_merged
+       : pieces > 1           ? events.fragmented
+       : merged               ? events.merged
+                              : events.correct);
   }
   for (const Interval& one : said) {
     const int covered = Meeting(one, truth);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a recognition is wrong: the error classes of Ward, Lukowicz & Gellersen 2011, "Performance metrics for activity
-// recognition", section 4. Of one class at a time: the intervals in which something was true, and was said to be.
-// Tested by tests/harness/score_metrics_test.cc
+// How a recognition is wrong: the error classes of Ward, Lukowicz & Gellersen 2011, "Performance
+// metrics for activity recognition", section 4. Of one class at a time: the intervals in which
+// something was true, and was said to be. Tested by tests/harness/score_metrics_test.cc
 #pragma once
 
 #include <vector>
@@ -13,12 +13,13 @@ namespace prehend::harness::score {
 /// Ticks by what is wrong with them.
 struct WardTicks {
   grammar::Tick correct = 0;
-  grammar::Tick inserted = 0;         ///< said, belongs to no true interval
-  grammar::Tick merged = 0;           ///< said, between two true intervals that one recognised interval covers
-  grammar::Tick overfilled_begin = 0; ///< said before the true begin
-  grammar::Tick overfilled_end = 0;   ///< said after the true end
-  grammar::Tick deleted = 0;          ///< true, never said
-  grammar::Tick fragmented = 0;       ///< true, between two recognised pieces
+  grammar::Tick inserted = 0;  ///< said, belongs to no true interval
+  grammar::Tick merged =
+      0;  ///< said, between two true intervals that one recognised interval covers
+  grammar::Tick overfilled_begin = 0;  ///< said before the true begin
+  grammar::Tick overfilled_end = 0;    ///< said after the true end
+  grammar::Tick deleted = 0;           ///< true, never said
+  grammar::Tick fragmented = 0;        ///< true, between two recognised pieces
   grammar::Tick underfilled_begin = 0;
   grammar::Tick underfilled_end = 0;
 
@@ -42,7 +43,9 @@ struct WardEvents {
 
   WardEvents& operator+=(const WardEvents& other);
   int Truths() const { return correct + deleted + fragmented + merged + fragmented_and_merged; }
-  int Said() const { return said_correct + inserted + fragmenting + merging + fragmenting_and_merging; }
+  int Said() const {
+    return said_correct + inserted + fragmenting + merging + fragmenting_and_merging;
+  }
 };
 
 struct Ward {
@@ -51,6 +54,7 @@ struct Ward {
 };
 
 /// Both sides in the order of time, without overlaps within a side.
-Ward CompareByWard(const std::vector<grammar::Interval>& truth, const std::vector<grammar::Interval>& said);
+Ward CompareByWard(const std::vector<grammar::Interval>& truth,
+                   const std::vector<grammar::Interval>& said);
 
 }  // namespace prehend::harness::score

@@ -19,8 +19,7 @@ class ChangeLog {
 
   /// A frame begins; what is added from now on is new in it.
   void Begin(grammar::Tick tick) {
-    frames_.push_back(
-        {tick, entities_.size(), hands_.size(), touches_.size(), partings_.size()});
+    frames_.push_back({tick, entities_.size(), hands_.size(), touches_.size(), partings_.size()});
   }
   void Add(const grammar::EntityChange& change) { entities_.push_back(change); }
   /// Without feelers: they would not outlive the call.
@@ -35,9 +34,9 @@ class ChangeLog {
   grammar::FrameChanges operator[](std::size_t i) const {
     const Start& here = frames_[i];
     const bool is_last = i + 1 == frames_.size();
-    const Start next = is_last ? Start{0, entities_.size(), hands_.size(), touches_.size(),
-                                       partings_.size()}
-                               : frames_[i + 1];
+    const Start next =
+        is_last ? Start{0, entities_.size(), hands_.size(), touches_.size(), partings_.size()}
+                : frames_[i + 1];
     return {here.tick,
             {entities_.data() + here.entity, next.entity - here.entity},
             {hands_.data() + here.hand, next.hand - here.hand},

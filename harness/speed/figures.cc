@@ -29,10 +29,13 @@ class Measuring {
 
   int Frames(int frames) const { return quick_ ? std::max(2, frames / 50) : frames; }
 
-  /// The four rules on a log, in turns by grammar and by hand; an operation is what the unit names, in one frame.
-  SpeedFigure Watch(std::string what, std::string unit, double operations, const ChangeLog& log, int warm_up) const {
+  /// The four rules on a log, in turns by grammar and by hand; an operation is what the unit names,
+  /// in one frame.
+  SpeedFigure Watch(std::string what, std::string unit, double operations, const ChangeLog& log,
+                    int warm_up) const {
     const double frames = static_cast<double>(log.size()) - warm_up;
-    SpeedFigure figure{.what = std::move(what), .unit = std::move(unit), .operations = operations * frames};
+    SpeedFigure figure{
+        .what = std::move(what), .unit = std::move(unit), .operations = operations * frames};
     figure.seconds = figure.by_hand_s = std::numeric_limits<double>::infinity();
     for (int run = 0; run < (quick_ ? 1 : kRuns); ++run) {
       grammar::Monitor monitor(program_, log.cast);
@@ -50,14 +53,16 @@ class Measuring {
 
   SpeedFigure Stations(int objects, int frames, int warm_up, double period_s) const {
     warm_up = Frames(warm_up);
-    return Watch(fmt::format("four rules, {} object{}, each used every {} s", objects, objects == 1 ? "" : "s", period_s),
+    return Watch(fmt::format("four rules, {} object{}, each used every {} s", objects,
+                             objects == 1 ? "" : "s", period_s),
                  "object-rule-frame", 1.0 * kFourRules * objects,
                  MakeStations(objects, Frames(frames) + warm_up, period_s), warm_up);
   }
 
   /// All facts about all objects change, each once in so many frames.
   SpeedFigure Dense(int objects, int every) const {
-    return Watch(fmt::format("four rules, {} objects, a fact of each changes every {} frames", objects, every),
+    return Watch(fmt::format("four rules, {} objects, a fact of each changes every {} frames",
+                             objects, every),
                  "object-rule-frame", 1.0 * kFourRules * objects,
                  MakeFlicker(objects, Frames(4000), objects / every, Flicker::kFact), 1);
   }
@@ -77,7 +82,8 @@ class Measuring {
     std::vector<grammar::Event> events;
     monitor.AdvanceBy(log[0], events);
     grammar::Tick tick = 1;
-    for (; tick < 1000; ++tick) monitor.AdvanceBy({.tick = tick}, events);  // what is new comes to rest
+    for (; tick < 1000; ++tick)
+      monitor.AdvanceBy({.tick = tick}, events);  // what is new comes to rest
     const Stopwatch watch;
     for (int i = 0; i < frames; ++i) monitor.AdvanceBy({.tick = tick++}, events);
     return {.what = fmt::format("nothing happens, {} objects stand on a table", objects),
@@ -101,7 +107,8 @@ class Measuring {
       figure.operations = monitor.lanes_in_use();
       bytes = mallinfo2().uordblks - bytes_before;
     }
-    figure.what = fmt::format("rules are bound to objects, {:.0f} bytes each", static_cast<double>(bytes) / figure.operations);
+    figure.what = fmt::format("rules are bound to objects, {:.0f} bytes each",
+                              static_cast<double>(bytes) / figure.operations);
     return figure;
   }
 
@@ -131,10 +138,11 @@ double TimeWatching(const Scenario& scenario, std::shared_ptr<const grammar::Pro
   return watch.seconds();
 }
 
-// One hand takes one carton: what physics costs, and what watching adds to it. Apart, so that the clock of the processor,
-// which is slow to read, is read twice only.
+// One hand takes one carton: what physics costs, and what watching adds to it. Apart, so that the
+// clock of the processor, which is slow to read, is read twice only.
 SpeedFigure WatchCarton(const PreparedRun& carton, bool quick) {
-  SpeedFigure figure{.what = "pick_and_place on " + carton.scenario.name + ", sensing included", .unit = "physics tick"};
+  SpeedFigure figure{.what = "pick_and_place on " + carton.scenario.name + ", sensing included",
+                     .unit = "physics tick"};
   const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
   figure.operations = static_cast<double>(run.ticks);
   figure.events = static_cast<double>(run.timeline.events.size());
@@ -142,7 +150,8 @@ SpeedFigure WatchCarton(const PreparedRun& carton, bool quick) {
   figure.seconds = figure.physics_s = std::numeric_limits<double>::infinity();
   for (int i = 0; i < (quick ? 1 : kRuns); ++i) {
     figure.physics_s = std::min(figure.physics_s, TimePhysics(carton.scenario));
-    figure.seconds = std::min(figure.seconds, TimeWatching(carton.scenario, carton.program, run.recording));
+    figure.seconds =
+        std::min(figure.seconds, TimeWatching(carton.scenario, carton.program, run.recording));
   }
   return figure;
 }
@@ -159,7 +168,9 @@ SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool 
   while (simulation.snapshot().tick < kUntilAsleep_s * kRate_hz && simulation.Step())
     monitor.AdvanceBy(sensing.SenseChanges(simulation.snapshot()), events);
 
-  SpeedFigure figure{.what = fmt::format("pick_and_place, {} boxes asleep, sensing included", boxes), .unit = "physics tick"};
+  SpeedFigure figure{
+      .what = fmt::format("pick_and_place, {} boxes asleep, sensing included", boxes),
+      .unit = "physics tick"};
   figure.operations = ticks;
   figure.simulated_s = figure.operations / kRate_hz;
   std::vector<physics::Snapshot> recording;
@@ -173,7 +184,8 @@ SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool 
   }
   figure.physics_s += watch.seconds();
   watch.Restart();
-  for (const physics::Snapshot& snapshot : recording) monitor.AdvanceBy(sensing.SenseChanges(snapshot), events);
+  for (const physics::Snapshot& snapshot : recording)
+    monitor.AdvanceBy(sensing.SenseChanges(snapshot), events);
   figure.seconds = watch.seconds() * ticks / 2 / static_cast<double>(recording.size());
   return figure;
 }
@@ -194,7 +206,8 @@ ReadResult<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool 
       measuring.Dense(1024, 8),
       measuring.Idle(65'536),
       measuring.Touches("a touch that no rule can tell from before", "change", Flicker::kPressure),
-      measuring.Touches("a touch that makes a condition true or false", "fact edge", Flicker::kFact),
+      measuring.Touches("a touch that makes a condition true or false", "fact edge",
+                        Flicker::kFact),
       measuring.Touches("a touch that begins or ends a grasp", "event boundary", Flicker::kGrasp),
       measuring.Binding(),
       WatchCarton(*carton.value, quick),

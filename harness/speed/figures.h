@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast the monitor is on this machine, each figure as the best of several runs, and where there is one, beside the
-// same rules by hand in the same minute: the ratio is what can be compared between machines.
-// Tested by tests/harness/speed_test.cc
+// How fast the monitor is on this machine, each figure as the best of several runs, and where there
+// is one, beside the same rules by hand in the same minute: the ratio is what can be compared
+// between machines. Tested by tests/harness/speed_test.cc
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,8 @@ struct SpeedFigure {
   bool agrees = true;      ///< with the automata by hand
 };
 
-/// Fails only where `root` lacks the scenario that is watched. Takes seconds; `quick` a fraction of one, for tests.
+/// Fails only where `root` lacks the scenario that is watched. Takes seconds; `quick` a fraction of
+/// one, for tests.
 ReadResult<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool quick);
 
 }  // namespace prehend::harness

@@ -39,7 +39,7 @@ constexpr double kGripOn = 0.3;
 constexpr double kLevel = 0.5;
 constexpr double kRegion_m = 0.09;
 constexpr Tick kRate_hz = 240;
-constexpr Tick kSupportTicks = 24;     // 100 ms
+constexpr Tick kSupportTicks = 24;      // 100 ms
 constexpr Tick kUnansweredTicks = 120;  // 500 ms
 
 grammar::Cast MakeCast(int objects) {
@@ -54,7 +54,8 @@ grammar::Cast MakeCast(int objects) {
   return cast;
 }
 
-// A hand that takes an object, holds it up and puts it back: when each step is due, in frames from the touch.
+// A hand that takes an object, holds it up and puts it back: when each step is due, in frames from
+// the touch.
 struct Visit {
   int grip = 0, lift = 0, lower = 0, release = 0, leave = 0;
 };
@@ -65,12 +66,15 @@ constexpr double kRise_m = 0.24;
 class Stations {
  public:
   Stations(int objects, double period_s, std::uint64_t seed)
-      : objects_(objects), period_(static_cast<int>(period_s * static_cast<double>(kRate_hz))), random_(seed) {
+      : objects_(objects),
+        period_(static_cast<int>(period_s * static_cast<double>(kRate_hz))),
+        random_(seed) {
     log.cast = MakeCast(objects);
     visits_.resize(static_cast<std::size_t>(objects));
     // agenda_[frame % period]: who does something then; every visit is over before its period is.
     for (int i = 0; i < objects; ++i) {
-      starts_.push_back(1 + static_cast<int>(random_() % static_cast<unsigned>(period_ - kLongestVisit)));
+      starts_.push_back(
+          1 + static_cast<int>(random_() % static_cast<unsigned>(period_ - kLongestVisit)));
     }
     agenda_.resize(static_cast<std::size_t>(period_));
     for (int i = 0; i < objects; ++i) PlanVisit(i);
@@ -82,7 +86,8 @@ class Stations {
       if (frame == 0) {
         for (int i = 0; i < objects_; ++i) Settle(i);
       }
-      for (const auto [object, step] : agenda_[static_cast<std::size_t>(frame % period_)]) Act(object, step);
+      for (const auto [object, step] : agenda_[static_cast<std::size_t>(frame % period_)])
+        Act(object, step);
     }
   }
 
@@ -91,7 +96,9 @@ class Stations {
  private:
   void PlanVisit(int i) {
     Visit& visit = visits_[static_cast<std::size_t>(i)];
-    const auto upto = [&](int most) { return 1 + static_cast<int>(random_() % static_cast<unsigned>(most)); };
+    const auto upto = [&](int most) {
+      return 1 + static_cast<int>(random_() % static_cast<unsigned>(most));
+    };
     visit.grip = upto(180);  // now and then too late
     visit.lift = visit.grip + upto(20);
     visit.lower = visit.lift + kRiseFrames + upto(60);
@@ -100,14 +107,20 @@ class Stations {
     for (int step = 0; step <= visit.leave; ++step) {
       const bool moves = (step > visit.lift && step <= visit.lift + kRiseFrames) ||
                          (step > visit.lower && step <= visit.lower + kRiseFrames);
-      const bool acts = step == 0 || step == visit.grip || step == visit.lift || step == visit.release || step == visit.leave;
+      const bool acts = step == 0 || step == visit.grip || step == visit.lift ||
+                        step == visit.release || step == visit.leave;
       if (!moves && !acts) continue;
-      agenda_[static_cast<std::size_t>((starts_[static_cast<std::size_t>(i)] + step) % period_)].push_back({i, step});
+      agenda_[static_cast<std::size_t>((starts_[static_cast<std::size_t>(i)] + step) % period_)]
+          .push_back({i, step});
     }
   }
 
-  void Settle(int i) { log.Add(grammar::Touch{.a = objects_ + i, .b = 2 * objects_, .up_on_a = 1, .up_on_b = -1}); }
-  void Feel(int i, std::uint32_t sets) { log.Add(grammar::Touch{.a = i, .b = objects_ + i, .sensor_sets = sets}); }
+  void Settle(int i) {
+    log.Add(grammar::Touch{.a = objects_ + i, .b = 2 * objects_, .up_on_a = 1, .up_on_b = -1});
+  }
+  void Feel(int i, std::uint32_t sets) {
+    log.Add(grammar::Touch{.a = i, .b = objects_ + i, .sensor_sets = sets});
+  }
   void Grip(int i, double trigger) { log.Add(grammar::HandLook{.entity = i, .trigger = trigger}); }
 
   void Act(int i, int step) {
@@ -158,7 +171,8 @@ struct Automaton {
   double up = -1;
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero();
   // State.
-  bool grasping = false, supported = false, waiting = false, lifting = false, was_touched = false, was_near = true;
+  bool grasping = false, supported = false, waiting = false, lifting = false, was_touched = false,
+       was_near = true;
   Tick grasp_begin = 0, support_begin = 0, touch_begin = 0, lift_begin = 0;
   Eigen::Vector3d lift_p_m = Eigen::Vector3d::Zero();
 
@@ -179,7 +193,8 @@ struct Automaton {
     supported = stands;
 
     if (waiting && (grasp_begins || !touched)) {
-      if (now - touch_begin >= kUnansweredTicks) out.Add(kUnanswered, hand, object, {touch_begin, now});
+      if (now - touch_begin >= kUnansweredTicks)
+        out.Add(kUnanswered, hand, object, {touch_begin, now});
       waiting = false;
     } else if (touched && !was_touched && !grasp_begins) {
       waiting = true;
@@ -203,8 +218,10 @@ struct Automaton {
 
   void Finish(int hand, int object, Tick end, Recognised& out) const {
     if (grasping) out.Add(kGrasping, hand, object, {grasp_begin, end});
-    if (supported && end - support_begin >= kSupportTicks) out.Add(kSupported, kNobody, object, {support_begin, end});
-    if (waiting && end - touch_begin >= kUnansweredTicks) out.Add(kUnanswered, hand, object, {touch_begin, end});
+    if (supported && end - support_begin >= kSupportTicks)
+      out.Add(kSupported, kNobody, object, {support_begin, end});
+    if (waiting && end - touch_begin >= kUnansweredTicks)
+      out.Add(kUnanswered, hand, object, {touch_begin, end});
     if (lifting) out.Add(kPickingUp, hand, object, {lift_begin, end});
   }
 
@@ -247,7 +264,8 @@ ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker) {
 void Recognised::Add(int rule, int hand, int object, grammar::Interval interval) {
   ++events;
   std::uint64_t mixed = 0;
-  for (const std::int64_t value : {std::int64_t{rule}, std::int64_t{hand}, std::int64_t{object}, interval.begin, interval.end}) {
+  for (const std::int64_t value : {std::int64_t{rule}, std::int64_t{hand}, std::int64_t{object},
+                                   interval.begin, interval.end}) {
     mixed = (mixed ^ static_cast<std::uint64_t>(value + 7)) * 0x9E3779B97F4A7C15ULL;
     mixed ^= mixed >> 29;
   }
@@ -262,10 +280,12 @@ Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::siz
   std::vector<grammar::Event> events;
   const auto take = [&] {
     for (const grammar::Event& event : events) {
-      // Rules are numbered in the order of the text, after `touching`; supported(object, support) has no hand.
+      // Rules are numbered in the order of the text, after `touching`; supported(object, support)
+      // has no hand.
       const int rule = event.rule - 1;
       const bool has_hand = rule != kSupported;
-      recognised.Add(rule, has_hand ? event.roles[0] : grammar::kNobody, event.roles[has_hand ? 1 : 0], event.interval);
+      recognised.Add(rule, has_hand ? event.roles[0] : grammar::kNobody,
+                     event.roles[has_hand ? 1 : 0], event.interval);
     }
     events.clear();
   };
@@ -287,7 +307,9 @@ Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::siz
 Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
   const int objects = static_cast<int>(log.cast.entities.size() / 2);
   std::vector<Automaton> automata(static_cast<std::size_t>(objects));
-  const auto of = [&](int entity) -> Automaton& { return automata[static_cast<std::size_t>(entity)]; };
+  const auto of = [&](int entity) -> Automaton& {
+    return automata[static_cast<std::size_t>(entity)];
+  };
   Watched watched;
   Recognised& recognised = watched.recognised;
   Stopwatch watch;
@@ -298,7 +320,8 @@ Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
       watch.Restart();
     }
     const grammar::FrameChanges frame = log[i];
-    for (const grammar::EntityChange& change : frame.entities) of(change.entity - objects).p_m = change.look.p_WB_m;
+    for (const grammar::EntityChange& change : frame.entities)
+      of(change.entity - objects).p_m = change.look.p_WB_m;
     for (const grammar::HandLook& hand : frame.hands) of(hand.entity).trigger = hand.trigger;
     for (const grammar::Touch& touch : frame.touches) {
       if (touch.a >= objects) {

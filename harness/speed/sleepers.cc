@@ -27,7 +27,8 @@ Scenario BoxesOnAFloor(int count, int rate_hz) {
   for (int i = 0; i < count; ++i) {
     physics::Body box{.name = "box" + std::to_string(i), .mass_kg = 0.3};
     box.shapes.push_back({physics::Box{{kSize_m, kSize_m, kSize_m}}, {}});
-    box.X_WB.p_m = {kSpacing_m * (i % side) - middle_m, kSpacing_m * (i / side) - middle_m, kSize_m / 2};
+    box.X_WB.p_m = {kSpacing_m * (i % side) - middle_m, kSpacing_m * (i / side) - middle_m,
+                    kSize_m / 2};
     add(std::move(box), "Box");
   }
   return scenario;

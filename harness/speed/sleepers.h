@@ -7,8 +7,8 @@
 
 namespace prehend::harness {
 
-/// `count` boxes side by side on a fixed floor, no hand; sensed at every second tick. They fall asleep
-/// within 2.2 s.
+/// `count` boxes side by side on a fixed floor, no hand; sensed at every second tick. They fall
+/// asleep within 2.2 s.
 Scenario BoxesOnAFloor(int count, int rate_hz = 480);
 inline constexpr double kUntilAsleep_s = 2.5;
 

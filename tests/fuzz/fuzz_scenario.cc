@@ -11,7 +11,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prehend::harness;
   static const ScenarioLibrary library = ProjectLibrary(PREHEND_SOURCE_DIR);
-  const auto read = ReadScenarioText("fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size), {}, library);
+  const auto read = ReadScenarioText(
+      "fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size), {}, library);
   if (!read.value && read.diagnostics.empty()) std::abort();  // refused without a word
   (void)Format(read.diagnostics);
   return 0;

@@ -10,8 +10,19 @@ namespace {
 
 TEST(Allen, NamesTheThirteenRelations) {
   const Interval b{10, 20};
-  const std::array<Interval, 13> in_order = {{{1, 5}, {1, 10}, {5, 15}, {10, 15}, {12, 18}, {15, 20}, {10, 20},
-                                              {5, 20}, {5, 25}, {10, 25}, {15, 25}, {20, 25}, {21, 25}}};
+  const std::array<Interval, 13> in_order = {{{1, 5},
+                                              {1, 10},
+                                              {5, 15},
+                                              {10, 15},
+                                              {12, 18},
+                                              {15, 20},
+                                              {10, 20},
+                                              {5, 20},
+                                              {5, 25},
+                                              {10, 25},
+                                              {15, 25},
+                                              {20, 25},
+                                              {21, 25}}};
   for (std::size_t i = 0; i < in_order.size(); ++i) {
     EXPECT_EQ(Relate(in_order[i], b), static_cast<Allen>(i)) << kAllenNames[i];
     EXPECT_EQ(AllenNamed(kAllenNames[i]), static_cast<Allen>(i));
@@ -35,9 +46,11 @@ TEST(Allen, ConversesMirror) {
 
 TEST(Allen, RelationsCompose) {
   EXPECT_EQ(Composed(Bit(Allen::kBefore), Bit(Allen::kBefore)), Bit(Allen::kBefore));
-  EXPECT_EQ(Composed(Bit(Allen::kMeets), Bit(Allen::kDuring)), Bit(Allen::kOverlaps) | Bit(Allen::kStarts) | Bit(Allen::kDuring));
+  EXPECT_EQ(Composed(Bit(Allen::kMeets), Bit(Allen::kDuring)),
+            Bit(Allen::kOverlaps) | Bit(Allen::kStarts) | Bit(Allen::kDuring));
   EXPECT_EQ(Composed(Bit(Allen::kBefore), Bit(Allen::kAfter)), kAnyRelation);
-  EXPECT_EQ(Inverse(Bit(Allen::kMeets) | Bit(Allen::kDuring)), Bit(Allen::kMetBy) | Bit(Allen::kContains));
+  EXPECT_EQ(Inverse(Bit(Allen::kMeets) | Bit(Allen::kDuring)),
+            Bit(Allen::kMetBy) | Bit(Allen::kContains));
 }
 
 TEST(Allen, NetworksAreRefusedThatCannotBe) {

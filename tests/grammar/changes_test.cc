@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whoever rests misses nothing: whole frames, changes only, and frames that repeat what has not changed, which keeps
-// lanes awake, give the same events at the same decision ticks. And what rests for long is freed.
+// Whoever rests misses nothing: whole frames, changes only, and frames that repeat what has not
+// changed, which keeps lanes awake, give the same events at the same decision ticks. And what rests
+// for long is freed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +31,8 @@ class Differ {
     for (const Touch& touch : frame.touches) now[{touch.a, touch.b}] = touch;
     for (std::size_t i = 0; i < frame.entities.size(); ++i) {
       const EntityLook& look = frame.entities[i];
-      const bool is_new = looks_.empty() || look.p_WB_m != looks_[i].p_WB_m || look.v_WB_m_per_s != looks_[i].v_WB_m_per_s;
+      const bool is_new = looks_.empty() || look.p_WB_m != looks_[i].p_WB_m ||
+                          look.v_WB_m_per_s != looks_[i].v_WB_m_per_s;
       if (is_new || repeat_) moved_.push_back({static_cast<int>(i), look});
     }
     for (const auto& [pair, touch] : before_) {
@@ -40,7 +42,8 @@ class Differ {
       const auto old = before_.find(pair);
       const bool is_new = old == before_.end() || old->second.up_on_a != touch.up_on_a ||
                           old->second.normal_force_n != touch.normal_force_n ||
-                          old->second.vertical_speed_m_per_s != touch.vertical_speed_m_per_s || old->second.sensor_sets != touch.sensor_sets;
+                          old->second.vertical_speed_m_per_s != touch.vertical_speed_m_per_s ||
+                          old->second.sensor_sets != touch.sensor_sets;
       if (is_new || repeat_) touches_.push_back(touch);
     }
     before_ = std::move(now);
@@ -60,16 +63,18 @@ class Differ {
 std::vector<std::string> Lines(const std::vector<Event>& events, const Program& program) {
   std::vector<std::string> lines;
   for (const Event& e : events) {
-    lines.push_back(program.events[e.rule].name + " " + std::to_string(e.roles[0]) + " " + std::to_string(e.roles[1]) +
-                    " [" + std::to_string(e.interval.begin) + "," + std::to_string(e.interval.end) + ") at " +
-                    std::to_string(e.decided) + (e.open_end ? " open" : "") + " style " + std::to_string(e.style));
+    lines.push_back(program.events[e.rule].name + " " + std::to_string(e.roles[0]) + " " +
+                    std::to_string(e.roles[1]) + " [" + std::to_string(e.interval.begin) + "," +
+                    std::to_string(e.interval.end) + ") at " + std::to_string(e.decided) +
+                    (e.open_end ? " open" : "") + " style " + std::to_string(e.style));
   }
   return lines;
 }
 
 TEST(Changes, SayTheSameAsWholeFrames) {
   const CompileResult compiled =
-      Compile({"both", std::string("grammar both\n") + testing::kRestlessRules}, testing::LibraryIncluder());
+      Compile({"both", std::string("grammar both\n") + testing::kRestlessRules},
+              testing::LibraryIncluder());
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
   const auto program = compiled.program;
   std::size_t count = 0;
@@ -95,7 +100,8 @@ TEST(Changes, SayTheSameAsWholeFrames) {
   EXPECT_GT(count, 10000u);
 }
 
-// The same program, but everybody is woken by everything, and nothing is answered by what was measured.
+// The same program, but everybody is woken by everything, and nothing is answered by what was
+// measured.
 std::shared_ptr<const Program> Thorough(const Program& program) {
   const auto thorough = std::make_shared<Program>(program);
   for (Rule& rule : thorough->events) {
@@ -138,13 +144,19 @@ Compared CompareWithThorough(const std::shared_ptr<const Program>& program, int 
 
 TEST(Changes, WhoeverIsNotWokenHasNothingToSay) {
   const CompileResult compiled =
-      Compile({"both", std::string("grammar both\n") + testing::kRestlessRules}, testing::LibraryIncluder());
+      Compile({"both", std::string("grammar both\n") + testing::kRestlessRules},
+              testing::LibraryIncluder());
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
-  const auto rules = [&](auto which) { return std::ranges::count_if(compiled.program->events, which); };
+  const auto rules = [&](auto which) {
+    return std::ranges::count_if(compiled.program->events, which);
+  };
   EXPECT_GE(rules([](const Rule& rule) { return rule.opened_by != kNone; }), 5);
   EXPECT_GE(rules([](const Rule& rule) { return rule.guarded_begin; }), 3);
   EXPECT_GE(rules([](const Rule& rule) { return !rule.measured.is_empty(); }), 5);
-  EXPECT_GE(std::ranges::count_if(compiled.program->nodes, [](const Node& node) { return node.by_threshold.value != kNone; }), 5);
+  EXPECT_GE(
+      std::ranges::count_if(compiled.program->nodes,
+                            [](const Node& node) { return node.by_threshold.value != kNone; }),
+      5);
   const Compared compared = CompareWithThorough(compiled.program, 100);
   EXPECT_GT(compared.events, 50000u);
   EXPECT_GT(compared.object_frames, 1000000u);
@@ -174,7 +186,9 @@ event plain(hand: Hand, object: Movable) rest of gripped(hand, object) outside p
 TEST(Changes, WhatIsDecidedAtOnceNeedsNoPast) {
   const CompileResult compiled = Compile({"instant", kInstantRules}, nullptr);
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
-  EXPECT_GE(std::ranges::count_if(compiled.program->events, [](const Rule& rule) { return rule.measured.instant; }), 5);
+  EXPECT_GE(std::ranges::count_if(compiled.program->events,
+                                  [](const Rule& rule) { return rule.measured.instant; }),
+            5);
   EXPECT_FALSE(compiled.program->recalls_touches);
   EXPECT_GT(CompareWithThorough(compiled.program, 20).events, 10000u);
 }
@@ -182,10 +196,13 @@ TEST(Changes, WhatIsDecidedAtOnceNeedsNoPast) {
 // A hand feels its way along many things; what it has left behind is forgotten, and found again.
 TEST(Changes, WhatRestsForLongIsFreed) {
   constexpr int kThings = 500;
-  const auto program = testing::CompileLibrary("pick_and_place", {{"reach_back", "1 s"}, {"put_back", "1 s"}});
-  Cast cast{.ticks_per_second = 1000, .entities = {{.name = "hand", .classes = {"Hand", "Entity"}}}};
+  const auto program =
+      testing::CompileLibrary("pick_and_place", {{"reach_back", "1 s"}, {"put_back", "1 s"}});
+  Cast cast{.ticks_per_second = 1000,
+            .entities = {{.name = "hand", .classes = {"Hand", "Entity"}}}};
   for (int i = 0; i < kThings; ++i) {
-    cast.entities.push_back({.name = "thing" + std::to_string(i), .classes = {"Movable", "Thing", "Entity"}});
+    cast.entities.push_back(
+        {.name = "thing" + std::to_string(i), .classes = {"Movable", "Thing", "Entity"}});
   }
   Monitor monitor(program, cast);
   std::vector<Event> events;
@@ -206,7 +223,8 @@ TEST(Changes, WhatRestsForLongIsFreed) {
   for (int i = 0; i < 500; ++i) monitor.AdvanceBy({.tick = tick += 10}, events);
   EXPECT_LT(monitor.lanes_in_use(), 20) << "only what no touch guards is left";
   const auto count = [&](std::string_view name) {
-    return std::count_if(events.begin(), events.end(), [&](const Event& e) { return program->events[e.rule].name == name; });
+    return std::count_if(events.begin(), events.end(),
+                         [&](const Event& e) { return program->events[e.rule].name == name; });
   };
   EXPECT_EQ(count("contact"), 3 * kThings);
   EXPECT_EQ(count("grasping"), 3 * kThings);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said about wrong grammars (errors.txt), parameters from outside, and input that is no grammar at all.
+// What is said about wrong grammars (errors.txt), parameters from outside, and input that is no
+// grammar at all.
+#include "grammar/compile.h"
+
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "grammar/compile.h"
 #include "grammar/program.h"
 #include "tests/grammar/corpus.h"
 
@@ -38,7 +40,8 @@ TEST(Compile, SaysExactlyWhatIsWrong) {
   const std::vector<ErrorCase> cases = ReadErrorCases();
   EXPECT_GE(cases.size(), 25u);
   for (const ErrorCase& c : cases) {
-    const CompileResult result = Compile({"g", c.grammar}, testing::LibraryIncluder(), {}, {"contact", "grasp", "pick_and_place"});
+    const CompileResult result = Compile({"g", c.grammar}, testing::LibraryIncluder(), {},
+                                         {"contact", "grasp", "pick_and_place"});
     EXPECT_EQ(result.program, nullptr);
     EXPECT_EQ(Format(result.diagnostics), c.expected) << c.title;
   }
@@ -48,7 +51,8 @@ CompileResult CompileText(const std::string& text, const Overrides& overrides = 
   return Compile({"g", text}, testing::LibraryIncluder(), overrides);
 }
 
-constexpr const char* kSmall = "grammar g\nparam limit = 2 cm\nevent high(x: Thing) while height(x) > limit\n";
+constexpr const char* kSmall =
+    "grammar g\nparam limit = 2 cm\nevent high(x: Thing) while height(x) > limit\n";
 
 TEST(Compile, TakesParametersFromOutside) {
   const CompileResult result = CompileText(kSmall, {{"limit", "30 mm"}});
@@ -59,9 +63,11 @@ TEST(Compile, TakesParametersFromOutside) {
 
 TEST(Compile, RefusesWrongParametersFromOutside) {
   EXPECT_EQ(Format(CompileText(kSmall, {{"limt", "1 cm"}}).diagnostics),
-            "parameter limt:1:1: error: the grammar has no parameter 'limt'\n  1 cm\n  ^\n  hint: did you mean 'limit'?\n");
+            "parameter limt:1:1: error: the grammar has no parameter 'limt'\n  1 cm\n  ^\n  hint: "
+            "did you mean 'limit'?\n");
   EXPECT_EQ(Format(CompileText(kSmall, {{"limit", "1 s"}}).diagnostics),
-            "parameter limit:1:1: error: 'limit' is in m, this is s\n  1 s\n  ^\n  hint: its value in the grammar is 0.02 m\n");
+            "parameter limit:1:1: error: 'limit' is in m, this is s\n  1 s\n  ^\n  hint: its value "
+            "in the grammar is 0.02 m\n");
   EXPECT_EQ(Format(CompileText(kSmall, {{"limit", "wide"}}).diagnostics),
             "parameter limit:1:1: error: expected a number, found 'wide'\n  wide\n  ^\n");
 }
@@ -77,17 +83,20 @@ TEST(Compile, RefusesWhatIsNoGrammar) {
   for (const auto& [text, message] : cases) {
     const CompileResult result = CompileText(text);
     EXPECT_EQ(result.program, nullptr);
-    EXPECT_NE(Format(result.diagnostics).find(message), std::string::npos) << Format(result.diagnostics);
+    EXPECT_NE(Format(result.diagnostics).find(message), std::string::npos)
+        << Format(result.diagnostics);
   }
 }
 
 TEST(Compile, LimitsTheSizeOfAGrammar) {
   std::string rules = "grammar g\n";
-  for (int i = 0; i < 1001; ++i) rules += "event e" + std::to_string(i) + "(x: Thing) while speed(x) > 1 m/s\n";
+  for (int i = 0; i < 1001; ++i)
+    rules += "event e" + std::to_string(i) + "(x: Thing) while speed(x) > 1 m/s\n";
   EXPECT_NE(Format(CompileText(rules).diagnostics).find("more than 1000 "), std::string::npos);
   std::string terms = "grammar g\nevent e(x: Thing) while speed(x) > 1 m/s";
   for (int i = 0; i < 5000; ++i) terms += " and speed(x) > 1 m/s";
-  EXPECT_NE(Format(CompileText(terms).diagnostics).find("more than 10000 expressions"), std::string::npos);
+  EXPECT_NE(Format(CompileText(terms).diagnostics).find("more than 10000 expressions"),
+            std::string::npos);
 }
 
 TEST(Compile, ReadsEachUsedGrammarOnceAndSurvivesCircles) {
@@ -95,10 +104,12 @@ TEST(Compile, ReadsEachUsedGrammarOnceAndSurvivesCircles) {
   const Includer circular = [&](std::string_view name) -> std::optional<GrammarText> {
     ++asked;
     const std::string other = name == "a" ? "b" : "a";
-    return GrammarText{std::string(name), "grammar " + std::string(name) + "\nuse " + other + "\ncondition c_" +
-                                              std::string(name) + "(x: Thing) while speed(x) > 1 m/s\n"};
+    return GrammarText{std::string(name), "grammar " + std::string(name) + "\nuse " + other +
+                                              "\ncondition c_" + std::string(name) +
+                                              "(x: Thing) while speed(x) > 1 m/s\n"};
   };
-  const CompileResult result = Compile({"g", "grammar g\nuse a\nuse b\nevent e(x: Thing) while c_a(x) and c_b(x)\n"}, circular);
+  const CompileResult result = Compile(
+      {"g", "grammar g\nuse a\nuse b\nevent e(x: Thing) while c_a(x) and c_b(x)\n"}, circular);
   EXPECT_TRUE(result.program) << Format(result.diagnostics);
   EXPECT_EQ(asked, 2);
 }

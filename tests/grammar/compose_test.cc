@@ -21,7 +21,8 @@ event served_taken(hand: Hand, cup: Cup, tray: Movable)
 event reached(hand: Hand, cup: Cup, tray: Movable) while held(hand, cup) and distance(hand, tray) < 10 m bridging 2 ms
 )";
 
-// One character per tick. A composition of a part alone is that part, and whoever is made of it waits for it as well.
+// One character per tick. A composition of a part alone is that part, and whoever is made of it
+// waits for it as well.
 std::string Served(const std::string& held, const std::string& placed) {
   const auto program = testing::CompileText(kGrammar);
   Scene scene;
@@ -38,7 +39,8 @@ std::string Served(const std::string& held, const std::string& placed) {
     std::string found;
     for (const Event& e : events) {
       if (program->events[e.rule].name != name) continue;
-      found += "[" + std::to_string(e.interval.begin) + "," + std::to_string(e.interval.end) + ")@" + std::to_string(e.decided) + " ";
+      found += "[" + std::to_string(e.interval.begin) + "," + std::to_string(e.interval.end) +
+               ")@" + std::to_string(e.decided) + " ";
     }
     return found;
   };
@@ -58,7 +60,8 @@ TEST(Compose, TakesTheLatestBeginAndNeverOverlaps) {
   EXPECT_EQ(Served("##...............", "....##......##..."), "[0,6)@6 ");
 }
 
-// The gap at 9 may be bridged, so whether a later take has ended before the put is open until it is not.
+// The gap at 9 may be bridged, so whether a later take has ended before the put is open until it is
+// not.
 TEST(Compose, WaitsUntilNoBetterPartCanCome) {
   EXPECT_EQ(Served("#....####.......", ".........#......"), "[5,10)@11 ");
 }

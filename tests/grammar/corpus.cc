@@ -32,7 +32,8 @@ std::string Trim(const std::string& text) {
 
 CastMember Member(const std::string& name, const std::string& class_name) {
   CastMember member{.name = name, .classes = {class_name}};
-  if (class_name == "Movable" || class_name == "Fixed" || class_name == "Jointed") member.classes.emplace_back("Thing");
+  if (class_name == "Movable" || class_name == "Fixed" || class_name == "Jointed")
+    member.classes.emplace_back("Thing");
   if (class_name == "Hand") member.sensor_sets = {"fingers", "thumb", "palm"};
   member.classes.emplace_back("Entity");
   return member;
@@ -57,7 +58,8 @@ std::vector<CastMember> ParseCast(const std::string& text) {
   for (std::string word; words >> word;) {
     std::istringstream parts(word);
     std::string name, class_name;
-    if (!std::getline(parts, name, ':') || !std::getline(parts, class_name, ':')) Abort("cast wants NAME:CLASS, found " + word);
+    if (!std::getline(parts, name, ':') || !std::getline(parts, class_name, ':'))
+      Abort("cast wants NAME:CLASS, found " + word);
     cast.push_back(Member(name, class_name));
     for (std::string detail; std::getline(parts, detail, ':');) ApplyDetail(cast.back(), detail);
   }
@@ -92,7 +94,8 @@ class Stage {
     hands_.clear();
     feelers_.assign(case_.cast.size(), {});
     for (std::size_t i = 0; i < case_.cast.size(); ++i) {
-      if (case_.cast[i].classes.front() == "Hand") hands_.push_back({.entity = static_cast<int>(i)});
+      if (case_.cast[i].classes.front() == "Hand")
+        hands_.push_back({.entity = static_cast<int>(i)});
     }
     for (const Row& row : case_.facts) Apply(row, tick);
     for (HandLook& hand : hands_) {
@@ -101,10 +104,12 @@ class Stage {
     }
     for (Touch& touch : touches_) {
       const EntityLook &a = looks_[touch.a], &b = looks_[touch.b];
-      touch.vertical_speed_m_per_s = VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
+      touch.vertical_speed_m_per_s =
+          VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
     }
-    std::sort(touches_.begin(), touches_.end(),
-              [](const Touch& a, const Touch& b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); });
+    std::sort(touches_.begin(), touches_.end(), [](const Touch& a, const Touch& b) {
+      return std::pair(a.a, a.b) < std::pair(b.a, b.b);
+    });
     return {.tick = tick, .entities = looks_, .hands = hands_, .touches = touches_};
   }
 
@@ -121,13 +126,17 @@ class Stage {
     std::string what;
     std::string whom;
     words >> who >> what >> whom;
-    const char cell = row.cells[std::min(static_cast<std::size_t>(tick / kColumnTicks), row.cells.size() - 1)];
+    const char cell =
+        row.cells[std::min(static_cast<std::size_t>(tick / kColumnTicks), row.cells.size() - 1)];
     if (what == "x" || what == "y" || what == "z") {
       const int axis = what[0] - 'x';
       EntityLook& look = looks_[Id(who)];
       look.p_WB_m[axis] = Interpolate(row.cells, tick) / 100;
       // As a simulator does, the velocity is that of the step that led here.
-      look.v_WB_m_per_s[axis] = tick == 0 ? 0 : (Interpolate(row.cells, tick) - Interpolate(row.cells, tick - 1)) / 100 * kTicksPerSecond;
+      look.v_WB_m_per_s[axis] =
+          tick == 0 ? 0
+                    : (Interpolate(row.cells, tick) - Interpolate(row.cells, tick - 1)) / 100 *
+                          kTicksPerSecond;
     } else if (what == "shakes") {
       if (cell == '#') Shake(looks_[Id(who)], static_cast<double>(tick) / kTicksPerSecond);
     } else if (what == "grip") {
@@ -146,12 +155,16 @@ class Stage {
     }
   }
 
-  // Two centimetres around the other's origin; each column says by how many sixteenths of a turn it goes on.
-  static void Circle(EntityLook& look, const Eigen::Vector3d& centre, const std::string& cells, Tick tick) {
+  // Two centimetres around the other's origin; each column says by how many sixteenths of a turn it
+  // goes on.
+  static void Circle(EntityLook& look, const Eigen::Vector3d& centre, const std::string& cells,
+                     Tick tick) {
     constexpr double kRadius_m = 0.02;
     const auto full = static_cast<std::size_t>(tick / kColumnTicks);
-    double sixteenths = static_cast<double>(tick % kColumnTicks) / kColumnTicks * Steps(cells[std::min(full, cells.size() - 1)]);
-    for (std::size_t i = 0; i < full; ++i) sixteenths += Steps(cells[std::min(i, cells.size() - 1)]);
+    double sixteenths = static_cast<double>(tick % kColumnTicks) / kColumnTicks *
+                        Steps(cells[std::min(full, cells.size() - 1)]);
+    for (std::size_t i = 0; i < full; ++i)
+      sixteenths += Steps(cells[std::min(i, cells.size() - 1)]);
     const double rad = sixteenths * std::numbers::pi / 8;
     look.p_WB_m = centre + kRadius_m * Eigen::Vector3d(std::cos(rad), std::sin(rad), 0);
   }
@@ -175,7 +188,8 @@ class Stage {
   // The touch of two, made if there is none.
   Touch& TouchOf(int a, int b) {
     if (a > b) std::swap(a, b);
-    const auto found = std::find_if(touches_.begin(), touches_.end(), [&](const Touch& t) { return t.a == a && t.b == b; });
+    const auto found = std::find_if(touches_.begin(), touches_.end(),
+                                    [&](const Touch& t) { return t.a == a && t.b == b; });
     if (found != touches_.end()) return *found;
     touches_.push_back({.a = a, .b = b, .up_on_a = 0, .up_on_b = 0, .normal_force_n = 1});
     return touches_.back();
@@ -216,7 +230,8 @@ class Stage {
 // Steps of a jittered camera, in ticks; the mean is the usual frame.
 Tick NextFrame(const CorpusCase& c, int index, int frames_per_second) {
   static constexpr std::array<Tick, 7> kJitter = {36, 25, 47, 14, 58, 32, 40};
-  return c.jittered ? kJitter[static_cast<std::size_t>(index) % kJitter.size()] : kTicksPerSecond / frames_per_second;
+  return c.jittered ? kJitter[static_cast<std::size_t>(index) % kJitter.size()]
+                    : kTicksPerSecond / frames_per_second;
 }
 
 std::string EventName(const std::string& label) { return label.substr(0, label.find('(')); }
@@ -233,7 +248,9 @@ std::string ReadFile(const std::string& path) {
 
 Includer LibraryIncluder() {
   return [](std::string_view name) -> std::optional<GrammarText> {
-    const std::string file = name.ends_with(".grammar") ? std::string(name) : "grammar/library/" + std::string(name) + ".grammar";
+    const std::string file = name.ends_with(".grammar")
+                                 ? std::string(name)
+                                 : "grammar/library/" + std::string(name) + ".grammar";
     if (!std::ifstream(std::string(PREHEND_SOURCE_DIR) + "/" + file)) return std::nullopt;
     return GrammarText{file, ReadFile(std::string(PREHEND_SOURCE_DIR) + "/" + file)};
   };
@@ -247,7 +264,9 @@ std::shared_ptr<const Program> CompileLibrary(const std::string& name, const Ove
   return result.program;
 }
 
-std::vector<CorpusCase> ReadCorpus(const std::string& path) { return ReadCorpusText(path, ReadFile(path)); }
+std::vector<CorpusCase> ReadCorpus(const std::string& path) {
+  return ReadCorpusText(path, ReadFile(path));
+}
 
 std::vector<CorpusCase> ReadCorpusText(const std::string& path, const std::string& text) {
   std::vector<CorpusCase> cases;
@@ -259,7 +278,9 @@ std::vector<CorpusCase> ReadCorpusText(const std::string& path, const std::strin
     const auto bar = line.find('|');
     if (line.empty() || line[0] == '#') continue;
     if (line.starts_with("== ")) {
-      cases.push_back({.title = line.substr(3), .line = number, .cast = ParseCast("hand:Hand cup:Movable table:Fixed")});
+      cases.push_back({.title = line.substr(3),
+                       .line = number,
+                       .cast = ParseCast("hand:Hand cup:Movable table:Fixed")});
       in_expected = false;
     } else if (cases.empty()) {
       Abort(path + ": a case starts with '== TITLE'");
@@ -275,9 +296,11 @@ std::vector<CorpusCase> ReadCorpusText(const std::string& path, const std::strin
       cases.back().cast = ParseCast(line.substr(5));
     } else if (bar != std::string::npos) {
       const std::string cells = line.substr(bar + 1, line.find('|', bar + 1) - bar - 1);
-      (in_expected ? cases.back().expected : cases.back().facts).push_back({Trim(line.substr(0, bar)), cells});
+      (in_expected ? cases.back().expected : cases.back().facts)
+          .push_back({Trim(line.substr(0, bar)), cells});
       if (cells.size() != cases.back().facts.front().cells.size()) {
-        Abort(path + ":" + std::to_string(number) + ": this row is longer or shorter than the first");
+        Abort(path + ":" + std::to_string(number) +
+              ": this row is longer or shorter than the first");
       }
     } else {
       Abort(path + ":" + std::to_string(number) + ": cannot read this line");
@@ -293,14 +316,16 @@ CorpusRun RunCase(const CorpusCase& c, int frames_per_second) {
   return RunCase(c, program, frames_per_second);
 }
 
-CorpusRun RunCase(const CorpusCase& c, const std::shared_ptr<const Program>& program, int frames_per_second) {
+CorpusRun RunCase(const CorpusCase& c, const std::shared_ptr<const Program>& program,
+                  int frames_per_second) {
   const Cast cast{.ticks_per_second = kTicksPerSecond, .entities = c.cast, .styles = {"wrap"}};
   Monitor monitor(program, cast);
   Stage stage(c);
   std::vector<Event> events;
   const Tick end = kColumnTicks * static_cast<Tick>(c.facts.front().cells.size());
   int index = 0;
-  for (Tick tick = 0; tick < end; tick += NextFrame(c, index++, frames_per_second)) monitor.Advance(stage.Look(tick), events);
+  for (Tick tick = 0; tick < end; tick += NextFrame(c, index++, frames_per_second))
+    monitor.Advance(stage.Look(tick), events);
   monitor.Finish(end, events);
   return {monitor.error(), NameEvents(*program, cast, events)};
 }
@@ -311,13 +336,17 @@ std::vector<Row> DrawEvents(const CorpusCase& c, const Timeline& timeline) {
   std::vector<Row> rows;
   for (const NamedEvent& event : timeline.events) {
     const bool background = event.event == "contact" || event.event == "supported_by";
-    if (background && std::find(wanted.begin(), wanted.end(), event.event) == wanted.end()) continue;
-    auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name == event.Label(); });
+    if (background && std::find(wanted.begin(), wanted.end(), event.event) == wanted.end())
+      continue;
+    auto row = std::find_if(rows.begin(), rows.end(),
+                            [&](const Row& r) { return r.name == event.Label(); });
     if (row == rows.end()) {
       rows.push_back({event.Label(), std::string(c.facts.front().cells.size(), '.')});
       row = rows.end() - 1;
     }
-    const auto column = [](Tick tick) { return static_cast<std::size_t>((tick + kColumnTicks / 2) / kColumnTicks); };
+    const auto column = [](Tick tick) {
+      return static_cast<std::size_t>((tick + kColumnTicks / 2) / kColumnTicks);
+    };
     const std::size_t begin = column(event.interval.begin);
     for (std::size_t i = begin; i < column(event.interval.end) && i < row->cells.size(); ++i) {
       row->cells[i] = i == begin ? '[' : '=';
@@ -329,7 +358,8 @@ std::vector<Row> DrawEvents(const CorpusCase& c, const Timeline& timeline) {
 std::string Text(const std::vector<Row>& rows) {
   std::string text;
   for (const Row& row : rows) {
-    text += row.name + std::string(row.name.size() < 28 ? 28 - row.name.size() : 0, ' ') + "|" + row.cells + "|\n";
+    text += row.name + std::string(row.name.size() < 28 ? 28 - row.name.size() : 0, ' ') + "|" +
+            row.cells + "|\n";
   }
   return text;
 }

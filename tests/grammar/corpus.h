@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Corpus cases: what happens, drawn as rows of characters over time, and the events that must come of it.
-// The notation is described at the head of tests/grammar/corpus/pick_and_place.txt.
+// Corpus cases: what happens, drawn as rows of characters over time, and the events that must come
+// of it. The notation is described at the head of tests/grammar/corpus/pick_and_place.txt.
 #pragma once
 
 #include <string>
@@ -41,7 +41,8 @@ struct CorpusRun {
 };
 CorpusRun RunCase(const CorpusCase& corpus_case, int frames_per_second = 100);
 /// The same with another grammar than the case names.
-CorpusRun RunCase(const CorpusCase& corpus_case, const std::shared_ptr<const Program>& program, int frames_per_second = 100);
+CorpusRun RunCase(const CorpusCase& corpus_case, const std::shared_ptr<const Program>& program,
+                  int frames_per_second = 100);
 
 /// Events of the kinds that the case is about, drawn as rows, sorted by first begin.
 std::vector<Row> DrawEvents(const CorpusCase& corpus_case, const Timeline& timeline);
@@ -49,7 +50,8 @@ std::string Text(const std::vector<Row>& rows);
 
 std::string ReadFile(const std::string& path);
 /// A grammar of grammar/library, compiled; aborts when there are errors.
-std::shared_ptr<const Program> CompileLibrary(const std::string& name, const Overrides& overrides = {});
+std::shared_ptr<const Program> CompileLibrary(const std::string& name,
+                                              const Overrides& overrides = {});
 Includer LibraryIncluder();
 
 }  // namespace prehend::grammar::testing

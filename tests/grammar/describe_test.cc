@@ -11,9 +11,10 @@ namespace prehend::grammar {
 namespace {
 
 const RuleDescription& Find(const GrammarDescription& description, const std::string& name) {
-  const auto found = std::find_if(description.rules.begin(), description.rules.end(), [&](const RuleDescription& rule) {
-    return rule.head.find(" " + name + "(") != std::string::npos;
-  });
+  const auto found = std::find_if(description.rules.begin(), description.rules.end(),
+                                  [&](const RuleDescription& rule) {
+                                    return rule.head.find(" " + name + "(") != std::string::npos;
+                                  });
   EXPECT_NE(found, description.rules.end()) << name;
   return *found;
 }
@@ -25,19 +26,24 @@ TEST(Describe, BoundsDecisionsAndHistory) {
   EXPECT_TRUE(Find(d, "grasping").latency.until_end_of.empty());
   EXPECT_EQ(Find(d, "reaching").latency.until_end_of, std::set<std::string>{"contact"});
   EXPECT_DOUBLE_EQ(Find(d, "picking_up").latency.seconds, 3.4);
-  EXPECT_DOUBLE_EQ(Find(d, "putting_down").latency.seconds, 0.1);  // where it lands, all about the way there is known
-  EXPECT_DOUBLE_EQ(Find(d, "moving_along").latency.seconds, 0.1 + 0.15 + 0.05);  // support, pause, half a window
+  EXPECT_DOUBLE_EQ(Find(d, "putting_down").latency.seconds,
+                   0.1);  // where it lands, all about the way there is known
+  EXPECT_DOUBLE_EQ(Find(d, "moving_along").latency.seconds,
+                   0.1 + 0.15 + 0.05);  // support, pause, half a window
   EXPECT_EQ(Find(d, "contact").watched, "pairs that touch");
 }
 
-// What is promised holds on the corpus: no event is decided later than its bound and the ends it waits for.
+// What is promised holds on the corpus: no event is decided later than its bound and the ends it
+// waits for.
 TEST(Describe, PromisesAreKeptOnTheCorpus) {
   const GrammarDescription d = Describe(*testing::CompileLibrary("pick_and_place"));
-  for (const auto& c : testing::ReadCorpus(PREHEND_SOURCE_DIR "/tests/grammar/corpus/pick_and_place.txt")) {
+  for (const auto& c :
+       testing::ReadCorpus(PREHEND_SOURCE_DIR "/tests/grammar/corpus/pick_and_place.txt")) {
     for (const NamedEvent& event : testing::RunCase(c).timeline.events) {
       const Wait& wait = Find(d, event.event).latency;
       if (!wait.until_end_of.empty()) continue;
-      constexpr double kLongestFrame_s = 2 * 0.0162;  // a gap and a window may each wait for a frame
+      constexpr double kLongestFrame_s =
+          2 * 0.0162;  // a gap and a window may each wait for a frame
       EXPECT_LE(static_cast<double>(event.decided - event.interval.end),
                 testing::kCorpusTicksPerSecond * (wait.seconds + kLongestFrame_s))
           << c.title << ": " << event.Label();
@@ -47,9 +53,14 @@ TEST(Describe, PromisesAreKeptOnTheCorpus) {
 
 TEST(Describe, TextListsParametersWithTheirPlaces) {
   const std::string text = Text(Describe(*testing::CompileLibrary("grasp", {{"grip_on", "0.5"}})));
-  EXPECT_NE(text.find("param grip_on      = 0.5     # grammar/library/grasp.grammar:4, overridden\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("event grasping(hand: Hand, object: Thing)\n    decided: at most 0.06 s after it has ended; watched"),
-            std::string::npos) << text;
+  EXPECT_NE(
+      text.find("param grip_on      = 0.5     # grammar/library/grasp.grammar:4, overridden\n"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(text.find("event grasping(hand: Hand, object: Thing)\n    decided: at most 0.06 s "
+                      "after it has ended; watched"),
+            std::string::npos)
+      << text;
 }
 
 }  // namespace

@@ -7,15 +7,21 @@ namespace prehend::grammar {
 namespace {
 
 TEST(Diagnostic, ShowsPlaceLineCaretAndHint) {
-  const Diagnostic d = DiagnosticAt("a.grammar", "one\ntwo thre\nfour", {2, 5}, "no 'thre'", "did you mean 'three'?");
-  EXPECT_EQ(Format(d), "a.grammar:2:5: error: no 'thre'\n  two thre\n      ^\n  hint: did you mean 'three'?\n");
+  const Diagnostic d = DiagnosticAt("a.grammar", "one\ntwo thre\nfour", {2, 5}, "no 'thre'",
+                                    "did you mean 'three'?");
+  EXPECT_EQ(
+      Format(d),
+      "a.grammar:2:5: error: no 'thre'\n  two thre\n      ^\n  hint: did you mean 'three'?\n");
 }
 
 TEST(Diagnostic, KeepsTabsUnderTabsAndCountsUtf8AsOneColumn) {
-  EXPECT_EQ(Format(DiagnosticAt("f", "\t\xc3\xa9 x", {1, 5}, "m")), "f:1:5: error: m\n  \t\xc3\xa9 x\n  \t  ^\n");
+  EXPECT_EQ(Format(DiagnosticAt("f", "\t\xc3\xa9 x", {1, 5}, "m")),
+            "f:1:5: error: m\n  \t\xc3\xa9 x\n  \t  ^\n");
 }
 
-TEST(Diagnostic, OfAWholeFileHasNoPlace) { EXPECT_EQ(Format(DiagnosticAt("f", "x", {}, "empty")), "f: error: empty\n"); }
+TEST(Diagnostic, OfAWholeFileHasNoPlace) {
+  EXPECT_EQ(Format(DiagnosticAt("f", "x", {}, "empty")), "f: error: empty\n");
+}
 
 TEST(Diagnostic, CutsLongLinesAroundTheCaret) {
   std::string text(10001, 'a');

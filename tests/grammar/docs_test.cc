@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The examples of docs/grammar-language.md: each is a whole grammar, and recognises in the drawing below it what it says.
+// The examples of docs/grammar-language.md: each is a whole grammar, and recognises in the drawing
+// below it what it says.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,19 +30,23 @@ std::vector<Row> Sorted(std::vector<Row> rows) {
 }
 
 TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
-  const std::vector<std::string> blocks = Blocks(ReadFile(PREHEND_SOURCE_DIR "/docs/grammar-language.md"));
+  const std::vector<std::string> blocks =
+      Blocks(ReadFile(PREHEND_SOURCE_DIR "/docs/grammar-language.md"));
   int examples = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (!blocks[i].starts_with("grammar ")) continue;
     const CompileResult compiled = Compile({"docs", blocks[i]}, LibraryIncluder());
     ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
     EXPECT_EQ(Format(compiled.warnings), "");
-    ASSERT_TRUE(i + 1 < blocks.size() && blocks[i + 1].starts_with("cast ")) << "nothing is drawn below\n" << blocks[i];
+    ASSERT_TRUE(i + 1 < blocks.size() && blocks[i + 1].starts_with("cast "))
+        << "nothing is drawn below\n"
+        << blocks[i];
     const CorpusCase drawn = ReadCorpusText("docs", "== example\n" + blocks[i + 1]).front();
     const CorpusRun run = RunCase(drawn, compiled.program);
     EXPECT_EQ(run.error, "");
     EXPECT_FALSE(run.timeline.events.empty());
-    EXPECT_EQ(Text(Sorted(drawn.expected)), Text(Sorted(DrawEvents(drawn, run.timeline)))) << blocks[i];
+    EXPECT_EQ(Text(Sorted(drawn.expected)), Text(Sorted(DrawEvents(drawn, run.timeline))))
+        << blocks[i];
     ++examples;
   }
   EXPECT_GE(examples, 13);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deadlines, attributes, definitions and sensor sets on frames written by hand; reference_test.cc has the meaning of the
-// forms on many streams.
+// Deadlines, attributes, definitions and sensor sets on frames written by hand; reference_test.cc
+// has the meaning of the forms on many streams.
 #include "tests/grammar/scene.h"
 
 namespace prehend::grammar {
@@ -8,9 +8,11 @@ namespace {
 
 using testing::Scene;
 
-std::vector<Event> WatchTouch(const std::string& text, const std::vector<Tick>& ticks, Tick touch_until) {
+std::vector<Event> WatchTouch(const std::string& text, const std::vector<Tick>& ticks,
+                              Tick touch_until) {
   Scene scene;
-  scene.touches = {{.a = Scene::kHand, .b = Scene::kCup, .normal_force_n = 3, .sensor_sets = 0b101}};
+  scene.touches = {
+      {.a = Scene::kHand, .b = Scene::kCup, .normal_force_n = 3, .sensor_sets = 0b101}};
   Monitor monitor(testing::CompileText("grammar t\n" + text), scene.cast);
   std::vector<Event> events;
   for (const Tick tick : ticks) {
@@ -23,7 +25,9 @@ std::vector<Event> WatchTouch(const std::string& text, const std::vector<Tick>& 
   return events;
 }
 
-constexpr const char* kMissed = "event missed(h: Hand, c: Cup) from touching(h, c) begins without touching(h, c) ends within 25 ms";
+constexpr const char* kMissed =
+    "event missed(h: Hand, c: Cup) from touching(h, c) begins without touching(h, c) ends within "
+    "25 ms";
 
 TEST(Forms, ADeadlineBetweenTwoFramesDecidesAtItself) {
   const std::vector<Event> events = WatchTouch(kMissed, {0, 10, 20, 40}, 90);
@@ -34,7 +38,8 @@ TEST(Forms, ADeadlineBetweenTwoFramesDecidesAtItself) {
 
 TEST(Forms, ADeadlineThatPassesBeforeTheEndOfTheEpisodeCounts) {
   EXPECT_EQ(WatchTouch(kMissed, {0, 10}, 90).size(), 1u);
-  EXPECT_EQ(WatchTouch("event missed(h: Hand, c: Cup) from touching(h, c) begins without touching(h, c) ends within 101 ms",
+  EXPECT_EQ(WatchTouch("event missed(h: Hand, c: Cup) from touching(h, c) begins without "
+                       "touching(h, c) ends within 101 ms",
                        {0, 10}, 90)
                 .size(),
             0u);
@@ -49,7 +54,8 @@ TEST(Forms, WhatComesAtTheDeadlineIsInTime) {
 TEST(Forms, WhatIsDecidedLateIsAskedForWhereItEnded) {
   const std::vector<Event> events = WatchTouch(
       "condition high(c: Cup) while height(c) > 35 mm lasting 50 ms\n"
-      "event held(h: Hand, c: Cup) while touching(h, c) or high(c) bridging 4 ms requires height(c) < 20.5 mm",
+      "event held(h: Hand, c: Cup) while touching(h, c) or high(c) bridging 4 ms requires "
+      "height(c) < 20.5 mm",
       {0, 10, 20, 21, 22, 23, 40, 50, 60, 70, 80, 90}, 20);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].interval, (Interval{0, 20}));
@@ -58,7 +64,8 @@ TEST(Forms, WhatIsDecidedLateIsAskedForWhereItEnded) {
 TEST(Forms, AttributesAreTakenAtTheBeginUnlessTheySayOtherwise) {
   const std::vector<Event> events = WatchTouch(
       "event held(h: Hand, c: Cup) while touching(h, c)\n"
-      "with force = force(h, c) with low = height(c) with high = height(c)@end with lift = rise(c) * 2",
+      "with force = force(h, c) with low = height(c) with high = height(c)@end with lift = rise(c) "
+      "* 2",
       {10, 20, 30}, 30);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_DOUBLE_EQ(events[0].attributes[0], 3);
@@ -70,15 +77,16 @@ TEST(Forms, AttributesAreTakenAtTheBeginUnlessTheySayOtherwise) {
 TEST(Forms, DefinitionsStandForTheirBodies) {
   const std::string above = "define above(a, level: m) = height(a) > level\n";
   const std::string twice = "define well_above(b: Cup, level: m) = above(b, 2 * level)\n";
-  const std::vector<Event> events =
-      WatchTouch(above + twice + "event high(c: Cup) while well_above(c, 1 cm)", {0, 10, 20, 30, 40}, 0);
+  const std::vector<Event> events = WatchTouch(
+      above + twice + "event high(c: Cup) while well_above(c, 1 cm)", {0, 10, 20, 30, 40}, 0);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].interval, (Interval{30, 100}));
 }
 
 TEST(Forms, SensorSetsHaveNamesAndNumbers) {
   const auto count = [](const std::string& set) {
-    return WatchTouch("event e(h: Hand, c: Cup) while sensor_set(h, " + set + ", c)", {0, 10}, 90).size();
+    return WatchTouch("event e(h: Hand, c: Cup) while sensor_set(h, " + set + ", c)", {0, 10}, 90)
+        .size();
   };
   EXPECT_EQ(count("fingers"), 1u);
   EXPECT_EQ(count("\"palm\""), 1u);

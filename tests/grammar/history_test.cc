@@ -11,7 +11,8 @@ using testing::Scene;
 void Push(History& history, const Frame& frame) {
   history.BeginFrame(frame.tick);
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
-    if (i != Scene::kTray || history.now() == 0) history.SetLook(static_cast<int>(i), frame.entities[i]);
+    if (i != Scene::kTray || history.now() == 0)
+      history.SetLook(static_cast<int>(i), frame.entities[i]);
   }
   for (const HandLook& hand : frame.hands) history.SetHand(hand);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The monitor as its users meet it: order of events, decision ticks, wrong frames, and no allocation once it is warm.
+// The monitor as its users meet it: order of events, decision ticks, wrong frames, and no
+// allocation once it is warm.
 #include "grammar/monitor.h"
 
 #include <cstdlib>
@@ -30,8 +31,12 @@ std::size_t allocations = 0;  // by this test binary, from its start
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
 #endif
 
 namespace prehend::grammar {
@@ -42,16 +47,22 @@ using testing::Scene;
 // One round of two seconds at 100 Hz: touch, grasp, lift, carry, put down, release.
 void PlayRound(Scene& scene, Monitor& monitor, Tick start, std::vector<Event>& events) {
   for (Tick t = 0; t < 2000; t += 10) {
-    const double lift = t < 600 ? 0 : t < 1000 ? (t - 600) * 0.0004 : t < 1400 ? 0.16 : t < 1800 ? (1800 - t) * 0.0004 : 0;
+    const double lift = t < 600    ? 0
+                        : t < 1000 ? (t - 600) * 0.0004
+                        : t < 1400 ? 0.16
+                        : t < 1800 ? (1800 - t) * 0.0004
+                                   : 0;
     const double speed = t >= 600 && t < 1000 ? 0.4 : t >= 1400 && t < 1800 ? -0.4 : 0;
     scene.looks[Scene::kCup].p_WB_m.z() = lift;
     scene.looks[Scene::kCup].v_WB_m_per_s.z() = speed;
-    scene.looks[Scene::kHand].p_WB_m = {t < 300 ? 0.3 - static_cast<double>(t) * 0.001 : 0, 0, lift};
+    scene.looks[Scene::kHand].p_WB_m = {t < 300 ? 0.3 - static_cast<double>(t) * 0.001 : 0, 0,
+                                        lift};
     scene.feeler.p_W_m = scene.looks[Scene::kHand].p_WB_m;
     scene.hand.ahead_W = {-1, 0, 0};
     scene.hand.trigger = t >= 300 && t < 1900 ? 1 : 0;
     scene.touches.clear();
-    if (t >= 300 && t < 1900) scene.touches.push_back({.a = 0, .b = 1, .up_on_a = 0, .up_on_b = 0, .sensor_sets = 3});
+    if (t >= 300 && t < 1900)
+      scene.touches.push_back({.a = 0, .b = 1, .up_on_a = 0, .up_on_b = 0, .sensor_sets = 3});
     if (lift == 0) scene.touches.push_back({.a = 1, .b = 2, .up_on_a = 1, .up_on_b = -1});
     monitor.Advance(scene.At(start + t), events);
   }
@@ -78,7 +89,8 @@ TEST(Monitor, GivesEventsInOrderAndNeverBeforeTheyAreCertain) {
   Monitor monitor(testing::CompileLibrary("pick_and_place"), scene.cast);
   std::vector<Event> events;
   PlayRound(scene, monitor, 0, events);
-  for (std::size_t i = 1; i < events.size(); ++i) EXPECT_LE(events[i - 1].decided, events[i].decided);
+  for (std::size_t i = 1; i < events.size(); ++i)
+    EXPECT_LE(events[i - 1].decided, events[i].decided);
   for (const Event& event : events) {
     EXPECT_LT(event.interval.begin, event.interval.end);
     EXPECT_LE(event.interval.end, event.decided);
@@ -102,7 +114,8 @@ TEST(Monitor, TellsTheStyleOfAGrasp) {
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].style, 1);
   EXPECT_EQ(events[0].interval, (Interval{300, 1900}));
-  EXPECT_EQ(NameEvents(*program, scene.cast, events).events[0].roles.back(), (Role{"style", "pinch"}));
+  EXPECT_EQ(NameEvents(*program, scene.cast, events).events[0].roles.back(),
+            (Role{"style", "pinch"}));
 }
 
 TEST(Monitor, RefusesFramesThatCannotBe) {
@@ -119,13 +132,16 @@ TEST(Monitor, RefusesFramesThatCannotBe) {
     return monitor.error();
   };
   EXPECT_EQ(error_after([](Scene&, Frame&) {}), "");
-  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = 10; }), "the frames are not in order of time");
+  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = 10; }),
+            "the frames are not in order of time");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.entities = f.entities.first(2); }),
             "a frame shows another number of entities than the cast");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.entities = {}; }),
             "a frame shows another number of entities than the cast");
-  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::max(); }), "a frame's tick is too large");
-  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::min(); }), "a frame's tick is too large");
+  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::max(); }),
+            "a frame's tick is too large");
+  EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::min(); }),
+            "a frame's tick is too large");
   static const std::vector<HandLook> kTwice(2, HandLook{.entity = Scene::kHand});
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.hands = kTwice; }),
             "a frame shows a hand twice, or its hands are not in the order of the cast");
@@ -153,14 +169,16 @@ event carried(hand: Hand, object: Movable) from held(hand, object) begins
       {"hand not shown", [](Scene&, Frame& f) { f.hands = {}; }},
       {"no feelers", [](Scene& s, Frame&) { s.hand.feelers = {}; }},
       {"style unknown", [](Scene& s, Frame&) { s.hand.style = 99; }},
-      {"not a number", [](Scene& s, Frame&) {
+      {"not a number",
+       [](Scene& s, Frame&) {
          s.looks[Scene::kCup].p_WB_m.setConstant(kNan);
          s.looks[Scene::kHand].v_WB_m_per_s.setConstant(kNan);
          s.hand.ahead_W.setConstant(kNan);
          s.feeler.p_W_m.setConstant(kNan);
        }},
       {"infinite", [](Scene& s, Frame&) { s.looks[Scene::kCup].p_WB_m.setConstant(1 / 0.0); }},
-      {"touch twice", [](Scene& s, Frame& f) {
+      {"touch twice",
+       [](Scene& s, Frame& f) {
          s.touches.insert(s.touches.end(), s.touches.begin(), s.touches.end());
          f.touches = s.touches;
        }},
@@ -198,13 +216,16 @@ TEST(Monitor, SurvivesEmptyFramesOfAnEmptyCast) {
 }
 
 TEST(Monitor, RefusesTooManyBindings) {
-  const auto program = testing::CompileText("grammar t\nevent far(a: Thing, b: Thing, c: Thing)\n"
-                                            "  while distance(a, b) > 1 m and distance(b, c) > 1 m\n");
+  const auto program = testing::CompileText(
+      "grammar t\nevent far(a: Thing, b: Thing, c: Thing)\n"
+      "  while distance(a, b) > 1 m and distance(b, c) > 1 m\n");
   Cast cast;
-  for (int i = 0; i < 200; ++i) cast.entities.push_back({.name = std::to_string(i), .classes = {"Thing", "Entity"}});
+  for (int i = 0; i < 200; ++i)
+    cast.entities.push_back({.name = std::to_string(i), .classes = {"Thing", "Entity"}});
   const Monitor monitor(program, cast);
-  EXPECT_EQ(monitor.error(), "more than 1000000 bindings with those of 'far(a: Thing, b: Thing, c: Thing)': "
-                             "there are 200 for a, 200 for b, 200 for c; give the roles narrower classes");
+  EXPECT_EQ(monitor.error(),
+            "more than 1000000 bindings with those of 'far(a: Thing, b: Thing, c: Thing)': "
+            "there are 200 for a, 200 for b, 200 for c; give the roles narrower classes");
 }
 
 TEST(Monitor, WithoutFramesThereIsNothing) {

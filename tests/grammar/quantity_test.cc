@@ -10,8 +10,10 @@ namespace {
 
 TEST(Quantity, IsReadInSiUnitsAndShownAgain) {
   const std::pair<const char*, const char*> cases[] = {
-      {"25 cm", "0.25 m"}, {"0.3", "0.3"}, {"-60 ms", "-0.06 s"}, {"2 cm/s", "0.02 m/s"}, {"5 N", "5 N"},
-      {"180 deg", "3.141592653589793 rad"}, {"1e3 mm", "1 m"}, {"9.81 m/s/s", "9.81 m/s/s"}};
+      {"25 cm", "0.25 m"},   {"0.3", "0.3"},
+      {"-60 ms", "-0.06 s"}, {"2 cm/s", "0.02 m/s"},
+      {"5 N", "5 N"},        {"180 deg", "3.141592653589793 rad"},
+      {"1e3 mm", "1 m"},     {"9.81 m/s/s", "9.81 m/s/s"}};
   for (const auto& [text, shown] : cases) {
     Diagnostics diagnostics;
     const std::optional<Quantity> quantity = ParseQuantity({"v", text}, diagnostics);

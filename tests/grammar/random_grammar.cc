@@ -21,7 +21,9 @@ constexpr std::array<const char*, kRoles> kNames = {"p", "q", "r"};
 constexpr std::array<const char*, kRoles> kClasses = {"P", "Q", "R"};
 
 unsigned RolesOf(const Term& term) {
-  unsigned roles = term.kind == Kind::kTouch ? 1U << term.which : term.kind == Kind::kRule ? term.named : 0;
+  unsigned roles = term.kind == Kind::kTouch  ? 1U << term.which
+                   : term.kind == Kind::kRule ? term.named
+                                              : 0;
   for (const Term& arg : term.args) roles |= RolesOf(arg);
   return roles;
 }
@@ -30,7 +32,8 @@ std::string Head(int rule, unsigned roles, unsigned named, bool classes) {
   std::string text = "rule" + std::to_string(rule) + (classes ? "(x: X" : "(x");
   for (int i = 0; i < kRoles; ++i) {
     if (!(roles >> i & 1)) continue;
-    text += std::string(", ") + (named >> i & 1 ? kNames[i] : "any") + (classes ? std::string(": ") + kClasses[i] : "");
+    text += std::string(", ") + (named >> i & 1 ? kNames[i] : "any") +
+            (classes ? std::string(": ") + kClasses[i] : "");
   }
   return text + ")";
 }
@@ -51,8 +54,8 @@ class Maker {
     if (rule.within >= 0) rule.lasting = std::min(rule.lasting, rule.within);
     if (rule.form == Form::kUntil) rule.lasting = std::min(rule.lasting, rule.back);
     if (rule.form != Form::kCompose) MakeConditionsOfTheWhole(rule);
-    rule.roles = RolesOf(rule.first) | RolesOf(rule.second) |
-                 RolesOf(rule.during) | RolesOf(rule.requirement) | RolesOf(rule.by) | RolesOf(rule.episode);
+    rule.roles = RolesOf(rule.first) | RolesOf(rule.second) | RolesOf(rule.during) |
+                 RolesOf(rule.requirement) | RolesOf(rule.by) | RolesOf(rule.episode);
     for (const Term& call : rule.calls) rule.roles |= RolesOf(call);
     rules_.push_back(std::move(rule));
   }
@@ -90,7 +93,8 @@ class Maker {
   void MakeConditionsOfTheWhole(RandomRule& rule) {
     rule.has_requirement = Sometimes();
     rule.requires_at_end = Below(2) == 0;
-    if (rule.has_requirement) rule.requirement = Condition(2, rule.requires_at_end ? "end" : "begin");
+    if (rule.has_requirement)
+      rule.requirement = Condition(2, rule.requires_at_end ? "end" : "begin");
     rule.is_confirmed = !rules_.empty() && Below(5) == 0;
     if (!rule.is_confirmed) return;
     rule.by = Call();
@@ -109,7 +113,8 @@ class Maker {
     unsigned common = 0;
     const bool each_its_own = Sometimes();
     const auto loses_roles = [&](const Term& part) {  // a composition's roles are all named
-      return !each_its_own && rules_[part.which].form == Form::kCompose && rules_[part.which].roles != common;
+      return !each_its_own && rules_[part.which].form == Form::kCompose &&
+             rules_[part.which].roles != common;
     };
     do {
       rule.calls.clear();
@@ -122,7 +127,9 @@ class Maker {
     for (Term& part : rule.calls) part.named = each_its_own ? rules_[part.which].roles : common;
     const unsigned clauses = 1 + Below(parts);
     for (unsigned i = 0; i < clauses; ++i) {
-      rule.clauses.push_back({.left = Below(parts), .right = Below(parts), .relations = 1 + Below((1U << kAllenNames.size()) - 1)});
+      rule.clauses.push_back({.left = Below(parts),
+                              .right = Below(parts),
+                              .relations = 1 + Below((1U << kAllenNames.size()) - 1)});
     }
   }
 
@@ -130,14 +137,24 @@ class Maker {
   Term Condition(int depth, const std::string& anchor = "") {
     const unsigned choice = Below(depth > 0 ? 10 : 5);
     switch (choice) {
-      case 0: case 1: return Touch();
-      case 2: return {.kind = Kind::kHigh, .value = static_cast<int>(Below(3)) + (Below(2) == 0 ? 1 : 0) - (anchor.empty() ? 0 : 1),
-                      .anchor = anchor};
-      case 3: case 4: return rules_.empty() ? Touch() : Call();
-      case 5: return {.kind = Kind::kNot, .args = {Condition(depth - 1, anchor)}};
-      case 6: return Below(4) == 0 ? Moment(anchor) : Touch();
+      case 0:
+      case 1:
+        return Touch();
+      case 2:
+        return {.kind = Kind::kHigh,
+                .value =
+                    static_cast<int>(Below(3)) + (Below(2) == 0 ? 1 : 0) - (anchor.empty() ? 0 : 1),
+                .anchor = anchor};
+      case 3:
+      case 4:
+        return rules_.empty() ? Touch() : Call();
+      case 5:
+        return {.kind = Kind::kNot, .args = {Condition(depth - 1, anchor)}};
+      case 6:
+        return Below(4) == 0 ? Moment(anchor) : Touch();
       default:
-        return {.kind = choice == 7 ? Kind::kOr : Kind::kAnd, .args = {Condition(depth - 1, anchor), Condition(depth - 1, anchor)}};
+        return {.kind = choice == 7 ? Kind::kOr : Kind::kAnd,
+                .args = {Condition(depth - 1, anchor), Condition(depth - 1, anchor)}};
     }
   }
 
@@ -152,11 +169,16 @@ class Maker {
   // What can begin and end: it has no moments in it.
   Term State(const std::string& anchor) {
     switch (Below(6)) {
-      case 0: return {.kind = Kind::kHigh, .value = static_cast<int>(Below(3)), .anchor = anchor};
-      case 1: return {.kind = Kind::kNot, .args = {Touch()}};
-      case 2: return {.kind = Kind::kOr, .args = {Touch(), rules_.empty() ? Touch() : Call()}};
-      case 3: return Touch();
-      default: return rules_.empty() ? Touch() : Call();
+      case 0:
+        return {.kind = Kind::kHigh, .value = static_cast<int>(Below(3)), .anchor = anchor};
+      case 1:
+        return {.kind = Kind::kNot, .args = {Touch()}};
+      case 2:
+        return {.kind = Kind::kOr, .args = {Touch(), rules_.empty() ? Touch() : Call()}};
+      case 3:
+        return Touch();
+      default:
+        return rules_.empty() ? Touch() : Call();
     }
   }
 
@@ -164,7 +186,8 @@ class Maker {
 
   Term Call() {
     Term call{.kind = Kind::kRule, .which = AnyRule()};
-    while (rules_[call.which].form == Form::kCompose) call.which = AnyRule();  // the first rule is none
+    while (rules_[call.which].form == Form::kCompose)
+      call.which = AnyRule();  // the first rule is none
     const unsigned roles = rules_[call.which].roles;
     call.named = Below(3) == 0 ? roles & Below(8) : roles;
     return call;
@@ -188,16 +211,22 @@ class Writer {
  private:
   std::string TermText(const Term& term) const {
     switch (term.kind) {
-      case Kind::kTouch: return std::string("touching(x, ") + kNames[term.which] + ")";
+      case Kind::kTouch:
+        return std::string("touching(x, ") + kNames[term.which] + ")";
       case Kind::kHigh: {
         const std::string value = std::to_string(term.value) + " m";
-        return term.anchor.empty() ? "height(x) >= " + value : "height(x) >= height(x)@" + term.anchor + " + " + value;
+        return term.anchor.empty() ? "height(x) >= " + value
+                                   : "height(x) >= height(x)@" + term.anchor + " + " + value;
       }
-      case Kind::kRule: return Head(term.which, rules_[term.which].roles, term.named, false);
-      case Kind::kNot: return "(not " + TermText(term.args[0]) + ")";
-      case Kind::kEdge: return "(" + TermText(term.args[0]) + (term.begins ? " begins)" : " ends)");
+      case Kind::kRule:
+        return Head(term.which, rules_[term.which].roles, term.named, false);
+      case Kind::kNot:
+        return "(not " + TermText(term.args[0]) + ")";
+      case Kind::kEdge:
+        return "(" + TermText(term.args[0]) + (term.begins ? " begins)" : " ends)");
       default:
-        return "(" + TermText(term.args[0]) + (term.kind == Kind::kAnd ? " and " : " or ") + TermText(term.args[1]) + ")";
+        return "(" + TermText(term.args[0]) + (term.kind == Kind::kAnd ? " and " : " or ") +
+               TermText(term.args[1]) + ")";
     }
   }
 
@@ -207,32 +236,43 @@ class Writer {
     std::string text = "event " + Head(index, rule.roles, rule.roles, true) + "\n ";
     switch (rule.form) {
       case Form::kWhile:
-        text += " while " + TermText(rule.first) + (rule.has_second ? " until " + TermText(rule.second) : "");
+        text += " while " + TermText(rule.first) +
+                (rule.has_second ? " until " + TermText(rule.second) : "");
         break;
-      case Form::kFromTo: case Form::kWithout:
-        text += " from " + TermText(rule.first) + (rule.form == Form::kWithout ? " without " : " to ") + TermText(rule.second) +
+      case Form::kFromTo:
+      case Form::kWithout:
+        text += " from " + TermText(rule.first) +
+                (rule.form == Form::kWithout ? " without " : " to ") + TermText(rule.second) +
                 (rule.within >= 0 ? " within " + ms(rule.within) : "") +
-                (rule.has_during ? " during " + TermText(rule.during) : "") + (rule.or_drop ? " or drop" : "");
+                (rule.has_during ? " during " + TermText(rule.during) : "") +
+                (rule.or_drop ? " or drop" : "");
         break;
-      case Form::kUntil: text += " until " + TermText(rule.first) + " since " + TermText(rule.second) + ApproachText(rule) +
-                                 " at most " + ms(rule.back) + " back"; break;
+      case Form::kUntil:
+        text += " until " + TermText(rule.first) + " since " + TermText(rule.second) +
+                ApproachText(rule) + " at most " + ms(rule.back) + " back";
+        break;
       case Form::kRest:
         text += " rest of " + TermText(rule.calls[0]) + " outside " + TermText(rule.calls[1]);
         for (std::size_t i = 2; i < rule.calls.size(); ++i) text += ", " + TermText(rule.calls[i]);
         break;
-      case Form::kCompose: text += ComposeText(rule); break;
+      case Form::kCompose:
+        text += ComposeText(rule);
+        break;
     }
     if (rule.bridging > 0) text += " bridging " + ms(rule.bridging);
     if (rule.lasting > 0) text += " lasting " + ms(rule.lasting);
     if (rule.has_requirement) text += " requires " + TermText(rule.requirement);
-    if (rule.is_confirmed) text += " confirmed by " + TermText(rule.by) + " within " + TermText(rule.episode);
+    if (rule.is_confirmed)
+      text += " confirmed by " + TermText(rule.by) + " within " + TermText(rule.episode);
     return text + "\n";
   }
 
   static std::string ApproachText(const RandomRule& rule) {
     if (!rule.approaches) return {};
-    const std::string text = " approaching height(x) receding at most " + std::to_string(rule.slack_m) + ".5 m";
-    return rule.idles ? text + ", slower than 370 m/s at most " + std::to_string(rule.idle) + " ms" : text;
+    const std::string text =
+        " approaching height(x) receding at most " + std::to_string(rule.slack_m) + ".5 m";
+    return rule.idles ? text + ", slower than 370 m/s at most " + std::to_string(rule.idle) + " ms"
+                      : text;
   }
 
   std::string ComposeText(const RandomRule& rule) const {
@@ -245,7 +285,8 @@ class Writer {
       text += (&clause == &rule.clauses.front() ? "a" : ", a") + std::to_string(clause.left) + " ";
       std::string names;
       for (std::size_t i = 0; i < kAllenNames.size(); ++i) {
-        if (clause.relations >> i & 1) names += (names.empty() ? "" : "|") + std::string(kAllenNames[i]);
+        if (clause.relations >> i & 1)
+          names += (names.empty() ? "" : "|") + std::string(kAllenNames[i]);
       }
       text += names + " a" + std::to_string(clause.right);
     }
@@ -258,7 +299,8 @@ class Writer {
 // Says what the rules mean for one episode, for both bindings of p.
 class Meaning {
  public:
-  Meaning(const std::vector<RandomRule>& rules, const RandomEpisode& episode) : rules_(rules), e_(episode), n_(episode.frames()) {
+  Meaning(const std::vector<RandomRule>& rules, const RandomEpisode& episode)
+      : rules_(rules), e_(episode), n_(episode.frames()) {
     for (std::size_t i = 0; i < rules.size(); ++i) {
       found_.emplace_back();
       for (int p = 0; p < 2; ++p) found_.back()[p] = Find(rules[i], p);
@@ -275,14 +317,16 @@ class Meaning {
   Found Intervals(const Term& term, int p) const {
     const bool own = term.kind == Kind::kRule && term.named == rules_[term.which].roles;
     if (own) return found_[term.which][p];
-    return InTicks(While(Truth(term, p, 0)));  // of somebody: where one goes on when another ends, it is one
+    return InTicks(
+        While(Truth(term, p, 0)));  // of somebody: where one goes on when another ends, it is one
   }
   Runs CallRuns(const Term& term, int p) const { return reference::RunsOf(Intervals(term, p)); }
   Runs While(const Stream& stream) const { return reference::While(stream, e_.ticks, 0); }
 
   Stream Truth(const Term& term, int p, int anchor) const {
     switch (term.kind) {
-      case Kind::kTouch: return e_.touches[term.which == 0 ? p : term.which + 1];
+      case Kind::kTouch:
+        return e_.touches[term.which == 0 ? p : term.which + 1];
       case Kind::kHigh: {
         const int base = term.anchor.empty() ? 0 : e_.height_m[std::min(anchor, n_ - 1)];
         Stream high(n_);
@@ -291,12 +335,18 @@ class Meaning {
       }
       case Kind::kRule: {
         const bool anybody = (rules_[term.which].roles & kP & ~term.named) != 0;
-        const Stream own = reference::Truth(reference::RunsOf(found_[term.which][anybody ? 0 : p]), n_);
-        return anybody ? reference::Or(own, reference::Truth(reference::RunsOf(found_[term.which][1]), n_)) : own;
+        const Stream own =
+            reference::Truth(reference::RunsOf(found_[term.which][anybody ? 0 : p]), n_);
+        return anybody ? reference::Or(
+                             own, reference::Truth(reference::RunsOf(found_[term.which][1]), n_))
+                       : own;
       }
-      case Kind::kAnd: return reference::And(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
-      case Kind::kOr: return reference::Or(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
-      case Kind::kNot: return reference::Not(Truth(term.args[0], p, anchor));
+      case Kind::kAnd:
+        return reference::And(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
+      case Kind::kOr:
+        return reference::Or(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
+      case Kind::kNot:
+        return reference::Not(Truth(term.args[0], p, anchor));
       case Kind::kEdge: {
         const Term& arg = term.args[0];
         const bool has_intervals = arg.kind == Kind::kRule || arg.kind == Kind::kTouch;
@@ -308,29 +358,39 @@ class Meaning {
   }
 
   Anchored AnchoredTruth(const Term& term, int p) const {
-    return Anchored(std::function<Stream(int)>([this, &term, p](int frame) { return Truth(term, p, frame); }));
+    return Anchored(
+        std::function<Stream(int)>([this, &term, p](int frame) { return Truth(term, p, frame); }));
   }
 
   Found FindForm(const RandomRule& rule, int p) const {
-    const Anchored during = rule.has_during ? AnchoredTruth(rule.during, p) : Anchored(Stream(n_, true));
+    const Anchored during =
+        rule.has_during ? AnchoredTruth(rule.during, p) : Anchored(Stream(n_, true));
     switch (rule.form) {
       case Form::kWhile: {
         const Stream on = Truth(rule.first, p, 0);
-        return InTicks(reference::While(rule.has_second ? reference::Hold(on, Truth(rule.second, p, 0)) : on, e_.ticks, rule.bridging));
+        return InTicks(
+            reference::While(rule.has_second ? reference::Hold(on, Truth(rule.second, p, 0)) : on,
+                             e_.ticks, rule.bridging));
       }
       case Form::kFromTo:
-        return InTicks(reference::FromTo(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p), during, rule.or_drop, e_.ticks, rule.within));
+        return InTicks(reference::FromTo(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
+                                         during, rule.or_drop, e_.ticks, rule.within));
       case Form::kWithout:
-        return reference::FromWithout(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p), during, e_.ticks, rule.within);
+        return reference::FromWithout(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
+                                      during, e_.ticks, rule.within);
       case Form::kUntil: {
-        reference::Approach approach{.signal = {e_.height_m.begin(), e_.height_m.end()}, .slack = rule.slack_m + 0.5,
-                                     .speed = rule.speed_m_per_s, .idle = rule.idles ? rule.idle : -1};
-        return InTicks(reference::UntilSince(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p), e_.ticks, rule.back,
+        reference::Approach approach{.signal = {e_.height_m.begin(), e_.height_m.end()},
+                                     .slack = rule.slack_m + 0.5,
+                                     .speed = rule.speed_m_per_s,
+                                     .idle = rule.idles ? rule.idle : -1};
+        return InTicks(reference::UntilSince(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
+                                             e_.ticks, rule.back,
                                              rule.approaches ? &approach : nullptr));
       }
       case Form::kRest: {
         std::vector<Stream> outside;
-        for (std::size_t i = 1; i < rule.calls.size(); ++i) outside.push_back(Truth(rule.calls[i], p, 0));
+        for (std::size_t i = 1; i < rule.calls.size(); ++i)
+          outside.push_back(Truth(rule.calls[i], p, 0));
         return InTicks(reference::RestOf(CallRuns(rule.calls[0], p), outside));
       }
       case Form::kCompose: {
@@ -357,7 +417,8 @@ class Meaning {
 
   bool Meets(const RandomRule& rule, const reference::Run& run, int p) const {
     if (!rule.has_requirement) return true;
-    return Truth(rule.requirement, p, rule.requires_at_end ? run.end : run.begin)[std::min(run.end, n_ - 1)];
+    return Truth(rule.requirement, p,
+                 rule.requires_at_end ? run.end : run.begin)[std::min(run.end, n_ - 1)];
   }
 
   bool IsConfirmed(const RandomRule& rule, const reference::Run& run, int p) const {
@@ -410,8 +471,10 @@ std::string Drawn(const RandomEpisode& episode) {
 
 Cast RandomGrammarCast() {
   Cast cast{.ticks_per_second = 1000};
-  const std::pair<const char*, const char*> all[] = {{"x", "X"}, {"p1", "P"}, {"p2", "P"}, {"q", "Q"}, {"r", "R"}};
-  for (const auto& [name, class_name] : all) cast.entities.push_back({.name = name, .classes = {class_name, "Thing", "Entity"}});
+  const std::pair<const char*, const char*> all[] = {
+      {"x", "X"}, {"p1", "P"}, {"p2", "P"}, {"q", "Q"}, {"r", "R"}};
+  for (const auto& [name, class_name] : all)
+    cast.entities.push_back({.name = name, .classes = {class_name, "Thing", "Entity"}});
   return cast;
 }
 
@@ -423,12 +486,21 @@ void EpisodeFeed::Step(bool as_changes, std::vector<Event>& events) {
   for (std::size_t k = 0; k < episode_.touches.size(); ++k) {
     const int whom = static_cast<int>(k) + 1;
     if (episode_.touches[k][frame]) touches_.push_back({.a = 0, .b = whom});
-    if (!episode_.touches[k][frame] && frame > 0 && episode_.touches[k][frame - 1]) partings.push_back({whom, 0});
+    if (!episode_.touches[k][frame] && frame > 0 && episode_.touches[k][frame - 1])
+      partings.push_back({whom, 0});
   }
   looks_[0].p_WB_m.z() = episode_.height_m[frame];
   const EntityChange change{.entity = 0, .look = looks_[0]};
-  if (!as_changes) return monitor_.Advance({.tick = episode_.ticks[frame], .entities = looks_, .hands = {}, .touches = touches_}, events);
-  monitor_.AdvanceBy({.tick = episode_.ticks[frame], .entities = {&change, 1}, .hands = {}, .touches = touches_, .partings = partings}, events);
+  if (!as_changes)
+    return monitor_.Advance(
+        {.tick = episode_.ticks[frame], .entities = looks_, .hands = {}, .touches = touches_},
+        events);
+  monitor_.AdvanceBy({.tick = episode_.ticks[frame],
+                      .entities = {&change, 1},
+                      .hands = {},
+                      .touches = touches_,
+                      .partings = partings},
+                     events);
 }
 
 RandomGrammar::RandomGrammar(std::mt19937_64& random, int rules) {
@@ -437,7 +509,8 @@ RandomGrammar::RandomGrammar(std::mt19937_64& random, int rules) {
   text_ = Writer(rules_).Text();
 }
 
-std::map<std::string, std::vector<Interval>> RandomGrammar::Expected(const RandomEpisode& episode) const {
+std::map<std::string, std::vector<Interval>> RandomGrammar::Expected(
+    const RandomEpisode& episode) const {
   const Meaning meaning(rules_, episode);
   std::map<std::string, std::vector<Interval>> expected;
   for (std::size_t i = 0; i < rules_.size(); ++i) {
@@ -446,8 +519,10 @@ std::map<std::string, std::vector<Interval>> RandomGrammar::Expected(const Rando
       std::vector<Interval> intervals;
       for (const reference::Timed& one : meaning.Of(i, p)) intervals.push_back(one.ticks);
       if (intervals.empty()) continue;
-      std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
-      expected["rule" + std::to_string(i) + (two ? "(p" + std::to_string(p + 1) + ")" : "")] = std::move(intervals);
+      std::sort(intervals.begin(), intervals.end(),
+                [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+      expected["rule" + std::to_string(i) + (two ? "(p" + std::to_string(p + 1) + ")" : "")] =
+          std::move(intervals);
     }
   }
   return expected;

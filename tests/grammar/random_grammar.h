@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Well-formed grammars made at random, and what they mean according to tests/grammar/reference.h: every form, with
-// rules that use rules, `any`, values at the begin and at the end, confirmations and compositions.
-// Tested by tests/grammar/reference_test.cc
+// Well-formed grammars made at random, and what they mean according to tests/grammar/reference.h:
+// every form, with rules that use rules, `any`, values at the begin and at the end, confirmations
+// and compositions. Tested by tests/grammar/reference_test.cc
 #pragma once
 
 #include <array>
@@ -34,7 +34,8 @@ Cast RandomGrammarCast();
 /// Shows an episode to a monitor, frame by frame, as whole frames or as what is new in them.
 class EpisodeFeed {
  public:
-  EpisodeFeed(const RandomEpisode& episode, Monitor& monitor) : episode_(episode), monitor_(monitor), looks_(5) {}
+  EpisodeFeed(const RandomEpisode& episode, Monitor& monitor)
+      : episode_(episode), monitor_(monitor), looks_(5) {}
   bool done() const { return next_ > episode_.frames(); }
   /// The next frame, or after the last one the end.
   void Step(bool as_changes, std::vector<Event>& events);
@@ -51,11 +52,11 @@ class EpisodeFeed {
 struct Term {
   enum class Kind { kTouch, kHigh, kRule, kAnd, kOr, kNot, kEdge };
   Kind kind = Kind::kHigh;
-  int which = 0;          ///< kTouch: role; kRule: rule
-  unsigned named = 0;     ///< kRule: roles that are named; the others are `any`
-  int value = 0;          ///< kHigh: height(x) >= value metres, from `anchor` on if there is one
-  std::string anchor;     ///< kHigh: "begin", "end" or nothing
-  bool begins = true;     ///< kEdge
+  int which = 0;       ///< kTouch: role; kRule: rule
+  unsigned named = 0;  ///< kRule: roles that are named; the others are `any`
+  int value = 0;       ///< kHigh: height(x) >= value metres, from `anchor` on if there is one
+  std::string anchor;  ///< kHigh: "begin", "end" or nothing
+  bool begins = true;  ///< kEdge
   std::vector<Term> args;
 };
 

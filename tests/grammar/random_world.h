@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worlds in which anything may happen: two hands, some objects, two places to put them. Seeded, so it is always the same.
+// Worlds in which anything may happen: two hands, some objects, two places to put them. Seeded, so
+// it is always the same.
 #pragma once
 
 #include <map>
@@ -25,11 +26,13 @@ class RandomWorld {
       feelers.push_back(std::vector<Feeler>(2));
     }
     for (int i = 0; i < kObjects; ++i) {
-      cast.entities.push_back({.name = "object" + std::to_string(i), .classes = {"Movable", "Thing", "Entity"}});
+      cast.entities.push_back(
+          {.name = "object" + std::to_string(i), .classes = {"Movable", "Thing", "Entity"}});
       cast.entities.back().half_size_m.setConstant(0.03);
     }
     for (int i = 0; i < kPlaces; ++i) {
-      cast.entities.push_back({.name = "place" + std::to_string(i), .classes = {"Fixed", "Thing", "Entity"}});
+      cast.entities.push_back(
+          {.name = "place" + std::to_string(i), .classes = {"Fixed", "Thing", "Entity"}});
     }
     calm_ = 2 + random_() % 60;
     uneven_ = random_() % 2 == 0;
@@ -43,12 +46,14 @@ class RandomWorld {
       if (Sometimes()) hands[i].trigger = Choose({0, 0.2, 0.3, 1});
       if (Sometimes()) hands[i].style = static_cast<int>(random_() % 2);
       for (std::size_t k = 0; k < feelers[i].size(); ++k) {
-        feelers[i][k] = {looks[i].p_WB_m + Eigen::Vector3d(0, 0.02 * static_cast<double>(k), 0), 0.01};
+        feelers[i][k] = {looks[i].p_WB_m + Eigen::Vector3d(0, 0.02 * static_cast<double>(k), 0),
+                         0.01};
       }
       hands[i].feelers = feelers[i];
     }
     for (int a = 0; a < static_cast<int>(looks.size()); ++a) {
-      for (int b = a + 1; b < static_cast<int>(looks.size()) - (a < kHands ? kPlaces : 0); ++b) Touching(a, b);
+      for (int b = a + 1; b < static_cast<int>(looks.size()) - (a < kHands ? kPlaces : 0); ++b)
+        Touching(a, b);
     }
     touches.clear();
     for (const auto& [pair, touch] : touching_) touches.push_back(touch);
@@ -61,7 +66,8 @@ class RandomWorld {
 
   void Move(EntityLook& look) {
     if (Sometimes()) {
-      look.v_WB_m_per_s = {Choose({0, 0, 0, 0.3, -0.3}), Choose({0, 0, 0.1}), Choose({0, 0, 0, 0.2, -0.2})};
+      look.v_WB_m_per_s = {Choose({0, 0, 0, 0.3, -0.3}), Choose({0, 0, 0.1}),
+                           Choose({0, 0, 0, 0.2, -0.2})};
     }
     look.p_WB_m += 0.01 * look.v_WB_m_per_s;
     // Nobody gets far: they would not meet again.
@@ -83,7 +89,12 @@ class RandomWorld {
   Touch Press(int a, int b) {
     const double up = Choose({-1, 0, 0.49, 0.5, 1});
     const double force_n = Choose({1, 2});
-    return {.a = a, .b = b, .up_on_a = up, .up_on_b = -up, .normal_force_n = force_n, .vertical_speed_m_per_s = force_n > 1 ? 0.1 : 0,
+    return {.a = a,
+            .b = b,
+            .up_on_a = up,
+            .up_on_b = -up,
+            .normal_force_n = force_n,
+            .vertical_speed_m_per_s = force_n > 1 ? 0.1 : 0,
             .sensor_sets = a < kHands ? static_cast<std::uint32_t>(random_() % 8) : 0};
   }
 
@@ -101,7 +112,8 @@ class RandomWorld {
   std::vector<Touch> touches;
 };
 
-/// Rules that ask everything at all times, so that something is always awake, to stand beside those of the library.
+/// Rules that ask everything at all times, so that something is always awake, to stand beside those
+/// of the library.
 inline constexpr const char* kRestlessRules = R"(
 use pick_and_place
 event near(hand: Hand, object: Movable) while distance(hand, object) < 10 cm bridging 50 ms lasting 30 ms

@@ -18,16 +18,26 @@ TEST(Ranges, ComparisonsAreNeverOrAlwaysTrueBeyondTheEnds) {
     double value;
     Verdict verdict;
   } cases[] = {
-      {Op::kLess, 0, Verdict::kNever},           {Op::kLess, 1, Verdict::kPossible},
-      {Op::kLess, 1.1, Verdict::kAlways},        {Op::kLessEqual, -0.1, Verdict::kNever},
-      {Op::kLessEqual, 0, Verdict::kPossible},   {Op::kLessEqual, 1, Verdict::kAlways},
-      {Op::kGreater, 1, Verdict::kNever},        {Op::kGreater, 0, Verdict::kPossible},
-      {Op::kGreater, -0.1, Verdict::kAlways},    {Op::kGreaterEqual, 1.1, Verdict::kNever},
-      {Op::kGreaterEqual, 1, Verdict::kPossible}, {Op::kGreaterEqual, 0, Verdict::kAlways},
-      {Op::kEqual, 2, Verdict::kNever},          {Op::kEqual, 1, Verdict::kPossible},
-      {Op::kNotEqual, 2, Verdict::kAlways},      {Op::kNotEqual, 0.5, Verdict::kPossible},
+      {Op::kLess, 0, Verdict::kNever},
+      {Op::kLess, 1, Verdict::kPossible},
+      {Op::kLess, 1.1, Verdict::kAlways},
+      {Op::kLessEqual, -0.1, Verdict::kNever},
+      {Op::kLessEqual, 0, Verdict::kPossible},
+      {Op::kLessEqual, 1, Verdict::kAlways},
+      {Op::kGreater, 1, Verdict::kNever},
+      {Op::kGreater, 0, Verdict::kPossible},
+      {Op::kGreater, -0.1, Verdict::kAlways},
+      {Op::kGreaterEqual, 1.1, Verdict::kNever},
+      {Op::kGreaterEqual, 1, Verdict::kPossible},
+      {Op::kGreaterEqual, 0, Verdict::kAlways},
+      {Op::kEqual, 2, Verdict::kNever},
+      {Op::kEqual, 1, Verdict::kPossible},
+      {Op::kNotEqual, 2, Verdict::kAlways},
+      {Op::kNotEqual, 0.5, Verdict::kPossible},
   };
-  for (const auto& c : cases) EXPECT_EQ(Judge(c.op, share, Point(c.value)), c.verdict) << static_cast<int>(c.op) << " " << c.value;
+  for (const auto& c : cases)
+    EXPECT_EQ(Judge(c.op, share, Point(c.value)), c.verdict)
+        << static_cast<int>(c.op) << " " << c.value;
 }
 
 TEST(Ranges, CountsAreWhole) {
@@ -37,14 +47,17 @@ TEST(Ranges, CountsAreWhole) {
   EXPECT_EQ(Judge(Op::kEqual, count, Point(2)), Verdict::kPossible);
 }
 
-// What is known of a whole is what its parts allow, and nothing where a part may be zero or infinite.
+// What is known of a whole is what its parts allow, and nothing where a part may be zero or
+// infinite.
 TEST(Ranges, FollowArithmetic) {
   Program program;
   const auto add = [&](Node node) {
     program.nodes.push_back(node);
     return static_cast<int>(program.nodes.size()) - 1;
   };
-  const auto both = [&](Op op, int a, int b) { return add({.op = op, .args = {a, b, kNone, kNone}}); };
+  const auto both = [&](Op op, int a, int b) {
+    return add({.op = op, .args = {a, b, kNone, kNone}});
+  };
   const int grip = add({.op = Op::kTrigger});
   const int up = add({.op = Op::kUp});
   const int force = add({.op = Op::kForceBetween});

@@ -60,11 +60,13 @@ Runs While(const Stream& f, const Ticks& ticks, Tick bridging) {
 
 Stream Hold(const Stream& on, const Stream& off) {
   Stream holds(on.size());
-  for (std::size_t i = 0; i < on.size(); ++i) holds[i] = !off[i] && (on[i] || (i > 0 && holds[i - 1]));
+  for (std::size_t i = 0; i < on.size(); ++i)
+    holds[i] = !off[i] && (on[i] || (i > 0 && holds[i - 1]));
   return holds;
 }
 
-Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool or_drop, const Ticks& ticks, Tick within) {
+Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool or_drop,
+            const Ticks& ticks, Tick within) {
   Runs runs;
   const int frames = static_cast<int>(from.size());
   for (int i = 0; i < frames; ++i) {
@@ -77,12 +79,15 @@ Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool
     while (end < frames && in_time() && !ends[end] && holds[end]) ++end;
     const bool reached = in_time() && end < frames && ends[end];
     if (reached || (in_time() && !or_drop)) runs.push_back({i, end});
-    i = end - (end < frames && in_time() ? 0 : 1);  // what ends one does not begin the next; a frame after the deadline may
+    i = end - (end < frames && in_time()
+                   ? 0
+                   : 1);  // what ends one does not begin the next; a frame after the deadline may
   }
   return runs;
 }
 
-std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during, const Ticks& ticks, Tick within) {
+std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during,
+                               const Ticks& ticks, Tick within) {
   std::vector<Timed> found;
   const int frames = static_cast<int>(from.size());
   for (int i = 0; i < frames; ++i) {
@@ -108,7 +113,9 @@ int ApproachBegin(const Approach& a, const Ticks& ticks, int earliest, int end) 
   const auto speed = [&](int i) {
     return (a.signal[i] - a.signal[i + 1]) / (static_cast<double>(ticks[i + 1] - ticks[i]) / 1000);
   };
-  const auto largest_after = [&](int i) { return *std::max_element(a.signal.begin() + i + 1, a.signal.begin() + end + 1); };
+  const auto largest_after = [&](int i) {
+    return *std::max_element(a.signal.begin() + i + 1, a.signal.begin() + end + 1);
+  };
   // How far back it goes before it recedes or pauses.
   int limit = end;
   bool receded = false;
@@ -120,7 +127,8 @@ int ApproachBegin(const Approach& a, const Ticks& ticks, int earliest, int end) 
     if (a.idle >= 0 && moved - ticks[i] > a.idle) break;
   }
   if (a.idle < 0 && !receded) return limit;
-  // Movement, or the slow start of one; after receding only where the signal is larger than ever after.
+  // Movement, or the slow start of one; after receding only where the signal is larger than ever
+  // after.
   int begin = end;
   for (int i = end - 1; i >= limit; --i) {
     const bool moves = speed(i) >= a.speed || (begin == i + 1 && speed(i) > a.speed / 10);
@@ -131,7 +139,8 @@ int ApproachBegin(const Approach& a, const Ticks& ticks, int earliest, int end) 
 
 }  // namespace
 
-Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, Tick back, const Approach* approach) {
+Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, Tick back,
+                const Approach* approach) {
   Runs runs;
   const int frames = static_cast<int>(until.size());
   int previous = 0;
@@ -152,7 +161,8 @@ Runs RestOf(const Runs& whole, const std::vector<Stream>& outside) {
   for (const Run& run : whole) {
     bool open = false;
     for (int i = run.begin; i < run.end; ++i) {
-      const bool covered = std::any_of(outside.begin(), outside.end(), [&](const Stream& s) { return s[i]; });
+      const bool covered =
+          std::any_of(outside.begin(), outside.end(), [&](const Stream& s) { return s[i]; });
       if (!covered && !open) runs.push_back({i, i});
       open = !covered;
       if (open) runs.back().end = i + 1;
@@ -219,7 +229,8 @@ std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
   };
   choose(0);
   std::sort(all.begin(), all.end(), [](const Timed& a, const Timed& b) {
-    return std::tuple(a.completed, a.ticks.end, -a.ticks.begin) < std::tuple(b.completed, b.ticks.end, -b.ticks.begin);
+    return std::tuple(a.completed, a.ticks.end, -a.ticks.begin) <
+           std::tuple(b.completed, b.ticks.end, -b.ticks.begin);
   });
   std::vector<Timed> kept;
   for (const Timed& one : all) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The meaning table of docs/grammar-language.md as code: slow, obvious, and over whole episodes at once. It shares
-// nothing with the engine but the words.
+// The meaning table of docs/grammar-language.md as code: slow, obvious, and over whole episodes at
+// once. It shares nothing with the engine but the words.
 #pragma once
 
 #include <algorithm>
@@ -42,17 +42,19 @@ Stream Hold(const Stream& on, const Stream& off);
 
 /// Truth per frame, as it is for an interval that begins (of `until`: ends) at a frame.
 struct Anchored {
-  Anchored(Stream fixed) : at([fixed = std::move(fixed)](int) { return fixed; }) {}  // NOLINT: the usual case
+  Anchored(Stream fixed)
+      : at([fixed = std::move(fixed)](int) { return fixed; }) {}  // NOLINT: the usual case
   explicit Anchored(std::function<Stream(int frame)> from) : at(std::move(from)) {}
   std::function<Stream(int frame)> at;
 };
 
-/// `from .. to [within] [during]`; `within` < 0: no deadline. What has not ended in time is dropped.
-Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool or_drop, const Ticks& ticks,
-            Tick within = -1);
+/// `from .. to [within] [during]`; `within` < 0: no deadline. What has not ended in time is
+/// dropped.
+Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool or_drop,
+            const Ticks& ticks, Tick within = -1);
 
-/// An interval in frames and in ticks. A deadline may lie between two frames: the run ends with the first frame at or after
-/// it, the interval with itself.
+/// An interval in frames and in ticks. A deadline may lie between two frames: the run ends with the
+/// first frame at or after it, the interval with itself.
 struct Timed {
   Run run;
   Interval ticks;
@@ -64,17 +66,19 @@ std::vector<Timed> InTicks(const Runs& runs, const Ticks& ticks);
 Runs RunsOf(const std::vector<Timed>& timed);
 
 /// `from .. without .. within [during]`.
-std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during, const Ticks& ticks,
-                               Tick within);
+std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during,
+                               const Ticks& ticks, Tick within);
 
-/// `approaching signal receding at most slack [, slower than speed at most idle]`, one tick being 1 ms.
+/// `approaching signal receding at most slack [, slower than speed at most idle]`, one tick being 1
+/// ms.
 struct Approach {
   std::vector<double> signal;
   double slack = 0;
   double speed = 0;
   Tick idle = -1;
 };
-Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, Tick back, const Approach* approach = nullptr);
+Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, Tick back,
+                const Approach* approach = nullptr);
 
 /// `compose`: `fits` judges one interval of each part.
 std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,

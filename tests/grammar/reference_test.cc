@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine against the reference: all small streams, and many random ones with frames at uneven times.
+// The engine against the reference: all small streams, and many random ones with frames at uneven
+// times.
+#include "tests/grammar/reference.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +11,6 @@
 #include "grammar/allen.h"
 #include "grammar/monitor.h"
 #include "grammar/program.h"
-#include "tests/grammar/reference.h"
 #include "tests/grammar/reference_trial.h"
 
 namespace prehend::grammar {
@@ -70,7 +72,9 @@ std::vector<Interval> TicksOf(const std::vector<reference::Timed>& timed) {
   return intervals;
 }
 
-std::vector<Interval> TicksOf(const Runs& runs, const Ticks& ticks) { return TicksOf(reference::InTicks(runs, ticks)); }
+std::vector<Interval> TicksOf(const Runs& runs, const Ticks& ticks) {
+  return TicksOf(reference::InTicks(runs, ticks));
+}
 
 // What must not come: with deadlines between frames, hence in ticks.
 std::vector<std::pair<std::string, std::vector<Interval>>> ExpectedDeadlines(const Episode& e) {
@@ -86,20 +90,25 @@ std::vector<std::pair<std::string, std::vector<Interval>>> ExpectedDeadlines(con
   const Stream after = Or(Truth(RunsOf(missed), n), Truth(in_time, n));
   const auto related = [](const std::vector<Interval>& chosen) {
     const Allen relation = Relate(chosen[0], chosen[1]);
-    return relation == Allen::kBefore || relation == Allen::kOverlaps || relation == Allen::kContains || relation == Allen::kFinishes;
+    return relation == Allen::kBefore || relation == Allen::kOverlaps ||
+           relation == Allen::kContains || relation == Allen::kFinishes;
   };
   Runs ends_in_r;
   for (const auto& one : While(e.p, e.ticks, 1)) {
     if (e.r[std::min(one.end, n - 1)]) ends_in_r.push_back(one);
   }
-  return {{"story", TicksOf(Compose({reference::InTicks(run(e.p), e.ticks), reference::InTicks(run(e.q), e.ticks)}, related))},
-          {"ends_in_r", TicksOf(ends_in_r, e.ticks)},
-          {"held", TicksOf(While(Hold(e.p, e.q), e.ticks, 1), e.ticks)},
-          {"in_time", TicksOf(in_time, e.ticks)},
-          {"timely", TicksOf(FromTo(Ends(bridged, n), q_begins, Not(e.r), true, e.ticks, 5), e.ticks)},
-          {"missed", TicksOf(missed)},
-          {"missed_late", TicksOf(FromWithout(Ends(bridged, n), Ends(run(e.q), n), always, e.ticks, 4))},
-          {"after_missed", TicksOf(While(after, e.ticks, 1), e.ticks)}};
+  return {
+      {"story", TicksOf(Compose(
+                    {reference::InTicks(run(e.p), e.ticks), reference::InTicks(run(e.q), e.ticks)},
+                    related))},
+      {"ends_in_r", TicksOf(ends_in_r, e.ticks)},
+      {"held", TicksOf(While(Hold(e.p, e.q), e.ticks, 1), e.ticks)},
+      {"in_time", TicksOf(in_time, e.ticks)},
+      {"timely", TicksOf(FromTo(Ends(bridged, n), q_begins, Not(e.r), true, e.ticks, 5), e.ticks)},
+      {"missed", TicksOf(missed)},
+      {"missed_late",
+       TicksOf(FromWithout(Ends(bridged, n), Ends(run(e.q), n), always, e.ticks, 4))},
+      {"after_missed", TicksOf(While(after, e.ticks, 1), e.ticks)}};
 }
 
 // The rules of kForms, by the meaning table.
@@ -115,7 +124,8 @@ std::vector<std::pair<std::string, Runs>> Expected(const Episode& e) {
   const Stream mixed = Or(And(e.p, Not(e.q)), e.r);
   const Runs approach = UntilSince(begins(e.p), e.q, e.ticks, 4);
   const Stream in_approach = Truth(approach, n);
-  const Runs late = Lasting(UntilSince(Ends(bridged, n), And(e.q, Not(e.r)), e.ticks, 9), e.ticks, 2);
+  const Runs late =
+      Lasting(UntilSince(Ends(bridged, n), And(e.q, Not(e.r)), e.ticks, 9), e.ticks, 2);
   const Runs remaining = RestOf(bridged, {in_approach, e.r});
   const Stream tangled = And(Not(in_bridged), Or(e.q, Or(in_approach, Truth(remaining, n))));
   return {{"plain", run(e.p)},
@@ -128,16 +138,19 @@ std::vector<std::pair<std::string, Runs>> Expected(const Episode& e) {
           {"late", late},
           {"remaining", remaining},
           {"tangled", While(tangled, e.ticks, 1)},
-          {"confirmed_one", ConfirmedBy(UntilSince(begins(e.p), e.q, e.ticks, 20), run(e.r), in_bridged)},
+          {"confirmed_one",
+           ConfirmedBy(UntilSince(begins(e.p), e.q, e.ticks, 20), run(e.r), in_bridged)},
           {"plain_r", run(e.r)},
           {"plain_q", run(e.q)},
-          {"cut_by_later", FromTo(ends(e.r), Or(Begins(approach, n), begins(e.r)), Not(e.p), false, e.ticks)},
+          {"cut_by_later",
+           FromTo(ends(e.r), Or(Begins(approach, n), begins(e.r)), Not(e.p), false, e.ticks)},
           {"anywhere", run(Or(mixed, Truth(late, n)))}};
 }
 
 std::vector<Event> Watch(const std::shared_ptr<const Program>& program, const Episode& episode) {
   Cast cast{.ticks_per_second = 1000};
-  for (const char* name : {"X", "P", "Q", "R"}) cast.entities.push_back({.name = name, .classes = {name, "Thing", "Entity"}});
+  for (const char* name : {"X", "P", "Q", "R"})
+    cast.entities.push_back({.name = name, .classes = {name, "Thing", "Entity"}});
   Monitor monitor(program, cast);
   const std::vector<EntityLook> looks(cast.entities.size());
   std::vector<Event> events;
@@ -146,7 +159,8 @@ std::vector<Event> Watch(const std::shared_ptr<const Program>& program, const Ep
     if (episode.p[i]) touches.push_back({.a = 0, .b = 1});
     if (episode.q[i]) touches.push_back({.a = 0, .b = 2});
     if (episode.r[i]) touches.push_back({.a = 0, .b = 3});
-    monitor.Advance({.tick = episode.ticks[i], .entities = looks, .hands = {}, .touches = touches}, events);
+    monitor.Advance({.tick = episode.ticks[i], .entities = looks, .hands = {}, .touches = touches},
+                    events);
   }
   monitor.Finish(episode.ticks.back(), events);
   EXPECT_EQ(monitor.error(), "");
@@ -169,10 +183,12 @@ std::string Drawn(const Episode& episode) {
 }
 
 std::string IntervalsText(std::vector<Interval> intervals) {
-  std::sort(intervals.begin(), intervals.end(),
-            [](const Interval& a, const Interval& b) { return std::pair(a.begin, a.end) < std::pair(b.begin, b.end); });
+  std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) {
+    return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);
+  });
   std::string text;
-  for (const Interval& i : intervals) text += "[" + std::to_string(i.begin) + "," + std::to_string(i.end) + ") ";
+  for (const Interval& i : intervals)
+    text += "[" + std::to_string(i.begin) + "," + std::to_string(i.end) + ") ";
   return text;
 }
 
@@ -180,7 +196,8 @@ std::string IntervalsText(std::vector<Interval> intervals) {
 bool Agrees(const std::shared_ptr<const Program>& program, const Episode& episode) {
   const std::vector<Event> events = Watch(program, episode);
   std::vector<std::pair<std::string, std::vector<Interval>>> all = ExpectedDeadlines(episode);
-  for (const auto& [name, runs] : Expected(episode)) all.push_back({name, TicksOf(runs, episode.ticks)});
+  for (const auto& [name, runs] : Expected(episode))
+    all.push_back({name, TicksOf(runs, episode.ticks)});
   for (const auto& [name, expected] : all) {
     std::vector<Interval> found;
     for (const Event& event : events) {

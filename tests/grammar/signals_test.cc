@@ -11,8 +11,9 @@ namespace {
 
 using testing::Scene;
 
-// A tray that turns by 1 rad/s about z at the origin and rises by 5 cm/s; a cup 0.4 m to its left, 10 cm long each way,
-// that moves straight up by 6 cm/s; a hand 1 m in front, closing by 10 mm per frame of 10 ms.
+// A tray that turns by 1 rad/s about z at the origin and rises by 5 cm/s; a cup 0.4 m to its left,
+// 10 cm long each way, that moves straight up by 6 cm/s; a hand 1 m in front, closing by 10 mm per
+// frame of 10 ms.
 Scene KnownScene() {
   Scene s;
   s.cast.entities[Scene::kCup].half_size_m = {0.05, 0.05, 0.05};
@@ -28,15 +29,27 @@ Scene KnownScene() {
   s.hand.trigger = 0.7;
   s.hand.style = 1;
   s.feeler = {.p_W_m = {0.55, 0.4, 0.2}, .radius_m = 0.01};
-  s.touches = {{.a = Scene::kHand, .b = Scene::kCup, .up_on_a = -0.2, .up_on_b = 0.1, .normal_force_n = 3, .sensor_sets = 0b101},
-               {.a = Scene::kCup, .b = Scene::kTray, .up_on_a = 0.9, .up_on_b = -0.9, .normal_force_n = 4, .vertical_speed_m_per_s = 0.03}};
+  s.touches = {{.a = Scene::kHand,
+                .b = Scene::kCup,
+                .up_on_a = -0.2,
+                .up_on_b = 0.1,
+                .normal_force_n = 3,
+                .sensor_sets = 0b101},
+               {.a = Scene::kCup,
+                .b = Scene::kTray,
+                .up_on_a = 0.9,
+                .up_on_b = -0.9,
+                .normal_force_n = 4,
+                .vertical_speed_m_per_s = 0.03}};
   return s;
 }
 
 bool HoldsInScene(const std::string& condition) {
   const auto program = testing::CompileText(
-      "grammar t\nevent e(hand: Hand, cup: Cup, tray: Movable) while distance(hand, cup) < 100 m and "
-      "distance(cup, tray) < 100 m and " + condition);
+      "grammar t\nevent e(hand: Hand, cup: Cup, tray: Movable) while distance(hand, cup) < 100 m "
+      "and "
+      "distance(cup, tray) < 100 m and " +
+      condition);
   if (!program) return false;
   Scene scene = KnownScene();
   Monitor monitor(program, scene.cast);
@@ -82,7 +95,8 @@ TEST(Signals, HaveTheirDocumentedValues) {
       {"(2 * height(cup) - 10 cm)", 0.3, "m"},
       {"height(cup) / 0.1 s", 2, "m/s"},
   };
-  // A bound beyond what a signal can be is refused; of a product with the cup's height nobody knows what it can be.
+  // A bound beyond what a signal can be is refused; of a product with the cup's height nobody knows
+  // what it can be.
   constexpr const char* kTimesOne = " * (height(cup) / 20 cm) ";
   for (const auto& c : cases) {
     const auto compare = [&](const char* op, double value) {
@@ -96,11 +110,13 @@ TEST(Signals, HaveTheirDocumentedValues) {
   }
 }
 
-// Where `drift_along` of the cup on the tray is above 1 cm/s, when the cup is at x_m(t) and a frame comes every step ms.
+// Where `drift_along` of the cup on the tray is above 1 cm/s, when the cup is at x_m(t) and a frame
+// comes every step ms.
 template <typename Where>
 std::vector<Interval> Drifting(Where&& x_m, Tick step, Tick end, double tray_m_per_s = 0) {
   const auto program = testing::CompileText(
-      "grammar t\nevent drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 1 cm/s");
+      "grammar t\nevent drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 1 "
+      "cm/s");
   Scene scene;
   Monitor monitor(program, scene.cast);
   std::vector<Event> events;
@@ -123,18 +139,23 @@ TEST(Signals, DriftIsTheWayOverAWindow) {
   EXPECT_EQ(Drifting(jump, 10, 1000), (Intervals{{450, 550}}));
   EXPECT_EQ(Drifting(jump, 10, 1000, 0.3), (Intervals{{450, 550}}));
   // The window reaches to the next frames that are far enough away: 60 ms here.
-  EXPECT_EQ(Drifting([](Tick t) { return t < 510 ? 0.0 : 0.002; }, 30, 990), (Intervals{{450, 570}}));
+  EXPECT_EQ(Drifting([](Tick t) { return t < 510 ? 0.0 : 0.002; }, 30, 990),
+            (Intervals{{450, 570}}));
   // Trembling gets nowhere: 0.4 mm to and fro is 4 cm/s.
-  EXPECT_EQ(Drifting([](Tick t) { return 0.0004 * static_cast<double>(t / 10 % 2); }, 10, 1000, 0.3), (Intervals{}));
+  EXPECT_EQ(
+      Drifting([](Tick t) { return 0.0004 * static_cast<double>(t / 10 % 2); }, 10, 1000, 0.3),
+      (Intervals{}));
   // At the episode's begin and end the window is cut off and the time with it.
   EXPECT_EQ(Drifting([](Tick t) { return t < 10 ? 0.0 : 0.0009; }, 10, 1000), (Intervals{{0, 40}}));
-  EXPECT_EQ(Drifting([](Tick t) { return t < 990 ? 0.0 : 0.0009; }, 10, 1000), (Intervals{{960, 1000}}));
+  EXPECT_EQ(Drifting([](Tick t) { return t < 990 ? 0.0 : 0.0009; }, 10, 1000),
+            (Intervals{{960, 1000}}));
   EXPECT_EQ(Drifting(jump, 10, 10), (Intervals{}));
 }
 
 TEST(Signals, DriftIsKnownWhenItsWindowIsComplete) {
   const auto program = testing::CompileText(
-      "grammar t\nevent drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 1 cm/s\n"
+      "grammar t\nevent drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 1 "
+      "cm/s\n"
       "event jumped(cup: Cup, tray: Movable) from drift_along(cup, tray, 100 ms) > 1 cm/s begins\n"
       "  to drift_along(cup, tray, 100 ms) < drift_along(cup, tray, 100 ms)@begin / 2 begins");
   Scene scene;
@@ -168,11 +189,13 @@ TEST(Signals, TestsHoldAsDocumented) {
       {"in_cylinder(cup, tray, 0.41 m, 0.19 m)", false},
       {"in_cylinder(tray, cup, 0.41 m, 0.21 m)", true},  // above and below
   };
-  for (const auto& [condition, holds] : cases) EXPECT_EQ(HoldsInScene(condition), holds) << condition;
+  for (const auto& [condition, holds] : cases)
+    EXPECT_EQ(HoldsInScene(condition), holds) << condition;
 }
 
 TEST(Signals, APartOfAPartIsAPartOfTheWhole) {
-  const auto program = testing::CompileText("grammar t\nevent e(part: Entity, whole: Entity) while part_of(part, whole)");
+  const auto program = testing::CompileText(
+      "grammar t\nevent e(part: Entity, whole: Entity) while part_of(part, whole)");
   Scene scene;
   scene.cast.entities[Scene::kTray].part_of = Scene::kHand;  // and the cup is a part of the tray
   const auto pairs = [&] {
@@ -183,12 +206,14 @@ TEST(Signals, APartOfAPartIsAPartOfTheWhole) {
     return events.size();
   };
   EXPECT_EQ(pairs(), 3u);
-  scene.cast.entities[Scene::kHand].part_of = Scene::kCup;  // a ring ends, too: each is a part of both others
+  scene.cast.entities[Scene::kHand].part_of =
+      Scene::kCup;  // a ring ends, too: each is a part of both others
   EXPECT_EQ(pairs(), 6u);
 }
 
 TEST(Signals, InsideAsksTheCentreOfTheBox) {
-  const auto program = testing::CompileText("grammar t\nevent e(cup: Cup, tray: Movable) while inside(cup, tray)");
+  const auto program =
+      testing::CompileText("grammar t\nevent e(cup: Cup, tray: Movable) while inside(cup, tray)");
   Scene scene;
   CastMember& room = scene.cast.entities[Scene::kTray];
   room.half_size_m = {0.5, 0.5, 0.1};
@@ -204,7 +229,8 @@ TEST(Signals, InsideAsksTheCentreOfTheBox) {
   };
   EXPECT_TRUE(holds({0.49, 0.49, 0.14}));
   EXPECT_FALSE(holds({0.49, 0.49, 0.16})) << "the centre is 5 cm above the origin";
-  scene.looks[Scene::kTray].q_WB = Eigen::AngleAxisd(std::numbers::pi / 4, Eigen::Vector3d::UnitZ());
+  scene.looks[Scene::kTray].q_WB =
+      Eigen::AngleAxisd(std::numbers::pi / 4, Eigen::Vector3d::UnitZ());
   EXPECT_FALSE(holds({0.49, 0.49, 0.05})) << "the tray has turned";
   EXPECT_TRUE(holds({0.69, 0, 0.05}));
   room.half_size_m.setConstant(0.5);
@@ -217,7 +243,8 @@ TEST(Signals, InsideAsksTheCentreOfTheBox) {
 TEST(Signals, AreAllDocumented) {
   const std::string docs = testing::ReadFile(PREHEND_SOURCE_DIR "/docs/grammar-language.md");
   for (const Builtin& builtin : Builtins()) {
-    EXPECT_NE(docs.find("| `" + std::string(builtin.name) + "("), std::string::npos) << builtin.name;
+    EXPECT_NE(docs.find("| `" + std::string(builtin.name) + "("), std::string::npos)
+        << builtin.name;
   }
 }
 

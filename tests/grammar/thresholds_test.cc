@@ -11,7 +11,12 @@ namespace {
 using enum Threshold::Value;
 
 TEST(Thresholds, ATouchIsBeyondWhatItReaches) {
-  const Thresholds thresholds({{kSensorSets, 2}, {kUpOnFirst, 0.5}, {kUpOnSecond, 0.5}, {kForce, 3}, {kTrigger, 0.3}, {kVerticalSpeed, 0.02}});
+  const Thresholds thresholds({{kSensorSets, 2},
+                               {kUpOnFirst, 0.5},
+                               {kUpOnSecond, 0.5},
+                               {kForce, 3},
+                               {kTrigger, 0.3},
+                               {kVerticalSpeed, 0.02}});
   EXPECT_EQ(thresholds.OfTouch(-1, -1, 0, 0, 0), 0u);
   EXPECT_EQ(thresholds.OfTouch(-1, -1, 0, 0, 0b101), 0b00001u) << "two sets, whichever they are";
   EXPECT_EQ(thresholds.OfTouch(0.5, 0.4, 0, 0, 1), 0b00010u);
@@ -22,12 +27,15 @@ TEST(Thresholds, ATouchIsBeyondWhatItReaches) {
 }
 
 TEST(Thresholds, NoTouchMeasuresNothing) {
-  const Thresholds thresholds({{kSensorSets, 0}, {kUpOnFirst, -1}, {kUpOnSecond, -0.9}, {kForce, 0}, {kSensorSets, 0.5}});
+  const Thresholds thresholds(
+      {{kSensorSets, 0}, {kUpOnFirst, -1}, {kUpOnSecond, -0.9}, {kForce, 0}, {kSensorSets, 0.5}});
   EXPECT_EQ(thresholds.OfNoTouch(), 0b01011u);
 }
 
 TEST(Thresholds, SetsAreCounted) {
-  const Thresholds thresholds({{kSensorSets, 32}, {kSensorSets, 33}, {kSensorSets, std::numeric_limits<double>::quiet_NaN()}});
+  const Thresholds thresholds({{kSensorSets, 32},
+                               {kSensorSets, 33},
+                               {kSensorSets, std::numeric_limits<double>::quiet_NaN()}});
   EXPECT_EQ(thresholds.OfTouch(-1, -1, 0, 0, 0xffffffff), 0b001u);
   EXPECT_EQ(thresholds.OfTouch(-1, -1, 0, 0, 0x7fffffff), 0u);
 }

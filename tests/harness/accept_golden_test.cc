@@ -176,8 +176,7 @@ TEST_F(WithOracle, WhatOnlyItSeesHasALineThatExpectsNothing) {
   EXPECT_EQ(Proposed(first, {{a_frame_later, kOnlyOracle}}), first);
   const Golden gone = Proposed(first, {});
   EXPECT_EQ(gone.events.size(), 2u);
-  EXPECT_EQ(Summary(Objections(first, gone)),
-            "a note about the physical oracle is out of date");
+  EXPECT_EQ(Summary(Objections(first, gone)), "a note about the physical oracle is out of date");
 }
 
 TEST_F(WithOracle, EveryObjectionIsAnsweredOrNothingIs) {

@@ -31,14 +31,17 @@ std::string Joint(const std::string& name, const std::string& offset, const std:
 
 std::string Person(const Names& names) {
   const std::string end = "End Site\n{\nOFFSET 0 -5 0\n}\n";
-  std::string text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 4 Xposition Yposition Zposition Yrotation\n";
+  std::string text =
+      "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 4 Xposition Yposition Zposition Yrotation\n";
   text += Joint(names.head, "0 60 0", end);
   for (const bool right : {true, false}) {
     const std::string x = right ? "-" : "";
     text += Joint(names.sided(right, names.arm), x + "20 50 0",
-                  Joint(names.sided(right, names.forearm), "0 -30 0", Joint(names.sided(right, names.hand), "0 -25 0", end)));
+                  Joint(names.sided(right, names.forearm), "0 -30 0",
+                        Joint(names.sided(right, names.hand), "0 -25 0", end)));
     text += Joint(names.sided(right, names.thigh), x + "10 0 0",
-                  Joint(names.sided(right, names.shin), "0 -40 0", Joint(names.sided(right, names.foot), "0 -40 0", end)));
+                  Joint(names.sided(right, names.shin), "0 -40 0",
+                        Joint(names.sided(right, names.foot), "0 -40 0", end)));
   }
   return text + "}\n";
 }
@@ -72,7 +75,8 @@ TEST(BodyTrackTest, AxesBecomeOurs) {
 }
 
 TEST(BodyTrackTest, ALegThatIsBentForwards) {
-  const auto read = Read(Person({}) + Rows("0 90 0 0" + kStill, "0 90 0 0 0  0 0 0 -90 90 0  0 0 0 0 0 0"));
+  const auto read =
+      Read(Person({}) + Rows("0 90 0 0" + kStill, "0 90 0 0 0  0 0 0 -90 90 0  0 0 0 0 0 0"));
   ASSERT_TRUE(read.value) << Brief(read.diagnostics);
   const auto& ways = read.value->samples[1].figure.ways_W;
   EXPECT_LT((ways[Figure::kThigh] - Vector3d::UnitX()).norm(), 1e-9);
@@ -87,8 +91,11 @@ TEST(BodyTrackTest, NamesOfManyConventions) {
   mixamo.sided = [](bool right, const std::string& name) {
     return std::string("mixamorig:") + (right ? "Right" : "Left") + name;
   };
-  Names blender{"head", "upper_arm", "forearm", "hand", "thigh", "shin", "foot",
-                [](bool right, const std::string& name) { return name + (right ? ".R" : ".L"); }};
+  Names blender{
+      "head",    "upper_arm",
+      "forearm", "hand",
+      "thigh",   "shin",
+      "foot",    [](bool right, const std::string& name) { return name + (right ? ".R" : ".L"); }};
   Names biovision{"Head", "Shoulder", "Elbow", "Wrist", "Hip", "Knee", "Ankle", Names{}.sided};
   for (const Names& names : {mixamo, blender, biovision}) {
     const auto read = Read(Person(names) + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill));
@@ -101,7 +108,9 @@ TEST(BodyTrackTest, SaysWhichJointIsMissing) {
   names.shin = "Tail";
   const std::string said =
       Brief(Read(Person(names) + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill)).diagnostics);
-  EXPECT_NE(said.find(":2:6: no joint is a person's right knee: wanted 'right' with one of leg, lowerleg, lowleg, shin, calf, knee | like "), std::string::npos)
+  EXPECT_NE(said.find(":2:6: no joint is a person's right knee: wanted 'right' with one of leg, "
+                      "lowerleg, lowleg, shin, calf, knee | like "),
+            std::string::npos)
       << said;
   EXPECT_NE(said.find("no joint is a person's left knee"), std::string::npos) << said;
   EXPECT_EQ(said.find("hip"), std::string::npos) << said;
@@ -110,8 +119,11 @@ TEST(BodyTrackTest, SaysWhichJointIsMissing) {
 TEST(BodyTrackTest, BonesWithoutLength) {
   std::string flat = Person({});
   for (std::size_t at; (at = flat.find("-40")) != std::string::npos;) flat.replace(at, 3, "0");
-  const std::string said = Brief(Read(flat + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill)).diagnostics);
-  EXPECT_NE(said.find("the offsets put both hips, or hips and ankles, in one place"), std::string::npos) << said;
+  const std::string said =
+      Brief(Read(flat + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill)).diagnostics);
+  EXPECT_NE(said.find("the offsets put both hips, or hips and ankles, in one place"),
+            std::string::npos)
+      << said;
 }
 
 }  // namespace

@@ -21,7 +21,9 @@ std::string WithActor(const std::string& actor, const std::string& beat = "") {
   return text;
 }
 
-ReadResult<Scenario> Read(const std::string& text) { return ReadScenarioText("probe.yaml", text, {}, ProbeLibrary()); }
+ReadResult<Scenario> Read(const std::string& text) {
+  return ReadScenarioText("probe.yaml", text, {}, ProbeLibrary());
+}
 std::string ComplaintsAbout(const std::string& text) { return Brief(Read(text).diagnostics); }
 
 TEST(PersonsTest, ABodyIsAnEntityWithParts) {
@@ -42,11 +44,13 @@ TEST(PersonsTest, ABodyIsAnEntityWithParts) {
 }
 
 TEST(PersonsTest, StepsAreUnderstood) {
-  const auto read = Read(WithActor(
-      "{person: body, at_m: [-0.9, 0, 0]}",
-      "anna: {look_at: milk}\n  - anna: {look_at_m: [1, 0, 1]}\n  - anna: {eyes: lead}\n  - anna: {walk_to_m: [-0.8, 0]}\n"
-      "  - anna: {turn_to_deg: 90}\n  - anna: {lean_deg: 20}\n  - anna: {move_limb: left_foot, to_m: [-0.5, 0.1, 0.3]}\n"
-      "  - anna: {move_limb: left_foot, most_n: 30}\n  - anna: {sway_by_m: [0.1, -0.2]}\n  - anna: {wait_s: 0.1}"));
+  const auto read = Read(WithActor("{person: body, at_m: [-0.9, 0, 0]}",
+                                   "anna: {look_at: milk}\n  - anna: {look_at_m: [1, 0, 1]}\n  - "
+                                   "anna: {eyes: lead}\n  - anna: {walk_to_m: [-0.8, 0]}\n"
+                                   "  - anna: {turn_to_deg: 90}\n  - anna: {lean_deg: 20}\n  - "
+                                   "anna: {move_limb: left_foot, to_m: [-0.5, 0.1, 0.3]}\n"
+                                   "  - anna: {move_limb: left_foot, most_n: 30}\n  - anna: "
+                                   "{sway_by_m: [0.1, -0.2]}\n  - anna: {wait_s: 0.1}"));
   ASSERT_TRUE(read.value) << Brief(read.diagnostics);
   EXPECT_EQ(read.value->script.beats[0].person_steps.size(), 1u);
   EXPECT_TRUE(read.value->script.beats[0].steps.empty());
@@ -87,14 +91,17 @@ INSTANTIATE_TEST_SUITE_P(Files, PersonsRefused, testing::Values(
 
 TEST(PersonsTest, NamesOfPartsMustBeFree) {
   const std::string text = WithActor("{person: body, at_m: [-0.9, 0, 0]}");
-  const std::string taken = "entities:\n  anna_pelvis: {fixed: true, sphere: {radius_m: 0.1}, at_m: [0, 3, 1]}\n";
+  const std::string taken =
+      "entities:\n  anna_pelvis: {fixed: true, sphere: {radius_m: 0.1}, at_m: [0, 3, 1]}\n";
   std::string clash = text;
   clash.replace(clash.find("entities:\n"), 10, taken);
-  EXPECT_EQ(ComplaintsAbout(clash), "11:3: 'anna_pelvis' is the name of a part of 'anna' and of something else\n");
+  EXPECT_EQ(ComplaintsAbout(clash),
+            "11:3: 'anna_pelvis' is the name of a part of 'anna' and of something else\n");
 }
 
 std::string WithTracking(const std::string& tracking) {
-  return ProbeWith("at_m: [-0.2, -0.2, 1.05]}", "at_m: [-0.2, -0.2, 1.05], tracking: " + tracking + "}");
+  return ProbeWith("at_m: [-0.2, -0.2, 1.05]}",
+                   "at_m: [-0.2, -0.2, 1.05], tracking: " + tracking + "}");
 }
 
 TEST(TrackingOfAHandTest, IsReadWithItsDefaults) {
@@ -109,17 +116,22 @@ TEST(TrackingOfAHandTest, IsReadWithItsDefaults) {
 }
 
 TEST(TrackingOfAHandTest, IsSetFromTheCommandLine) {
-  const auto read = ReadScenarioText("probe.yaml", kProbe, {"actors.right_hand.tracking.latency_s=0.1"}, ProbeLibrary());
+  const auto read = ReadScenarioText("probe.yaml", kProbe,
+                                     {"actors.right_hand.tracking.latency_s=0.1"}, ProbeLibrary());
   ASSERT_TRUE(read.value) << Brief(read.diagnostics);
   EXPECT_EQ(read.value->scene.hands[0].tracking->latency_s, 0.1);
 }
 
 TEST(TrackingOfAHandTest, Refuses) {
-  EXPECT_EQ(ComplaintsAbout(WithTracking("{jitter_m: 1}")), "9:72: unknown key 'jitter_m' in the tracking | did you mean 'jitter_mm'?\n");
-  EXPECT_EQ(ComplaintsAbout(WithTracking("{tracker_hz: 960}")), "9:71: tracker_hz 960 is above rate_hz 480\n");
-  EXPECT_EQ(ComplaintsAbout(WithTracking("{latency_s: 3}")), "9:83: latency_s: expected a number from 0 to 2, found '3'\n");
-  EXPECT_EQ(ComplaintsAbout(WithTracking("{tracker_hz: 10, dropped_share: 0.9, dropped_run_s: 0.5}")),
-            "9:123: dropped_run_s: a share of 0.9 needs losses of at least 0.900 s\n");
+  EXPECT_EQ(ComplaintsAbout(WithTracking("{jitter_m: 1}")),
+            "9:72: unknown key 'jitter_m' in the tracking | did you mean 'jitter_mm'?\n");
+  EXPECT_EQ(ComplaintsAbout(WithTracking("{tracker_hz: 960}")),
+            "9:71: tracker_hz 960 is above rate_hz 480\n");
+  EXPECT_EQ(ComplaintsAbout(WithTracking("{latency_s: 3}")),
+            "9:83: latency_s: expected a number from 0 to 2, found '3'\n");
+  EXPECT_EQ(
+      ComplaintsAbout(WithTracking("{tracker_hz: 10, dropped_share: 0.9, dropped_run_s: 0.5}")),
+      "9:123: dropped_run_s: a share of 0.9 needs losses of at least 0.900 s\n");
 }
 
 }  // namespace

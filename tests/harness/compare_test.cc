@@ -196,10 +196,11 @@ TEST(Compare, PiecesAreToldTogetherAndTheFirstDivergenceFirst) {
 }
 
 TEST(Compare, ProgramsAreToldTheSame) {
-  const Comparison comparison = CompareEvents(
-      {Event("grasping", "cup", 100, 200), Event("holding", "cup", 100, 200), Event("reaching", "cup", 0, 100),
-       Event("sliding", "mug", 300, 400)},
-      {Event("grasping", "cup", 150, 198), Event("holding", "cup", 100, 200), Event("reaching", "cup", 0, 50), Event("reaching", "cup", 60, 100)});
+  const Comparison comparison =
+      CompareEvents({Event("grasping", "cup", 100, 200), Event("holding", "cup", 100, 200),
+                     Event("reaching", "cup", 0, 100), Event("sliding", "mug", 300, 400)},
+                    {Event("grasping", "cup", 150, 198), Event("holding", "cup", 100, 200),
+                     Event("reaching", "cup", 0, 50), Event("reaching", "cup", 60, 100)});
   const auto differences = DifferencesJson(comparison, "explain x");
   ASSERT_EQ(differences.size(), 3u);
   EXPECT_EQ(differences[0]["kind"], "fragmented");

@@ -21,7 +21,8 @@ constexpr const char* kHeader =
     "\n";
 
 ReadResult<Episode> ReadText(const std::string& text) {
-  const auto file = std::filesystem::temp_directory_path() / ("prehend_episode_" + std::to_string(getpid()) + ".jsonl");
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("prehend_episode_" + std::to_string(getpid()) + ".jsonl");
   std::ofstream(file, std::ios::binary) << text;
   return ReadEpisode(file.string());
 }
@@ -33,11 +34,12 @@ std::string Complaint(const std::string& frames) {
 }
 
 TEST(EpisodeFile, WhatIsLeftOutHasADefault) {
-  const auto episode = ReadText(std::string(kHeader) +
-                                R"({"tick": 0, "looks": {"cup": {"at_m": [0, 0, 1]}, "hand": {"at_m": [0, 0, 2]}}, "hands": {"hand": {}}})"
-                                "\n"
-                                R"({"tick": 10, "looks": {"cup": {"at_m": [0, 0, 1.2]}}, )"
-                                R"("touches": [{"a": "hand", "b": "cup", "up_on_a": 0.5, "sensor_sets": ["thumb"]}]})");
+  const auto episode = ReadText(
+      std::string(kHeader) +
+      R"({"tick": 0, "looks": {"cup": {"at_m": [0, 0, 1]}, "hand": {"at_m": [0, 0, 2]}}, "hands": {"hand": {}}})"
+      "\n"
+      R"({"tick": 10, "looks": {"cup": {"at_m": [0, 0, 1.2]}}, )"
+      R"("touches": [{"a": "hand", "b": "cup", "up_on_a": 0.5, "sensor_sets": ["thumb"]}]})");
   ASSERT_TRUE(episode.value) << Brief(episode.diagnostics);
   const EpisodeFrame& last = episode.value->frames[1];
   EXPECT_DOUBLE_EQ(last.entities[1].v_WB_m_per_s.z(), 2);
@@ -52,11 +54,12 @@ TEST(EpisodeFile, WhatIsLeftOutHasADefault) {
 }
 
 TEST(EpisodeFile, IsReadAsItWasWritten) {
-  const auto read = ReadText(std::string(kHeader) +
-                             R"({"tick": 3, "looks": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.6, 0.8, 0, 0], "asleep": true, "joint_fraction": 0.25}}, )"
-                             R"("hands": {"hand": {"trigger": 0.4, "style": "pinch", "ahead": [0, 0, -1], "feelers_m": [[1, 2, 3, 0.01]]}}, )"
-                             R"("touches": [{"a": "table", "b": "cup", "up_on_b": 1, "force_n": 2}]})"
-                             "\n{\"end_tick\": 9}\n");
+  const auto read = ReadText(
+      std::string(kHeader) +
+      R"({"tick": 3, "looks": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.6, 0.8, 0, 0], "asleep": true, "joint_fraction": 0.25}}, )"
+      R"("hands": {"hand": {"trigger": 0.4, "style": "pinch", "ahead": [0, 0, -1], "feelers_m": [[1, 2, 3, 0.01]]}}, )"
+      R"("touches": [{"a": "table", "b": "cup", "up_on_b": 1, "force_n": 2}]})"
+      "\n{\"end_tick\": 9}\n");
   ASSERT_TRUE(read.value) << Brief(read.diagnostics);
   Episode episode = *read.value;
   std::ostringstream written;
@@ -79,15 +82,23 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
 }
 
 TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
-  EXPECT_EQ(Complaint(""), "1:1: the recording has no frames | each line after the first is one: {\"tick\": 0, ...}\n");
-  EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"tick\": 1}\n"), "3:10: the ticks must increase: 1 comes after 1\n");
+  EXPECT_EQ(
+      Complaint(""),
+      "1:1: the recording has no frames | each line after the first is one: {\"tick\": 0, ...}\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"tick\": 1}\n"),
+            "3:10: the ticks must increase: 1 comes after 1\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"looks\": {\"cip\": {\"at_m\": [0, 0, 0]}}}\n"),
             "2:23: no entity is called 'cip' | did you mean 'cup'?\n");
-  EXPECT_EQ(Complaint("{\"tick\": 1, \"hands\": {\"cup\": {}}}\n"), "2:23: 'cup' is no hand | its entity has no 'hand: true'\n");
-  EXPECT_EQ(Complaint("{\"tick\": 1, \"touches\": [{\"a\": \"cup\", \"b\": \"cup\"}]}\n"), "2:43: 'cup' cannot touch itself\n");
-  EXPECT_EQ(Complaint("{\"tick\": 1, \"toches\": []}\n"), "2:13: unknown key 'toches' in a frame | did you mean 'touches'?\n");
-  EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"end_tick\": 1}\n"), "3:14: end_tick must be after the last frame, tick 1\n");
-  EXPECT_NE(Complaint("{\"tick\": 1, \"looks\": {\"cup\": {\"at_m\": [0, 0, 1e99]}}}\n").find(" at_m[2]: expected a number"),
+  EXPECT_EQ(Complaint("{\"tick\": 1, \"hands\": {\"cup\": {}}}\n"),
+            "2:23: 'cup' is no hand | its entity has no 'hand: true'\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1, \"touches\": [{\"a\": \"cup\", \"b\": \"cup\"}]}\n"),
+            "2:43: 'cup' cannot touch itself\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1, \"toches\": []}\n"),
+            "2:13: unknown key 'toches' in a frame | did you mean 'touches'?\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"end_tick\": 1}\n"),
+            "3:14: end_tick must be after the last frame, tick 1\n");
+  EXPECT_NE(Complaint("{\"tick\": 1, \"looks\": {\"cup\": {\"at_m\": [0, 0, 1e99]}}}\n")
+                .find(" at_m[2]: expected a number"),
             std::string::npos);
   EXPECT_NE(Complaint("{\"tick\": 1").find("2:"), std::string::npos);
   EXPECT_NE(Brief(ReadText("").diagnostics).find("1:1: the file is empty"), std::string::npos);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Episodes to ask about: shipped scenarios, each played once per test binary, and frames written by hand.
+// Episodes to ask about: shipped scenarios, each played once per test binary, and frames written by
+// hand.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,14 +17,16 @@
 namespace prehend::harness::explain::testing {
 
 /// `name` is skill/name; `settings` as for --set.
-inline grammar::Hindsight& Played(const std::string& name, const std::vector<std::string>& settings = {}) {
+inline grammar::Hindsight& Played(const std::string& name,
+                                  const std::vector<std::string>& settings = {}) {
   static std::map<std::string, Watched> played;
   std::string key = name;
   for (const std::string& setting : settings) key += " " + setting;
   Watched& watched = played[key];
   if (!watched.past) {
     const std::string root = PREHEND_SOURCE_DIR;
-    const ReadResult<EpisodeSource> source = OpenScenario(root + "/scenarios/" + name + ".yaml", "", settings, root);
+    const ReadResult<EpisodeSource> source =
+        OpenScenario(root + "/scenarios/" + name + ".yaml", "", settings, root);
     if (!source.value) throw std::runtime_error(Format(source.diagnostics));
     watched = Watch(*source.value);
     EXPECT_EQ(watched.problem + watched.failure, "");
@@ -35,7 +38,8 @@ inline grammar::Hindsight& Played(const std::string& name, const std::vector<std
 class Stage {
  public:
   explicit Stage(const std::string& grammar_text)
-      : past_(std::make_unique<grammar::Hindsight>(grammar::testing::CompileText("grammar test\n" + grammar_text), scene.cast)) {}
+      : past_(std::make_unique<grammar::Hindsight>(
+            grammar::testing::CompileText("grammar test\n" + grammar_text), scene.cast)) {}
 
   void Show(int frames = 1) {
     for (int i = 0; i < frames; ++i) {

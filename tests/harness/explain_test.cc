@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Twelve questions about shipped scenarios, six of them "why not", and one per way in which a run comes to nothing.
+// Twelve questions about shipped scenarios, six of them "why not", and one per way in which a run
+// comes to nothing.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -19,7 +20,8 @@ constexpr const char* kCandidates = "reach/two_candidates_one_grasped";
 constexpr const char* kSlidesIn = "slide/transport_lands_by_sliding_in";
 
 /// The reason is there, so marked; its reading, if it has one, is on the right side of its limit.
-void ExpectReason(const Reasons& reasons, const std::string& clause, Mark mark, std::optional<bool> above = {}) {
+void ExpectReason(const Reasons& reasons, const std::string& clause, Mark mark,
+                  std::optional<bool> above = {}) {
   const Reason* reason = Find(reasons, clause);
   ASSERT_NE(reason, nullptr) << clause;
   EXPECT_EQ(reason->mark, mark) << clause << ": " << reason->how;
@@ -35,7 +37,8 @@ TEST(Explain, AReachBeginsWhereTheApproachTurned) {
   const WhyEvent why = Why(Played(kRetreat), "reaching right_hand milk");
   ASSERT_EQ(why.began.size(), 1);
   EXPECT_EQ(why.began.front().what, "the approach turns here: gap(right_hand, milk)");
-  EXPECT_NE(why.began.front().how.find("it may recede by at most 25 mm"), std::string::npos) << why.began.front().how;
+  EXPECT_NE(why.began.front().how.find("it may recede by at most 25 mm"), std::string::npos)
+      << why.began.front().how;
   ExpectReason(why.ended, "touching(milk, right_hand)", Mark::kTurned);
   EXPECT_NE(Find(why.counted, "confirmed by grasping(right_hand, milk)"), nullptr);
   EXPECT_NE(Find(why.waited, "grasping(right_hand, milk)"), nullptr);
@@ -45,20 +48,25 @@ TEST(Explain, ASlideBeginsAndEndsWithTheMotionAlongTheTable) {
   const WhyEvent why = Why(Played(kSlide), "sliding@2s");
   ExpectReason(why.began, "grasping(right_hand, milk)", Mark::kHeld);
   ExpectReason(why.began, "moving_along(right_hand, milk, table)", Mark::kTurned);
-  ExpectReason(why.began, "drift_along(milk, table, slide_window) >= slide_speed", Mark::kTurned, true);
+  ExpectReason(why.began, "drift_along(milk, table, slide_window) >= slide_speed", Mark::kTurned,
+               true);
   ExpectReason(why.ended, "speed_along(milk, table) >= slide_speed", Mark::kTurned, false);
-  EXPECT_EQ(Find(why.began, "drift_along(milk, table, slide_window) >= slide_speed")->tick, why.interval.begin);
+  EXPECT_EQ(Find(why.began, "drift_along(milk, table, slide_window) >= slide_speed")->tick,
+            why.interval.begin);
   EXPECT_EQ(Find(why.ended, "speed_along(milk, table) >= slide_speed")->tick, why.interval.end);
   // moving_along bridges gaps of 150 ms, two rules down.
   EXPECT_EQ(why.decided - why.interval.end, 72);
-  EXPECT_EQ(Find(why.waited, "moving_along(right_hand, milk, table)")->because.front().how, "a gap of up to 150 ms would have been bridged");
+  EXPECT_EQ(Find(why.waited, "moving_along(right_hand, milk, table)")->because.front().how,
+            "a gap of up to 150 ms would have been bridged");
 }
 
 TEST(Explain, APickUpBeginsWhenTheTableIsLost) {
   const WhyEvent why = Why(Played(kSlide), "picking_up(right_hand, milk)");
   ExpectReason(why.began, "supported_by(milk, table)", Mark::kTurned);
   ExpectReason(why.began, "touching(milk, table)", Mark::kTurned);
-  ExpectReason(why.ended, "in_cylinder(position(milk), position(milk)@begin, lift_radius, lift_height)", Mark::kTurned, true);
+  ExpectReason(why.ended,
+               "in_cylinder(position(milk), position(milk)@begin, lift_radius, lift_height)",
+               Mark::kTurned, true);
   ExpectReason(why.counted, "requires rise(milk) >= lift_rise", Mark::kHeld, true);
 }
 
@@ -66,7 +74,8 @@ TEST(Explain, ATransportEndsWhereThePutDownBegins) {
   const WhyEvent why = Why(Played(kSlide), "transporting");
   ExpectReason(why.began, "picking_up(right_hand, milk)", Mark::kTurned);
   ExpectReason(why.ended, "putting_down(right_hand, milk)", Mark::kTurned);
-  ExpectReason(why.ended, "in_cylinder(position(milk), position(milk)@end, put_radius, put_height)", Mark::kTurned, false);
+  ExpectReason(why.ended, "in_cylinder(position(milk), position(milk)@end, put_radius, put_height)",
+               Mark::kTurned, false);
   EXPECT_NE(Find(why.waited, "putting_down(right_hand, milk)"), nullptr);
 }
 
@@ -86,26 +95,33 @@ TEST(Explain, ACompositionBeginsAndEndsWithItsParts) {
   EXPECT_EQ(why.began.front().what, "part reaching(right_hand, milk)");
   EXPECT_EQ(why.began.back().what, "part putting_down(right_hand, milk)");
   ExpectReason(why.ended, "touching(milk, table)", Mark::kTurned);
-  EXPECT_NE(Find(why.waited, "grasping(right_hand, milk)"), nullptr) << "it could not be known before the grasp was over";
+  EXPECT_NE(Find(why.waited, "grasping(right_hand, milk)"), nullptr)
+      << "it could not be known before the grasp was over";
 }
 
 // Why not.
 
 TEST(ExplainMissing, NoSlideWhereTheCartonMovedTooLittle) {
-  const WhyMissing why = WhyNot(Played(kSlide, {"slide_distance=30cm"}), "sliding right_hand milk @2.0s");
-  const Reason* failed = Find(why.reasons, "requires displacement_along(milk, table) >= slide_distance");
+  const WhyMissing why =
+      WhyNot(Played(kSlide, {"slide_distance=30cm"}), "sliding right_hand milk @2.0s");
+  const Reason* failed =
+      Find(why.reasons, "requires displacement_along(milk, table) >= slide_distance");
   ASSERT_NE(failed, nullptr);
   EXPECT_EQ(failed->mark, Mark::kFailed);
   EXPECT_NEAR(failed->reading->value, 0.2, 0.01);  // the script moves it by 0.2 m
   EXPECT_EQ(failed->reading->limit, 0.3);
-  EXPECT_TRUE(why.because.starts_with("requires displacement_along(milk, table) >= slide_distance: is 2")) << why.because;
+  EXPECT_TRUE(
+      why.because.starts_with("requires displacement_along(milk, table) >= slide_distance: is 2"))
+      << why.because;
   EXPECT_NE(Find(why.reasons, "sliding_along(right_hand, milk, table)"), nullptr);
 }
 
 TEST(ExplainMissing, NoGraspWhereTooFewSensorSetsTouched) {
   const WhyMissing why = WhyNot(Played(kBeside), "grasping right_hand milk");
   ExpectReason(why.reasons, "sensor_sets(right_hand, milk) >= grip_sides", Mark::kFailed, false);
-  EXPECT_TRUE(why.because.starts_with("sensor_sets(right_hand, milk) >= grip_sides: is 0, 2 below 2, at ")) << why.because;
+  EXPECT_TRUE(
+      why.because.starts_with("sensor_sets(right_hand, milk) >= grip_sides: is 0, 2 below 2, at "))
+      << why.because;
 }
 
 TEST(ExplainMissing, NoReachForACartonThatIsNotTouched) {
@@ -119,14 +135,16 @@ TEST(ExplainMissing, NoReachForACartonThatIsNotTouched) {
 TEST(ExplainMissing, NoPutDownWhereTheCartonSlidesIn) {
   const WhyMissing why = WhyNot(Played(kSlidesIn), "putting_down right_hand milk");
   ExpectReason(why.reasons, "outside low_at_last(right_hand, milk)", Mark::kFailed);
-  ExpectReason(why.reasons, "height(position(milk)) - height(position(milk)@end) < put_drop", Mark::kHeld, false);
+  ExpectReason(why.reasons, "height(position(milk)) - height(position(milk)@end) < put_drop",
+               Mark::kHeld, false);
 }
 
 TEST(ExplainMissing, NoWholeWithoutAllItsParts) {
   const WhyMissing why = WhyNot(Played(kSlidesIn), "pick_and_place right_hand milk");
   ExpectReason(why.reasons, "first_hold(right_hand, milk)", Mark::kNote);
   ExpectReason(why.reasons, "putting_down(right_hand, milk)", Mark::kFailed);
-  EXPECT_TRUE(why.because.starts_with("outside low_at_last(right_hand, milk): it held ")) << why.because;
+  EXPECT_TRUE(why.because.starts_with("outside low_at_last(right_hand, milk): it held "))
+      << why.because;
 }
 
 TEST(ExplainMissing, NoTransportBeforeTheGrasp) {
@@ -140,35 +158,46 @@ TEST(ExplainMissing, NoTransportBeforeTheGrasp) {
 // Every way in which a run comes to nothing, on frames written by hand.
 
 TEST(ExplainMissing, TooShort) {
-  Stage stage("event near(cup: Cup) while height(cup) < 1 m and distance(position(cup), position(cup)) < 1 m lasting 1 s");
+  Stage stage(
+      "event near(cup: Cup) while height(cup) < 1 m and distance(position(cup), position(cup)) < 1 "
+      "m lasting 1 s");
   stage.Show(10);
   const WhyMissing why = WhyNot(stage.Finish(), "near cup");
   EXPECT_EQ(why.because, "lasting 1 s: it lasted only 100 ms");
 }
 
 TEST(ExplainMissing, TooLate) {
-  Stage stage("event answered(h: Hand, c: Cup) from touching(h, c) begins to touching(h, c) ends within 50 ms");
+  Stage stage(
+      "event answered(h: Hand, c: Cup) from touching(h, c) begins to touching(h, c) ends within 50 "
+      "ms");
   stage.Show(3);
   stage.Touch(true);
   stage.Show(10);
   stage.Touch(false);
   stage.Show(3);
-  EXPECT_EQ(WhyNot(stage.Finish(), "answered").because, "to touching(hand, cup) ends: it did not come within 50 ms, but 50 ms later, at 0.1300 s");
+  EXPECT_EQ(
+      WhyNot(stage.Finish(), "answered").because,
+      "to touching(hand, cup) ends: it did not come within 50 ms, but 50 ms later, at 0.1300 s");
 }
 
 TEST(ExplainMissing, WhatMustNotComeCame) {
-  Stage stage("event left(h: Hand, c: Cup) from touching(h, c) ends without touching(h, c) begins within 500 ms");
+  Stage stage(
+      "event left(h: Hand, c: Cup) from touching(h, c) ends without touching(h, c) begins within "
+      "500 ms");
   stage.Touch(true);
   stage.Show(3);
   stage.Touch(false);
   stage.Show(10);
   stage.Touch(true);
   stage.Show(60);
-  EXPECT_EQ(WhyNot(stage.Finish(), "left@80ms").because, "without touching(hand, cup) begins: it came after 100 ms, at 0.1300 s");
+  EXPECT_EQ(WhyNot(stage.Finish(), "left@80ms").because,
+            "without touching(hand, cup) begins: it came after 100 ms, at 0.1300 s");
 }
 
 TEST(ExplainMissing, Dropped) {
-  Stage stage("event pushed(h: Hand, c: Cup) from touching(h, c) begins to displacement(c) > 10 cm begins during touching(h, c) or drop");
+  Stage stage(
+      "event pushed(h: Hand, c: Cup) from touching(h, c) begins to displacement(c) > 10 cm begins "
+      "during touching(h, c) or drop");
   stage.Show(2);
   stage.Touch(true);
   stage.Show(4);
@@ -181,11 +210,14 @@ TEST(ExplainMissing, Dropped) {
 }
 
 TEST(ExplainMissing, Unfinished) {
-  Stage stage("event pushed(h: Hand, c: Cup) from touching(h, c) begins to displacement(c) > 10 cm begins during touching(h, c) or drop");
+  Stage stage(
+      "event pushed(h: Hand, c: Cup) from touching(h, c) begins to displacement(c) > 10 cm begins "
+      "during touching(h, c) or drop");
   stage.Show(2);
   stage.Touch(true);
   stage.Show(4);
-  EXPECT_EQ(WhyNot(stage.Finish(), "pushed").because, "to displacement(cup) > 0.1 m begins: the episode ended before");
+  EXPECT_EQ(WhyNot(stage.Finish(), "pushed").because,
+            "to displacement(cup) > 0.1 m begins: the episode ended before");
 }
 
 TEST(ExplainMissing, Unconfirmed) {
@@ -209,12 +241,15 @@ TEST(ExplainMissing, Unconfirmed) {
 
 TEST(ExplainMissing, NothingBefore) {
   Stage stage(
-      "event toward(h: Hand, c: Cup) until touching(h, c) begins since distance(position(c), position(c)) > 1 m at most 1 s back");
+      "event toward(h: Hand, c: Cup) until touching(h, c) begins since distance(position(c), "
+      "position(c)) > 1 m at most 1 s back");
   stage.Show(5);
   stage.Touch(true);
   stage.Show(5);
   const WhyMissing why = WhyNot(stage.Finish(), "toward");
-  EXPECT_EQ(why.because, "since distance(position(cup), position(cup)) > 1 m: is 0 mm, 1 m below 1 m, at 0.0400 s");
+  EXPECT_EQ(
+      why.because,
+      "since distance(position(cup), position(cup)) > 1 m: is 0 mm, 1 m below 1 m, at 0.0400 s");
 }
 
 TEST(ExplainMissing, AConditionThatAlmostHeldNamesItsBestMoment) {
@@ -224,7 +259,8 @@ TEST(ExplainMissing, AConditionThatAlmostHeldNamesItsBestMoment) {
     stage.Show();
   }
   EXPECT_EQ(WhyNot(stage.Finish(), "far cup tray").because,
-            "distance(position(cup), position(tray)) > 0.2 m: is 120 mm, 80 mm below 200 mm, at 0.0200 s");
+            "distance(position(cup), position(tray)) > 0.2 m: is 120 mm, 80 mm below 200 mm, at "
+            "0.0200 s");
 }
 
 // An explanation looks at the same episode as the monitor.
@@ -232,7 +268,8 @@ TEST(ExplainMissing, AConditionThatAlmostHeldNamesItsBestMoment) {
 TEST(Explain, RememberingChangesNothing) {
   const std::string root = PREHEND_SOURCE_DIR;
   for (const std::string grammar : {"", "original_2020"}) {
-    const ReadResult<EpisodeSource> source = OpenScenario(root + "/scenarios/" + kSlide + ".yaml", grammar, {}, root);
+    const ReadResult<EpisodeSource> source =
+        OpenScenario(root + "/scenarios/" + kSlide + ".yaml", grammar, {}, root);
     ASSERT_TRUE(source.value);
     grammar::Monitor monitor(source.value->program, source.value->cast);
     grammar::Hindsight past(source.value->program, source.value->cast);
@@ -293,24 +330,44 @@ struct BadAsk {
 
 TEST(Ask, BadOnesNamePlaceAndRemedy) {
   const BadAsk asks[] = {
-      {"", "--event:1:1: error: found no event, wanted one of the grammar's\n  hint: for example: moved@1.2s\n"},
-      {"mved@1s", "--event:1:1: error: found 'mved', wanted an event or condition of grammar 'test'\n  mved@1s\n  ^\n"
-                  "  hint: did you mean 'moved'?\n"},
-      {"moved cpu", "--event:1:7: error: found 'cpu', wanted an entity of the episode\n  moved cpu\n        ^\n"
-                    "  hint: did you mean 'cup'?\n"},
-      {"moved milk", "--event:1:7: error: found 'milk', wanted an entity of the episode\n  moved milk\n        ^\n"
-                     "  hint: there are: hand, cup, tray\n"},
-      {"moved hand", "--event:1:7: error: found 'hand', a Hand; the role 'c' of 'moved' wants a Cup\n  moved hand\n        ^\n"},
-      {"moved c=cup d=tray", "--event:1:13: error: found 'd', wanted a role of 'moved'\n  moved c=cup d=tray\n              ^\n"
-                             "  hint: there are: c, t\n"},
-      {"moved cup tray hand", "--event:1:16: error: found 'hand', but 'moved' has 2 roles\n  moved cup tray hand\n                 ^\n"},
-      {"moved cup c=cup", "--event:1:13: error: the role 'c' is named twice\n  moved cup c=cup\n              ^\n"},
-      {"moved @ soon", "--event:1:9: error: found 'soon', wanted a time from the episode's begin\n  moved @ soon\n          ^\n"
-                       "  hint: for example: @1.24s, @1240 ms\n"},
-      {"moved@-1s", "--event:1:7: error: found '-1s', wanted a time from the episode's begin\n  moved@-1s\n        ^\n"
-                    "  hint: for example: @1.24s, @1240 ms\n"},
-      {"moved@5min", "--event:1:7: error: found '5min', wanted a time from the episode's begin\n  moved@5min\n        ^\n"
-                     "  hint: for example: @1.24s, @1240 ms\n"},
+      {"",
+       "--event:1:1: error: found no event, wanted one of the grammar's\n  hint: for example: "
+       "moved@1.2s\n"},
+      {"mved@1s",
+       "--event:1:1: error: found 'mved', wanted an event or condition of grammar 'test'\n  "
+       "mved@1s\n  ^\n"
+       "  hint: did you mean 'moved'?\n"},
+      {"moved cpu",
+       "--event:1:7: error: found 'cpu', wanted an entity of the episode\n  moved cpu\n        ^\n"
+       "  hint: did you mean 'cup'?\n"},
+      {"moved milk",
+       "--event:1:7: error: found 'milk', wanted an entity of the episode\n  moved milk\n        "
+       "^\n"
+       "  hint: there are: hand, cup, tray\n"},
+      {"moved hand",
+       "--event:1:7: error: found 'hand', a Hand; the role 'c' of 'moved' wants a Cup\n  moved "
+       "hand\n        ^\n"},
+      {"moved c=cup d=tray",
+       "--event:1:13: error: found 'd', wanted a role of 'moved'\n  moved c=cup d=tray\n           "
+       "   ^\n"
+       "  hint: there are: c, t\n"},
+      {"moved cup tray hand",
+       "--event:1:16: error: found 'hand', but 'moved' has 2 roles\n  moved cup tray hand\n        "
+       "         ^\n"},
+      {"moved cup c=cup",
+       "--event:1:13: error: the role 'c' is named twice\n  moved cup c=cup\n              ^\n"},
+      {"moved @ soon",
+       "--event:1:9: error: found 'soon', wanted a time from the episode's begin\n  moved @ soon\n "
+       "         ^\n"
+       "  hint: for example: @1.24s, @1240 ms\n"},
+      {"moved@-1s",
+       "--event:1:7: error: found '-1s', wanted a time from the episode's begin\n  moved@-1s\n     "
+       "   ^\n"
+       "  hint: for example: @1.24s, @1240 ms\n"},
+      {"moved@5min",
+       "--event:1:7: error: found '5min', wanted a time from the episode's begin\n  moved@5min\n   "
+       "     ^\n"
+       "  hint: for example: @1.24s, @1240 ms\n"},
   };
   Stage stage("event moved(c: Cup, t: Movable) while distance(position(c), position(t)) > 20 cm");
   stage.Show();
@@ -326,7 +383,8 @@ TEST(Ask, RolesAndTimesInAnyFashion) {
   Stage stage("event moved(c: Cup, t: Movable) while distance(position(c), position(t)) > 20 cm");
   stage.Show();
   grammar::Hindsight& past = stage.Finish();
-  for (const char* text : {"moved cup tray@1.5s", "moved(cup, tray) @ 1500ms", "moved t=tray c=cup@1.5", "moved cup,tray @1500 ms"}) {
+  for (const char* text : {"moved cup tray@1.5s", "moved(cup, tray) @ 1500ms",
+                           "moved t=tray c=cup@1.5", "moved cup,tray @1500 ms"}) {
     const Ask ask = Asked(past, text);
     EXPECT_EQ(ask.entities[0], 1) << text;
     EXPECT_EQ(ask.entities[1], 2) << text;

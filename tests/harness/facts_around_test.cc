@@ -58,11 +58,15 @@ TEST(FactsAround, TellsStateAndTouchesOfTheParticipants) {
 
 TEST(FactsAround, WhoWasRecognisedInsteadIsToldOf) {
   const Stage stage;
-  const grammar::NamedEvent cup{.event = "seen", .roles = {{"object", "cup"}}, .interval = {10, 20}};
-  const grammar::NamedEvent mug{.event = "seen", .roles = {{"object", "mug"}}, .interval = {10, 20}};
-  const std::string facts = FactsAround(
-      stage.scenario, stage.recording,
-      {.agreement = LineVerdict::kChanged, .expected = cup, .actual = mug, .changes = {"object: cup -> mug"}});
+  const grammar::NamedEvent cup{
+      .event = "seen", .roles = {{"object", "cup"}}, .interval = {10, 20}};
+  const grammar::NamedEvent mug{
+      .event = "seen", .roles = {{"object", "mug"}}, .interval = {10, 20}};
+  const std::string facts = FactsAround(stage.scenario, stage.recording,
+                                        {.agreement = LineVerdict::kChanged,
+                                         .expected = cup,
+                                         .actual = mug,
+                                         .changes = {"object: cup -> mug"}});
   EXPECT_NE(facts.find("    cup at "), std::string::npos) << facts;
   EXPECT_NE(facts.find("    mug at "), std::string::npos) << facts;
 }

@@ -31,12 +31,16 @@ Format<Wheel> WheelFormat() {
       .Required("radius_m", &Wheel::radius_m, Number(0.01, 2), "Distance from axle to tread.")
       .Optional("spokes", &Wheel::spokes, Integer<int>(0, 100), "How many.")
       .Optional("material", &Wheel::material,
-                Choice<Material>({{"wood", Material::kWood}, {"steel", Material::kSteel}}), "Of what.")
+                Choice<Material>({{"wood", Material::kWood}, {"steel", Material::kSteel}}),
+                "Of what.")
       .Optional("spins", &Wheel::spins, Flag(), "Does it turn.")
       .Optional("label", &Wheel::label, Text(), "On it.")
       .Optional("axis", &Wheel::axis, Vector<3>(-1, 1), "Unit vector.")
       .Optional("hub", &Wheel::hub,
-                Record<Hub>("a hub").Optional("radius_m", &Hub::radius_m, Number(0, 1), "Radius.").format(), "Hub.")
+                Record<Hub>("a hub")
+                    .Optional("radius_m", &Hub::radius_m, Number(0, 1), "Radius.")
+                    .format(),
+                "Hub.")
       .Optional("loads_kg", &Wheel::loads_kg, MapOf(Identifier(), Number(0, 9), 0, 2), "By name.")
       .AtMostOneOf({"spokes", "label"})
       .format();
@@ -50,7 +54,8 @@ ReadResult<Wheel> ReadWheel(const std::string& text) {
 
 TEST(FieldTable, ReadsEveryKindOfField) {
   const auto read = ReadWheel(
-      "radius_m: 0.5\nmaterial: steel\nspins: false\nlabel: 'front'\naxis: [0, 0, 1]\nhub: {radius_m: 0.1}\n"
+      "radius_m: 0.5\nmaterial: steel\nspins: false\nlabel: 'front'\naxis: [0, 0, 1]\nhub: "
+      "{radius_m: 0.1}\n"
       "loads_kg: {b: 1, a: 2}\n");
   ASSERT_TRUE(read.value) << grammar::Format(read.diagnostics);
   const Wheel& wheel = *read.value;
@@ -68,14 +73,17 @@ TEST(FieldTable, ReadsEveryKindOfField) {
 }
 
 TEST(FieldTable, CollectsAllComplaintsSortedByPlace) {
-  EXPECT_EQ(Brief(ReadWheel("material: stel\nspokes: 1.5\naxis: [0, 2]\nweight: 3\nloads_kg: {A: 10}\n").diagnostics),
-            "1:1: a wheel needs the key 'radius_m'\n"
-            "1:11: material: expected one of wood, steel, found 'stel' | did you mean 'steel'?\n"
-            "2:9: spokes: expected a whole number from 0 to 100, found '1.5'\n"
-            "3:7: axis: expected 3 items, found 2\n"
-            "4:1: unknown key 'weight' in a wheel | known: radius_m, spokes, material, spins, label, axis, hub, loads_kg\n"
-            "5:12: expected a name like 'milk_carton', found 'A'\n"
-            "5:15: A: expected a number from 0 to 9, found '10'\n");
+  EXPECT_EQ(
+      Brief(ReadWheel("material: stel\nspokes: 1.5\naxis: [0, 2]\nweight: 3\nloads_kg: {A: 10}\n")
+                .diagnostics),
+      "1:1: a wheel needs the key 'radius_m'\n"
+      "1:11: material: expected one of wood, steel, found 'stel' | did you mean 'steel'?\n"
+      "2:9: spokes: expected a whole number from 0 to 100, found '1.5'\n"
+      "3:7: axis: expected 3 items, found 2\n"
+      "4:1: unknown key 'weight' in a wheel | known: radius_m, spokes, material, spins, label, "
+      "axis, hub, loads_kg\n"
+      "5:12: expected a name like 'milk_carton', found 'A'\n"
+      "5:15: A: expected a number from 0 to 9, found '10'\n");
 }
 
 TEST(FieldTable, AMisspeltRequiredKeyIsOneComplaint) {
@@ -104,8 +112,10 @@ TEST(FieldTable, TheSchemaSaysTheSame) {
   const Json schema = WheelFormat().schema;
   EXPECT_EQ(schema["additionalProperties"], false);
   EXPECT_EQ(schema["required"], Json({"radius_m"}));
-  EXPECT_EQ(schema["properties"]["radius_m"],
-            Json({{"description", "Distance from axle to tread."}, {"type", "number"}, {"minimum", 0.01}, {"maximum", 2.0}}));
+  EXPECT_EQ(schema["properties"]["radius_m"], Json({{"description", "Distance from axle to tread."},
+                                                    {"type", "number"},
+                                                    {"minimum", 0.01},
+                                                    {"maximum", 2.0}}));
   EXPECT_EQ(schema["properties"]["spokes"]["default"], 12);
   EXPECT_EQ(schema["properties"]["material"]["default"], "wood");
   EXPECT_EQ(schema["properties"]["material"]["enum"], Json({"wood", "steel"}));

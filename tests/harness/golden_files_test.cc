@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/orphans.h"
-
 #include <fstream>
+
+#include "harness/orphans.h"
 
 namespace prehend::harness {
 namespace {
@@ -52,20 +52,23 @@ TEST_F(GoldenFilesTest, AGoldenOfAnotherScenarioIsRefused) {
 }
 
 TEST_F(GoldenFilesTest, PicturesBelongToAScenarioAndAPictureOfIt) {
-  for (const char* file : {"golden/slide/x.png", "golden/slide/x-3.png", "golden/slide/x-two.png", "golden/y-12.png",
-                           "golden/slide/x_on.png", "build/pending/slide/x.png", "build/pending/slide/x.difference.png"}) {
+  for (const char* file : {"golden/slide/x.png", "golden/slide/x-3.png", "golden/slide/x-two.png",
+                           "golden/y-12.png", "golden/slide/x_on.png", "build/pending/slide/x.png",
+                           "build/pending/slide/x.difference.png"}) {
     ASSERT_EQ(WriteTextFile(root_ / file, "a picture"), "");
   }
   const std::vector<ScenarioFile> all = {{.skill = "slide", .name = "x", .path = {}}};
   ASSERT_EQ(files_.PicturesOf("slide/x").size(), 2u);
   EXPECT_EQ(files_.PicturesOf("slide/x")[1].number, 3);
   EXPECT_EQ(files_.PendingPictures().size(), 1u) << "what differs is no picture of the scenario";
-  EXPECT_EQ(UnaskedPictures("slide/x", 2, root_), std::vector<fs::path>{root_ / "golden/slide/x-3.png"});
+  EXPECT_EQ(UnaskedPictures("slide/x", 2, root_),
+            std::vector<fs::path>{root_ / "golden/slide/x-3.png"});
   const std::vector<Orphan> orphans = OrphansAmong(all, root_);
   ASSERT_EQ(orphans.size(), 2u);
   EXPECT_EQ(orphans[0].scenario, "slide/x_on");
-  EXPECT_EQ(Text(orphans[1]), (root_ / "golden/y-12.png").string() +
-                                  " belongs to no scenario: remove it, or bring scenarios/y.yaml back\n");
+  EXPECT_EQ(Text(orphans[1]),
+            (root_ / "golden/y-12.png").string() +
+                " belongs to no scenario: remove it, or bring scenarios/y.yaml back\n");
   files_.RemovePendingPicture("slide/x", "x.png");
   EXPECT_TRUE(fs::is_empty(root_ / "build/pending/slide"));
 }

@@ -124,7 +124,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "4:9: begin_s is not on a tick of 1/480 s | the nearest tick is at 1.2312"},
         Mistake{"empty_interval", "contact 1 1 a=cup", "4:1: the event must end after it begins"},
         Mistake{"no_roles", "contact 1 2", "4:12: an event needs at least one role=value"},
-        Mistake{"no_equals", "contact 1 2 cup", "4:16: expected '=' after 'cup' | ROLE=NAME without blanks, or open_end"},
+        Mistake{"no_equals", "contact 1 2 cup",
+                "4:16: expected '=' after 'cup' | ROLE=NAME without blanks, or open_end"},
         Mistake{"no_value", "contact 1 2 a= b=cup", "4:15: expected a value for 'a'"},
         Mistake{"no_number", "contact 1 2 a=cup force~much",
                 "4:25: expected a number after 'force~', like 12.5N"},
@@ -156,12 +157,14 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"oracle_unexplained", "contact 1 2 a=cup oracle=none",
                 "4:30: what differs from the oracle needs a reason | oracle=none because \"the "
                 "reason\""},
-        Mistake{"oracle_in_words", "contact 1 2 a=cup oracle=late because \"x\"",
-                "4:26: expected how it differs from the oracle's event: none, only, or its begin and "
-                "end like +29.2/-4.2ms"},
-        Mistake{"oracle_without_sign", "contact 1 2 a=cup oracle=29/+1ms because \"x\"",
-                "4:26: expected how it differs from the oracle's event: none, only, or its begin and "
-                "end like +29.2/-4.2ms"},
+        Mistake{
+            "oracle_in_words", "contact 1 2 a=cup oracle=late because \"x\"",
+            "4:26: expected how it differs from the oracle's event: none, only, or its begin and "
+            "end like +29.2/-4.2ms"},
+        Mistake{
+            "oracle_without_sign", "contact 1 2 a=cup oracle=29/+1ms because \"x\"",
+            "4:26: expected how it differs from the oracle's event: none, only, or its begin and "
+            "end like +29.2/-4.2ms"},
         Mistake{"rate_twice", "# ticks_per_second: 240", "4:21: second 'ticks_per_second' line"},
         Mistake{"scenario_twice", "# scenario: s/y", "4:13: second 'scenario' line"},
         Mistake{"bad_date", "# accepted: today \"ok\"",

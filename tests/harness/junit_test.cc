@@ -50,18 +50,34 @@ TEST(Junit, TheMessageTellsTheFirstDivergence) {
   ScenarioVerdict verdict{.scenario = "slide/bad", .shows = {}, .verdict = Verdict::kFailed};
   verdict.reason = "2 of 3 events differ from the golden";
   verdict.details = "shifted ..";
-  const nlohmann::ordered_json side = {{"roles", {{"object", "cup"}, {"support", "table"}}}, {"begin_s", 0.5}, {"end_s", 1}};
-  verdict.differences = {{{"kind", "changed"}, {"event", "supported_by"}, {"expected", side}, {"recognised", side},
-                          {"begin_ms", 12.5}, {"end_ms", 0}, {"changes", {"end: of its own -> of the episode"}}},
+  const nlohmann::ordered_json side = {
+      {"roles", {{"object", "cup"}, {"support", "table"}}}, {"begin_s", 0.5}, {"end_s", 1}};
+  verdict.differences = {{{"kind", "changed"},
+                          {"event", "supported_by"},
+                          {"expected", side},
+                          {"recognised", side},
+                          {"begin_ms", 12.5},
+                          {"end_ms", 0},
+                          {"changes", {"end: of its own -> of the episode"}}},
                          {{"kind", "extra"}}};
-  EXPECT_NE(JunitXml({verdict}).find("message=\"2 of 3 events differ from the golden; first: changed supported_by(cup, "
-                                     "table): expected 0.5000..1.0000 s, recognised 0.5000..1.0000 s, begin +12.5 ms, "
-                                     "end +0.0 ms, end: of its own -&gt; of the episode\""),
-            std::string::npos) << JunitXml({verdict});
-  verdict.differences = {{{"kind", "extra"}, {"event", "supported_by"}, {"expected", nullptr}, {"recognised", side},
-                          {"begin_ms", nullptr}, {"end_ms", nullptr}, {"changes", nlohmann::ordered_json::array()}}};
-  EXPECT_NE(JunitXml({verdict}).find("first: extra supported_by(cup, table): expected nothing, recognised 0.5000..1.0000 s\""),
-            std::string::npos) << JunitXml({verdict});
+  EXPECT_NE(JunitXml({verdict}).find(
+                "message=\"2 of 3 events differ from the golden; first: changed supported_by(cup, "
+                "table): expected 0.5000..1.0000 s, recognised 0.5000..1.0000 s, begin +12.5 ms, "
+                "end +0.0 ms, end: of its own -&gt; of the episode\""),
+            std::string::npos)
+      << JunitXml({verdict});
+  verdict.differences = {{{"kind", "extra"},
+                          {"event", "supported_by"},
+                          {"expected", nullptr},
+                          {"recognised", side},
+                          {"begin_ms", nullptr},
+                          {"end_ms", nullptr},
+                          {"changes", nlohmann::ordered_json::array()}}};
+  EXPECT_NE(
+      JunitXml({verdict}).find(
+          "first: extra supported_by(cup, table): expected nothing, recognised 0.5000..1.0000 s\""),
+      std::string::npos)
+      << JunitXml({verdict});
 }
 
 }  // namespace

@@ -14,11 +14,14 @@ namespace {
 class LibraryPaths : public testing::Test {
  protected:
   void SetUp() override {
-    root_ = std::filesystem::path(testing::TempDir()) / ("library_paths_" + std::to_string(getpid()));
-    for (const char* file : {"scenarios/lift/cup_is_lifted.yaml", "scenarios/lift/both.yaml", "scenarios/slide/both.yaml",
-                             "scenarios/alone.yaml", "scenarios/invalid/typo.yaml", "scenarios/lift/notes.txt", "scenarios/lift/my.hand.yaml", "scenarios/lift/my.grasps.yaml",
-                             "grammar/library/b.grammar", "grammar/library/a.grammar",
-                             "physics/library/human_right.hand.yaml"}) {
+    root_ =
+        std::filesystem::path(testing::TempDir()) / ("library_paths_" + std::to_string(getpid()));
+    for (const char* file :
+         {"scenarios/lift/cup_is_lifted.yaml", "scenarios/lift/both.yaml",
+          "scenarios/slide/both.yaml", "scenarios/alone.yaml", "scenarios/invalid/typo.yaml",
+          "scenarios/lift/notes.txt", "scenarios/lift/my.hand.yaml",
+          "scenarios/lift/my.grasps.yaml", "grammar/library/b.grammar", "grammar/library/a.grammar",
+          "physics/library/human_right.hand.yaml"}) {
       std::filesystem::create_directories((root_ / file).parent_path());
       std::ofstream(root_ / file) << "x\n";
     }
@@ -30,7 +33,8 @@ class LibraryPaths : public testing::Test {
 
 TEST_F(LibraryPaths, ScenariosAreListedSorted) {
   std::string all;
-  for (const auto& scenario : ListScenarios(root_)) all += scenario.skill + "/" + scenario.name + " ";
+  for (const auto& scenario : ListScenarios(root_))
+    all += scenario.skill + "/" + scenario.name + " ";
   EXPECT_EQ(all, "/alone lift/both lift/cup_is_lifted slide/both ");
 }
 
@@ -43,14 +47,16 @@ TEST_F(LibraryPaths, ScenariosAreFoundByNameSkillOrPath) {
   EXPECT_EQ(FindScenario(scenarios, "slide/both"), (root_ / "scenarios/slide/both.yaml").string());
   EXPECT_EQ(FindScenario(scenarios, "both"), std::nullopt);
   EXPECT_EQ(FindScenario(scenarios, "nothing_like_it"), std::nullopt);
-  EXPECT_EQ(FindScenario(scenarios, "not/there.yaml"), "not/there.yaml") << "the reader says that it is missing";
+  EXPECT_EQ(FindScenario(scenarios, "not/there.yaml"), "not/there.yaml")
+      << "the reader says that it is missing";
 }
 
 TEST_F(LibraryPaths, HintsForNames) {
   const auto scenarios = ListScenarios(root_);
   EXPECT_EQ(HintForScenario(scenarios, "cup_is_liftd"), "did you mean 'cup_is_lifted'?");
   EXPECT_EQ(HintForScenario(scenarios, "slide/cup_is_lifted"), "did you mean 'cup_is_lifted'?");
-  EXPECT_EQ(HintForScenario(scenarios, "lifted"), "did you mean 'cup_is_lifted'?") << "a part of it";
+  EXPECT_EQ(HintForScenario(scenarios, "lifted"), "did you mean 'cup_is_lifted'?")
+      << "a part of it";
   EXPECT_EQ(HintForScenario(scenarios, "both"), "which one: lift/both, slide/both?");
   EXPECT_EQ(HintForScenario(scenarios, "something_else_entirely"), "");
 }
@@ -68,7 +74,8 @@ TEST_F(LibraryPaths, TheRootIsThatOfTheEnvironmentOrAboveTheExecutable) {
   ASSERT_EQ(unsetenv("PREHEND_HOME"), 0);
   const auto before = std::filesystem::current_path();
   std::filesystem::current_path(root_ / "scenarios" / "lift");
-  const auto found = FindProjectRoot();  // above the test's binary, when it is built inside the project
+  const auto found =
+      FindProjectRoot();  // above the test's binary, when it is built inside the project
   std::filesystem::current_path(before);
   ASSERT_TRUE(found);
   EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(*found) / "grammar/library"));

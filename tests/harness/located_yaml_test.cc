@@ -18,7 +18,9 @@ YamlDocument Parse(const std::string& text) {
   return document.value.value_or(YamlDocument{});
 }
 
-std::string Complaints(const std::string& text) { return Brief(ParseYaml("probe.yaml", text).diagnostics); }
+std::string Complaints(const std::string& text) {
+  return Brief(ParseYaml("probe.yaml", text).diagnostics);
+}
 
 void ExpectPlace(const Where& where, int line, int column) {
   EXPECT_EQ(where.place.line, line);
@@ -55,7 +57,8 @@ TEST(LocatedYaml, NullKnowsItsSpelling) {
   EXPECT_EQ(document.root.Find("a")->text, "~");
   EXPECT_EQ(document.root.Find("b")->text, "null");
   EXPECT_EQ(document.root.Find("c")->text, "");
-  ExpectPlace(document.root.Find("c")->where, 3, 1);  // a value that is absent has the place of its key
+  ExpectPlace(document.root.Find("c")->where, 3,
+              1);  // a value that is absent has the place of its key
   EXPECT_EQ(document.root.Find("d")->Find("e")->kind, Kind::kNull);
 }
 
@@ -68,7 +71,8 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
   const Refused table[] = {
       {"a: 1\nb: {c: 1, c: 2}\n", "2:11: duplicate key 'c' | first given in line 2\n"},
       {"a: 1\na: 2\na: 3\n",
-       "2:1: duplicate key 'a' | first given in line 1\n3:1: duplicate key 'a' | first given in line 1\n"},
+       "2:1: duplicate key 'a' | first given in line 1\n3:1: duplicate key 'a' | first given in "
+       "line 1\n"},
       {"a: 1\n'a': 2\n", "2:1: duplicate key 'a' | first given in line 1\n"},
       {"<<: {a: 1}\n", "1:1: merge keys ('<<') are not supported | write the keys out\n"},
       {"a: &x 1\nb: *x\n",
@@ -76,21 +80,37 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
        "2:4: aliases ('*name') are not supported | write the value out\n"},
       {"a: !!int 1\n", "1:4: tags ('!name') are not supported | remove the tag\n"},
       {"a: ! x\n", "1:4: tags ('!name') are not supported | remove the tag\n"},
-      {"a: 1\n---\nb: 2\n", "2:1: a second document begins here | one file holds one document; remove the '---'\n"},
+      {"a: 1\n---\nb: 2\n",
+       "2:1: a second document begins here | one file holds one document; remove the '---'\n"},
       {"a: 1\nb:\t2\n", "2:3: tab character | indent and separate with spaces\n"},
       {"[1, 2]: 3\n", "1:1: a key must be a word, not a list or mapping\n"},
       {"~: 3\n", "1:1: a key is missing here\n"},
       {"# nothing\n", "0:0: the file is empty but for comments\n"},
       {"", "0:0: the file is empty\n"},
-      {"a: {b: 1\n", "2:1: not valid YAML: a '{' before this is not closed | each '[' needs its ']', each '{' its '}'\n"},
-      {"a: b: c\n", "1:5: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in quotes, like \"first: second\"\n"},
-      {"x: 1\na: b c:\n", "2:7: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in quotes, like \"first: second\"\n"},
-      {"a: {b: c: d}\n", "1:9: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in quotes, like \"first: second\"\n"},
-      {"a: \"b\" c\n", "1:8: not valid YAML: this cannot stand behind what is before it | text that begins with a quote ends with it; put all of it in quotes\n"},
-      {"a: * b\n", "1:5: not valid YAML: no text begins with '*' | text with special characters goes in quotes\n"},
-      {"a: 1\n b: 2\n", "2:3: not valid YAML: no ':' is expected here | a key begins a line, or stands in '{}'; text with ': ' goes in quotes\n"},
+      {"a: {b: 1\n",
+       "2:1: not valid YAML: a '{' before this is not closed | each '[' needs its ']', each '{' "
+       "its '}'\n"},
+      {"a: b: c\n",
+       "1:5: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in "
+       "quotes, like \"first: second\"\n"},
+      {"x: 1\na: b c:\n",
+       "2:7: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in "
+       "quotes, like \"first: second\"\n"},
+      {"a: {b: c: d}\n",
+       "1:9: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in "
+       "quotes, like \"first: second\"\n"},
+      {"a: \"b\" c\n",
+       "1:8: not valid YAML: this cannot stand behind what is before it | text that begins with a "
+       "quote ends with it; put all of it in quotes\n"},
+      {"a: * b\n",
+       "1:5: not valid YAML: no text begins with '*' | text with special characters goes in "
+       "quotes\n"},
+      {"a: 1\n b: 2\n",
+       "2:3: not valid YAML: no ':' is expected here | a key begins a line, or stands in '{}'; "
+       "text with ': ' goes in quotes\n"},
   };
-  for (const Refused& refused : table) EXPECT_EQ(Complaints(refused.text), refused.complaints) << refused.text;
+  for (const Refused& refused : table)
+    EXPECT_EQ(Complaints(refused.text), refused.complaints) << refused.text;
 }
 
 TEST(LocatedYaml, QuotedMergeKeyIsAKey) { EXPECT_TRUE(Parse("'<<': 1\n").root.Find("<<")); }
@@ -103,18 +123,23 @@ TEST(LocatedYaml, DeepNestingIsRefusedBeforeTheStackIsGone) {
   };
   for (const char* piece : {"[", "{", "- ", "{a: ", "[[{a: ", "? "}) {
     const std::string complaints = Complaints(repeated(piece, 10'000));
-    EXPECT_NE(complaints.find("nested deeper than 64 levels"), std::string::npos) << piece << complaints;
+    EXPECT_NE(complaints.find("nested deeper than 64 levels"), std::string::npos)
+        << piece << complaints;
   }
   EXPECT_EQ(Complaints(repeated("[", 64) + repeated("]", 64)), "");
   EXPECT_NE(Complaints(repeated("[", 65) + repeated("]", 65)), "");
 }
 
 const nlohmann::ordered_json kSchema = {
-    {"properties", {{"world", {{"properties", {{"rate_hz", {{"type", "integer"}}}}}}}, {"settle_s", {{"type", "number"}}}}}};
+    {"properties",
+     {{"world", {{"properties", {{"rate_hz", {{"type", "integer"}}}}}}},
+      {"settle_s", {{"type", "number"}}}}}};
 
 TEST(LocatedYaml, QuotationsMustEnd) {
-  EXPECT_EQ(Complaints("a: 'it''s\n"), "1:4: this quotation does not end | close it with the same quote\n");
-  EXPECT_EQ(Complaints("a: \"b\\\"\n"), "1:4: this quotation does not end | close it with the same quote\n");
+  EXPECT_EQ(Complaints("a: 'it''s\n"),
+            "1:4: this quotation does not end | close it with the same quote\n");
+  EXPECT_EQ(Complaints("a: \"b\\\"\n"),
+            "1:4: this quotation does not end | close it with the same quote\n");
   EXPECT_EQ(Complaints("a: 'it''s'\nb: \"c\\\\\"\nd: |\n  'e\n"), "");
 }
 
@@ -136,7 +161,8 @@ TEST(Override, ReplacesAndAdds) {
   EXPECT_EQ(Overridden("entities.milk.mass_kg=8"), "mass_kg=8 at_m=at_m[0]=1,at_m[1]=2, ");
   EXPECT_EQ(Overridden("entities.milk.at_m.1=8"), "mass_kg=1 at_m=at_m[0]=1,at_m[1]=8, ");
   EXPECT_EQ(Overridden("entities.milk.at_m=[3]"), "mass_kg=1 at_m=at_m[0]=3, ");
-  EXPECT_EQ(Overridden("entities.milk.fixed=true"), "mass_kg=1 at_m=at_m[0]=1,at_m[1]=2, fixed=true ");
+  EXPECT_EQ(Overridden("entities.milk.fixed=true"),
+            "mass_kg=1 at_m=at_m[0]=1,at_m[1]=2, fixed=true ");
 }
 
 TEST(Override, KnowsItsPlace) {
@@ -156,10 +182,13 @@ TEST(Override, MakesMappingsThatTheFileLeavesOut) {
 }
 
 TEST(Override, ComplainsAboutPathsThatLeadNowhere) {
-  EXPECT_EQ(Overridden("entities.milc.mass_kg=8"), "--set:1:10: nothing is called 'milc' here | did you mean 'milk'?\n");
-  EXPECT_EQ(Overridden("entities.milk.at_m.2=8"), "--set:1:20: nothing is called '2' here | 'at_m' is a list of 2\n");
+  EXPECT_EQ(Overridden("entities.milc.mass_kg=8"),
+            "--set:1:10: nothing is called 'milc' here | did you mean 'milk'?\n");
+  EXPECT_EQ(Overridden("entities.milk.at_m.2=8"),
+            "--set:1:20: nothing is called '2' here | 'at_m' is a list of 2\n");
   EXPECT_EQ(Overridden("entities.milk.mass_kg.g=8"), "--set:1:23: nothing is called 'g' here\n");
-  EXPECT_EQ(Overridden("entities"), "--set:1:1: expected PATH=VALUE | for example entities.milk.mass_kg=8\n");
+  EXPECT_EQ(Overridden("entities"),
+            "--set:1:1: expected PATH=VALUE | for example entities.milk.mass_kg=8\n");
   EXPECT_EQ(Overridden("entities.milk.mass_kg="),
             "--set:1:1: expected PATH=VALUE | for example entities.milk.mass_kg=8\n");
 }

@@ -46,7 +46,8 @@ TEST(Moment, TheGrammarMustHaveTheEvent) {
   program.events.push_back({.name = "hidden"});
   EXPECT_FALSE(WhyNoMoment("reaching.begin", program));
   EXPECT_FALSE(WhyNoMoment("3.5", program));
-  EXPECT_EQ(WhyNoMoment("reching.begin", program)->message, "grammar 'probe' has no event 'reching'");
+  EXPECT_EQ(WhyNoMoment("reching.begin", program)->message,
+            "grammar 'probe' has no event 'reching'");
   EXPECT_EQ(WhyNoMoment("reching.begin", program)->hint, "did you mean 'reaching'?");
   EXPECT_TRUE(WhyNoMoment("hidden.begin", program));
   EXPECT_EQ(WhyNoMoment("soon", program)->message, "'soon' is no moment");

@@ -77,19 +77,24 @@ TEST(MotionBvhTest, SaysWhatIsWrongAndWhere) {
   const Bad bads[] = {
       {"HIERARCHY", "HIERARHCY", "1:1: expected 'HIERARCHY', found 'HIERARHCY'\n"},
       {"ROOT Hips", "JOINT Hips", "2:1: expected 'ROOT' and a name, found 'JOINT'\n"},
-      {"Zrotation", "Zrotatoin", "5:24: no channel is called 'Zrotatoin' | did you mean 'Zrotation'?\n"},
+      {"Zrotation", "Zrotatoin",
+       "5:24: no channel is called 'Zrotatoin' | did you mean 'Zrotation'?\n"},
       {"Yposition Zrotation", "Zrotation Zrotation", "5:24: 'Zrotation' is given twice\n"},
       {"CHANNELS 2", "CHANNELS 3", "5:12: CHANNELS: 3 are announced, 2 follow\n"},
-      {"OFFSET 1.5 -2 0", "OFFSET 1.5 -2", "7:5: expected 'OFFSET' and three numbers, found 'OFFSET'\n"},
+      {"OFFSET 1.5 -2 0", "OFFSET 1.5 -2",
+       "7:5: expected 'OFFSET' and three numbers, found 'OFFSET'\n"},
       {"1.5 -2 0", "1.5 -2 nan", "7:19: expected a number, found 'nan'\n"},
       {"Upper Arm", "Hips", "6:9: a second joint is called 'Hips'\n"},
-      {"    }\n  }\n}\n", "    }\n  }\n", "14:1: expected 'OFFSET', 'CHANNELS', 'JOINT', 'End Site' or '}', found 'MOTION'\n"},
+      {"    }\n  }\n}\n", "    }\n  }\n",
+       "14:1: expected 'OFFSET', 'CHANNELS', 'JOINT', 'End Site' or '}', found 'MOTION'\n"},
       {"Frames: 2", "Frames: 1", "16:9: expected a number from 2 to 20000, found 1\n"},
       {"Frames: 2", "Frames: 3", "16:9: Frames: 3 are announced, 2 follow\n"},
       {"Frames: 2", "Frames: 2.5", "16:9: Frames: expected a whole number\n"},
       {"Time: 0.25", "Time: 0", "17:15: Frame Time: 0 s would be no motion\n"},
       {"Time: 0.25", "Time: -1", "17:15: expected a number from 0 to 1, found -1\n"},
-      {"1 2 3", "1 2", "18:3: expected 3 values, as many as the hierarchy has channels, found 2 | every frame is one line\n"},
+      {"1 2 3", "1 2",
+       "18:3: expected 3 values, as many as the hierarchy has channels, found 2 | every frame is "
+       "one line\n"},
       {"1 2 3", "1 inf 3", "18:3: expected a number, found 'inf'\n"},
       {"1 2 3", "1 2e9 3", "18:3: expected a number from -1000000 to 1000000, found 2e9\n"},
   };
@@ -97,16 +102,19 @@ TEST(MotionBvhTest, SaysWhatIsWrongAndWhere) {
 }
 
 TEST(MotionBvhTest, TheEndComesTooEarly) {
-  EXPECT_NE(Brief(Read("HIERARCHY\nROOT Hips\n{\n").diagnostics).find("expected '}', found the end of the file"),
+  EXPECT_NE(Brief(Read("HIERARCHY\nROOT Hips\n{\n").diagnostics)
+                .find("expected '}', found the end of the file"),
             std::string::npos);
-  EXPECT_NE(Brief(Read("HIERARCHY\n").diagnostics).find("expected 'ROOT' and a name, found the end of the file"),
+  EXPECT_NE(Brief(Read("HIERARCHY\n").diagnostics)
+                .find("expected 'ROOT' and a name, found the end of the file"),
             std::string::npos);
 }
 
 TEST(MotionBvhTest, DepthAndSizeAreLimited) {
   std::string deep = "HIERARCHY\nROOT j\n{\n";
   for (int i = 0; i < 70; ++i) deep += "JOINT j" + std::to_string(i) + "\n{\n";
-  EXPECT_NE(Brief(Read(deep).diagnostics).find("more than 256 joints, or deeper than 64"), std::string::npos);
+  EXPECT_NE(Brief(Read(deep).diagnostics).find("more than 256 joints, or deeper than 64"),
+            std::string::npos);
 }
 
 }  // namespace

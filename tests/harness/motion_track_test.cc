@@ -29,19 +29,23 @@ std::string Write(const std::string& name, const std::string& text) {
 /// What is said about a file, its folder left out.
 std::string Complaints(const grammar::Diagnostics& diagnostics) {
   std::string text = Brief(diagnostics);
-  for (std::size_t at; (at = text.find(Folder())) != std::string::npos;) text.erase(at, Folder().size());
+  for (std::size_t at; (at = text.find(Folder())) != std::string::npos;)
+    text.erase(at, Folder().size());
   return text;
 }
 
-std::string CsvComplaints(const std::string& text) { return Complaints(ReadMotionCsv(Write("m.csv", text)).diagnostics); }
+std::string CsvComplaints(const std::string& text) {
+  return Complaints(ReadMotionCsv(Write("m.csv", text)).diagnostics);
+}
 
 TEST(MotionCsvTest, ReadsUnitsOfTheHeader) {
-  const auto track = ReadMotionCsv(Write("m.csv",
-                                         "# a comment\n"
-                                         "t_ms, x_mm, y_cm, z_m, roll_deg, pitch_deg, yaw_rad, trigger\n"
-                                         "100, 500, 20, 1.5, 0, 0, 1.5707963267948966, 0\n"
-                                         "\n"
-                                         "350, 600, 20, 1.5, 0, 0, 0, 1\n"));
+  const auto track =
+      ReadMotionCsv(Write("m.csv",
+                          "# a comment\n"
+                          "t_ms, x_mm, y_cm, z_m, roll_deg, pitch_deg, yaw_rad, trigger\n"
+                          "100, 500, 20, 1.5, 0, 0, 1.5707963267948966, 0\n"
+                          "\n"
+                          "350, 600, 20, 1.5, 0, 0, 0, 1\n"));
   ASSERT_TRUE(track.value) << Complaints(track.diagnostics);
   ASSERT_EQ(track.value->samples.size(), 2u);
   const TrackSample &a = track.value->samples[0], &b = track.value->samples[1];
@@ -69,7 +73,9 @@ struct BadCsv {
 
 class MotionCsvRefuses : public testing::TestWithParam<BadCsv> {};
 
-TEST_P(MotionCsvRefuses, WithItsPlace) { EXPECT_EQ(CsvComplaints(GetParam().text), GetParam().complaints); }
+TEST_P(MotionCsvRefuses, WithItsPlace) {
+  EXPECT_EQ(CsvComplaints(GetParam().text), GetParam().complaints);
+}
 
 // clang-format off
 INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
@@ -95,7 +101,8 @@ INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
 // clang-format on
 
 TEST(MotionCsvTest, AMissingFileIsNamed) {
-  EXPECT_EQ(Complaints(ReadMotionCsv(Folder() + "none.csv").diagnostics), "none.csv:0:0: no such file\n");
+  EXPECT_EQ(Complaints(ReadMotionCsv(Folder() + "none.csv").diagnostics),
+            "none.csv:0:0: no such file\n");
 }
 
 constexpr const char* kCapture = R"({"right": {"poses": [
@@ -120,7 +127,8 @@ TEST(MotionCaptureTest, TurnsIntoOurAxes) {
 }
 
 TEST(MotionCaptureTest, APressWithoutAValueRisesWithinItsTime) {
-  const auto track = ReadMotionCapture(Write("m.json", kCapture), {.name = "right", .button = 1, .press_s = 0.1});
+  const auto track =
+      ReadMotionCapture(Write("m.json", kCapture), {.name = "right", .button = 1, .press_s = 0.1});
   ASSERT_TRUE(track.value);
   std::vector<double> triggers;
   for (const TrackSample& sample : track.value->samples) triggers.push_back(*sample.trigger);
@@ -144,27 +152,33 @@ TEST(MotionCaptureTest, Refuses) {
   const auto complaints = [](const std::string& text, const std::string& device) {
     return Complaints(ReadMotionCapture(Write("m.json", text), {.name = device}).diagnostics);
   };
-  EXPECT_EQ(complaints(kCapture, "rigth"), "m.json:1:1: no device is called 'rigth' | did you mean 'right'?\n");
+  EXPECT_EQ(complaints(kCapture, "rigth"),
+            "m.json:1:1: no device is called 'rigth' | did you mean 'right'?\n");
   EXPECT_EQ(complaints("[1, 2]", "right"),
-            "m.json:1:1: expected an object with the devices of a recording | like {\"right\": {\"poses\": [...], \"events\": [...]}}\n");
+            "m.json:1:1: expected an object with the devices of a recording | like {\"right\": "
+            "{\"poses\": [...], \"events\": [...]}}\n");
   EXPECT_EQ(complaints(R"({"right": {}})", "right"), "m.json:1:2: 'right' has no 'poses'\n");
   std::string text = kCapture;
   text.replace(text.find("\"timestamp\": 1200"), 17, "\"timestamp\": 1100");
-  EXPECT_EQ(complaints(text, "right"), "m.json:4:100: the timestamps must increase from pose to pose\n");
+  EXPECT_EQ(complaints(text, "right"),
+            "m.json:4:100: the timestamps must increase from pose to pose\n");
   EXPECT_EQ(complaints("{\"right\": [", "right"),
-            "m.json:1:1: not valid JSON: a '[' before this is not closed | each '[' needs its ']', each '{' its '}'\n");
+            "m.json:1:1: not valid JSON: a '[' before this is not closed | each '[' needs its ']', "
+            "each '{' its '}'\n");
   const auto with_state = [&](const char* state) {
     std::string changed = kCapture;
     changed.replace(changed.find("\"state\": {}"), 11, state);
     return complaints(changed, "right");
   };
-  EXPECT_EQ(with_state("\"state\": {\"value\": 7}"), "m.json:7:68: value: expected a number from 0 to 1, found '7'\n");
+  EXPECT_EQ(with_state("\"state\": {\"value\": 7}"),
+            "m.json:7:68: value: expected a number from 0 to 1, found '7'\n");
   const auto with_id = [&](const char* id) {
     std::string changed = kCapture;
     changed.replace(changed.find("\"id\": 2"), 7, id);
     return complaints(changed, "right");
   };
-  EXPECT_EQ(with_id("\"id\": \"x\""), "m.json:9:43: id: expected a whole number from 0 to 1000, found the text 'x'\n");
+  EXPECT_EQ(with_id("\"id\": \"x\""),
+            "m.json:9:43: id: expected a whole number from 0 to 1000, found the text 'x'\n");
   EXPECT_EQ(with_id("\"no\": 2"), "m.json:9:3: a 'buttondown' needs a 'detail.id'\n");
 }
 
@@ -182,9 +196,11 @@ TEST(CheckTrackTest, GapsAndJumpsAreToldAndLimited) {
   for (const auto& diagnostic : CheckTrack(*track.value, {})) EXPECT_TRUE(diagnostic.is_warning);
   const auto strict = CheckTrack(*track.value, {.gap_s = 0.1, .jump_m = 0.05});
   EXPECT_EQ(Complaints(strict),
-            "m.csv:22:1: gap: no sample for 0.160 s before this one, at 0.350 s; at most 0.1 s are bridged | cut the "
+            "m.csv:22:1: gap: no sample for 0.160 s before this one, at 0.350 s; at most 0.1 s are "
+            "bridged | cut the "
             "recording with from_s and to_s, or raise most_gap_s\n"
-            "m.csv:27:1: jump: 0.090 m within 0.010 s, at 0.400 s; at most 0.05 m are followed | cut the recording with "
+            "m.csv:27:1: jump: 0.090 m within 0.010 s, at 0.400 s; at most 0.05 m are followed | "
+            "cut the recording with "
             "from_s and to_s, or raise most_jump_m\n");
   for (const auto& diagnostic : strict) EXPECT_FALSE(diagnostic.is_warning);
 }

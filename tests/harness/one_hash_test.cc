@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scenario's state hash does not depend on what ran before it in the same process. As many runs as
-// PREHEND_RUNS says, otherwise 30:
+// A scenario's state hash does not depend on what ran before it in the same process. As many runs
+// as PREHEND_RUNS says, otherwise 30:
 //   PREHEND_RUNS=1000 build/test/tests/harness_test --gtest_filter='OneHash.*'
 #include <gtest/gtest.h>
 
@@ -20,8 +20,9 @@ TEST(OneHash, WhateverRanBefore) {
   const int runs = typed ? std::atoi(typed) : 30;
   const std::string root = PREHEND_SOURCE_DIR;
   std::vector<PreparedRun> prepared;
-  for (const char* scenario : {"reach/two_candidates_one_grasped", "pick_and_place/milk_carton_wrap",
-                               "grasp/closing_beside_the_carton_is_no_grasp"}) {
+  for (const char* scenario :
+       {"reach/two_candidates_one_grasped", "pick_and_place/milk_carton_wrap",
+        "grasp/closing_beside_the_carton_is_no_grasp"}) {
     auto one = PrepareRun({.scenario_file = root + "/scenarios/" + scenario + ".yaml",
                            .grammar = {},
                            .settings = {"settle_s=0", "script.0.right_hand.over_s=0.1"}},

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the shipped grammars find in every shipped scenario against what the oracle says truly
-// happened in it. `prehend check` plays every scenario and lets the oracle judge what is found, with
-// a tolerance of two frames; what differs must stand in the golden, as a note on its line. So most
-// scenarios need not be played again here: it is enough that their goldens have no such notes.
+// happened in it. `prehend check` plays every scenario and lets the oracle judge what is found,
+// with a tolerance of two frames; what differs must stand in the golden, as a note on its line. So
+// most scenarios need not be played again here: it is enough that their goldens have no such notes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,16 +36,17 @@ bool SpeaksOfIt(const grammar::Program& program) {
 /// Of a scenario whose two frames are at most kTolerance, for which `check` does the rest.
 void ExpectNoNotes(const ScenarioFile& file, const grammar::Program& program) {
   const ReadResult<Golden> golden = GoldenFiles(PREHEND_SOURCE_DIR).ReadGoldenOf(IdOf(file));
-  ASSERT_TRUE(golden.value) << "no golden, or one that cannot be read\n" << Format(golden.diagnostics);
+  ASSERT_TRUE(golden.value) << "no golden, or one that cannot be read\n"
+                            << Format(golden.diagnostics);
   const std::vector<GoldenEvent>& lines = golden.value->events;
   EXPECT_FALSE(lines.empty());
   for (const GoldenEvent& line : lines)
     EXPECT_EQ(line.oracle, "") << line.event.Label() << ": " << line.oracle_because;
-  EXPECT_TRUE(!SpeaksOfIt(program) ||
-              std::ranges::any_of(lines, Defines, &GoldenEvent::event));
+  EXPECT_TRUE(!SpeaksOfIt(program) || std::ranges::any_of(lines, Defines, &GoldenEvent::event));
 }
 
-void ExpectAgreement(const Scenario& scenario, const std::shared_ptr<const grammar::Program>& program) {
+void ExpectAgreement(const Scenario& scenario,
+                     const std::shared_ptr<const grammar::Program>& program) {
   const RunResult run = RunScenario(scenario, program, {.record = true});
   ASSERT_EQ(run.status.kind, physics::RunStatus::Kind::kCompleted) << run.status.reason;
   EXPECT_FALSE(run.timeline.events.empty());
@@ -69,7 +70,9 @@ TEST_P(OracleAgreement, WithinTwoFrames) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, OracleAgreement,
                          testing::ValuesIn(ListScenarios(PREHEND_SOURCE_DIR)),
-                         [](const auto& scenario) { return scenario.param.skill + "_" + scenario.param.name; });
+                         [](const auto& scenario) {
+                           return scenario.param.skill + "_" + scenario.param.name;
+                         });
 
 }  // namespace
 }  // namespace prehend::harness

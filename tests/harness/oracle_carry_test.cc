@@ -114,7 +114,9 @@ TEST_F(OracleCarry, RisingIsNoWayAlongTheSupport) {
     SetUp();
     // It is tipped over an edge: its centre rises by 3 cm, and gets 1.5 or 2.4 cm farther.
     stage_.cup_on_table = false;
-    stage_.contacts = {{.a = Stage::BodySide(stage_.cup), .b = Stage::BodySide(stage_.table), .from_a_m = {0.03, 0, -0.03}}};
+    stage_.contacts = {{.a = Stage::BodySide(stage_.cup),
+                        .b = Stage::BodySide(stage_.table),
+                        .from_a_m = {0.03, 0, -0.03}}};
     stage_.body(stage_.cup).w_WB_rad_per_s = {0, 0.1 / 0.03, 0};
     stage_.Carry(0.3, {along_m_per_s, 0, 0.1});
     EXPECT_EQ(Events("sliding").size(), along_m_per_s > 0.07 ? 1u : 0u);

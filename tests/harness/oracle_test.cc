@@ -111,10 +111,13 @@ TEST(OracleSupport, BearsWhatTipsOverItsEdge) {
     const Tick tips = stage.now();
     stage.cup_on_table = false;
     // The cup's centre sinks by 3 cm/s, 3 cm beside the edge about which it turns by 1 rad/s.
-    stage.contacts = {{.a = Stage::BodySide(stage.cup), .b = Stage::BodySide(stage.table), .from_a_m = {-0.03, 0, -0.03}}};
+    stage.contacts = {{.a = Stage::BodySide(stage.cup),
+                       .b = Stage::BodySide(stage.table),
+                       .from_a_m = {-0.03, 0, -0.03}}};
     stage.body(stage.cup).w_WB_rad_per_s = {0, edge_stays ? 1.0 : 0.0, 0};
     stage.Play(0.3, {0, 0, 0}, {{stage.cup, {0, 0, -0.03}}});
-    EXPECT_EQ(Of("supported_by(cup, table)", stage.Truth()), (Intervals{{0, edge_stays ? stage.now() : tips}}));
+    EXPECT_EQ(Of("supported_by(cup, table)", stage.Truth()),
+              (Intervals{{0, edge_stays ? stage.now() : tips}}));
   }
 }
 

@@ -49,7 +49,8 @@ TEST(Outcome, TheFirstThatHoldsIsTheOne) {
 
 TEST(Outcome, AMomentAfterTheEndIsRefused) {
   EXPECT_EQ(Brief(Read("  held: [{entity: milk, at_s: 2.5, above_m: 1}]\n").diagnostics),
-            "16:10: at_s: 2.5 s is after the end, which is at 1.900 s | without at_s it is looked at then\n");
+            "16:10: at_s: 2.5 s is after the end, which is at 1.900 s | without at_s it is looked "
+            "at then\n");
   EXPECT_TRUE(Read("  held: [{entity: milk, at_s: 1.9, above_m: 1}]\n").value);
 }
 
@@ -72,13 +73,15 @@ TEST(Outcome, InsideIsInTheBoundingBox) {
 }
 
 TEST(Outcome, OfGrainsAShareIsInside) {
-  const physics::Body cup{.name = "cup", .shapes = physics::ShapesOf(physics::Tray{{0.1, 0.1, 0.1}, 0.01})};
+  const physics::Body cup{.name = "cup",
+                          .shapes = physics::ShapesOf(physics::Tray{{0.1, 0.1, 0.1}, 0.01})};
   physics::Body peas{.name = "peas", .shapes = {}, .grains = physics::Grains{}};
   peas.grains->p_WG_m.resize(4);
   const physics::Scene scene{.bodies = {cup, peas}};
   physics::Snapshot snapshot;
   snapshot.bodies.resize(2);
-  snapshot.grains = {{0, 0, 0}, {0.04, 0.04, 0}, {0, 0, -0.04}, {0.06, 0, 0}};  // the last one is outside
+  snapshot.grains = {
+      {0, 0, 0}, {0.04, 0.04, 0}, {0, 0, -0.04}, {0.06, 0, 0}};  // the last one is outside
   const auto judge = [&](double share) {
     ConditionEntry wanted{.entity = "peas"};
     wanted.inside = Located<std::string>{"cup", {}};

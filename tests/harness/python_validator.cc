@@ -23,7 +23,8 @@ void PythonValidator::Add(const std::string& name, const std::string& yaml) {
 
 std::map<std::string, bool> PythonValidator::Validate(const std::string& schema) const {
   std::ofstream(folder_ / "schema.json") << schema;
-  std::string command = "cd '" + folder_.string() + "' && /usr/bin/python3 " PREHEND_SOURCE_DIR
+  std::string command = "cd '" + folder_.string() +
+                        "' && /usr/bin/python3 " PREHEND_SOURCE_DIR
                         "/tests/harness/validate_against_schema.py schema.json";
   for (const std::string& name : names_) command += " " + name;
   if (std::system((command + " > result").c_str()) != 0) return {};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An independent validator of YAML files against a JSON Schema: python3-jsonschema and python3-yaml.
+// An independent validator of YAML files against a JSON Schema: python3-jsonschema and
+// python3-yaml.
 #pragma once
 
 #include <filesystem>

@@ -25,16 +25,21 @@ std::string ReadWhole(const fs::path& path) {
 /// A folder with the library's hands, which may be changed.
 class HandFolder {
  public:
-  HandFolder() : folder_(fs::temp_directory_path() / ("prehend_read_hand_model_" + std::to_string(getpid()))) {
+  HandFolder()
+      : folder_(fs::temp_directory_path() /
+                ("prehend_read_hand_model_" + std::to_string(getpid()))) {
     fs::remove_all(folder_);
     fs::copy(kLibrary, folder_);
   }
   ~HandFolder() { fs::remove_all(folder_); }
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
-  void Write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  void Write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
   /// Replaces a text in whichever of these files has it.
-  void Change(const std::vector<std::string>& names, const std::string& what, const std::string& by) const {
+  void Change(const std::vector<std::string>& names, const std::string& what,
+              const std::string& by) const {
     for (const std::string& name : names) {
       std::string text = ReadWhole(folder_ / name);
       const std::size_t at = text.find(what);
@@ -83,9 +88,11 @@ TEST(ReadHandModelTest, MistakesAreNamedAtTheirPlace) {
       {"direction: [1, 0, 0]", "direction: [0, 0, 0]", "a direction other than"},
       {"range_deg: [-20, 95]", "range_deg: [95, -20]", "[least, most]"},
       {"stiffness: 0.2", "stiffnes: 0.2", "stiffnes"},
-      {"grasps: [human]", "grasps: [humen]", "there is no humen.grasps.yaml beside the hand's file"},
+      {"grasps: [human]", "grasps: [humen]",
+       "there is no humen.grasps.yaml beside the hand's file"},
       {"grasps: [human]", "", "the hand has no style of grasp"},
-      {"grasps: human", "grasps: people", "grasps: the name is 'people', but the file is called 'human.grasps.yaml'"},
+      {"grasps: human", "grasps: people",
+       "grasps: the name is 'people', but the file is called 'human.grasps.yaml'"},
       {"mass_kg: 0.6", "mass_kg: -0.6", "mass_kg"},
   };
   for (const Mistake& mistake : mistakes) {
@@ -143,15 +150,20 @@ TEST(ReadHandModelTest, AGraspFileAddsStylesAndReplacesThem) {
   folder.Write("mine.grasps.yaml", kTwoGrasps);
   const auto before = ReadHandModel(folder.Path("human_right.hand.yaml"));
   std::vector<std::string> files;
-  const auto hand = ReadHandModel(folder.Path("human_right.hand.yaml"), {folder.Path("mine.grasps.yaml")}, &files);
+  const auto hand = ReadHandModel(folder.Path("human_right.hand.yaml"),
+                                  {folder.Path("mine.grasps.yaml")}, &files);
   ASSERT_TRUE(hand.value.has_value()) << Format(hand.diagnostics);
   ASSERT_EQ(hand.value->styles.size(), before.value->styles.size() + 1);
-  const int firm = physics::FindStyle(*hand.value, "firm"), wrap = physics::FindStyle(*hand.value, "wrap");
+  const int firm = physics::FindStyle(*hand.value, "firm"),
+            wrap = physics::FindStyle(*hand.value, "wrap");
   ASSERT_GE(firm, 0);
   EXPECT_EQ(wrap, physics::FindStyle(*before.value, "wrap")) << "it takes the other's place";
-  EXPECT_FALSE(hand.value->styles[static_cast<std::size_t>(wrap)].above) << "nothing of the other is left";
-  EXPECT_NEAR(hand.value->styles[static_cast<std::size_t>(firm)].frames[1][0], 0.0698, 1e-4) << "radians";
-  EXPECT_EQ(files, (std::vector<std::string>{folder.Path("human_right.hand.yaml"), folder.Path("human.grasps.yaml"),
+  EXPECT_FALSE(hand.value->styles[static_cast<std::size_t>(wrap)].above)
+      << "nothing of the other is left";
+  EXPECT_NEAR(hand.value->styles[static_cast<std::size_t>(firm)].frames[1][0], 0.0698, 1e-4)
+      << "radians";
+  EXPECT_EQ(files, (std::vector<std::string>{folder.Path("human_right.hand.yaml"),
+                                             folder.Path("human.grasps.yaml"),
                                              folder.Path("mine.grasps.yaml")}));
 }
 
@@ -159,17 +171,22 @@ TEST(ReadHandModelTest, TheGraspsOfAMirroredHandAreMirrored) {
   const HandFolder folder;
   folder.Write("mine.grasps.yaml", kTwoGrasps);
   std::vector<std::string> files;
-  const auto hand = ReadHandModel(folder.Path("human_left.hand.yaml"), {folder.Path("mine.grasps.yaml")}, &files);
+  const auto hand =
+      ReadHandModel(folder.Path("human_left.hand.yaml"), {folder.Path("mine.grasps.yaml")}, &files);
   ASSERT_TRUE(hand.value.has_value()) << Format(hand.diagnostics);
-  EXPECT_NEAR(hand.value->styles[static_cast<std::size_t>(physics::FindStyle(*hand.value, "wrap"))].post_m.y(), -0.02, 1e-12);
-  EXPECT_EQ(files.size(), 4u) << "of the original and of its grasps, too: when they change, so does this hand";
+  EXPECT_NEAR(hand.value->styles[static_cast<std::size_t>(physics::FindStyle(*hand.value, "wrap"))]
+                  .post_m.y(),
+              -0.02, 1e-12);
+  EXPECT_EQ(files.size(), 4u)
+      << "of the original and of its grasps, too: when they change, so does this hand";
 }
 
 TEST(ReadHandModelTest, MistakesInAGraspFileAreNamedThere) {
   const HandFolder folder;
   folder.Write("mine.grasps.yaml", kTwoGrasps);
   folder.Change({"mine.grasps.yaml"}, "little: [4, 5, 6]", "litle: [4, 5, 6]");
-  const auto hand = ReadHandModel(folder.Path("human_left.hand.yaml"), {folder.Path("mine.grasps.yaml")});
+  const auto hand =
+      ReadHandModel(folder.Path("human_left.hand.yaml"), {folder.Path("mine.grasps.yaml")});
   ASSERT_FALSE(hand.value.has_value());
   const std::string text = Format(hand.diagnostics);
   EXPECT_NE(text.find("mine.grasps.yaml:9:"), std::string::npos) << text;

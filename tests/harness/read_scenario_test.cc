@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a good scenario becomes: bodies, hands, script, cast. What is wrong with bad ones: scenario_errors_test.cc.
+// What a good scenario becomes: bodies, hands, script, cast. What is wrong with bad ones:
+// scenario_errors_test.cc.
 #include "harness/read_scenario.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,8 @@ Scenario Read(const std::string& text, const std::vector<std::string>& overrides
   return read.value.value_or(Scenario{});
 }
 
-std::string ComplaintsAbout(const std::string& text, const std::vector<std::string>& overrides = {}) {
+std::string ComplaintsAbout(const std::string& text,
+                            const std::vector<std::string>& overrides = {}) {
   return Brief(ReadScenarioText("probe.yaml", text, overrides, ProbeLibrary()).diagnostics);
 }
 
@@ -32,7 +34,8 @@ TEST(ReadScenario, TheProbe) {
   const physics::Body& milk = scenario.scene.bodies[1];
   EXPECT_EQ(milk.name, "milk");
   EXPECT_EQ(milk.mass_kg, 0.4);
-  EXPECT_TRUE(milk.X_WB.p_m.isApprox(Eigen::Vector3d(0.2, 0.1, 0.86), 1e-12)) << "on top of the table";
+  EXPECT_TRUE(milk.X_WB.p_m.isApprox(Eigen::Vector3d(0.2, 0.1, 0.86), 1e-12))
+      << "on top of the table";
   EXPECT_TRUE(scenario.scene.bodies[0].fixed);
   ASSERT_EQ(scenario.scene.hands.size(), 1u);
   EXPECT_EQ(scenario.scene.hands[0].model.name, "human_right");
@@ -75,15 +78,18 @@ TEST(ReadScenario, EveryStep) {
   EXPECT_TRUE(std::holds_alternative<physics::WaitStep>(step(9).action));
   const auto poses = std::get<physics::PosesStep>(step(10).action).poses;
   ASSERT_EQ(poses.size(), 2u);
-  EXPECT_TRUE((poses[1].X_WH.q * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-12));
+  EXPECT_TRUE(
+      (poses[1].X_WH.q * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-12));
   EXPECT_EQ(poses[1].trigger, 1);
   EXPECT_FALSE(poses[0].trigger);
 }
 
 TEST(ReadScenario, TwoActorsInOneBeat) {
-  std::string text = ProbeWith("script:\n", "  left_hand: {hand: human_left, at_m: [-0.2, 0.4, 1.05]}\nscript:\n");
+  std::string text =
+      ProbeWith("script:\n", "  left_hand: {hand: human_left, at_m: [-0.2, 0.4, 1.05]}\nscript:\n");
   text += "settle_s: 0\n";
-  text.insert(text.find("  - right_hand: {close_to"), "  - {left_hand: {wait_s: 0.3}, right_hand: {wait_s: 0.5}}\n");
+  text.insert(text.find("  - right_hand: {close_to"),
+              "  - {left_hand: {wait_s: 0.3}, right_hand: {wait_s: 0.5}}\n");
   const Scenario scenario = Read(text);
   const physics::Beat& beat = scenario.script.beats[1];
   ASSERT_EQ(beat.steps.size(), 2u);
@@ -94,32 +100,40 @@ TEST(ReadScenario, TwoActorsInOneBeat) {
 
 TEST(ReadScenario, ShapesStandOnTheirLowestPoint) {
   const auto height = [](const std::string& shape) {
-    return Read(ProbeWith("box: {size_m: [0.07, 0.07, 0.20]}", shape)).scene.bodies[1].X_WB.p_m.z() - 0.76;
+    return Read(ProbeWith("box: {size_m: [0.07, 0.07, 0.20]}", shape))
+               .scene.bodies[1]
+               .X_WB.p_m.z() -
+           0.76;
   };
   EXPECT_NEAR(height("sphere: {radius_m: 0.05}"), 0.05, 1e-12);
   EXPECT_NEAR(height("cylinder: {radius_m: 0.05, length_m: 0.2}"), 0.1, 1e-12);
   EXPECT_NEAR(height("capsule: {radius_m: 0.05, length_m: 0.2}"), 0.15, 1e-12);
-  EXPECT_NEAR(height("cylinder: {radius_m: 0.05, length_m: 0.2}, rpy_deg: [90, 0, 0]"), 0.05, 1e-12);
-  EXPECT_NEAR(height("box: {size_m: [0.1, 0.1, 0.1]}, rpy_deg: [45, 0, 0]"), 0.05 * std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(height("cylinder: {radius_m: 0.05, length_m: 0.2}, rpy_deg: [90, 0, 0]"), 0.05,
+              1e-12);
+  EXPECT_NEAR(height("box: {size_m: [0.1, 0.1, 0.1]}, rpy_deg: [45, 0, 0]"),
+              0.05 * std::numbers::sqrt2, 1e-12);
 }
 
 TEST(ReadScenario, StacksInAnyOrder) {
-  const Scenario scenario = Read(ProbeWith(
-      "actors:", "  cup: {cylinder: {radius_m: 0.03, length_m: 0.1}, mass_kg: 0.1, on: tray, at_m: [-0.3, 0.2]}\n"
-                 "  tray: {box: {size_m: [0.2, 0.2, 0.02]}, mass_kg: 0.3, on: table, at_m: [-0.3, 0.2]}\nactors:"));
+  const Scenario scenario = Read(ProbeWith("actors:",
+                                           "  cup: {cylinder: {radius_m: 0.03, length_m: 0.1}, "
+                                           "mass_kg: 0.1, on: tray, at_m: [-0.3, 0.2]}\n"
+                                           "  tray: {box: {size_m: [0.2, 0.2, 0.02]}, mass_kg: "
+                                           "0.3, on: table, at_m: [-0.3, 0.2]}\nactors:"));
   EXPECT_NEAR(scenario.scene.bodies[2].X_WB.p_m.z(), 0.76 + 0.02 + 0.05, 1e-12);
 }
 
 TEST(ReadScenario, RollPitchYawTurnsAboutWorldAxes) {
-  const Scenario scenario = Read(ProbeWith("at_m: [-0.2, -0.2, 1.05]", "at_m: [-0.2, -0.2, 1.05], rpy_deg: [90, 0, 90]"));
+  const Scenario scenario =
+      Read(ProbeWith("at_m: [-0.2, -0.2, 1.05]", "at_m: [-0.2, -0.2, 1.05], rpy_deg: [90, 0, 90]"));
   const Eigen::Quaterniond q = scenario.scene.hands[0].X_WH.q;
   // z is first rolled into -y, then yawed into x.
   EXPECT_TRUE((q * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d::UnitX(), 1e-12));
 }
 
 TEST(ReadScenario, GainsReplaceOnlyWhatIsGiven) {
-  const Scenario scenario =
-      Read(ProbeWith("hand: human_right", "hand: human_right, gains: {translation: {limit_n: 40}}"));
+  const Scenario scenario = Read(
+      ProbeWith("hand: human_right", "hand: human_right, gains: {translation: {limit_n: 40}}"));
   EXPECT_EQ(scenario.scene.hands[0].model.translation.limit, 40);
   EXPECT_EQ(scenario.scene.hands[0].model.translation.proportional, 2500);
 }
@@ -161,8 +175,10 @@ TEST(MakeCast, BodiesFirstThenHands) {
   const grammar::Cast cast = MakeCast(Read(kProbe));
   EXPECT_EQ(cast.ticks_per_second, 480);
   ASSERT_EQ(cast.entities.size(), 3u);
-  EXPECT_EQ(cast.entities[0].classes, (std::vector<std::string>{"Table", "Fixed", "Thing", "Entity"}));
-  EXPECT_EQ(cast.entities[1].classes, (std::vector<std::string>{"Object", "Movable", "Thing", "Entity"}));
+  EXPECT_EQ(cast.entities[0].classes,
+            (std::vector<std::string>{"Table", "Fixed", "Thing", "Entity"}));
+  EXPECT_EQ(cast.entities[1].classes,
+            (std::vector<std::string>{"Object", "Movable", "Thing", "Entity"}));
   EXPECT_TRUE(cast.entities[1].half_size_m.isApprox(Eigen::Vector3d(0.035, 0.035, 0.1)));
   EXPECT_EQ(cast.entities[2].name, "right_hand");
   EXPECT_EQ(cast.entities[2].classes, (std::vector<std::string>{"Hand", "Entity"}));

@@ -17,7 +17,8 @@ const std::string kRoot = PREHEND_SOURCE_DIR;
 
 /// A ball beside the table's edge, at x = 0.5 on average.
 std::string BallFile(const std::string& outcomes) {
-  const auto folder = std::filesystem::temp_directory_path() / ("prehend_run_trials_" + std::to_string(getpid()));
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("prehend_run_trials_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   const auto path = folder / "ball.yaml";
   std::ofstream(path) << "scenario: ball\nshows: a ball is put down near an edge\nentities:\n"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every way to get a scenario wrong, with everything that is said about it; and that the JSON Schema refuses the
-// same typos and wrong types.
+// Every way to get a scenario wrong, with everything that is said about it; and that the JSON
+// Schema refuses the same typos and wrong types.
 #include <gtest/gtest.h>
 
 #include "harness/scenario_fields.h"
@@ -22,7 +22,8 @@ struct Case {
   const char* complaints;
 };
 
-constexpr const char* kMilk = "milk: {box: {size_m: [0.07, 0.07, 0.20]}, mass_kg: 0.4, on: table, at_m: [0.2, 0.1]}";
+constexpr const char* kMilk =
+    "milk: {box: {size_m: [0.07, 0.07, 0.20]}, mass_kg: 0.4, on: table, at_m: [0.2, 0.1]}";
 
 // clang-format off
 const Case kCases[] = {
@@ -214,10 +215,12 @@ class ScenarioError : public testing::TestWithParam<Case> {};
 
 TEST_P(ScenarioError, IsExplainedInFull) {
   const std::string text = ProbeWith(GetParam().from, GetParam().to);
-  EXPECT_EQ(Brief(ReadScenarioText("probe.yaml", text, {}, ProbeLibrary()).diagnostics), GetParam().complaints);
+  EXPECT_EQ(Brief(ReadScenarioText("probe.yaml", text, {}, ProbeLibrary()).diagnostics),
+            GetParam().complaints);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ScenarioError, testing::ValuesIn(kCases), [](const auto& i) { return i.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, ScenarioError, testing::ValuesIn(kCases),
+                         [](const auto& i) { return i.param.name; });
 
 TEST(ScenarioErrors, TheSchemaRefusesTheSameTyposAndTypes) {
   PythonValidator validator;
@@ -227,18 +230,21 @@ TEST(ScenarioErrors, TheSchemaRefusesTheSameTyposAndTypes) {
   const auto valid = validator.Validate(ScenarioSchema());
   for (const Case& c : kCases) {
     if (c.schema == kCannotRead) continue;
-    ASSERT_TRUE(valid.contains(c.name)) << c.name << " was not validated: are python3-jsonschema and python3-yaml there?";
+    ASSERT_TRUE(valid.contains(c.name))
+        << c.name << " was not validated: are python3-jsonschema and python3-yaml there?";
     EXPECT_EQ(valid.at(c.name), c.schema == kAccepts) << c.name;
   }
 }
 
 TEST(ScenarioErrors, AreShownWithLineAndCaret) {
-  const auto read = ReadScenarioText("probe.yaml", ProbeWith("mass_kg: 0.4", "mass_g: 400"), {}, ProbeLibrary());
-  EXPECT_EQ(grammar::Format(read.diagnostics),
-            "probe.yaml:7:45: error: unknown key 'mass_g' in entity 'milk'\n"
-            "    milk: {box: {size_m: [0.07, 0.07, 0.20]}, mass_g: 400, on: table, at_m: [0.2, 0.1]}\n"
-            "                                              ^\n"
-            "  hint: did you mean 'mass_kg'?\n");
+  const auto read =
+      ReadScenarioText("probe.yaml", ProbeWith("mass_kg: 0.4", "mass_g: 400"), {}, ProbeLibrary());
+  EXPECT_EQ(
+      grammar::Format(read.diagnostics),
+      "probe.yaml:7:45: error: unknown key 'mass_g' in entity 'milk'\n"
+      "    milk: {box: {size_m: [0.07, 0.07, 0.20]}, mass_g: 400, on: table, at_m: [0.2, 0.1]}\n"
+      "                                              ^\n"
+      "  hint: did you mean 'mass_kg'?\n");
 }
 
 TEST(ScenarioErrors, AllOfAFileAreCollected) {

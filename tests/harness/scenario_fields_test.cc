@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The committed schema, the scenarios of the project and the examples of the documentation agree with the reader.
+// The committed schema, the scenarios of the project and the examples of the documentation agree
+// with the reader.
 #include "harness/scenario_fields.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +34,8 @@ TEST(ScenarioSchema, EveryScenarioIsReadAndValid) {
     const auto read = ReadScenario(scenario.path, {}, ProjectLibrary(kRoot));
     EXPECT_TRUE(read.value) << grammar::Format(read.diagnostics);
     const std::string text = TextOf(scenario.path);
-    EXPECT_TRUE(text.starts_with("# yaml-language-server: $schema=../scenario.schema.json\n")) << scenario.path;
+    EXPECT_TRUE(text.starts_with("# yaml-language-server: $schema=../scenario.schema.json\n"))
+        << scenario.path;
     validator.Add(scenario.skill + "-" + scenario.name, text);
   }
   for (const auto& [name, valid] : validator.Validate(ScenarioSchema())) EXPECT_TRUE(valid) << name;
@@ -44,7 +46,8 @@ TEST(ScenarioSchema, EveryScenarioIsReadAndValid) {
 std::vector<std::string> YamlBlocks(const std::string& markdown) {
   const std::string open = "```yaml\n", close = "```\n";
   std::vector<std::string> blocks;
-  for (std::size_t at = markdown.find(open); at != std::string::npos; at = markdown.find(open, at)) {
+  for (std::size_t at = markdown.find(open); at != std::string::npos;
+       at = markdown.find(open, at)) {
     at += open.size();
     const std::size_t end = markdown.find(close, at);
     blocks.push_back(markdown.substr(at, end - at));

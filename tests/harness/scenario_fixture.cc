@@ -24,17 +24,27 @@ pictures:
 ScenarioLibrary ProbeLibrary() {
   return {.grammars = {"pick_and_place"},
           .hands = {"human_left", "human_right"},
-          .read_hand = [](const std::string& name, const std::vector<std::string>&) -> ReadResult<physics::HandModel> {
+          .read_hand = [](const std::string& name,
+                          const std::vector<std::string>&) -> ReadResult<physics::HandModel> {
             if (name.ends_with("broken.hand.yaml")) {
-              return {std::nullopt, {{.file = name, .place = {3, 4}, .message = "no links", .source_line = {}, .hint = {}}}};
+              return {std::nullopt,
+                      {{.file = name,
+                        .place = {3, 4},
+                        .message = "no links",
+                        .source_line = {},
+                        .hint = {}}}};
             }
             physics::HandModel model;
             model.name = name;
-            model.translation = {.proportional = 2500, .derivative = 120, .integral = 2000, .limit = 80};
+            model.translation = {
+                .proportional = 2500, .derivative = 120, .integral = 2000, .limit = 80};
             model.rotation = {.proportional = 20, .derivative = 0.5, .integral = 20, .limit = 8};
-            model.styles.push_back({.name = "wrap", .frames = {{}, {}}, .above = physics::GraspApproach{},
+            model.styles.push_back({.name = "wrap",
+                                    .frames = {{}, {}},
+                                    .above = physics::GraspApproach{},
                                     .side = physics::GraspApproach{}});
-            model.styles.push_back({.name = "pinch", .frames = {{}, {}}, .above = physics::GraspApproach{}});
+            model.styles.push_back(
+                {.name = "pinch", .frames = {{}, {}}, .above = physics::GraspApproach{}});
             return {model, {}};
           }};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small good scenario and a library that needs no files, for tests that break one thing at a time.
+// A small good scenario and a library that needs no files, for tests that break one thing at a
+// time.
 #pragma once
 
 #include <string>
@@ -11,7 +12,8 @@ namespace prehend::harness {
 /// Reads without complaints as file "probe.yaml".
 extern const char* const kProbe;
 
-/// Grammar pick_and_place; hands human_right and human_left with styles wrap (above, side) and pinch (above).
+/// Grammar pick_and_place; hands human_right and human_left with styles wrap (above, side) and
+/// pinch (above).
 ScenarioLibrary ProbeLibrary();
 
 /// The probe with the only occurrence of `from` replaced.

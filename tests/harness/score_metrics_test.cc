@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The metrics give the numbers that their reference programs printed (tests/harness/segmentation_metrics.json): ms-tcn,
-// ActivityNet, mir_eval, sed_eval, pyannote-metrics, psds_eval and ward-metrics, on six toy episodes of 40 frames at 10 Hz.
-// Where a reference prints nothing (NaN), ours is defined: see the comments.
+// The metrics give the numbers that their reference programs printed
+// (tests/harness/segmentation_metrics.json): ms-tcn, ActivityNet, mir_eval, sed_eval,
+// pyannote-metrics, psds_eval and ward-metrics, on six toy episodes of 40 frames at 10 Hz. Where a
+// reference prints nothing (NaN), ours is defined: see the comments.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +25,9 @@ const Segments kTruth = {
 Episode EpisodeOf(const std::string& name) {
   if (name == "A_exact") return {40, kTruth, kTruth};
   if (name == "B_late1") {
-    return {40, kTruth, {{"reach", {6, 16}}, {"grasp", {16, 21}}, {"transport", {21, 33}}, {"put", {33, 38}}}};
+    return {40,
+            kTruth,
+            {{"reach", {6, 16}}, {"grasp", {16, 21}}, {"transport", {21, 33}}, {"put", {33, 38}}}};
   }
   if (name == "C_flicker") {
     return {40,
@@ -51,7 +54,8 @@ Episode EpisodeOf(const std::string& name) {
 class ScoreMetrics : public testing::TestWithParam<std::string> {
  protected:
   ScoreMetrics() {
-    std::ifstream file(std::string(PREHEND_SOURCE_DIR) + "/tests/harness/segmentation_metrics.json");
+    std::ifstream file(std::string(PREHEND_SOURCE_DIR) +
+                       "/tests/harness/segmentation_metrics.json");
     printed_ = nlohmann::json::parse(file).at(GetParam());
   }
   /// What the reference printed; `otherwise` where it printed NaN.
@@ -70,7 +74,9 @@ TEST_P(ScoreMetrics, MeanOverFrames) {
   EXPECT_NEAR(100 * counts.AccuracyInTruth(), printed_["mof_nobg"], kPrinted);
 }
 
-TEST_P(ScoreMetrics, Edit) { EXPECT_NEAR(EditScore(episode_.truth, episode_.prediction), printed_["edit"], kPrinted); }
+TEST_P(ScoreMetrics, Edit) {
+  EXPECT_NEAR(EditScore(episode_.truth, episode_.prediction), printed_["edit"], kPrinted);
+}
 
 TEST_P(ScoreMetrics, F1ByOverlap) {
   for (const int percent : {10, 25, 50, 75}) {
@@ -139,7 +145,8 @@ TEST_P(ScoreMetrics, IdentificationErrors) {
 }
 
 TEST_P(ScoreMetrics, DetectionErrors) {
-  for (const auto& [key, collar] : {std::pair{"det_er collar=0", 0}, std::pair{"det_er collar=0.2", 1}}) {
+  for (const auto& [key, collar] :
+       {std::pair{"det_er collar=0", 0}, std::pair{"det_er collar=0.2", 1}}) {
     const FrameCounts counts = CountFrames(episode_, collar);
     const auto& printed = printed_[key];
     EXPECT_NEAR(counts.DetectionErrorRate(), printed[0], kPrinted) << key;
@@ -163,9 +170,10 @@ TEST_P(ScoreMetrics, PairsOfFrames) {
   const PrecisionRecall pairs = PairwiseAgreement(episode_);
   const auto& printed = printed_["mir_pairwise_PRF"];
   if (GetParam() == "B_late1") {
-    // The reference samples at 0.1 s in floating point, which puts frames at 1.6, 2.1 and 3.3 s into the wrong piece (its
-    // precision and recall differ, though both sides have pieces of the same lengths). By hand, on the exact grid: of 159
-    // pairs on each side 21 + 36 + 6 + 55 + 6 agree.
+    // The reference samples at 0.1 s in floating point, which puts frames at 1.6, 2.1 and 3.3 s
+    // into the wrong piece (its precision and recall differ, though both sides have pieces of the
+    // same lengths). By hand, on the exact grid: of 159 pairs on each side 21 + 36 + 6 + 55 + 6
+    // agree.
     EXPECT_NEAR(pairs.precision, 124.0 / 159, kPrinted);
     EXPECT_NEAR(pairs.recall, 124.0 / 159, kPrinted);
     return;
@@ -186,7 +194,8 @@ TEST_P(ScoreMetrics, PurityAndCoverageOfPieces) {
 TEST_P(ScoreMetrics, BoundariesAsPyannoteCountsThem) {
   const Hits hits = BoundaryHits(episode_, 1.5);
   const auto& printed = printed_["pyannote_seg_PR tol=.15"];
-  // Of no predicted boundary at all, the reference says that all are right; ours, like mir_eval's, that none is.
+  // Of no predicted boundary at all, the reference says that all are right; ours, like mir_eval's,
+  // that none is.
   if (hits.correct + hits.extra > 0) {
     EXPECT_NEAR(hits.Precision(), printed[0], kPrinted);
   }
@@ -200,17 +209,19 @@ TEST_P(ScoreMetrics, EventsByIntersection) {
     EXPECT_NEAR(score.macro_f1, Printed("psds", 0, 0), kPrinted) << "nothing predicted: 0, not NaN";
     EXPECT_NEAR(score.psds, Printed("psds", 1, 0), kPrinted);
   } else if (GetParam() == "D_missing_sub") {
-    // The reference refuses labels that the truth does not have. Of reach, grasp, transport, put two are found; the reach is
-    // said too long, but 10 of its 15 frames are right.
+    // The reference refuses labels that the truth does not have. Of reach, grasp, transport, put
+    // two are found; the reach is said too long, but 10 of its 15 frames are right.
     EXPECT_NEAR(score.macro_f1, 0.5, kPrinted);
     EXPECT_NEAR(score.psds, 0.5, kPrinted);
   } else {
-    EXPECT_NEAR(score.macro_f1, 1, kPrinted) << "12 of 14 frames of the one reach are right and cover both true ones";
+    EXPECT_NEAR(score.macro_f1, 1, kPrinted)
+        << "12 of 14 frames of the one reach are right and cover both true ones";
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, ScoreMetrics,
-                         testing::Values("A_exact", "B_late1", "C_flicker", "D_missing_sub", "E_repeat_merge", "F_empty"),
+                         testing::Values("A_exact", "B_late1", "C_flicker", "D_missing_sub",
+                                         "E_repeat_merge", "F_empty"),
                          [](const auto& named) { return named.param; });
 
 Ward WardOf(const std::string& name, const std::string& label) {
@@ -261,8 +272,8 @@ TEST(WardMetrics, EveryTickAndEventHasOneClass) {
   EXPECT_EQ(ward.events.fragmented_and_merged, 1);
   EXPECT_EQ(ward.events.deleted, 1);
   EXPECT_EQ(ward.events.inserted, 1);
-  EXPECT_EQ(ward.ticks.correct + ward.ticks.deleted + ward.ticks.fragmented + ward.ticks.underfilled_begin +
-                ward.ticks.underfilled_end,
+  EXPECT_EQ(ward.ticks.correct + ward.ticks.deleted + ward.ticks.fragmented +
+                ward.ticks.underfilled_begin + ward.ticks.underfilled_end,
             30);
   EXPECT_EQ(CompareByWard({}, {}).events.Truths(), 0);
 }

@@ -155,8 +155,8 @@ TEST(Sensing, ChangesAddUpToTheWhole) {
   physics::Snapshot asleep = first;
   asleep.tick = 2;
   asleep.moved_tick = {0, 2};
-  asleep.resting =
-      std::make_shared<const std::vector<physics::ContactPoint>>(std::exchange(asleep.contacts, {}));
+  asleep.resting = std::make_shared<const std::vector<physics::ContactPoint>>(
+      std::exchange(asleep.contacts, {}));
   const grammar::FrameChanges nothing = by_changes.SenseChanges(asleep);
   EXPECT_TRUE(nothing.entities.empty());
   EXPECT_TRUE(nothing.touches.empty() && nothing.partings.empty()) << "only asleep now";

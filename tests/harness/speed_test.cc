@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The speed figures measure the same thing twice: the grammar and the automata by hand recognise the same.
+// The speed figures measure the same thing twice: the grammar and the automata by hand recognise
+// the same.
 #include <gtest/gtest.h>
 
 #include "harness/speed/four_rules.h"

@@ -34,7 +34,11 @@ class TextFile : public testing::Test {
 };
 
 TEST_F(TextFile, DropsByteOrderMarkAndCarriageReturns) {
-  EXPECT_EQ(ReadTextFile(Write("dos", "\xEF\xBB\xBF""a: 1\r\nb: 2\r\n")).value, "a: 1\nb: 2\n");
+  EXPECT_EQ(ReadTextFile(Write("dos",
+                               "\xEF\xBB\xBF"
+                               "a: 1\r\nb: 2\r\n"))
+                .value,
+            "a: 1\nb: 2\n");
 }
 
 TEST_F(TextFile, KeepsUnicode) {
@@ -47,13 +51,17 @@ TEST_F(TextFile, RefusesWhatIsNoTextFile) {
   EXPECT_EQ(Complaint(folder_), "is a directory, not a file");
   EXPECT_EQ(Complaint("/dev/zero"), "is not a regular file");
   EXPECT_EQ(Complaint(Write("empty", "")), "the file is empty");
-  EXPECT_EQ(Complaint(Write("nul", std::string("a\0b", 3))), "control character 0x00; this looks like a binary file");
-  EXPECT_EQ(Complaint(Write("elf", "\x7f""ELF")), "control character 0x7f; this looks like a binary file");
+  EXPECT_EQ(Complaint(Write("nul", std::string("a\0b", 3))),
+            "control character 0x00; this looks like a binary file");
+  EXPECT_EQ(Complaint(Write("elf",
+                            "\x7f"
+                            "ELF")),
+            "control character 0x7f; this looks like a binary file");
 }
 
 TEST_F(TextFile, RefusesBrokenUtf8) {
-  for (const char* bytes : {"\x80", "\xC0\x80", "\xC3", "\xE0\x80\x80", "\xED\xA0\x80", "\xF0\x80\x80\x80",
-                            "\xF4\x90\x80\x80", "\xFF"}) {
+  for (const char* bytes : {"\x80", "\xC0\x80", "\xC3", "\xE0\x80\x80", "\xED\xA0\x80",
+                            "\xF0\x80\x80\x80", "\xF4\x90\x80\x80", "\xFF"}) {
     const auto diagnostics = CheckText("f", std::string("ab\ncd") + bytes);
     ASSERT_EQ(diagnostics.size(), 1u);
     EXPECT_NE(diagnostics[0].message.find("is not UTF-8"), std::string::npos);
@@ -74,7 +82,8 @@ TEST_F(TextFile, RefusesAnUnreadableFile) {
   // Root reads everything, so for a moment it is nobody.
   constexpr uid_t kNobody = 65534;
   const uid_t me = geteuid();
-  if (me == 0 && seteuid(kNobody) != 0) GTEST_SKIP() << "root reads everything, and nobody is not known in this user namespace";
+  if (me == 0 && seteuid(kNobody) != 0)
+    GTEST_SKIP() << "root reads everything, and nobody is not known in this user namespace";
   const std::string complaint = Complaint(path);
   ASSERT_EQ(seteuid(me), 0);
   EXPECT_EQ(complaint, "cannot be read: Permission denied");

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Conditions and signals over time, on frames written by hand.
+#include "harness/explain/tracks.h"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "harness/explain/tracks.h"
 #include "tests/harness/explain_stage.h"
 
 namespace prehend::harness::explain::testing {
@@ -13,7 +14,8 @@ namespace {
 
 constexpr const char* kGrammar =
     "condition met(h: Hand, c: Cup) while touching(h, c)\n"
-    "event pushed(h: Hand, c: Cup) while met(h, c) requires displacement(c) > 10 cm and height(c) < 1 m";
+    "event pushed(h: Hand, c: Cup) while met(h, c) requires displacement(c) > 10 cm and height(c) "
+    "< 1 m";
 
 grammar::Hindsight& Push(Stage& stage) {
   stage.Show(2);
@@ -31,7 +33,8 @@ TEST(Tracks, AColumnPerConditionAndSignalARowPerFrame) {
   std::ostringstream csv;
   WriteCsv(CollectTracks(Push(stage), {}), csv);
   EXPECT_EQ(csv.str(),
-            "time_s,tick,\"touching(cup, hand)\",\"met(hand, cup)\",\"pushed(hand, cup)\",\"pushed: displacement(cup) [m]\","
+            "time_s,tick,\"touching(cup, hand)\",\"met(hand, cup)\",\"pushed(hand, "
+            "cup)\",\"pushed: displacement(cup) [m]\","
             "\"height(cup) [m]\"\n"
             "0.0000,0,0,0,0,,0\n"
             "0.0100,10,0,0,0,,0\n"
@@ -43,10 +46,12 @@ TEST(Tracks, AColumnPerConditionAndSignalARowPerFrame) {
 TEST(Tracks, SomeOfThemByName) {
   Stage stage(kGrammar);
   grammar::Hindsight& past = Push(stage);
-  EXPECT_EQ(TrackNames(past.program()), (std::vector<std::string>{"displacement", "height", "met", "pushed", "touching"}));
+  EXPECT_EQ(TrackNames(past.program()),
+            (std::vector<std::string>{"displacement", "height", "met", "pushed", "touching"}));
   std::ostringstream csv;
   WriteCsv(CollectTracks(past, {"height", "met"}), csv);
-  EXPECT_EQ(csv.str().substr(0, csv.str().find('\n')), "time_s,tick,\"met(hand, cup)\",\"height(cup) [m]\"");
+  EXPECT_EQ(csv.str().substr(0, csv.str().find('\n')),
+            "time_s,tick,\"met(hand, cup)\",\"height(cup) [m]\"");
 }
 
 TEST(Tracks, JsonSaysWhatEachIs) {
@@ -64,7 +69,8 @@ TEST(Tracks, JsonSaysWhatEachIs) {
 }
 
 TEST(Tracks, ARegionIsADistance) {
-  Stage stage("event near(c: Cup, t: Movable) while in_cylinder(position(c), position(t), 10 cm, 5 cm)");
+  Stage stage(
+      "event near(c: Cup, t: Movable) while in_cylinder(position(c), position(t), 10 cm, 5 cm)");
   stage.CupAt(0.07);
   stage.scene.looks[grammar::testing::Scene::kCup].p_WB_m.z() = 0.125;
   stage.Show();

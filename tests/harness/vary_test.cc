@@ -30,9 +30,12 @@ double NumberIn(const std::string& setting) {
 const std::string kMass = "vary:\n  - {fields: [entities.milk.mass_kg], uniform: [0.2, 0.5]}\n";
 
 TEST(Vary, ChoosesAmongNumbersAndFlagsToo) {
-  const std::string drawn = Draw("vary:\n  - {fields: [entities.milk.mass_kg], choose: [0.25, 0.3]}\n", 1, 1)[0];
-  EXPECT_TRUE(drawn == "entities.milk.mass_kg=0.25" || drawn == "entities.milk.mass_kg=0.3") << drawn;
-  EXPECT_EQ(Draw("vary:\n  - {fields: [world.planar], choose: [false]}\n", 1, 1)[0], "world.planar=false");
+  const std::string drawn =
+      Draw("vary:\n  - {fields: [entities.milk.mass_kg], choose: [0.25, 0.3]}\n", 1, 1)[0];
+  EXPECT_TRUE(drawn == "entities.milk.mass_kg=0.25" || drawn == "entities.milk.mass_kg=0.3")
+      << drawn;
+  EXPECT_EQ(Draw("vary:\n  - {fields: [world.planar], choose: [false]}\n", 1, 1)[0],
+            "world.planar=false");
   EXPECT_FALSE(Read("vary:\n  - {fields: [world.planar], choose: [no]}\n").value);
 }
 
@@ -95,12 +98,15 @@ TEST(Vary, NormalAndChosenDraws) {
 
 TEST(Vary, ChanceStaysWithinThreeDeviations) {
   const std::string vary = "vary:\n  - {fields: [entities.milk.friction], normal: [0.8, 0.2]}\n";
-  for (int trial = 1; trial <= 2000; ++trial) ASSERT_NEAR(NumberIn(Draw(vary, 1, trial)[0]), 0.8, 0.600001);
+  for (int trial = 1; trial <= 2000; ++trial)
+    ASSERT_NEAR(NumberIn(Draw(vary, 1, trial)[0]), 0.8, 0.600001);
 }
 
 TEST(Vary, WhereWholeNumbersAreWantedTheNearestIsDrawn) {
-  EXPECT_EQ(Draw("vary:\n  - {fields: [world.seed], uniform: [7.6, 8.4]}\n", 1, 1)[0], "world.seed=8");
-  EXPECT_EQ(Draw("vary:\n  - {fields: [settle_s], uniform: [0.5, 0.5]}\n", 1, 1)[0], "settle_s=0.500000");
+  EXPECT_EQ(Draw("vary:\n  - {fields: [world.seed], uniform: [7.6, 8.4]}\n", 1, 1)[0],
+            "world.seed=8");
+  EXPECT_EQ(Draw("vary:\n  - {fields: [settle_s], uniform: [0.5, 0.5]}\n", 1, 1)[0],
+            "settle_s=0.500000");
 }
 
 }  // namespace

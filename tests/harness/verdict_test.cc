@@ -110,7 +110,8 @@ TEST(Verdict, RepeatsThatDifferAreFlaky) {
 TEST(Verdict, APictureThatDiffersFailsWithoutBeingFlaky) {
   std::vector<ScenarioVerdict> runs(2);
   for (ScenarioVerdict& run : runs) run.verdict = Verdict::kPassed;
-  runs[1].picture_differences = "picture x.png: 5 % differ\n";  // the first of them to end drew nothing
+  runs[1].picture_differences =
+      "picture x.png: 5 % differ\n";  // the first of them to end drew nothing
   const ScenarioVerdict merged = MergeRepeats(runs);
   EXPECT_EQ(merged.verdict, Verdict::kFailed);
   EXPECT_EQ(merged.exit_code, ExitCode::kDiffers);

@@ -89,16 +89,17 @@ std::string NameOf(const testing::TestParamInfo<Misbehaviour>& row) { return row
 
 INSTANTIATE_TEST_SUITE_P(
     Table, WorkerPoolMisbehaviour,
-    testing::Values(Misbehaviour{"killed", [] { return raise(SIGKILL), Good(); },
-                                 "was killed (signal 9: by somebody, or by the system for want of memory)"},
-                    Misbehaviour{"recurses", [] { return raise(SIGSEGV), Good(); },
-                                 "crashed (segmentation fault, signal 11)"},
-                    Misbehaviour{"has_another_signal", [] { return raise(SIGUSR1), Good(); },
-                                 "ended by signal 10 (User defined signal 1)"},
-                    Misbehaviour{"hangs", [] { return pause(), Good(); }, "no end after 0.5 s"},
-                    Misbehaviour{"exits", []() -> std::string { _exit(9); }, "exit status 9"},
-                    Misbehaviour{"throws", []() -> std::string { throw std::runtime_error("no"); },
-                                 "exception: no"}),
+    testing::Values(
+        Misbehaviour{"killed", [] { return raise(SIGKILL), Good(); },
+                     "was killed (signal 9: by somebody, or by the system for want of memory)"},
+        Misbehaviour{"recurses", [] { return raise(SIGSEGV), Good(); },
+                     "crashed (segmentation fault, signal 11)"},
+        Misbehaviour{"has_another_signal", [] { return raise(SIGUSR1), Good(); },
+                     "ended by signal 10 (User defined signal 1)"},
+        Misbehaviour{"hangs", [] { return pause(), Good(); }, "no end after 0.5 s"},
+        Misbehaviour{"exits", []() -> std::string { _exit(9); }, "exit status 9"},
+        Misbehaviour{"throws", []() -> std::string { throw std::runtime_error("no"); },
+                     "exception: no"}),
     NameOf);
 
 #ifndef __SANITIZE_ADDRESS__  // its shadow memory alone is above any limit
@@ -111,7 +112,8 @@ TEST(WorkerPool, MemoryHasALimit) {
 }
 
 std::string EndOf(const WorkerJob& job, std::uint64_t limit_mb) {
-  const WorkerLimits limits{.jobs = 1, .time_limit_s = 10, .memory_limit_bytes = limit_mb * kMegabyte};
+  const WorkerLimits limits{
+      .jobs = 1, .time_limit_s = 10, .memory_limit_bytes = limit_mb * kMegabyte};
   const WorkerResult result = RunInWorkers({job}, limits).front();
   EXPECT_EQ(result.said, "");
   return result.finished ? "finished" : result.reason;
@@ -129,11 +131,15 @@ TEST(WorkerPool, WhoeverIsRefusedMemoryTheReasonIsTheSame) {
   EXPECT_EQ(EndOf([&] { return use(std::malloc(kTooMuch)); }, 500), reason);
   EXPECT_EQ(EndOf([&] { return use(std::calloc(kTooMuch, 1)); }, 500), reason);
   EXPECT_EQ(EndOf([&] { return use(std::realloc(std::malloc(1), kTooMuch)); }, 500), reason);
-  EXPECT_EQ(EndOf([&] { return use(std::aligned_alloc(64, kTooMuch - kTooMuch % 64)); }, 500), reason);
-  EXPECT_EQ(EndOf([&] {
-              void* memory = nullptr;
-              return posix_memalign(&memory, 64, kTooMuch) == 0 ? use(memory) : Good();
-            }, 500), reason);
+  EXPECT_EQ(EndOf([&] { return use(std::aligned_alloc(64, kTooMuch - kTooMuch % 64)); }, 500),
+            reason);
+  EXPECT_EQ(EndOf(
+                [&] {
+                  void* memory = nullptr;
+                  return posix_memalign(&memory, 64, kTooMuch) == 0 ? use(memory) : Good();
+                },
+                500),
+            reason);
   const auto must_not_throw = []() noexcept { return std::string(kTooMuch, 'x'); };
   EXPECT_EQ(EndOf(must_not_throw, 500), reason);
   EXPECT_EQ(EndOf([&] { return use(std::malloc(1000)); }, 500), "finished");
@@ -143,7 +149,8 @@ TEST(WorkerPool, WhatHasTooLittleMemoryToStartIsTold) {
   const std::vector<char> what_this_process_has_already(50'000'000, 'x');
   ASSERT_EQ(what_this_process_has_already.back(), 'x');
   const std::string reason = EndOf(Good, 1);
-  EXPECT_TRUE(reason.starts_with("1 MB of memory are too little for it to start, which takes ")) << reason;
+  EXPECT_TRUE(reason.starts_with("1 MB of memory are too little for it to start, which takes "))
+      << reason;
 }
 #else
 TEST(WorkerPool, MemoryHasALimit) { GTEST_SKIP() << "no limit under the address sanitizer"; }

@@ -14,8 +14,14 @@ ScalarMeaning Plain(const std::string& text) {
 }
 
 TEST(YamlScalar, NumbersOnWhichAllReadersAgree) {
-  for (const auto& [text, value] : {std::pair{"0", 0.0}, {"-0", 0.0}, {"12", 12.0}, {"-1.5", -1.5}, {"0.25", 0.25},
-                                    {"1e3", 1000.0}, {"2.5E-3", 0.0025}, {"1e+2", 100.0}}) {
+  for (const auto& [text, value] : {std::pair{"0", 0.0},
+                                    {"-0", 0.0},
+                                    {"12", 12.0},
+                                    {"-1.5", -1.5},
+                                    {"0.25", 0.25},
+                                    {"1e3", 1000.0},
+                                    {"2.5E-3", 0.0025},
+                                    {"1e+2", 100.0}}) {
     ASSERT_TRUE(Plain(text).number) << text;
     EXPECT_EQ(*Plain(text).number, value) << text;
   }

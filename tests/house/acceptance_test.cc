@@ -117,7 +117,8 @@ TEST(Acceptance, RunJsonKeepsItsContract) {
 
 TEST(Acceptance, CheckJsonKeepsItsContract) {
   const auto folder = FreshFolder("report");
-  const Said said = Prehend({"check", "--filter", "tag:smoke", "--json", "--no-pictures", "--report", folder.string()});
+  const Said said = Prehend(
+      {"check", "--filter", "tag:smoke", "--json", "--no-pictures", "--report", folder.string()});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   const Json check = Json::parse(said.out);
   EXPECT_GE(check["passed"], 6);

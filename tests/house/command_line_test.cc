@@ -67,38 +67,51 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
       {"check slide/*", 4,
        "prehend: no scenario matches 'slide/\\*'.*\n  again: prehend check 'slide/\\*'\n"},
       {"check rest", 4, "prehend: no scenario matches 'rest'; did you mean 'rest/\\*'\\?[^]*"},
-      {"check scenarios/rest/", 4, "prehend: no scenario matches 'scenarios/rest/'; did you mean 'rest/\\*'\\?[^]*"},
-      {"check rset/*", 4, "prehend: no scenario matches 'rset/\\*'; did you mean 'rest/\\*'\\?[^]*"},
+      {"check scenarios/rest/", 4,
+       "prehend: no scenario matches 'scenarios/rest/'; did you mean 'rest/\\*'\\?[^]*"},
+      {"check rset/*", 4,
+       "prehend: no scenario matches 'rset/\\*'; did you mean 'rest/\\*'\\?[^]*"},
       {"check carton_rets", 4, "[^]*; did you mean 'carton_rests'\\?[^]*"},
       {"score carton", 4, "[^]*; did you mean 'carton_rests'\\?[^]*"},
       {"run carton_rests --grammar pick_and_plac", 2,
-       "[^]*/pick_and_plac.grammar: error: no such file\n  hint: did you mean 'pick_and_place'\\?\n[^]*"},
+       "[^]*/pick_and_plac.grammar: error: no such file\n  hint: did you mean "
+       "'pick_and_place'\\?\n[^]*"},
       {"new invalid/x", 2, "prehend: scenarios/invalid/ holds files that show errors, [^]*"},
-      {"check --shard 0/2", 2, "prehend: --shard: '0/2' is no shard; the second of three is 2/3\n[^]*"},
+      {"check --shard 0/2", 2,
+       "prehend: --shard: '0/2' is no shard; the second of three is 2/3\n[^]*"},
       {"check --shard 2/2", 4, "prehend: this shard is empty[^]*"},
       {"check --repeat 0", 2, "prehend: [^]*"},
       {"check --changed --set lift_rise=1cm", 2, "prehend: --changed is about [^]*"},
       {"check --filter tag:quiet --filter !*rests", 4, "prehend: no scenario is selected[^]*"},
       {"run carton_rests --record no/such/folder/e.jsonl", 2,
        "prehend: --record: cannot write no/such/folder/e.jsonl: [^]*"},
-      {"check --filter tag:none", 4, "prehend: --filter: no scenario has the tag 'none' .*\n  again: .*\n"},
-      {"check --filter tag:quite", 4, "prehend: --filter: no scenario has the tag 'quite'; did you mean 'quiet'\\?[^]*"},
-      {"check --filter !", 2, "prehend: --filter: '!' is followed by what must not match, like !reach/\\*\n[^]*"},
-      {"check --filter !tag:", 2, "prehend: --filter: '!tag:' is followed by a tag, like !tag:smoke\n[^]*"},
+      {"check --filter tag:none", 4,
+       "prehend: --filter: no scenario has the tag 'none' .*\n  again: .*\n"},
+      {"check --filter tag:quite", 4,
+       "prehend: --filter: no scenario has the tag 'quite'; did you mean 'quiet'\\?[^]*"},
+      {"check --filter !", 2,
+       "prehend: --filter: '!' is followed by what must not match, like !reach/\\*\n[^]*"},
+      {"check --filter !tag:", 2,
+       "prehend: --filter: '!tag:' is followed by a tag, like !tag:smoke\n[^]*"},
       {"check --filter nothing*", 4, "prehend: --filter: no scenario matches 'nothing\\*' [^]*"},
-      {"run carton_rests --trials 2 --record x", 2, "prehend: --record is about one run, --trials about many\n[^]*"},
-      {"run carton_rests --grammar xyz", 2, "[^]*no such file\n  hint: there are: [^]*pick_and_place[^]*"},
+      {"run carton_rests --trials 2 --record x", 2,
+       "prehend: --record is about one run, --trials about many\n[^]*"},
+      {"run carton_rests --grammar xyz", 2,
+       "[^]*no such file\n  hint: there are: [^]*pick_and_place[^]*"},
       {"run missing.yaml", 2, "missing.yaml: error: [^]*\n  again: prehend run missing.yaml\n"},
       {"run carton_rests --set lift_ris=3cm", 2, "[^]*error: [^]*lift_rise[^]*\n  again: [^]*\n"},
       {"run carton_rests --set lift_rise", 2, "--set:1:1: error: expected NAME=VALUE\n[^]*"},
       {"run carton_rests --set lift_rise=", 2, "--set:1:1: error: expected NAME=VALUE\n[^]*"},
       {"run carton_rests --set lift_rise=1cm --set lift_rise=2cm", 2,
        "--set:1:1: error: the same name is set twice\n[^]*"},
-      {"run carton_rests --set wrold.rate_hz=960", 2, "--set:1:1: error: [^]*did you mean 'world'[^]*"},
-      {"run carton_rests --set settle_s=soon", 2, "--set:1:10: error: settle_s: expected a number[^]*"},
+      {"run carton_rests --set wrold.rate_hz=960", 2,
+       "--set:1:1: error: [^]*did you mean 'world'[^]*"},
+      {"run carton_rests --set settle_s=soon", 2,
+       "--set:1:10: error: settle_s: expected a number[^]*"},
       {"run missing.yml", 2, "missing.yml: error: no such file\n[^]*"},
       {"render carton_rests --at reching.begin", 2,
-       "prehend: --at: grammar 'pick_and_place' has no event 'reching'; did you mean 'reaching'\\?\n[^]*"},
+       "prehend: --at: grammar 'pick_and_place' has no event 'reching'; did you mean "
+       "'reaching'\\?\n[^]*"},
       {"render carton_rests --at soon", 2, "prehend: --at: 'soon' is no moment; write seconds[^]*"},
       {"render carton_rests --camera back", 2, "prehend: --camera: [^]*"},
       {"render carton_rests --at 0 -o no/such/folder/a.png", 2,
@@ -107,11 +120,15 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
       {"run carton_rests --grammar none.grammar", 2, "none.grammar: error: [^]*"},
       {"accept carton_rests", 2,
        "prehend: accepting needs a reason: [^]*\n  again: prehend accept carton_rests\n"},
-      {"accept rest/* --reason x", 2, "prehend: 'rest/\\*' may mean several scenarios; goldens are accepted one by one, by name\n[^]*"},
-      {"new Wrong-Name", 2, "prehend: 'Wrong-Name' is no name of a scenario: a small letter, then [^]*"},
+      {"accept rest/* --reason x", 2,
+       "prehend: 'rest/\\*' may mean several scenarios; goldens are accepted one by one, by "
+       "name\n[^]*"},
+      {"new Wrong-Name", 2,
+       "prehend: 'Wrong-Name' is no name of a scenario: a small letter, then [^]*"},
       {"check --time-limit-s nan", 2, "prehend: --time-limit-s: Value nan is no number\n[^]*"},
       {"score --collar-ms nan", 2, "prehend: --collar-ms: Value nan is no number\n[^]*"},
-      {"check --time-limit-s 0", 2, "prehend: --time-limit-s: Value 0 not in range 0.1 to 86400\n[^]*"},
+      {"check --time-limit-s 0", 2,
+       "prehend: --time-limit-s: Value 0 not in range 0.1 to 86400\n[^]*"},
       {"new carton_rests", 2, "prehend: there is a scenario of this name: [^]*"},
   };
   for (const Slip& slip : slips) {
@@ -124,15 +141,18 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
 }
 
 TEST_F(CommandLine, WhatIsGivenAsNothingIsRefused) {
-  for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"run", ""}, {"run", "carton_rests", "--grammar", ""}, {"check", "--filter", ""}}) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"run", ""},
+                                                {"run", "carton_rests", "--grammar", ""},
+                                                {"check", "--filter", ""}}) {
     const Said said = Prehend(words, {"PREHEND_HOME=" + root_.string()});
     EXPECT_EQ(said.exit_code, 2) << said.out;
     EXPECT_NE(said.err.find("an empty word is given for it"), std::string::npos) << said.err;
   }
   const Said homeless = Prehend({"list"}, {"PREHEND_HOME=/nowhere"});
   EXPECT_EQ(homeless.exit_code, 2);
-  EXPECT_NE(homeless.err.find("PREHEND_HOME is /nowhere, which has no grammar/library"), std::string::npos) << homeless.err;
+  EXPECT_NE(homeless.err.find("PREHEND_HOME is /nowhere, which has no grammar/library"),
+            std::string::npos)
+      << homeless.err;
 }
 
 TEST_F(CommandLine, ListAndSchema) {
@@ -158,8 +178,8 @@ TEST_F(CommandLine, ValidateReadsScenariosGrammarsAndGoldens) {
       << "a grammar is described: " << described.out;
 
   WriteFile(root_ / "bad.grammar", "grammar bad\nevent x(a: Thing\n");
-  WriteFile(Scenario(),
-            std::regex_replace(std::string(kCartonRests), std::regex("mass_kg: 0.3"), "mass_kg: no"));
+  WriteFile(Scenario(), std::regex_replace(std::string(kCartonRests), std::regex("mass_kg: 0.3"),
+                                           "mass_kg: no"));
   const Said bad = Do("validate --json carton_rests " + (root_ / "bad.grammar").string());
   EXPECT_EQ(bad.exit_code, 2);
   const auto files = nlohmann::json::parse(bad.out)["files"];
@@ -172,25 +192,32 @@ TEST_F(CommandLine, ValidateTellsOfAllThatIsWrongAtOnce) {
   Accept();
   WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.2 0.1\n");
   WriteFile(root_ / "grammar/library/odd.grammar", "grammar odd\nevent x(a: Thing\n");
-  const std::string wrong = std::regex_replace(std::string(kCartonRests), std::regex("mass_kg: 0.3"), "mass_kg: no");
-  WriteFile(Scenario(), std::regex_replace(wrong, std::regex("hand: human_right"), "hand: human_rigt") + "grammar: odd\n");
+  const std::string wrong =
+      std::regex_replace(std::string(kCartonRests), std::regex("mass_kg: 0.3"), "mass_kg: no");
+  WriteFile(Scenario(),
+            std::regex_replace(wrong, std::regex("hand: human_right"), "hand: human_rigt") +
+                "grammar: odd\n");
   const Said said = Do("validate carton_rests");
   EXPECT_EQ(said.exit_code, 2);
-  for (const char* part : {"mass_kg", "did you mean 'human_right'?", "odd.grammar:", "carton_rests.timeline:"}) {
+  for (const char* part :
+       {"mass_kg", "did you mean 'human_right'?", "odd.grammar:", "carton_rests.timeline:"}) {
     EXPECT_NE(said.err.find(part), std::string::npos) << part << "\n" << said.err;
   }
   std::string many = wrong;
   for (int i = 0; i < 150; ++i) many += "odd_" + std::to_string(i) + ": 1\n";
   WriteFile(Scenario(), many);
-  EXPECT_NE(Do("validate carton_rests").err.find("\nand 5"), std::string::npos) << "of a hundred and more";
-  WriteFile(Scenario(), std::regex_replace(wrong, std::regex("tags:"), "grammar: pick_and_plac\ntags:"));
+  EXPECT_NE(Do("validate carton_rests").err.find("\nand 5"), std::string::npos)
+      << "of a hundred and more";
+  WriteFile(Scenario(),
+            std::regex_replace(wrong, std::regex("tags:"), "grammar: pick_and_plac\ntags:"));
   const std::string err = Do("validate carton_rests").err;
   EXPECT_NE(err.find("did you mean 'pick_and_place'?"), std::string::npos) << err;
   EXPECT_EQ(err.find("no such file"), std::string::npos) << "said once\n" << err;
 }
 
 TEST_F(CommandLine, WarningsOfAGrammarStopNothing) {
-  WriteFile(root_ / "odd.grammar", "grammar odd\nparam unused = 1 cm\nevent high(c: Cartoon) while height(c) > 1 m\n");
+  WriteFile(root_ / "odd.grammar",
+            "grammar odd\nparam unused = 1 cm\nevent high(c: Cartoon) while height(c) > 1 m\n");
   const std::string file = (root_ / "odd.grammar").string();
   const std::string unused = file + ":2:7: warning: the parameter 'unused' is not used\n";
   const std::string nobody = file + ":3:12: warning: nobody in this episode is a 'Cartoon'\n";
@@ -198,7 +225,8 @@ TEST_F(CommandLine, WarningsOfAGrammarStopNothing) {
   EXPECT_EQ(validated.exit_code, 0);
   EXPECT_NE(validated.err.find(unused), std::string::npos) << validated.err;
   EXPECT_EQ(validated.err.find("nobody"), std::string::npos) << "no scenario is asked about";
-  for (const std::string command : {"validate carton_rests --grammar ", "run carton_rests --grammar "}) {
+  for (const std::string command :
+       {"validate carton_rests --grammar ", "run carton_rests --grammar "}) {
     const Said said = Do(command + file);
     EXPECT_EQ(said.exit_code, 0) << said.err;
     EXPECT_NE(said.err.find(unused), std::string::npos) << said.err;
@@ -257,10 +285,12 @@ TEST_F(CommandLine, AGoldenIsPendingThenAcceptedThenKept) {
 
 TEST_F(CommandLine, OnlyScenariosOfTheProjectHaveGoldens) {
   const fs::path loose = root_ / "elsewhere/carton_waits.yaml";
-  WriteFile(loose, std::regex_replace(std::string(kCartonRests), std::regex("carton_rests"), "carton_waits"));
+  WriteFile(loose, std::regex_replace(std::string(kCartonRests), std::regex("carton_rests"),
+                                      "carton_waits"));
   const Said ended = Do("accept " + loose.string() + " --reason because");
   EXPECT_EQ(ended.exit_code, 2);
-  EXPECT_NE(ended.err.find("goldens are kept of scenarios in scenarios/ only"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("goldens are kept of scenarios in scenarios/ only"), std::string::npos)
+      << ended.err;
   EXPECT_FALSE(fs::exists(root_ / "golden"));
 }
 
@@ -281,8 +311,7 @@ TEST_F(CommandLine, ADifferenceNamesTheEventTheIntervalsAndTheCommand) {
   for (const char* part :
        {"missing sliding(right_hand, carton)", "expected 0.1000..0.2000 s, recognised nothing",
         "why: prehend explain rest/carton_rests --expected 'sliding right_hand carton @0.1000s'\n",
-        "again: prehend check rest/carton_rests",
-        "0 passed, 1 failed"}) {
+        "again: prehend check rest/carton_rests", "0 passed, 1 failed"}) {
     EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\n" << ended.out;
   }
   const auto json = nlohmann::json::parse(Do("check --no-pictures --json").out);
@@ -342,25 +371,33 @@ TEST_F(CommandLine, NewWritesAScenarioThatRuns) {
 TEST_F(CommandLine, WhatIsNewCanBeReadWhateverItsName) {
   for (const char* name : {"on", "true", "null", "words/off"}) {
     EXPECT_EQ(Do(std::string("new ") + name).exit_code, 0) << name;
-    EXPECT_EQ(Do(std::string("validate ") + name).exit_code, 0) << Do(std::string("validate ") + name).err;
+    EXPECT_EQ(Do(std::string("validate ") + name).exit_code, 0)
+        << Do(std::string("validate ") + name).err;
   }
-  EXPECT_NE(ReadFile(root_ / "scenarios/words/off.yaml").find("\nscenario: \"off\"\n"), std::string::npos);
+  EXPECT_NE(ReadFile(root_ / "scenarios/words/off.yaml").find("\nscenario: \"off\"\n"),
+            std::string::npos);
 }
 
 TEST_F(CommandLine, ACopyFindsTheRecordingsOfItsModel) {
-  WriteFile(root_ / "scenarios/rest/track.csv", "t_s,x_m,y_m,z_m\n0,-0.25,-0.1,1.1\n0.1,-0.25,-0.1,1.12\n");
+  WriteFile(root_ / "scenarios/rest/track.csv",
+            "t_s,x_m,y_m,z_m\n0,-0.25,-0.1,1.1\n0.1,-0.25,-0.1,1.12\n");
   WriteVariant("rest/moved", "wait_s: 0.2", "recording: 'track.csv'  ");
   ASSERT_EQ(Do("validate moved").exit_code, 0) << Do("validate moved").err;
   for (const char* name : {"rest/beside", "other/elsewhere"}) {
     EXPECT_EQ(Do(std::string("new ") + name + " --like moved").exit_code, 0) << name;
-    EXPECT_EQ(Do(std::string("validate ") + name).exit_code, 0) << Do(std::string("validate ") + name).err;
+    EXPECT_EQ(Do(std::string("validate ") + name).exit_code, 0)
+        << Do(std::string("validate ") + name).err;
   }
-  EXPECT_NE(ReadFile(root_ / "scenarios/other/elsewhere.yaml").find("{recording: ../rest/track.csv  }"), std::string::npos);
-  EXPECT_NE(ReadFile(root_ / "scenarios/rest/beside.yaml").find("{recording: 'track.csv'  }"), std::string::npos);
+  EXPECT_NE(
+      ReadFile(root_ / "scenarios/other/elsewhere.yaml").find("{recording: ../rest/track.csv  }"),
+      std::string::npos);
+  EXPECT_NE(ReadFile(root_ / "scenarios/rest/beside.yaml").find("{recording: 'track.csv'  }"),
+            std::string::npos);
   WriteVariant("rest/wrong", "mass_kg", "mass");
   const Said refused = Do("new rest/as_wrong --like wrong");
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("/wrong.yaml:6:62: error: unknown key 'mass'"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("/wrong.yaml:6:62: error: unknown key 'mass'"), std::string::npos)
+      << refused.err;
   EXPECT_FALSE(fs::exists(root_ / "scenarios/rest/as_wrong.yaml"));
 }
 

@@ -26,11 +26,14 @@ TEST(ExplainCommand, AScenarioAndItsRecordingAreExplainedAlike) {
   EXPECT_FALSE(json["events"][0]["began"].empty());
   EXPECT_FALSE(json["events"][0]["waited"].empty());
 
-  const Said changed = Prehend({"explain", file, "--set", "lift_rise=40cm", "--expected", "picking_up", "--json"});
+  const Said changed =
+      Prehend({"explain", file, "--set", "lift_rise=40cm", "--expected", "picking_up", "--json"});
   ASSERT_EQ(changed.exit_code, 0) << changed.err;
   const auto missing = nlohmann::json::parse(changed.out)["missing"];
   EXPECT_EQ(missing["happened"], false);
-  EXPECT_TRUE(missing["because"].get<std::string>().starts_with("requires rise(milk) >= lift_rise: is ")) << missing;
+  EXPECT_TRUE(
+      missing["because"].get<std::string>().starts_with("requires rise(milk) >= lift_rise: is "))
+      << missing;
 }
 
 TEST(ExplainCommand, WhatIsExpectedAndThereIsExplained) {
@@ -43,16 +46,24 @@ TEST(ExplainCommand, AnEventAtTheWrongMomentEndsWithExitCodeFourAndTheNearestOne
   const Said said = Prehend({"explain", "milk_carton_wrap", "--event", "transporting@0.1s"});
   EXPECT_EQ(said.exit_code, 4);
   EXPECT_EQ(said.out, "");
-  EXPECT_TRUE(said.err.starts_with("prehend: --event: there is no 'transporting@0.1s'; the nearest:\n"
-                                   "  transporting(right_hand, milk)  ")) << said.err;
-  EXPECT_NE(said.err.find("why not: prehend explain milk_carton_wrap --expected transporting@0.1s\n"), std::string::npos) << said.err;
+  EXPECT_TRUE(
+      said.err.starts_with("prehend: --event: there is no 'transporting@0.1s'; the nearest:\n"
+                           "  transporting(right_hand, milk)  "))
+      << said.err;
+  EXPECT_NE(
+      said.err.find("why not: prehend explain milk_carton_wrap --expected transporting@0.1s\n"),
+      std::string::npos)
+      << said.err;
 }
 
 TEST(ExplainCommand, BadQuestionsEndWithExitCodeTwo) {
   const std::vector<std::vector<std::string>> slips = {
-      {"milk_carton_wrap", "--event", "reching@1s"},      {"milk_carton_wrap", "--expected", "sliding right_hand mlik"},
-      {"milk_carton_wrap", "--event", "reaching@soon"},   {"milk_carton_wrap", "--event", "reaching", "--expected", "sliding"},
-      {"milk_carton_wrap", "--grammar", "no_such_thing"}, {"no_such_recording.jsonl"},
+      {"milk_carton_wrap", "--event", "reching@1s"},
+      {"milk_carton_wrap", "--expected", "sliding right_hand mlik"},
+      {"milk_carton_wrap", "--event", "reaching@soon"},
+      {"milk_carton_wrap", "--event", "reaching", "--expected", "sliding"},
+      {"milk_carton_wrap", "--grammar", "no_such_thing"},
+      {"no_such_recording.jsonl"},
       {"milk_carton_wrap", "--evnt", "reaching"}};
   for (const std::vector<std::string>& slip : slips) {
     std::vector<std::string> arguments = {"explain"};
@@ -72,14 +83,18 @@ TEST(TracksCommand, WritesAWholeFileOrNothing) {
   const std::string text = ReadFile(csv);
   EXPECT_TRUE(text.starts_with("time_s,tick,\"touching(")) << text.substr(0, 200);
   EXPECT_NE(text.find("\"speed_along(milk, table) [m/s]\""), std::string::npos);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "something was left behind";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1)
+      << "something was left behind";
 
   const Said some = Prehend({"tracks", "milk_carton_wrap", "--only", "grasping", "--json"});
   ASSERT_EQ(some.exit_code, 0) << some.err;
   EXPECT_EQ(nlohmann::json::parse(some.out)["tracks"][0]["name"], "grasping(right_hand, milk)");
 
-  for (const std::vector<std::string>& slip : std::vector<std::vector<std::string>>{
-           {"-o", "no/such/folder/milk.csv"}, {"-o", folder.string() + "/milk.txt"}, {"--only", "graping"}, {"-o", "/x.csv", "--json"}}) {
+  for (const std::vector<std::string>& slip :
+       std::vector<std::vector<std::string>>{{"-o", "no/such/folder/milk.csv"},
+                                             {"-o", folder.string() + "/milk.txt"},
+                                             {"--only", "graping"},
+                                             {"-o", "/x.csv", "--json"}}) {
     std::vector<std::string> arguments = {"tracks", "milk_carton_wrap"};
     arguments.insert(arguments.end(), slip.begin(), slip.end());
     const Said bad = Prehend(arguments);

@@ -339,12 +339,19 @@ TEST_F(GoldenWorkflow, WhatDiffersBetweenEnginesIsShownAndNotAccepted) {
   WriteFile(Scenario("rest/stones_tumble"), kStonesTumble);
   EXPECT_EQ(Do("check stones_tumble --no-pictures").exit_code, 1);
   const Said review = Do("review stones_tumble");
-  EXPECT_TRUE(SaysIn(review, "engines  rest/stones_tumble\n    recognised in bullet, expected as recognised in box2d:\n")) << review.out;
-  EXPECT_TRUE(SaysIn(review, "expected [^\n]*[0-9]\\.\\.[0-9][^\n]*recognised [0-9]")) << review.out;
+  EXPECT_TRUE(SaysIn(
+      review,
+      "engines  rest/stones_tumble\n    recognised in bullet, expected as recognised in box2d:\n"))
+      << review.out;
+  EXPECT_TRUE(SaysIn(review, "expected [^\n]*[0-9]\\.\\.[0-9][^\n]*recognised [0-9]"))
+      << review.out;
   const Said refused = Do("accept stones_tumble --reason why");
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_TRUE(SaysIn(refused, "recognised in bullet, expected as recognised in box2d:\n")) << refused.out;
-  EXPECT_NE(refused.err.find("bullet does not lead to the same events (shown above); nothing was accepted"), std::string::npos)
+  EXPECT_TRUE(SaysIn(refused, "recognised in bullet, expected as recognised in box2d:\n"))
+      << refused.out;
+  EXPECT_NE(refused.err.find(
+                "bullet does not lead to the same events (shown above); nothing was accepted"),
+            std::string::npos)
       << refused.err;
   EXPECT_FALSE(fs::exists(Golden("rest/stones_tumble")));
 
@@ -352,7 +359,8 @@ TEST_F(GoldenWorkflow, WhatDiffersBetweenEnginesIsShownAndNotAccepted) {
   WriteFile(Scenario("rest/stones_tumble"), kStoneLies);
   EXPECT_EQ(Do("check stones_tumble --no-pictures").exit_code, 5);
   Accept("stones_tumble");
-  EXPECT_EQ(Do("review stones_tumble").out, "nothing is pending ('prehend check' finds out what should be)\n");
+  EXPECT_EQ(Do("review stones_tumble").out,
+            "nothing is pending ('prehend check' finds out what should be)\n");
 }
 
 }  // namespace

@@ -55,13 +55,15 @@ TEST(Grammar, TheFirstDocumentedExampleRecognisesItsEvent) {
 TEST(Recording, BadOnesEndWithExitCodeTwo) {
   const auto folder = FreshFolder("recording");
   WriteFile(folder / "bad.jsonl", "{\"recording\": 1}\n");
-  for (const std::string& file : {(folder / "bad.jsonl").string(), (folder / "none.jsonl").string(), folder.string()}) {
+  for (const std::string& file :
+       {(folder / "bad.jsonl").string(), (folder / "none.jsonl").string(), folder.string()}) {
     const Said said = Prehend({"resegment", file});
     EXPECT_EQ(said.exit_code, 2) << said.err;
     EXPECT_EQ(said.out, "");
     EXPECT_NE(said.err.find(file), std::string::npos) << said.err;
   }
-  EXPECT_EQ(Prehend({"run", "milk_carton_wrap", "--record", "no/such/folder/x.jsonl"}).exit_code, 2);
+  EXPECT_EQ(Prehend({"run", "milk_carton_wrap", "--record", "no/such/folder/x.jsonl"}).exit_code,
+            2);
 }
 
 TEST(Score, ATruthfulGrammarScoresFullMarksAndAChangedOneLess) {

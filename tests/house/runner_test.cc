@@ -92,7 +92,10 @@ TEST_F(Runner, AKilledWorkerIsAVerdictOfItsOwn) {
   killer.join();
   EXPECT_EQ(verdicts.at("rest/carton_rests").at("verdict"), "passed");
   const std::string reason = verdicts.at("long/takes_long").at("reason");
-  EXPECT_TRUE(reason.starts_with("its process ended: was killed (signal 9: by somebody, or by the system for want of memory), last tick ")) << reason;
+  EXPECT_TRUE(
+      reason.starts_with("its process ended: was killed (signal 9: by somebody, or by the system "
+                         "for want of memory), last tick "))
+      << reason;
   EXPECT_GT(verdicts.at("long/takes_long").at("ticks"), 100);
 }
 
@@ -113,13 +116,15 @@ TEST_F(Runner, AScenarioThatWantsMoreAndMoreMemoryIsStopped) {
   const auto verdicts = Check("--memory-limit-mb 20", 3);
   EXPECT_EQ(verdicts.at("rest/carton_rests").at("verdict"), "passed");
   const std::string reason = verdicts.at("long/takes_much").at("reason");
-  EXPECT_TRUE(reason.starts_with("its process ended: it needs more memory than 20 MB, last tick ")) << reason;
+  EXPECT_TRUE(reason.starts_with("its process ended: it needs more memory than 20 MB, last tick "))
+      << reason;
 }
 
 TEST_F(Runner, TooLittleMemoryIsSaidHoweverLittleItIs) {
   Accept();
   const std::regex reason(
-      "its process ended: (it needs more memory than \\d+ MB|\\d+ MB of memory are too little for it to start, which takes "
+      "its process ended: (it needs more memory than \\d+ MB|\\d+ MB of memory are too little for "
+      "it to start, which takes "
       "\\d+ MB), (before the first tick|last tick \\d+)");
   bool some_passed = false;
   for (const int limit_mb : {1, 3, 5, 8, 11, 15, 400}) {
@@ -130,7 +135,8 @@ TEST_F(Runner, TooLittleMemoryIsSaidHoweverLittleItIs) {
       some_passed = true;
     } else {
       EXPECT_EQ(said.exit_code, 3);
-      EXPECT_TRUE(std::regex_match(std::string(verdict.at("reason")), reason)) << verdict.at("reason");
+      EXPECT_TRUE(std::regex_match(std::string(verdict.at("reason")), reason))
+          << verdict.at("reason");
       EXPECT_EQ(verdict.at("details"), "");
     }
   }
@@ -141,8 +147,9 @@ TEST_F(Runner, TooLittleMemoryIsSaidHoweverLittleItIs) {
 
 TEST_F(Runner, WhatCannotBeWrittenIsSaidBeforeAnythingRuns) {
   WriteFile(root_ / "a_file", "");
-  for (const std::string& options : {"--junit " + (root_ / "a_file/x.xml").string(), "--report " + (root_ / "a_file").string(),
-                                    "--junit " + root_.string()}) {
+  for (const std::string& options :
+       {"--junit " + (root_ / "a_file/x.xml").string(), "--report " + (root_ / "a_file").string(),
+        "--junit " + root_.string()}) {
     const Said said = Do("check --no-pictures " + options);
     EXPECT_EQ(said.exit_code, 2) << options;
     EXPECT_EQ(said.out, "");
@@ -155,17 +162,20 @@ TEST_F(Runner, VerdictsAreNotLostWithTheFileTheyWereToBeWrittenTo) {
   const Said said = Do("check --no-pictures --junit /dev/full");
   EXPECT_EQ(said.exit_code, 3);
   EXPECT_NE(said.out.find("1 passed, 0 failed"), std::string::npos) << said.out;
-  EXPECT_NE(said.err.find("cannot write /dev/full: No space left on device"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("cannot write /dev/full: No space left on device"), std::string::npos)
+      << said.err;
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
 }
 
 TEST_F(Runner, FilesAreCheckedToo) {
   Accept();
   const fs::path loose = root_ / "my own/carton_waits.yaml";
-  WriteFile(loose, std::regex_replace(std::string(kCartonRests), std::regex("carton_rests"), "carton_waits"));
+  WriteFile(loose, std::regex_replace(std::string(kCartonRests), std::regex("carton_rests"),
+                                      "carton_waits"));
   const std::vector<std::string> environment = {"PREHEND_HOME=" + root_.string()};
-  const Said said =
-      Prehend({"check", "--no-pictures", "--json", loose.string(), Scenario().string(), "carton_rests"}, environment);
+  const Said said = Prehend(
+      {"check", "--no-pictures", "--json", loose.string(), Scenario().string(), "carton_rests"},
+      environment);
   EXPECT_EQ(said.exit_code, 5) << said.err;
   const Json scenarios = Json::parse(said.out).at("scenarios");
   ASSERT_EQ(scenarios.size(), 2u) << "by name and by file it is the same";
@@ -202,7 +212,8 @@ TEST_F(Runner, WhatNothingChangedForIsNotRunAgain) {
 
   for (const char* file :
        {"scenarios/rest/carton_rests.yaml", "grammar/library/contact.grammar",
-        "physics/library/human_right.hand.yaml", "physics/library/human.grasps.yaml", "golden/rest/carton_rests.timeline"}) {
+        "physics/library/human_right.hand.yaml", "physics/library/human.grasps.yaml",
+        "golden/rest/carton_rests.timeline"}) {
     WriteFile(root_ / file, ReadFile(root_ / file) + "# more\n");
     EXPECT_EQ(VerdictOfTheRest("--changed"), "passed") << file;
     EXPECT_EQ(VerdictOfTheRest("--changed"), "unchanged") << file;

@@ -45,11 +45,13 @@ TEST_F(ScoreCommand, EveryGrammarIsScoredOnTheSameTruth) {
 TEST_F(ScoreCommand, WhatIsMisspeltIsListedByName) {
   const Said said = Do("score" + GrammarOption("misspelt"));
   ASSERT_EQ(said.exit_code, 0) << said.err;
-  EXPECT_NE(said.out.find("\nnot judged: suported_by (1 found); docs/events.md does not define them\n"),
-            std::string::npos)
+  EXPECT_NE(
+      said.out.find("\nnot judged: suported_by (1 found); docs/events.md does not define them\n"),
+      std::string::npos)
       << said.out;
   const Said other = Do("score" + GrammarOption("silent"));
-  EXPECT_NE(other.out.find("\nnot spoken of: contact (1 true), supported_by (1 true), grasping (0 true), "),
+  EXPECT_NE(other.out.find(
+                "\nnot spoken of: contact (1 true), supported_by (1 true), grasping (0 true), "),
             std::string::npos)
       << other.out;
   EXPECT_NE(other.out.find("; no rule prints them, they count as missed\n"), std::string::npos);
@@ -64,7 +66,8 @@ TEST_F(ScoreCommand, EventsCanBeChosen) {
   const Said wrong = Do("score --events contact,suported_by");
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_EQ(wrong.out, "");
-  EXPECT_NE(wrong.err.find("defines no 'suported_by'; did you mean 'supported_by'?"), std::string::npos)
+  EXPECT_NE(wrong.err.find("defines no 'suported_by'; did you mean 'supported_by'?"),
+            std::string::npos)
       << wrong.err;
 }
 
@@ -72,7 +75,9 @@ TEST_F(ScoreCommand, EveryCommaHasNamesBesideIt) {
   for (const char* events : {"reaching,,", ",reaching", "reaching,,grasping"}) {
     const Said wrong = Do(std::string("score --events ") + events);
     EXPECT_EQ(wrong.exit_code, 2) << events;
-    EXPECT_NE(wrong.err.find("--events: a name is missing beside a comma; write NAME,NAME"), std::string::npos) << wrong.err;
+    EXPECT_NE(wrong.err.find("--events: a name is missing beside a comma; write NAME,NAME"),
+              std::string::npos)
+        << wrong.err;
   }
 }
 

@@ -123,7 +123,9 @@ TEST(Box2dTest, PlacesFortyOfFortyVariations) {
                           .offset_m = between(-0.008, 0.008)};
     const Outcome outcome = Perform(setting);
     EXPECT_TRUE(outcome.Placed()) << "trial " << trial << ": " << outcome << " size "
-        << std::get<Box>(setting.shape).size_m.transpose() << " mass " << setting.mass_kg << " at " << setting.at_m << " offset " << setting.offset_m;
+                                  << std::get<Box>(setting.shape).size_m.transpose() << " mass "
+                                  << setting.mass_kg << " at " << setting.at_m << " offset "
+                                  << setting.offset_m;
   }
 }
 

@@ -20,14 +20,17 @@ Figure AllWays(const Vector3d& way, const Vector3d& hips_m) {
 }
 
 TEST(FigureTest, HalfWayBetweenTwoWaysIsTheirBisector) {
-  const Figure mixed = Mix(AllWays(Vector3d::UnitX(), {0, 0, 1}), AllWays(Vector3d::UnitZ(), {1, 0, 1}), 0.5);
-  EXPECT_LT((mixed.ways_W[Figure::kTrunk] - Vector3d(std::sqrt(0.5), 0, std::sqrt(0.5))).norm(), 1e-12);
+  const Figure mixed =
+      Mix(AllWays(Vector3d::UnitX(), {0, 0, 1}), AllWays(Vector3d::UnitZ(), {1, 0, 1}), 0.5);
+  EXPECT_LT((mixed.ways_W[Figure::kTrunk] - Vector3d(std::sqrt(0.5), 0, std::sqrt(0.5))).norm(),
+            1e-12);
   EXPECT_LT((mixed.ways_W[Figure::kSole + 1] - mixed.ways_W[Figure::kTrunk]).norm(), 1e-12);
   EXPECT_LT((mixed.hips_W_m - Vector3d(0.5, 0, 1)).norm(), 1e-12);
 }
 
 TEST(FigureTest, WaysStayUnitEvenWhenTheyTurnRound) {
-  const Figure mixed = Mix(AllWays(Vector3d::UnitX(), Vector3d::Zero()), AllWays(-Vector3d::UnitX(), Vector3d::Zero()), 0.3);
+  const Figure mixed = Mix(AllWays(Vector3d::UnitX(), Vector3d::Zero()),
+                           AllWays(-Vector3d::UnitX(), Vector3d::Zero()), 0.3);
   for (const Vector3d& way : mixed.ways_W) EXPECT_NEAR(way.norm(), 1, 1e-9);
 }
 
@@ -43,7 +46,8 @@ TEST(FigureTrackTest, PassesEveryFigureAtItsTime) {
 }
 
 TEST(FigureTrackTest, AFirstFigureAtZeroIsJumpedTo) {
-  const FigureTrack track(AllWays(Vector3d::UnitX(), Vector3d::Zero()), {{0, AllWays(Vector3d::UnitY(), Vector3d::Zero())}});
+  const FigureTrack track(AllWays(Vector3d::UnitX(), Vector3d::Zero()),
+                          {{0, AllWays(Vector3d::UnitY(), Vector3d::Zero())}});
   EXPECT_LT((track.At(0).ways_W[0] - Vector3d::UnitY()).norm(), 1e-12);
 }
 

@@ -21,7 +21,8 @@ void ExpectLoose(const Body& vessel, const std::vector<Eigen::Vector3d>& grains)
   for (std::size_t i = 0; i < grains.size(); ++i) {
     EXPECT_TRUE(IsInside(vessel, Pose{}, grains[i]));
     EXPECT_GT(DistanceTo(vessel, grains[i]), kRadius_m * 0.99);
-    for (std::size_t j = 0; j < i; ++j) ASSERT_GT((grains[i] - grains[j]).norm(), 2 * kRadius_m) << i << " " << j;
+    for (std::size_t j = 0; j < i; ++j)
+      ASSERT_GT((grains[i] - grains[j]).norm(), 2 * kRadius_m) << i << " " << j;
   }
 }
 
@@ -36,7 +37,8 @@ TEST(FillVessel, GrainsLieInTheHollow) {
 TEST(FillVessel, NoneIsInTheHandleOrOutside) {
   const Mug mug{.radius_m = 0.04, .height_m = 0.1, .wall_m = 0.005, .handle_m = 0.05};
   const auto grains = FillVessel(Made(mug), kRadius_m, 500, 1);
-  for (const Eigen::Vector3d& grain : grains) EXPECT_LT(grain.head<2>().norm(), 0.035 - kRadius_m + 1e-4);
+  for (const Eigen::Vector3d& grain : grains)
+    EXPECT_LT(grain.head<2>().norm(), 0.035 - kRadius_m + 1e-4);
 }
 
 TEST(FillVessel, AFullOneTakesNoMore) {
@@ -49,7 +51,9 @@ TEST(FillVessel, AFullOneTakesNoMore) {
 TEST(FillVessel, WhatHasNoHollowTakesNone) {
   const Body board{.name = "board", .shapes = {{Box{{0.3, 0.3, 0.02}}, {}}}};
   EXPECT_TRUE(FillVessel(board, kRadius_m, 10, 1).empty());
-  const Body pipe{.name = "pipe", .shapes = {{Box{{0.01, 0.1, 0.1}}, {{0.05, 0, 0}}}, {Box{{0.01, 0.1, 0.1}}, {{-0.05, 0, 0}}}}};
+  const Body pipe{.name = "pipe",
+                  .shapes = {{Box{{0.01, 0.1, 0.1}}, {{0.05, 0, 0}}},
+                             {Box{{0.01, 0.1, 0.1}}, {{-0.05, 0, 0}}}}};
   EXPECT_TRUE(FillVessel(pipe, kRadius_m, 10, 1).empty());
   EXPECT_TRUE(FillVessel(Made(Shelf{}), 0.02, 500, 1).empty());  // it leaks
 }

@@ -16,7 +16,10 @@ constexpr int kCount = 30;
 Scene FilledMug() {
   Scene scene;
   scene.bodies.push_back({.name = "mug", .shapes = ShapesOf(Mug{}), .fixed = true});
-  Body peas{.name = "peas", .shapes = {}, .grains = Grains{.radius_m = 0.006, .p_WG_m = {}}, .mass_kg = 0.03};
+  Body peas{.name = "peas",
+            .shapes = {},
+            .grains = Grains{.radius_m = 0.006, .p_WG_m = {}},
+            .mass_kg = 0.03};
   peas.grains->p_WG_m = FillVessel(scene.bodies[0], 0.006, kCount, 1);
   scene.bodies.push_back(peas);
   return scene;

@@ -54,7 +54,7 @@ TEST(HandModelTest, UnstableGainsAreNamed) {
 
 TEST(HandModelTest, GainsThatCannotFollowOrDivergeAreNamed) {
   const HandModel good = LibraryHand("human_right");
-  const auto why = [&](double PidGains::* gain, double value) {
+  const auto why = [&](double PidGains::*gain, double value) {
     HandModel model = good;
     model.translation.*gain = value;
     return CheckGains(model, 480);

@@ -5,10 +5,10 @@
 
 #include <numbers>
 
+#include "physics/bullet_world.h"
 #include "physics/geometry.h"
 #include "physics/planar.h"
 #include "physics/world.h"
-#include "physics/bullet_world.h"
 
 namespace prehend::physics {
 namespace {
@@ -19,7 +19,8 @@ using Points = std::vector<Vector3d>;
 /// A box from its corners; the frame is in the corner with the least coordinates.
 Points BoxPoints(const Vector3d& size) {
   Points points;
-  for (int i = 0; i < 8; ++i) points.push_back(size.cwiseProduct(Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1)));
+  for (int i = 0; i < 8; ++i)
+    points.push_back(size.cwiseProduct(Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1)));
   return points;
 }
 
@@ -29,7 +30,8 @@ Points Ball(int rings, int around, double radius) {
     const double polar = std::numbers::pi * (r + 0.5) / rings;
     for (int i = 0; i < around; ++i) {
       const double turn = 2 * std::numbers::pi * i / around;
-      points.emplace_back(radius * std::sin(polar) * std::cos(turn), radius * std::sin(polar) * std::sin(turn), radius * std::cos(polar));
+      points.emplace_back(radius * std::sin(polar) * std::cos(turn),
+                          radius * std::sin(polar) * std::sin(turn), radius * std::cos(polar));
     }
   }
   return points;
@@ -43,8 +45,10 @@ TEST(Hull, OfABoxIsTheBox) {
   for (const Hull::Face& face : made.hull->faces) EXPECT_EQ(face.corners.size(), 4u);
   EXPECT_NEAR(made.hull->volume_m3, size.prod(), 1e-15);
   EXPECT_LT((made.hull->X_SC.p_m - size / 2).norm(), 1e-12);
-  Vector3d wanted = Vector3d(size.y() * size.y() + size.z() * size.z(), size.x() * size.x() + size.z() * size.z(),
-                             size.x() * size.x() + size.y() * size.y()) / 12;
+  Vector3d wanted =
+      Vector3d(size.y() * size.y() + size.z() * size.z(), size.x() * size.x() + size.z() * size.z(),
+               size.x() * size.x() + size.y() * size.y()) /
+      12;
   std::sort(wanted.begin(), wanted.end());
   EXPECT_LT((made.hull->gyration_m2 - wanted).norm(), 1e-12);
   EXPECT_EQ(EdgesOf(*made.hull).size(), 3u);
@@ -56,14 +60,17 @@ TEST(Hull, OfATetrahedronHasItsCentreInAQuarter) {
   EXPECT_EQ(made.hull->faces.size(), 4u);
   EXPECT_NEAR(made.hull->volume_m3, 1.0 / 6, 1e-12);
   EXPECT_LT((made.hull->X_SC.p_m - Vector3d::Constant(0.25)).norm(), 1e-12);
-  EXPECT_NEAR(made.hull->gyration_m2.maxCoeff(), 0.1, 1e-12) << "about each edge direction: 3/40 and 1/40";
+  EXPECT_NEAR(made.hull->gyration_m2.maxCoeff(), 0.1, 1e-12)
+      << "about each edge direction: 3/40 and 1/40";
 }
 
 TEST(Hull, FacesSeeOutwards) {
   const auto made = MakeHull(Ball(8, 8, 0.05));
   ASSERT_TRUE(made.hull) << made.problem;
   for (const Hull::Face& face : made.hull->faces) {
-    const auto corner = [&](std::size_t i) { return made.hull->corners_m[static_cast<std::size_t>(face.corners[i])]; };
+    const auto corner = [&](std::size_t i) {
+      return made.hull->corners_m[static_cast<std::size_t>(face.corners[i])];
+    };
     EXPECT_GT((corner(1) - corner(0)).cross(corner(2) - corner(1)).dot(face.nhat_S), 0);
     EXPECT_LT(face.nhat_S.dot(made.hull->X_SC.p_m), face.offset_m);
   }
@@ -86,15 +93,31 @@ TEST(Hull, WhatIsNoHullIsToldWhy) {
     int point;
     std::string problem;
   } table[] = {
-      {"in a plane", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, -1, "the points lie in a plane, or within 1 mm of one"},
-      {"on a line", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, -1, "the points lie in a plane, or within 1 mm of one"},
-      {"thin", BoxPoints({0.1, 0.1, 0.0009}), -1, "the points lie in a plane, or within 1 mm of one"},
-      {"a point twice", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0.00005}}, 4, "point 4 is where point 1 is"},
-      {"one inside", {{0, 0, 0}, {0.1, 0.1, 0.1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1,
+      {"in a plane",
+       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}},
+       -1,
+       "the points lie in a plane, or within 1 mm of one"},
+      {"on a line",
+       {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}},
+       -1,
+       "the points lie in a plane, or within 1 mm of one"},
+      {"thin", BoxPoints({0.1, 0.1, 0.0009}), -1,
+       "the points lie in a plane, or within 1 mm of one"},
+      {"a point twice",
+       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0.00005}},
+       4,
+       "point 4 is where point 1 is"},
+      {"one inside",
+       {{0, 0, 0}, {0.1, 0.1, 0.1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+       1,
        "point 1 is no corner: it lies inside, on a face or on an edge of the hull"},
-      {"one on a face", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2, 0.3, 0}}, 4,
+      {"one on a face",
+       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2, 0.3, 0}},
+       4,
        "point 4 is no corner: it lies inside, on a face or on an edge of the hull"},
-      {"one on an edge", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}}, 4,
+      {"one on an edge",
+       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}},
+       4,
        "point 4 is no corner: it lies inside, on a face or on an edge of the hull"},
   };
   for (const auto& row : table) {
@@ -108,7 +131,8 @@ TEST(Hull, WhatIsNoHullIsToldWhy) {
 TEST(Hull, PointsThatAreRoundedAreStillOneFace) {
   for (const double digits : {1e4, 1e6, 1e7, 1e9}) {
     Points points;
-    for (const Vector3d& p : Ball(2, 7, 0.05)) points.push_back((p * digits).array().round() / digits);
+    for (const Vector3d& p : Ball(2, 7, 0.05))
+      points.push_back((p * digits).array().round() / digits);
     const auto made = MakeHull(points);
     ASSERT_TRUE(made.hull) << digits << ": " << made.problem;
     const double exact = MakeHull(Ball(2, 7, 0.05)).hull->volume_m3;
@@ -119,7 +143,10 @@ TEST(Hull, PointsThatAreRoundedAreStillOneFace) {
 /// A body on a floor whose top is at 0.
 Scene OnAFloor(const Shape& shape, const Pose& X_WB) {
   Scene scene;
-  scene.bodies.push_back({.name = "floor", .shapes = {{Box{{2, 2, 0.1}}, {}}}, .fixed = true, .X_WB = {{0, 0, -0.05}}});
+  scene.bodies.push_back({.name = "floor",
+                          .shapes = {{Box{{2, 2, 0.1}}, {}}},
+                          .fixed = true,
+                          .X_WB = {{0, 0, -0.05}}});
   scene.bodies.push_back({.name = "thing", .shapes = {{shape, {}}}, .mass_kg = 0.3, .X_WB = X_WB});
   return scene;
 }
@@ -138,9 +165,11 @@ TEST(Hull, RestsAtItsTrueHeight) {
 TEST(Hull, FallsAsTheBoxThatItIs) {
   // Thrown and turning: the same motion, though the frame of the hull is in a corner.
   const Vector3d size(0.06, 0.08, 0.1);
-  const Pose X_WBox{{0, 0, 1}, Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Vector3d(1, 2, 3).normalized()))};
+  const Pose X_WBox{{0, 0, 1},
+                    Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Vector3d(1, 2, 3).normalized()))};
   const auto as_box = MakeBulletWorld(OnAFloor(Box{size}, X_WBox), {});
-  const auto as_hull = MakeBulletWorld(OnAFloor(*MakeHull(BoxPoints(size)).hull, X_WBox * Pose{-size / 2}), {});
+  const auto as_hull =
+      MakeBulletWorld(OnAFloor(*MakeHull(BoxPoints(size)).hull, X_WBox * Pose{-size / 2}), {});
   Snapshot box, hull;
   for (int tick = 0; tick < 200; ++tick) {
     as_box->Step({});

@@ -165,7 +165,9 @@ TEST(PersonPlayerTest, ARecordedFigureIsTakenAndLeft) {
   EXPECT_NEAR(std::abs((held.bodies[thigh].X_WB.q * Vector3d::UnitZ()).x()), 0.8, 1e-6);
   // Afterwards she stands where her hips are.
   const Snapshot left = Play(scene, {recorded, {0, WaitStep{}, 0.5}}).end;
-  EXPECT_LT((left.bodies[pelvis].X_WB.p_m - scene.bodies[pelvis].X_WB.p_m - Vector3d(0.4, 0, 0)).norm(), 1e-6);
+  EXPECT_LT(
+      (left.bodies[pelvis].X_WB.p_m - scene.bodies[pelvis].X_WB.p_m - Vector3d(0.4, 0, 0)).norm(),
+      1e-6);
 }
 
 TEST(PersonPlayerTest, TheSameStepsGiveTheSameHash) {

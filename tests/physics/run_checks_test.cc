@@ -46,7 +46,9 @@ TEST(RunChecksTest, EveryDisasterIsNamedWithItsEntity) {
 
 TEST(RunChecksTest, WhatIsPressedIntoAnotherByAHugeMassIsAdvisedOfIt) {
   Scene scene;
-  scene.bodies = {{.name = "table", .fixed = true}, {.name = "feather", .mass_kg = 0.001}, {.name = "anvil", .mass_kg = 1000}};
+  scene.bodies = {{.name = "table", .fixed = true},
+                  {.name = "feather", .mass_kg = 0.001},
+                  {.name = "anvil", .mass_kg = 1000}};
   Snapshot now;
   now.bodies.resize(3);
   now.contacts = {{.a = {.body = 0}, .b = {.body = 1}, .distance_m = -0.03}};

@@ -148,8 +148,10 @@ TEST(SkeletonTest, AFigureStandsAsThePostureThatItWasMadeOf) {
   Posture as_figure = Upright(person);
   as_figure.figure = FigureOf(person, posture);
   as_figure.X_WHead = HeadOfFigure(person, as_figure);
-  const std::vector<Pose> places = PlacesOf(person, posture, {}), again = PlacesOf(person, as_figure, {});
-  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LT((places[i].p_m - again[i].p_m).norm(), 1e-9) << i;
+  const std::vector<Pose> places = PlacesOf(person, posture, {}),
+                          again = PlacesOf(person, as_figure, {});
+  for (std::size_t i = 0; i < places.size(); ++i)
+    EXPECT_LT((places[i].p_m - again[i].p_m).norm(), 1e-9) << i;
 }
 
 TEST(SkeletonTest, AFigureSuitsATallerPerson) {
@@ -157,7 +159,9 @@ TEST(SkeletonTest, AFigureSuitsATallerPerson) {
   Posture posture = Upright(person);
   posture.figure = FigureOf(person, posture);
   person.height_m = 2.1;
-  EXPECT_NEAR((PlaceOf(LimbEnd::kRightElbow, person, posture) - PlaceOf(LimbEnd::kRightWrist, person, posture)).norm(),
+  EXPECT_NEAR((PlaceOf(LimbEnd::kRightElbow, person, posture) -
+               PlaceOf(LimbEnd::kRightWrist, person, posture))
+                  .norm(),
               LengthOf(person, "anna_right_forearm"), 1e-9);
 }
 
@@ -174,7 +178,8 @@ TEST(SkeletonTest, PartsOfLimbsAreTheOnesOfTheirNames) {
       for (int i = range.begin; i < range.end; ++i) {
         const std::string& name = names[static_cast<std::size_t>(i)];
         EXPECT_NE(name.find(words[limb]), std::string::npos) << name;
-        const bool of_arm = name.find("arm") != std::string::npos || name.find("hand") != std::string::npos;
+        const bool of_arm =
+            name.find("arm") != std::string::npos || name.find("hand") != std::string::npos;
         EXPECT_EQ(of_arm, limb < 2) << name;
       }
       covered = range.end;

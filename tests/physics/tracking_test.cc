@@ -124,7 +124,8 @@ TEST(TrackingTest, LossesLeaveTheNoiseOfOtherLooksAlone) {
   lossy.dropped_share = 0.5;
   const auto all = Follow(noisy, 7, 200, true), some = Follow(lossy, 7, 200, true);
   int same = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) same += (all[i].X_WH.p_m - some[i].X_WH.p_m).norm() < 1e-12;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    same += (all[i].X_WH.p_m - some[i].X_WH.p_m).norm() < 1e-12;
   EXPECT_GT(same, 60);
   EXPECT_LT(same, 140);
 }

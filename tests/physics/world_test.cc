@@ -27,7 +27,8 @@ Snapshot After(World& world, int ticks, const std::vector<HandCommand>& commands
 
 std::vector<ContactPoint> PointsOf(const Snapshot& snapshot) {
   std::vector<ContactPoint> points;
-  for (const auto& part : snapshot.AllContacts()) points.insert(points.end(), part.begin(), part.end());
+  for (const auto& part : snapshot.AllContacts())
+    points.insert(points.end(), part.begin(), part.end());
   return points;
 }
 
@@ -105,15 +106,14 @@ TEST_P(WorldTest, ARestingContactNeverFlickers) {
 
 TEST_P(WorldTest, WhatSleepsIsTheSameFromTickToTickUntilItIsWoken) {
   // A can stands on the floor; a ball falls on it when it has long been asleep.
-  const Scene scene{.bodies = {Floor(),
-                               {.name = "can",
-                                .shapes = {{Box{{0.06, 0.06, 0.12}}, {}}},
-                                .mass_kg = 0.3,
-                                .X_WB = {{0, 0, 0.06}}},
-                               {.name = "ball",
-                                .shapes = {{Sphere{0.03}, {}}},
-                                .mass_kg = 0.3,
-                                .X_WB = {{0, 0, 60}}}}};
+  const Scene scene{
+      .bodies = {
+          Floor(),
+          {.name = "can",
+           .shapes = {{Box{{0.06, 0.06, 0.12}}, {}}},
+           .mass_kg = 0.3,
+           .X_WB = {{0, 0, 0.06}}},
+          {.name = "ball", .shapes = {{Sphere{0.03}, {}}}, .mass_kg = 0.3, .X_WB = {{0, 0, 60}}}}};
   const auto world = Make(scene);
   Snapshot snapshot = After(*world, 1200);
   ASSERT_TRUE(snapshot.bodies[1].asleep);

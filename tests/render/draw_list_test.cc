@@ -58,7 +58,8 @@ TEST(DrawListTest, EverythingHasItsName) {
 
 TEST(DrawListTest, GrainsAreBallsWhereTheSnapshotHasThem) {
   physics::Scene scene;
-  physics::Body peas{.name = "peas", .shapes = {}, .grains = physics::Grains{.radius_m = 0.004, .p_WG_m = {}}};
+  physics::Body peas{
+      .name = "peas", .shapes = {}, .grains = physics::Grains{.radius_m = 0.004, .p_WG_m = {}}};
   peas.grains->p_WG_m = {{0, 0, 1}, {0, 0, 2}};
   scene.bodies = {peas};
   Picture picture;
