@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The house rules of ARCHITECTURE.md that a machine can check: which room may include which, where
-// each library may appear, and how long a file may grow. The checker itself is tested on made-up
-// files, so that it can't rot.
+// each library may appear, how long a file may grow, and how it is laid out. The checker itself is
+// tested on made-up files, so that it can't rot.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -127,6 +128,19 @@ TEST(Architecture, EveryFileKeepsTheBorders) {
     const std::string path = fs::relative(file, PREHEND_SOURCE_DIR).generic_string();
     for (const std::string& violation : Violations(path, Slurp(file))) ADD_FAILURE() << violation;
   }
+}
+
+TEST(Architecture, EveryFileIsLaidOutByClangFormat) {
+  const fs::path list = fs::path(testing::TempDir()) / "source_files.txt";
+  const fs::path complaints = fs::path(testing::TempDir()) / "layout_complaints.txt";
+  {
+    std::ofstream out(list);
+    for (const fs::path& file : SourceFiles()) out << file.string() << "\n";
+  }
+  const std::string command = "xargs clang-format --dry-run -Werror < '" + list.string() +
+                              "' 2> '" + complaints.string() + "'";
+  EXPECT_EQ(std::system(command.c_str()), 0)
+      << Slurp(complaints).substr(0, 2000) << "\nmend with: clang-format -i FILE";
 }
 
 TEST(Architecture, MedianFileIsShort) {
