@@ -75,7 +75,8 @@ const std::vector<Mutant> kMutants = {
      "from supported_by(object, any) ends or scooping(hand, object) ends\n",
      "from grasping(hand, object) begins\n", ""},
     {"what a closing hand lifts is caught", "pick_and_place", " or scooping(hand, object) ends", "",
-     ""},
+     "what fingers lift before they grasp it still has an edge on the table; the corpus draws one "
+     "that has not"},
     {"a pick-up knows no put-down", "pick_and_place", " or putting_down(hand, object) begins", "",
      ""},
     {"moving away is putting down", "pick_and_place", "put_slack  = 5 mm", "put_slack  = 50 mm",

@@ -104,12 +104,12 @@ TEST(OracleSupport, BeginsWhenALandingHasComeToRest) {
   EXPECT_EQ(Of("supported_by(cup, table)", stage.Truth()), (Intervals{{rest, stage.now()}}));
 }
 
-TEST(OracleSupport, BearsWhatTipsOverItsEdge) {
+TEST(OracleSupport, BeginsOnTheEdgeThatLandsFirst) {
   for (const bool edge_stays : {true, false}) {
     Stage stage;
-    stage.Play(0.3);
-    const Tick tips = stage.now();
     stage.cup_on_table = false;
+    stage.Play(0.3);
+    const Tick lands = stage.now();
     // The cup's centre sinks by 3 cm/s, 3 cm beside the edge about which it turns by 1 rad/s.
     stage.contacts = {{.a = Stage::BodySide(stage.cup),
                        .b = Stage::BodySide(stage.table),
@@ -117,8 +117,18 @@ TEST(OracleSupport, BearsWhatTipsOverItsEdge) {
     stage.body(stage.cup).w_WB_rad_per_s = {0, edge_stays ? 1.0 : 0.0, 0};
     stage.Play(0.3, {0, 0, 0}, {{stage.cup, {0, 0, -0.03}}});
     EXPECT_EQ(Of("supported_by(cup, table)", stage.Truth()),
-              (Intervals{{0, edge_stays ? stage.now() : tips}}));
+              (edge_stays ? Intervals{{lands, stage.now()}} : Intervals{}));
   }
+}
+
+TEST(OracleSupport, StaysWhileWhatStoodThereTips) {
+  Stage stage;
+  stage.Play(0.3);
+  stage.Play(0.3, {0, 0, 0}, {{stage.cup, {0, 0, 0.05}}});
+  const Tick parts = stage.now();
+  stage.cup_on_table = false;
+  stage.Play(0.3, {0, 0, 0}, {{stage.cup, {0, 0, 0.05}}});
+  EXPECT_EQ(Of("supported_by(cup, table)", stage.Truth()), (Intervals{{0, parts}}));
 }
 
 TEST(OracleSupport, OutlastsATrembleThatBreaksNoContact) {
