@@ -107,7 +107,7 @@ TEST_F(Runner, AScenarioThatNeverEndsIsStopped) {
   const std::string reason = verdicts.at("long/takes_long").at("reason");
   EXPECT_TRUE(reason.starts_with("its process ended: no end after 8 s, last tick ")) << reason;
   EXPECT_EQ(verdicts.at("long/takes_long").at("command"),
-            "prehend check long/takes_long --time-limit-s 8 --memory-limit-mb 1000");
+            "prehend check long/takes_long --no-pictures --time-limit-s 8 --memory-limit-mb 1000");
 }
 
 TEST_F(Runner, AScenarioThatWantsMoreAndMoreMemoryIsStopped) {
