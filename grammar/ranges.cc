@@ -33,11 +33,6 @@ Range Magnitude(const Range& a) {
 }
 
 Range OfSignal(const Node& node) {
-  // Half a turn from one half of the window to the other is the most that can be told.
-  if (node.op == Op::kTurnRate) {
-    const double most = std::numbers::pi / (node.number / 2);
-    return {.low = -most, .high = most};
-  }
   const Builtin* builtin = FindBuiltin(node.op);
   return builtin == nullptr ? Range{} : builtin->range;
 }

@@ -43,9 +43,17 @@ void Declare(CLI::App& options) {
   DeclareFlag(options, "--watch", "go on until interrupted: read again what a save affects");
 }
 
-Validated ValidateGrammar(const std::string& name_or_path, const std::string& root) {
+/// With the parameters that `--set` gives.
+Validated ValidateGrammar(const std::string& name_or_path, const CLI::App& options,
+                          const std::string& root) {
   Validated validated{.file = GrammarFile(root, name_or_path)};
-  grammar::CompileResult compiled = LoadGrammar(root, name_or_path, {}, &validated.inputs);
+  ReadResult<grammar::Overrides> settings = ParameterSettings(ValuesOf(options, "--set"));
+  if (!settings.value) {
+    validated.diagnostics = std::move(settings.diagnostics);
+    return validated;
+  }
+  grammar::CompileResult compiled =
+      LoadGrammar(root, name_or_path, *settings.value, &validated.inputs);
   validated.diagnostics = std::move(compiled.diagnostics);
   if (compiled.program) validated.description = Text(Describe(*compiled.program));
   validated.warnings = std::move(compiled.warnings);
@@ -92,7 +100,7 @@ Validated ValidateOrphan(const Orphan& orphan) {
 /// Nothing when it is the name of no scenario.
 std::optional<Validated> Validate(const std::string& typed, const CLI::App& options,
                                   const CommandContext& context) {
-  if (typed.ends_with(".grammar")) return ValidateGrammar(typed, context.root);
+  if (typed.ends_with(".grammar")) return ValidateGrammar(typed, options, context.root);
   if (typed.ends_with(".timeline")) {
     Validated validated{.file = typed, .diagnostics = {}};
     validated.diagnostics = CheckGoldenAlone(typed, context.root, validated.inputs);
