@@ -32,6 +32,28 @@ Format<std::string> Value() {
           .show = {}};
 }
 
+/// What can never hold, or always does.
+void CheckCondition(const YamlNode& node, const ConditionEntry& wanted, Complaints& complaints) {
+  const auto complain = [&](const char* key, const std::string& message) {
+    complaints.Add(node.Find(key)->where, std::string(key) + ": " + message);
+  };
+  const auto nothing_between = [&](const char* above, const std::optional<double>& least,
+                                   const char* below, const std::optional<double>& most) {
+    if (least && most && *least >= *most)
+      complain(below, fmt::format("nothing is between '{}' and '{}'", above, below));
+  };
+  nothing_between("above_m", wanted.above_m, "below_m", wanted.below_m);
+  nothing_between("tilt_above_deg", wanted.tilt_above_deg, "tilt_below_deg", wanted.tilt_below_deg);
+  nothing_between("joint_above", wanted.joint_above, "joint_below", wanted.joint_below);
+  if (node.Find("within_m") && !wanted.near_m) complain("within_m", "there is no 'near_m'");
+  if (node.Find("share") && !wanted.inside) complain("share", "there is no 'inside'");
+  const auto says_nothing = [](const YamlNode& field) {
+    return field.key == "entity" || field.key == "at_s";
+  };
+  if (std::ranges::all_of(node.children, says_nothing))
+    complaints.Add(node.where, "a condition: it always holds", "say what, as above_m: 0.9");
+}
+
 Format<ConditionEntry> ConditionFormat() {
   using C = ConditionEntry;
   const auto height = Number(-kFarthestM, kFarthestM);
@@ -58,6 +80,7 @@ Format<ConditionEntry> ConditionFormat() {
       .Optional("inside", &C::inside, Identifier(),
                 "Its centre is in the bounding box of this entity.")
       .Optional("share", &C::share, fraction, "Of grains: at least this share of them is inside.")
+      .Check(CheckCondition)
       .format();
 }
 
@@ -122,8 +145,11 @@ class ConditionBuilder {
           wanted.where,
           fmt::format("at_s: {} s is after the end, which is at {:.3f} s", *wanted.at_s, end_s_),
           "without at_s it is looked at then");
-    if (wanted.inside)
+    if (wanted.inside) {
       condition.vessel = Find("inside", wanted.inside->value, wanted.inside->where);
+      if (condition.vessel == condition.body)
+        complaints_.Add(wanted.inside->where, "inside: nothing is inside of itself");
+    }
     return condition;
   }
 
@@ -158,6 +184,11 @@ std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<Condition
   const ConditionBuilder builder(scene, script, complaints);
   std::vector<Outcome> outcomes;
   for (const auto& entry : entries) {
+    if (entry.name == "failed" || entry.name == "other")
+      complaints.Add(entry.name_where,
+                     fmt::format("outcomes: '{}' is what trials are called that {}", entry.name,
+                                 entry.name == "failed" ? "went wrong" : "have no other outcome"),
+                     "choose another name");
     Outcome& outcome = outcomes.emplace_back();
     outcome.name = entry.name;
     for (const ConditionEntry& wanted : entry.value) {

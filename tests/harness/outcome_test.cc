@@ -54,10 +54,34 @@ TEST(Outcome, AMomentAfterTheEndIsRefused) {
   EXPECT_TRUE(Read("  held: [{entity: milk, at_s: 1.9, above_m: 1}]\n").value);
 }
 
+TEST(Outcome, WhatAlwaysOrNeverHoldsIsRefused) {
+  const std::pair<const char*, const char*> refused[] = {
+      {"bad: [{entity: milk}]", "a condition: it always holds"},
+      {"bad: [{entity: milk, at_s: 1}]", "a condition: it always holds"},
+      {"bad: [{entity: milk, within_m: 0.1}]", "within_m: there is no 'near_m'"},
+      {"bad: [{entity: milk, share: 0.5, above_m: 1}]", "share: there is no 'inside'"},
+      {"bad: [{entity: milk, above_m: 1, below_m: 0}]",
+       "below_m: nothing is between 'above_m' and 'below_m'"},
+      {"bad: [{entity: milk, tilt_above_deg: 9, tilt_below_deg: 5}]",
+       "tilt_below_deg: nothing is between 'tilt_above_deg' and 'tilt_below_deg'"},
+      {"bad: [{entity: milk, inside: milk}]", "inside: nothing is inside of itself"},
+      {"failed: [{entity: milk, below_m: 1}]",
+       "'failed' is what trials are called that went wrong"},
+      {"other: [{entity: milk, below_m: 1}]",
+       "'other' is what trials are called that have no other outcome"},
+  };
+  for (const auto& [outcome, complaint] : refused) {
+    const auto read = Read("  " + std::string(outcome) + "\n");
+    EXPECT_FALSE(read.value) << outcome;
+    EXPECT_NE(Brief(read.diagnostics).find(complaint), std::string::npos)
+        << outcome << "\n"
+        << Brief(read.diagnostics);
+  }
+}
+
 TEST(Outcome, AMomentIsLookedAtWhenItComes) {
-  const std::string outcomes =
-      "  held: [{entity: milk, at_s: 0.00625, above_m: 1}, {entity: milk, below_m: 0.9}]\n";  // tick
-                                                                                              // 3
+  const std::string outcomes =  // at_s is that of tick 3
+      "  held: [{entity: milk, at_s: 0.00625, above_m: 1}, {entity: milk, below_m: 0.9}]\n";
   EXPECT_EQ(Judge(outcomes, {Upright(0, 0.8), Upright(0, 0.8), Upright(0, 1.1), Upright(0, 0.8)}),
             "held");
   EXPECT_EQ(Judge(outcomes, {Upright(0, 1.1), Upright(0, 1.1), Upright(0, 0.8), Upright(0, 0.8)}),
@@ -94,7 +118,7 @@ TEST(Outcome, OfGrainsAShareIsInside) {
 }
 
 TEST(Outcome, RefusesWhatIsNotThere) {
-  EXPECT_EQ(Brief(Read("  held: [{entity: mlik}]\n").diagnostics),
+  EXPECT_EQ(Brief(Read("  held: [{entity: mlik, above_m: 1}]\n").diagnostics),
             "16:10: entity: no entity is called 'mlik' | did you mean 'milk'?\n");
   EXPECT_EQ(Brief(Read("  open: [{entity: milk, joint_above: 0.5}]\n").diagnostics),
             "16:10: entity: 'milk' hangs on no joint\n");
