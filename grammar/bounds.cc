@@ -2,9 +2,7 @@
 #include "grammar/bounds.h"
 
 namespace prehend::grammar {
-namespace {
 
-// `a op b` as `b op a`.
 Op Mirrored(Op op) {
   switch (op) {
     case Op::kLess:
@@ -19,6 +17,8 @@ Op Mirrored(Op op) {
       return op;
   }
 }
+
+namespace {
 
 Op Negated(Op op) {
   switch (op) {

@@ -13,6 +13,9 @@
 
 namespace prehend::grammar {
 
+/// The comparison `a op b` as `b op a`.
+Op Mirrored(Op op);
+
 class Bounds {
  public:
   Bounds(const Program& program, const Rule& rule) : program_(program), rule_(rule) {}

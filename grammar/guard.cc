@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "grammar/bounds.h"
+
 namespace prehend::grammar {
 namespace {
 
@@ -215,19 +217,6 @@ int Enter(Program& program, const Threshold& threshold) {
   if (place == kMaxThresholds) return kNone;
   if (found == program.thresholds.end()) program.thresholds.push_back(threshold);
   return place;
-}
-
-Op Mirrored(Op op) {
-  switch (op) {
-    case Op::kLess:
-      return Op::kGreater;
-    case Op::kLessEqual:
-      return Op::kGreaterEqual;
-    case Op::kGreater:
-      return Op::kLess;
-    default:
-      return Op::kLessEqual;
-  }
 }
 
 // What a touch or a grip measures, as it names its entities and the other way round.
