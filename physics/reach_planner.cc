@@ -46,6 +46,7 @@ struct Candidate {
   double cost = 0;
   double beside_m =
       0;  ///< from the point to grasp, other than along the grip, to where the fingers close
+  double too_wide_m = 0;  ///< how much wider than the open hand the object is along the grip
 };
 
 /// The rotation that takes the orthonormal pair (a_H, b_H) to (a_W, b_W).
@@ -154,7 +155,8 @@ Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quater
       (raised_m * Eigen::Vector3d::UnitZ() - (depth - approach.pads_m) * toward_W).norm();
   candidate.X_WH.p_m += query_.offset_m;
   candidate.cost = RotationVector(q * query_.from.X_WH.q.conjugate()).norm();
-  if (2 * half_grip > style_.opening_m) candidate.cost += kTooWide;
+  candidate.too_wide_m = std::max(0.0, 2 * half_grip - style_.opening_m);
+  if (candidate.too_wide_m > 0) candidate.cost += kTooWide;
   return candidate;
 }
 
@@ -210,7 +212,7 @@ bool CandidateList::SideIsNatural() const {
 /// Those that the hand can open for and that grasp the point; when none does, those that come
 /// nearest to it.
 void KeepNearest(std::vector<Candidate>& candidates) {
-  const auto is_too_wide = [](const Candidate& candidate) { return candidate.cost >= kTooWide; };
+  const auto is_too_wide = [](const Candidate& candidate) { return candidate.too_wide_m > 0; };
   if (!std::ranges::all_of(candidates, is_too_wide)) std::erase_if(candidates, is_too_wide);
   if (candidates.empty()) return;
   const double nearest_m = std::ranges::min_element(candidates, {}, &Candidate::beside_m)->beside_m;
@@ -273,12 +275,13 @@ ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& q
     // length.
     const double at_end_m = clearance.At(candidate.X_WH, scene, now);
     const bool fits =
-        at_end_m >= kClearEnough_m - query.offset_m.norm() && candidate.cost < kTooWide;
+        at_end_m >= kClearEnough_m - query.offset_m.norm() && candidate.too_wide_m == 0;
     const double clear_enough_m = std::min(kClearEnough_m, at_end_m);
     for (const Bend& bend : kBends) {
       ReachPlan plan{.segment = Way(query, candidate, bend),
                      .toward_W = candidate.toward_W,
-                     .beside_m = query.point_m ? candidate.beside_m : 0};
+                     .beside_m = query.point_m ? candidate.beside_m : 0,
+                     .too_wide_m = candidate.too_wide_m};
       plan.clearance_m = clearance.Along(plan.segment, scene, now);
       plan.found = fits && plan.clearance_m >= clear_enough_m;
       if (plan.found) return plan;

@@ -19,8 +19,9 @@ struct ReachPlan {
   Eigen::Vector3d toward_W = -Eigen::Vector3d::UnitZ();  ///< direction of arrival
   double clearance_m =
       0;  ///< least distance of the open hand to any body on the way; negative: it will touch
-  bool found = false;   ///< false: the best of the ways that do not do
-  double beside_m = 0;  ///< how far from the point that was asked for the fingers close
+  bool found = false;     ///< false: the best of the ways that do not do
+  double beside_m = 0;    ///< how far from the point that was asked for the fingers close
+  double too_wide_m = 0;  ///< how much wider the object is, where they close, than they open
 };
 
 struct ReachQuery {

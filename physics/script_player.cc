@@ -53,16 +53,25 @@ int HandsOn(int body, const Snapshot& now) {
   return std::max(static_cast<int>(hands.size()), 1);
 }
 
+std::string Millimetres(double length_m) {
+  return std::to_string(std::lround(1000 * length_m)) + " mm";
+}
+
 /// What a person wants to know of a reach that goes on all the same; empty: nothing.
-std::string NoteAbout(const ReachPlan& plan, const ReachStep& reach) {
-  std::string note;
+std::string NoteAbout(const ReachPlan& plan, const ReachStep& reach, const GraspStyle& style) {
+  std::string notes;
+  const auto add = [&](const std::string& note) { notes += (notes.empty() ? "" : "; ") + note; };
   if (plan.beside_m > kAtPoint_m)
-    note = "no grip of " + reach.object + " in style " + reach.style +
-           " is at point_m: the nearest is " + std::to_string(std::lround(1000 * plan.beside_m)) +
-           " mm beside it";
-  if (plan.found || plan.clearance_m >= -kNotedTouch_m) return note;
-  return note + (note.empty() ? "" : "; ") + "no way to grasp " + reach.object +
-         " keeps clear of everything: the open hand will push against something";
+    add("no grip of " + reach.object + " in style " + style.name +
+        " is at point_m: the nearest is " + Millimetres(plan.beside_m) + " beside it");
+  if (plan.too_wide_m > 0 && reach.offset_m.isZero())
+    add("style " + style.name + " opens " + Millimetres(style.opening_m) + ", and " + reach.object +
+        " is " + Millimetres(style.opening_m + plan.too_wide_m) +
+        " wide there: the hand will not close around it");
+  else if (!plan.found && plan.clearance_m < -kNotedTouch_m)
+    add("no way to grasp " + reach.object +
+        " keeps clear of everything: the open hand will push against something");
+  return notes;
 }
 
 }  // namespace
@@ -141,7 +150,7 @@ void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
     hand_.style = style;
     hand_.object = object;
     hand_.came_along_W = plan.toward_W;
-    note_ = NoteAbout(plan, reach);
+    note_ = NoteAbout(plan, reach, model.styles[static_cast<std::size_t>(style)]);
     Follow(plan.segment);
   }
 }

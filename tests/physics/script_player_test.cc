@@ -8,6 +8,8 @@
 namespace prehend::physics {
 namespace {
 
+using Texts = std::vector<std::string>;
+
 Beat One(StepAction action, double over_s) { return {{{0, std::move(action), over_s}}}; }
 
 /// The target at the end of a script, in a world that does not move.
@@ -58,23 +60,38 @@ TEST(ScriptPlayerTest, RetreatGoesBackTheWayItCame) {
   EXPECT_LT((retreated.X_WH.p_m - reached.X_WH.p_m - Eigen::Vector3d(0, 0, 0.2)).norm(), 1e-9);
 }
 
+/// What is said of the first beat.
+Texts NotesOf(const Scene& scene, const Beat& beat) {
+  const Script script{.beats = {beat}};
+  Simulation still(scene, {});
+  ScriptPlayer player(scene, script);
+  player.Advance(still.snapshot());
+  Texts texts;
+  for (const auto& note : player.notes()) texts.push_back(note.text);
+  return texts;
+}
+
 TEST(ScriptPlayerTest, NotesAReachThatCannotKeepClear) {
-  const Script from_above{.beats = {One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5)}};
+  const Beat from_above = One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5);
   Scene scene = MakeScene({});
-  const auto notes = [&] {
-    Simulation still(scene, {});
-    ScriptPlayer player(scene, from_above);
-    player.Advance(still.snapshot());
-    return player.notes();
-  };
-  EXPECT_TRUE(notes().empty());
+  EXPECT_EQ(NotesOf(scene, from_above), Texts{});
   Body roof{.name = "roof", .shapes = {{Box{{1, 1, 0.02}}, {}}}, .fixed = true};
   roof.X_WB.p_m = {0.2, 0.1, 1.05};
   scene.bodies.push_back(roof);
-  ASSERT_EQ(notes().size(), 1u);
-  EXPECT_EQ(notes()[0].text,
-            "no way to grasp object keeps clear of everything: the open hand will push against "
-            "something");
+  EXPECT_EQ(NotesOf(scene, from_above),
+            Texts{"no way to grasp object keeps clear of everything: the open hand will "
+                  "push against something"});
+}
+
+TEST(ScriptPlayerTest, NotesAThingThatIsTooWideForTheStyle) {
+  Scene scene = MakeScene({});
+  scene.bodies[1].shapes = {{Box{{0.14, 0.20, 0.10}}, {}}};
+  ReachStep reach{"object", "wrap", Approach::kAbove};
+  EXPECT_EQ(NotesOf(scene, One(reach, 0.5)),
+            Texts{"style wrap opens 85 mm, and object is 140 mm wide there: the hand will "
+                  "not close around it"});
+  reach.offset_m = {-0.1, 0, 0.1};  // to miss on purpose
+  EXPECT_EQ(NotesOf(scene, One(reach, 0.5)), Texts{});
 }
 
 TEST(ScriptPlayerTest, ABeatLastsAsLongAsItsLongestStep) {
