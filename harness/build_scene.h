@@ -18,6 +18,10 @@ std::vector<physics::Body> PlaceBodies(const ScenarioEntry& entry, Complaints& c
 physics::Hand PlaceHand(const Named<HandActor>& actor, physics::HandModel model, int rate_hz,
                         Complaints& complaints);
 
+/// Complains about things, persons and hands out of the world: a run would end in its first tick.
+void CheckDistances(const ScenarioEntry& entry, const physics::Scene& scene,
+                    Complaints& complaints);
+
 /// Complains about things that stand in each other by more than a millimetre: bodies, and hands
 /// that start in one.
 void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints);

@@ -28,6 +28,8 @@ class StyleBuilder {
   std::vector<std::vector<double>> JointNumbers(const Located<PerDigit>& numbers,
                                                 bool one_is_enough, Concerned concerned);
   std::vector<std::vector<double>> FramesOf(const Named<StyleEntry>& style);
+  /// Complains about joints that are to go where their limits do not let them.
+  void CheckRanges(const Located<PerDigit>& frame, const char* unit);
   /// False after complaining about a digit that the hand does not have.
   bool CheckDigitNames(const Located<PerDigit>& numbers);
 
@@ -72,7 +74,8 @@ std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDig
       continue;
     }
     const std::size_t joints = JointsOf(digit.value);
-    std::vector<double> values = given->value.value;
+    std::vector<double> values;
+    for (const Located<double>& number : given->value.value) values.push_back(number.value);
     if (values.size() == 1 && one_is_enough) values.resize(joints, values.front());
     if (values.size() != joints) {
       complaints_.Add(given->value.where,
@@ -83,6 +86,26 @@ std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDig
     all[i] = std::move(values);
   }
   return all;
+}
+
+void StyleBuilder::CheckRanges(const Located<PerDigit>& frame, const char* unit) {
+  for (const auto& [name, name_where, targets] : frame.value) {
+    const auto digit = std::ranges::find(digits_, name, &Named<DigitEntry>::name);
+    if (digit == digits_.end() || targets.value.size() != JointsOf(digit->value)) continue;
+    for (std::size_t i = 0; i < targets.value.size(); ++i) {
+      const bool is_jaw = HasJaw(digit->value);
+      const LinkEntry& link =
+          is_jaw ? static_cast<const LinkEntry&>(*digit->value.jaw) : digit->value.phalanges[i];
+      const Eigen::Vector2d& range = link.range.value;
+      const double target = targets.value[i].value;
+      if (target >= range[0] && target <= range[1]) continue;
+      const std::string part = is_jaw ? name : name + "_" + digit->value.phalanges[i].name.value;
+      complaints_.Add(
+          targets.value[i].where,
+          fmt::format("{}: expected {} to {} {}, the range of the joint of '{}', found {}", name,
+                      range[0], range[1], unit, part, target));
+    }
+  }
 }
 
 /// From open to closed, one number per link; empty after complaining.
@@ -106,8 +129,14 @@ std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleEntry>&
   std::vector<std::vector<double>> frames(std::max(angles.size(), ways.size()));
   for (std::size_t i = 0; i < frames.size(); ++i) {
     std::vector<std::vector<double>> turned(digits_.size()), slid = turned;
-    if (!angles.empty()) turned = JointNumbers(angles[i], false, HasPhalanges);
-    if (!ways.empty()) slid = JointNumbers(ways[i], false, HasJaw);
+    if (!angles.empty()) {
+      turned = JointNumbers(angles[i], false, HasPhalanges);
+      CheckRanges(angles[i], "degrees");
+    }
+    if (!ways.empty()) {
+      slid = JointNumbers(ways[i], false, HasJaw);
+      CheckRanges(ways[i], "m");
+    }
     for (std::size_t k = 0; k < turned.size(); ++k) {
       for (const double angle : turned[k]) frames[i].push_back(angle * kRadPerDeg);
       frames[i].insert(frames[i].end(), slid[k].begin(), slid[k].end());
@@ -133,16 +162,20 @@ physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleEntry>& style) {
 }  // namespace
 
 void AddStyles(const std::vector<Named<DigitEntry>>& digits,
-               const std::vector<Named<StyleEntry>>& styles, Complaints& complaints,
+               const std::vector<Named<StyleEntry>>& styles, SameName rule, Complaints& complaints,
                std::vector<physics::GraspStyle>& to) {
   StyleBuilder builder(digits, complaints);
   for (const auto& style : styles) {
     physics::GraspStyle built = builder.BuildStyle(style);
     const auto same_name = std::ranges::find(to, style.name, &physics::GraspStyle::name);
-    if (same_name == to.end())
+    if (same_name == to.end()) {
       to.push_back(std::move(built));
-    else
+    } else if (rule == SameName::kTakesItsPlace) {
       *same_name = std::move(built);
+    } else {
+      complaints.Add(style.name_where, fmt::format("the hand has a style '{}' already", style.name),
+                     "one of its files gives it; only `grasps` of a scenario replace styles");
+    }
   }
 }
 

@@ -9,9 +9,12 @@
 
 namespace prehend::harness {
 
-/// Of a hand with these digits. A style of the same name as an earlier one takes its place.
+/// What becomes of a style of the same name as an earlier one.
+enum class SameName { kIsRefused, kTakesItsPlace };
+
+/// Of a hand with these digits.
 void AddStyles(const std::vector<Named<DigitEntry>>& digits,
-               const std::vector<Named<StyleEntry>>& styles, Complaints& complaints,
+               const std::vector<Named<StyleEntry>>& styles, SameName rule, Complaints& complaints,
                std::vector<physics::GraspStyle>& to);
 
 }  // namespace prehend::harness

@@ -11,6 +11,7 @@
 #include "harness/penetration.h"
 #include "physics/geometry.h"
 #include "physics/joint.h"
+#include "physics/run_checks.h"
 
 namespace prehend::harness {
 namespace {
@@ -127,6 +128,21 @@ Where WhereOf(const ScenarioEntry& entry, const physics::Scene& scene, std::size
 }
 
 }  // namespace
+
+void CheckDistances(const ScenarioEntry& entry, const physics::Scene& scene,
+                    Complaints& complaints) {
+  const auto check = [&](Where where, const Eigen::Vector3d& p_W_m) {
+    if (p_W_m.norm() <= physics::kMaxDistance_m) return;
+    complaints.Add(where,
+                   fmt::format("at_m: expected a place within {} m of the origin, found one {:.1f} "
+                               "m from it",
+                               physics::kMaxDistance_m, p_W_m.norm()));
+  };
+  for (std::size_t i = 0; i < entry.entities.size(); ++i)
+    check(WhereOf(entry, scene, i), scene.bodies[i].X_WB.p_m);
+  for (const auto& person : entry.persons) check(person.value.at_m.where, person.value.at_m.value);
+  for (const auto& hand : entry.hands) check(hand.value.at_m.where, hand.value.at_m.value);
+}
 
 void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene,
                    Complaints& complaints) {

@@ -2,6 +2,8 @@
 // Tested by tests/harness/scenario_fields_test.cc
 #include "harness/entity_fields.h"
 
+#include <fmt/format.h>
+
 #include "harness/abstract_fields.h"
 #include "harness/farthest.h"
 #include "harness/kinds.h"
@@ -22,7 +24,9 @@ void CheckRange(const YamlNode&, const JointEntry& joint, Complaints& complaints
   const Eigen::Vector2d& range = joint.range.value;
   if (range[0] <= 0 && range[1] >= 0 && range[0] < range[1]) return;
   complaints.Add(joint.range.where,
-                 "the range is [least, most] with 0, where it is placed, between or at them");
+                 fmt::format("expected a range [least, most] with 0, where it is placed, between "
+                             "or at them, found [{}, {}]",
+                             range[0], range[1]));
 }
 
 Record<JointEntry> JointRecord(const std::string& noun) {
@@ -151,10 +155,11 @@ void CheckEntity(const YamlNode& node, const EntityEntry& entity, Complaints& co
   const std::size_t wanted = entity.on && !abstract ? 2 : 3;
   if (!entity.in && !entity.grains && entity.at_m.value.size() != wanted) {
     complaints.Add(entity.at_m.where,
-                   wanted == 2
-                       ? "at_m: with 'on' expected [x, y]; z follows from the top of the support"
-                       : "at_m: expected [x, y, z], the centre",
-                   wanted == 2 || abstract ? "" : "or [x, y] together with 'on: SUPPORT'");
+                   wanted == 2 ? "at_m: with 'on' expected [x, y], found 3 numbers"
+                               : "at_m: expected [x, y, z], the centre, found 2 numbers",
+                   wanted == 2 ? "z follows from the top of the support"
+                   : abstract  ? ""
+                               : "or [x, y] together with 'on: SUPPORT'");
   }
 }
 

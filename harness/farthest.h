@@ -3,8 +3,10 @@
 // tests/harness/scenario_errors_test.cc
 #pragma once
 
+#include "physics/run_checks.h"
+
 namespace prehend::harness {
 
-inline constexpr double kFarthestM = 100;
+inline constexpr double kFarthestM = physics::kMaxDistance_m;
 
 }  // namespace prehend::harness

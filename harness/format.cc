@@ -217,6 +217,30 @@ Format<std::string> Word(const std::string& pattern, const std::string& wanted,
           .show = ShowString};
 }
 
+void CheckLeastMost(const std::string& key, const Eigen::Vector2d& range, Where where,
+                    Complaints& complaints) {
+  if (range[0] < range[1]) return;
+  complaints.Add(
+      where, fmt::format("{}: expected [least, most], found [{}, {}]", key, range[0], range[1]));
+}
+
+Format<Eigen::Vector4d> UnitQuaternion() {
+  const auto vector = Vector<4>(-1, 1);
+  return {.schema = vector.schema,
+          .read =
+              [vector](const YamlNode& node, Complaints& complaints, Eigen::Vector4d& value) {
+                constexpr double kTolerance = 0.01;  // two written digits
+                if (!vector.read(node, complaints, value)) return false;
+                if (std::abs(value.norm() - 1) <= kTolerance) return true;
+                complaints.Add(node.where,
+                               fmt::format("{}expected a unit quaternion [w, x, y, z], found one "
+                                           "of length {:.4g}",
+                                           LabelOf(node), value.norm()));
+                return false;
+              },
+          .show = vector.show};
+}
+
 Format<std::string> Identifier() { return Word("[a-z][a-z0-9_]*", "a name like 'milk_carton'"); }
 
 Format<std::string> Choice(std::vector<std::string> words) {

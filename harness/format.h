@@ -74,6 +74,10 @@ Format<std::int64_t> Integer64(std::int64_t lowest, std::int64_t highest);
 bool IsListOf(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most);
 bool IsMappingOf(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most);
 
+/// Complains "KEY: expected [least, most], found ..." unless the first of the two is smaller.
+void CheckLeastMost(const std::string& key, const Eigen::Vector2d& range, Where where,
+                    Complaints& complaints);
+
 template <class Int>
 Format<Int> Integer(Int lowest, Int highest) {
   const auto wide =
@@ -171,6 +175,9 @@ Format<Eigen::Matrix<double, N, 1>> Vector(double lowest, double highest) {
                 return Json(std::vector<double>(value.data(), value.data() + N));
               }};
 }
+
+/// [w, x, y, z] of length 1.
+Format<Eigen::Vector4d> UnitQuaternion();
 
 /// A mapping from names to values, in the order of the file.
 template <class T>

@@ -2,6 +2,12 @@
 // Tested by tests/harness/read_hand_model_test.cc
 #include "harness/hand_fields.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "harness/record.h"
 
 namespace prehend::harness {
@@ -32,7 +38,49 @@ Format<Vector3d> Direction() {
 }
 
 Format<PerDigit> PerDigitFormat(double lowest, double highest) {
-  return MapOf(Identifier(), WithPlace(ListOf(Number(lowest, highest), 1, 8)), 1, 16);
+  return MapOf(Identifier(), WithPlace(ListOf(WithPlace(Number(lowest, highest)), 1, 8)), 1, 16);
+}
+
+/// Names, each of them once.
+Format<std::vector<std::string>> DifferentNames(std::size_t most) {
+  const auto list = ListOf(Identifier(), 1, most);
+  return {
+      .schema = list.schema,
+      .read =
+          [list](const YamlNode& node, Complaints& complaints, std::vector<std::string>& names) {
+            if (!list.read(node, complaints, names)) return false;
+            bool good = true;
+            for (std::size_t i = 0; i < names.size(); ++i) {
+              const auto here = names.begin() + static_cast<std::ptrdiff_t>(i);
+              if (std::find(names.begin(), here, *here) == here) continue;
+              complaints.Add(node.children[i].where,
+                             fmt::format("{}: '{}' is given twice", node.key, *here));
+              good = false;
+            }
+            return good;
+          },
+      .show = list.show};
+}
+
+constexpr double kDegPerRad = 180 / std::numbers::pi;
+
+/// Between two lines, 0 to 90 degrees, of directions of length 1.
+double DegreesBetween(const Vector3d& a, const Vector3d& b) {
+  return std::acos(std::min(1.0, std::abs(a.dot(b)))) * kDegPerRad;
+}
+
+/// Complains unless `direction`, which `key` of the node gives, is across another one.
+void CheckAcross(const YamlNode& node, const char* key, const Vector3d& direction,
+                 const std::string& other_key, const Vector3d& other, Complaints& complaints,
+                 const std::string& hint) {
+  constexpr double kMostOff_deg = 1;  // two written digits
+  const double degrees = DegreesBetween(direction, other);
+  if (90 - degrees <= kMostOff_deg) return;
+  complaints.Add(node.Find(key)->where,
+                 fmt::format("{}: expected a direction at right angles to {}, found one at {:.3g} "
+                             "degrees to it",
+                             key, other_key, degrees),
+                 hint);
 }
 
 Format<PalmEntry> PalmFormat() {
@@ -111,8 +159,7 @@ Record<Link> LinkRecord(Record<Link> record, const char* strength, double strong
       .Required(range, Of<Link>(&LinkEntry::range), Vector<2>(-farthest, farthest),
                 "Joint limits [least, most].")
       .Check([key = std::string(range)](const YamlNode&, const Link& link, Complaints& complaints) {
-        if (link.range.value[0] >= link.range.value[1])
-          complaints.Add(link.range.where, key + ": expected [least, most]");
+        CheckLeastMost(key, link.range.value, link.range.where, complaints);
       });
 }
 
@@ -132,6 +179,20 @@ Format<JawEntry> JawFormat() {
   return LinkRecord(record, "strength_n", 1000, "range_m", 0.5).format();
 }
 
+/// A joint at the last part that turns it about its own length neither opens nor closes anything.
+void CheckLastJoint(const YamlNode& node, const DigitEntry& digit, Complaints& complaints) {
+  constexpr double kLeastOff_deg = 1;
+  if (digit.phalanges.empty()) return;
+  if (DegreesBetween(digit.phalanges.back().joint_axis, digit.direction) >= kLeastOff_deg) return;
+  const YamlNode& last = node.Find("phalanges")->children.back();
+  const YamlNode* axis = last.Find("joint_axis");
+  complaints.Add(axis ? axis->where : last.where,
+                 fmt::format("joint_axis: expected an axis across the direction of digit '{}', "
+                             "found one along it: the joint would move nothing",
+                             node.key),
+                 axis ? "" : "without joint_axis it is [0, 1, 0]");
+}
+
 Format<DigitEntry> DigitFormat() {
   using D = DigitEntry;
   return Record<D>("digit")
@@ -145,6 +206,7 @@ Format<DigitEntry> DigitFormat() {
                 "From the palm to the tip.")
       .Optional("jaw", &D::jaw, JawFormat(), "One stiff part that slides, instead of phalanges.")
       .ExactlyOneOf({"phalanges", "jaw"})
+      .Check(CheckLastJoint)
       .format();
 }
 
@@ -173,6 +235,20 @@ Record<GraspApproach> ApproachRecord(const std::string& noun) {
                 "H's origin stays this high above the object's lowest point; negative: below it.");
 }
 
+/// The grip closes across the way of arrival, and what is up is across it, too: else no turn of the
+/// hand suits.
+void CheckApproaches(const YamlNode& node, const StyleEntry& style, Complaints& complaints) {
+  const auto check_toward = [&](const char* key, const GraspApproach& approach) {
+    CheckAcross(*node.Find(key), "toward", approach.toward, "grip.axis", style.grip.axis,
+                complaints, "the hand arrives along toward and closes along grip.axis");
+  };
+  if (style.above) check_toward("above", *style.above);
+  if (!style.side) return;
+  check_toward("side", *style.side);
+  CheckAcross(*node.Find("side"), "up", style.side->up, "toward", style.side->toward, complaints,
+              "the hand arrives level, along toward, with up towards the sky");
+}
+
 Format<StyleEntry> StyleFormat() {
   using S = StyleEntry;
   return Record<S>("style")
@@ -198,6 +274,7 @@ Format<StyleEntry> StyleFormat() {
         complaints.Add(node.key_where, "style '" + node.key + "' has no approach",
                        "give 'above', 'side' or both");
       })
+      .Check(CheckApproaches)
       .format();
 }
 
@@ -218,8 +295,7 @@ Format<HandEntry> BuildHandFormat() {
   using H = HandEntry;
   return Record<H>("the hand")
       .Required("hand", &H::name, Identifier(), "Its name: that of the file without '.hand.yaml'.")
-      .Required("sensor_sets", &H::sensor_sets, ListOf(Identifier(), 1, 16),
-                "Groups of contact sensors.")
+      .Required("sensor_sets", &H::sensor_sets, DifferentNames(16), "Groups of contact sensors.")
       .Optional("ahead", &H::ahead, Direction(), "In H: where the region of interest lies.")
       .Optional("friction", &H::friction, Number(0, 5),
                 "Of its skin; multiplied with the object's.")

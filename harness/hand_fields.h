@@ -30,7 +30,7 @@ struct LinkEntry {
 };
 
 struct PhalanxEntry : LinkEntry {
-  std::string name;
+  Located<std::string> name;
   Eigen::Vector3d joint_axis = Eigen::Vector3d::UnitY();
 };
 
@@ -49,7 +49,7 @@ struct DigitEntry {
 };
 
 /// Numbers for the joints of digits, by the digit's name.
-using PerDigit = std::vector<Named<Located<std::vector<double>>>>;
+using PerDigit = std::vector<Named<Located<std::vector<Located<double>>>>>;
 
 struct GripEntry {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();

@@ -35,18 +35,6 @@ std::optional<std::string> RootAbove(fs::path folder) {
   }
 }
 
-/// What the files in `folder` with this ending are called without it, sorted.
-std::vector<std::string> NamesIn(const fs::path& folder, std::string_view ending) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const fs::directory_entry& file : fs::directory_iterator(folder, error)) {
-    const std::string name = file.path().filename().string();
-    if (name.ends_with(ending)) names.push_back(name.substr(0, name.size() - ending.size()));
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 /// The shortest of the names that contain a part; "" when none does, or when the part is of nearly
 /// all names.
 std::string ShortestWith(const std::string& part, const std::vector<std::string>& names) {
@@ -141,6 +129,17 @@ std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const st
   std::string near = grammar::NearestName(name, names);
   if (near.empty()) near = ShortestWith(name, names);
   return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
+}
+
+std::vector<std::string> NamesIn(const std::string& folder, std::string_view ending) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& file : fs::directory_iterator(folder, error)) {
+    const std::string name = file.path().filename().string();
+    if (name.ends_with(ending)) names.push_back(name.substr(0, name.size() - ending.size()));
+  }
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 std::string GrammarPath(const std::string& root, const std::string& name) {

@@ -47,6 +47,9 @@ std::string IdOf(const ScenarioFile& file);
 /// FindScenario() found nothing.
 std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);
 
+/// What the files in `folder` with this ending are called without it, sorted.
+std::vector<std::string> NamesIn(const std::string& folder, std::string_view ending);
+
 /// root/grammar/library/NAME.grammar and root/physics/library/NAME.hand.yaml.
 std::string GrammarPath(const std::string& root, const std::string& name);
 std::string HandPath(const std::string& root, const std::string& name);

@@ -56,10 +56,11 @@ class BvhReader {
     const auto frames = HeaderNumber("Frames:", 2, static_cast<double>(kMaxBvhFrames));
     if (!frames) return;
     const Place counted = at_;
-    if (*frames != std::floor(*frames)) return Complain(at_, "Frames: expected a whole number");
+    if (*frames != std::floor(*frames))
+      return Complain(at_, fmt::format("Frames: expected a whole number, found {}", *frames));
     const auto frame_time = HeaderNumber("Frame Time:", 0, kLongestFrame_s);
     if (!frame_time) return;
-    if (*frame_time <= 0) return Complain(at_, "Frame Time: 0 s would be no motion");
+    if (*frame_time <= 0) return Complain(at_, "Frame Time: expected a number above 0, found 0");
     bvh.frame_time_s = *frame_time;
     while (diagnostics.size() < kMostComplaints && NextLine()) TakeRow();
     if (diagnostics.empty() && static_cast<double>(bvh.rows.size()) != *frames)
@@ -93,8 +94,12 @@ class BvhReader {
   Place PlaceOf(const Word& word) const { return {line_, word.column}; }
 
   bool Wrong(const std::string& wanted) {
-    const std::string found =
-        words_.empty() ? "the end of the file" : fmt::format("'{}'", words_.front().text);
+    constexpr std::size_t kMostShown = 6;
+    std::string line;
+    for (std::size_t i = 0; i < std::min(words_.size(), kMostShown); ++i)
+      line += (i > 0 ? " " : "") + std::string(words_[i].text);
+    if (words_.size() > kMostShown) line += " ..";
+    const std::string found = line.empty() ? "the end of the file" : "'" + line + "'";
     Complain(at_, fmt::format("expected {}, found {}", wanted, found));
     return false;
   }

@@ -91,13 +91,18 @@ class CaptureReader {
                       .file = document_.sources.front().name,
                       .text = document_.sources.front().text};
     const double begin_ms = poses.front().timestamp.value;
+    double before_ms = begin_ms;
     for (const CapturedPose& pose : poses) {
       const double t_s = (pose.timestamp.value - begin_ms) * kSPerMs;
       if (!track.samples.empty() && t_s <= track.samples.back().t_s) {
-        complaints_.Add(pose.timestamp.where, "the timestamps must increase from pose to pose");
+        complaints_.Add(pose.timestamp.where,
+                        fmt::format("the timestamps must increase from pose to pose: {} ms comes "
+                                    "after {} ms",
+                                    pose.timestamp.value, before_ms));
         return {};
       }
       track.samples.push_back({t_s, ToOurAxes(pose), {}, pose.where.place});
+      before_ms = pose.timestamp.value;
     }
     AddTrigger(ReadPresses(*device, begin_ms, track.buttons), track);
     return track;

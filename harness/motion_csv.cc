@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/motion_track_test.cc
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -143,12 +144,22 @@ class CsvReader {
     };
     const auto quaternion = count({"qw", "qx", "qy", "qz"}),
                angles = count({"roll", "pitch", "yaw"});
+    const auto missing = [&](std::initializer_list<const char*> names) {
+      std::vector<std::string> all;
+      for (const char* name : names) {
+        if (!seen.contains(name)) all.push_back(name);
+      }
+      return fmt::format("{}", fmt::join(all, ", "));
+    };
     if (count({"t", "x", "y", "z"}) < 4)
-      Complain({line_, 1}, "the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm)");
+      Complain({line_, 1},
+               "the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm); there is none of " +
+                   missing({"t", "x", "y", "z"}));
     if (quaternion > 0 && angles > 0)
       Complain({line_, 1}, "an orientation is either qw,qx,qy,qz or roll_deg,pitch_deg,yaw_deg");
     else if (quaternion % 4 != 0)
-      Complain({line_, 1}, "a quaternion needs qw, qx, qy and qz");
+      Complain({line_, 1}, "a quaternion needs qw, qx, qy and qz; there is no " +
+                               missing({"qw", "qx", "qy", "qz"}));
     has_quaternion_ = quaternion == 4;
   }
 
@@ -189,22 +200,31 @@ class CsvReader {
     if (track.samples.empty()) first_t_s_ = sample.t_s;
     sample.t_s -= first_t_s_;
     if (!track.samples.empty() && sample.t_s <= track.samples.back().t_s)
-      return Complain(place_of("t"), "the times must increase from row to row");
+      return Complain(place_of("t"),
+                      fmt::format("the times must increase from row to row: {} s comes after {} s",
+                                  row["t"], first_t_s_ + track.samples.back().t_s));
     for (const char* axis : {"x", "y", "z"}) {
       if (std::abs(row[axis]) > kFarthestTrackM)
-        return Complain(place_of(axis), fmt::format("{} is beyond {} m", axis, kFarthestTrackM));
+        return Complain(place_of(axis),
+                        fmt::format("{}: {} m is beyond {} m", axis, row[axis], kFarthestTrackM),
+                        "are the units those that the header says?");
     }
     if (has_quaternion_) {
       const Eigen::Quaterniond q(row["qw"], row["qx"], row["qy"], row["qz"]);
       if (std::abs(q.norm() - 1) > kUnitTolerance)
-        return Complain(place_of("qw"), "qw, qx, qy, qz: expected a unit quaternion");
+        return Complain(
+            place_of("qw"),
+            fmt::format("qw, qx, qy, qz: expected a unit quaternion, found one of length {:.4g}",
+                        q.norm()));
       sample.X_RD.q = q.normalized();
     } else {
       sample.X_RD.q = FromRollPitchYaw({row["roll"], row["pitch"], row["yaw"]});
     }
     if (const auto trigger = row.find("trigger"); trigger != row.end()) {
       if (trigger->second < 0 || trigger->second > 1)
-        return Complain(place_of("trigger"), "trigger: expected a number from 0 to 1");
+        return Complain(
+            place_of("trigger"),
+            fmt::format("trigger: expected a number from 0 to 1, found {}", trigger->second));
       sample.trigger = trigger->second;
     }
     if (track.samples.size() == kMaxTrackSamples)

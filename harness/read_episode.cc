@@ -126,19 +126,13 @@ Format<LineEntry> LineFormat() {
   const Format<L> look = Record<L>("look")
                              .NamedByKey()
                              .Required("at_m", &L::at_m, Position(), "")
-                             .Optional("quat_wxyz", &L::quat_wxyz, Vector<4>(-1, 1), "")
+                             .Optional("quat_wxyz", &L::quat_wxyz, UnitQuaternion(), "")
                              .Optional("v_m_per_s", &L::v_m_per_s, Velocity(), "")
                              .Optional("w_rad_per_s", &L::w_rad_per_s, Velocity(), "")
                              .Optional("asleep", &L::asleep, Flag(), "")
                              .Optional("joint_position", &L::joint_position, Number(-1e4, 1e4), "")
                              .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
                              .Optional("gazes_at", &L::gazes_at, Name(), "")
-                             .Check([](const YamlNode&, const L& l, Complaints& complaints) {
-                               if (!l.quat_wxyz || std::abs(l.quat_wxyz->value.norm() - 1) < 0.01)
-                                 return;
-                               complaints.Add(l.quat_wxyz->where,
-                                              "quat_wxyz: expected a unit quaternion [w, x, y, z]");
-                             })
                              .format();
   using H = HandEntry;
   const Format<H> hand =
@@ -289,9 +283,10 @@ class EpisodeReader {
     ended_ = true;
     episode.end_tick = entry.end_tick.value;
     if (!episode.frames.empty() && episode.end_tick <= episode.frames.back().tick) {
-      complaints.Add(entry.end_tick.where,
-                     fmt::format("end_tick must be after the last frame, tick {}",
-                                 episode.frames.back().tick));
+      complaints.Add(
+          entry.end_tick.where,
+          fmt::format("end_tick: expected more than {}, the tick of the last frame, found {}",
+                      episode.frames.back().tick, episode.end_tick));
     }
   }
 

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
+#include <set>
 
 #include "harness/build_styles.h"
 #include "harness/hand_fields.h"
+#include "harness/library_paths.h"
 #include "harness/record.h"
 
 namespace prehend::harness {
@@ -44,7 +46,7 @@ class HandBuilder {
     model.rotation = entry_.gains.rotation;
     model.driver = entry_.driver;
     for (const auto& digit : entry_.digits) AddDigit(digit, model.links);
-    AddStyles(entry_.digits, entry_.styles, complaints_, model.styles);
+    AddStyles(entry_.digits, entry_.styles, SameName::kIsRefused, complaints_, model.styles);
     return model;
   }
 
@@ -81,8 +83,11 @@ void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::
   const int sensor_set = SensorSet(digit.value.sensor_set);
   Eigen::Vector3d pivot_m = digit.value.base_m;
   int parent = -1;
-  const auto add = [&](physics::HandLink link, const std::string& name,
+  const auto add = [&](physics::HandLink link, const std::string& name, Where where,
                        const Eigen::Vector3d& joint_axis) {
+    if (std::ranges::count(links, name, &physics::HandLink::name) > 0)
+      complaints_.Add(where, fmt::format("a second part of the hand is called '{}'", name),
+                      "a part is called like its digit, a phalanx DIGIT_NAME");
     link.name = name;
     link.parent = parent;
     link.pivot_m = pivot_m;
@@ -93,10 +98,11 @@ void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::
     pivot_m += digit.value.direction * links.back().length_m;
   };
   for (const PhalanxEntry& phalanx : digit.value.phalanges)
-    add(LinkOf(phalanx, kRadPerDeg, sensor_set), digit.name + "_" + phalanx.name,
-        phalanx.joint_axis);
+    add(LinkOf(phalanx, kRadPerDeg, sensor_set), digit.name + "_" + phalanx.name.value,
+        phalanx.name.where, phalanx.joint_axis);
   if (!digit.value.jaw) return;
-  add(LinkOf(*digit.value.jaw, 1, sensor_set), digit.name, digit.value.jaw->slides);
+  add(LinkOf(*digit.value.jaw, 1, sensor_set), digit.name, digit.name_where,
+      digit.value.jaw->slides);
   links.back().slides = true;
 }
 
@@ -109,6 +115,20 @@ void CheckName(const std::string& path, const char* ending, const char* key,
       name.where,
       fmt::format("{}: the name is '{}', but the file is called '{}'", key, name.value, file),
       "rename one of them");
+}
+
+/// The path of the file that a hand's file names, in its own folder; nothing after complaining.
+std::optional<std::string> FindBeside(const std::string& path, const char* ending, const char* key,
+                                      const Located<std::string>& name, Complaints& complaints) {
+  const fs::path folder = fs::path(path).parent_path();
+  const fs::path found = folder / (name.value + ending);
+  std::error_code error;
+  if (fs::exists(found, error)) return found.string();
+  complaints.AddUnknownName(name.where,
+                            fmt::format("{}: there is no {}{} beside this file, in {}", key,
+                                        name.value, ending, folder.empty() ? "." : folder.string()),
+                            name.value, NamesIn(folder.empty() ? "." : folder, ending));
+  return std::nullopt;
 }
 
 /// Reads a hand's files, and keeps account of them.
@@ -131,7 +151,8 @@ class HandReader {
   }
   ReadResult<HandModel> ReadHand(const std::string& path, const YamlDocument& document);
   ReadResult<HandModel> ReadMirror(const std::string& path, const YamlDocument& document);
-  Diagnostics AddGrasps(const std::string& path, const HandEntry& hand, HandModel& model);
+  Diagnostics AddGrasps(const std::string& path, const HandEntry& hand, SameName same_name,
+                        HandModel& model);
 
   const std::vector<std::string>& more_grasps_;
   std::vector<std::string>* files_;
@@ -139,14 +160,14 @@ class HandReader {
 
 /// The styles of a grasp file. Returns what is wrong in it.
 Diagnostics HandReader::AddGrasps(const std::string& path, const HandEntry& hand,
-                                  HandModel& model) {
+                                  SameName same_name, HandModel& model) {
   ReadResult<YamlDocument> document = ReadFile(path);
   if (!document.value) return std::move(document.diagnostics);
   Complaints complaints(*document.value);
   GraspsEntry entry;
   if (GraspsFormat().read(document.value->root, complaints, entry)) {
     CheckName(path, kGraspsEnding, "grasps", entry.name, complaints);
-    AddStyles(hand.digits, entry.styles, complaints, model.styles);
+    AddStyles(hand.digits, entry.styles, same_name, complaints, model.styles);
   }
   return complaints.Sorted();
 }
@@ -159,20 +180,19 @@ ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDo
   CheckName(path, kHandEnding, "hand", entry.name, complaints);
   HandModel model = HandBuilder(entry, complaints).Build();
   Diagnostics in_grasps;
-  const auto add = [&](const std::string& grasps) {
-    for (auto& diagnostic : AddGrasps(grasps, entry, model))
+  const auto add = [&](const std::string& grasps, SameName same_name) {
+    for (auto& diagnostic : AddGrasps(grasps, entry, same_name, model))
       in_grasps.push_back(std::move(diagnostic));
   };
+  std::set<std::string> seen;
   for (const auto& name : entry.grasps) {
-    const auto grasps = fs::path(path).parent_path() / (name.value + kGraspsEnding);
-    std::error_code error;
-    if (fs::exists(grasps, error))
-      add(grasps.string());
-    else
-      complaints.Add(name.where, fmt::format("grasps: there is no {} beside the hand's file",
-                                             grasps.filename().string()));
+    if (!seen.insert(name.value).second) {
+      complaints.Add(name.where, fmt::format("grasps: '{}' is given twice", name.value));
+    } else if (const auto grasps = FindBeside(path, kGraspsEnding, "grasps", name, complaints)) {
+      add(*grasps, SameName::kIsRefused);
+    }
   }
-  for (const std::string& grasps : more_grasps_) add(grasps);
+  for (const std::string& grasps : more_grasps_) add(grasps, SameName::kTakesItsPlace);
   Diagnostics diagnostics = complaints.Sorted();
   diagnostics.insert(diagnostics.end(), in_grasps.begin(), in_grasps.end());
   if (!diagnostics.empty()) return {std::nullopt, std::move(diagnostics)};
@@ -190,16 +210,17 @@ ReadResult<HandModel> HandReader::ReadMirror(const std::string& path,
     complaints.Add(entry.mirror_of.where, "a hand cannot mirror itself");
   if (!complaints.empty()) return {std::nullopt, complaints.Sorted()};
 
-  const std::string original_path =
-      (fs::path(path).parent_path() / (entry.mirror_of.value + kHandEnding)).string();
-  ReadResult<YamlDocument> original_file = ReadFile(original_path);
+  const auto original_path =
+      FindBeside(path, kHandEnding, "mirror_of", entry.mirror_of, complaints);
+  if (!original_path) return {std::nullopt, complaints.Sorted()};
+  ReadResult<YamlDocument> original_file = ReadFile(*original_path);
   if (!original_file.value) return {std::nullopt, std::move(original_file.diagnostics)};
   if (original_file.value->root.Find("mirror_of")) {
     complaints.Add(entry.mirror_of.where,
                    fmt::format("'{}' is itself a mirror image", entry.mirror_of.value));
     return {std::nullopt, complaints.Sorted()};
   }
-  ReadResult<HandModel> original = ReadHand(original_path, *original_file.value);
+  ReadResult<HandModel> original = ReadHand(*original_path, *original_file.value);
   if (original.value) {
     original.value = physics::Mirrored(std::move(*original.value));
     original.value->name = entry.name.value;

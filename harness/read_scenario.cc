@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "harness/build_joints.h"
 #include "harness/build_persons.h"
@@ -68,12 +70,26 @@ physics::HandModel FindHand(const std::string& file, const HandActor& actor,
     return (path(file).parent_path() / other).string();
   };
   std::vector<std::string> grasps;
-  for (const auto& more : actor.grasps) grasps.push_back(beside(more.value));
+  std::set<path> seen;
+  for (const auto& more : actor.grasps) {
+    grasps.push_back(beside(more.value));
+    if (!seen.insert(path(grasps.back()).lexically_normal()).second)
+      complaints.Add(more.where, fmt::format("grasps: '{}' is given twice", more.value));
+  }
   auto model = library.read_hand(is_file ? beside(hand.value) : hand.value, grasps);
   if (model.value) return std::move(*model.value);
-  const std::string with = grasps.empty() ? "" : " with its grasps";
-  complaints.Add(hand.where,
-                 fmt::format("hand: '{}'{} cannot be used, see below", hand.value, with));
+  // Blamed is the file where something is wrong. What has no place could not be opened.
+  const auto blame = [&](const char* key, const Located<std::string>& named, bool is_open) {
+    complaints.Add(named.where, fmt::format("{}: '{}' cannot be used, see below", key, named.value),
+                   is_open ? "" : "its path starts at the folder of the scenario");
+  };
+  std::map<std::string, bool> bad;  ///< and whether they could be opened
+  for (const grammar::Diagnostic& found : model.diagnostics) bad[found.file] = found.place.line > 0;
+  for (std::size_t i = 0; i < grasps.size(); ++i) {
+    const auto file_of_grasps = bad.extract(grasps[i]);
+    if (file_of_grasps) blame("grasps", actor.grasps[i], file_of_grasps.mapped());
+  }
+  if (!bad.empty()) blame("hand", hand, !is_file || bad.begin()->second);
   in_hand_files.insert(in_hand_files.end(), model.diagnostics.begin(), model.diagnostics.end());
   return {};
 }
@@ -142,6 +158,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   CheckKinds(entry, complaints);
   CheckVariedFields(document, entry.vary, complaints);
   if (scene.world.planar) CheckPlanar(entry, scene, complaints);
+  if (complaints.empty()) CheckDistances(entry, scene, complaints);
   if (complaints.empty()) CheckOverlaps(entry, scene, complaints);
   if (!complaints.empty()) return AllOf(complaints, in_other_files);
 

@@ -11,6 +11,7 @@
 
 #include "harness/body_track.h"
 #include "harness/build_scene.h"
+#include "harness/farthest.h"
 #include "harness/motion_track.h"
 #include "physics/skeleton.h"
 
@@ -36,12 +37,21 @@ bool Cut(const RecordingEntry& entry, Track& track, Complaints& complaints) {
   auto& samples = track.samples;
   const double last_s = samples.back().t_s;
   const double to_s = entry.to_s ? entry.to_s->value : last_s;
+  constexpr double kRounded_s = 0.005;  // as lengths are written
+  if (to_s > last_s + kRounded_s) {
+    complaints.Add(entry.to_s->where,
+                   fmt::format("to_s: expected at most {:.3f}, the length of the "
+                               "recording, found {}",
+                               last_s, to_s),
+                   "without to_s it is played to its end");
+    return false;
+  }
   std::erase_if(samples, [&](const auto& s) { return s.t_s < entry.from_s.value || s.t_s > to_s; });
   for (auto& sample : samples) sample.t_s -= entry.from_s.value;
   if (samples.size() >= 2) return true;
   const Where where = entry.to_s ? entry.to_s->where : entry.from_s.where;
   complaints.Add(where,
-                 fmt::format("between {} and {} s the recording has {} samples, of at least 2",
+                 fmt::format("between {} and {} s the recording has {} of at least 2 samples",
                              entry.from_s.value, to_s, samples.size()),
                  fmt::format("it takes {:.3f} s", last_s));
   return false;
@@ -131,7 +141,15 @@ class RecordingReader {
     if (!CheckButton(entry, *track.value)) return;
     if (!Cut(entry, *track.value, complaints_)) return;
     if (!Accept(entry, CheckTrack(*track.value, {entry.most_gap_s, entry.most_jump_m}))) return;
-    if (HasRoom(entry, track.value->samples.size())) entry.poses = Place(entry, *track.value);
+    if (!HasRoom(entry, track.value->samples.size())) return;
+    entry.poses = Place(entry, *track.value);
+    for (std::size_t i = 0; i < entry.poses.size(); ++i) {
+      if (entry.poses[i].X_WH.p_m.norm() <= kFarthestM) continue;
+      return Refuse(entry, {grammar::DiagnosticAt(
+                               track.value->file, track.value->text, track.value->samples[i].place,
+                               fmt::format("here it is beyond {} m from the origin", kFarthestM),
+                               "start_at_m shifts the whole motion")});
+    }
   }
 
  private:
@@ -154,10 +172,10 @@ class RecordingReader {
     if (!HasRoom(entry, track.value->samples.size())) return;
     entry.figures = Place(entry, *track.value, person->value, scale);
     for (std::size_t i = 0; i < entry.figures.size(); ++i) {
-      if (entry.figures[i].figure.hips_W_m.cwiseAbs().maxCoeff() <= kFarthestTrackM) continue;
+      if (entry.figures[i].figure.hips_W_m.norm() <= kFarthestM) continue;
       return Refuse(entry, {grammar::DiagnosticAt(
                                track.value->file, track.value->text, track.value->samples[i].place,
-                               fmt::format("the hips are beyond {} m", kFarthestTrackM),
+                               fmt::format("the hips are beyond {} m", kFarthestM),
                                "in which units is the file? Say so with scale: metres per unit")});
     }
   }

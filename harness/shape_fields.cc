@@ -2,6 +2,8 @@
 // Tested by tests/harness/scenario_fields_test.cc
 #include "harness/shape_fields.h"
 
+#include <fmt/format.h>
+
 #include "harness/record.h"
 
 namespace prehend::harness {
@@ -29,7 +31,8 @@ Format<Round> RoundFormat(const std::string& noun, const std::string& length_doc
 void CheckWall(const YamlNode& node, double wall_m, double narrow_m, Complaints& complaints) {
   if (2 * wall_m < narrow_m) return;
   const YamlNode* wall = node.Find("wall_m");
-  complaints.Add(wall ? wall->where : node.where, "wall_m: such walls leave no room inside",
+  complaints.Add(wall ? wall->where : node.where,
+                 fmt::format("wall_m: walls of {} leave no room inside", wall_m),
                  "walls are thinner than half of the narrowest side");
 }
 
@@ -109,7 +112,9 @@ Format<physics::Mug> MugFormat() {
         CheckWall(node, mug.wall_m, 2 * std::min(mug.radius_m, mug.height_m), complaints);
         constexpr double kLeastHandleM = 0.011;  // its bar is 10 mm thick
         if (mug.handle_m > 0 && mug.handle_m < kLeastHandleM) {
-          complaints.Add(node.Find("handle_m")->where, "handle_m: expected 0, or at least 0.011");
+          complaints.Add(
+              node.Find("handle_m")->where,
+              fmt::format("handle_m: expected 0, or at least 0.011, found {}", mug.handle_m));
         }
       })
       .format();

@@ -82,17 +82,10 @@ Format<PoseEntry> PoseFormat() {
                 "World coordinates of the palm's centre.")
       .Optional("rpy_deg", &P::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw; default is no rotation.")
-      .Optional("quat_wxyz", &P::quat_wxyz, Vector<4>(-1, 1),
+      .Optional("quat_wxyz", &P::quat_wxyz, UnitQuaternion(),
                 "Unit quaternion [w, x, y, z], instead of rpy_deg.")
       .Optional("trigger", &P::trigger, Number(0, 1), "Grip at that time; default: stays.")
       .AtMostOneOf({"rpy_deg", "quat_wxyz"})
-      .Check([](const YamlNode& node, const P& pose, Complaints& complaints) {
-        constexpr double kUnitTolerance = 0.01;  // two written digits
-        if (pose.quat_wxyz && std::abs(pose.quat_wxyz->norm() - 1) > kUnitTolerance) {
-          complaints.Add(node.Find("quat_wxyz")->where,
-                         "quat_wxyz: expected a unit quaternion [w, x, y, z]");
-        }
-      })
       .format();
 }
 
@@ -105,9 +98,13 @@ Format<StepEntry> PosesFormat() {
           .Optional("style", &PosesEntry::style, Identifier(), kStyleDoc)
           .Check([](const YamlNode& node, const PosesEntry& step, Complaints& complaints) {
             for (std::size_t i = 1; i < step.poses.size(); ++i) {
-              if (step.poses[i].t_s > step.poses[i - 1].t_s) continue;
+              const double before_s = step.poses[i - 1].t_s, t_s = step.poses[i].t_s;
+              if (t_s > before_s) continue;
               complaints.Add(node.Find("poses")->children[i].Find("t_s")->where,
-                             "t_s must increase from pose to pose");
+                             fmt::format("t_s: expected more than {}, when the pose before is, "
+                                         "found {}",
+                                         before_s, t_s),
+                             "t_s counts from the beginning of the step, not from the pose before");
             }
           })
           .format());

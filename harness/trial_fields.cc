@@ -108,12 +108,14 @@ Format<VariationEntry> VariationFormat() {
           const auto& given = variation.uniform ? variation.uniform
                               : variation.plus  ? variation.plus
                                                 : variation.times;
-          if ((*given)[0] > (*given)[1])
-            complaints.Add(written->where, std::string(key) + ": expected [least, most]");
+          if ((*given)[0] != (*given)[1]) CheckLeastMost(key, *given, written->where, complaints);
         }
         if (variation.normal && (*variation.normal)[1] < 0)
-          complaints.Add(node.Find("normal")->where,
-                         "normal: expected [mean, deviation], and no deviation below 0");
+          complaints.Add(
+              node.Find("normal")->where,
+              fmt::format("normal: expected [mean, deviation], and no deviation below 0, "
+                          "found [{}, {}]",
+                          (*variation.normal)[0], (*variation.normal)[1]));
       })
       .format();
 }

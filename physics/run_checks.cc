@@ -11,8 +11,6 @@ namespace {
 
 /// Nothing that a hand throws is faster; an exploding contact is.
 constexpr double kMaxSpeed_m_per_s = 50;
-/// Things that fell past the table are far away by then.
-constexpr double kMaxDistance_m = 20;
 /// Touching bodies overlap by tenths of a millimetre; this much is a tunnel or a bad start.
 constexpr double kMaxPenetration_m = 0.02;
 

@@ -11,6 +11,9 @@
 
 namespace prehend::physics {
 
+/// From the origin. Things that fell past the table are far away by then.
+inline constexpr double kMaxDistance_m = 20;
+
 struct RunProblem {
   std::string entity;
   std::string reason;

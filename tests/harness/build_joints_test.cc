@@ -106,7 +106,8 @@ TEST(BuildJoints, RefusesWhatCannotBe) {
        "5:87: fixed_to: 'chest' never moves | give 'drawer' 'fixed: true' instead\n"},
       {"empty_range",
        Furniture("slider: {to: chest, axis: [1, 0, 0], range_m: [0.1, 0.3]}", kFixed),
-       "5:123: the range is [least, most] with 0, where it is placed, between or at them\n"},
+       "5:123: expected a range [least, most] with 0, where it is placed, between or at them, "
+       "found [0.1, 0.3]\n"},
       {"no_axis", Furniture("slider: {to: chest, axis: [0, 0, 0], range_m: [0, 0.3]}", kFixed),
        "5:103: axis: expected a direction other than [0, 0, 0]\n"},
       {"surface", Furniture(kSlider, "fixed_to: drawer, friction: 0.5"),
@@ -119,7 +120,7 @@ TEST(BuildJoints, RefusesWhatCannotBe) {
       {"thick_walls",
        "scenario: probe\nshows: a tray\nentities:\n"
        "  tray: {fixed: true, tray: {size_m: [0.3, 0.3, 0.05], wall_m: 0.2}, at_m: [0, 0, 0]}\n",
-       "4:64: wall_m: such walls leave no room inside | walls are thinner than half of the "
+       "4:64: wall_m: walls of 0.2 leave no room inside | walls are thinner than half of the "
        "narrowest side\n"},
       {"no_joint_to_follow",
        Furniture(kSlider, kFixed,

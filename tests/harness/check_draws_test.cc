@@ -57,9 +57,9 @@ TEST(CheckDraws, NoFieldIsVariedTwice) {
 TEST(CheckDraws, BoundsHaveToBeReadable) {
   const std::pair<const char*, const char*> cases[] = {
       {"- {fields: [entities.milk.mass_kg], uniform: [1, 0]}",
-       "16:48: uniform: expected [least, most]\n"},
+       "16:48: uniform: expected [least, most], found [1, 0]\n"},
       {"- {fields: [entities.milk.mass_kg], normal: [1, -1]}",
-       "16:47: normal: expected [mean, deviation], and no deviation below 0\n"},
+       "16:47: normal: expected [mean, deviation], and no deviation below 0, found [1, -1]\n"},
       {"- {fields: [entities.milk.mass_kg], uniform: [-1, 0.5]}",
        "16:49: with entities.milk.mass_kg=-1.000000: mass_kg: expected a number from 0.001 to "
        "1000, found "

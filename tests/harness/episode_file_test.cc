@@ -96,7 +96,7 @@ TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
   EXPECT_EQ(Complaint("{\"tick\": 1, \"toches\": []}\n"),
             "2:13: unknown key 'toches' in a frame | did you mean 'touches'?\n");
   EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"end_tick\": 1}\n"),
-            "3:14: end_tick must be after the last frame, tick 1\n");
+            "3:14: end_tick: expected more than 1, the tick of the last frame, found 1\n");
   EXPECT_NE(Complaint("{\"tick\": 1, \"looks\": {\"cup\": {\"at_m\": [0, 0, 1e99]}}}\n")
                 .find(" at_m[2]: expected a number"),
             std::string::npos);

@@ -86,16 +86,16 @@ INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
                                      "m.csv:1:3: no column is called '0' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
                                      "m.csv:1:5: no column is called '0' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
                                      "m.csv:1:7: no column is called '1' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"},
-    BadCsv{"incomplete", "t_s,x_m,y_m\n0,0,0\n", "m.csv:1:1: the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm)\n"},
-    BadCsv{"half_quaternion", "t_s,x_m,y_m,z_m,qw,qx\n0,0,0,0,1,0\n", "m.csv:1:1: a quaternion needs qw, qx, qy and qz\n"},
+    BadCsv{"incomplete", "t_s,x_m,y_m\n0,0,0\n", "m.csv:1:1: the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm); there is none of z\n"},
+    BadCsv{"half_quaternion", "t_s,x_m,y_m,z_m,qw,qx\n0,0,0,0,1,0\n", "m.csv:1:1: a quaternion needs qw, qx, qy and qz; there is no qy, qz\n"},
     BadCsv{"two_orientations", "t_s,x_m,y_m,z_m,qw,qx,qy,qz,yaw_deg\n0,0,0,0,1,0,0,0,0\n", "m.csv:1:1: an orientation is either qw,qx,qy,qz or roll_deg,pitch_deg,yaw_deg\n"},
     BadCsv{"word", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0, abc,0\n", "m.csv:3:6: expected a number, found 'abc'\n"},
     BadCsv{"nan", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,nan,0,0\n", "m.csv:3:3: expected a number, found 'nan'\n"},
     BadCsv{"short_row", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0\n", "m.csv:3:5: expected 4 values as in the header, found 3\n"},
-    BadCsv{"backwards", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0,0\n0.5,0,0,0\n", "m.csv:4:1: the times must increase from row to row\n"},
-    BadCsv{"far", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0,1000\n", "m.csv:3:7: z is beyond 100 m\n"},
-    BadCsv{"no_unit_quaternion", "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,1,0,0\n1,0,0,0,1,0,0,0\n", "m.csv:2:9: qw, qx, qy, qz: expected a unit quaternion\n"},
-    BadCsv{"trigger", "t_s,x_m,y_m,z_m,trigger\n0,0,0,0,0\n1,0,0,0,1.5\n", "m.csv:3:9: trigger: expected a number from 0 to 1\n"},
+    BadCsv{"backwards", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0,0\n0.5,0,0,0\n", "m.csv:4:1: the times must increase from row to row: 0.5 s comes after 1 s\n"},
+    BadCsv{"far", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0,1000\n", "m.csv:3:7: z: 1000 m is beyond 100 m | are the units those that the header says?\n"},
+    BadCsv{"no_unit_quaternion", "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,1,0,0\n1,0,0,0,1,0,0,0\n", "m.csv:2:9: qw, qx, qy, qz: expected a unit quaternion, found one of length 1.414\n"},
+    BadCsv{"trigger", "t_s,x_m,y_m,z_m,trigger\n0,0,0,0,0\n1,0,0,0,1.5\n", "m.csv:3:9: trigger: expected a number from 0 to 1, found 1.5\n"},
     BadCsv{"one_row", "t_s,x_m,y_m,z_m\n0,0,0,0\n", "m.csv:2:1: 1 rows; a motion has at least 2\n"}),
     [](const auto& test) { return test.param.name; });
 // clang-format on
@@ -161,7 +161,8 @@ TEST(MotionCaptureTest, Refuses) {
   std::string text = kCapture;
   text.replace(text.find("\"timestamp\": 1200"), 17, "\"timestamp\": 1100");
   EXPECT_EQ(complaints(text, "right"),
-            "m.json:4:100: the timestamps must increase from pose to pose\n");
+            "m.json:4:100: the timestamps must increase from pose to pose: 1100 ms comes after "
+            "1100 ms\n");
   EXPECT_EQ(complaints("{\"right\": [", "right"),
             "m.json:1:1: not valid JSON: a '[' before this is not closed | each '[' needs its ']', "
             "each '{' its '}'\n");

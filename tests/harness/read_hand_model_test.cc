@@ -86,10 +86,11 @@ TEST(ReadHandModelTest, MistakesAreNamedAtTheirPlace) {
       {"index: [25, 15, 5]", "index: [25, 15]", "expected 3 numbers"},
       {"index: [25, 15, 5]", "indes: [25, 15, 5]", "no digit 'indes'"},
       {"direction: [1, 0, 0]", "direction: [0, 0, 0]", "a direction other than"},
-      {"range_deg: [-20, 95]", "range_deg: [95, -20]", "[least, most]"},
+      {"range_deg: [-20, 95]", "range_deg: [95, -20]",
+       "range_deg: expected [least, most], found [95, -20]"},
       {"stiffness: 0.2", "stiffnes: 0.2", "stiffnes"},
       {"grasps: [human]", "grasps: [humen]",
-       "there is no humen.grasps.yaml beside the hand's file"},
+       "grasps: there is no humen.grasps.yaml beside this file, in "},
       {"grasps: [human]", "", "the hand has no style of grasp"},
       {"grasps: human", "grasps: people",
        "grasps: the name is 'people', but the file is called 'human.grasps.yaml'"},
@@ -114,7 +115,8 @@ TEST(ReadHandModelTest, JawsSlideAndAreCheckedAlike) {
   EXPECT_EQ(hand.value->styles[0].frames[1][0], 0.012) << "metres";
   const Mistake mistakes[] = {
       {"- {post: [0], jaw: [0]}", "- {post: [0]}", "there is nothing for digit 'jaw'"},
-      {"range_m: [0, 0.045]", "range_m: [0.045, 0]", "range_m: expected [least, most]"},
+      {"range_m: [0, 0.045]", "range_m: [0.045, 0]",
+       "range_m: expected [least, most], found [0.045, 0]"},
       {"    frames_m:", "    frames_deg:", "style 'parallel' has no 'frames_m'"},
       {"strength_n: 45", "strength_nm: 45", "strength_n"},
       {"slides: [1, 0, 0]", "slides: [0, 0, 0]", "a direction other than"},

@@ -162,8 +162,9 @@ TEST(ReadScenario, LimitsOnTheWhole) {
 TEST(ReadScenario, TenThousandEntitiesAreReadAndCheckedQuickly) {
   std::string entities;
   for (std::size_t i = 0; i < kMaxEntities - 2; ++i) {
-    entities += "  e" + std::to_string(i) + ": {fixed: true, sphere: {radius_m: 0.1}, at_m: [" +
-                std::to_string(i % 100) + ", " + std::to_string(i / 100 - 50.0) + ", 5]}\n";
+    entities += "  e" + std::to_string(i) + ": {fixed: true, sphere: {radius_m: 0.05}, at_m: [" +
+                std::to_string(0.12 * static_cast<double>(i % 100)) + ", " +
+                std::to_string(0.12 * static_cast<double>(i / 100)) + ", 5]}\n";
   }
   EXPECT_EQ(Read(ProbeWith("actors:\n", entities + "actors:\n")).scene.bodies.size(), kMaxEntities);
   entities += "  one_too_many: {fixed: true, sphere: {radius_m: 0.1}, at_m: [0, 0, 9]}\n";
