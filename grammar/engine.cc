@@ -27,7 +27,10 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
                            .lasting = history_.AtLeastTicks(rule.lasting_s),
                            .idle = history_.AtMostTicks(rule.idle_s),
                            .back = history_.AtMostTicks(rule.back_s),
-                           .within = rule.within_s < 0 ? -1 : history_.AtMostTicks(rule.within_s)});
+                           .within = rule.within_s < 0 ? -1
+                                     : rule.absence    ? history_.AtLeastTicks(rule.within_s)
+                                                       : history_.AtMostTicks(rule.within_s),
+                           .in_time = history_.AtMostTicks(rule.within_s)});
     // A requirement or an attribute is asked for where the run ended, when its gap is too long.
     const double waits_s =
         rule.requirement == kNone && rule.attributes.empty() ? 0 : rule.bridging_s;

@@ -57,7 +57,8 @@ class Engine {
     Tick lasting = 0;
     Tick idle = 0;
     Tick back = 0;
-    Tick within = -1;
+    Tick within = -1;  ///< the deadline
+    Tick in_time = 0;  ///< what comes so late is still in time
   };
   /// A lane to look at when this tick comes, and perhaps for nothing.
   struct Alarm {

@@ -176,7 +176,8 @@ bool Engine::MeetDeadline(Lane& lane, Moment now) {
     lane.open = false;
     return true;
   }
-  if (now.tick == deadline && now.frame <= history_.now()) {  // just in time
+  const bool just_in_time = now.tick - lane.begin.tick <= TicksOf(lane).in_time;
+  if (just_in_time && now.frame <= history_.now()) {
     const Kleene comes = evaluator_.Truth(rule.second, {lane, now.frame});
     if (comes != Kleene::kFalse) return comes == Kleene::kTrue;
   }

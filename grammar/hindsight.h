@@ -34,6 +34,8 @@ class Hindsight {
   Tick TickOf(FrameNumber frame) const;
   /// The last frame at or before the tick; the first one if there is none.
   FrameNumber FrameAt(Tick tick) const;
+  /// So many seconds in whole ticks, rounded down.
+  Tick AtMostTicks(double seconds) const { return engine_.history().AtMostTicks(seconds); }
 
   /// The binding of a rule, whether or not anything ever happened to it; kNone if an entity's class
   /// does not fit.

@@ -38,7 +38,7 @@ const Reason* FirstFailure(const Reasons& reasons) {
 
 MissingReasons::Window MissingReasons::Around(FrameNumber frame) {
   const Tick tick = past_.TickOf(frame);
-  const Tick around = grammar::Tick(kAround_s * static_cast<double>(past_.cast().ticks_per_second));
+  const Tick around = past_.AtMostTicks(kAround_s);
   return {past_.FrameAt(tick - around), past_.FrameAt(tick + around), frame};
 }
 
@@ -133,7 +133,7 @@ double MissingReasons::RunCloseness(const Fate& fate) {
 std::string MissingReasons::HowLate(const Fate& fate) {
   const Rule& rule = past_.RuleOf(fate.lane);
   const Tick per_second = past_.cast().ticks_per_second;
-  const auto within = static_cast<Tick>(rule.within_s * static_cast<double>(per_second));
+  const Tick within = past_.AtMostTicks(rule.within_s);
   for (FrameNumber frame = fate.span.begin.frame + 1; frame < past_.frames(); ++frame) {
     const Tick late = past_.TickOf(frame) - fate.span.begin.tick - within;
     if (late <= 0 ||

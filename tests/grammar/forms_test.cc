@@ -50,6 +50,19 @@ TEST(Forms, WhatComesAtTheDeadlineIsInTime) {
   EXPECT_EQ(WatchTouch(kMissed, {0, 10, 26}, 26).size(), 1u);
 }
 
+// "From A to t later" is not over before t is, and what comes later than t is not in time.
+TEST(Forms, ADeadlineBetweenTwoTicksIsTheLaterOne) {
+  const std::string missed =
+      "event missed(h: Hand, c: Cup) from touching(h, c) begins without touching(h, c) ends within "
+      "24.6 ms lasting 24.6 ms";
+  for (const Tick touch_until : {25, 90}) {
+    const std::vector<Event> events = WatchTouch(missed, {0, 10, 25, 40}, touch_until);
+    ASSERT_EQ(events.size(), 1u) << touch_until;
+    EXPECT_EQ(events[0].interval, (Interval{0, 25}));
+  }
+  EXPECT_EQ(WatchTouch(missed, {0, 10, 24, 40}, 24).size(), 0u);
+}
+
 // The gap at 20 is too long at 40, but only at 90 is it known whether anything is true there.
 TEST(Forms, WhatIsDecidedLateIsAskedForWhereItEnded) {
   const std::vector<Event> events = WatchTouch(
@@ -59,6 +72,28 @@ TEST(Forms, WhatIsDecidedLateIsAskedForWhereItEnded) {
       {0, 10, 20, 21, 22, 23, 40, 50, 60, 70, 80, 90}, 20);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].interval, (Interval{0, 20}));
+}
+
+// At the first begin nobody needs to ask for the tray, so nothing of it would wake the rule later.
+TEST(Forms, WhatWasNotAskedForBeforeBeginsTheNextOne) {
+  Scene scene;
+  Monitor monitor(
+      testing::CompileText("grammar t\nevent e(h: Hand, c: Cup, t: Movable)\n"
+                           "from touching(h, c) begins or touching(h, t) begins\n"
+                           "to touching(h, c) ends during height(c) >= height(c)@begin or drop"),
+      scene.cast);
+  const Touch cup{.a = Scene::kHand, .b = Scene::kCup};
+  const Touch tray{.a = Scene::kHand, .b = Scene::kTray};
+  const std::vector<std::vector<Touch>> touches = {{cup}, {cup}, {cup}, {cup, tray}, {tray}};
+  std::vector<Event> events;
+  for (Tick tick = 0; tick < 5; ++tick) {
+    scene.looks[Scene::kCup].p_WB_m.z() = tick < 2 ? 1 : 0;  // dropped at 2
+    scene.touches = touches[tick];
+    monitor.Advance(scene.At(tick), events);
+  }
+  monitor.Finish(5, events);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].interval, (Interval{3, 4}));
 }
 
 TEST(Forms, AttributesAreTakenAtTheBeginUnlessTheySayOtherwise) {

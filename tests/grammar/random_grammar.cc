@@ -53,6 +53,7 @@ class Maker {
     if (Below(3) == 0) rule.lasting = static_cast<Tick>(Below(6));
     if (rule.within >= 0) rule.lasting = std::min(rule.lasting, rule.within);
     if (rule.form == Form::kUntil) rule.lasting = std::min(rule.lasting, rule.back);
+    rule.halves = Sometimes();
     if (rule.form != Form::kCompose) MakeConditionsOfTheWhole(rule);
     rule.roles = RolesOf(rule.first) | RolesOf(rule.second) | RolesOf(rule.during) |
                  RolesOf(rule.requirement) | RolesOf(rule.by) | RolesOf(rule.episode);
@@ -232,7 +233,12 @@ class Writer {
 
   std::string RuleText(int index) const {
     const RandomRule& rule = rules_[index];
-    const auto ms = [](Tick ticks) { return std::to_string(ticks) + " ms"; };
+    // As written; in whole ticks the same as without the half.
+    const std::string half = rule.halves ? ".5 ms" : " ms";
+    const auto at_most = [&](Tick ticks) { return std::to_string(ticks) + half; };
+    const auto at_least = [&](Tick ticks) {
+      return std::to_string(ticks - (rule.halves ? 1 : 0)) + half;
+    };
     std::string text = "event " + Head(index, rule.roles, rule.roles, true) + "\n ";
     switch (rule.form) {
       case Form::kWhile:
@@ -243,13 +249,15 @@ class Writer {
       case Form::kWithout:
         text += " from " + TermText(rule.first) +
                 (rule.form == Form::kWithout ? " without " : " to ") + TermText(rule.second) +
-                (rule.within >= 0 ? " within " + ms(rule.within) : "") +
+                (rule.within < 0               ? ""
+                 : rule.form == Form::kWithout ? " within " + at_least(rule.within)
+                                               : " within " + at_most(rule.within)) +
                 (rule.has_during ? " during " + TermText(rule.during) : "") +
                 (rule.or_drop ? " or drop" : "");
         break;
       case Form::kUntil:
         text += " until " + TermText(rule.first) + " since " + TermText(rule.second) +
-                ApproachText(rule) + " at most " + ms(rule.back) + " back";
+                ApproachText(rule) + " at most " + at_most(rule.back) + " back";
         break;
       case Form::kRest:
         text += " rest of " + TermText(rule.calls[0]) + " outside " + TermText(rule.calls[1]);
@@ -259,8 +267,8 @@ class Writer {
         text += ComposeText(rule);
         break;
     }
-    if (rule.bridging > 0) text += " bridging " + ms(rule.bridging);
-    if (rule.lasting > 0) text += " lasting " + ms(rule.lasting);
+    if (rule.bridging > 0) text += " bridging " + at_most(rule.bridging);
+    if (rule.lasting > 0) text += " lasting " + at_least(rule.lasting);
     if (rule.has_requirement) text += " requires " + TermText(rule.requirement);
     if (rule.is_confirmed)
       text += " confirmed by " + TermText(rule.by) + " within " + TermText(rule.episode);
@@ -377,7 +385,8 @@ class Meaning {
                                          during, rule.or_drop, e_.ticks, rule.within));
       case Form::kWithout:
         return reference::FromWithout(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
-                                      during, e_.ticks, rule.within);
+                                      during, e_.ticks,
+                                      static_cast<double>(rule.within) - (rule.halves ? 0.5 : 0));
       case Form::kUntil: {
         reference::Approach approach{.signal = {e_.height_m.begin(), e_.height_m.end()},
                                      .slack = rule.slack_m + 0.5,

@@ -74,6 +74,7 @@ struct RandomRule {
   int slack_m = 0;
   double speed_m_per_s = 0;
   Tick bridging = 0, lasting = 0, within = -1, back = 0, idle = 0;
+  bool halves = false;      ///< its durations are half a tick off what they are in whole ticks
   std::vector<Term> calls;  ///< kRest: the whole and the others; kCompose: the parts
   std::vector<Clause> clauses;
   bool has_requirement = false, requires_at_end = false, is_confirmed = false;

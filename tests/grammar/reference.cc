@@ -2,6 +2,7 @@
 #include "tests/grammar/reference.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace prehend::grammar::reference {
@@ -87,7 +88,7 @@ Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool
 }
 
 std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during,
-                               const Ticks& ticks, Tick within) {
+                               const Ticks& ticks, double within) {
   std::vector<Timed> found;
   const int frames = static_cast<int>(from.size());
   for (int i = 0; i < frames; ++i) {
@@ -95,11 +96,12 @@ std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, cons
     const Stream comes = without.at(i);
     const Stream holds = during.at(i);
     if (!holds[i] || comes[i]) continue;
-    const Tick deadline = ticks[i] + within;
+    const Tick deadline = ticks[i] + static_cast<Tick>(std::ceil(within));
     int end = i + 1;
     while (end < frames && ticks[end] < deadline && !comes[end] && holds[end]) ++end;
     const bool waited = ticks[end] >= deadline;
-    const bool just_in_time = waited && end < frames && ticks[end] == deadline && comes[end];
+    const bool in_time = static_cast<double>(ticks[end] - ticks[i]) <= within;
+    const bool just_in_time = waited && end < frames && in_time && comes[end];
     if (waited && !just_in_time) found.push_back({{i, end}, {ticks[i], deadline}});
     i = end - (waited && !just_in_time ? 1 : 0);
   }

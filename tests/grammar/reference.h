@@ -65,9 +65,9 @@ struct Timed {
 std::vector<Timed> InTicks(const Runs& runs, const Ticks& ticks);
 Runs RunsOf(const std::vector<Timed>& timed);
 
-/// `from .. without .. within [during]`.
+/// `from .. without .. within [during]`; `within` in ticks, and perhaps not a whole number of them.
 std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during,
-                               const Ticks& ticks, Tick within);
+                               const Ticks& ticks, double within);
 
 /// `approaching signal receding at most slack [, slower than speed at most idle]`, one tick being 1
 /// ms.
