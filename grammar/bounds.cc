@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grammar/bounds.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "grammar/classes.h"
+
 namespace prehend::grammar {
 
 Op Mirrored(Op op) {
@@ -62,16 +67,51 @@ bool Bounds::Add(int index, bool negated) {
     case Op::kBegins:
       return (negated || Add(node.args[0])) && AddAtom(index, negated);
     case Op::kEnds: {
-      const bool says_more = !negated && program_.nodes[node.args[0]].op != Op::kHolds;
+      const bool says_more = !negated && !MayFollowAtOnce(node.args[0]);
       return (!says_more || Add(node.args[0], true)) && AddAtom(index, negated);
     }
+    case Op::kIsA:
+      return AddClass(node, negated);
     default:
       return AddAtom(index, negated);
   }
 }
 
+// Of `or` nothing is known.
+bool Bounds::AddBefore(int moment) {
+  const Node& node = program_.nodes[moment];
+  if (node.op == Op::kAnd) return AddBefore(node.args[0]) && AddBefore(node.args[1]);
+  if (node.op == Op::kEnds) return Add(node.args[0]);
+  return node.op != Op::kBegins || MayFollowAtOnce(node.args[0]) || Add(node.args[0], true);
+}
+
+// Whether an interval may begin where the one before it ends: of a truth value, none does.
+bool Bounds::MayFollowAtOnce(int index) const {
+  const Node& node = program_.nodes[index];
+  if (node.op != Op::kHolds) return false;
+  const Form form = program_.events[rule_.references[node.slot].rule].form;
+  return form != Form::kTouching && form != Form::kAny && form != Form::kWhile;
+}
+
+bool Bounds::AddClass(const Node& is, bool negated) {
+  const ClassClaim claim{is.roles[0], program_.class_names[is.slot], negated};
+  const auto fits = [&](const ClassClaim& other) {
+    if (other.role != claim.role) return true;
+    if (!other.negated && !claim.negated) return ClassesMeet(other.name, claim.name);
+    if (other.negated && claim.negated) return true;
+    const auto& [is_one, is_none] =
+        other.negated ? std::pair(claim.name, other.name) : std::pair(other.name, claim.name);
+    return !ClassImplies(is_one, is_none);
+  };
+  const ClassClaim of_role{claim.role, rule_.roles[claim.role].class_name};
+  if (!fits(of_role) || !std::ranges::all_of(classes_, fits)) return false;
+  classes_.push_back(claim);
+  return true;
+}
+
 bool Bounds::AddAtom(int index, bool negated) {
-  return Narrow(Signature(program_, index), {.low = 0, .high = 1}, Op::kEqual, negated ? 0 : 1);
+  return Narrow(Signature(program_, rule_, index), {.low = 0, .high = 1}, Op::kEqual,
+                negated ? 0 : 1);
 }
 
 bool Bounds::AddComparison(Op op, const Node& comparison) {
@@ -80,14 +120,26 @@ bool Bounds::AddComparison(Op op, const Node& comparison) {
   const Range of_left = RangeOf(program_, rule_, left);
   const Range of_right = RangeOf(program_, rule_, right);
   if (Judge(op, of_left, of_right) == Verdict::kNever) return false;
-  if (of_right.IsPoint()) return Narrow(Signature(program_, left), of_left, op, of_right.low);
+  if (of_right.IsPoint())
+    return Narrow(Signature(program_, rule_, left), of_left, op, of_right.low);
   if (of_left.IsPoint())
-    return Narrow(Signature(program_, right), of_right, Mirrored(op), of_left.low);
-  return true;
+    return Narrow(Signature(program_, rule_, right), of_right, Mirrored(op), of_left.low);
+  // Of two that are measured, what is known is their difference.
+  const std::string a = Signature(program_, rule_, left);
+  const std::string b = Signature(program_, rule_, right);
+  return a < b ? Narrow(a + "-" + b, {}, op, 0) : Narrow(b + "-" + a, {}, Mirrored(op), 0);
 }
 
 bool Bounds::Narrow(const std::string& value, const Range& range, Op op, double number) {
   Limit& limit = limits_.try_emplace(value, Limit{.range = range}).first->second;
+  if (range.whole) {  // more than 1 is 2 at least
+    if (op == Op::kGreater || op == Op::kGreaterEqual)
+      number = op == Op::kGreater ? std::floor(number) + 1 : std::ceil(number);
+    if (op == Op::kLess || op == Op::kLessEqual)
+      number = op == Op::kLess ? std::ceil(number) - 1 : std::floor(number);
+    if (op == Op::kGreater) op = Op::kGreaterEqual;
+    if (op == Op::kLess) op = Op::kLessEqual;
+  }
   const bool from_below = op == Op::kGreater || op == Op::kGreaterEqual || op == Op::kEqual;
   const bool from_above = op == Op::kLess || op == Op::kLessEqual || op == Op::kEqual;
   if (from_below &&

@@ -23,6 +23,8 @@ class Bounds {
   /// Adds what must be so for this truth value to be true. False: it contradicts what was added
   /// before.
   bool Add(int node, bool negated = false);
+  /// Adds what must have been so one frame before a moment: false what begins, true what ends.
+  bool AddBefore(int moment);
   /// False: whichever of the alternatives (of an `or`) one takes, it contradicts the rest. Gives up
   /// where there are very many.
   bool SomeAlternativeFits() const;
@@ -38,13 +40,21 @@ class Bounds {
     bool negated = false;
   };
   bool AddAtom(int node, bool negated);
+  bool AddClass(const Node& is, bool negated);
+  bool MayFollowAtOnce(int node) const;
   bool AddComparison(Op op, const Node& comparison);
   bool Narrow(const std::string& value, const Range& range, Op op, double number);
   bool SomeFits(std::size_t next, int& budget) const;
 
   const Program& program_;
   const Rule& rule_;
+  struct ClassClaim {
+    int role = kNone;
+    std::string name;
+    bool negated = false;
+  };
   std::map<std::string, Limit> limits_;
+  std::vector<ClassClaim> classes_;
   std::vector<Alternative> alternatives_;
 };
 

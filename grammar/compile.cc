@@ -45,6 +45,7 @@ class Compiler {
     if (!diagnostics_.empty())
       return {.program = nullptr, .diagnostics = std::move(diagnostics_), .warnings = {}};
     ChooseGuards(program_);
+    warnings_ = std::move(symbols_.warnings);
     WarnOfUnused();
     program_.warnings = warnings_;
     return {.program = std::make_shared<const Program>(std::move(program_)),
@@ -195,13 +196,28 @@ class Compiler {
     Rule rule{.name = definition.name, .file = source.text.file, .place = definition.place};
     rule.printed = definition.is_event;
     rule.symmetric = definition.symmetric;
-    if (definition.form == Definition::Form::kCompose)
-      rule.form = Form::kCompose;  // others must know before it is lowered
+    rule.form = FormOf(definition.form);  // others must know before it is lowered
     CheckRoles(source, definition);
     for (const ast::Role& role : definition.roles)
       rule.roles.push_back({role.name, role.class_name});
     program_.events.push_back(std::move(rule));
     definitions_.push_back({&source, &definition});
+  }
+
+  static Form FormOf(Definition::Form form) {
+    switch (form) {
+      case Definition::Form::kWhile:
+        return Form::kWhile;
+      case Definition::Form::kFromTo:
+        return Form::kFromTo;
+      case Definition::Form::kUntilSince:
+        return Form::kUntilSince;
+      case Definition::Form::kRestOf:
+        return Form::kRestOf;
+      case Definition::Form::kCompose:
+        break;
+    }
+    return Form::kCompose;
   }
 
   static bool IsBuiltin(std::string_view name) {

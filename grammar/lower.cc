@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "grammar/bounds.h"
-
 namespace prehend::grammar {
 namespace {
 
@@ -17,13 +15,6 @@ constexpr std::size_t kMaxNodes = 10000;
 constexpr std::array<std::string_view, 4> kOverInterval = {"displacement", "displacement_along",
                                                            "rise", "drop"};
 constexpr double kLongest_s = 86400;  // more is a slip of the finger
-
-// The names that stand in it, each once.
-void CollectNames(const Expr& expr, std::vector<std::string>& names) {
-  const bool is_new = std::find(names.begin(), names.end(), expr.text) == names.end();
-  if (expr.kind == Expr::Kind::kName && is_new) names.push_back(expr.text);
-  for (const Expr& arg : expr.args) CollectNames(arg, names);
-}
 
 std::string_view TypeText(Type type) {
   switch (type) {
@@ -44,17 +35,6 @@ std::string Suggest(std::string_view name, const std::vector<std::string>& known
   return near.empty() ? std::string() : "did you mean " + Quoted(near) + "?";
 }
 
-const std::vector<std::string>& BuiltinClasses() {
-  static const std::vector<std::string> kClasses = {"Entity",  "Hand",  "Thing",
-                                                    "Movable", "Fixed", "Jointed"};
-  return kClasses;
-}
-
-bool IsBuiltinClass(std::string_view name) {
-  return std::find(BuiltinClasses().begin(), BuiltinClasses().end(), name) !=
-         BuiltinClasses().end();
-}
-
 int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file,
              Place place) {
   const auto same = [&](const Named& named) { return named.name == name && named.file == file; };
@@ -66,15 +46,6 @@ int NoteName(std::vector<Named>& names, std::string_view name, const std::string
 
 void NoteClass(Program& program, std::string_view name, const std::string& file, Place place) {
   if (!IsBuiltinClass(name)) NoteName(program.named_classes, name, file, place);
-}
-
-bool ClassesMeet(std::string_view a, std::string_view b) {
-  if (a == b || a == "Entity" || b == "Entity") return true;
-  if (a == "Hand" || b == "Hand") return false;
-  const auto says_how_it_moves = [](std::string_view name) {
-    return name == "Movable" || name == "Fixed" || name == "Jointed";
-  };
-  return !says_how_it_moves(a) || !says_how_it_moves(b);
 }
 
 bool IsOverInterval(std::string_view name) {
@@ -106,20 +77,17 @@ Lowering::Typed Lowering::Bad(Place place, std::string message, std::string hint
 
 int Lowering::Truth(const Expr& expr, Anchors anchors) {
   anchors_ = anchors;
-  const Typed typed = TruthValue(expr);
-  return typed.bad ? kNone : typed.node;
+  return Settled(TruthValue(expr));
 }
 
 int Lowering::Instant(const Expr& expr, Anchors anchors) {
   anchors_ = anchors;
   const Typed typed = TruthValue(expr);
-  if (typed.bad) return kNone;
-  if (!typed.instant) {
-    Complain(expr.place, "this holds for a while, but a moment is needed here",
-             "add 'begins' or 'ends': X begins");
-    return kNone;
-  }
-  return typed.node;
+  const int node = Settled(typed);
+  if (node == kNone || typed.instant) return node;
+  Complain(expr.place, "this holds for a while, but a moment is needed here",
+           "add 'begins' or 'ends': X begins");
+  return kNone;
 }
 
 int Lowering::RuleCall(const Expr& expr) {
@@ -337,8 +305,10 @@ Lowering::Typed Lowering::Position(const Expr& expr) {
 
 Lowering::Typed Lowering::LowerName(const Expr& expr) {
   if (scope_ != nullptr) {
-    if (const auto value = scope_->values.find(expr.text); value != scope_->values.end())
+    if (const auto value = scope_->values.find(expr.text); value != scope_->values.end()) {
+      handed_in_ = true;
       return LowerValue(value->second);
+    }
   }
   if (FindRole(expr.text) != kNone) {
     return Bad(expr.place, Quoted(expr.text) + " is a role; a value is needed here",
@@ -347,6 +317,9 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
   if (const int param = FindParam(expr.text); param != kNone) {
     symbols_.used_params.insert(param);
     const Quantity& value = symbols_.program.params[param].value;
+    const bool is_set = symbols_.program.params[param].overridden;
+    from_outside_ |= is_set;
+    handed_in_ |= is_set;
     return NumberNode(value.value, value.dimension, expr.place);
   }
   if (const auto define = symbols_.defines.find(expr.text); define != symbols_.defines.end()) {
@@ -363,12 +336,7 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
 }
 
 Lowering::Typed Lowering::LowerUnary(const Expr& expr) {
-  if (expr.text == "not") {
-    const Typed arg = TruthValue(expr.args[0]);
-    if (arg.bad) return arg;
-    return {.node = Add({.op = Op::kNot, .args = {arg.node, kNone, kNone, kNone}}),
-            .type = Type::kTruth};
-  }
+  if (expr.text == "not") return LowerNot(expr);
   Typed arg = Number(expr.args[0]);
   if (arg.bad) return arg;
   const Node node = symbols_.program.nodes[arg.node];
@@ -392,8 +360,10 @@ Lowering::Typed Lowering::LowerBinary(const Expr& expr) {
   const Op op = std::find_if(kOps.begin(), kOps.end(), [&](const auto& entry) {
                   return entry.first == expr.text;
                 })->second;
+  const bool handed_in_before = std::exchange(handed_in_, false);
   const Typed left = Number(expr.args[0]);
   const Typed right = Number(expr.args[1]);
+  const bool is_handed_in = std::exchange(handed_in_, handed_in_ || handed_in_before);
   if (left.bad || right.bad) return {.bad = true};
   const bool scales = op == Op::kMultiply || op == Op::kDivide;
   if (!scales && !(left.dimension == right.dimension)) {
@@ -404,7 +374,8 @@ Lowering::Typed Lowering::LowerBinary(const Expr& expr) {
                right.dimension == kPlain ? "the right side needs a unit"
                                          : "both sides must have the same unit");
   }
-  if (op >= Op::kLess && op <= Op::kNotEqual) return LowerComparison(op, left, right, expr);
+  if (op >= Op::kLess && op <= Op::kNotEqual)
+    return LowerComparison(op, left, right, expr, is_handed_in);
   return LowerArithmetic(op, left, right, expr);
 }
 
@@ -438,113 +409,6 @@ Lowering::Typed Lowering::LowerArithmetic(Op op, const Typed& left, const Typed&
           .dimension = dimension};
 }
 
-// What can never or only be true is a mistake. While a definition is checked for itself, its
-// numbers are not known.
-Lowering::Typed Lowering::LowerComparison(Op op, const Typed& left, const Typed& right,
-                                          const Expr& expr) {
-  const Program& program = symbols_.program;
-  const Range of_left = RangeOf(program, rule(), left.node);
-  const bool same = Signature(program, left.node) == Signature(program, right.node);
-  const Verdict verdict = same ? Judge(op, {.low = 0, .high = 0}, {.low = 0, .high = 0})
-                               : Judge(op, of_left, RangeOf(program, rule(), right.node));
-  if (verdict == Verdict::kPossible || checking_) {
-    return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}),
-            .type = Type::kTruth};
-  }
-  const bool never = verdict == Verdict::kNever;
-  const std::string message = std::string("this is ") + (never ? "never" : "always") + " true: ";
-  if (same)
-    return Bad(expr.place, message + "both sides are the same", "compare it with something else");
-  const std::string sides = WhatSidesCanBe(expr, left, right);
-  if (sides.empty())
-    return Bad(expr.place, message + "it compares two numbers",
-               WithParams(expr, "compare one of them with a signal"));
-  return Bad(expr.place, message + sides,
-             WithParams(expr, never ? "choose a bound that can be reached"
-                                    : "leave it out, or choose a bound that can be missed"));
-}
-
-// Nothing of what is only a number.
-
-std::string Lowering::WhatSidesCanBe(const Expr& comparison, const Typed& left,
-                                     const Typed& right) {
-  std::string text;
-  const auto add = [&](const Expr& side, const Typed& typed, std::string_view which) {
-    if (symbols_.program.nodes[typed.node].op == Op::kNumber) return;
-    const std::string name =
-        side.kind == Expr::Kind::kCall ? Quoted(side.text) : std::string(which);
-    text += (text.empty() ? "" : ", ") + name + " " +
-            RangeText(RangeOf(symbols_.program, rule(), typed.node), typed.dimension);
-  };
-  add(comparison.args[0], left, "the left side");
-  add(comparison.args[1], right, "the right side");
-  return text;
-}
-
-// What the parameters in it are: whoever sets them from outside does not see it here.
-std::string Lowering::WithParams(const Expr& expr, std::string remedy) const {
-  std::vector<std::string> names;
-  CollectNames(expr, names);
-  std::string text;
-  for (const std::string& name : names) {
-    const int found = FindParam(name);
-    if (found == kNone || FindRole(name) != kNone) continue;
-    const ProgramParam& param = symbols_.program.params[found];
-    text += Quoted(name) + " is " + QuantityText(param.value) +
-            (param.overridden ? ", set from outside; " : "; ");
-  }
-  return text + remedy;
-}
-
-// Whether all parts of an `and` can be true at once, and those of an `or` false.
-bool Lowering::ChainIsSound(const Expr& chain, const std::vector<int>& nodes) {
-  if (checking_) return true;
-  const bool is_and = chain.text == "and";
-  const std::string verdict = is_and ? "this is never true" : "this is always true";
-  const std::string remedy =
-      is_and ? "use 'or', or change one of the bounds" : "use 'and', or change one of the bounds";
-  Bounds bounds(symbols_.program, rule());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (bounds.Add(nodes[i], !is_and)) continue;
-    Complain(chain.args[i].place,
-             verdict + " together with what stands before it: " + Dump(chain.args[i]),
-             WithParams(chain.args[i], remedy));
-    return false;
-  }
-  if (bounds.SomeAlternativeFits()) return true;
-  Complain(chain.args[0].place,
-           verdict + ", whichever of its alternatives one takes: " + Dump(chain),
-           WithParams(chain, remedy));
-  return false;
-}
-
-// Long chains become balanced trees, so that walking them never goes deep.
-Lowering::Typed Lowering::LowerChain(const Expr& expr) {
-  const bool is_and = expr.text == "and";
-  std::vector<int> nodes;
-  bool bad = false;
-  std::size_t instants = 0;
-  for (const Expr& arg : expr.args) {
-    const Typed typed = TruthValue(arg);
-    bad |= typed.bad;
-    instants += typed.instant;
-    nodes.push_back(typed.node);
-  }
-  if (bad) return {.bad = true};
-  if (!ChainIsSound(expr, nodes)) return {.bad = true};
-  while (nodes.size() > 1) {
-    std::vector<int> halved;
-    for (std::size_t i = 0; i + 1 < nodes.size(); i += 2) {
-      halved.push_back(
-          Add({.op = is_and ? Op::kAnd : Op::kOr, .args = {nodes[i], nodes[i + 1], kNone, kNone}}));
-    }
-    if (nodes.size() % 2 == 1) halved.push_back(nodes.back());
-    nodes = std::move(halved);
-  }
-  const bool instant = is_and ? instants > 0 : instants == expr.args.size();
-  return {.node = nodes[0], .type = Type::kTruth, .instant = instant};
-}
-
 Lowering::Typed Lowering::LowerEdge(const Expr& expr) {
   const Typed arg = TruthValue(expr.args[0]);
   if (arg.bad) return arg;
@@ -552,7 +416,9 @@ Lowering::Typed Lowering::LowerEdge(const Expr& expr) {
   const Op op = expr.text == "begins" ? Op::kBegins : Op::kEnds;
   return {.node = Add({.op = op, .args = {arg.node, kNone, kNone, kNone}}),
           .type = Type::kTruth,
-          .instant = true};
+          .instant = true,
+          .verdict = arg.verdict,
+          .because = arg.because};
 }
 
 Lowering::Typed Lowering::LowerAnchor(const Expr& expr) {

@@ -13,7 +13,9 @@
 
 #include "grammar/ast.h"
 #include "grammar/builtins.h"
+#include "grammar/classes.h"
 #include "grammar/program.h"
+#include "grammar/ranges.h"
 
 namespace prehend::grammar {
 
@@ -36,18 +38,12 @@ struct Symbols {
       narrowed_rules;  ///< (rule, classes of its roles) -> rule
   std::set<int> used_params;
   std::set<std::string, std::less<>> used_defines;
+  Diagnostics warnings = {};
 
   /// A parameter of this file or of one that it uses; another file's may be called like something
   /// of its own.
   bool IsParamIn(std::string_view file, std::string_view name) const;
 };
-
-/// True if some entity can be of both classes. Names other than the built-in ones are taken to be
-/// Things.
-bool ClassesMeet(std::string_view a, std::string_view b);
-
-bool IsBuiltinClass(std::string_view name);
-const std::vector<std::string>& BuiltinClasses();
 
 /// Remembers a name that stands at a place of a file, once per name and file; which of the names it
 /// is.
@@ -102,6 +98,9 @@ class Lowering {
 
   bool RoleUsed(std::size_t role) const { return role_used_[role]; }
   void Complain(Place place, std::string message, std::string hint = {});
+  /// Likewise; only a warning, if a parameter was set from outside. Nothing where a condition is
+  /// never or always true: that has been told.
+  void ComplainOrWarn(Place place, std::string message, std::string hint = {});
   /// How many there were so far.
   std::size_t complaints() const { return diagnostics_.size(); }
 
@@ -112,6 +111,14 @@ class Lowering {
     Dimension dimension;
     bool instant = false;
     bool bad = false;
+    Verdict verdict = Verdict::kPossible;  ///< of a truth value
+    std::vector<int> because = {};         ///< the doubts that decide it
+  };
+  /// A condition that is never or always true: a mistake, if its whole clause is and nobody else
+  /// gave it its numbers.
+  struct Doubtful {
+    Diagnostic diagnostic;
+    bool is_handed_in = false;
   };
   /// What the names of a definition's parameters stand for while its body is lowered.
   struct Scope {
@@ -139,11 +146,19 @@ class Lowering {
   Typed LowerUnary(const ast::Expr& expr);
   Typed LowerBinary(const ast::Expr& expr);
   Typed LowerArithmetic(Op op, const Typed& left, const Typed& right, const ast::Expr& expr);
-  Typed LowerComparison(Op op, const Typed& left, const Typed& right, const ast::Expr& expr);
+  Typed LowerComparison(Op op, const Typed& left, const Typed& right, const ast::Expr& expr,
+                        bool is_handed_in);
+  Typed LowerNot(const ast::Expr& expr);
   Typed LowerChain(const ast::Expr& expr);
   std::string WhatSidesCanBe(const ast::Expr& comparison, const Typed& left, const Typed& right);
   std::string WithParams(const ast::Expr& expr, std::string remedy) const;
-  bool ChainIsSound(const ast::Expr& chain, const std::vector<int>& nodes);
+  Typed JudgeChain(const ast::Expr& chain, const std::vector<Typed>& parts);
+  std::optional<Diagnostic> Contradiction(const ast::Expr& chain,
+                                          const std::vector<Typed>& parts) const;
+  Typed Decided(Verdict verdict, std::vector<int> because);
+  void Doubt(Place place, std::string message, std::string hint, bool is_handed_in);
+  int Settled(const Typed& clause);
+  void Warn(Diagnostic warning);
   Typed LowerEdge(const ast::Expr& expr);
   Typed LowerAnchor(const ast::Expr& expr);
   Typed LowerCall(const ast::Expr& expr);
@@ -156,6 +171,8 @@ class Lowering {
   Typed LowerBuiltin(const Builtin& builtin, const ast::Expr& expr);
   Typed LowerOverInterval(const ast::Expr& expr);
   Typed LowerIs(const ast::Expr& expr);
+  Typed TwiceTheSame(const ast::Expr& role, std::string_view callee);
+  bool LiesOnItself(const Node& node);
   bool LowerArgument(const ast::Expr& arg, Argument wanted, const Builtin& builtin, Node& node,
                      int& next_node, int& next_role, Typed& result);
   bool LowerSet(const ast::Expr& arg, Node& node);
@@ -184,10 +201,14 @@ class Lowering {
   const GrammarText* source_;
   Diagnostics& diagnostics_;
   Anchors anchors_;
-  bool part_ = false;       ///< a part of a composition is lowered
-  bool attribute_ = false;  ///< signals are taken where the interval begins
-  bool full_ = false;       ///< the grammar has too many expressions
-  bool checking_ = false;   ///< numbers of parameters are stand-ins
+  bool part_ = false;          ///< a part of a composition is lowered
+  bool attribute_ = false;     ///< signals are taken where the interval begins
+  bool full_ = false;          ///< the grammar has too many expressions
+  bool checking_ = false;      ///< numbers of parameters are stand-ins
+  bool from_outside_ = false;  ///< a parameter that was set from outside has been met
+  bool handed_in_ = false;     ///< likewise, or a number that a definition was called with
+  bool vacuous_ = false;       ///< a clause of the rule is never or always true
+  std::vector<Doubtful> doubts_;
   const Scope* scope_ = nullptr;
   std::vector<bool> role_used_;
 };

@@ -281,10 +281,32 @@ Lowering::Typed Lowering::LowerIs(const Expr& expr) {
                                expr.args[1].text);
   }
   NoteClass(symbols_.program, expr.args[1].text, source_->file, expr.args[1].place);
+  if (scope_ == nullptr && !checking_ && ClassImplies(class_name, expr.args[1].text)) {
+    Doubt(expr.place, "this is always true: " + Quoted(expr.args[0].text) + " is a " + class_name,
+          "leave it out", false);
+    return Decided(Verdict::kAlways, {static_cast<int>(doubts_.size()) - 1});
+  }
   symbols_.program.class_names.push_back(expr.args[1].text);
   const int slot = static_cast<int>(symbols_.program.class_names.size()) - 1;
   return {.node = Add({.op = Op::kIsA, .roles = {*role, kNone}, .slot = slot}),
           .type = Type::kTruth};
+}
+
+Lowering::Typed Lowering::TwiceTheSame(const Expr& role, std::string_view callee) {
+  return Bad(role.place, Quoted(callee) + " needs two different roles");
+}
+
+// A distance from itself is 0, and every region around itself has it inside.
+bool Lowering::LiesOnItself(const Node& node) {
+  const Program& program = symbols_.program;
+  const auto signature = [&](int arg) { return Signature(program, rule(), node.args[arg]); };
+  if (node.op == Op::kBoxInSphere) {
+    const Node& centre = program.nodes[node.args[0]];
+    return centre.op == Op::kPosition && centre.roles[0] == node.roles[0];
+  }
+  const bool compares =
+      node.op == Op::kDistance || node.op == Op::kInSphere || node.op == Op::kInCylinder;
+  return compares && signature(0) == signature(1);
 }
 
 // displacement, displacement_along, rise and drop compare this frame with the interval's begin.
@@ -305,6 +327,7 @@ Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
   for (std::size_t i = 0; i < expr.args.size(); ++i) {
     const std::optional<int> role = RoleArgument(expr.args[i], "Entity", expr.text);
     if (!role) return {.bad = true};
+    if (i == 1 && now.roles[0] == *role) return TwiceTheSame(expr.args[i], expr.text);
     now.roles[i] = *role;
   }
   if (!is_displacement) {
@@ -344,6 +367,11 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
   }
   attribute_ = in_attribute;
   if (node.op == Op::kRate) result.dimension = Quotient(result.dimension, kSeconds);
+  if (!checking_ && LiesOnItself(node)) {
+    return Bad(expr.args[1].place,
+               Quoted(builtin.name) + " needs two different positions, and both are the same",
+               "name another one");
+  }
   const bool from_touch = node.op == Op::kHolds || node.op == Op::kSensorSets ||
                           node.op == Op::kUp || node.op == Op::kForceBetween ||
                           node.op == Op::kTouchSpeed || node.op == Op::kSensorSet;
@@ -369,7 +397,11 @@ bool Lowering::LowerSet(const Expr& arg, Node& node) {
   const std::optional<double> number = ConstantOf(arg, kPlain, "a sensor set");
   if (!number) return false;
   node.number = *number;
-  if (*number >= 1 && *number <= kMaxSets && *number == std::floor(*number)) return true;
+  if (*number >= 1 && *number <= kMaxSets && *number == std::floor(*number)) {
+    NoteName(symbols_.program.numbered_sets, QuantityText({*number, kPlain}), source_->file,
+             arg.place);
+    return true;
+  }
   Complain(arg.place, "a sensor set is a name, or a number from 1 to " + std::to_string(kMaxSets),
            "for example: thumb");
   return false;
@@ -424,7 +456,7 @@ bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Builtin& bu
       const std::optional<int> role = RoleArgument(arg, ClassOf(wanted), builtin.name);
       if (!role) return false;
       if (next_role == 1 && node.roles[0] == *role) {
-        Complain(arg.place, Quoted(builtin.name) + " needs two different roles");
+        TwiceTheSame(arg, builtin.name);
         return false;
       }
       node.roles[next_role++] = *role;

@@ -30,7 +30,6 @@ class DefinitionLowering {
     using Form_ = Definition::Form;
     switch (d_.form) {
       case Form_::kWhile: {
-        Here().form = Form::kWhile;
         const int first = lowering_.Truth(d_.first, {});
         const int until = d_.until ? lowering_.Truth(*d_.until, {}) : kNone;
         Here().first = first;
@@ -43,7 +42,6 @@ class DefinitionLowering {
       case Form_::kUntilSince:
         return LowerUntilSince();
       case Form_::kRestOf: {
-        Here().form = Form::kRestOf;
         const int first = lowering_.RuleCall(d_.first);
         Here().first = first;
         for (const ast::Expr& other : d_.outside) {
@@ -59,7 +57,6 @@ class DefinitionLowering {
   }
 
   void LowerFromTo() {
-    Here().form = Form::kFromTo;
     const int first = lowering_.Instant(d_.first, {});
     const int second = lowering_.Instant(d_.second, {.begin = true});
     const int during = d_.during ? lowering_.Truth(*d_.during, {.begin = true}) : kNone;
@@ -90,23 +87,50 @@ class DefinitionLowering {
     const Rule& rule = Here();
     if (rule.first == kNone || rule.second == kNone || CanBe({{rule.first}, {rule.second, true}}))
       return;
-    lowering_.Complain(d_.until->place,
-                       "nothing ever begins: this holds wherever the condition before it does",
-                       "it begins where that holds and this does not, and lasts until this holds");
+    lowering_.ComplainOrWarn(
+        d_.until->place, "nothing ever begins: this holds wherever the condition before it does",
+        "it begins where that holds and this does not, and lasts until this holds");
   }
 
   void CheckBegin() {
     const Rule& rule = Here();
     if (rule.first == kNone || rule.second == kNone) return;
     if (!CanBe({{rule.first}, {rule.second, true}})) {
-      lowering_.Complain(d_.second.place,
-                         "nothing ever begins: each begin is such an end, too, at the same frame",
-                         "from one X to the next is 'from X ends to X begins'");
+      lowering_.ComplainOrWarn(
+          d_.second.place, "nothing ever begins: each begin is such an end, too, at the same frame",
+          "from one X to the next is 'from X ends to X begins'");
     } else if (!CanBe({{rule.first}, {rule.second, true}, {rule.during}})) {
-      lowering_.Complain(d_.during->place,
-                         "nothing ever begins: this is false wherever it would begin",
-                         "'during' must hold from the begin on");
+      lowering_.ComplainOrWarn(d_.during->place,
+                               "nothing ever begins: this is false wherever it would begin",
+                               "'during' must hold from the begin on");
     }
+  }
+
+  // The frame before the end is the last one that the interval can have.
+  void CheckSince() {
+    const Rule& rule = Here();
+    if (rule.first == kNone || rule.second == kNone) return;
+    Bounds before(program_, rule);
+    if (before.Add(rule.second) && before.AddBefore(rule.first) && before.SomeAlternativeFits())
+      return;
+    lowering_.ComplainOrWarn(d_.second.place,
+                             "nothing ever begins: this is false right before each such end",
+                             "up to the frame before X begins, X is false; before X ends, true");
+  }
+
+  // Where something always ends with a moment, this is asked at that very moment.
+  void CheckRequirement() {
+    const Rule& rule = Here();
+    const bool ends_so = rule.form == Form::kUntilSince ||
+                         (rule.form == Form::kFromTo && rule.or_drop && !rule.absence);
+    const int moment = rule.form == Form::kUntilSince ? rule.first : rule.second;
+    if (!ends_so || moment == kNone || rule.requirement == kNone ||
+        CanBe({{moment}, {rule.requirement}}))
+      return;
+    lowering_.ComplainOrWarn(
+        d_.requirement->place,
+        "nothing ever begins that counts: this is false wherever an interval ends",
+        "'requires' is asked at the first frame that no longer belongs to the interval");
   }
 
   // Something of each interval must be left.
@@ -137,11 +161,11 @@ class DefinitionLowering {
   }
 
   void LowerUntilSince() {
-    Here().form = Form::kUntilSince;
     const int first = lowering_.Instant(d_.first, {});
     const int second = lowering_.Truth(d_.second, {.end = true});
     Here().first = first;
     Here().second = second;
+    CheckSince();
     if (d_.approach) LowerApproach(*d_.approach);
     const double back_s = lowering_.Span(d_.at_most_back, "'at most .. back'");
     Here().back_s = back_s;
@@ -171,7 +195,6 @@ class DefinitionLowering {
   }
 
   void LowerCompose() {
-    Here().form = Form::kCompose;
     const std::size_t before = lowering_.complaints();
     std::vector<std::string> labels;
     if (d_.parts.size() > kMaxParts) {
@@ -274,6 +297,7 @@ class DefinitionLowering {
     if (d_.requirement) {
       const int requirement = lowering_.Truth(*d_.requirement, {.begin = true, .end = true});
       Here().requirement = requirement;
+      CheckRequirement();
     }
     if (d_.confirmed) {
       const int by = lowering_.RuleCall(d_.confirmed->by);
@@ -294,7 +318,7 @@ class DefinitionLowering {
     const bool looks_back = d_.form == Definition::Form::kUntilSince;
     const double most_s = looks_back ? rule.back_s : rule.within_s;
     if (most_s <= 0 || rule.lasting_s <= most_s) return;
-    lowering_.Complain(
+    lowering_.ComplainOrWarn(
         lasting.place,
         "no interval lasts so long: this one looks at most " + QuantityText({most_s, kSeconds}) +
             (looks_back ? " back" : " ahead"),

@@ -235,6 +235,9 @@ class Parser : public ExpressionParser {
       relation.place = Peek().place;
       relation.left = ExpectName("a label");
       do {
+        if (At("during"))
+          Fail("expected one of Allen's relations, found 'during'",
+               "'during' is called 'inside' here, for it begins a clause of 'from .. to'");
         relation.relations.push_back(ExpectName("one of Allen's relations"));
       } while (Accept("|"));
       relation.right = ExpectName("a label");

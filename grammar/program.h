@@ -272,6 +272,7 @@ struct Program {
   std::vector<NodeNote> notes;           ///< of the first so many nodes
   std::vector<std::string> class_names;  ///< for kIsA
   std::vector<Named> sensor_sets;        ///< for kSensorSet
+  std::vector<Named> numbered_sets;      ///< "3": sensor sets that are asked for by number
   std::vector<Named> named_classes;      ///< all but the built-in ones
   Diagnostics warnings;                  ///< what Compile() warned of
   std::vector<ProgramParam> params;

@@ -119,16 +119,33 @@ std::string RangeText(const Range& range, const Dimension& dimension) {
   return from_above ? "is never above " + text(range.high) : "can be any number";
 }
 
-std::string Signature(const Program& program, int index) {
+std::string Signature(const Program& program, const Rule& rule, int index) {
   const Node& node = program.nodes[index];
-  std::string text = std::to_string(static_cast<int>(node.op));
-  for (const int role : node.roles) text += "r" + std::to_string(role);
-  text += "s" + std::to_string(node.slot) + "t" + std::to_string(node.name) + "n" +
-          QuantityText({node.number, kPlain}) + "(";
+  if (node.op == Op::kAtBegin)
+    return "@begin(" + Signature(program, rule, rule.anchors[node.slot]) + ")";
+  std::vector<std::string> args;
   for (const int arg : node.args) {
-    if (arg != kNone) text += Signature(program, arg) + ",";
+    if (arg != kNone) args.push_back(Signature(program, rule, arg));
   }
-  return text + ")";
+  std::vector<int> roles(node.roles.begin(), node.roles.end());
+  std::string text = std::to_string(static_cast<int>(node.op)) + "n" + std::to_string(node.name) +
+                     ":" + QuantityText({node.number, kPlain});
+  bool either_way =
+      node.op == Op::kForceBetween || node.op == Op::kTouchSpeed || node.op == Op::kDistance;
+  if (node.op == Op::kHolds) {
+    const Reference& reference = rule.references[node.slot];
+    roles.assign(reference.roles.begin(), reference.roles.end());
+    text += "e" + std::to_string(reference.rule);
+    either_way = program.events[reference.rule].symmetric;
+  }
+  if (node.op == Op::kIsA) text += program.class_names[node.slot];
+  if (either_way) {
+    std::sort(args.begin(), args.end());
+    std::sort(roles.begin(), roles.begin() + 2);
+  }
+  for (const int role : roles) text += "r" + std::to_string(role);
+  for (const std::string& arg : args) text += "(" + arg + ")";
+  return text;
 }
 
 }  // namespace prehend::grammar

@@ -22,7 +22,7 @@ Verdict Judge(Op op, const Range& left, const Range& right);
 /// "goes from 0 to 1", "is never below 0 m/s", "is never above ..", "can be any number".
 std::string RangeText(const Range& range, const Dimension& dimension);
 
-/// The same for the same expression.
-std::string Signature(const Program& program, int node);
+/// The same for the same expression, and for `distance(p, q)` and `distance(q, p)`.
+std::string Signature(const Program& program, const Rule& rule, int node);
 
 }  // namespace prehend::grammar

@@ -68,7 +68,9 @@ void WarnOfStrangers(const std::vector<grammar::Named>& names, const std::set<st
                      grammar::Diagnostics& warnings) {
   for (const grammar::Named& named : names) {
     if (known.contains(named.name)) continue;
-    const std::string near = grammar::NearestName(named.name, {known.begin(), known.end()});
+    const bool is_number = named.name.find_first_not_of("0123456789") == std::string::npos;
+    const std::string near =
+        is_number ? "" : grammar::NearestName(named.name, {known.begin(), known.end()});
     warnings.push_back(
         grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value.value_or(""), named.place,
                               fmt::format("{} '{}'", message, named.name),
@@ -82,9 +84,11 @@ void WarnOfStrangers(const std::vector<grammar::Named>& names, const std::set<st
 grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Cast& cast) {
   std::set<std::string> classes;
   std::set<std::string> sensor_sets;
+  std::set<std::string> numbers;
   for (const grammar::CastMember& member : cast.entities) {
     classes.insert(member.classes.begin(), member.classes.end());
     sensor_sets.insert(member.sensor_sets.begin(), member.sensor_sets.end());
+    for (std::size_t i = 1; i <= member.sensor_sets.size(); ++i) numbers.insert(std::to_string(i));
   }
   grammar::Diagnostics warnings = program.warnings;
   WarnOfStrangers(program.named_classes, classes, "nobody in this episode is a", "", warnings);
@@ -92,6 +96,8 @@ grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Ca
       program.sensor_sets, sensor_sets, "no hand of this episode has a sensor set",
       sensor_sets.empty() ? "" : fmt::format("there are: {}", fmt::join(sensor_sets, ", ")),
       warnings);
+  WarnOfStrangers(program.numbered_sets, numbers, "no hand of this episode has a sensor set",
+                  fmt::format("a hand has {} of them here at most", numbers.size()), warnings);
   return warnings;
 }
 

@@ -72,6 +72,47 @@ TEST(Compile, RefusesWrongParametersFromOutside) {
             "parameter limit:1:1: error: expected a number, found 'wide'\n  wide\n  ^\n");
 }
 
+// A part of an `and` that says nothing, and the edge of a range that somebody else tries.
+TEST(Compile, WarnsOfWhatSaysNothingButMayBeMeant) {
+  const std::string text =
+      "grammar g\n"
+      "param limit = 2 cm/s\n"
+      "define fast(x: Movable, v: cm/s) = speed(x) >= v\n"
+      "event a(x: Movable, y: Movable) while touching(x, y) and speed(x) >= 0 m/s\n"
+      "event b(x: Movable) while fast(x, 0 cm/s)\n"
+      "event d(x: Movable) while speed(x) > limit and speed(x) < 3 cm/s\n"
+      "event e(x: Movable) while speed(x) < limit\n";
+  const std::string by_itself =
+      "g:4:67: warning: this is always true: 'speed' is never below 0 m/s\n"
+      "  event a(x: Movable, y: Movable) while touching(x, y) and speed(x) >= 0 m/s\n"
+      "                                                                    ^\n"
+      "  hint: leave it out, or choose a bound that can be missed\n"
+      "g:3:45: warning: this is always true: 'speed' is never below 0 m/s\n"
+      "  define fast(x: Movable, v: cm/s) = speed(x) >= v\n"
+      "                                              ^\n"
+      "  hint: 'v' is 0 m/s here; leave it out, or choose a bound that can be missed\n";
+  const CompileResult plain = CompileText(text);
+  EXPECT_TRUE(plain.program) << Format(plain.diagnostics);
+  EXPECT_EQ(Format(plain.warnings), by_itself);
+  const CompileResult low = CompileText(text, {{"limit", "0 cm/s"}});
+  EXPECT_TRUE(low.program) << Format(low.diagnostics);
+  EXPECT_EQ(Format(low.warnings),
+            by_itself +
+                "g:7:36: warning: this is never true: 'speed' is never below 0 m/s\n"
+                "  event e(x: Movable) while speed(x) < limit\n"
+                "                                     ^\n"
+                "  hint: 'limit' is 0 m/s, set from outside; choose a bound that can be reached\n");
+  const CompileResult high = CompileText(text, {{"limit", "4 cm/s"}});
+  EXPECT_TRUE(high.program) << Format(high.diagnostics);
+  EXPECT_EQ(Format(high.warnings),
+            by_itself +
+                "g:6:57: warning: this is never true together with what stands before it: "
+                "(speed(x) < 0.03 m/s)\n"
+                "  event d(x: Movable) while speed(x) > limit and speed(x) < 3 cm/s\n"
+                "                                                          ^\n"
+                "  hint: use 'or', or change one of the bounds\n");
+}
+
 TEST(Compile, RefusesWhatIsNoGrammar) {
   const std::pair<std::string, std::string> cases[] = {
       {"", "the file is empty"},

@@ -254,7 +254,7 @@ TEST(Reference, AgreesOnRandomStreams) {
 TEST(Reference, AgreesOnRandomGrammars) {
   const testing::TrialResult result = testing::TryRandomGrammars(20260101, 200'000);
   EXPECT_EQ(result.mismatches, 0) << result.Text() << "\n" << result.first;
-  EXPECT_LT(result.refused, result.grammars);
+  EXPECT_LT(result.refused, 2 * result.grammars);  // of each rule that nothing can come of
 }
 
 TEST(Reference, RandomGrammarsAgreeOnAllSmallEpisodes) {

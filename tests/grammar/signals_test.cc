@@ -90,7 +90,7 @@ TEST(Signals, HaveTheirDocumentedValues) {
       {"relative_vertical_speed(cup, tray)", 0.01, "m/s"},
       {"speed_along(cup, tray)", 0.4, "m/s"},
       {"tilt(cup)", std::numbers::pi / 6, "rad"},
-      {"distance(position_on(cup, tray), position_on(cup, tray))", 0, "m"},
+      {"height(position_on(cup, tray))", 0.2, "m"},
       {"abs(up(hand, tray))", 1, ""},
       {"(2 * height(cup) - 10 cm)", 0.3, "m"},
       {"height(cup) / 0.1 s", 2, "m/s"},

@@ -116,6 +116,24 @@ TEST_F(LoadGrammarFiles, WarnsOfSensorSetsThatNoHandHas) {
                 "  " + std::string(74, ' ') + "^\n  hint: there are: palm, thumb\n");
 }
 
+TEST_F(LoadGrammarFiles, WarnsOfNumbersOfSensorSetsThatNoHandHas) {
+  const std::string file = Write("g.grammar",
+                                 "grammar g\nevent held(h: Hand, c: Cup) while sensor_set(h, 2, c) "
+                                 "and sensor_set(h, 3, c)\n");
+  const auto loaded = Load(file);
+  ASSERT_TRUE(loaded.program) << Format(loaded.diagnostics);
+  const grammar::Cast cast{
+      .entities = {
+          {.name = "hand", .classes = {"Hand", "Entity"}, .sensor_sets = {"thumb", "palm"}},
+          {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}}}};
+  EXPECT_EQ(
+      Format(Warnings(*loaded.program, cast)),
+      file +
+          ":2:73: warning: no hand of this episode has a sensor set '3'\n"
+          "  event held(h: Hand, c: Cup) while sensor_set(h, 2, c) and sensor_set(h, 3, c)\n  " +
+          std::string(72, ' ') + "^\n  hint: a hand has 2 of them here at most\n");
+}
+
 TEST_F(LoadGrammarFiles, LibraryGrammarsGiveNoWarnings) {
   for (const auto& entry : fs::directory_iterator(PREHEND_SOURCE_DIR "/grammar/library")) {
     const auto loaded = Load(entry.path().string());
