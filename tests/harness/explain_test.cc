@@ -158,9 +158,7 @@ TEST(ExplainMissing, NoTransportBeforeTheGrasp) {
 // Every way in which a run comes to nothing, on frames written by hand.
 
 TEST(ExplainMissing, TooShort) {
-  Stage stage(
-      "event near(cup: Cup) while height(cup) < 1 m and distance(position(cup), position(cup)) < 1 "
-      "m lasting 1 s");
+  Stage stage("event near(cup: Cup) while height(cup) < 1 m and speed(cup) < 1 m/s lasting 1 s");
   stage.Show(10);
   const WhyMissing why = WhyNot(stage.Finish(), "near cup");
   EXPECT_EQ(why.because, "lasting 1 s: it lasted only 100 ms");
@@ -241,15 +239,14 @@ TEST(ExplainMissing, Unconfirmed) {
 
 TEST(ExplainMissing, NothingBefore) {
   Stage stage(
-      "event toward(h: Hand, c: Cup) until touching(h, c) begins since distance(position(c), "
-      "position(c)) > 1 m at most 1 s back");
+      "event toward(h: Hand, c: Cup) until touching(h, c) begins since speed(c) > 1 m/s at most 1 "
+      "s "
+      "back");
   stage.Show(5);
   stage.Touch(true);
   stage.Show(5);
   const WhyMissing why = WhyNot(stage.Finish(), "toward");
-  EXPECT_EQ(
-      why.because,
-      "since distance(position(cup), position(cup)) > 1 m: is 0 mm, 1 m below 1 m, at 0.0400 s");
+  EXPECT_EQ(why.because, "since speed(cup) > 1 m/s: is 0 mm/s, 1 m/s below 1 m/s, at 0.0400 s");
 }
 
 TEST(ExplainMissing, AConditionThatAlmostHeldNamesItsBestMoment) {
