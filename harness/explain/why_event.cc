@@ -36,6 +36,14 @@ Reason Remark(std::string what, std::string how = {}) {
           .because = {}};
 }
 
+// A clause that stands in both is told once.
+void AddNew(Reasons more, Reasons& reasons) {
+  for (Reason& reason : more) {
+    const auto same = [&](const Reason& other) { return other.what == reason.what; };
+    if (std::none_of(reasons.begin(), reasons.end(), same)) reasons.push_back(std::move(reason));
+  }
+}
+
 }  // namespace
 
 std::string EventReasons::Seconds(double seconds) const {
@@ -62,19 +70,15 @@ Reasons EventReasons::Begin(int lane, const Fate& fate, int depth) {
     case Form::kAny:
       return BeginOrEndOfAny(lane, begin, false, depth);
     case Form::kWhile: {
-      Reasons reasons = Change(rule.first, {.lane = lane, .frame = begin}, true, depth);
-      for (Reason& reason : Change(rule.second, {.lane = lane, .frame = begin}, false, depth))
-        reasons.push_back(std::move(reason));
+      const Moment at{.lane = lane, .frame = begin};
+      Reasons reasons = Change(rule.first, at, true, depth);
+      AddNew(Change(rule.second, at, false, depth), reasons);
       return reasons;
     }
     case Form::kFromTo: {
       const Moment at{.lane = lane, .frame = begin, .begin = begin};
       Reasons reasons = Change(rule.first, at, true, depth);
-      for (Reason& reason : Change(rule.during, at, true, kDeepest)) {
-        const auto same = [&](const Reason& other) { return other.what == reason.what; };
-        if (std::none_of(reasons.begin(), reasons.end(), same))
-          reasons.push_back(std::move(reason));
-      }
+      AddNew(Change(rule.during, at, true, kDeepest), reasons);
       return reasons;
     }
     case Form::kUntilSince:

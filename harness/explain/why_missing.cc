@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "harness/event_text.h"
 #include "harness/explain/wording.h"
@@ -34,12 +36,29 @@ const Reason* FirstFailure(const Reasons& reasons) {
   return nullptr;
 }
 
+// How far the first clause that failed is from its limit, as a share; infinite where nothing was
+// measured.
+double Missed(const Reason& reason) {
+  const Reason* inner = FirstFailure(reason.because);
+  const Reason* failure = inner != nullptr ? inner : &reason;
+  if (!failure->reading) return std::numeric_limits<double>::infinity();
+  const double scale =
+      std::max(std::abs(failure->reading->value), std::abs(failure->reading->limit));
+  return scale > 0 ? std::abs(failure->reading->value - failure->reading->limit) / scale : 0;
+}
+
 }  // namespace
 
 MissingReasons::Window MissingReasons::Around(FrameNumber frame) {
   const Tick tick = past_.TickOf(frame);
   const Tick around = past_.AtMostTicks(kAround_s);
   return {past_.FrameAt(tick - around), past_.FrameAt(tick + around), frame};
+}
+
+MissingReasons::Window MissingReasons::Within(const Window& window, FrameNumber frame) {
+  const Window around = Around(frame);
+  if (!window.at) return around;
+  return {std::max(around.first, window.first), std::min(around.last, window.last), frame};
 }
 
 WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<FrameNumber> at) {
@@ -122,8 +141,11 @@ double MissingReasons::RunCloseness(const Fate& fate) {
     }
     case Fate::Kind::kUnconfirmed:
       return 1.9;
-    case Fate::Kind::kNothingBack:
-      return 1;
+    case Fate::Kind::kNothingBack: {
+      if (fate.span.end.frame == 0) return 0.9;  // nor could there be anything
+      const Moment before{.lane = fate.lane, .frame = last - 1, .end = last};
+      return 1 + 0.5 * clauses_.Nearness(rule.second, before, true);
+    }
     default:
       return 1.5;
   }
@@ -145,13 +167,50 @@ std::string MissingReasons::HowLate(const Fate& fate) {
   return "nor later";
 }
 
+// What is required, as it was at the end; of alternatives, the one that came closest at any time of
+// the run stands first.
+Reasons MissingReasons::Requirement(const Fate& fate, int depth) {
+  const int node = past_.RuleOf(fate.lane).requirement;
+  const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
+  const Moment at{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
+  const Window run{fate.span.begin.frame, last};
+  Reasons told;
+  for (const Clauses::Clause& clause : clauses_.Split(node, true)) {
+    Reason reason = clauses_.Told(clause, at);
+    const grammar::Node& n = past_.program().nodes[clause.node];
+    const int target =
+        n.op == grammar::Op::kHolds && clause.truth ? past_.Referred(fate.lane, n.slot) : kNone;
+    if (reason.mark == Mark::kFailed && target != kNone)
+      reason.because = OfLane(target, run, depth + 1).reasons;
+    reason.what = "requires " + reason.what;
+    told.push_back(std::move(reason));
+  }
+  if (past_.program().nodes[node].op == grammar::Op::kOr) {
+    std::ranges::stable_sort(told, {}, Missed);
+  }
+  return told;
+}
+
+// Where the clauses of the end came closest within the run.
+Reasons MissingReasons::EndThatNeverCame(const Fate& fate) {
+  const Rule& rule = past_.RuleOf(fate.lane);
+  const grammar::Node& to = past_.program().nodes[rule.second];
+  if (to.op != grammar::Op::kBegins) return {};
+  const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
+  Moment at{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame};
+  at.frame = Closest(to.args[0], at, {fate.span.begin.frame, last});
+  Reasons reasons = clauses_.State(to.args[0], at, true);
+  for (Reason& reason : reasons) reason.what = "to " + reason.what;
+  std::erase_if(reasons, [](const Reason& reason) { return !reason.reading; });
+  return reasons;
+}
+
 MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
   const int lane = fate.lane;
   const Rule& rule = past_.RuleOf(lane);
   const Tick per_second = past_.cast().ticks_per_second;
   const FrameNumber begin = fate.span.begin.frame;
   const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
-  const Moment at_end{.lane = lane, .frame = last, .begin = begin, .end = last};
   Reason run{
       .mark = Mark::kFailed,
       .what = Label(past_, lane),
@@ -178,7 +237,7 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
       break;
     case Fate::Kind::kRefused:
       run.how += "not what is required";
-      clauses("requires ", rule.requirement, at_end);
+      run.because = Requirement(fate, depth);
       break;
     case Fate::Kind::kUnconfirmed: {
       run.how += "not confirmed";
@@ -195,6 +254,7 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
     }
     case Fate::Kind::kDropped:
       run.how += "dropped";
+      run.because = EndThatNeverCame(fate);
       clauses("during ", rule.during, {.lane = lane, .frame = fate.cause, .begin = begin});
       break;
     case Fate::Kind::kTooLate:

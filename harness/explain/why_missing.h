@@ -29,16 +29,21 @@ class MissingReasons {
   };
   Window Whole() { return {0, past_.frames() - 1}; }
   Window Around(grammar::FrameNumber frame);
+  /// Likewise, for what stands behind something else: not beyond the moment that was asked for.
+  Window Within(const Window& window, grammar::FrameNumber frame);
 
   Blame OfLane(int lane, const Window& window, int depth);
   const grammar::Fate* NearestRun(int lane, const Window& window);
   double RunCloseness(const grammar::Fate& fate);
   std::string HowLate(const grammar::Fate& fate);
   Blame OfRun(const grammar::Fate& fate, int depth);
+  Reasons Requirement(const grammar::Fate& fate, int depth);
+  Reasons EndThatNeverCame(const grammar::Fate& fate);
   Blame OfForm(int lane, const Window& window, int depth);
   Blame OfWhile(int lane, const Window& window, int depth);
   Blame OfFromTo(int lane, const Window& window, int depth);
   Blame OfUntil(int lane, const Window& window, int depth);
+  std::optional<Blame> OfLaterEnd(int lane, grammar::FrameNumber at, int depth);
   Blame OfRest(int lane, const Window& window, int depth);
   Blame OfAny(int lane, const Window& window, int depth);
   Blame OfCompose(int lane, const Window& window, int depth);

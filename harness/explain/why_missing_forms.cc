@@ -136,7 +136,8 @@ void MissingReasons::Follow(Reason& reason, int target, FrameNumber frame, const
                             int depth) {
   if (target == kNone || past_.RuleOf(target).form == Form::kTouching) return;
   const bool never = past_.LastBegun(target, past_.frames()) == nullptr;
-  Reasons behind = OfLane(target, never && !window.at ? window : Around(frame), depth + 1).reasons;
+  Reasons behind =
+      OfLane(target, never && !window.at ? window : Within(window, frame), depth + 1).reasons;
   if (behind.size() == 1 && behind.front().what == reason.what) {
     reason.how += "; " + behind.front().how;
     reason.where = behind.front().where;
@@ -172,10 +173,13 @@ MissingReasons::Blame MissingReasons::OfMoment(int node, int lane, const Window&
     if (arg.op == Op::kHolds) {
       const int target = past_.Referred(lane, arg.slot);
       if (target == kNone) continue;
-      if (past_.LastBegun(target, past_.frames()) != nullptr) {
-        blame = {{Intervals(target, "is there at")}, 0.95};
-      } else {
-        blame = OfLane(target, window, depth + 1);
+      const bool ever = past_.LastBegun(target, past_.frames()) != nullptr;
+      const Fate* last = past_.LastBegun(target, window.last);
+      const bool here = last != nullptr && last->span.end.frame >= window.first;
+      if (!here) blame = OfLane(target, window, depth + 1);
+      if (ever) {
+        blame.reasons.insert(blame.reasons.begin(), Intervals(target, "is there at"));
+        blame.closeness = 0.95;
       }
     } else {
       blame = OfClauses(n.args[0], {.lane = lane}, window, depth);
@@ -208,7 +212,10 @@ MissingReasons::Blame MissingReasons::OfFromTo(int lane, const Window& window, i
   for (const Fate& fate : past_.FatesOf(lane)) {
     if (fate.span.begin.frame != from) continue;
     if (fate.kind != Fate::Kind::kInterval) return OfRun(fate, depth);
-    reason.how = "was over at " + clauses_.Time(fate.span.end.frame) + " already";
+    reason.how =
+        "the one before, " +
+        IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second) +
+        ", was over already";
     reason.because = events_.End(lane, fate);
     return {{std::move(reason)}, 0.9};
   }
@@ -242,26 +249,48 @@ Reason MissingReasons::ClosestApproach(int lane, const Window& window) {
   return reason;
 }
 
+// Whatever ended later begins too late; whatever came to nothing later, did so; unless it looks
+// back less far than that.
+std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(int lane, FrameNumber at,
+                                                                int depth) {
+  const Rule& rule = past_.RuleOf(lane);
+  for (const Fate& fate : past_.FatesOf(lane)) {
+    if (fate.span.end.frame <= at) continue;
+    const bool reaches = fate.span.end.tick - past_.TickOf(at) <= past_.AtMostTicks(rule.back_s);
+    const bool is_interval = fate.kind == Fate::Kind::kInterval;
+    if (reaches && !is_interval) return OfRun(fate, depth);
+    Reason reason = Failed(Label(past_, lane), "");
+    reason.where = Source(rule.file, rule.place);
+    if (is_interval) {
+      reason.how = "begins at " + clauses_.Time(fate.span.begin.frame) + " only";
+      reason.because = events_.Begin(lane, fate);
+    } else {
+      const std::string back = QuantityText(rule.back_s, grammar::kSeconds);
+      reason.how = "the next end is at " + clauses_.Time(fate.span.end.frame) +
+                   ", and it looks at most " + back + " back";
+    }
+    return Blame{{std::move(reason)}, 0.9};
+  }
+  return std::nullopt;
+}
+
 MissingReasons::Blame MissingReasons::OfUntil(int lane, const Window& window, int depth) {
   const Rule& rule = past_.RuleOf(lane);
-  Reason reason = Failed(Label(past_, lane), "", {});
-  reason.where = Source(rule.file, rule.place);
-  // Whatever ended one later begins too late; whatever came to nothing later, did so.
-  for (const Fate& fate : past_.FatesOf(lane)) {
-    if (fate.span.end.frame < window.at.value_or(0)) continue;
-    if (fate.kind != Fate::Kind::kInterval) return OfRun(fate, depth);
-    reason.how = "begins at " + clauses_.Time(fate.span.begin.frame) + " only";
-    reason.because = events_.Begin(lane, fate);
-    return {{std::move(reason)}, 0.9};
+  if (window.at) {
+    if (std::optional<Blame> later = OfLaterEnd(lane, *window.at, depth)) return *std::move(later);
   }
+  const Window rest = window.at ? Window{*window.at, past_.frames() - 1} : window;
+  Blame blame = OfMoment(rule.first, lane, rest, depth);
+  const bool whole = rest.first == 0 && rest.last >= past_.frames() - 1;
   const std::string text = ClauseText(past_, lane, rule.first);
-  Blame blame = OfMoment(rule.first, lane,
-                         window.at ? Window{*window.at, past_.frames() - 1} : window, depth);
-  reason.how = "nothing ended it";
-  reason.because = {Failed(
-      text.empty() ? "what ends it" : "until " + text,
-      window.at ? "did not happen at or after " + clauses_.Time(*window.at) : "never happened",
-      std::move(blame.reasons))};
+  const std::string when = whole       ? "never happened"
+                           : window.at ? "did not happen at or after " + clauses_.Time(rest.first)
+                                       : "did not happen from " + clauses_.Time(rest.first) +
+                                             " to " + clauses_.Time(rest.last);
+  Reason reason = Failed(Label(past_, lane), "nothing ended it");
+  reason.where = Source(rule.file, rule.place);
+  reason.because = {
+      Failed(text.empty() ? "what ends it" : "until " + text, when, std::move(blame.reasons))};
   if (rule.approach != kNone) reason.because.push_back(ClosestApproach(lane, window));
   return {{std::move(reason)}, 0.5 * blame.closeness};
 }

@@ -48,6 +48,7 @@ class Stage {
     }
   }
   void CupAt(double x_m) { scene.looks[scene.kCup].p_WB_m.x() = x_m; }
+  void CupUpAt(double z_m) { scene.looks[scene.kCup].p_WB_m.z() = z_m; }
   void Touch(bool touches) {
     scene.touches.clear();
     if (touches) scene.touches.push_back({.a = scene.kHand, .b = scene.kCup});

@@ -204,7 +204,8 @@ TEST(ExplainMissing, Dropped) {
   stage.Touch(false);
   stage.Show(4);
   const WhyMissing why = WhyNot(stage.Finish(), "pushed");
-  EXPECT_EQ(why.because, "during touching(cup, hand): ended at 0.1000 s");
+  EXPECT_EQ(why.because, "to displacement(cup) > 0.1 m: is 50 mm, 50 mm below 100 mm, at 0.0600 s");
+  EXPECT_EQ(Find(why.reasons, "during touching(cup, hand)")->how, "ended at 0.1000 s");
 }
 
 TEST(ExplainMissing, Unfinished) {
@@ -247,6 +248,80 @@ TEST(ExplainMissing, NothingBefore) {
   stage.Show(5);
   const WhyMissing why = WhyNot(stage.Finish(), "toward");
   EXPECT_EQ(why.because, "since speed(cup) > 1 m/s: is 0 mm/s, 1 m/s below 1 m/s, at 0.0400 s");
+}
+
+// The first touch is the episode's first frame, and nothing can be before that.
+TEST(ExplainMissing, NothingBeforeIsToldOfTheEndThatCameClosest) {
+  Stage stage(
+      "event toward(h: Hand, c: Cup) until touching(h, c) begins since height(c) > 1 m at most 1 s "
+      "back");
+  stage.Touch(true);
+  stage.Show(2);
+  for (const double z_m : {0.2, 0.6, 0.4}) {
+    stage.Touch(false);
+    stage.CupUpAt(z_m);
+    stage.Show(5);
+    stage.Touch(true);
+    stage.Show(5);
+  }
+  grammar::Hindsight& past = stage.Finish();
+  EXPECT_EQ(WhyNot(past, "toward").because,
+            "since height(cup) > 1 m: is 600 mm, 400 mm below 1 m, at 0.1600 s");
+}
+
+// 120 ms is too far for what looks back 100 ms.
+TEST(ExplainMissing, AnEndThatDoesNotReachBackIsNoReason) {
+  Stage stage(
+      "event toward(h: Hand, c: Cup) until touching(h, c) begins since speed(c) > 1 m/s at most "
+      "100 ms back");
+  stage.Show(100);
+  stage.Touch(true);
+  stage.Show(2);
+  grammar::Hindsight& past = stage.Finish();
+  EXPECT_EQ(WhyNot(past, "toward@0.3s").because,
+            "toward(hand, cup): the next end is at 1.0000 s, and it looks at most 100 ms back");
+  EXPECT_EQ(WhyNot(past, "toward@0.95s").because,
+            "since speed(cup) > 1 m/s: is 0 mm/s, 1 m/s below 1 m/s, at 0.9900 s");
+}
+
+// There and back: how far it is at the end is not how close it came.
+TEST(ExplainMissing, OfTwoRequirementsTheOneThatCameCloserIsNamed) {
+  Stage stage(
+      "condition far(h: Hand, c: Cup) from touching(h, c) begins to displacement(c) >= 10 cm "
+      "begins "
+      "during touching(h, c) or drop\n"
+      "event moved(h: Hand, c: Cup) while touching(h, c) requires displacement(c) >= 10 cm or "
+      "far(h, c)");
+  stage.Touch(true);
+  for (const double x_m : {0.0, 0.05, 0.08, 0.03, 0.01}) {
+    stage.CupAt(x_m);
+    stage.Show(2);
+  }
+  stage.Touch(false);
+  stage.Show(2);
+  EXPECT_EQ(WhyNot(stage.Finish(), "moved").because,
+            "to displacement(cup) >= 0.1 m: is 80 mm, 20 mm below 100 mm, at 0.0400 s");
+}
+
+// The moment that is asked for is meant within 0.25 s, however many rules stand between.
+TEST(ExplainMissing, TheWindowAroundAMomentDoesNotGrowFromRuleToRule) {
+  Stage stage(
+      "condition a(c: Cup) while height(c) > 1 m\ncondition b(c: Cup) while a(c)\n"
+      "event e(c: Cup) while b(c)");
+  for (int i = 0; i < 100; ++i) {
+    stage.CupUpAt(i * 0.009);
+    stage.Show();
+  }
+  EXPECT_EQ(WhyNot(stage.Finish(), "e@0.5s").because,
+            "height(cup) > 1 m: is 675 mm, 325 mm below 1 m, at 0.7500 s");
+}
+
+TEST(Explain, AClauseOfBothThresholdsIsToldOnce) {
+  Stage stage("event e(h: Hand, c: Cup) while touching(h, c) until not touching(h, c)");
+  stage.Show(3);
+  stage.Touch(true);
+  stage.Show(3);
+  EXPECT_EQ(Why(stage.Finish(), "e").began.size(), 1);
 }
 
 TEST(ExplainMissing, AConditionThatAlmostHeldNamesItsBestMoment) {
