@@ -13,16 +13,13 @@ namespace {
 
 using ast::Expr;
 
+constexpr std::size_t kMostDoubts = 200;  // that are told, of one clause and as warnings
+
 // The names that stand in it, each once.
 void CollectNames(const Expr& expr, std::vector<std::string>& names) {
   const bool is_new = std::find(names.begin(), names.end(), expr.text) == names.end();
   if (expr.kind == Expr::Kind::kName && is_new) names.push_back(expr.text);
   for (const Expr& arg : expr.args) CollectNames(arg, names);
-}
-
-Verdict Opposite(Verdict verdict) {
-  if (verdict == Verdict::kPossible) return verdict;
-  return verdict == Verdict::kNever ? Verdict::kAlways : Verdict::kNever;
 }
 
 }  // namespace
@@ -78,6 +75,8 @@ Lowering::Typed Lowering::LowerNot(const Expr& expr) {
 }
 
 void Lowering::Doubt(Place place, std::string message, std::string hint, bool is_handed_in) {
+  if (doubts_.size() >= kMostDoubts && is_handed_in) return;
+  if (doubts_.size() >= kMostDoubts) doubts_.pop_back();  // a mistake is told in any case
   doubts_.push_back(
       {DiagnosticAt(source_->file, source_->text, place, std::move(message), std::move(hint)),
        is_handed_in});
@@ -104,8 +103,11 @@ int Lowering::Settled(const Typed& clause) {
 // The same helper may be called more than once.
 void Lowering::Warn(Diagnostic warning) {
   warning.is_warning = true;
-  const auto same = [&](const Diagnostic& other) { return Format({other}) == Format({warning}); };
-  if (std::ranges::none_of(symbols_.warnings, same))
+  const auto same = [&](const Diagnostic& other) {
+    return other.place.line == warning.place.line && other.place.column == warning.place.column &&
+           other.file == warning.file && other.hint == warning.hint;
+  };
+  if (symbols_.warnings.size() < kMostDoubts && std::ranges::none_of(symbols_.warnings, same))
     symbols_.warnings.push_back(std::move(warning));
 }
 

@@ -41,12 +41,12 @@ bool Misses(const Range& counts, const Range& value) {
   return counts.whole && value.IsPoint() && value.low != std::floor(value.low);
 }
 
+}  // namespace
+
 Verdict Opposite(Verdict verdict) {
   if (verdict == Verdict::kPossible) return verdict;
   return verdict == Verdict::kNever ? Verdict::kAlways : Verdict::kNever;
 }
-
-}  // namespace
 
 Range RangeOf(const Program& program, const Rule& rule, int index) {
   const Node& node = program.nodes[index];

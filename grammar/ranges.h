@@ -16,6 +16,9 @@ Range RangeOf(const Program& program, const Rule& rule, int node);
 
 enum class Verdict : std::uint8_t { kPossible, kNever, kAlways };
 
+/// Of the negation.
+Verdict Opposite(Verdict verdict);
+
 /// What is to be said of `left op right`, op being a comparison.
 Verdict Judge(Op op, const Range& left, const Range& right);
 
