@@ -18,8 +18,9 @@ struct Region {
   double height_m = 0;
 
   bool Contains(const Vector3d& p) const {
-    return (p - anchor).head<2>().norm() <= radius_m && std::abs(p.z() - anchor.z()) <= height_m;
+    return IsAboveOrBelow(p) && std::abs(p.z() - anchor.z()) <= height_m;
   }
+  bool IsAboveOrBelow(const Vector3d& p) const { return (p - anchor).head<2>().norm() <= radius_m; }
 };
 
 class Carrier {
@@ -85,12 +86,20 @@ class Carrier {
     return farthest;
   }
 
+  Spans BridgedFor(double gap_s, const Spans& spans) const {
+    return Bridged(spans, recording_.ticks, recording_.Ticks(gap_s));
+  }
+
   /// `held`: it is grasped and supported.
   void FindSlides(Span held) {
     std::vector<bool> moving(recording_.size());
     for (int frame = held.begin; frame < held.end; ++frame) moving[frame] = Slides(frame);
-    for (const Span& slide :
-         Bridged(WhereTrue(moving), recording_.ticks, recording_.Ticks(settings_.slide_pause_s)))
+    Spans motions = BridgedFor(settings_.slide_moment_s, WhereTrue(moving));
+    // The jerk of a grip or of a lift that begins is none.
+    std::erase_if(motions, [&](const Span& motion) {
+      return recording_.Lasts_s(motion) < settings_.slide_moment_s;
+    });
+    for (const Span& slide : BridgedFor(settings_.slide_pause_s, motions))
       if (Displacement(slide) >= settings_.slide_displacement_m) found_.slides.push_back(slide);
   }
 
@@ -122,14 +131,22 @@ class Carrier {
   }
 
   /// In the air, as long as it does not leave the region around the place of the loss.
-  std::optional<Span> PickUp(Span unsupported, int loss) const {
+  Span NearLoss(Span unsupported, int loss) const {
     const Region region = PickUpRegion(loss);
     int end = unsupported.begin;
     while (end < unsupported.end && region.Contains(place(end))) ++end;
-    // The frame in which it is first seen outside still tells how high it rose.
-    const double highest = Highest({loss, std::min(end + 1, recording_.size())});
-    if (highest - region.anchor.z() < settings_.pick_up_rise_m) return std::nullopt;
     return Span{unsupported.begin, end};
+  }
+
+  /// High enough, and above where it was lost. The frame after the pick-up tells, too: what leaves
+  /// the region upwards was that high.
+  bool Rises(Span pick_up, int loss) const {
+    const double floor_m = place(loss).z() + settings_.pick_up_rise_m;
+    bool rises = false;
+    for (int frame = loss; frame < std::min(pick_up.end + 1, recording_.size()); ++frame)
+      rises =
+          rises || (place(frame).z() >= floor_m && PickUpRegion(loss).IsAboveOrBelow(place(frame)));
+    return rises;
   }
 
   /// From the begin of the last uninterrupted approach from above to the landing.
@@ -159,10 +176,10 @@ class Carrier {
       found_.put_downs.push_back(*put_down);
       transport.end = put_down->begin;
     }
-    if (const auto pick_up = loss ? PickUp(unsupported, *loss) : std::nullopt) {
-      const Span part = Common(*pick_up, transport);
-      if (!part.empty()) found_.pick_ups.push_back(part);
-      transport.begin = std::max(transport.begin, part.end);
+    const Span pick_up = loss ? Common(NearLoss(unsupported, *loss), transport) : Span{};
+    if (!pick_up.empty() && Rises(pick_up, *loss)) {
+      found_.pick_ups.push_back(pick_up);
+      transport.begin = pick_up.end;
     }
     if (!transport.empty()) found_.transports.push_back(transport);
   }

@@ -22,7 +22,8 @@ struct OracleSettings {
   double grasp_bridge_s = 0.060;    ///< a loss of grip on the object that is bridged
 
   double support_up = 0.5;              ///< upward component of the contact normal on the object
-  double support_speed_m_per_s = 0.02;  ///< vertical, of the two surfaces where they touch
+  double support_speed_m_per_s = 0.02;  ///< vertical, of the object's middle or of its load
+  double support_minimum_s = 0.02;      ///< a blow is over sooner
   double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
   int grasp_sensor_sets = 2;            ///< of one hand on the object
 
@@ -37,6 +38,7 @@ struct OracleSettings {
 
   double slide_speed_m_per_s = 0.01;  ///< horizontal, relative to the support
   double slide_window_s = 0.1;        ///< it has to be faster than that on average over this, too
+  double slide_moment_s = 0.05;       ///< it has to move for that long; a dip is no longer
   double slide_pause_s = 0.150;       ///< a pause in the motion that is bridged
   double slide_displacement_m = 0.02;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/oracle/recording.h"
 
+#include <array>
 #include <bit>
 #include <cstdint>
 
@@ -8,6 +9,11 @@ namespace prehend::harness::oracle {
 
 double Recording::Seconds(int from_frame, int to_frame) const {
   return static_cast<double>(ticks[to_frame] - ticks[from_frame]) / scene.world.rate_hz;
+}
+
+double Recording::Lasts_s(Span span) const {
+  const grammar::Tick end = span.end < size() ? ticks[span.end] : ticks.back() + 1;
+  return static_cast<double>(end - ticks[span.begin]) / scene.world.rate_hz;
 }
 
 const std::string& Recording::name(int entity) const {
@@ -37,8 +43,26 @@ using Flags = std::map<Pair, std::vector<bool>>;
 
 struct RawTouches {
   Flags touching, gripped;  ///< gripped: (hand index, body)
-  Flags borne,
-      at_rest;  ///< (object, support); at rest: it moves neither up nor down on it, at some point
+  Flags borne, at_rest;     ///< (object, support); at rest: it moves neither up nor down on it
+};
+
+/// How two bodies bear on each other in one frame. Of a touch that does not push, all points count
+/// alike.
+struct Bearing {
+  Eigen::Vector3d places = Eigen::Vector3d::Zero(), loaded = Eigen::Vector3d::Zero();
+  double level = 0, load_n_s = 0;
+
+  void Add(const physics::ContactPoint& point) {
+    const double upright = std::abs(point.nhat_BA_W.z());
+    level += upright;
+    places += upright * point.p_W_m;
+    load_n_s += upright * point.normal_impulse_n_s;
+    loaded += upright * point.normal_impulse_n_s * point.p_W_m;
+  }
+  Eigen::Vector3d Centre() const {
+    if (load_n_s > 0) return loaded / load_n_s;
+    return places / level;
+  }
 };
 
 class TouchReader {
@@ -49,8 +73,12 @@ class TouchReader {
   RawTouches Read() {
     for (int frame = 0; frame < recording_.size(); ++frame) {
       std::map<Pair, std::uint32_t> sensor_sets;  // of (hand, body)
+      std::map<Pair, Bearing> bearings;           // of (object, support)
       for (const auto& points : recording_.frames[frame].AllContacts())
-        for (const physics::ContactPoint& point : points) ReadPoint(point, frame, sensor_sets);
+        for (const physics::ContactPoint& point : points)
+          ReadPoint(point, frame, sensor_sets, bearings);
+      for (const auto& [pair, bearing] : bearings)
+        if (BearsAt(pair, frame) && RestsAt(pair, bearing, frame)) Mark(raw_.at_rest, pair, frame);
       for (const auto& [pair, sets] : sensor_sets)
         if (std::popcount(sets) >= settings_.grasp_sensor_sets) Mark(raw_.gripped, pair, frame);
     }
@@ -59,13 +87,15 @@ class TouchReader {
 
  private:
   void ReadPoint(const physics::ContactPoint& point, int frame,
-                 std::map<Pair, std::uint32_t>& sensor_sets) {
+                 std::map<Pair, std::uint32_t>& sensor_sets, std::map<Pair, Bearing>& bearings) {
     const int a = Entity(point.a), b = Entity(point.b);
     if (a == b) return;
     Mark(raw_.touching, std::minmax(a, b), frame);
     if (IsBody(a) && IsBody(b)) {
-      ReadSupport(point, point.nhat_BA_W.z(), {a, b}, frame);
-      ReadSupport(point, -point.nhat_BA_W.z(), {b, a}, frame);
+      if (Bears(point.nhat_BA_W.z(), {a, b})) Mark(raw_.borne, {a, b}, frame);
+      if (Bears(-point.nhat_BA_W.z(), {b, a})) Mark(raw_.borne, {b, a}, frame);
+      bearings[{a, b}].Add(point);
+      bearings[{b, a}].Add(point);
     } else if (IsBody(a) || IsBody(b)) {
       const physics::ContactSide& hand = IsBody(a) ? point.b : point.a;
       sensor_sets[{hand.hand, IsBody(a) ? a : b}] |= 1u << SensorSet(hand);
@@ -83,19 +113,27 @@ class TouchReader {
   }
 
   /// `up`: of the normal on the object, (object, support).
-  void ReadSupport(const physics::ContactPoint& point, double up, Pair pair, int frame) {
+  bool Bears(double up, Pair pair) const {
     const auto& [object, support] = pair;
-    if (up < settings_.support_up || !physics::MovesFreely(recording_.scene, object) ||
-        !physics::IsThing(recording_.scene.bodies[static_cast<std::size_t>(support)]))
-      return;
-    Mark(raw_.borne, pair, frame);
-    const physics::BodyState &held = recording_.body(object, frame),
-                             &by = recording_.body(support, frame);
-    const auto rests_at = [&](const Eigen::Vector3d& p_W_m) {
-      return std::abs((VelocityAt(held, p_W_m) - VelocityAt(by, p_W_m)).z()) <=
-             settings_.support_speed_m_per_s;
-    };
-    if (rests_at(point.p_W_m) || rests_at(held.X_WB.p_m)) Mark(raw_.at_rest, pair, frame);
+    return up >= settings_.support_up && physics::MovesFreely(recording_.scene, object) &&
+           physics::IsThing(recording_.scene.bodies[static_cast<std::size_t>(support)]);
+  }
+
+  bool BearsAt(Pair pair, int frame) const {
+    const auto frames = raw_.borne.find(pair);
+    return frames != raw_.borne.end() && frames->second[frame];
+  }
+
+  /// Where the load is borne, or in its middle, the object moves neither up nor down on the
+  /// support.
+  bool RestsAt(Pair pair, const Bearing& bearing, int frame) const {
+    const physics::BodyState &held = recording_.body(pair.first, frame),
+                             &by = recording_.body(pair.second, frame);
+    return std::ranges::any_of(
+        std::array{bearing.Centre(), held.X_WB.p_m}, [&](const Eigen::Vector3d& p_W_m) {
+          return std::abs((VelocityAt(held, p_W_m) - VelocityAt(by, p_W_m)).z()) <=
+                 settings_.support_speed_m_per_s;
+        });
   }
 
   void Mark(Flags& flags, Pair pair, int frame) const {
@@ -117,9 +155,9 @@ std::map<Pair, Spans> BridgeAll(const Recording& recording, const Flags& flags, 
 }
 
 /// From where it is at rest on what bears it until that does no more: it may tip or roll in
-/// between.
+/// between. What is over in a moment was a blow.
 std::map<Pair, Spans> SupportsOf(const Recording& recording, const RawTouches& raw,
-                                 double bridge_s) {
+                                 const OracleSettings& settings) {
   std::map<Pair, Spans> supports;
   for (const auto& [pair, at_rest] : raw.at_rest) {
     Spans spans;
@@ -127,7 +165,11 @@ std::map<Pair, Spans> SupportsOf(const Recording& recording, const RawTouches& r
       while (!span.empty() && !at_rest[span.begin]) ++span.begin;
       if (!span.empty()) spans.push_back(span);
     }
-    supports[pair] = Bridged(spans, recording.ticks, recording.Ticks(bridge_s));
+    spans = Bridged(spans, recording.ticks, recording.Ticks(settings.contact_bridge_s));
+    std::erase_if(spans, [&](const Span& span) {
+      return recording.Lasts_s(span) < settings.support_minimum_s;
+    });
+    supports[pair] = spans;
   }
   return supports;
 }
@@ -157,7 +199,7 @@ Touches FindTouches(const Recording& recording, const OracleSettings& settings) 
   const RawTouches raw = TouchReader(recording, settings).Read();
   Touches touches;
   touches.contacts = BridgeAll(recording, raw.touching, settings.contact_bridge_s);
-  touches.supports = SupportsOf(recording, raw, settings.contact_bridge_s);
+  touches.supports = SupportsOf(recording, raw, settings);
   for (const auto& [pair, frames] : raw.gripped) {
     const auto& [hand, body] = pair;
     const Spans tight =

@@ -26,6 +26,7 @@ struct Recording {
   int body_count() const { return static_cast<int>(scene.bodies.size()); }
   double Ticks(double seconds) const { return seconds * scene.world.rate_hz; }
   double Seconds(int from_frame, int to_frame) const;
+  double Lasts_s(Span span) const;
 
   const physics::BodyState& body(int body, int frame) const { return frames[frame].bodies[body]; }
   const physics::HandState& hand(int hand, int frame) const { return frames[frame].hands[hand]; }

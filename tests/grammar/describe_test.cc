@@ -25,11 +25,11 @@ TEST(Describe, BoundsDecisionsAndHistory) {
   EXPECT_DOUBLE_EQ(Find(d, "grasping").latency.seconds, 0.06);
   EXPECT_TRUE(Find(d, "grasping").latency.until_end_of.empty());
   EXPECT_EQ(Find(d, "reaching").latency.until_end_of, std::set<std::string>{"contact"});
-  EXPECT_DOUBLE_EQ(Find(d, "picking_up").latency.seconds, 3.4);
+  EXPECT_DOUBLE_EQ(Find(d, "picking_up").latency.seconds, 3.42);
   EXPECT_DOUBLE_EQ(Find(d, "putting_down").latency.seconds,
-                   0.1);  // where it lands, all about the way there is known
+                   0.12);  // where it lands, all about the way there is known
   EXPECT_DOUBLE_EQ(Find(d, "moving_along").latency.seconds,
-                   0.1 + 0.15 + 0.05);  // support, pause, half a window
+                   0.12 + 0.05 + 0.05 + 0.05 + 0.15);  // support, half a window, dip, jerk, pause
   EXPECT_EQ(Find(d, "contact").watched, "pairs that touch");
 }
 

@@ -39,6 +39,7 @@ const std::vector<Mutant> kMutants = {
      ""},
     {"an edge bears nothing", "contact", "touch_speed(object, support) <= support_settled or ", "",
      ""},
+    {"a blow supports", "contact", "\n  lasting support_min", "", ""},
     {"the lower one is supported", "contact", "up(object, support)", "up(support, object)", ""},
     {"one side is a grasp", "grasp", "grip_sides   = 2", "grip_sides   = 1", ""},
     {"three sides are a grasp", "grasp", "grip_sides   = 2", "grip_sides   = 3", ""},
@@ -57,6 +58,7 @@ const std::vector<Mutant> kMutants = {
      "  confirmed by grasping(hand, object) within contact(hand, object)\n", "", ""},
     {"trembling is sliding", "pick_and_place",
      "\n    and drift_along(object, support, slide_window) >= slide_speed", "", ""},
+    {"a jerk is a slide", "pick_and_place", "\n  lasting slide_jerk", "", ""},
     {"short slides are none", "pick_and_place", "slide_distance = 2 cm", "slide_distance = 6 cm",
      ""},
     {"there and back is no slide", "pick_and_place", " or got_far(hand, object, support)", "", ""},
@@ -90,6 +92,8 @@ const std::vector<Mutant> kMutants = {
      "until supported_by(object, any) ends\n  since in_the_air(hand, object) and in_cylinder", ""},
     {"a put-down need not come from above", "pick_and_place",
      "from from_above(hand, object) begins", "from nearing(hand, object) begins", ""},
+    {"beside its region it is picked up, too", "pick_and_place",
+     " and in_cylinder(position(object), place, lift_radius, lift_sky)", "", ""},
     {"a pick-up must end high", "pick_and_place", " or raised(object)", "", ""},
     {"a transport includes the put-down", "pick_and_place",
      ", picking_up(hand, object), putting_down(hand, object)", ", picking_up(hand, object)", ""},
@@ -123,6 +127,8 @@ const char* const kScenarios[] = {
     "recorded/recorded_controller_grasps_the_can",
     "slide/there_and_back_is_a_slide",
     "slide/quick_lift_seen_slowly_is_no_slide",
+    "rates/aside_and_up_is_no_pick_up_at_60_hz",
+    "physics/tower_is_knocked_over",
 };
 
 /// The mutant's program; no value: the mutation did not apply, or made no grammar.

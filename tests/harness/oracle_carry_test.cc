@@ -135,15 +135,30 @@ TEST_F(OracleCarry, TremblingIsNotSliding) {
   ExpectNear(Events("sliding"), {{begin, end}}, 24);  // a tremble next to the motion is part of it
 }
 
-TEST_F(OracleCarry, MotionThatGoesOnInTheAirIsNoTrembling) {
+TEST_F(OracleCarry, AJerkBeforeALiftIsNoMotionAndWhatLastsIs) {
+  for (const int jerk_frames : {4, 16}) {
+    stage_ = Stage();
+    SetUp();
+    const Tick begin = stage_.now();
+    stage_.Carry(0.4, {0.2, 0, 0});
+    const Tick stops = stage_.now();
+    stage_.Play(0.08);
+    stage_.Carry(jerk_frames / 240.0, {0.03, 0, 0});  // and it moves on in the air
+    const Tick lost = stage_.now();
+    stage_.cup_on_table = false;
+    stage_.Carry(0.4, {0.03, 0, 0.2});
+    ExpectNear(Events("sliding"), {{begin, jerk_frames < 12 ? stops : lost}});
+  }
+}
+
+TEST_F(OracleCarry, AJerkOfTheClosingHandIsNoBeginOfASlide) {
+  stage_.Carry(0.04, {0.02, 0, 0});
+  stage_.Play(0.12);
   const Tick begin = stage_.now();
-  stage_.Carry(0.4, {0.2, 0, 0});
-  stage_.Play(0.08);
-  stage_.Carry(4 / 240.0, {0.03, 0, 0});  // it moves on just before it is lifted
-  const Tick lost = stage_.now();
-  stage_.cup_on_table = false;
-  stage_.Carry(0.4, {0.03, 0, 0.2});
-  ExpectNear(Events("sliding"), {{begin, lost}});
+  stage_.Carry(0.3, {0.2, 0, 0});
+  const Tick end = stage_.now();
+  stage_.Play(0.3);
+  ExpectNear(Events("sliding"), {{begin, end}});
 }
 
 TEST_F(OracleCarry, ThereAndBackIsASlide) {
@@ -230,6 +245,19 @@ TEST_F(OracleCarry, ASnatchIsAPickUpEvenIfOneFrameSeesItAll) {
   SetUp();
   const Tick lost = Lift(0.4, 4.0);
   EXPECT_EQ(Events("picking_up"), (Intervals{{lost, lost + 16}}));
+}
+
+TEST_F(OracleCarry, WhatIsHighBesideTheRegionInTheNextLookIsNoPickUp) {
+  for (const int ticks_per_frame : {2, 16}) {
+    stage_ = Stage(ticks_per_frame);
+    SetUp();
+    const Tick lost = stage_.now();
+    stage_.cup_on_table = false;
+    stage_.Carry(0.1, {1.2, 0, 0.1});
+    stage_.Carry(0.1, {1.2, 0, 1.2});  // slowly seen, it is 5 cm high in the first look from beside
+    EXPECT_TRUE(Events("picking_up").empty());
+    ExpectNear(Events("transporting"), {{lost, stage_.now()}});
+  }
 }
 
 TEST_F(OracleCarry, ASlideEndsWithTheGrasp) {

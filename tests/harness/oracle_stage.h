@@ -37,6 +37,7 @@ class Stage {
     physics::ContactSide a, b;
     Eigen::Vector3d nhat_BA_W = Eigen::Vector3d::UnitZ();
     Eigen::Vector3d from_a_m = Eigen::Vector3d::Zero();  ///< from the origin of body a
+    double impulse_n_s = 0;
   };
   static physics::ContactSide BodySide(int body) { return {.body = body}; }
   static physics::ContactSide HandSide(int hand, int sensor_set) {
@@ -130,7 +131,8 @@ class Stage {
       frame.contacts.push_back({.a = contact.a,
                                 .b = contact.b,
                                 .p_W_m = body(contact.a.body).X_WB.p_m + contact.from_a_m,
-                                .nhat_BA_W = contact.nhat_BA_W});
+                                .nhat_BA_W = contact.nhat_BA_W,
+                                .normal_impulse_n_s = contact.impulse_n_s});
     frames_.push_back(frame);
   }
 

@@ -121,6 +121,39 @@ TEST(OracleSupport, BeginsOnTheEdgeThatLandsFirst) {
   }
 }
 
+TEST(OracleSupport, IsJudgedWhereTheLoadIs) {
+  for (const double load_n_s : {0.0, 1.0}) {
+    Stage stage;
+    stage.cup_on_table = false;
+    // It bounces, turning by 2 rad/s: the edge behind is at rest, the one in front, 6 cm from it,
+    // and the middle are not.
+    const auto at = [&](double x_m, double impulse_n_s) {
+      return Stage::Contact{.a = Stage::BodySide(stage.cup),
+                            .b = Stage::BodySide(stage.table),
+                            .from_a_m = {x_m, 0, -0.03},
+                            .impulse_n_s = impulse_n_s};
+    };
+    stage.contacts = {at(-0.03, 1 - load_n_s), at(0.03, load_n_s)};
+    stage.body(stage.cup).w_WB_rad_per_s = {0, -2.0, 0};
+    stage.Play(0.3, {0, 0, 0}, {{stage.cup, {0, 0, 0.06}}});
+    EXPECT_EQ(Of("supported_by(cup, table)", stage.Truth()).size(), load_n_s > 0 ? 0u : 1u);
+  }
+}
+
+TEST(OracleSupport, OfABlowThereIsNone) {
+  for (const int frames_at_rest : {3, 6}) {
+    Stage stage;
+    stage.cup_on_table = false;
+    stage.Play(0.3, {0, 0, 0}, {{stage.cup, {0.5, 0, -0.1}}});
+    stage.cup_on_table = true;
+    stage.Play(frames_at_rest / 240.0, {0, 0, 0}, {{stage.cup, {0.5, 0, 0}}});
+    stage.cup_on_table = false;
+    stage.Play(0.3, {0, 0, 0}, {{stage.cup, {0.5, 0, 0.1}}});
+    EXPECT_EQ(Of("contact(cup, table)", stage.Truth()).size(), 1u);
+    EXPECT_EQ(Of("supported_by(cup, table)", stage.Truth()).size(), frames_at_rest > 5 ? 1u : 0u);
+  }
+}
+
 TEST(OracleSupport, StaysWhileWhatStoodThereTips) {
   Stage stage;
   stage.Play(0.3);
