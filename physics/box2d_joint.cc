@@ -2,20 +2,19 @@
 // Tested by tests/physics/box2d_world_test.cc
 #include "physics/box2d_joint.h"
 
-#include <algorithm>
+#include "physics/joint_spring.h"
 
 namespace prehend::physics {
 namespace {
 
-/// 1 / kg m^2 about a point of the world.
-double InverseMomentAbout(const b2Body& body, const b2Vec2& point) {
-  if (body.GetType() != b2_dynamicBody) return 0;
-  const double apart = (body.GetWorldCenter() - point).LengthSquared();
-  return kTorqueScale / (MomentAboutCentre(body) + body.GetMass() * apart);
-}
-
-double InverseMass(const b2Body& body) {
-  return body.GetType() == b2_dynamicBody ? 1.0 / body.GetMass() : 0;
+JointSide SideOf(const b2Body& body) {
+  const bool moves = body.GetType() == b2_dynamicBody;
+  const double per_moment = moves ? kTorqueScale / MomentAboutCentre(body) : 0;
+  return {.per_mass = moves ? 1.0 / body.GetMass() : 0,
+          .per_moment_W = per_moment * Eigen::Matrix3d::Identity(),  // it turns about y alone
+          .centre_W_m = FromBox2d(body.GetWorldCenter()),
+          .v_m_per_s = FromBox2d(body.GetLinearVelocity()),
+          .w_rad_per_s = {0, -body.GetAngularVelocity(), 0}};
 }
 
 }  // namespace
@@ -42,40 +41,26 @@ Box2dJoint::Box2dJoint(const Joint& joint, b2Body& base, b2Body& body, b2World& 
   }
 }
 
-double Box2dJoint::Position() const {
-  return sign_ *
-         (slider_ ? slider_->GetJointTranslation() / kLengthScale : hinge_->GetJointAngle());
-}
-
-double Box2dJoint::Rate() const {
-  return sign_ * (slider_ ? slider_->GetJointSpeed() / kLengthScale : hinge_->GetJointSpeed());
-}
-
-double Box2dJoint::Inertia() const {
-  if (slider_) return 1 / (InverseMass(*slider_->GetBodyA()) + InverseMass(*slider_->GetBodyB()));
-  const b2Vec2 pivot = hinge_->GetAnchorA();
-  return 1 / (InverseMomentAbout(*hinge_->GetBodyA(), pivot) +
-              InverseMomentAbout(*hinge_->GetBodyB(), pivot));
-}
-
 void Box2dJoint::Pull(double dt_s) {
   if (joint_.spring == 0 && joint_.damping == 0) return;
-  // As if at the end of the tick, and never more than what stops the joint there: no stiffness
-  // explodes.
-  const double resistance = joint_.damping + joint_.spring * dt_s;
-  const double share = std::min(1.0, Inertia() / (resistance * dt_s));
-  const double force = -share * (joint_.spring * (Position() - joint_.rest) + resistance * Rate());
   if (hinge_) {
-    const auto torque = static_cast<float>(sign_ * force * kTorqueScale);
-    hinge_->GetBodyA()->ApplyTorque(-torque, false);
-    hinge_->GetBodyB()->ApplyTorque(torque, false);
-    return;
+    b2Body &base = *hinge_->GetBodyA(), &body = *hinge_->GetBodyB();
+    const JointPlace place{
+        sign_ * hinge_->GetJointAngle(), {0, -sign_, 0}, FromBox2d(hinge_->GetAnchorA())};
+    const auto torque = static_cast<float>(
+        sign_ * kTorqueScale * SpringForce(joint_, place, SideOf(base), SideOf(body), dt_s));
+    base.ApplyTorque(-torque, false);
+    body.ApplyTorque(torque, false);
+  } else {
+    b2Body &base = *slider_->GetBodyA(), &body = *slider_->GetBodyB();
+    const Eigen::Vector3d axis_W =
+        FromBox2d(base.GetWorldVector(slider_->GetLocalAxisA())) * kLengthScale;
+    const JointPlace place{slider_->GetJointTranslation() / kLengthScale, axis_W, {0, 0, 0}};
+    const b2Vec2 force =
+        ToBox2d(SpringForce(joint_, place, SideOf(base), SideOf(body), dt_s) * axis_W);
+    base.ApplyForce(-force, body.GetWorldCenter(), false);
+    body.ApplyForceToCenter(force, false);
   }
-  const b2Vec2 along = static_cast<float>(force * kLengthScale) *
-                       slider_->GetBodyA()->GetWorldVector(slider_->GetLocalAxisA());
-  const b2Vec2 at = slider_->GetAnchorB();
-  slider_->GetBodyA()->ApplyForce(-along, at, false);
-  slider_->GetBodyB()->ApplyForce(along, at, false);
 }
 
 }  // namespace prehend::physics

@@ -17,12 +17,6 @@ class Box2dJoint {
   void Pull(double dt_s);
 
  private:
-  /// Our coordinate and its rate, in metres or radians.
-  double Position() const;
-  double Rate() const;
-  /// What a force along the joint's way has to move, kg or kg m^2.
-  double Inertia() const;
-
   Joint joint_;
   double sign_;                         ///< of Box2D's coordinate against ours
   b2PrismaticJoint* slider_ = nullptr;  ///< the world's; one of the two

@@ -11,9 +11,22 @@
 
 namespace prehend::physics {
 
-/// For sliders, hinges and balls; fixed joints need none, their bodies are one (BulletBody). The
-/// bodies must stand as placed.
-std::unique_ptr<btTypedConstraint> MakeConstraint(const Joint& joint, btRigidBody& base,
-                                                  btRigidBody& body);
+class BulletJoint {
+ public:
+  /// A slider, hinge or ball; fixed joints need none, their bodies are one (BulletBody). The bodies
+  /// must stand as placed.
+  BulletJoint(const Joint& joint, btRigidBody& base, btRigidBody& body);
+
+  /// For the coming tick: how far it is to the limits, spring and damping. Friction and limits are
+  /// rows of the constraint.
+  void Prepare(double dt_s);
+  btTypedConstraint& constraint() { return *constraint_; }
+
+ private:
+  void Pull(double position, double dt_s);
+
+  Joint joint_;
+  std::unique_ptr<btGeneric6DofSpring2Constraint> constraint_;
+};
 
 }  // namespace prehend::physics

@@ -85,7 +85,7 @@ class BulletWorld final : public World {
   std::vector<std::unique_ptr<BulletBody>> rigids_;
   std::vector<Place> places_;                   ///< one per body of the scene; nothing for grains
   std::map<std::size_t, BulletGrains> grains_;  ///< by the index of their body
-  std::vector<std::unique_ptr<btTypedConstraint>> joints_;
+  std::vector<BulletJoint> joints_;
   std::vector<std::unique_ptr<BulletHand>> hands_;
   ContactSides sides_;
   Stillness stillness_;
@@ -102,7 +102,7 @@ BulletWorld::BulletWorld(const Scene& scene, const std::vector<int>& styles)
 
 BulletWorld::~BulletWorld() {
   hands_.clear();
-  for (auto& joint : joints_) world_.removeConstraint(joint.get());
+  for (BulletJoint& joint : joints_) world_.removeConstraint(&joint.constraint());
   for (auto& rigid : rigids_) world_.removeRigidBody(&rigid->rigid());
   for (auto& [body, grains] : grains_)
     for (const auto& grain : grains.rigids()) world_.removeRigidBody(grain.get());
@@ -174,8 +174,8 @@ void BulletWorld::AddJoints() {
   };
   for (const Joint& joint : scene_.joints) {
     if (joint.kind == JointKind::kFixed) continue;
-    joints_.push_back(MakeConstraint(joint, rigid(joint.base), rigid(joint.body)));
-    world_.addConstraint(joints_.back().get(), /*disableCollisionsBetweenLinkedBodies=*/true);
+    BulletJoint& made = joints_.emplace_back(joint, rigid(joint.base), rigid(joint.body));
+    world_.addConstraint(&made.constraint(), /*disableCollisionsBetweenLinkedBodies=*/true);
   }
 }
 
@@ -193,6 +193,7 @@ void BulletWorld::AddHands(const std::vector<Hand>& hands, const std::vector<int
 void BulletWorld::Step(const std::vector<HandCommand>& commands) {
   for (std::size_t i = 0; i < hands_.size(); ++i)
     hands_[i]->Drive(commands[i], dt_s_, scene_.world.gravity_m_per_s2);
+  for (BulletJoint& joint : joints_) joint.Prepare(dt_s_);
   world_.stepSimulation(dt_s_, 0);
   for (auto& [body, grains] : grains_) grains.StopLost();
   stillness_.Update(++tick_, [this](std::size_t i) {
