@@ -87,14 +87,16 @@ void BulletJoint::Pull(double position, double dt_s) {
   const btTransform& X_WJ = constraint_->getCalculatedTransformA();
   const Eigen::Vector3d x_W = FromBullet(X_WJ.getBasis().getColumn(0));
   const JointPlace place{position, slides ? x_W : -x_W, FromBullet(X_WJ.getOrigin())};
+  // Impulses, no forces: Bullet's friction does not see what a torque does within the tick, and
+  // what lies on the body would creep.
   const btVector3 push =
-      ToBullet(SpringForce(joint_, place, SideOf(base), SideOf(body), dt_s) * place.axis_W);
+      ToBullet(dt_s * SpringForce(joint_, place, SideOf(base), SideOf(body), dt_s) * place.axis_W);
   if (slides) {
-    body.applyCentralForce(push);
-    base.applyForce(-push, body.getCenterOfMassPosition() - base.getCenterOfMassPosition());
+    body.applyCentralImpulse(push);
+    base.applyImpulse(-push, body.getCenterOfMassPosition() - base.getCenterOfMassPosition());
   } else {
-    body.applyTorque(push);
-    base.applyTorque(-push);
+    body.applyTorqueImpulse(push);
+    base.applyTorqueImpulse(-push);
   }
 }
 
