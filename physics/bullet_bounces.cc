@@ -13,21 +13,22 @@ btVector3 VelocityAt(const btCollisionObject& object, const btVector3& p_W) {
               : btVector3(0, 0, 0);  // a hand's link: hands do not bounce
 }
 
+}  // namespace
+
 btScalar ApproachSpeed(const btPersistentManifold& manifold, const btManifoldPoint& point) {
   return (VelocityAt(*manifold.getBody1(), point.getPositionWorldOnB()) -
           VelocityAt(*manifold.getBody0(), point.getPositionWorldOnA()))
       .dot(point.m_normalWorldOnB);
 }
 
-}  // namespace
-
 TimelyBounces::TimelyBounces(btPersistentManifold* const* manifolds, int count, btScalar dt_s,
                              btScalar slowest_m_per_s) {
   for (int m = 0; m < count; ++m) {
     for (int k = 0; k < manifolds[m]->getNumContacts(); ++k) {
       btManifoldPoint& point = manifolds[m]->getContactPoint(k);
-      if (point.m_combinedRestitution <= 0 || point.getDistance() <= 0) continue;
       const btScalar speed = ApproachSpeed(*manifolds[m], point);
+      if (speed < -slowest_m_per_s) point.m_appliedImpulse = 0;
+      if (point.m_combinedRestitution <= 0 || point.getDistance() <= 0) continue;
       if (speed < slowest_m_per_s) continue;
       if (point.getDistance() <= speed * dt_s) {
         point.setDistance(0);  // computed anew in every tick

@@ -15,6 +15,7 @@
 #include "physics/bullet_dynamics.h"
 #include "physics/bullet_grains.h"
 #include "physics/bullet_hand.h"
+#include "physics/bullet_impacts.h"
 #include "physics/bullet_joint.h"
 #include "physics/bullet_sight.h"
 #include "physics/bullet_solver.h"
@@ -73,7 +74,7 @@ class BulletWorld final : public World {
   const Scene scene_;
   const double dt_s_;
   std::int64_t tick_ = 0;
-  btDefaultCollisionConfiguration configuration_;
+  ImpactConfiguration configuration_{kRestitutionThreshold_m_per_s};
   BulletDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
   BulletSolver solver_;

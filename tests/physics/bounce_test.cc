@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ball that bounces, against free flight: physics/bullet_bounces.h, physics/touching_pairs.h.
+// What bounces, against free flight: physics/bullet_bounces.h, bullet_impacts.h,
+// touching_pairs.h.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "physics/box2d_world.h"
 #include "physics/bullet_world.h"
+#include "physics/compounds.h"
+#include "physics/hull.h"
 
 namespace prehend::physics {
 namespace {
@@ -133,6 +137,51 @@ TEST_P(BounceTest, NothingIsPushedWithoutAContact) {
     world->Describe(now);
     ASSERT_LT(PushFromNowhere(before, now), 1e-5) << "tick " << tick;
   }
+}
+
+/// What falls flat, and how high its centre is when it lies there.
+struct Flat {
+  const char* name;
+  std::vector<PlacedShape> shapes;
+  double half_m;
+};
+
+std::vector<Flat> FlatThings(Engine engine) {
+  std::vector<Flat> things = {{"can", {{Cylinder{0.033, 0.12}, {}}}, 0.06},
+                              {"long box", {{Box{{0.3, 0.08, 0.08}}, {}}}, 0.04}};
+  if (engine == Engine::kBox2d) return things;
+  std::vector<Eigen::Vector3d> corners_m;
+  for (const double x : {-0.1, 0.1})
+    for (const double y : {-0.05, 0.05})
+      for (const double z : {-0.03, 0.03}) corners_m.emplace_back(x, y, z);
+  const Eigen::Quaterniond lying(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
+  things.push_back({"hull", {{*MakeHull(corners_m).hull, {}}}, 0.03});
+  things.push_back(
+      {"lying can", {{Cylinder{0.033, 0.12}, {Eigen::Vector3d::Zero(), lying}}}, 0.033});
+  things.push_back({"mug", ShapesOf(Mug{.handle_m = 0}), 0.05});
+  return things;
+}
+
+TEST_P(BounceTest, WhatFallsFlatDoesNotTip) {
+  for (const Flat& thing : FlatThings(GetParam()))
+    for (const double restitution : {0.0, 0.5})
+      for (const double height_m : {0.05, 0.44}) {
+        SCOPED_TRACE(testing::Message() << thing.name << ' ' << restitution << ' ' << height_m);
+        Scene scene = MakeScene({0.04, 0, restitution}, GetParam());
+        scene.bodies[1].shapes = thing.shapes;
+        scene.bodies[1].X_WB.p_m.z() = thing.half_m + height_m;
+        const auto world = MakeWorld(scene);
+        const double fall_s = std::sqrt(2 * height_m / kGravity);
+        double highest_m_per_s = 0;
+        Snapshot now;
+        while (now.tick < 2 * fall_s / kTick_s) {
+          world->Step({});
+          world->Describe(now);
+          ASSERT_LT(now.bodies[1].w_WB_rad_per_s.norm(), 0.1) << now.tick;
+          highest_m_per_s = std::max(highest_m_per_s, now.bodies[1].v_WB_m_per_s.z());
+        }
+        EXPECT_NEAR(highest_m_per_s, restitution * kGravity * fall_s, 0.05);
+      }
 }
 
 }  // namespace
