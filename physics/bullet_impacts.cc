@@ -5,7 +5,9 @@
 #include "physics/bullet_impacts.h"
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/bullet_bounces.h"
@@ -15,7 +17,8 @@ namespace {
 
 /// Three ways to tilt: the points they find have the middle of a face between them.
 constexpr int kTilts = 3;
-constexpr btScalar kTilt_rad = 0.03;
+/// As little as finds a rim: what is round is met that much beside its lowest line.
+constexpr btScalar kTilt_rad = 0.005;
 /// Points of one face have one normal; of an edge, it tilts with the body.
 constexpr btScalar kSameNormal = 0.9995;
 constexpr int kMostPoints = 4;
@@ -63,9 +66,8 @@ class ImpactAlgorithm final : public btConvexConvexAlgorithm {
  public:
   ImpactAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
                   const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
-                  btConvexPenetrationDepthSolver* deep, btScalar slowest_m_per_s)
-      : btConvexConvexAlgorithm(info.m_manifold, info, a, b, deep, 0, 0),
-        slowest_m_per_s_(slowest_m_per_s) {}
+                  btConvexPenetrationDepthSolver* deep)
+      : btConvexConvexAlgorithm(info.m_manifold, info, a, b, deep, 0, 0) {}
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                         const btDispatcherInfo& info, btManifoldResult* found) override {
@@ -73,7 +75,7 @@ class ImpactAlgorithm final : public btConvexConvexAlgorithm {
     const btPersistentManifold& manifold = *found->getPersistentManifold();
     const int count = manifold.getNumContacts();
     if (count == 0 || count > 2 || !CanMeetFlat(*a) || !CanMeetFlat(*b)) return;
-    if (ApproachSpeed(manifold, manifold.getContactPoint(0)) < slowest_m_per_s_) return;
+    if (ApproachSpeed(manifold, manifold.getContactPoint(0)) < kSlowestImpact_m_per_s) return;
     const btManifoldPoint deepest = manifold.getContactPoint(0);
     for (int i = 0; i < kTilts; ++i) Tilt(*a, *b, info, deepest, SIMD_2_PI * i / kTilts, *found);
   }
@@ -98,9 +100,12 @@ class ImpactAlgorithm final : public btConvexConvexAlgorithm {
     btConvexConvexAlgorithm::processCollision(a_is_smaller ? &side : &a, a_is_smaller ? &b : &side,
                                               info, &points);
   }
-
-  btScalar slowest_m_per_s_;
 };
+
+btScalar InverseMass(const btCollisionObject& object) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  return body ? body->getInvMass() : 0;
+}
 
 btDefaultCollisionConstructionInfo WithRoomForImpacts() {
   btDefaultCollisionConstructionInfo info;
@@ -110,10 +115,17 @@ btDefaultCollisionConstructionInfo WithRoomForImpacts() {
 
 }  // namespace
 
-ImpactConfiguration::ImpactConfiguration(btScalar slowest_m_per_s)
-    : btDefaultCollisionConfiguration(WithRoomForImpacts()), impacts_(m_pdSolver) {
-  impacts_.slowest_m_per_s = slowest_m_per_s;
+void ForgetImpact(btPersistentManifold& manifold) {
+  const btScalar per_mass =
+      std::max(InverseMass(*manifold.getBody0()), InverseMass(*manifold.getBody1()));
+  for (int k = 0; k < manifold.getNumContacts(); ++k) {
+    btManifoldPoint& point = manifold.getContactPoint(k);
+    if (point.m_appliedImpulse * per_mass > kSlowestImpact_m_per_s) point.m_appliedImpulse = 0;
+  }
 }
+
+ImpactConfiguration::ImpactConfiguration()
+    : btDefaultCollisionConfiguration(WithRoomForImpacts()), impacts_(m_pdSolver) {}
 
 btCollisionAlgorithmCreateFunc* ImpactConfiguration::getCollisionAlgorithmCreateFunc(int type0,
                                                                                      int type1) {
@@ -126,7 +138,7 @@ btCollisionAlgorithm* ImpactConfiguration::Impacts::CreateCollisionAlgorithm(
     btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
     const btCollisionObjectWrapper* b) {
   void* const place = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(ImpactAlgorithm));
-  return new (place) ImpactAlgorithm(info, a, b, m_pdSolver, slowest_m_per_s);
+  return new (place) ImpactAlgorithm(info, a, b, m_pdSolver);
 }
 
 }  // namespace prehend::physics

@@ -37,8 +37,6 @@ constexpr int kSolverIterations = 50;
 constexpr double kErrorReduction = 0.2;
 /// Deeper penetration than this is pushed out without adding velocity.
 constexpr double kSplitImpulseThreshold_m = -0.0005;
-/// Slower impacts do not bounce.
-constexpr double kRestitutionThreshold_m_per_s = 0.2;
 /// Islands are solved one by one, not merged into batches: a sleeping neighbour must not change a
 /// result.
 constexpr int kSolverBatch = 2;
@@ -74,7 +72,7 @@ class BulletWorld final : public World {
   const Scene scene_;
   const double dt_s_;
   std::int64_t tick_ = 0;
-  ImpactConfiguration configuration_{kRestitutionThreshold_m_per_s};
+  ImpactConfiguration configuration_;
   BulletDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
   BulletSolver solver_;
@@ -123,7 +121,7 @@ void BulletWorld::Configure() {
   info.m_erp2 = kErrorReduction;
   info.m_splitImpulse = true;
   info.m_splitImpulsePenetrationThreshold = kSplitImpulseThreshold_m;
-  info.m_restitutionVelocityThreshold = kRestitutionThreshold_m_per_s;
+  info.m_restitutionVelocityThreshold = kSlowestImpact_m_per_s;
   info.m_minimumSolverBatchSize = kSolverBatch;
   info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   info.m_solverMode &= ~SOLVER_RANDMIZE_ORDER;

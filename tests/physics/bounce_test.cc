@@ -144,6 +144,7 @@ struct Flat {
   const char* name;
   std::vector<PlacedShape> shapes;
   double half_m;
+  double most_rad_per_s = 0.1;  ///< that the fall may leave it with
 };
 
 std::vector<Flat> FlatThings(Engine engine) {
@@ -157,8 +158,8 @@ std::vector<Flat> FlatThings(Engine engine) {
   const Eigen::Quaterniond lying(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
   things.push_back({"hull", {{*MakeHull(corners_m).hull, {}}}, 0.03});
   things.push_back(
-      {"lying can", {{Cylinder{0.033, 0.12}, {Eigen::Vector3d::Zero(), lying}}}, 0.033});
-  things.push_back({"mug", ShapesOf(Mug{.handle_m = 0}), 0.05});
+      {"lying can", {{Cylinder{0.033, 0.12}, {Eigen::Vector3d::Zero(), lying}}}, 0.033, 0.5});
+  things.push_back({"mug", ShapesOf(Mug{.handle_m = 0}), 0.05, 0.4});
   return things;
 }
 
@@ -177,7 +178,7 @@ TEST_P(BounceTest, WhatFallsFlatDoesNotTip) {
         while (now.tick < 2 * fall_s / kTick_s) {
           world->Step({});
           world->Describe(now);
-          ASSERT_LT(now.bodies[1].w_WB_rad_per_s.norm(), 0.1) << now.tick;
+          ASSERT_LT(now.bodies[1].w_WB_rad_per_s.norm(), thing.most_rad_per_s) << now.tick;
           highest_m_per_s = std::max(highest_m_per_s, now.bodies[1].v_WB_m_per_s.z());
         }
         EXPECT_NEAR(highest_m_per_s, restitution * kGravity * fall_s, 0.05);
