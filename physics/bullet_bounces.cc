@@ -26,8 +26,9 @@ TimelyBounces::TimelyBounces(btPersistentManifold* const* manifolds, int count, 
   for (int m = 0; m < count; ++m) {
     for (int k = 0; k < manifolds[m]->getNumContacts(); ++k) {
       btManifoldPoint& point = manifolds[m]->getContactPoint(k);
-      if (point.m_combinedRestitution <= 0 || point.getDistance() <= 0) continue;
       const btScalar speed = ApproachSpeed(*manifolds[m], point);
+      if (speed < -slowest_m_per_s) point.m_appliedImpulse = 0;
+      if (point.m_combinedRestitution <= 0 || point.getDistance() <= 0) continue;
       if (speed < slowest_m_per_s) continue;
       if (point.getDistance() <= speed * dt_s) {
         point.setDistance(0);  // computed anew in every tick

@@ -16,10 +16,12 @@ namespace prehend::physics {
 btScalar ApproachSpeed(const btPersistentManifold& manifold, const btManifoldPoint& point);
 
 /// While it lives, contacts are as the solver has to see them: a point bounces in the tick in which
-/// its gap closes, as if it were closed already, and not before.
+/// its gap closes, as if it were closed already, and not before. And a point that parts begins with
+/// no impulse: Bullet begins with the last tick's, lets friction answer it, takes it back and
+/// leaves the friction, which threw what had just bounced off to the side, turning.
 class TimelyBounces {
  public:
-  /// `slowest_m_per_s`: slower impacts do not bounce.
+  /// `slowest_m_per_s`: slower impacts do not bounce, and what is slower does not part.
   TimelyBounces(btPersistentManifold* const* manifolds, int count, btScalar dt_s,
                 btScalar slowest_m_per_s);
   ~TimelyBounces();

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "physics/bullet_impacts.h"
-
 namespace prehend::physics {
 namespace {
 
@@ -36,7 +34,6 @@ void BulletDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache,
   const btManifoldArray& manifolds = AwakeManifolds();
   for (int i = 0; i < manifolds.size(); ++i) {
     normals_.Carry(*manifolds[i]);
-    ForgetImpact(*manifolds[i]);
   }
   for (const btBroadphasePair* pair : awake_) {
     normals_.Remember(BodyOf(*pair->m_pProxy0));

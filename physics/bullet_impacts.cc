@@ -5,9 +5,7 @@
 #include "physics/bullet_impacts.h"
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
-#include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "physics/bullet_bounces.h"
@@ -102,11 +100,6 @@ class ImpactAlgorithm final : public btConvexConvexAlgorithm {
   }
 };
 
-btScalar InverseMass(const btCollisionObject& object) {
-  const btRigidBody* body = btRigidBody::upcast(&object);
-  return body ? body->getInvMass() : 0;
-}
-
 btDefaultCollisionConstructionInfo WithRoomForImpacts() {
   btDefaultCollisionConstructionInfo info;
   info.m_customCollisionAlgorithmMaxElementSize = sizeof(ImpactAlgorithm);
@@ -114,15 +107,6 @@ btDefaultCollisionConstructionInfo WithRoomForImpacts() {
 }
 
 }  // namespace
-
-void ForgetImpact(btPersistentManifold& manifold) {
-  const btScalar per_mass =
-      std::max(InverseMass(*manifold.getBody0()), InverseMass(*manifold.getBody1()));
-  for (int k = 0; k < manifold.getNumContacts(); ++k) {
-    btManifoldPoint& point = manifold.getContactPoint(k);
-    if (point.m_appliedImpulse * per_mass > kSlowestImpact_m_per_s) point.m_appliedImpulse = 0;
-  }
-}
 
 ImpactConfiguration::ImpactConfiguration()
     : btDefaultCollisionConfiguration(WithRoomForImpacts()), impacts_(m_pdSolver) {}

@@ -12,11 +12,6 @@ namespace prehend::physics {
 /// What comes together slower just touches, and does not bounce.
 inline constexpr btScalar kSlowestImpact_m_per_s = 0.2;
 
-/// The next tick does not begin with an impact's impulse. Bullet begins with the last tick's, lets
-/// friction answer it, takes it back and leaves the friction: what had landed flat, or bounced, was
-/// thrown off to the side, turning.
-void ForgetImpact(btPersistentManifold& manifold);
-
 /// Bullet's collisions, which find all of a face that hits another one within one tick. What is
 /// slower, balls, hands and persons meet as ever.
 class ImpactConfiguration final : public btDefaultCollisionConfiguration {

@@ -149,7 +149,7 @@ struct Flat {
 
 std::vector<Flat> FlatThings(Engine engine) {
   std::vector<Flat> things = {{"can", {{Cylinder{0.033, 0.12}, {}}}, 0.06},
-                              {"long box", {{Box{{0.3, 0.08, 0.08}}, {}}}, 0.04}};
+                              {"long box", {{Box{{0.3, 0.08, 0.08}}, {}}}, 0.04, 0.5}};
   if (engine == Engine::kBox2d) return things;
   std::vector<Eigen::Vector3d> corners_m;
   for (const double x : {-0.1, 0.1})
@@ -159,7 +159,7 @@ std::vector<Flat> FlatThings(Engine engine) {
   things.push_back({"hull", {{*MakeHull(corners_m).hull, {}}}, 0.03});
   things.push_back(
       {"lying can", {{Cylinder{0.033, 0.12}, {Eigen::Vector3d::Zero(), lying}}}, 0.033, 0.5});
-  things.push_back({"mug", ShapesOf(Mug{.handle_m = 0}), 0.05, 0.4});
+  things.push_back({"mug", ShapesOf(Mug{.handle_m = 0}), 0.05, 0.5});
   return things;
 }
 
