@@ -32,9 +32,7 @@ void BulletDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache,
   std::ranges::sort(awake_, std::greater<>(), Ids);
   for (btBroadphasePair* pair : awake_) getNearCallback()(*pair, *this, info);
   const btManifoldArray& manifolds = AwakeManifolds();
-  for (int i = 0; i < manifolds.size(); ++i) {
-    normals_.Carry(*manifolds[i]);
-  }
+  for (int i = 0; i < manifolds.size(); ++i) normals_.Carry(*manifolds[i]);
   for (const btBroadphasePair* pair : awake_) {
     normals_.Remember(BodyOf(*pair->m_pProxy0));
     normals_.Remember(BodyOf(*pair->m_pProxy1));
