@@ -149,7 +149,7 @@ struct Flat {
 
 std::vector<Flat> FlatThings(Engine engine) {
   std::vector<Flat> things = {{"can", {{Cylinder{0.033, 0.12}, {}}}, 0.06},
-                              {"long box", {{Box{{0.3, 0.08, 0.08}}, {}}}, 0.04, 0.5}};
+                              {"long box", {{Box{{0.3, 0.08, 0.08}}, {}}}, 0.04, 0.6}};
   if (engine == Engine::kBox2d) return things;
   std::vector<Eigen::Vector3d> corners_m;
   for (const double x : {-0.1, 0.1})
