@@ -232,7 +232,7 @@ Record<GraspApproach> ApproachRecord(const std::string& noun) {
       .Required("pads_m", &A::pads_m, Number(0, 0.5),
                 "Wanted distance of the object's centre from H's origin.")
       .Required("floor_m", &A::floor_m, Number(-0.5, 0.5),
-                "H's origin stays this high above the object's lowest point; negative: below it.");
+                "H's origin stays this high above what is below the object; negative: below it.");
 }
 
 /// The grip closes across the way of arrival, and what is up is across it, too: else no turn of the

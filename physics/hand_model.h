@@ -57,7 +57,7 @@ struct GraspApproach {
       Eigen::Vector3d::UnitY();  ///< unit, in H: up in the world; only used from the side
   double palm_gap_m = 0.02;  ///< H's origin stays at least this far from the object's nearest face
   double pads_m = 0.07;  ///< the object's centre is wanted this far from H's origin, along `toward`
-  double floor_m = 0.05;  ///< H's origin stays at least this high above the object's lowest point
+  double floor_m = 0.05;  ///< H's origin stays at least this high above what is below the object
 };
 
 /// One style: frames of joint targets from open to closed, interpolated by the trigger, and the

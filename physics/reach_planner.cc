@@ -3,6 +3,7 @@
 #include "physics/reach_planner.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "physics/geometry.h"
@@ -100,6 +101,49 @@ struct Target {
   Eigen::Vector3d point_W_m;
 };
 
+/// The heights that a hand may come down to.
+class Ground {
+ public:
+  Ground(const Scene& scene, const Snapshot& now, int object)
+      : object_(BoundsOf(scene, now, object)) {
+    constexpr double kInside_m = 0.01;  // a foot that much narrower on all sides is in nobody's way
+    for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+      const Body& body = scene.bodies[static_cast<std::size_t>(i)];
+      if (!IsThing(body) || RootOf(scene, i) == RootOf(scene, object)) continue;
+      for (const PlacedShape& placed : body.shapes) {
+        const Eigen::AlignedBox3d bounds =
+            WorldBounds(placed.shape, now.bodies[static_cast<std::size_t>(i)].X_WB * placed.X_BS);
+        const bool is_foot = (bounds.min() - object_.min()).head<2>().minCoeff() > kInside_m &&
+                             (object_.max() - bounds.max()).head<2>().minCoeff() > kInside_m;
+        if (bounds.max().z() <= object_.min().z() + kRests_m && !is_foot) below_.push_back(bounds);
+      }
+    }
+  }
+
+  /// What is highest below the object and under a box of these half sizes around a point; where the
+  /// object rests on it, the object's lowest point. Far down when there is nothing.
+  double Under(const Eigen::Vector3d& p_W_m, const Eigen::Vector3d& half_size_m) const {
+    double highest_m = -std::numeric_limits<double>::infinity();
+    for (const Eigen::AlignedBox3d& bounds : below_) {
+      const Eigen::Vector3d beside_m =
+          (bounds.min() - p_W_m).cwiseMax(p_W_m - bounds.max()) - half_size_m;
+      if (beside_m.head<2>().maxCoeff() < 0) highest_m = std::max(highest_m, bounds.max().z());
+    }
+    const double lowest_m = object_.min().z();
+    return highest_m > lowest_m - kRests_m ? lowest_m : highest_m;
+  }
+
+ private:
+  static constexpr double kRests_m = 0.005;
+  static Eigen::AlignedBox3d BoundsOf(const Scene& scene, const Snapshot& now, int body) {
+    return WorldBounds(scene.bodies[static_cast<std::size_t>(body)],
+                       now.bodies[static_cast<std::size_t>(body)].X_WB);
+  }
+
+  Eigen::AlignedBox3d object_;
+  std::vector<Eigen::AlignedBox3d> below_;
+};
+
 class CandidateList {
  public:
   CandidateList(const Scene& scene, const Snapshot& now, const ReachQuery& query)
@@ -109,10 +153,7 @@ class CandidateList {
                    .model.styles[static_cast<std::size_t>(query.style)]),
         target_(scene.bodies[static_cast<std::size_t>(query.object)],
                 now.bodies[static_cast<std::size_t>(query.object)].X_WB, query.point_m),
-        lowest_m_(WorldBounds(scene.bodies[static_cast<std::size_t>(query.object)],
-                              now.bodies[static_cast<std::size_t>(query.object)].X_WB)
-                      .min()
-                      .z()),
+        ground_(scene, now, query.object),
         mounted_(JointThatMoves(scene, query.object) >= 0) {}
 
   std::vector<Candidate> FromAbove() const;
@@ -130,7 +171,7 @@ class CandidateList {
   const bool planar_;
   const GraspStyle& style_;
   const Target target_;
-  const double lowest_m_;
+  const Ground ground_;
   const bool mounted_;  ///< held by a joint, so there is no table below it
 };
 
@@ -148,8 +189,13 @@ Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quater
   const Eigen::Vector3d centre_H = on_post + style_.grip_axis * half_grip + approach.toward * depth;
 
   Candidate candidate{.X_WH = {point_W - q * centre_H, q}, .toward_W = toward_W};
-  const double raised_m =
-      mounted_ ? 0 : std::max(0.0, lowest_m_ + approach.floor_m - candidate.X_WH.p_m.z());
+  // As much as palm and fingers need around what they grasp.
+  constexpr double kFinger_m = 0.03, kHalfPalm_m = 0.045;
+  const Eigen::Vector3d half_size_m = grip_W.cwiseAbs() * (half_grip + kFinger_m) +
+                                      toward_W.cwiseAbs() * kFinger_m +
+                                      toward_W.cross(grip_W).cwiseAbs() * kHalfPalm_m;
+  const double floor_W_m = ground_.Under(point_W, half_size_m) + approach.floor_m;
+  const double raised_m = mounted_ ? 0 : std::max(0.0, floor_W_m - candidate.X_WH.p_m.z());
   candidate.X_WH.p_m.z() += raised_m;
   candidate.beside_m =
       (raised_m * Eigen::Vector3d::UnitZ() - (depth - approach.pads_m) * toward_W).norm();

@@ -92,6 +92,24 @@ TEST(ReachPlannerTest, APointOnAPartIsGraspedThere) {
   EXPECT_LT((plan({0.06, 0.105, 0.05}).segment.curve_m[3] - right.segment.curve_m[3]).norm(), 1e-9);
 }
 
+TEST(ReachPlannerTest, TheHandStaysAboveWhatIsBelowItAndOnlyThat) {
+  Scene scene = MakeScene({.shape = Box{{0.06, 0.06, 0.04}}});
+  Body& object = scene.bodies[kObject];
+  const auto above_its_middle_m = [&] {
+    return Plan(scene, "wrap", Approach::kSide).segment.curve_m[3].z() - object.X_WB.p_m.z();
+  };
+  EXPECT_NEAR(above_its_middle_m(), 0.055 - 0.02, 1e-9) << "on the table";
+  object.X_WB.p_m.z() += 0.15;
+  EXPECT_NEAR(above_its_middle_m(), 0, 1e-9) << "in the air";
+
+  Body stand{.name = "stand", .shapes = {{Cylinder{0.015, 0.15}, {}}}, .fixed = true};
+  stand.X_WB.p_m = object.X_WB.p_m - Vector3d(0, 0, 0.02 + 0.075);
+  scene.bodies.push_back(stand);
+  EXPECT_NEAR(above_its_middle_m(), 0, 1e-9) << "on a foot that is narrower than itself";
+  scene.bodies.back().shapes = {{Box{{0.06, 0.06, 0.15}}, {}}};
+  EXPECT_NEAR(above_its_middle_m(), 0.055 - 0.02, 1e-9) << "on a box as wide as itself";
+}
+
 TEST(ReachPlannerTest, AnOffsetMovesTheEnd) {
   const Scene scene = MakeScene({});
   const Vector3d offset(0, -0.15, 0);
