@@ -202,8 +202,6 @@ void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending,
   verdict.exit_code = ExitCode::kPending;
   verdict.reason =
       request.has_golden ? "no golden yet" : "no golden: only scenarios below scenarios/ have one";
-  if (request.has_golden && AsItsFileSays(request))
-    verdict.command = "prehend review " + ShellWord(request.id);
 }
 
 /// What differs, with the facts around the first of it, and whose doing it is.
@@ -283,7 +281,8 @@ void JudgeOtherEngine(const CheckRequest& request, const PreparedRun& prepared,
   const std::string engine = NameOf(compared->other);
   if (compared->run.status.kind != physics::RunStatus::Kind::kCompleted)
     return Fail(verdict, ExitCode::kFailure, "the simulation failed in " + engine, text);
-  Fail(verdict, ExitCode::kDiffers, engine + " does not lead to the same events", text);
+  Fail(verdict, ExitCode::kDiffers, engine + " does not lead to the same events",
+       text + kUntilEnginesAgree + "\n");
 }
 
 }  // namespace
@@ -324,6 +323,8 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   JudgeAgainstGolden(request, *prepared.value, watched, plain, verdict);
   JudgeOtherEngine(request, *prepared.value, plain, verdict);
   JudgePictures(request, scenario, verdict);
+  if (verdict.verdict == Verdict::kPending && request.has_golden && AsItsFileSays(request))
+    verdict.command = "prehend review " + ShellWord(request.id);
   if (verdict.verdict == Verdict::kPassed) LeaveTrace(request, scenario, watched);
   return verdict;
 }

@@ -16,6 +16,10 @@ namespace prehend::harness {
 /// differently.
 inline constexpr double kEngineTolerance_s = 0.05;
 
+/// What to say of a scenario that differs between them.
+inline constexpr const char* kUntilEnginesAgree =
+    "nothing is accepted of it until both engines agree: change the scenario, or mend what differs";
+
 /// As the scenario format calls it.
 const char* NameOf(physics::Engine engine);
 

@@ -69,11 +69,18 @@ Derivation Derive(const Scenario& scenario, const grammar::Program& program, con
       agreement.missing() == 0
           ? ""
           : fmt::format("; {} that follow are not recognised", agreement.missing());
+  const auto elsewhere = std::ranges::count_if(derivation.notes, [](const OracleNote& note) {
+    return note.text != kNotOfOracle && note.text != kOnlyOracle;
+  });
+  const double off_ms = MillisecondsOf(agreement.largest_offset(), agreement.ticks_per_second);
+  const std::string boundaries =
+      elsewhere == 0
+          ? fmt::format(", boundaries at most {:.1f} ms off", off_ms)
+          : fmt::format("; {} more begin{} or end{} up to {:.1f} ms elsewhere", elsewhere,
+                        elsewhere == 1 ? "s" : "", elsewhere == 1 ? "s" : "", off_ms);
   derivation.lines.push_back(fmt::format(
-      "{}{} of {} events follow from the definitions of docs/events.md, boundaries at "
-      "most {:.1f} ms off{}{}",
-      kOracleLine, agreement.matched(), judged.events.size(),
-      MillisecondsOf(agreement.largest_offset(), agreement.ticks_per_second), unseen, unjudged));
+      "{}{} of {} events follow from the definitions of docs/events.md{}{}{}", kOracleLine,
+      agreement.matched() - elsewhere, judged.events.size(), boundaries, unseen, unjudged));
   return derivation;
 }
 

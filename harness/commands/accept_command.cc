@@ -170,9 +170,8 @@ std::optional<ExitCode> RefuseUnlessEnginesAgree(const CommandContext& context,
   const bool ended = compared->run.status.kind == physics::RunStatus::Kind::kCompleted;
   return Complain(context, ended ? ExitCode::kDiffers : ExitCode::kFailure,
                   std::string(NameOf(compared->other)) +
-                      " does not lead to the same events (shown above); nothing was "
-                      "accepted\n  a planar scenario has one golden for both engines: change the "
-                      "scenario until they agree");
+                      " does not lead to the same events (shown above); nothing was accepted\n  " +
+                      kUntilEnginesAgree);
 }
 
 ExitCode AcceptEvents(const CLI::App& options, const CommandContext& context,

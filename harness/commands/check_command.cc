@@ -153,8 +153,9 @@ std::string Colored(Verdict verdict, bool colored) {
   return fmt::format("\033[{}m{}\033[0m", color, name);
 }
 
-void PrintText(const std::vector<ScenarioVerdict>& verdicts, const std::string& page,
-               const CommandContext& context) {
+/// `as_files_say`: nothing was changed by the command line, so that what differs can be accepted.
+void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
+               const std::string& page, const CommandContext& context) {
   for (const ScenarioVerdict& verdict : verdicts) {
     const std::string& note = verdict.reason.empty() ? verdict.headroom : verdict.reason;
     context.out << fmt::format("{}  {}{}{}\n", Colored(verdict.verdict, context.colored),
@@ -167,6 +168,9 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, const std::string& 
   const std::string least = LeastHeadroomText(verdicts);
   if (!least.empty()) context.out << least << "\n";
   context.out << "report: " << page << "\n";
+  const auto differs = [](const ScenarioVerdict& verdict) { return !verdict.differences.empty(); };
+  if (as_files_say && std::ranges::any_of(verdicts, differs))
+    context.out << "if what differs is right: prehend review says how to accept it\n";
   if (tally.pending > 0)
     context.out << fmt::format("{} pending: accept with a reason, or mend\n", tally.pending);
   if (tally.unchanged > 0)
@@ -223,7 +227,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (IsGiven(options, "--json")) {
     context.out << SummaryJson(verdicts, page).dump(2) << "\n";
   } else {
-    PrintText(verdicts, page, context);
+    const bool as_files_say = !IsGiven(options, "--grammar") && !IsGiven(options, "--set");
+    PrintText(verdicts, as_files_say, page, context);
   }
   problem = WriteTextFile(page, ReportHtml(verdicts));
   if (problem.empty() && IsGiven(options, "--junit"))

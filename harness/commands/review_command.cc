@@ -7,16 +7,19 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "harness/accept_golden.h"
 #include "harness/check_scenario.h"
 #include "harness/commands/command.h"
 #include "harness/compare.h"
+#include "harness/cross_engine.h"
 #include "harness/event_text.h"
 #include "harness/golden_files.h"
 #include "harness/oracle_notes.h"
 #include "harness/orphans.h"
 #include "harness/select_scenarios.h"
+#include "harness/shell_word.h"
 
 namespace prehend::harness {
 namespace {
@@ -149,7 +152,24 @@ std::optional<std::vector<Review>> Reviews(const CLI::App& options, const Comman
   return reviews;
 }
 
+/// What to do about it, in one line; or nothing.
+std::string NextStep(const Review& review, bool engines_differ) {
+  if (review.kind == "engines" || (engines_differ && !review.fingerprint.empty()))
+    return kUntilEnginesAgree;
+  if (review.kind == "picture")
+    return fmt::format("if right: prehend accept {} --pictures --reason \"...\"",
+                       ShellWord(review.id));
+  if (review.kind != "new" && review.kind != "changed") return "";
+  return fmt::format("if right: prehend accept {} --reviewed {} --reason \"...\"{}",
+                     ShellWord(review.id), review.fingerprint,
+                     review.wants_reason ? " --against-the-oracle \"EVENT(ROLES): ...\"" : "");
+}
+
 void Print(const std::vector<Review>& reviews, const CommandContext& context) {
+  std::set<std::string> engines_differ;
+  for (const Review& review : reviews) {
+    if (review.kind == "engines") engines_differ.insert(review.id);
+  }
   for (const Review& review : reviews) {
     context.out << fmt::format("{}  {}\n", review.kind, review.id);
     for (std::size_t begin = 0; begin < review.text.size();) {
@@ -157,16 +177,8 @@ void Print(const std::vector<Review>& reviews, const CommandContext& context) {
       context.out << "    " << review.text.substr(begin, end - begin) << "\n";
       begin = end + 1;
     }
-    if (review.kind == "new" || review.kind == "changed")
-      context.out << fmt::format(
-          "    if right: prehend accept {} --reviewed {} --reason \"...\"{}\n", review.id,
-          review.fingerprint,
-          review.wants_reason ? " --against-the-oracle \"EVENT(ROLES): ...\"" : "");
-    if (review.kind == "engines")
-      context.out << "    nothing is accepted of it until both engines agree\n";
-    if (review.kind == "picture")
-      context.out << fmt::format("    if right: prehend accept {} --pictures --reason \"...\"\n",
-                                 review.id);
+    const std::string next = NextStep(review, engines_differ.contains(review.id));
+    if (!next.empty()) context.out << "    " << next << "\n";
   }
   if (reviews.empty())
     context.out << "nothing is pending ('prehend check' finds out what should be)\n";

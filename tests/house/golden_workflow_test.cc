@@ -337,8 +337,11 @@ settle_s: 0.2
 
 TEST_F(GoldenWorkflow, WhatDiffersBetweenEnginesIsShownAndNotAccepted) {
   WriteFile(Scenario("rest/stones_tumble"), kStonesTumble);
-  EXPECT_EQ(Do("check stones_tumble --no-pictures").exit_code, 1);
+  const Said check = Do("check stones_tumble --no-pictures");
+  EXPECT_EQ(check.exit_code, 1);
+  EXPECT_TRUE(SaysIn(check, "    again: prehend check rest/stones_tumble\n")) << check.out;
   const Said review = Do("review stones_tumble");
+  EXPECT_FALSE(SaysIn(review, "if right")) << "it cannot be accepted";
   EXPECT_TRUE(SaysIn(
       review,
       "engines  rest/stones_tumble\n    recognised in bullet, expected as recognised in box2d:\n"))
