@@ -104,7 +104,8 @@ WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<
 
 MissingReasons::Blame MissingReasons::OfLane(int lane, const Window& window, int depth) {
   if (lane == kNone || depth >= kDeepest) return {};
-  if (const Fate* run = NearestRun(lane, window)) return OfRun(*run, depth);
+  if (const Fate* run = NearestRun(lane, window))
+    return OfRun(*run, depth, window.at ? grammar::kNever : window.last);
   return OfForm(lane, window, depth);
 }
 
@@ -192,11 +193,11 @@ Reasons MissingReasons::Requirement(const Fate& fate, int depth) {
 }
 
 // Where the clauses of the end came closest within the run.
-Reasons MissingReasons::EndThatNeverCame(const Fate& fate) {
+Reasons MissingReasons::EndThatNeverCame(const Fate& fate, FrameNumber look_until) {
   const Rule& rule = past_.RuleOf(fate.lane);
   const grammar::Node& to = past_.program().nodes[rule.second];
   if (to.op != grammar::Op::kBegins) return {};
-  const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
+  const FrameNumber last = std::min({fate.span.end.frame, past_.frames() - 1, look_until});
   Moment at{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame};
   at.frame = Closest(to.args[0], at, {fate.span.begin.frame, last});
   Reasons reasons = clauses_.State(to.args[0], at, true);
@@ -205,7 +206,7 @@ Reasons MissingReasons::EndThatNeverCame(const Fate& fate) {
   return reasons;
 }
 
-MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
+MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth, FrameNumber look_until) {
   const int lane = fate.lane;
   const Rule& rule = past_.RuleOf(lane);
   const Tick per_second = past_.cast().ticks_per_second;
@@ -254,7 +255,7 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth) {
     }
     case Fate::Kind::kDropped:
       run.how += "dropped";
-      run.because = EndThatNeverCame(fate);
+      run.because = EndThatNeverCame(fate, look_until);
       clauses("during ", rule.during, {.lane = lane, .frame = fate.cause, .begin = begin});
       break;
     case Fate::Kind::kTooLate:

@@ -36,9 +36,11 @@ class MissingReasons {
   const grammar::Fate* NearestRun(int lane, const Window& window);
   double RunCloseness(const grammar::Fate& fate);
   std::string HowLate(const grammar::Fate& fate);
-  Blame OfRun(const grammar::Fate& fate, int depth);
+  /// `look_until`: what came later than that could not have helped.
+  Blame OfRun(const grammar::Fate& fate, int depth,
+              grammar::FrameNumber look_until = grammar::kNever);
   Reasons Requirement(const grammar::Fate& fate, int depth);
-  Reasons EndThatNeverCame(const grammar::Fate& fate);
+  Reasons EndThatNeverCame(const grammar::Fate& fate, grammar::FrameNumber look_until);
   Blame OfForm(int lane, const Window& window, int depth);
   Blame OfWhile(int lane, const Window& window, int depth);
   Blame OfFromTo(int lane, const Window& window, int depth);
