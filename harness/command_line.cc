@@ -69,6 +69,7 @@ void Declare(CLI::App& app, const std::vector<Command>& commands) {
       "4 nothing selected or found, 5 goldens wait for acceptance.\n"
       "PREHEND_HOME names the project's folder; otherwise it is the one above the program, or the "
       "working folder.");
+  app.set_version_flag("--version", "prehend " PREHEND_VERSION, "Print the version and exit");
   app.allow_extras();
   for (const Command& command : commands) {
     CLI::App* options = app.add_subcommand(command.name, command.summary);

@@ -46,6 +46,12 @@ TEST_F(CommandLine, HelpIsEverywhere) {
   }
 }
 
+TEST_F(CommandLine, SaysItsVersion) {
+  const Said said = Do("--version");
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_TRUE(std::regex_match(said.out, std::regex("prehend \\d+\\.\\d+\\.\\d+\n"))) << said.out;
+}
+
 struct Slip {
   const char* arguments;
   int code;
