@@ -117,7 +117,7 @@ bool ComplainWanted(const YamlNode& node, Complaints& complaints, const std::str
   if (node.kind == YamlNode::Kind::kScalar) {
     const ScalarMeaning meaning = MeaningOf(node);
     if (!meaning.ambiguous.empty()) message += fmt::format(" ({})", meaning.ambiguous);
-    hint = meaning.remedy;
+    hint = meaning.remedy.empty() ? LookAlikeRemedy(node.text) : meaning.remedy;
   }
   complaints.Add(node.where, std::move(message), std::move(hint));
   return false;
@@ -125,14 +125,22 @@ bool ComplainWanted(const YamlNode& node, Complaints& complaints, const std::str
 
 bool IsListOf(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
   if (node.kind == YamlNode::Kind::kSequence) return HasSize(node, complaints, least, most);
-  return ComplainWanted(node, complaints,
-                        least == most ? fmt::format("a list of {}", least) : "a list");
+  const std::string wanted = least == most ? fmt::format("a list of {}", least) : "a list";
+  if (node.kind != YamlNode::Kind::kMapping) return ComplainWanted(node, complaints, wanted);
+  complaints.Add(node.where, fmt::format("{}expected {}, found a mapping", LabelOf(node), wanted),
+                 "each item on a line of its own begins with '- ', or all are in [..]");
+  return false;
 }
 
 bool IsMappingOf(const YamlNode& node, Complaints& complaints, std::size_t least,
                  std::size_t most) {
   if (node.kind == YamlNode::Kind::kMapping) return HasSize(node, complaints, least, most);
-  return ComplainWanted(node, complaints, "a mapping from names");
+  if (node.kind != YamlNode::Kind::kSequence)
+    return ComplainWanted(node, complaints, "a mapping from names");
+  complaints.Add(node.where,
+                 fmt::format("{}expected a mapping from names, found a list", LabelOf(node)),
+                 "lines 'NAME: ..' without '- ' before them");
+  return false;
 }
 
 Format<double> Number(double lowest, double highest) {

@@ -75,6 +75,18 @@ std::vector<Cell> Cells(std::string_view line) {
   return cells;
 }
 
+/// What to do about a column that nobody knows.
+std::string ColumnRemedy(const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& [known, column] : KnownColumns()) names.push_back(known);
+  const std::string nearest = grammar::NearestName(name, names);
+  if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
+  if (name.empty()) return "a comma too many";
+  if (name.find_first_of(";\t") != std::string::npos) return "commas separate columns and values";
+  if (name.front() == '"') return "names and values have no quotes";
+  return "the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger";
+}
+
 class CsvReader {
  public:
   CsvReader(const std::string& path, std::string text) {
@@ -114,18 +126,14 @@ class CsvReader {
   }
 
   void TakeHeader(const std::vector<Cell>& cells) {
-    std::vector<std::string> names;
-    for (const auto& [name, column] : KnownColumns()) names.push_back(name);
     std::map<std::string, int> seen;
     std::vector<Column> columns;
     for (const Cell& cell : cells) {
       const std::string name(cell.text);
       const auto known = KnownColumns().find(name);
       if (known == KnownColumns().end()) {
-        const std::string nearest = grammar::NearestName(name, names);
         Complain({line_, cell.column}, fmt::format("no column is called '{}'", name),
-                 nearest.empty() ? "the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger"
-                                 : fmt::format("did you mean '{}'?", nearest));
+                 ColumnRemedy(name));
         continue;
       }
       if (++seen[known->second.quantity] > 1)

@@ -33,7 +33,15 @@ class TrackChecker {
       : track_(track), limits_(limits) {}
 
   grammar::Diagnostics Check() {
-    const double gap_s = std::max(kLeastGap_s, kGapOfMedian * MedianInterval(track_.samples));
+    const double usual_s = MedianInterval(track_.samples);
+    if (usual_s > limits_.gap_s) {
+      Add(track_.samples[1], false,
+          fmt::format("samples are usually {:.3f} s apart; at most {} s are bridged", usual_s,
+                      limits_.gap_s),
+          "are these times milliseconds, and called seconds? Else raise most_gap_s");
+      return std::move(found_);
+    }
+    const double gap_s = std::max(kLeastGap_s, kGapOfMedian * usual_s);
     for (std::size_t i = 1; i < track_.samples.size(); ++i) {
       const TrackSample &before = track_.samples[i - 1], &sample = track_.samples[i];
       const double dt_s = sample.t_s - before.t_s;

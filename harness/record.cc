@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <set>
 
+#include "harness/yaml_scalar.h"
+
 namespace prehend::harness {
 namespace {
 
@@ -33,6 +35,15 @@ std::string ComplainUnknownKey(const YamlNode& child, const std::string& title,
   if (same_stem != known.end()) {
     complaints.Add(child.key_where, message, fmt::format("did you mean '{}'?", *same_stem));
     return *same_stem;
+  }
+  if (const std::string remedy = LookAlikeRemedy(child.key); !remedy.empty()) {
+    complaints.Add(child.key_where, message, remedy);
+    return "";
+  }
+  const bool is_number = child.key.find_first_not_of("0123456789") == std::string::npos;
+  if (is_number && child.kind == YamlNode::Kind::kNull) {
+    complaints.Add(child.key_where, message, "decimals have a point: 0.5");
+    return "";
   }
   complaints.AddUnknownName(child.key_where, message, child.key, known);
   return grammar::NearestName(child.key, known);

@@ -95,6 +95,11 @@ Diagnostics CheckText(const std::string& file, std::string_view text) {
     return {
         {.file = file, .place = {}, .message = "the file is empty", .source_line = {}, .hint = {}}};
   for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '\r') {
+      Diagnostic alone = NotText(file, text, i, "a carriage return without a line feed");
+      alone.hint = "lines end with a line feed, or with both";
+      return {std::move(alone)};
+    }
     if (IsControl(text[i])) {
       return {NotText(file, text, i,
                       fmt::format("control character 0x{:02x}; this looks like a binary file",

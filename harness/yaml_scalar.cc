@@ -160,4 +160,20 @@ std::string Describe(const YamlNode& node) {
   return node.quoted ? fmt::format("the text '{}'", shown) : fmt::format("'{}'", shown);
 }
 
+std::string LookAlikeRemedy(std::string_view text) {
+  struct Pair {
+    std::string_view found, meant;
+  };
+  constexpr Pair kPairs[] = {{"\u2212", "-"},  {"\u2013", "-"},  {"\u2014", "-"}, {"\u201c", "\""},
+                             {"\u201d", "\""}, {"\u201e", "\""}, {"\u2018", "'"}, {"\u2019", "'"},
+                             {"\uff1a", ":"},  {"\uff0c", ","},  {"\u00a0", " "}, {"\u202f", " "},
+                             {"\u3000", " "}};
+  for (const auto& [found, meant] : kPairs) {
+    if (text.find(found) == std::string_view::npos) continue;
+    return meant == " " ? "there is a blank in it that is none: type it again"
+                        : fmt::format("'{}' is not '{}': type it again", found, meant);
+  }
+  return "";
+}
+
 }  // namespace prehend::harness

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "harness/located_yaml.h"
 
@@ -26,5 +27,8 @@ ScalarMeaning MeaningOf(const YamlNode& node);
 
 /// How to call a node in a complaint: "'heavy'", "a list", "a mapping", "nothing".
 std::string Describe(const YamlNode& node);
+
+/// What to do about signs that only look like those of YAML, as word processors write them; or "".
+std::string LookAlikeRemedy(std::string_view text);
 
 }  // namespace prehend::harness

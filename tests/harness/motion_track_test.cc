@@ -86,6 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
                                      "m.csv:1:3: no column is called '0' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
                                      "m.csv:1:5: no column is called '0' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
                                      "m.csv:1:7: no column is called '1' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"},
+    BadCsv{"semicolons", "t_s;x_m;y_m;z_m\n0;0;0;1\n", "m.csv:1:1: no column is called 't_s;x_m;y_m;z_m' | commas separate columns and values\n"},
     BadCsv{"incomplete", "t_s,x_m,y_m\n0,0,0\n", "m.csv:1:1: the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm); there is none of z\n"},
     BadCsv{"half_quaternion", "t_s,x_m,y_m,z_m,qw,qx\n0,0,0,0,1,0\n", "m.csv:1:1: a quaternion needs qw, qx, qy and qz; there is no qy, qz\n"},
     BadCsv{"two_orientations", "t_s,x_m,y_m,z_m,qw,qx,qy,qz,yaw_deg\n0,0,0,0,1,0,0,0,0\n", "m.csv:1:1: an orientation is either qw,qx,qy,qz or roll_deg,pitch_deg,yaw_deg\n"},
