@@ -91,7 +91,7 @@ const Case kCases[] = {
       {"decimal_comma", "mass_kg: 0.4", "mass_kg: 1,4", kRefuses,
        "7:56: unknown key '4' in entity 'milk' | decimals have a point: 0.5\n"},
       {"typographic_minus", "[0.2, 0.1]", "[0.2, \u22120.1]", kRefuses,
-       "7:83: at_m[1]: expected a number from -20 to 20, found '\u22120.1' | '\u2212' is not '-': type it again\n"},
+       "7:82: at_m[1]: expected a number from -20 to 20, found '\u22120.1' | '\u2212' is not '-': type it again\n"},
       {"mass_null", "mass_kg: 0.4", "mass_kg: ~", kRefuses,
        "7:54: mass_kg: expected a number from 0.001 to 1000, found '~'\n"},
       {"mass_missing_value", "mass_kg: 0.4", "mass_kg: ", kRefuses,
