@@ -19,8 +19,14 @@ JointSide SideOf(const b2Body& body) {
 
 }  // namespace
 
-Box2dJoint::Box2dJoint(const Joint& joint, b2Body& base, b2Body& body, b2World& world)
-    : joint_(joint), sign_(joint.kind != JointKind::kSlider && joint.axis_W.y() > 0 ? -1 : 1) {
+Box2dJoint::Box2dJoint(const Joint& joint, int sharers, b2Body& base, b2Body& body, b2World& world)
+    : joint_(joint),
+      sharers_(sharers),
+      sign_(joint.kind != JointKind::kSlider && joint.axis_W.y() > 0 ? -1 : 1) {
+  if (joint.spring > 0) {
+    // Box2D has one speed for all below which they fall asleep, and a spring may pull more slowly.
+    for (b2Body* side : {&base, &body}) side->SetSleepingAllowed(false);
+  }
   const float friction = static_cast<float>(joint.friction);
   if (joint.kind == JointKind::kSlider) {
     b2PrismaticJointDef def;
@@ -47,8 +53,9 @@ void Box2dJoint::Pull(double dt_s) {
     b2Body &base = *hinge_->GetBodyA(), &body = *hinge_->GetBodyB();
     const JointPlace place{
         sign_ * hinge_->GetJointAngle(), {0, -sign_, 0}, FromBox2d(hinge_->GetAnchorA())};
-    const auto torque = static_cast<float>(
-        sign_ * kTorqueScale * SpringForce(joint_, place, SideOf(base), SideOf(body), dt_s));
+    const auto torque =
+        static_cast<float>(sign_ * kTorqueScale *
+                           SpringForce(joint_, place, sharers_, SideOf(base), SideOf(body), dt_s));
     base.ApplyTorque(-torque, false);
     body.ApplyTorque(torque, false);
   } else {
@@ -57,7 +64,7 @@ void Box2dJoint::Pull(double dt_s) {
         FromBox2d(base.GetWorldVector(slider_->GetLocalAxisA())) * kLengthScale;
     const JointPlace place{slider_->GetJointTranslation() / kLengthScale, axis_W, {0, 0, 0}};
     const b2Vec2 force =
-        ToBox2d(SpringForce(joint_, place, SideOf(base), SideOf(body), dt_s) * axis_W);
+        ToBox2d(SpringForce(joint_, place, sharers_, SideOf(base), SideOf(body), dt_s) * axis_W);
     base.ApplyForce(-force, body.GetWorldCenter(), false);
     body.ApplyForceToCenter(force, false);
   }

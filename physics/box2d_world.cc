@@ -7,6 +7,7 @@
 #include "physics/box2d_hand.h"
 #include "physics/box2d_joint.h"
 #include "physics/joint.h"
+#include "physics/joint_spring.h"
 #include "physics/rigid_groups.h"
 #include "physics/stillness.h"
 
@@ -77,7 +78,8 @@ void Box2dWorld::AddJoints() {
   };
   for (const Joint& joint : scene_.joints) {
     if (joint.kind == JointKind::kFixed) continue;
-    joints_.emplace_back(joint, rigid(joint.base), rigid(joint.body), world_);
+    joints_.emplace_back(joint, SpringsOnOneBody(scene_, joint), rigid(joint.base),
+                         rigid(joint.body), world_);
   }
 }
 

@@ -3,7 +3,6 @@
 #include "physics/bullet_joint.h"
 
 #include "physics/bullet_convert.h"
-#include "physics/joint_spring.h"
 
 namespace prehend::physics {
 namespace {
@@ -28,6 +27,11 @@ void Rub(btGeneric6DofSpring2Constraint& constraint, int axis, double friction) 
   constraint.setMaxMotorForce(axis, friction);
 }
 
+/// What a spring pulls slowly is still on its way. Slower than this, it is within half a millimetre
+/// of where it rests even when damping makes it creep for many seconds.
+constexpr double kSprungSleepSpeed_m_per_s = 1e-4;
+constexpr double kSprungSleepTurn_rad_per_s = 5e-4;
+
 JointSide SideOf(const btRigidBody& body) {
   JointSide side{.per_mass = body.getInvMass(),
                  .centre_W_m = FromBullet(body.getCenterOfMassPosition()),
@@ -40,7 +44,8 @@ JointSide SideOf(const btRigidBody& body) {
 
 }  // namespace
 
-BulletJoint::BulletJoint(const Joint& joint, btRigidBody& base, btRigidBody& body) : joint_(joint) {
+BulletJoint::BulletJoint(const Joint& joint, int sharers, btRigidBody& base, btRigidBody& body)
+    : joint_(joint), sharers_(sharers) {
   // Bullet counts these angles from the body to its base, the other way round than ours.
   const Eigen::Vector3d axis_W = joint.kind == JointKind::kHinge ? -joint.axis_W : joint.axis_W;
   // A slider's is its body's centre of mass: what it holds and what pushes at its limits then has
@@ -57,6 +62,10 @@ BulletJoint::BulletJoint(const Joint& joint, btRigidBody& base, btRigidBody& bod
   for (int axis = 0; axis < 6; ++axis) {
     constraint_->setLimit(axis, 0, 0);
     constraint_->setParam(BT_CONSTRAINT_STOP_ERP, kStopErrorReduction, axis);
+  }
+  if (joint.spring > 0) {
+    for (btRigidBody* side : {&base, &body})
+      side->setSleepingThresholds(kSprungSleepSpeed_m_per_s, kSprungSleepTurn_rad_per_s);
   }
   if (joint.kind == JointKind::kBall) {
     for (int axis = 3; axis < 6; ++axis) constraint_->setLimit(axis, 1, -1);  // none
@@ -78,20 +87,24 @@ void BulletJoint::Prepare(double dt_s) {
   const bool within = position >= joint_.lower && position <= joint_.upper;
   constraint_->setParam(BT_CONSTRAINT_STOP_ERP, within ? kWholeWay : kStopErrorReduction,
                         slides ? kShiftAlongAxis : kTurnAboutAxis);
-  if (joint_.spring > 0 || joint_.damping > 0) Pull(position, dt_s);
-}
-
-void BulletJoint::Pull(double position, double dt_s) {
-  btRigidBody &base = constraint_->getRigidBodyA(), &body = constraint_->getRigidBodyB();
-  const bool slides = joint_.kind == JointKind::kSlider;
-  const btTransform& X_WJ = constraint_->getCalculatedTransformA();
-  const Eigen::Vector3d x_W = FromBullet(X_WJ.getBasis().getColumn(0));
-  const JointPlace place{position, slides ? x_W : -x_W, FromBullet(X_WJ.getOrigin())};
   // Impulses, no forces: Bullet's friction does not see what a torque does within the tick, and
   // what lies on the body would creep.
-  const btVector3 push =
-      ToBullet(dt_s * SpringForce(joint_, place, SideOf(base), SideOf(body), dt_s) * place.axis_W);
-  if (slides) {
+  impulse_ =
+      dt_s * SpringForce(joint_, Place(position), sharers_, SideOf(base), SideOf(body), dt_s);
+}
+
+JointPlace BulletJoint::Place(double position) const {
+  const btTransform& X_WJ = constraint_->getCalculatedTransformA();
+  const Eigen::Vector3d x_W = FromBullet(X_WJ.getBasis().getColumn(0));
+  return {position, joint_.kind == JointKind::kSlider ? x_W : -x_W, FromBullet(X_WJ.getOrigin())};
+}
+
+void BulletJoint::Pull() {
+  if (impulse_ == 0) return;
+  btRigidBody &base = constraint_->getRigidBodyA(), &body = constraint_->getRigidBodyB();
+  const btVector3 push = ToBullet(impulse_ * Place(0).axis_W);
+  impulse_ = 0;
+  if (joint_.kind == JointKind::kSlider) {
     body.applyCentralImpulse(push);
     base.applyImpulse(-push, body.getCenterOfMassPosition() - base.getCenterOfMassPosition());
   } else {

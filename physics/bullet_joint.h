@@ -7,6 +7,7 @@
 
 #include <memory>
 
+#include "physics/joint_spring.h"
 #include "physics/scene.h"
 
 namespace prehend::physics {
@@ -15,17 +16,23 @@ class BulletJoint {
  public:
   /// A slider, hinge or ball; fixed joints need none, their bodies are one (BulletBody). The bodies
   /// must stand as placed.
-  BulletJoint(const Joint& joint, btRigidBody& base, btRigidBody& body);
+  /// `sharers`: see SpringForce.
+  BulletJoint(const Joint& joint, int sharers, btRigidBody& base, btRigidBody& body);
 
   /// For the coming tick: how far it is to the limits, spring and damping. Friction and limits are
-  /// rows of the constraint.
+  /// rows of the constraint. Nothing moves yet: joints that share a body all read what the last
+  /// tick left.
   void Prepare(double dt_s);
+  /// After all joints are prepared.
+  void Pull();
   btTypedConstraint& constraint() { return *constraint_; }
 
  private:
-  void Pull(double position, double dt_s);
+  JointPlace Place(double position) const;
 
   Joint joint_;
+  int sharers_;
+  double impulse_ = 0;  ///< of spring and damping in the coming tick: N s or N m s
   std::unique_ptr<btGeneric6DofSpring2Constraint> constraint_;
 };
 

@@ -20,6 +20,7 @@
 #include "physics/bullet_sight.h"
 #include "physics/bullet_solver.h"
 #include "physics/joint.h"
+#include "physics/joint_spring.h"
 #include "physics/rigid_groups.h"
 #include "physics/stillness.h"
 
@@ -173,7 +174,8 @@ void BulletWorld::AddJoints() {
   };
   for (const Joint& joint : scene_.joints) {
     if (joint.kind == JointKind::kFixed) continue;
-    BulletJoint& made = joints_.emplace_back(joint, rigid(joint.base), rigid(joint.body));
+    BulletJoint& made = joints_.emplace_back(joint, SpringsOnOneBody(scene_, joint),
+                                             rigid(joint.base), rigid(joint.body));
     world_.addConstraint(&made.constraint(), /*disableCollisionsBetweenLinkedBodies=*/true);
   }
 }
@@ -193,6 +195,7 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
   for (std::size_t i = 0; i < hands_.size(); ++i)
     hands_[i]->Drive(commands[i], dt_s_, scene_.world.gravity_m_per_s2);
   for (BulletJoint& joint : joints_) joint.Prepare(dt_s_);
+  for (BulletJoint& joint : joints_) joint.Pull();
   world_.stepSimulation(dt_s_, 0);
   for (auto& [body, grains] : grains_) grains.StopLost();
   stillness_.Update(++tick_, [this](std::size_t i) {

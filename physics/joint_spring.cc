@@ -5,6 +5,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "physics/joint.h"
+
 namespace prehend::physics {
 namespace {
 
@@ -37,7 +39,7 @@ Vector6d MotionAt(const Vector3d& pivot_W_m, const JointSide& side) {
 
 }  // namespace
 
-double SpringForce(const Joint& joint, const JointPlace& place, const JointSide& base,
+double SpringForce(const Joint& joint, const JointPlace& place, int sharers, const JointSide& base,
                    const JointSide& body, double dt_s) {
   if (joint.spring == 0 && joint.damping == 0) return 0;
   if (base.per_mass == 0 && body.per_mass == 0) return 0;  // nothing to move
@@ -52,9 +54,22 @@ double SpringForce(const Joint& joint, const JointPlace& place, const JointSide&
   // force along it is the share of all of them that does work.
   const Matrix6d response = ResponseAt(pivot_W_m, base) + ResponseAt(pivot_W_m, body);
   const double inertia = way.dot(response.ldlt().solve(way));
-  const double spring = std::min(joint.spring, inertia / (dt_s * dt_s));
-  const double damping = std::min(joint.damping, inertia / dt_s);
+  const double share = inertia / sharers;
+  const double spring = std::min(joint.spring, share / (dt_s * dt_s));
+  const double damping = std::min(joint.damping, share / dt_s);
   return -spring * (place.position - joint.rest) - damping * rate;
+}
+
+int SpringsOnOneBody(const Scene& scene, const Joint& joint) {
+  const auto springs_at = [&](int rigid) {
+    return static_cast<int>(std::ranges::count_if(scene.joints, [&](const Joint& other) {
+      return (other.spring > 0 || other.damping > 0) &&
+             (RootOf(scene, other.body) == rigid || RootOf(scene, other.base) == rigid);
+    }));
+  };
+  const int base = RootOf(scene, joint.base);
+  const int at_base = scene.bodies[static_cast<std::size_t>(base)].fixed ? 0 : springs_at(base);
+  return std::max({1, at_base, springs_at(RootOf(scene, joint.body))});
 }
 
 }  // namespace prehend::physics

@@ -27,9 +27,14 @@ struct JointPlace {
 
 /// The force (N) or torque (Nm) on the joint's body for the coming tick, along or about the axis;
 /// its base has the opposite. Exact for a spring whose period is long against a tick: it then takes
-/// no energy and gives none. Never stiffer than inertia / dt^2, nor damped by more than
-/// inertia / dt: what would explode within ticks is that much weaker.
-double SpringForce(const Joint& joint, const JointPlace& place, const JointSide& base,
+/// no energy and gives none. Never stiffer than inertia / (n dt^2), nor damped by more than
+/// inertia / (n dt), where n `sharers` pull at one body: what would explode within ticks is that
+/// much weaker.
+double SpringForce(const Joint& joint, const JointPlace& place, int sharers, const JointSide& base,
                    const JointSide& body, double dt_s);
+
+/// How many joints with spring or damping, this one included, pull at its body or at its base, if
+/// that moves: the larger of the two.
+int SpringsOnOneBody(const Scene& scene, const Joint& joint);
 
 }  // namespace prehend::physics

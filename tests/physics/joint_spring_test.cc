@@ -135,6 +135,50 @@ TEST_P(JointSpringTest, WhatIsTooStiffForATickDoesNotExplode) {
   EXPECT_NEAR(Positions(scene, 0.2).back(), 0.05, 1e-4);
 }
 
+TEST_P(JointSpringTest, JointsThatShareABodyDoNotReadEachOthersPush) {
+  // A cube that hangs on a cube, damped: each rests where its own spring bears the weight below.
+  const Vector3d down = -Vector3d::UnitZ();
+  Scene scene = Sprung(0.1, 1, 400, down);
+  scene.bodies.push_back(Cube(0.1, 1, {0, 0, 1.5}));
+  Joint lower = scene.joints[0];
+  lower.body = 2;
+  lower.base = 1;
+  lower.spring = 100;
+  for (Joint* joint : {&lower, &scene.joints[0]}) {
+    joint->damping = 20;
+    joint->rest = 0;
+  }
+  scene.joints.insert(scene.joints.begin(), lower);
+  EXPECT_NEAR(Positions(scene, 4).back(), kGravity / 100, 0.001);
+  std::swap(scene.joints[0], scene.joints[1]);
+  EXPECT_NEAR(Positions(scene, 4).back(), 2 * kGravity / 400, 0.001);
+}
+
+TEST_P(JointSpringTest, ManyThatPullAtALightBodyDoNotExplode) {
+  // All in a row, so that nothing turns.
+  Scene scene = Sprung(0.1, 1, 500, Vector3d::UnitX());
+  scene.world.gravity_m_per_s2 = 0;
+  scene.joints[0].damping = 1000;
+  scene.bodies = {Cube(0.1, 0.2, {0, 0, 2})};
+  const Joint joint = scene.joints[0];
+  scene.joints.clear();
+  for (int more = 1; more <= 3; ++more) {
+    scene.bodies.push_back(Cube(0.1, 1, {0.5 * more, 0, 2}));
+    scene.joints.push_back(joint);
+    scene.joints.back().body = more;
+  }
+  const std::vector<double> positions = Positions(scene, 1);
+  for (const double position : positions) ASSERT_LT(std::abs(position), 0.0515);
+  EXPECT_NEAR(positions.back(), 0.05, 0.0005);
+}
+
+TEST_P(JointSpringTest, WhatCreepsHomeDoesNotFallAsleepOnItsWay) {
+  Scene scene = Sprung(0.1, 1, 20, Vector3d::UnitX());
+  scene.joints[0].damping = 100;
+  scene.joints[0].rest = 0.1;
+  EXPECT_NEAR(Positions(scene, 12).back(), 0.1 * (1 - std::exp(-12 * 20 / 100.0)), 0.001);
+}
+
 TEST(JointSpringLawTest, ATooStiffSpringHasTheInertiaThatTheJointLeavesItToMove) {
   // Two equal cubes on a slider, one beside the other: they turn while they part. By hand:
   // 1 / inertia = 2 / m + d^2 / 2I.
@@ -145,7 +189,7 @@ TEST(JointSpringLawTest, ATooStiffSpringHasTheInertiaThatTheJointLeavesItToMove)
   const double inertia = 1 / (1 + apart_m * apart_m / (2 * moment));
   const Joint joint{.kind = JointKind::kSlider, .spring = 1e9, .rest = 1};
   const JointPlace place{0, Vector3d::UnitX(), {0, 0, 0}};
-  EXPECT_NEAR(SpringForce(joint, place, base, body, kTick_s) * kTick_s * kTick_s, inertia, 1e-9);
+  EXPECT_NEAR(SpringForce(joint, place, 1, base, body, kTick_s) * kTick_s * kTick_s, inertia, 1e-9);
 }
 
 }  // namespace
