@@ -11,6 +11,7 @@
 #include "harness/content_hash.h"
 #include "harness/event_text.h"
 #include "harness/oracle_notes.h"
+#include "harness/shell_word.h"
 
 namespace prehend::harness {
 namespace {
@@ -159,6 +160,13 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
 
 std::string Fingerprint(const Golden& pending) {
   return ContentHash(WriteGolden(pending)).substr(0, 8);
+}
+
+std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint,
+                              bool wants_reason) {
+  return fmt::format("prehend accept {} --reviewed {} --reason \"...\"{}", ShellWord(scenario),
+                     fingerprint,
+                     wants_reason ? " --against-the-oracle \"EVENT(ROLES): ...\"" : "");
 }
 
 }  // namespace prehend::harness

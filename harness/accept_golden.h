@@ -38,4 +38,9 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
 /// Eight hexadecimal digits, which tell one pending golden from another.
 std::string Fingerprint(const Golden& pending);
 
+/// What accepts the pending golden of that fingerprint and nothing else, to be typed; with the
+/// option for it when an objection of the physical oracle wants a reason.
+std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint,
+                              bool wants_reason);
+
 }  // namespace prehend::harness

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whose doing a difference is: did the world move otherwise than in the last run that agreed with
-// the golden, or did the grammar say something else about the same motion? Tested by
+// the golden, was it looked at otherwise, or did the grammar say something else about the same
+// looks? Tested by
 // tests/harness/blame_test.cc
 #pragma once
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <functional>
+
 #include "harness/abstract_fields.h"
 #include "harness/farthest.h"
 #include "harness/kinds.h"
@@ -41,6 +43,17 @@ void CheckAxis(const YamlNode& node, const JointEntry& joint, Complaints& compla
   complaints.Add(node.Find("axis")->where, "axis: expected a direction other than [0, 0, 0]");
 }
 
+/// A rest without a spring would do nothing; one of no stiffness is somebody's choice.
+std::function<void(const YamlNode&, const JointEntry&, Complaints&)> SpringPullsTo(
+    const char* rest, const char* spring) {
+  return [rest, spring](const YamlNode& node, const JointEntry&, Complaints& complaints) {
+    const YamlNode* given = node.Find(rest);
+    if (!given || node.Find(spring)) return;
+    complaints.Add(given->key_where, fmt::format("{}: there is no spring that pulls to it", rest),
+                   fmt::format("give it {}", spring));
+  };
+}
+
 Format<JointEntry> SliderFormat() {
   using J = JointEntry;
   return JointRecord("a slider")
@@ -58,6 +71,7 @@ Format<JointEntry> SliderFormat() {
                 "Where its spring is slack.")
       .Check(CheckAxis)
       .Check(CheckRange)
+      .Check(SpringPullsTo("rest_m", "spring_n_per_m"))
       .format();
 }
 
@@ -80,6 +94,7 @@ Format<JointEntry> HingeFormat() {
                 "Where its spring is slack.")
       .Check(CheckAxis)
       .Check(CheckRange)
+      .Check(SpringPullsTo("rest_deg", "spring_nm_per_rad"))
       .format();
 }
 

@@ -188,17 +188,21 @@ class GoldenReader {
   }
 
   bool ReadRolesAndFlags(GoldenEvent& line) {
-    std::string explained;  // what a reason that comes now belongs to
+    std::string explained;          // what a reason that comes now belongs to
+    std::set<std::string> written;  // each of them once; a value may be called like a role
     for (SkipBlanks(); !AtEnd(); SkipBlanks()) {
       const std::size_t word_column = column_;
       if (line_[column_] == '#') return Fail("comments stand on lines of their own");
       std::string key;
       if (!ReadName(key, "role=value")) return false;
+      const bool is_value = !AtEnd() && line_[column_] == '~';
+      if (key != "because" && !written.insert(is_value ? key + "~" : key).second)
+        return FailAt(word_column, fmt::format("second '{}'", key));
       if (key == "open_end") {
         line.event.open_end = true;
       } else if (key == "because") {
         if (!ReadReason(line, std::exchange(explained, ""), word_column)) return false;
-      } else if (!AtEnd() && line_[column_] == '~') {
+      } else if (is_value) {
         if (!ReadValue(line, key, word_column)) return false;
       } else if (AtEnd() || line_[column_] != '=') {
         return Fail(fmt::format("expected '=' after '{}'", key),
@@ -207,7 +211,7 @@ class GoldenReader {
         if (!ReadTolerance(line)) return false;
         explained = key;
       } else if (key == "oracle") {
-        if (!ReadOracle(line, word_column)) return false;
+        if (!ReadOracle(line)) return false;
         explained = key;
       } else if (key == "accepted") {
         if (!ReadAcceptedBy(line)) return false;
@@ -229,8 +233,6 @@ class GoldenReader {
   bool ReadRole(GoldenEvent& line, const std::string& key, std::size_t word_column) {
     const std::string value(Word());
     if (value.empty()) return Fail(fmt::format("expected a value for '{}'", key));
-    if (!RoleValue(line.event, key).empty())
-      return FailAt(word_column, fmt::format("second '{}'", key));
     if (line.event.roles.size() == kMaxRolesInText) return FailAt(word_column, "too many roles");
     line.event.roles.push_back({key, value});
     return true;
@@ -246,9 +248,6 @@ class GoldenReader {
     if (error != std::errc() || !std::isfinite(value.value))
       return FailAt(value_column, fmt::format("expected a number after '{}~', like 12.5N", name));
     value.unit = std::string(end, word.data() + word.size());
-    const auto same = [&](const grammar::NamedValue& other) { return other.name == name; };
-    if (std::ranges::any_of(line.event.values, same))
-      return FailAt(word_column, fmt::format("second '{}'", name));
     if (line.event.values.size() == kMaxRolesInText) return FailAt(word_column, "too many values");
     line.event.values.push_back(std::move(value));
     return true;
@@ -279,8 +278,7 @@ class GoldenReader {
   }
 
   /// "none", "only", or how much later begin and end are than the oracle's: "+29.2/-4.2ms".
-  bool ReadOracle(GoldenEvent& line, std::size_t word_column) {
-    if (!line.oracle.empty()) return FailAt(word_column, "second 'oracle'");
+  bool ReadOracle(GoldenEvent& line) {
     const std::size_t value_column = column_;
     const std::string_view word = Word();
     if (word != kNotOfOracle && word != kOnlyOracle && !NoteOffsets_ms(word)) {

@@ -95,6 +95,10 @@ std::vector<Objection> Objections(const std::optional<Golden>& golden, const Gol
   return objections;
 }
 
+bool WantsReason(const std::vector<Objection>& objections) {
+  return std::ranges::any_of(objections, &Objection::wants_reason);
+}
+
 std::string Text(const std::vector<Objection>& objections) {
   std::string text;
   for (const Objection& objection : objections) text += objection.text + "\n";

@@ -27,6 +27,9 @@ struct Objection {
 /// In the order of the lines. `pending` is what PendingGolden() makes of `golden`.
 std::vector<Objection> Objections(const std::optional<Golden>& golden, const Golden& pending);
 
+/// Whether a person has to say why one of them does not count.
+bool WantsReason(const std::vector<Objection>& objections);
+
 /// One line each, or "".
 std::string Text(const std::vector<Objection>& objections);
 

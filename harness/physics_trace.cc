@@ -30,6 +30,27 @@ void AddHashes(const physics::Snapshot& snapshot, std::vector<std::uint32_t>& ha
   for (const physics::HandState& hand : snapshot.hands) hashes.push_back(HashOf(hand));
 }
 
+std::int64_t WidestGap(const PhysicsTrace& trace) {
+  std::int64_t widest = 0;
+  for (std::size_t i = 1; i < trace.ticks.size(); ++i)
+    widest = std::max(widest, trace.ticks[i] - trace.ticks[i - 1]);
+  return widest;
+}
+
+/// Nothing when both are as long; of runs that look at other ticks that is not known more exactly
+/// than to the next look.
+std::optional<PartingPlace> FirstTickOfTheLonger(const PhysicsTrace& a, const PhysicsTrace& b) {
+  const auto last = [](const PhysicsTrace& run) {
+    return run.ticks.empty() ? -1 : run.ticks.back();
+  };
+  const PhysicsTrace& longer = last(a) > last(b) ? a : b;
+  const std::int64_t end = std::min(last(a), last(b));
+  const std::int64_t unseen = LookAlike(a, b) ? 1 : std::max(WidestGap(a), WidestGap(b));
+  if (last(longer) - end < unseen) return std::nullopt;
+  return PartingPlace{.tick = *std::upper_bound(longer.ticks.begin(), longer.ticks.end(), end),
+                      .entity = {}};
+}
+
 }  // namespace
 
 PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording) {
@@ -44,20 +65,27 @@ PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snaps
   return trace;
 }
 
+bool LookAlike(const PhysicsTrace& a, const PhysicsTrace& b) {
+  const auto both = static_cast<std::ptrdiff_t>(std::min(a.ticks.size(), b.ticks.size()));
+  return std::equal(a.ticks.begin(), a.ticks.begin() + both, b.ticks.begin());
+}
+
 std::optional<PartingPlace> FirstParting(const PhysicsTrace& a, const PhysicsTrace& b) {
   const std::size_t entities = a.entities.size();
   if (a.entities != b.entities) return PartingPlace{};
-  const std::size_t ticks = std::min(a.ticks.size(), b.ticks.size());
-  for (std::size_t i = 0; i < ticks; ++i) {
-    if (a.ticks[i] != b.ticks[i])
-      return PartingPlace{.tick = std::min(a.ticks[i], b.ticks[i]), .entity = {}};
+  std::size_t i = 0, j = 0;
+  while (i < a.ticks.size() && j < b.ticks.size()) {
+    if (a.ticks[i] != b.ticks[j]) {
+      ++(a.ticks[i] < b.ticks[j] ? i : j);
+      continue;
+    }
     for (std::size_t k = 0; k < entities; ++k) {
-      if (a.hashes[i * entities + k] != b.hashes[i * entities + k])
+      if (a.hashes[i * entities + k] != b.hashes[j * entities + k])
         return PartingPlace{.tick = a.ticks[i], .entity = a.entities[k]};
     }
+    ++i, ++j;
   }
-  if (a.ticks.size() == b.ticks.size()) return std::nullopt;
-  return PartingPlace{.tick = (a.ticks.size() > ticks ? a : b).ticks[ticks], .entity = {}};
+  return FirstTickOfTheLonger(a, b);
 }
 
 std::string WriteTrace(const std::filesystem::path& path, const PhysicsTrace& trace) {

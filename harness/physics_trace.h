@@ -28,10 +28,13 @@ PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snaps
 
 struct PartingPlace {
   std::int64_t tick = 0;
-  std::string entity;  ///< the first that differs; "" when one run has ticks or entities of its own
+  std::string entity;  ///< the first that differs; "" when one run has more ticks or other entities
 };
 
-/// Nothing when the two are the same.
+/// Whether both look at the same ticks, as long as both run.
+bool LookAlike(const PhysicsTrace& a, const PhysicsTrace& b);
+
+/// Nothing when the two move the same, as far as both look, and are as long.
 std::optional<PartingPlace> FirstParting(const PhysicsTrace& a, const PhysicsTrace& b);
 
 /// A text file; "" or what went wrong.

@@ -133,14 +133,14 @@ std::string NotWhatWasShown(const CLI::App& options, const CommandContext& conte
 
 /// Shows what is there now instead, and lets it wait for the next acceptance.
 ExitCode Refuse(const CommandContext& context, const Played& played, const Golden& pending,
-                ExitCode code, const std::string& why, const std::string& options) {
+                ExitCode code, const std::string& why) {
   ShowDifference(played, pending, context);
   const std::string problem = GoldenFiles(context.root).WritePending(pending);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
-  return Complain(
-      context, code,
-      why + " (shown above); nothing was accepted\n  if that is right: prehend accept " +
-          played.id + " --reviewed " + Fingerprint(pending) + " --reason \"...\"" + options);
+  return Complain(context, code,
+                  why + " (shown above); nothing was accepted\n  if that is right: " +
+                      AcceptCommandLine(played.id, Fingerprint(pending),
+                                        WantsReason(Objections(played.old, pending))));
 }
 
 ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
@@ -193,12 +193,10 @@ ExitCode AcceptEvents(const CLI::App& options, const CommandContext& context,
       PendingGolden(old, run.timeline, id, prepared.scenario.grammar, derivation);
   if (old && *old == pending && !tells_derivation) return NothingToAccept(context, played);
   const std::string why_not = NotWhatWasShown(options, context, pending);
-  if (!why_not.empty()) return Refuse(context, played, pending, ExitCode::kDiffers, why_not, "");
+  if (!why_not.empty()) return Refuse(context, played, pending, ExitCode::kDiffers, why_not);
   Golden golden = ProposeGolden(old, run.timeline, proposal);
   const std::string objection = GiveReasons(ValuesOf(options, "--against-the-oracle"), golden);
-  if (!objection.empty())
-    return Refuse(context, played, pending, ExitCode::kBadInput, objection,
-                  " --against-the-oracle \"EVENT(ROLES): why it is right nevertheless\"");
+  if (!objection.empty()) return Refuse(context, played, pending, ExitCode::kBadInput, objection);
   ShowDifference(played, pending, context);
   for (const std::string& line : derivation.lines) context.out << line << "\n";
   const std::string problem = files.WriteAccepted(golden);

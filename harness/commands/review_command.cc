@@ -69,7 +69,7 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
   if (!pending.value || !scenario.value || !golden.diagnostics.empty()) return review;
   review.fingerprint = Fingerprint(*pending.value);
   const std::vector<Objection> objections = Objections(golden.value, *pending.value);
-  review.wants_reason = std::ranges::any_of(objections, &Objection::wants_reason);
+  review.wants_reason = WantsReason(objections);
   if (!golden.value) {
     review.kind = "new";
     review.text = EventLines(*pending.value) + Text(objections);
@@ -160,9 +160,7 @@ std::string NextStep(const Review& review, bool engines_differ) {
     return fmt::format("if right: prehend accept {} --pictures --reason \"...\"",
                        ShellWord(review.id));
   if (review.kind != "new" && review.kind != "changed") return "";
-  return fmt::format("if right: prehend accept {} --reviewed {} --reason \"...\"{}",
-                     ShellWord(review.id), review.fingerprint,
-                     review.wants_reason ? " --against-the-oracle \"EVENT(ROLES): ...\"" : "");
+  return "if right: " + AcceptCommandLine(review.id, review.fingerprint, review.wants_reason);
 }
 
 void Print(const std::vector<Review>& reviews, const CommandContext& context) {

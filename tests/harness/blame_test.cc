@@ -49,6 +49,24 @@ TEST(Blame, WithoutAnyChangedFileNothingIsKnown) {
       "with its golden; changed since then: nothing that is known\n");
 }
 
+TEST(Blame, IsTheLooksWhenTheyAreAtOtherTicksOfTheSameMotion) {
+  Runs runs;
+  runs.trace = {.entities = {"cup"}, .ticks = {0, 2, 4, 6, 8, 10}, .hashes = {1, 2, 3, 4, 5, 6}};
+  runs.now.trace = {.entities = {"cup"}, .ticks = {0, 4, 8}, .hashes = {1, 3, 5}};
+  runs.now.options = {"--set world.sensing_hz=60"};
+  EXPECT_EQ(runs.Text(),
+            "blame: the looks are at other ticks; where both look everything moves as when this "
+            "last agreed with its golden; changed since then: --set world.sensing_hz=60\n");
+  runs.now.trace.hashes[1] = 7;
+  EXPECT_TRUE(runs.Text().starts_with("blame: physics: since 0.0083 s (tick 4) cup does not move "))
+      << runs.Text();
+  runs.now.trace = {.entities = {"cup"}, .ticks = {0, 4}, .hashes = {1, 3}};
+  EXPECT_TRUE(
+      runs.Text().starts_with("blame: physics: since 0.0125 s (tick 6) the run is not as "
+                              "long "))
+      << runs.Text();
+}
+
 TEST(Blame, AGrammarThatTheCommandLineChoseDidNotChange) {
   Runs runs;
   runs.now.inputs.erase("/root/a.grammar");

@@ -276,6 +276,9 @@ TEST_F(GoldenWorkflow, WhatThePhysicalOracleObjectsToIsAnsweredBeforeItIsAccepte
                              "nothing was accepted"),
             std::string::npos)
       << refused.err;
+  EXPECT_NE(Do("accept carton_rests --reviewed 00000000 --reason seen")
+                .err.find(" --reason \"...\" --against-the-oracle \"EVENT(ROLES): ...\""),
+            std::string::npos);
   EXPECT_FALSE(fs::exists(Golden()));
   EXPECT_EQ(Do("accept carton_rests --reason seen --against-the-oracle too_short").exit_code, 0);
   EXPECT_NE(ReadFile(Golden()).find("oracle=only because \"too_short\"\n"), std::string::npos)
