@@ -104,14 +104,12 @@ TEST(Explain, ACompositionBeginsAndEndsWithItsParts) {
 TEST(ExplainMissing, NoSlideWhereTheCartonMovedTooLittle) {
   const WhyMissing why =
       WhyNot(Played(kSlide, {"slide_distance=30cm"}), "sliding right_hand milk @2.0s");
-  const Reason* failed =
-      Find(why.reasons, "requires displacement_along(milk, table) >= slide_distance");
+  const Reason* failed = Find(why.reasons, "to displacement_along(milk, table) >= slide_distance");
   ASSERT_NE(failed, nullptr);
   EXPECT_EQ(failed->mark, Mark::kFailed);
   EXPECT_NEAR(failed->reading->value, 0.2, 0.01);  // the script moves it by 0.2 m
   EXPECT_EQ(failed->reading->limit, 0.3);
-  EXPECT_TRUE(
-      why.because.starts_with("requires displacement_along(milk, table) >= slide_distance: is 2"))
+  EXPECT_TRUE(why.because.starts_with("to displacement_along(milk, table) >= slide_distance: is 2"))
       << why.because;
   EXPECT_NE(Find(why.reasons, "sliding_along(right_hand, milk, table)"), nullptr);
 }
