@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "harness/check_scenario.h"
 #include "harness/commands/command.h"
 #include "harness/event_text.h"
 #include "harness/explain/explain.h"
@@ -62,8 +63,9 @@ ExitCode ComplainOfNone(const CLI::App& options, grammar::Hindsight& past, const
     message += fmt::format("\n  {}  {}", other.event,
                            IntervalText(other.interval, past.cast().ticks_per_second));
   }
-  message += fmt::format("\n  why not: prehend explain {} --expected {}",
-                         ShellWord(ValueOf(options, "scenario")), ShellWord(typed));
+  message += fmt::format("\n  why not: {} --expected {}",
+                         ExplainCommand(ValueOf(options, "scenario"), RequestOf(options, {})),
+                         ShellWord(typed));
   return Complain(context, ExitCode::kNothing, message);
 }
 

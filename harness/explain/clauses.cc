@@ -23,17 +23,26 @@ std::string Clauses::Time(FrameNumber frame) {
   return At(past_.TickOf(frame), past_.cast().ticks_per_second);
 }
 
-void Clauses::Split(int node, bool truth, std::vector<Clause>& out) const {
-  const Node& n = NodeAt(node);
-  if (n.op == Op::kNot) return Split(n.args[0], !truth, out);
-  if (n.op != Op::kAnd && n.op != Op::kOr) return out.push_back({node, truth});
-  Split(n.args[0], truth, out);
-  Split(n.args[1], truth, out);
+bool Clauses::IsChoice(int node, bool truth) const {
+  const Op op = NodeAt(node).op;
+  if (op == Op::kNot) return IsChoice(NodeAt(node).args[0], !truth);
+  return truth ? op == Op::kOr : op == Op::kAnd;
 }
 
-std::vector<Clauses::Clause> Clauses::Split(int node, bool truth) const {
+// Of a choice that is fulfilled, nothing is missing: what fulfils it is all there is to say.
+void Clauses::Split(int node, const Moment& at, bool truth, std::vector<Clause>& out) {
+  const Node& n = NodeAt(node);
+  if (n.op == Op::kNot) return Split(n.args[0], at, !truth, out);
+  if (n.op != Op::kAnd && n.op != Op::kOr) return out.push_back({node, truth});
+  const bool is_fulfilled_choice = IsChoice(node, truth) && past_.Truth(node, at) == truth;
+  for (const int arg : {n.args[0], n.args[1]}) {
+    if (!is_fulfilled_choice || past_.Truth(arg, at) == truth) Split(arg, at, truth, out);
+  }
+}
+
+std::vector<Clauses::Clause> Clauses::Split(int node, const Moment& at, bool truth) {
   std::vector<Clause> clauses;
-  Split(node, truth, clauses);
+  Split(node, at, truth, clauses);
   return clauses;
 }
 
@@ -263,7 +272,7 @@ Reason Clauses::Told(const Clause& clause, const Moment& at) {
 
 Reasons Clauses::State(int node, const Moment& at, bool truth) {
   Reasons reasons;
-  for (const Clause& clause : Split(node, truth)) reasons.push_back(Told(clause, at));
+  for (const Clause& clause : Split(node, at, truth)) reasons.push_back(Told(clause, at));
   return reasons;
 }
 

@@ -27,18 +27,23 @@ class Clauses {
   Reason Reference(int lane, int slot, grammar::FrameNumber frame, bool truth,
                    const Follow& follow);
 
-  /// Every clause of the node, as it was at the frame: those that are not `truth` have failed.
+  /// The clauses of the node, as they were at the frame: those that are not `truth` have failed.
   Reasons State(int node, const Moment& at, bool truth);
 
   /// 1 when the node has this truth; else how near its clauses are to it, less than 1.
   double Nearness(int node, const Moment& at, bool truth, int depth = 0);
 
-  /// The clauses of the node: what is left of it without `and`, `or` and `not`.
+  /// What is left of a node without `and`, `or` and `not`.
   struct Clause {
     int node = grammar::kNone;
     bool truth = true;  ///< as the node needs it
   };
-  std::vector<Clause> Split(int node, bool truth) const;
+  /// The clauses that the node depends on at the frame: of alternatives one of which is as it has
+  /// to be, only those that are.
+  std::vector<Clause> Split(int node, const Moment& at, bool truth);
+  /// Whether one of the node's two parts is enough: of an `or` that has to be true, or an `and`
+  /// that has to be false.
+  bool IsChoice(int node, bool truth) const;
 
   /// A sentence about one comparison, region, test or reference, as it was at the frame.
   Reason Told(const Clause& clause, const Moment& at);
@@ -59,7 +64,7 @@ class Clauses {
   Reason Measurement(const Clause& clause, const Moment& at, const std::optional<Measured>& before);
   void Collect(int node, const Moment& at, bool truth, const Follow& follow, bool brief,
                Reasons& out);
-  void Split(int node, bool truth, std::vector<Clause>& out) const;
+  void Split(int node, const Moment& at, bool truth, std::vector<Clause>& out);
   std::string WhenInstead(const grammar::Node& edge, const Moment& at);
   Reason Impossible(int lane, int slot);
   double NearestMember(int any_lane, grammar::FrameNumber frame, int depth);

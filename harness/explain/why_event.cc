@@ -95,6 +95,8 @@ Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
   const Rule& rule = past_.RuleOf(lane);
   const FrameNumber begin = fate.span.begin.frame;
   const FrameNumber end = fate.span.end.frame;
+  // That B did not come is decided by time alone; what comes in that frame comes too late.
+  if (rule.absence) return {Remark("nothing came within " + Seconds(rule.within_s))};
   if (end >= past_.frames()) return {Remark("the episode ends here")};
   switch (rule.form) {
     case Form::kTouching:
@@ -108,11 +110,6 @@ Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
     }
     case Form::kFromTo: {
       const Moment at{.lane = lane, .frame = end, .begin = begin};
-      if (rule.absence && fate.span.end.tick >= fate.span.begin.tick &&
-          !past_.Truth(rule.second, at)) {
-        const bool in_time = rule.during == kNone || past_.Truth(rule.during, at);
-        if (in_time) return {Remark("nothing came within " + Seconds(rule.within_s))};
-      }
       const bool closed = past_.Truth(rule.second, at);
       return Change(closed ? rule.second : rule.during, at, closed, depth);
     }

@@ -152,6 +152,11 @@ double MissingReasons::RunCloseness(const Fate& fate) {
   }
 }
 
+std::string MissingReasons::Awaited(int lane) {
+  const Rule& rule = past_.RuleOf(lane);
+  return (rule.absence ? "without " : "to ") + ClauseText(past_, lane, rule.second);
+}
+
 // When what was waited for came after all, for the first time.
 std::string MissingReasons::HowLate(const Fate& fate) {
   const Rule& rule = past_.RuleOf(fate.lane);
@@ -176,7 +181,7 @@ Reasons MissingReasons::Requirement(const Fate& fate, int depth) {
   const Moment at{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
   const Window run{fate.span.begin.frame, last};
   Reasons told;
-  for (const Clauses::Clause& clause : clauses_.Split(node, true)) {
+  for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
     Reason reason = clauses_.Told(clause, at);
     const grammar::Node& n = past_.program().nodes[clause.node];
     const int target =
@@ -186,9 +191,7 @@ Reasons MissingReasons::Requirement(const Fate& fate, int depth) {
     reason.what = "requires " + reason.what;
     told.push_back(std::move(reason));
   }
-  if (past_.program().nodes[node].op == grammar::Op::kOr) {
-    std::ranges::stable_sort(told, {}, Missed);
-  }
+  if (clauses_.IsChoice(node, true)) std::ranges::stable_sort(told, {}, Missed);
   return told;
 }
 
@@ -196,7 +199,7 @@ Reasons MissingReasons::Requirement(const Fate& fate, int depth) {
 Reasons MissingReasons::EndThatNeverCame(const Fate& fate, FrameNumber look_until) {
   const Rule& rule = past_.RuleOf(fate.lane);
   const grammar::Node& to = past_.program().nodes[rule.second];
-  if (to.op != grammar::Op::kBegins) return {};
+  if (to.op != grammar::Op::kBegins || rule.absence) return {};
   const FrameNumber last = std::min({fate.span.end.frame, past_.frames() - 1, look_until});
   Moment at{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame};
   at.frame = Closest(to.args[0], at, {fate.span.begin.frame, last});
@@ -260,18 +263,20 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth, FrameNu
       break;
     case Fate::Kind::kTooLate:
       run.how += "dropped";
-      fail("to " + ClauseText(past_, lane, rule.second),
-           "it did not come within " + QuantityText(rule.within_s, grammar::kSeconds) + ", " +
-               HowLate(fate));
+      fail(Awaited(lane), "it did not come within " +
+                              QuantityText(rule.within_s, grammar::kSeconds) + ", " +
+                              HowLate(fate));
       break;
     case Fate::Kind::kCame:
       run.how += "what must not come came";
-      fail("without " + ClauseText(past_, lane, rule.second),
-           "it came after " + lasted + ", at " + At(fate.span.end.tick, per_second));
+      fail(Awaited(lane), "it came after " + lasted + ", at " + At(fate.span.end.tick, per_second));
       break;
     case Fate::Kind::kUnfinished:
       run.how += "dropped";
-      fail("to " + ClauseText(past_, lane, rule.second), "the episode ended before");
+      fail(Awaited(lane), !rule.absence ? "the episode ended before"
+                                        : "it is decided only " +
+                                              QuantityText(rule.within_s, grammar::kSeconds) +
+                                              " later, the episode ended before");
       break;
     case Fate::Kind::kNothingBack: {
       run.how = "nothing before its end at " + clauses_.Time(fate.span.end.frame);

@@ -35,6 +35,8 @@ class MissingReasons {
   Blame OfLane(int lane, const Window& window, int depth);
   const grammar::Fate* NearestRun(int lane, const Window& window);
   double RunCloseness(const grammar::Fate& fate);
+  /// "to touching(hand, cup) ends", "without touching(hand, cup) begins"
+  std::string Awaited(int lane);
   std::string HowLate(const grammar::Fate& fate);
   /// `look_until`: what came later than that could not have helped.
   Blame OfRun(const grammar::Fate& fate, int depth,

@@ -117,7 +117,7 @@ MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Windo
   at.frame = Closest(node, at, window);
   Blame blame{.reasons = {}, .closeness = clauses_.Nearness(node, at, true)};
   bool followed = false;
-  for (const Clauses::Clause& clause : clauses_.Split(node, true)) {
+  for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
     Reason reason = clauses_.Told(clause, at);
     const grammar::Node& n = past_.program().nodes[clause.node];
     const bool follow = reason.mark == Mark::kFailed && !followed;
@@ -165,7 +165,7 @@ MissingReasons::Blame MissingReasons::OfMoment(int node, int lane, const Window&
     return OfClauses(node, {.lane = lane}, window, depth);
   }
   Blame best;
-  for (const Clauses::Clause& clause : clauses_.Split(node, true)) {
+  for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
     const grammar::Node& n = past_.program().nodes[clause.node];
     if (!clause.truth || (n.op != Op::kBegins && n.op != Op::kEnds)) continue;
     const grammar::Node& arg = past_.program().nodes[n.args[0]];
@@ -227,8 +227,7 @@ MissingReasons::Blame MissingReasons::OfFromTo(int lane, const Window& window, i
       reason.because.push_back(std::move(state));
     }
   } else {
-    reason.because = {Failed("to " + ClauseText(past_, lane, rule.second),
-                             "was at the same moment, and that is no interval")};
+    reason.because = {Failed(Awaited(lane), "was at the same moment, and that is no interval")};
   }
   return {{std::move(reason)}, 0.8};
 }

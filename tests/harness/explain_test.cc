@@ -190,6 +190,94 @@ TEST(ExplainMissing, WhatMustNotComeCame) {
             "without touching(hand, cup) begins: it came after 100 ms, at 0.1300 s");
 }
 
+// 55 ms are over five milliseconds before the frame in which the touch begins again.
+TEST(Explain, WhatCameTooLateIsNoReason) {
+  Stage stage(
+      "event left(h: Hand, c: Cup) from touching(h, c) ends without touching(h, c) begins within "
+      "55 ms");
+  stage.Touch(true);
+  stage.Show(3);
+  stage.Touch(false);
+  stage.Show(6);
+  stage.Touch(true);
+  stage.Show(3);
+  const WhyEvent why = Why(stage.Finish(), "left");
+  ASSERT_EQ(why.ended.size(), 1);
+  EXPECT_EQ(why.ended.front().what, "nothing came within 55 ms");
+  EXPECT_EQ(why.interval.end, 85);
+}
+
+TEST(ExplainMissing, TheEpisodeEndedBeforeAnAbsenceWasDecided) {
+  Stage stage(
+      "event left(h: Hand, c: Cup) from touching(h, c) ends without touching(h, c) begins within "
+      "500 ms");
+  stage.Touch(true);
+  stage.Show(3);
+  stage.Touch(false);
+  stage.Show(6);
+  EXPECT_EQ(
+      WhyNot(stage.Finish(), "left").because,
+      "without touching(hand, cup) begins: it is decided only 500 ms later, the episode ended "
+      "before");
+}
+
+struct Choice {
+  const char* rule;
+  const char* because;
+};
+
+// The hand touches the cup, which is 0.2 m high and does not move.
+TEST(ExplainMissing, AChoiceThatIsFulfilledIsNotBlamed) {
+  const Choice choices[] = {
+      {"while (touching(h, c) or speed(c) > 1 m/s) and height(c) > 1 m",
+       "height(c) > 1 m: is 200 mm"},
+      {"while touching(h, c) requires (displacement(c) > 50 cm or rise(c) < 2 cm) and height(c) > "
+       "1 m",
+       "requires height(c) > 1 m: is 200 mm"},
+      {"while touching(h, c) requires not (rise(c) < 2 cm and displacement(c) > 50 cm) and "
+       "height(c) > 1 m",
+       "requires height(c) > 1 m: is 200 mm"},
+      {"from touching(h, c) begins to rise(c) > 1 m begins during (speed(c) > 1 m/s or height(c) < "
+       "1 m) and touching(h, c) or drop",
+       "to rise(c) > 1 m: is 0 mm"},
+      {"until touching(h, c) ends since (speed(c) > 1 m/s or touching(h, c)) and height(c) > 1 m "
+       "at most 1 s back",
+       "since height(c) > 1 m: is 200 mm"}};
+  for (const Choice& choice : choices) {
+    Stage stage(std::string("event e(h: Hand, c: Cup) ") + choice.rule);
+    stage.CupUpAt(0.2);
+    stage.Show(2);
+    stage.Touch(true);
+    stage.Show(3);
+    stage.Touch(false);
+    stage.Show(2);
+    const WhyMissing why = WhyNot(stage.Finish(), "e");
+    std::string because = choice.because;
+    because.replace(because.find("(c)") + 1, 1, "cup");
+    EXPECT_TRUE(why.because.starts_with(because)) << choice.rule << "\n" << why.because;
+    for (const char* other : {"speed(cup) > 1 m/s", "displacement(cup) > 0.5 m"}) {
+      for (const char* word : {"", "requires ", "during ", "since "}) {
+        const Reason* reason = Find(why.reasons, word + std::string(other));
+        EXPECT_TRUE(reason == nullptr || reason->mark == Mark::kHeld) << choice.rule;
+      }
+    }
+  }
+}
+
+TEST(Explain, OfARequiredChoiceWhatFulfilsItIsTold) {
+  Stage stage(
+      "event e(h: Hand, c: Cup) while touching(h, c) requires displacement(c) > 50 cm or rise(c) < "
+      "2 cm");
+  stage.Show(2);
+  stage.Touch(true);
+  stage.Show(3);
+  stage.Touch(false);
+  stage.Show(2);
+  const WhyEvent why = Why(stage.Finish(), "e");
+  ASSERT_EQ(why.counted.size(), 1);
+  EXPECT_EQ(why.counted.front().what, "requires rise(cup) < 0.02 m");
+}
+
 TEST(ExplainMissing, Dropped) {
   Stage stage(
       "event pushed(h: Hand, c: Cup) from touching(h, c) begins to displacement(c) > 10 cm begins "

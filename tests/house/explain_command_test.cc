@@ -56,6 +56,16 @@ TEST(ExplainCommand, AnEventAtTheWrongMomentEndsWithExitCodeFourAndTheNearestOne
       << said.err;
 }
 
+TEST(ExplainCommand, WhyNotIsAskedOfTheSameGrammarAndSettings) {
+  const Said said = Prehend({"explain", "milk_carton_wrap", "--grammar", "original_2020", "--set",
+                             "entities.milk.mass_kg=0.9", "--event", "transporting@0.1s"});
+  EXPECT_EQ(said.exit_code, 4);
+  EXPECT_NE(said.err.find("why not: prehend explain milk_carton_wrap --grammar original_2020 --set "
+                          "entities.milk.mass_kg=0.9 --expected transporting@0.1s\n"),
+            std::string::npos)
+      << said.err;
+}
+
 TEST(ExplainCommand, BadQuestionsEndWithExitCodeTwo) {
   const std::vector<std::vector<std::string>> slips = {
       {"milk_carton_wrap", "--event", "reching@1s"},
