@@ -195,18 +195,26 @@ Reasons MissingReasons::Requirement(const Fate& fate, int depth) {
   return told;
 }
 
-// Where the clauses of the end came closest within the run.
+// Where the conditions that should have begun at the end came closest within the run.
 Reasons MissingReasons::EndThatNeverCame(const Fate& fate, FrameNumber look_until) {
   const Rule& rule = past_.RuleOf(fate.lane);
-  const grammar::Node& to = past_.program().nodes[rule.second];
-  if (to.op != grammar::Op::kBegins || rule.absence) return {};
+  if (rule.absence) return {};
   const FrameNumber last = std::min({fate.span.end.frame, past_.frames() - 1, look_until});
-  Moment at{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame};
-  at.frame = Closest(to.args[0], at, {fate.span.begin.frame, last});
-  Reasons reasons = clauses_.State(to.args[0], at, true);
-  for (Reason& reason : reasons) reason.what = "to " + reason.what;
-  std::erase_if(reasons, [](const Reason& reason) { return !reason.reading; });
-  return reasons;
+  const Moment end{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame};
+  Reasons told;
+  for (const Clauses::Clause& clause : clauses_.Split(rule.second, end, true)) {
+    const grammar::Node& moment = past_.program().nodes[clause.node];
+    if (moment.op != grammar::Op::kBegins || !clause.truth) continue;
+    Moment at = end;
+    at.frame = Closest(moment.args[0], at, {fate.span.begin.frame, last});
+    for (Reason& reason : clauses_.State(moment.args[0], at, true)) {
+      if (!reason.reading) continue;
+      reason.what = "to " + reason.what;
+      told.push_back(std::move(reason));
+    }
+  }
+  if (clauses_.IsChoice(rule.second, true)) std::ranges::stable_sort(told, {}, Missed);
+  return told;
 }
 
 MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth, FrameNumber look_until) {

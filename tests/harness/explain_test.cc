@@ -294,6 +294,23 @@ TEST(ExplainMissing, Dropped) {
   EXPECT_EQ(Find(why.reasons, "during touching(cup, hand)")->how, "ended at 0.1000 s");
 }
 
+TEST(ExplainMissing, OfAComposedEndEachBeginIsTold) {
+  for (const char* to : {"displacement(c) > 10 cm begins and trigger(h) < 0.1",
+                         "height(c) > 9 m begins or displacement(c) > 10 cm begins"}) {
+    Stage stage(std::string("event pushed(h: Hand, c: Cup) from touching(h, c) begins to ") + to +
+                " during touching(h, c) or drop");
+    stage.Show(2);
+    stage.Touch(true);
+    stage.Show(4);
+    stage.CupAt(0.05);
+    stage.Show(4);
+    stage.Touch(false);
+    stage.Show(4);
+    EXPECT_EQ(WhyNot(stage.Finish(), "pushed").because,
+              "to displacement(cup) > 0.1 m: is 50 mm, 50 mm below 100 mm, at 0.0600 s");
+  }
+}
+
 TEST(ExplainMissing, Unfinished) {
   Stage stage(
       "event pushed(h: Hand, c: Cup) from touching(h, c) begins to displacement(c) > 10 cm begins "
