@@ -47,18 +47,18 @@ class TakeOver {
         next_(static_cast<int>(old.accepted.size()) + 1),
         tolerance_ms_(MillisecondsOf(proposal.tolerance, recognised.ticks_per_second)) {}
 
-  void Pair(const Pairing& pairing, Golden& golden) const {
+  void Pair(const Pairing& pairing, Golden& golden) {
     const GoldenEvent* partner = pairing.expected ? &old_.events[pairing.golden_line] : nullptr;
     if (pairing.actual) {
       golden.events.push_back(LineOf(pairing, partner));
       Note(NoteOf(*pairing.actual), golden.events.back());
     } else if (partner) {
-      Append(golden.closing_comments, Farewell(*partner, old_.ticks_per_second));
+      gone_.push_back(partner);
     }
   }
 
   /// What only the oracle sees.
-  void TakeOverUnseen(Golden& golden) const {
+  void TakeOverUnseen(Golden& golden) {
     std::vector<const GoldenEvent*> kept;
     for (const OracleNote& note : proposal_.notes) {
       if (note.text != kOnlyOracle) continue;
@@ -74,8 +74,21 @@ class TakeOver {
       }
     }
     for (const GoldenEvent& line : old_.events) {
-      if (!line.IsExpected() && std::ranges::count(kept, &line) == 0)
-        Append(golden.closing_comments, Farewell(line, old_.ticks_per_second));
+      if (!line.IsExpected() && std::ranges::count(kept, &line) == 0) gone_.push_back(&line);
+    }
+  }
+
+  /// Comments of a line that is gone stay above what begins as it did; others go to the end.
+  void KeepComments(Golden& golden) const {
+    for (const GoldenEvent* gone : gone_) {
+      const auto heir = std::ranges::find_if(golden.events, [&](const GoldenEvent& line) {
+        return line.comments.empty() && same_ticks_ && BeginsAs(line.event, gone->event);
+      });
+      if (heir != golden.events.end()) {
+        heir->comments = gone->comments;
+      } else {
+        Append(golden.closing_comments, Farewell(*gone, old_.ticks_per_second));
+      }
     }
   }
 
@@ -108,10 +121,13 @@ class TakeOver {
     line.oracle_because = now.empty() ? "" : kReasonWanted;
   }
 
-  bool IsNear(const grammar::NamedEvent& a, const grammar::NamedEvent& b) const {
+  bool BeginsAs(const grammar::NamedEvent& a, const grammar::NamedEvent& b) const {
     return a.Label() == b.Label() &&
-           std::abs(a.interval.begin - b.interval.begin) <= proposal_.tolerance &&
-           std::abs(a.interval.end - b.interval.end) <= proposal_.tolerance;
+           std::abs(a.interval.begin - b.interval.begin) <= proposal_.tolerance;
+  }
+
+  bool IsNear(const grammar::NamedEvent& a, const grammar::NamedEvent& b) const {
+    return BeginsAs(a, b) && std::abs(a.interval.end - b.interval.end) <= proposal_.tolerance;
   }
 
   const Golden& old_;
@@ -119,6 +135,7 @@ class TakeOver {
   const bool same_ticks_;
   const int next_;  ///< acceptance
   const double tolerance_ms_;
+  std::vector<const GoldenEvent*> gone_;  ///< lines of the old golden without one in the new
 };
 
 }  // namespace
@@ -137,10 +154,11 @@ Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& 
   if (!proposal.derived.empty()) golden.derived = proposal.derived;
   if (proposal.acceptance) golden.accepted.push_back(*proposal.acceptance);
   const Golden before = old.value_or(Golden{.ticks_per_second = recognised.ticks_per_second});
-  const TakeOver take_over(before, recognised, proposal);
+  TakeOver take_over(before, recognised, proposal);
   for (const Pairing& pairing : Compare(before, recognised, proposal.tolerance).pairings)
     take_over.Pair(pairing, golden);
   take_over.TakeOverUnseen(golden);
+  take_over.KeepComments(golden);
   std::stable_sort(
       golden.events.begin(), golden.events.end(),
       [](const GoldenEvent& a, const GoldenEvent& b) { return ComesBefore(a.event, b.event); });

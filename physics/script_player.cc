@@ -23,6 +23,8 @@ constexpr double kMostSpring_m = 0.01;
 constexpr double kLoweringShare = 0.85;
 /// The open hand is covered by balls, which stick out by less than this.
 constexpr double kNotedTouch_m = 0.005;
+/// What is wider than the hand opens by less than this is as wide, as lengths are rounded in notes.
+constexpr double kNotedWidth_m = 0.0005;
 /// Way-points on the arc of a joint: between them the way is straight to a tenth of a millimetre.
 constexpr int kJointWaypoints = 40;
 
@@ -64,7 +66,7 @@ std::string NoteAbout(const ReachPlan& plan, const ReachStep& reach, const Grasp
   if (plan.beside_m > kAtPoint_m)
     add("no grip of " + reach.object + " in style " + style.name +
         " is at point_m: the nearest is " + Millimetres(plan.beside_m) + " beside it");
-  if (plan.too_wide_m > 0 && reach.offset_m.isZero())
+  if (plan.too_wide_m > kNotedWidth_m && reach.offset_m.isZero())
     add("style " + style.name + " opens " + Millimetres(style.opening_m) + ", and " + reach.object +
         " is " + Millimetres(style.opening_m + plan.too_wide_m) +
         " wide there: the hand will not close around it");

@@ -174,7 +174,14 @@ TEST_F(WithOracle, WhatOnlyItSeesHasALineThatExpectsNothing) {
   auto a_frame_later = slide_;
   a_frame_later.interval.begin += 2;
   EXPECT_EQ(Proposed(first, {{a_frame_later, kOnlyOracle}}), first);
+  first.events[2].comments = {"why it slides"};
+  auto longer = slide_;
+  longer.interval.end += 100;
+  const Golden lengthened = Proposed(first, {{longer, kOnlyOracle}});
+  EXPECT_EQ(lengthened.events[2].comments, first.events[2].comments);
+  EXPECT_EQ(lengthened.closing_comments, first.closing_comments);
   const Golden gone = Proposed(first, {});
+  EXPECT_EQ(gone.closing_comments.back(), "why it slides");
   EXPECT_EQ(gone.events.size(), 2u);
   EXPECT_EQ(Summary(Objections(first, gone)), "a note about the physical oracle is out of date");
 }

@@ -90,6 +90,9 @@ TEST(ScriptPlayerTest, NotesAThingThatIsTooWideForTheStyle) {
   EXPECT_EQ(NotesOf(scene, One(reach, 0.5)),
             Texts{"style wrap opens 85 mm, and object is 140 mm wide there: the hand will "
                   "not close around it"});
+  Scene as_wide = MakeScene({});
+  as_wide.bodies[1].shapes = {{Box{{0.0852, 0.20, 0.10}}, {}}};  // within a rounding of 85 mm
+  EXPECT_EQ(NotesOf(as_wide, One(reach, 0.5)), Texts{});
   reach.offset_m = {-0.1, 0, 0.1};  // to miss on purpose
   EXPECT_EQ(NotesOf(scene, One(reach, 0.5)), Texts{});
 }
