@@ -24,8 +24,9 @@ struct Proposal {
 };
 
 /// Lines that agree within their tolerance stay as they are. Of the others comments and tolerances
-/// stay with the event they belong to; comments above events that are gone stand at the end, below
-/// a line that says which event that was. What the oracle sees otherwise keeps the reason that
+/// stay with the event they belong to; comments above events that are gone stay above the
+/// event of the same name and roles that begins as they did, or stand at the end, below a line that
+/// says which event that was. What the oracle sees otherwise keeps the reason that
 /// people gave for it; what it did not before has kReasonWanted.
 Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
                      const Proposal& proposal);
