@@ -7,26 +7,38 @@
 namespace prehend::physics {
 namespace {
 
-btVector3 VelocityAt(const btCollisionObject& object, const btVector3& p_W) {
-  const btRigidBody* body = btRigidBody::upcast(&object);
-  return body ? body->getVelocityInLocalPoint(p_W - body->getWorldTransform().getOrigin())
-              : btVector3(0, 0, 0);  // a hand's link: hands do not bounce
+/// How one side of a contact moves. A hand's link stands still here: hands do not bounce.
+struct Motion {
+  explicit Motion(const btCollisionObject& object) {
+    const btRigidBody* const body = btRigidBody::upcast(&object);
+    if (!body) return;
+    centre_W = body->getWorldTransform().getOrigin();
+    v = body->getLinearVelocity();
+    w = body->getAngularVelocity();
+  }
+  btVector3 At(const btVector3& p_W) const { return v + w.cross(p_W - centre_W); }
+
+  btVector3 centre_W{0, 0, 0}, v{0, 0, 0}, w{0, 0, 0};
+};
+
+btScalar SpeedTogether(const Motion& a, const Motion& b, const btManifoldPoint& point) {
+  return (b.At(point.getPositionWorldOnB()) - a.At(point.getPositionWorldOnA()))
+      .dot(point.m_normalWorldOnB);
 }
 
 }  // namespace
 
 btScalar ApproachSpeed(const btPersistentManifold& manifold, const btManifoldPoint& point) {
-  return (VelocityAt(*manifold.getBody1(), point.getPositionWorldOnB()) -
-          VelocityAt(*manifold.getBody0(), point.getPositionWorldOnA()))
-      .dot(point.m_normalWorldOnB);
+  return SpeedTogether(Motion(*manifold.getBody0()), Motion(*manifold.getBody1()), point);
 }
 
 TimelyBounces::TimelyBounces(btPersistentManifold* const* manifolds, int count, btScalar dt_s,
                              btScalar slowest_m_per_s) {
   for (int m = 0; m < count; ++m) {
+    const Motion a(*manifolds[m]->getBody0()), b(*manifolds[m]->getBody1());
     for (int k = 0; k < manifolds[m]->getNumContacts(); ++k) {
       btManifoldPoint& point = manifolds[m]->getContactPoint(k);
-      const btScalar speed = ApproachSpeed(*manifolds[m], point);
+      const btScalar speed = SpeedTogether(a, b, point);
       if (speed < -slowest_m_per_s) point.m_appliedImpulse = 0;
       if (point.m_combinedRestitution <= 0 || point.getDistance() <= 0) continue;
       if (speed < slowest_m_per_s) continue;
