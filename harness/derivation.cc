@@ -17,7 +17,7 @@ namespace prehend::harness {
 
 Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
                       const RunResult& run) {
-  Judged judged{.truth = TrueTimeline(scenario, run.recording, run.ticks + 1),
+  Judged judged{.truth = TrueTimeline(scenario.scene, run.recording, run.ticks + 1),
                 .found = run.timeline};
   std::erase_if(judged.found.events, [](const auto& event) { return !OracleDefines(event.event); });
   // A grammar is not blamed for events that it does not speak of.
