@@ -9,7 +9,6 @@
 #include <map>
 #include <tuple>
 
-#include "harness/changed_relations.h"
 #include "harness/event_text.h"
 
 namespace prehend::harness {
