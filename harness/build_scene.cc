@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include "harness/abstract_fields.h"
+#include "harness/build_abstract.h"
 #include "physics/fill_vessel.h"
 #include "physics/geometry.h"
 #include "physics/random.h"

@@ -11,7 +11,7 @@
 
 #include "harness/build_styles.h"
 #include "harness/hand_fields.h"
-#include "harness/library_paths.h"
+#include "harness/project_paths.h"
 #include "harness/record.h"
 
 namespace prehend::harness {

@@ -11,7 +11,7 @@
 
 #include "harness/body_track.h"
 #include "harness/build_scene.h"
-#include "harness/farthest.h"
+#include "harness/limits.h"
 #include "harness/motion_track.h"
 #include "physics/skeleton.h"
 

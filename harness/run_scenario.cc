@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "harness/cast.h"
 #include "harness/outcome.h"
 #include "harness/sensing.h"
 
