@@ -22,7 +22,6 @@ using grammar::Diagnostics;
 using physics::HandModel;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180;
-constexpr const char* kHandEnding = ".hand.yaml";
 constexpr const char* kGraspsEnding = ".grasps.yaml";
 
 /// Turns an entry into a model and complains about names and counts that do not fit together.
