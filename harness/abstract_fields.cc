@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "harness/limits.h"
-#include "harness/record.h"
 #include "harness/scenario_formats.h"
+#include "harness/struct_format.h"
 
 namespace prehend::harness {
 namespace {
@@ -15,9 +15,9 @@ constexpr double kSmallestM = 0.001, kLargestM = 100;
 
 }  // namespace
 
-Format<RegionEntry> RegionFormat() {
+ValueFormat<RegionEntry> RegionFormat() {
   using R = RegionEntry;
-  return Record<R>("a region")
+  return StructFormat<R>("a region")
       .Optional("size_m", &R::size_m, Vector<3>(kSmallestM, kLargestM),
                 "Full edge lengths [x, y, z] of a box.")
       .Optional("radius_m", &R::radius_m, Number(kSmallestM, kLargestM), "Radius of a ball.")
@@ -25,24 +25,24 @@ Format<RegionEntry> RegionFormat() {
       .format();
 }
 
-Format<GazeTargetEntry> GazeTargetFormat() {
+ValueFormat<GazeTargetEntry> GazeTargetFormat() {
   using G = GazeTargetEntry;
-  return Record<G>("a gaze target")
+  return StructFormat<G>("a gaze target")
       .Optional("radius_m", &G::radius_m, Number(kSmallestM, 10),
                 "Radius of the ball that is looked at.")
       .format();
 }
 
-Format<CameraEntry> CameraFormat() {
+ValueFormat<CameraEntry> CameraFormat() {
   using C = CameraEntry;
-  return Record<C>("a camera")
+  return StructFormat<C>("a camera")
       .Required("toward_m", &C::toward_m, Vector<3>(-kFarthestM, kFarthestM),
                 "A point in the middle of its picture, in the world.")
       .Optional("view_deg", &C::view_deg, Number(5, 120), "How much it sees, from below to above.")
       .format();
 }
 
-Format<LightEntry> LightFormat() { return Record<LightEntry>("a light").format(); }
+ValueFormat<LightEntry> LightFormat() { return StructFormat<LightEntry>("a light").format(); }
 
 void CheckAbstract(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
   const Abstract abstract = AbstractOf(entity);

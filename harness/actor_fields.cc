@@ -5,14 +5,14 @@
 #include <algorithm>
 
 #include "harness/limits.h"
-#include "harness/record.h"
 #include "harness/scenario_formats.h"
+#include "harness/struct_format.h"
 
 namespace prehend::harness {
 namespace {
 
-Format<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)[4]) {
-  return Record<PidOverride>(noun)
+ValueFormat<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)[4]) {
+  return StructFormat<PidOverride>(noun)
       .Optional(keys[0], &PidOverride::proportional, Number(0, 1e6), "Force or torque per error.")
       .Optional(keys[1], &PidOverride::derivative, Number(0, 1e5),
                 "Force or torque per speed of the error.")
@@ -22,8 +22,8 @@ Format<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)
       .format();
 }
 
-Format<GainsOverride> GainsFormat() {
-  return Record<GainsOverride>("the gains")
+ValueFormat<GainsOverride> GainsFormat() {
+  return StructFormat<GainsOverride>("the gains")
       .Optional("translation", &GainsOverride::translation,
                 PidFormat("the translation gains", {"proportional_n_per_m", "derivative_n_s_per_m",
                                                     "integral_n_per_m_s", "limit_n"}),
@@ -47,9 +47,9 @@ void CheckLosses(const YamlNode& node, const physics::Tracking& t, Complaints& c
                              t.dropped_share, least_looks / t.tracker_hz));
 }
 
-Format<physics::Tracking> TrackingFormat() {
+ValueFormat<physics::Tracking> TrackingFormat() {
   using T = physics::Tracking;
-  return Record<T>("the tracking")
+  return StructFormat<T>("the tracking")
       .Optional("tracker_hz", &T::tracker_hz, Integer<int>(1, 4800),
                 "Looks of the tracker per second, at most rate_hz.")
       .Optional("latency_s", &T::latency_s, Number(0, 2), "From a look to its arrival.")
@@ -68,11 +68,11 @@ Format<physics::Tracking> TrackingFormat() {
 }
 
 /// What hands and persons have in common.
-Format<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
+ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
 
-Format<HandActor> HandActorFormat() {
+ValueFormat<HandActor> HandActorFormat() {
   using A = HandActor;
-  return Record<A>("actor")
+  return StructFormat<A>("actor")
       .NamedByKey()
       .Required("hand", &A::hand,
                 Word("[A-Za-z0-9_./-]+", "a hand like 'human_right', or a .hand.yaml file", 255),
@@ -95,9 +95,9 @@ Format<HandActor> HandActorFormat() {
       .format();
 }
 
-Format<PersonActor> PersonActorFormat() {
+ValueFormat<PersonActor> PersonActorFormat() {
   using P = PersonActor;
-  return Record<P>("actor")
+  return StructFormat<P>("actor")
       .NamedByKey()
       .Required("person", &P::person,
                 Choice<PersonKind>({{"head", PersonKind::kHead}, {"body", PersonKind::kBody}}),
@@ -115,11 +115,11 @@ Format<PersonActor> PersonActorFormat() {
 
 }  // namespace
 
-Format<physics::Eyes> EyesFormat() {
+ValueFormat<physics::Eyes> EyesFormat() {
   return Choice<physics::Eyes>({{"lead", physics::Eyes::kLead}, {"ahead", physics::Eyes::kAhead}});
 }
 
-Format<ActorEntry> ActorFormat() {
+ValueFormat<ActorEntry> ActorFormat() {
   return ByKey<ActorEntry>("an actor",
                            {{"hand", AsAlternative<ActorEntry>(HandActorFormat())},
                             {"person", AsAlternative<ActorEntry>(PersonActorFormat())}});

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "harness/complaints.h"
-#include "harness/format.h"
 #include "harness/trials.h"
+#include "harness/value_format.h"
 #include "physics/scene.h"
 #include "physics/script.h"
 

@@ -6,9 +6,9 @@
 
 #include "harness/classes.h"
 #include "harness/limits.h"
-#include "harness/record.h"
 #include "harness/scenario_fields.h"
 #include "harness/scenario_formats.h"
+#include "harness/struct_format.h"
 
 namespace prehend::harness {
 namespace {
@@ -28,12 +28,12 @@ void CheckRange(const YamlNode&, const JointEntry& joint, Complaints& complaints
                              range[0], range[1]));
 }
 
-Record<JointEntry> JointRecord(const std::string& noun) {
+StructFormat<JointEntry> JointRecord(const std::string& noun) {
   using J = JointEntry;
-  return Record<J>(noun).Required("to", &J::to, Identifier(), "The entity that it hangs on.");
+  return StructFormat<J>(noun).Required("to", &J::to, Identifier(), "The entity that it hangs on.");
 }
 
-Format<Eigen::Vector3d> Axis() { return Vector<3>(-1, 1); }
+ValueFormat<Eigen::Vector3d> Axis() { return Vector<3>(-1, 1); }
 
 void CheckAxis(const YamlNode& node, const JointEntry& joint, Complaints& complaints) {
   if (joint.axis.norm() > 1e-6) return;
@@ -51,7 +51,7 @@ std::function<void(const YamlNode&, const JointEntry&, Complaints&)> SpringPulls
   };
 }
 
-Format<JointEntry> SliderFormat() {
+ValueFormat<JointEntry> SliderFormat() {
   using J = JointEntry;
   return JointRecord("a slider")
       .Required("axis", &J::axis, Axis(),
@@ -72,7 +72,7 @@ Format<JointEntry> SliderFormat() {
       .format();
 }
 
-Format<JointEntry> HingeFormat() {
+ValueFormat<JointEntry> HingeFormat() {
   using J = JointEntry;
   return JointRecord("a hinge")
       .Required("at_m", &J::at_m, Vector<3>(-kFarthestM, kFarthestM),
@@ -95,7 +95,7 @@ Format<JointEntry> HingeFormat() {
       .format();
 }
 
-Format<JointEntry> BallJointFormat() {
+ValueFormat<JointEntry> BallJointFormat() {
   return JointRecord("a ball joint")
       .Required("at_m", &JointEntry::at_m, Vector<3>(-kFarthestM, kFarthestM),
                 "The point about which it turns any way, in the world, as placed.")
@@ -177,9 +177,9 @@ void CheckEntity(const YamlNode& node, const EntityEntry& entity, Complaints& co
 
 }  // namespace
 
-Format<EntityEntry> EntityFormat() {
+ValueFormat<EntityEntry> EntityFormat() {
   using E = EntityEntry;
-  return Record<E>("entity")
+  return StructFormat<E>("entity")
       .NamedByKey()
       .Optional("class", &E::class_name,
                 Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'"),

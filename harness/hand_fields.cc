@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/record.h"
+#include "harness/struct_format.h"
 
 namespace prehend::harness {
 namespace {
@@ -18,48 +18,46 @@ using physics::GraspApproach;
 using physics::JointDriver;
 using physics::PidGains;
 
-Format<double> PartLength() { return Number(0.001, 0.5); }
-Format<double> PartMass() { return Number(0.001, 10); }
-Format<Vector3d> InHand() { return Vector<3>(-1, 1); }
+ValueFormat<double> PartLength() { return Number(0.001, 0.5); }
+ValueFormat<double> PartMass() { return Number(0.001, 10); }
+ValueFormat<Vector3d> InHand() { return Vector<3>(-1, 1); }
 
 /// A direction of any length but 0; what is read has length 1.
-Format<Vector3d> Direction() {
+ValueFormat<Vector3d> Direction() {
   const auto vector = Vector<3>(-1, 1);
-  return {.schema = vector.schema,
-          .read =
-              [vector](const YamlNode& node, Complaints& complaints, Vector3d& value) {
-                if (!vector.read(node, complaints, value)) return false;
-                if (value.norm() < 1e-6)
-                  return ComplainWanted(node, complaints, "a direction other than [0, 0, 0]");
-                value.normalize();
-                return true;
-              },
-          .show = vector.show};
+  return ValueFormat<Vector3d>(
+             vector.schema(),
+             [vector](const YamlNode& node, Complaints& complaints, Vector3d& value) {
+               if (!vector.Read(node, complaints, value)) return false;
+               if (value.norm() < 1e-6)
+                 return ComplainWanted(node, complaints, "a direction other than [0, 0, 0]");
+               value.normalize();
+               return true;
+             })
+      .ShownAs(vector);
 }
 
-Format<PerDigit> PerDigitFormat(double lowest, double highest) {
+ValueFormat<PerDigit> PerDigitFormat(double lowest, double highest) {
   return MapOf(Identifier(), WithPlace(ListOf(WithPlace(Number(lowest, highest)), 1, 8)), 1, 16);
 }
 
 /// Names, each of them once.
-Format<std::vector<std::string>> DifferentNames(std::size_t most) {
+ValueFormat<std::vector<std::string>> DifferentNames(std::size_t most) {
   const auto list = ListOf(Identifier(), 1, most);
-  return {
-      .schema = list.schema,
-      .read =
-          [list](const YamlNode& node, Complaints& complaints, std::vector<std::string>& names) {
-            if (!list.read(node, complaints, names)) return false;
-            bool good = true;
-            for (std::size_t i = 0; i < names.size(); ++i) {
-              const auto here = names.begin() + static_cast<std::ptrdiff_t>(i);
-              if (std::find(names.begin(), here, *here) == here) continue;
-              complaints.Add(node.children[i].where,
-                             fmt::format("{}: '{}' is given twice", node.key, *here));
-              good = false;
-            }
-            return good;
-          },
-      .show = list.show};
+  return ValueFormat<std::vector<std::string>>(
+      list.schema(),
+      [list](const YamlNode& node, Complaints& complaints, std::vector<std::string>& names) {
+        if (!list.Read(node, complaints, names)) return false;
+        bool good = true;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+          const auto here = names.begin() + static_cast<std::ptrdiff_t>(i);
+          if (std::find(names.begin(), here, *here) == here) continue;
+          complaints.Add(node.children[i].where,
+                         fmt::format("{}: '{}' is given twice", node.key, *here));
+          good = false;
+        }
+        return good;
+      });
 }
 
 constexpr double kDegPerRad = 180 / std::numbers::pi;
@@ -83,9 +81,9 @@ void CheckAcross(const YamlNode& node, const char* key, const Vector3d& directio
                  hint);
 }
 
-Format<PalmEntry> PalmFormat() {
+ValueFormat<PalmEntry> PalmFormat() {
   using P = PalmEntry;
-  return Record<P>("the palm")
+  return StructFormat<P>("the palm")
       .Optional("size_m", &P::size_m, Vector<3>(0.005, 0.5),
                 "Full edge lengths of its box [x, y, z].")
       .Optional("mass_kg", &P::mass_kg, PartMass(), "Mass.")
@@ -96,8 +94,8 @@ Format<PalmEntry> PalmFormat() {
       .format();
 }
 
-Format<PidGains> TranslationFormat() {
-  return Record<PidGains>("the translation gains")
+ValueFormat<PidGains> TranslationFormat() {
+  return StructFormat<PidGains>("the translation gains")
       .Required("proportional_n_per_m", &PidGains::proportional, Number(0, 1e6), "Force per error.")
       .Required("derivative_n_s_per_m", &PidGains::derivative, Number(0, 1e5),
                 "Force per speed of the error.")
@@ -109,8 +107,8 @@ Format<PidGains> TranslationFormat() {
       .format();
 }
 
-Format<PidGains> RotationFormat() {
-  return Record<PidGains>("the rotation gains")
+ValueFormat<PidGains> RotationFormat() {
+  return StructFormat<PidGains>("the rotation gains")
       .Required("proportional_nm_per_rad", &PidGains::proportional, Number(0, 1e6),
                 "Torque per error.")
       .Required("derivative_nm_s_per_rad", &PidGains::derivative, Number(0, 1e5),
@@ -123,9 +121,9 @@ Format<PidGains> RotationFormat() {
       .format();
 }
 
-Format<JointDriver> DriverFormat() {
+ValueFormat<JointDriver> DriverFormat() {
   using D = JointDriver;
-  return Record<D>("the joint driver")
+  return StructFormat<D>("the joint driver")
       .Optional("stiffness", &D::stiffness, Number(0, 1),
                 "Share of the error that it tries to remove per tick.")
       .Optional("damping", &D::damping, Number(0, 1), "How firmly it holds the speed it wants.")
@@ -144,8 +142,8 @@ Member Link::*Of(Member LinkEntry::*member) {
 
 /// `record` with what a phalanx and a jaw have in common; the units are those of its joint.
 template <class Link>
-Record<Link> LinkRecord(Record<Link> record, const char* strength, double strongest,
-                        const char* range, double farthest) {
+StructFormat<Link> LinkRecord(StructFormat<Link> record, const char* strength, double strongest,
+                              const char* range, double farthest) {
   return record
       .Required("length_m", Of<Link>(&LinkEntry::length_m), PartLength(),
                 "From its joint to the next one.")
@@ -163,17 +161,17 @@ Record<Link> LinkRecord(Record<Link> record, const char* strength, double strong
       });
 }
 
-Format<PhalanxEntry> PhalanxFormat() {
+ValueFormat<PhalanxEntry> PhalanxFormat() {
   using P = PhalanxEntry;
-  Record<P> record("a phalanx");
+  StructFormat<P> record("a phalanx");
   record.Required("name", &P::name, Identifier(), "Its name after the digit's: index_proximal.")
       .Optional("joint_axis", &P::joint_axis, Direction(),
                 "Of the joint at its base, in H; positive angles close.");
   return LinkRecord(record, "strength_nm", 100, "range_deg", 180).format();
 }
 
-Format<JawEntry> JawFormat() {
-  Record<JawEntry> record("a jaw");
+ValueFormat<JawEntry> JawFormat() {
+  StructFormat<JawEntry> record("a jaw");
   record.Required("slides", &JawEntry::slides, Direction(),
                   "In H: the way it slides; positive values close.");
   return LinkRecord(record, "strength_n", 1000, "range_m", 0.5).format();
@@ -193,9 +191,9 @@ void CheckLastJoint(const YamlNode& node, const DigitEntry& digit, Complaints& c
                  axis ? "" : "without joint_axis it is [0, 1, 0]");
 }
 
-Format<DigitEntry> DigitFormat() {
+ValueFormat<DigitEntry> DigitFormat() {
   using D = DigitEntry;
-  return Record<D>("digit")
+  return StructFormat<D>("digit")
       .NamedByKey()
       .Required("sensor_set", &D::sensor_set, Identifier(),
                 "The sensor set that feels its contacts.")
@@ -210,9 +208,9 @@ Format<DigitEntry> DigitFormat() {
       .format();
 }
 
-Format<GripEntry> GripFormat() {
+ValueFormat<GripEntry> GripFormat() {
   using G = GripEntry;
-  return Record<G>("the grip")
+  return StructFormat<G>("the grip")
       .Required("axis", &G::axis, Direction(),
                 "In H: from the stiff side (the post) to the force-limited side.")
       .Required("post_m", &G::post_m, InHand(),
@@ -222,9 +220,9 @@ Format<GripEntry> GripFormat() {
       .format();
 }
 
-Record<GraspApproach> ApproachRecord(const std::string& noun) {
+StructFormat<GraspApproach> ApproachRecord(const std::string& noun) {
   using A = GraspApproach;
-  return Record<A>(noun)
+  return StructFormat<A>(noun)
       .Required("toward", &A::toward, Direction(),
                 "In H: the direction of the last part of the motion.")
       .Required("palm_gap_m", &A::palm_gap_m, Number(-0.5, 0.5),
@@ -249,9 +247,9 @@ void CheckApproaches(const YamlNode& node, const StyleEntry& style, Complaints& 
               "the hand arrives level, along toward, with up towards the sky");
 }
 
-Format<StyleEntry> StyleFormat() {
+ValueFormat<StyleEntry> StyleFormat() {
   using S = StyleEntry;
-  return Record<S>("style")
+  return StructFormat<S>("style")
       .NamedByKey()
       .Required("grip", &S::grip, GripFormat(), "Where the object is held.")
       .Optional("above", &S::above, ApproachRecord("the approach from above").format(),
@@ -278,12 +276,12 @@ Format<StyleEntry> StyleFormat() {
       .format();
 }
 
-Format<std::vector<Named<StyleEntry>>> StylesFormat() {
+ValueFormat<std::vector<Named<StyleEntry>>> StylesFormat() {
   return MapOf(Identifier(), StyleFormat(), 1, 64);
 }
 
-Format<GainsEntry> GainsFormat() {
-  return Record<GainsEntry>("the gains")
+ValueFormat<GainsEntry> GainsFormat() {
+  return StructFormat<GainsEntry>("the gains")
       .Required("translation", &GainsEntry::translation, TranslationFormat(),
                 "How the palm follows a position.")
       .Required("rotation", &GainsEntry::rotation, RotationFormat(),
@@ -291,9 +289,9 @@ Format<GainsEntry> GainsFormat() {
       .format();
 }
 
-Format<HandEntry> BuildHandFormat() {
+ValueFormat<HandEntry> BuildHandFormat() {
   using H = HandEntry;
-  return Record<H>("the hand")
+  return StructFormat<H>("the hand")
       .Required("hand", &H::name, Identifier(), "Its name: that of the file without '.hand.yaml'.")
       .Required("sensor_sets", &H::sensor_sets, DifferentNames(16), "Groups of contact sensors.")
       .Optional("ahead", &H::ahead, Direction(), "In H: where the region of interest lies.")
@@ -317,16 +315,16 @@ Format<HandEntry> BuildHandFormat() {
       .format();
 }
 
-Format<GraspsEntry> BuildGraspsFormat() {
-  return Record<GraspsEntry>("the grasps")
+ValueFormat<GraspsEntry> BuildGraspsFormat() {
+  return StructFormat<GraspsEntry>("the grasps")
       .Required("grasps", &GraspsEntry::name, Identifier(),
                 "Their name: that of the file without '.grasps.yaml'.")
       .Required("styles", &GraspsEntry::styles, StylesFormat(), "Grasps, by name.")
       .format();
 }
 
-Format<MirrorEntry> BuildMirrorFormat() {
-  return Record<MirrorEntry>("the hand")
+ValueFormat<MirrorEntry> BuildMirrorFormat() {
+  return StructFormat<MirrorEntry>("the hand")
       .Required("hand", &MirrorEntry::name, Identifier(),
                 "Its name: that of the file without '.hand.yaml'.")
       .Required("mirror_of", &MirrorEntry::mirror_of, Identifier(),
@@ -336,18 +334,18 @@ Format<MirrorEntry> BuildMirrorFormat() {
 
 }  // namespace
 
-const Format<HandEntry>& HandFormat() {
-  static const Format<HandEntry> format = BuildHandFormat();
+const ValueFormat<HandEntry>& HandFormat() {
+  static const ValueFormat<HandEntry> format = BuildHandFormat();
   return format;
 }
 
-const Format<GraspsEntry>& GraspsFormat() {
-  static const Format<GraspsEntry> format = BuildGraspsFormat();
+const ValueFormat<GraspsEntry>& GraspsFormat() {
+  static const ValueFormat<GraspsEntry> format = BuildGraspsFormat();
   return format;
 }
 
-const Format<MirrorEntry>& MirrorFormat() {
-  static const Format<MirrorEntry> format = BuildMirrorFormat();
+const ValueFormat<MirrorEntry>& MirrorFormat() {
+  static const ValueFormat<MirrorEntry> format = BuildMirrorFormat();
   return format;
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/format.h"
+#include "harness/value_format.h"
 #include "physics/hand_model.h"
 
 namespace prehend::harness {
@@ -96,8 +96,8 @@ struct MirrorEntry {
 };
 
 // Built once, since that takes longer than reading a hand.
-const Format<HandEntry>& HandFormat();
-const Format<MirrorEntry>& MirrorFormat();
-const Format<GraspsEntry>& GraspsFormat();
+const ValueFormat<HandEntry>& HandFormat();
+const ValueFormat<MirrorEntry>& MirrorFormat();
+const ValueFormat<GraspsEntry>& GraspsFormat();
 
 }  // namespace prehend::harness

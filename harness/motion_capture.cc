@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "harness/motion_track.h"
-#include "harness/record.h"
+#include "harness/struct_format.h"
 
 namespace prehend::harness {
 namespace {
@@ -27,17 +27,17 @@ struct CapturedPose {
   Located<double> timestamp;
 };
 
-Format<XyzEntry> XyzFormat(double most) {
-  return Record<XyzEntry>("a vector")
+ValueFormat<XyzEntry> XyzFormat(double most) {
+  return StructFormat<XyzEntry>("a vector")
       .Required("x", &XyzEntry::x, Number(-most, most), "")
       .Required("y", &XyzEntry::y, Number(-most, most), "")
       .Required("z", &XyzEntry::z, Number(-most, most), "")
       .format();
 }
 
-Format<std::vector<CapturedPose>> PosesFormat() {
+ValueFormat<std::vector<CapturedPose>> PosesFormat() {
   using P = CapturedPose;
-  return ListOf(Record<P>("a pose")
+  return ListOf(StructFormat<P>("a pose")
                     .Required("position", &P::position, XyzFormat(kFarthestTrackM), "")
                     .Required("rotation", &P::rotation, XyzFormat(1e4), "")
                     .Required("timestamp", &P::timestamp, Number(-1e15, 1e15), "")
@@ -86,7 +86,7 @@ class CaptureReader {
       return {};
     }
     std::vector<CapturedPose> poses;
-    if (!PosesFormat().read(*written, complaints_, poses)) return {};
+    if (!PosesFormat().Read(*written, complaints_, poses)) return {};
     MotionTrack track{.samples = {},
                       .file = document_.sources.front().name,
                       .text = document_.sources.front().text};
@@ -144,12 +144,12 @@ class CaptureReader {
       return std::nullopt;
     }
     ButtonEvent read{.name = name->text};
-    bool good = Integer<int>(0, kMostButtons).read(*id, complaints_, read.id);
-    good &= Number(-1e15, 1e15).read(*at, complaints_, read.at_ms);
+    bool good = Integer<int>(0, kMostButtons).Read(*id, complaints_, read.id);
+    good &= Number(-1e15, 1e15).Read(*at, complaints_, read.at_ms);
     // Many recordings have lost their values: then there is none, or an empty one.
     const bool has_value =
         good && read.id == device_.button && value && value->kind == YamlNode::Kind::kScalar;
-    if (has_value) good &= Number(0, 1).read(*value, complaints_, read.value.emplace());
+    if (has_value) good &= Number(0, 1).Read(*value, complaints_, read.value.emplace());
     return good ? std::optional(std::move(read)) : std::nullopt;
   }
 

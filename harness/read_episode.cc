@@ -13,7 +13,7 @@
 
 #include "harness/classes.h"
 #include "harness/episode_file.h"
-#include "harness/record.h"
+#include "harness/struct_format.h"
 #include "harness/text_file.h"
 
 namespace prehend::harness {
@@ -84,15 +84,19 @@ struct EndEntry {
 };
 using LineEntry = std::variant<FrameEntry, EndEntry>;
 
-Format<std::string> Name() { return Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'"); }
-Format<std::string> ClassName() { return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"); }
-Format<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
-Format<Eigen::Vector3d> Velocity() { return Vector<3>(-kFastest, kFastest); }
+ValueFormat<std::string> Name() {
+  return Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'");
+}
+ValueFormat<std::string> ClassName() {
+  return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'");
+}
+ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
+ValueFormat<Eigen::Vector3d> Velocity() { return Vector<3>(-kFastest, kFastest); }
 
-Format<HeaderEntry> HeaderFormat() {
+ValueFormat<HeaderEntry> HeaderFormat() {
   using M = MemberEntry;
-  const Format<M> member =
-      Record<M>("entity")
+  const ValueFormat<M> member =
+      StructFormat<M>("entity")
           .NamedByKey()
           .Optional("class", &M::class_name, ClassName(), "")
           .Optional("fixed", &M::fixed, Flag(), "")
@@ -112,7 +116,7 @@ Format<HeaderEntry> HeaderFormat() {
           .Optional("sensor_sets", &M::sensor_sets, ListOf(Name(), 1, kMaxSets), "")
           .format();
   using H = HeaderEntry;
-  return Record<H>("the first line")
+  return StructFormat<H>("the first line")
       .Required("recording", &H::version, Integer<int>(kEpisodeVersion, kEpisodeVersion), "")
       .Required("episode", &H::episode, Name(), "")
       .Optional("grammar", &H::grammar, Name(), "")
@@ -122,22 +126,23 @@ Format<HeaderEntry> HeaderFormat() {
       .format();
 }
 
-Format<LineEntry> LineFormat() {
+ValueFormat<LineEntry> LineFormat() {
   using L = LookEntry;
-  const Format<L> look = Record<L>("look")
-                             .NamedByKey()
-                             .Required("at_m", &L::at_m, Position(), "")
-                             .Optional("quat_wxyz", &L::quat_wxyz, UnitQuaternion(), "")
-                             .Optional("v_m_per_s", &L::v_m_per_s, Velocity(), "")
-                             .Optional("w_rad_per_s", &L::w_rad_per_s, Velocity(), "")
-                             .Optional("asleep", &L::asleep, Flag(), "")
-                             .Optional("joint_position", &L::joint_position, Number(-1e4, 1e4), "")
-                             .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
-                             .Optional("gazes_at", &L::gazes_at, Name(), "")
-                             .format();
+  const ValueFormat<L> look =
+      StructFormat<L>("look")
+          .NamedByKey()
+          .Required("at_m", &L::at_m, Position(), "")
+          .Optional("quat_wxyz", &L::quat_wxyz, UnitQuaternion(), "")
+          .Optional("v_m_per_s", &L::v_m_per_s, Velocity(), "")
+          .Optional("w_rad_per_s", &L::w_rad_per_s, Velocity(), "")
+          .Optional("asleep", &L::asleep, Flag(), "")
+          .Optional("joint_position", &L::joint_position, Number(-1e4, 1e4), "")
+          .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
+          .Optional("gazes_at", &L::gazes_at, Name(), "")
+          .format();
   using H = HandEntry;
-  const Format<H> hand =
-      Record<H>("hand")
+  const ValueFormat<H> hand =
+      StructFormat<H>("hand")
           .NamedByKey()
           .Optional("trigger", &H::trigger, Number(0, 1), "")
           .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
@@ -146,8 +151,8 @@ Format<LineEntry> LineFormat() {
           .Optional("style", &H::style, Name(), "")
           .format();
   using T = TouchEntry;
-  const Format<T> touch =
-      Record<T>("a touch")
+  const ValueFormat<T> touch =
+      StructFormat<T>("a touch")
           .Required("a", &T::a, Name(), "")
           .Required("b", &T::b, Name(), "")
           .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
@@ -161,14 +166,14 @@ Format<LineEntry> LineFormat() {
   return ByKey<LineEntry>(
       "a line",
       {{"tick", AsAlternative<LineEntry>(
-                    Record<F>("a frame")
+                    StructFormat<F>("a frame")
                         .Required("tick", &F::tick, tick, "")
                         .Optional("looks", &F::looks, MapOf(Name(), look, 0, kMaxMembers), "")
                         .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
                         .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
                         .format())},
        {"end_tick",
-        AsAlternative<LineEntry>(Record<EndEntry>("the last line")
+        AsAlternative<LineEntry>(StructFormat<EndEntry>("the last line")
                                      .Required("end_tick", &EndEntry::end_tick, tick, "")
                                      .format())}});
 }
@@ -189,12 +194,12 @@ class EpisodeReader {
     Complaints complaints(*document.value);
     if (!header_) {
       HeaderEntry header;
-      if (HeaderFormat().read(document.value->root, complaints, header))
+      if (HeaderFormat().Read(document.value->root, complaints, header))
         TakeHeader(header, complaints);
       header_ = true;
     } else {
       LineEntry line;
-      if (line_format_.read(document.value->root, complaints, line)) {
+      if (line_format_.Read(document.value->root, complaints, line)) {
         std::visit([&](const auto& entry) { Take(entry, complaints); }, line);
       }
     }
@@ -422,7 +427,7 @@ class EpisodeReader {
   }
 
   std::string file_;
-  Format<LineEntry> line_format_;
+  ValueFormat<LineEntry> line_format_;
   int line_ = 0;
   bool header_ = false, ended_ = false;
   std::vector<std::string> names_;

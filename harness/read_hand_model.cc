@@ -12,7 +12,7 @@
 #include "harness/build_styles.h"
 #include "harness/hand_fields.h"
 #include "harness/project_paths.h"
-#include "harness/record.h"
+#include "harness/struct_format.h"
 
 namespace prehend::harness {
 namespace {
@@ -164,7 +164,7 @@ Diagnostics HandReader::AddGrasps(const std::string& path, const HandEntry& hand
   if (!document.value) return std::move(document.diagnostics);
   Complaints complaints(*document.value);
   GraspsEntry entry;
-  if (GraspsFormat().read(document.value->root, complaints, entry)) {
+  if (GraspsFormat().Read(document.value->root, complaints, entry)) {
     CheckName(path, kGraspsEnding, "grasps", entry.name, complaints);
     AddStyles(hand.digits, entry.styles, same_name, complaints, model.styles);
   }
@@ -174,7 +174,7 @@ Diagnostics HandReader::AddGrasps(const std::string& path, const HandEntry& hand
 ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDocument& document) {
   Complaints complaints(document);
   HandEntry entry;
-  if (!HandFormat().read(document.root, complaints, entry))
+  if (!HandFormat().Read(document.root, complaints, entry))
     return {std::nullopt, complaints.Sorted()};
   CheckName(path, kHandEnding, "hand", entry.name, complaints);
   HandModel model = HandBuilder(entry, complaints).Build();
@@ -202,7 +202,7 @@ ReadResult<HandModel> HandReader::ReadMirror(const std::string& path,
                                              const YamlDocument& document) {
   Complaints complaints(document);
   MirrorEntry entry;
-  if (!MirrorFormat().read(document.root, complaints, entry))
+  if (!MirrorFormat().Read(document.root, complaints, entry))
     return {std::nullopt, complaints.Sorted()};
   CheckName(path, kHandEnding, "hand", entry.name, complaints);
   if (entry.mirror_of.value == entry.name.value)

@@ -123,7 +123,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
                              const ScenarioLibrary& library) {
   Complaints complaints(document);
   ScenarioEntry entry;
-  const bool well_formed = ScenarioFormat().read(document.root, complaints, entry);
+  const bool well_formed = ScenarioFormat().Read(document.root, complaints, entry);
   SortActors(entry);
   CheckNames(file, entry, library, complaints);
   Diagnostics in_other_files;
@@ -193,7 +193,7 @@ ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocu
                                     const ScenarioLibrary& library) {
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
   for (const std::string& assignment : overrides) {
-    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema, *document.value);
+    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema(), *document.value);
         !bad.empty())
       return {std::nullopt, std::move(bad)};
   }

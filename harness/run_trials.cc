@@ -33,7 +33,7 @@ ReadResult<Nominal> ReadNominal(const RunRequest& request, const std::string& ro
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
   for (const std::string& setting : request.settings) {
     if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
-      (void)ApplyOverride(setting, ScenarioFormat().schema,
+      (void)ApplyOverride(setting, ScenarioFormat().schema(),
                           *document.value);  // PrepareRun() has accepted it
   }
   return {Nominal{std::move(*prepared.value), std::move(*document.value)}, {}};

@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "harness/format.h"
 #include "harness/scenario.h"
+#include "harness/value_format.h"
 #include "physics/compounds.h"
 #include "physics/scene.h"
 #include "physics/script.h"

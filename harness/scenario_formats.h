@@ -8,46 +8,46 @@
 #include <vector>
 
 #include "harness/complaints.h"
-#include "harness/format.h"
 #include "harness/scenario_entries.h"
 #include "harness/trials.h"
+#include "harness/value_format.h"
 
 namespace prehend::harness {
 
 // entity_fields.cc: shape, material, and what it hangs on.
-Format<EntityEntry> EntityFormat();
+ValueFormat<EntityEntry> EntityFormat();
 
 // shape_fields.cc
-Format<physics::Box> BoxFormat();
-Format<physics::Sphere> SphereFormat();
-Format<physics::Cylinder> CylinderFormat();
-Format<physics::Capsule> CapsuleFormat();
-Format<physics::Tray> TrayFormat();
-Format<physics::Mug> MugFormat();
-Format<physics::Bowl> BowlFormat();
-Format<physics::Shelf> ShelfFormat();
-Format<physics::Hull> HullFormat();
-Format<GrainsEntry> GrainsFormat();
-Format<PartEntry> PartFormat();
+ValueFormat<physics::Box> BoxFormat();
+ValueFormat<physics::Sphere> SphereFormat();
+ValueFormat<physics::Cylinder> CylinderFormat();
+ValueFormat<physics::Capsule> CapsuleFormat();
+ValueFormat<physics::Tray> TrayFormat();
+ValueFormat<physics::Mug> MugFormat();
+ValueFormat<physics::Bowl> BowlFormat();
+ValueFormat<physics::Shelf> ShelfFormat();
+ValueFormat<physics::Hull> HullFormat();
+ValueFormat<GrainsEntry> GrainsFormat();
+ValueFormat<PartEntry> PartFormat();
 
 // abstract_fields.cc: what has a place but no matter.
-Format<RegionEntry> RegionFormat();
-Format<GazeTargetEntry> GazeTargetFormat();
-Format<CameraEntry> CameraFormat();
-Format<LightEntry> LightFormat();
+ValueFormat<RegionEntry> RegionFormat();
+ValueFormat<GazeTargetEntry> GazeTargetFormat();
+ValueFormat<CameraEntry> CameraFormat();
+ValueFormat<LightEntry> LightFormat();
 
 /// Complains about what only matter has: a mass, a surface, joints, something that it stands on.
 void CheckAbstract(const YamlNode& node, const EntityEntry& entity, Complaints& complaints);
 
 // actor_fields.cc
-Format<ActorEntry> ActorFormat();
-Format<physics::Eyes> EyesFormat();
+ValueFormat<ActorEntry> ActorFormat();
+ValueFormat<physics::Eyes> EyesFormat();
 
 // step_fields.cc: each step is told by its action key.
-Format<StepEntry> StepFormat();
+ValueFormat<StepEntry> StepFormat();
 
 // trial_fields.cc
-Format<VariationEntry> VariationFormat();
-Format<std::vector<ConditionEntry>> OutcomeFormat();
+ValueFormat<VariationEntry> VariationFormat();
+ValueFormat<std::vector<ConditionEntry>> OutcomeFormat();
 
 }  // namespace prehend::harness

@@ -2,8 +2,8 @@
 // Tested by tests/harness/scenario_fields_test.cc
 #include <fmt/format.h>
 
-#include "harness/record.h"
 #include "harness/scenario_formats.h"
+#include "harness/struct_format.h"
 
 namespace prehend::harness {
 namespace {
@@ -14,13 +14,13 @@ constexpr double kLargestM = 100;
 constexpr double kFarthestPartM = 10;
 constexpr int kMostBoards = 20;
 
-Format<double> Length() { return Number(kSmallestM, kLargestM); }
-Format<Eigen::Vector3d> Size() { return Vector<3>(kSmallestM, kLargestM); }
+ValueFormat<double> Length() { return Number(kSmallestM, kLargestM); }
+ValueFormat<Eigen::Vector3d> Size() { return Vector<3>(kSmallestM, kLargestM); }
 
 /// Cylinders and capsules: the axis is along z.
 template <class Round>
-Format<Round> RoundFormat(const std::string& noun, const std::string& length_doc) {
-  return Record<Round>(noun)
+ValueFormat<Round> RoundFormat(const std::string& noun, const std::string& length_doc) {
+  return StructFormat<Round>(noun)
       .Required("radius_m", &Round::radius_m, Length(), "Radius.")
       .Required("length_m", &Round::length_m, Length(), length_doc)
       .format();
@@ -37,59 +37,58 @@ void CheckWall(const YamlNode& node, double wall_m, double narrow_m, Complaints&
 
 }  // namespace
 
-Format<physics::Box> BoxFormat() {
-  return Record<physics::Box>("a box")
+ValueFormat<physics::Box> BoxFormat() {
+  return StructFormat<physics::Box>("a box")
       .Required("size_m", &physics::Box::size_m, Size(), "Full edge lengths [x, y, z].")
       .format();
 }
 
-Format<physics::Sphere> SphereFormat() {
-  return Record<physics::Sphere>("a sphere")
+ValueFormat<physics::Sphere> SphereFormat() {
+  return StructFormat<physics::Sphere>("a sphere")
       .Required("radius_m", &physics::Sphere::radius_m, Length(), "Radius.")
       .format();
 }
 
-Format<physics::Cylinder> CylinderFormat() {
+ValueFormat<physics::Cylinder> CylinderFormat() {
   return RoundFormat<physics::Cylinder>("a cylinder", "Height, along z.");
 }
 
-Format<physics::Capsule> CapsuleFormat() {
+ValueFormat<physics::Capsule> CapsuleFormat() {
   return RoundFormat<physics::Capsule>("a capsule", "Along z, without the two half spheres.");
 }
 
-Format<physics::Hull> HullFormat() {
+ValueFormat<physics::Hull> HullFormat() {
   struct Points {
     std::vector<Eigen::Vector3d> points_m;
   };
-  const Format<Points> written =
-      Record<Points>("a hull")
+  const ValueFormat<Points> written =
+      StructFormat<Points>("a hull")
           .Required("points_m", &Points::points_m,
                     ListOf(Vector<3>(-kFarthestPartM, kFarthestPartM), physics::kFewestHullPoints,
                            physics::kMostHullPoints),
                     "Its corners [x, y, z] in its own frame, in any order.")
           .format();
-  return {.schema = written.schema,
-          .read =
-              [written](const YamlNode& node, Complaints& complaints, physics::Hull& hull) {
-                Points points;
-                if (!written.read(node, complaints, points)) return false;
-                physics::MadeHull made = physics::MakeHull(points.points_m);
-                if (made.hull) {
-                  hull = std::move(*made.hull);
-                  return true;
-                }
-                const YamlNode& list = *node.Find("points_m");
-                const YamlNode& wrong =
-                    made.point < 0 ? list : list.children[static_cast<std::size_t>(made.point)];
-                complaints.Add(wrong.where, "points_m: " + made.problem, made.remedy);
-                return false;
-              },
-          .show = {}};
+  return ValueFormat<physics::Hull>(
+      written.schema(),
+      [written](const YamlNode& node, Complaints& complaints, physics::Hull& hull) {
+        Points points;
+        if (!written.Read(node, complaints, points)) return false;
+        physics::MadeHull made = physics::MakeHull(points.points_m);
+        if (made.hull) {
+          hull = std::move(*made.hull);
+          return true;
+        }
+        const YamlNode& list = *node.Find("points_m");
+        const YamlNode& wrong =
+            made.point < 0 ? list : list.children[static_cast<std::size_t>(made.point)];
+        complaints.Add(wrong.where, "points_m: " + made.problem, made.remedy);
+        return false;
+      });
 }
 
-Format<physics::Tray> TrayFormat() {
+ValueFormat<physics::Tray> TrayFormat() {
   using T = physics::Tray;
-  return Record<T>("a tray")
+  return StructFormat<T>("a tray")
       .Required("size_m", &T::size_m, Size(), "Outer edge lengths [x, y, z].")
       .Optional("wall_m", &T::wall_m, Length(), "Thickness of floor and walls.")
       .Check([](const YamlNode& node, const T& tray, Complaints& complaints) {
@@ -99,9 +98,9 @@ Format<physics::Tray> TrayFormat() {
       .format();
 }
 
-Format<physics::Mug> MugFormat() {
+ValueFormat<physics::Mug> MugFormat() {
   using M = physics::Mug;
-  return Record<M>("a mug")
+  return StructFormat<M>("a mug")
       .Required("radius_m", &M::radius_m, Length(), "Outer radius, without the handle.")
       .Required("height_m", &M::height_m, Length(), "Height.")
       .Optional("wall_m", &M::wall_m, Length(), "Thickness of floor and wall.")
@@ -119,9 +118,9 @@ Format<physics::Mug> MugFormat() {
       .format();
 }
 
-Format<physics::Bowl> BowlFormat() {
+ValueFormat<physics::Bowl> BowlFormat() {
   using B = physics::Bowl;
-  return Record<B>("a bowl")
+  return StructFormat<B>("a bowl")
       .Required("radius_m", &B::radius_m, Length(),
                 "Outer radius at the rim; the foot has half of it.")
       .Required("height_m", &B::height_m, Length(), "Height.")
@@ -132,9 +131,9 @@ Format<physics::Bowl> BowlFormat() {
       .format();
 }
 
-Format<physics::Shelf> ShelfFormat() {
+ValueFormat<physics::Shelf> ShelfFormat() {
   using S = physics::Shelf;
-  return Record<S>("a shelf")
+  return StructFormat<S>("a shelf")
       .Required("size_m", &S::size_m, Size(), "Outer edge lengths [x, y, z]; it is open to -x.")
       .Optional("boards", &S::boards, Integer<int>(2, kMostBoards),
                 "How many, at even distances, with the lowest and the highest.")
@@ -148,20 +147,20 @@ Format<physics::Shelf> ShelfFormat() {
       .format();
 }
 
-Format<GrainsEntry> GrainsFormat() {
+ValueFormat<GrainsEntry> GrainsFormat() {
   using G = GrainsEntry;
   constexpr int kMostGrains = 500;
   constexpr double kSmallestGrainM = 0.002, kLargestGrainM = 0.05;
-  return Record<G>("grains")
+  return StructFormat<G>("grains")
       .Required("count", &G::count, Integer<int>(1, kMostGrains), "How many.")
       .Required("radius_m", &G::radius_m, Number(kSmallestGrainM, kLargestGrainM),
                 "Radius of each.")
       .format();
 }
 
-Format<PartEntry> PartFormat() {
+ValueFormat<PartEntry> PartFormat() {
   using P = PartEntry;
-  return Record<P>("a part")
+  return StructFormat<P>("a part")
       .Optional("box", &P::box, BoxFormat(), "Its shape: a box.")
       .Optional("sphere", &P::sphere, SphereFormat(), "Its shape: a sphere.")
       .Optional("cylinder", &P::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "harness/limits.h"
-#include "harness/record.h"
 #include "harness/scenario_fields.h"
 #include "harness/scenario_formats.h"
+#include "harness/struct_format.h"
 
 namespace prehend::harness {
 namespace {
@@ -17,25 +17,25 @@ constexpr double kMostSwayM = 0.4;   // farther, nobody stays on her feet
 constexpr double kShortestS = 0.01;  // below, no human hand moves
 constexpr double kLongestS = 600;
 
-Format<double> Duration() { return Number(kShortestS, kLongestS); }
+ValueFormat<double> Duration() { return Number(kShortestS, kLongestS); }
 const std::string kOverDoc = "Duration in seconds.";
 const std::string kStyleDoc = "The grasp style that the hand takes; default: it keeps its own.";
 
 /// A record with one number, list or name and a duration; most steps are of this kind.
 template <class Entry, class M, class F>
-Format<StepEntry> TimedStep(const std::string& key, M Entry::*member, Format<F> format,
-                            const std::string& doc) {
-  return AsAlternative<StepEntry>(Record<Entry>("a " + key + " step")
+ValueFormat<StepEntry> TimedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
+                                 const std::string& doc) {
+  return AsAlternative<StepEntry>(StructFormat<Entry>("a " + key + " step")
                                       .Required(key, member, std::move(format), doc)
                                       .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
                                       .format());
 }
 
-Format<StepEntry> ReachFormat() {
+ValueFormat<StepEntry> ReachFormat() {
   using R = ReachEntry;
   using physics::Approach;
   return AsAlternative<StepEntry>(
-      Record<R>("a reach step")
+      StructFormat<R>("a reach step")
           .Required("reach", &R::reach, Identifier(),
                     "The entity to move the hand to, ready to close around it.")
           .Optional("style", &R::style, Identifier(), "The grasp style, one of the hand's.")
@@ -52,10 +52,10 @@ Format<StepEntry> ReachFormat() {
           .format());
 }
 
-Format<StepEntry> FollowJointFormat() {
+ValueFormat<StepEntry> FollowJointFormat() {
   using F = FollowJointEntry;
   return AsAlternative<StepEntry>(
-      Record<F>("a follow_joint step")
+      StructFormat<F>("a follow_joint step")
           .Required("follow_joint", &F::follow_joint, Identifier(),
                     "The entity on a slider or hinge whose way the hand goes, with what it holds.")
           .Optional("to", &F::to, Number(0, 1),
@@ -64,16 +64,16 @@ Format<StepEntry> FollowJointFormat() {
           .format());
 }
 
-Format<StepEntry> WaitFormat() {
+ValueFormat<StepEntry> WaitFormat() {
   return AsAlternative<StepEntry>(
-      Record<WaitEntry>("a wait step")
+      StructFormat<WaitEntry>("a wait step")
           .Required("wait_s", &WaitEntry::wait_s, Duration(), "Hold still for this long.")
           .format());
 }
 
-Format<PoseEntry> PoseFormat() {
+ValueFormat<PoseEntry> PoseFormat() {
   using P = PoseEntry;
-  return Record<P>("a pose")
+  return StructFormat<P>("a pose")
       .Required("t_s", &P::t_s, Number(0, kMaxDurationS),
                 "When, since the start of the step; increasing.")
       .Required("at_m", &P::at_m, Vector<3>(-kFarthestM, kFarthestM),
@@ -87,9 +87,9 @@ Format<PoseEntry> PoseFormat() {
       .format();
 }
 
-Format<StepEntry> PosesFormat() {
+ValueFormat<StepEntry> PosesFormat() {
   return AsAlternative<StepEntry>(
-      Record<PosesEntry>("a poses step")
+      StructFormat<PosesEntry>("a poses step")
           .Required("poses", &PosesEntry::poses, ListOf(PoseFormat(), 1, kMaxPoses),
                     "Way-points of the tracked target, as a tracker would give them; the last one "
                     "ends the step.")
@@ -121,11 +121,11 @@ void CheckKindOfRecording(const YamlNode& node, const RecordingEntry& entry,
     refuse(key, "a BVH file moves a whole body, no hand");
 }
 
-Format<StepEntry> RecordingFormat() {
+ValueFormat<StepEntry> RecordingFormat() {
   using R = RecordingEntry;
   const auto seconds = Number(0, kMaxDurationS);
   return AsAlternative<StepEntry>(
-      Record<R>("a recording step")
+      StructFormat<R>("a recording step")
           .Required("recording", &R::recording,
                     Word("[A-Za-z0-9_./-]+\\.(csv|json|bvh)", "a .csv, .json or .bvh file", 255),
                     "A recorded motion: a CSV file, JSON of aframe-motion-capture-components, or "
@@ -157,11 +157,11 @@ Format<StepEntry> RecordingFormat() {
           .format());
 }
 
-Format<StepEntry> MoveLimbFormat() {
+ValueFormat<StepEntry> MoveLimbFormat() {
   using M = MoveLimbEntry;
   using physics::LimbEnd;
   return AsAlternative<StepEntry>(
-      Record<M>("a move_limb step")
+      StructFormat<M>("a move_limb step")
           .Required("move_limb", &M::move_limb,
                     Choice<LimbEnd>({{"right_elbow", LimbEnd::kRightElbow},
                                      {"left_elbow", LimbEnd::kLeftElbow},
@@ -180,7 +180,7 @@ Format<StepEntry> MoveLimbFormat() {
 
 }  // namespace
 
-Format<StepEntry> StepFormat() {
+ValueFormat<StepEntry> StepFormat() {
   const auto grip = Number(0, 1);
   return ByKey<StepEntry>(
       "a step",

@@ -5,27 +5,26 @@
 #include <algorithm>
 
 #include "harness/limits.h"
-#include "harness/record.h"
 #include "harness/scenario_fields.h"
 #include "harness/scenario_formats.h"
+#include "harness/struct_format.h"
 #include "harness/yaml_scalar.h"
 
 namespace prehend::harness {
 namespace {
 
 /// A text, or a number or flag as it is written: what a field can be set to.
-Format<std::string> Value() {
-  const Format<std::string> text = Text();
-  return {.schema = {{"type", {"string", "number", "boolean"}}},
-          .read =
-              [text](const YamlNode& node, Complaints& complaints, std::string& value) {
-                const bool plain = node.kind == YamlNode::Kind::kScalar &&
-                                   (NumberOf(node) || node.text == "true" || node.text == "false");
-                if (!plain) return text.read(node, complaints, value);
-                value = node.text;
-                return true;
-              },
-          .show = {}};
+ValueFormat<std::string> Value() {
+  const ValueFormat<std::string> text = Text();
+  return ValueFormat<std::string>(
+      {{"type", {"string", "number", "boolean"}}},
+      [text](const YamlNode& node, Complaints& complaints, std::string& value) {
+        const bool plain = node.kind == YamlNode::Kind::kScalar &&
+                           (NumberOf(node) || node.text == "true" || node.text == "false");
+        if (!plain) return text.Read(node, complaints, value);
+        value = node.text;
+        return true;
+      });
 }
 
 /// What can never hold, or always does.
@@ -50,12 +49,12 @@ void CheckCondition(const YamlNode& node, const ConditionEntry& wanted, Complain
     complaints.Add(node.where, "a condition: it always holds", "say what, as above_m: 0.9");
 }
 
-Format<ConditionEntry> ConditionFormat() {
+ValueFormat<ConditionEntry> ConditionFormat() {
   using C = ConditionEntry;
   const auto height = Number(-kFarthestM, kFarthestM);
   const auto angle = Number(0, 180);
   const auto fraction = Number(0, 1);
-  return Record<C>("a condition")
+  return StructFormat<C>("a condition")
       .Required("entity", &C::entity, Identifier(), "The entity that it is about.")
       .Optional("at_s", &C::at_s, Number(0, kMaxDurationS), "When; default: when the run ends.")
       .Optional("near_m", &C::near_m, ListOf(height, 2, 3),
@@ -82,10 +81,10 @@ Format<ConditionEntry> ConditionFormat() {
 
 }  // namespace
 
-Format<VariationEntry> VariationFormat() {
+ValueFormat<VariationEntry> VariationFormat() {
   using V = VariationEntry;
   const auto range = Vector<2>(-kMaxNumber, kMaxNumber);
-  return Record<V>("a variation")
+  return StructFormat<V>("a variation")
       .Required(
           "fields", &V::fields,
           ListOf(Word("[a-z0-9_]+(\\.[a-z0-9_]+)*", "a field like 'entities.milk.mass_kg'", 255), 1,
@@ -116,6 +115,8 @@ Format<VariationEntry> VariationFormat() {
       .format();
 }
 
-Format<std::vector<ConditionEntry>> OutcomeFormat() { return ListOf(ConditionFormat(), 1, 32); }
+ValueFormat<std::vector<ConditionEntry>> OutcomeFormat() {
+  return ListOf(ConditionFormat(), 1, 32);
+}
 
 }  // namespace prehend::harness

@@ -2,7 +2,7 @@
 // The table on a small struct of its own: what is read, what is refused, what the schema says.
 #include <gtest/gtest.h>
 
-#include "harness/record.h"
+#include "harness/struct_format.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {
@@ -26,8 +26,8 @@ struct Wheel {
   std::vector<Named<double>> loads_kg;
 };
 
-Format<Wheel> WheelFormat() {
-  return Record<Wheel>("a wheel")
+ValueFormat<Wheel> WheelFormat() {
+  return StructFormat<Wheel>("a wheel")
       .Required("radius_m", &Wheel::radius_m, Number(0.01, 2), "Distance from axle to tread.")
       .Optional("spokes", &Wheel::spokes, Integer<int>(0, 100), "How many.")
       .Optional("material", &Wheel::material,
@@ -37,7 +37,7 @@ Format<Wheel> WheelFormat() {
       .Optional("label", &Wheel::label, Text(), "On it.")
       .Optional("axis", &Wheel::axis, Vector<3>(-1, 1), "Unit vector.")
       .Optional("hub", &Wheel::hub,
-                Record<Hub>("a hub")
+                StructFormat<Hub>("a hub")
                     .Optional("radius_m", &Hub::radius_m, Number(0, 1), "Radius.")
                     .format(),
                 "Hub.")
@@ -49,7 +49,11 @@ Format<Wheel> WheelFormat() {
 ReadResult<Wheel> ReadWheel(const std::string& text) {
   auto document = ParseYaml("probe.yaml", text);
   EXPECT_TRUE(document.value) << grammar::Format(document.diagnostics);
-  return ReadDocument(*document.value, WheelFormat());
+  Complaints complaints(*document.value);
+  Wheel wheel;
+  WheelFormat().Read(document.value->root, complaints, wheel);
+  if (!complaints.empty()) return {std::nullopt, complaints.Sorted()};
+  return {std::move(wheel), {}};
 }
 
 TEST(FieldTable, ReadsEveryKindOfField) {
@@ -109,7 +113,7 @@ TEST(FieldTable, TheDocumentMustBeAMapping) {
 }
 
 TEST(FieldTable, TheSchemaSaysTheSame) {
-  const Json schema = WheelFormat().schema;
+  const Json schema = WheelFormat().schema();
   EXPECT_EQ(schema["additionalProperties"], false);
   EXPECT_EQ(schema["required"], Json({"radius_m"}));
   EXPECT_EQ(schema["properties"]["radius_m"], Json({{"description", "Distance from axle to tread."},
