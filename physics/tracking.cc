@@ -68,7 +68,7 @@ TargetState Tracker::Follow(const TargetState& truth) {
 }
 
 Tracker::Look Tracker::LookAt(const TargetState& truth) {
-  constexpr double kMPerMm = 0.001, kRadPerDeg = std::numbers::pi / 180;
+  constexpr double kMPerMm = 0.001;
   const double turn_rad =
       2 * std::numbers::pi * settings_.tremor_hz * static_cast<double>(tick_) / rate_hz_;
   Look look{.arrives_tick = tick_ + latency_ticks_, .X_WH = truth.X_WH, .trigger = truth.trigger};
