@@ -11,7 +11,7 @@
 
 #include "physics/random.h"
 #include "physics/scene.h"
-#include "physics/target.h"
+#include "physics/trajectory.h"
 
 namespace prehend::physics {
 
