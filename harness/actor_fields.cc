@@ -38,7 +38,7 @@ Format<GainsOverride> GainsFormat() {
 }
 
 /// What would need more losses than there are looks.
-void CheckLosses(const YamlNode& node, const physics::Tracking& t, Complaints& complaints) {
+void CheckLosses(const YamlNode& node, const physics::TrackerSettings& t, Complaints& complaints) {
   if (t.dropped_run_s <= 0) return;
   const double run_looks = std::max(1.0, t.dropped_run_s * t.tracker_hz);
   const double least_looks = t.dropped_share / (1 - t.dropped_share);
@@ -48,8 +48,8 @@ void CheckLosses(const YamlNode& node, const physics::Tracking& t, Complaints& c
                              t.dropped_share, least_looks / t.tracker_hz));
 }
 
-Format<physics::Tracking> TrackingFormat() {
-  using T = physics::Tracking;
+Format<physics::TrackerSettings> TrackingFormat() {
+  using T = physics::TrackerSettings;
   return Record<T>("the tracking")
       .Optional("tracker_hz", &T::tracker_hz, Integer<int>(1, 4800),
                 "Looks of the tracker per second, at most rate_hz.")

@@ -126,7 +126,7 @@ struct HandActor {
   Located<Eigen::Vector3d> at_m;
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
   std::optional<Located<GainsOverride>> gains;
-  std::optional<Located<physics::Tracking>> tracking;
+  std::optional<Located<physics::TrackerSettings>> tracking;
 };
 
 enum class PersonKind { kHead, kBody };
