@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a file holds, and which program runs, as short texts: equal texts mean that nothing changed.
-// Tested by tests/harness/check_record_test.cc
+// Tested by tests/harness/check_records_test.cc
 #pragma once
 
 #include <map>
