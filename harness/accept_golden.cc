@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See accept_golden.h. Tested by tests/harness/accept_golden_test.cc
+// See harness/accept_golden.h. Tested by tests/harness/accept_golden_test.cc
 #include "harness/accept_golden.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See blame.h. Tested by tests/harness/blame_test.cc
+// See harness/blame.h. Tested by tests/harness/blame_test.cc
 #include "harness/blame.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See content_hash.h. Tested by tests/harness/check_records_test.cc
+// See harness/content_hash.h. Tested by tests/harness/check_records_test.cc
 #include "harness/content_hash.h"
 
 #include <fmt/format.h>

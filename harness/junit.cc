@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See junit.h. Tested by tests/harness/junit_test.cc
+// See harness/junit.h. Tested by tests/harness/junit_test.cc
 #include "harness/junit.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See report.h. Tested by tests/harness/report_test.cc
+// See harness/report.h. Tested by tests/harness/report_test.cc
 #include "harness/report.h"
 
 #include <fmt/format.h>

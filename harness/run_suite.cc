@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See run_suite.h. Tested by tests/house/runner_test.cc
+// See harness/run_suite.h. Tested by tests/house/runner_test.cc
 #include "harness/run_suite.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See timeline_svg.h. Colours are those of the pictures (harness/phases.h). Tested by
+// See harness/timeline_svg.h. Colours are those of the pictures (harness/phases.h). Tested by
 // tests/harness/report_test.cc
 #include "harness/timeline_svg.h"
 

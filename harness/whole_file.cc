@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See whole_file.h. Tested by tests/harness/whole_file_test.cc
+// See harness/whole_file.h. Tested by tests/harness/whole_file_test.cc
 #include "harness/whole_file.h"
 
 #include <fcntl.h>

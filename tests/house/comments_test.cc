@@ -51,6 +51,18 @@ std::vector<std::string> PathsIn(std::string_view text) {
   return paths;
 }
 
+/// Names of sources that a text gives without their folder: a script that moves files misses them.
+std::vector<std::string> BareNamesIn(std::string_view text) {
+  static const std::regex name("(^|[^A-Za-z0-9_./*{}-])([a-z0-9_]+\\.(h|cc))($|[^A-Za-z0-9_])");
+  static const std::set<std::string> of_the_system = {"gl.h", "osmesa.h"};
+  std::vector<std::string> names;
+  using Matches = std::regex_iterator<std::string_view::const_iterator>;
+  for (Matches match(text.begin(), text.end(), name); match != Matches(); ++match) {
+    if (!of_the_system.contains((*match)[2])) names.push_back((*match)[2]);
+  }
+  return names;
+}
+
 /// "a/{b,c}.h" is "a/b.h" and "a/c.h".
 std::vector<std::string> Expanded(const std::string& path) {
   const std::size_t open = path.find('{'), close = path.find('}', open);
@@ -75,7 +87,7 @@ bool IsAReadersOwn(const std::string& path) {
   return path.starts_with("scenarios/") || path.starts_with("golden/");
 }
 
-/// One sentence per path that does not exist, and per "Tested by" without a test.
+/// One sentence per path that does not exist or has no folder, and per "Tested by" without a test.
 std::vector<std::string> DeadReferences(const std::string& file, const std::string& text,
                                         const Exists& exists) {
   const bool is_document = file.ends_with(".md"), is_cmake = file.ends_with("CMakeLists.txt");
@@ -95,7 +107,10 @@ std::vector<std::string> DeadReferences(const std::string& file, const std::stri
         if (!exists(path)) found.push_back(where + path + " does not exist");
       }
     }
-    if (is_document || is_test) continue;
+    if (is_document) continue;
+    for (const std::string& name : BareNamesIn(comment))
+      found.push_back(where + name + ": write its path from the root");
+    if (is_test) continue;
     constexpr std::string_view kTestedBy = "Tested by";
     const std::size_t at = comment.find(kTestedBy);
     const auto names_test = [](std::string_view words) {
@@ -196,13 +211,19 @@ TEST(Comments, WhatIsNoPathOfTheTreeIsLeftAlone) {
             Sentences{});
 }
 
+TEST(Comments, SourcesAreNamedFromTheRoot) {
+  EXPECT_EQ(Dead("grammar/a.cc", "// See ring.h.\n"),
+            Sentences{"grammar/a.cc:1: ring.h: write its path from the root"});
+  EXPECT_EQ(Dead("render/a.cc", "// What osmesa.h wants.\n"), Sentences{});
+}
+
 TEST(Comments, TestedByNamesATest) {
   EXPECT_EQ(Dead("grammar/a.h", "// Tested by tests/grammar/ring_test.cc\n"), Sentences{});
   EXPECT_EQ(Dead("grammar/a.h", "// It is. Tested by\n// tests/grammar/ring_test.cc\n"),
             Sentences{});
-  EXPECT_EQ(Dead("grammar/a.h", "// Tested by ring_test.cc\n"),
+  EXPECT_EQ(Dead("grammar/a.h", "// Tested by hand\n"),
             Sentences{"grammar/a.h:1: Tested by which test?"});
-  EXPECT_EQ(Dead("grammar/a.h", "// Tested by\n// ring_test.cc\n"),
+  EXPECT_EQ(Dead("grammar/a.h", "// Tested by\n// hand\n"),
             Sentences{"grammar/a.h:2: Tested by which test?"});
   EXPECT_EQ(Dead("tests/grammar/a.h", "// Tested by what uses it\n"), Sentences{});
 }
