@@ -124,7 +124,7 @@ class Suite {
           fmt::format("its process ended: {}, {}", result.reason,
                       last_tick == SharedTicks::kNone ? std::string("before the first tick")
                                                       : fmt::format("last tick {}", last_tick));
-      if (!result.said.empty()) verdict.details = "it said:\n" + result.said;
+      if (!result.stderr_tail.empty()) verdict.details = "its standard error:\n" + result.stderr_tail;
       verdict.ticks = std::max<std::int64_t>(0, last_tick);
       verdict.command = RepeatCommand(verdict.scenario, request_.changes) + HowText();
     }
