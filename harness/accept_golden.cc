@@ -177,7 +177,7 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
 }
 
 std::string Fingerprint(const Golden& pending) {
-  return ContentHash(WriteGolden(pending)).substr(0, 8);
+  return ContentHash(WriteGolden(pending));
 }
 
 std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint,
