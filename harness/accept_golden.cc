@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See accept_golden.h. Tested by tests/harness/accept_golden_test.cc
+// See harness/accept_golden.h. Tested by tests/harness/accept_golden_test.cc
 #include "harness/accept_golden.h"
 
 #include <fmt/format.h>
@@ -177,7 +177,7 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
 }
 
 std::string Fingerprint(const Golden& pending) {
-  return ContentHash(WriteGolden(pending)).substr(0, 8);
+  return ContentHash(WriteGolden(pending));
 }
 
 std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint,

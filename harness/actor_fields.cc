@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/scenario_fields_test.cc and actor_errors_test.cc
+// Tested by tests/harness/scenario_fields_test.cc
 #include "harness/actor_fields.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See changed_relations.h. Boundaries jitter by a frame or two, and with them relations like
-// `meets`; so a relation has changed only when some boundary of one event went past one of the
+// See harness/changed_relations.h. Boundaries jitter by a frame or two, and with them relations
+// like `meets`; so a relation has changed only when some boundary of one event went past one of the
 // other by more than the tolerance. Tested by tests/harness/compare_test.cc
 #include "harness/changed_relations.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See check_golden.h. Tested by tests/house/golden_workflow_test.cc
+// See harness/check_golden.h. Tested by tests/house/golden_workflow_test.cc
 #include "harness/check_golden.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See check_scenario.h. Tested by tests/house/command_line_test.cc
+// See harness/check_scenario.h. Tested by tests/house/command_line_test.cc
 #include "harness/check_scenario.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See episode_source.h. Tested by tests/house/explain_command_test.cc
+// See harness/episode_source.h. Tested by tests/house/explain_command_test.cc
 #include "harness/episode_source.h"
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See facts_around.h. Tested by tests/harness/facts_around_test.cc
+// See harness/facts_around.h. Tested by tests/harness/facts_around_test.cc
 #include "harness/facts_around.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See load_grammar.h. Tested by tests/house/command_line_test.cc
+// See harness/load_grammar.h. Tested by tests/house/command_line_test.cc
 #include "harness/load_grammar.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // YAML as a tree in which every key and value knows where it stands. A strict subset: one document
 // of plain mappings, sequences and scalars. What makes YAML ambiguous or dangerous is refused with
 // its place: duplicate keys, `<<` merges, anchors and aliases, tags, several documents, tabs, deep
-// nesting. What the scalars mean is decided by harness/field_table.h. Tested by
+// nesting. What the scalars mean is decided by harness/format.h. Tested by
 // tests/harness/located_yaml_test.cc
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See oracle_notes.h. Tested by tests/harness/accept_golden_test.cc
+// See harness/oracle_notes.h. Tested by tests/harness/accept_golden_test.cc
 #include "harness/oracle_notes.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scenario as it is written, before names are resolved and places computed.
 // harness/scenario_fields.cc says how each field is called and bounded; harness/build_scene.h and
-// build_script.h make bodies, hands and steps of it.
+// harness/build_script.h make bodies, hands and steps of it.
 #pragma once
 
 #include <Eigen/Core>

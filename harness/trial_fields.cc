@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/vary_test.cc and outcome_test.cc
+// Tested by tests/harness/vary_test.cc and tests/harness/outcome_test.cc
 #include "harness/trial_fields.h"
 
 #include <fmt/format.h>

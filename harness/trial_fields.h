@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fields of `vary:` and `outcomes:`, and what has to fit the rest of the scenario.
-// Tested by tests/harness/vary_test.cc and outcome_test.cc
+// Tested by tests/harness/vary_test.cc and tests/harness/outcome_test.cc
 #pragma once
 
 #include "harness/format.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scenario says about trials: `vary:`, what differs from one to the next, and `outcomes:`,
 // how one can end. Their YAML face is in harness/trial_fields.h. Tested by
-// tests/harness/vary_test.cc and outcome_test.cc
+// tests/harness/vary_test.cc and tests/harness/outcome_test.cc
 #pragma once
 
 #include <Eigen/Core>

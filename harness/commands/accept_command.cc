@@ -22,7 +22,7 @@
 namespace prehend::harness {
 namespace {
 
-constexpr std::size_t kFingerprintDigits = 8;
+constexpr std::size_t kFingerprintDigits = 16;
 
 void Declare(CLI::App& options) {
   options.add_option("scenario", "a name or skill/name")->required()->expected(1);
@@ -57,8 +57,8 @@ std::string NoFingerprint(const std::string& typed) {
                       typed.find_first_not_of("0123456789abcdef") == std::string::npos;
   if (is_one) return "";
   return "--reviewed: '" + typed +
-         "' is no fingerprint; 'prehend review' prints it, 8 digits from 0-9 and a-f, like "
-         "3fa90c11";
+         "' is no fingerprint; 'prehend review' prints it, 16 digits from 0-9 and a-f, like "
+         "3fa90c11d27e5b60";
 }
 
 /// "" or why the command line alone is enough to refuse.
@@ -257,7 +257,7 @@ Command AcceptCommand() {
       .summary = "Make what a scenario yields now its golden, with a reason",
       .examples =
           "prehend accept milk_carton_wrap --reason \"first golden, checked against the picture\"\n"
-          "prehend accept milk_carton_wrap --reviewed 3fa90c11 --reason \"the grasp ends "
+          "prehend accept milk_carton_wrap --reviewed 3fa90c11d27e5b60 --reason \"the grasp ends "
           "earlier\"\n"
           "prehend accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the "
           "hand's first motion\"\n"
