@@ -16,7 +16,6 @@
 #include "harness/facts_around.h"
 #include "harness/golden_files.h"
 #include "harness/invariants.h"
-#include "harness/oracle_notes.h"
 #include "harness/orphans.h"
 #include "harness/physics_trace.h"
 #include "harness/pictures.h"
@@ -190,9 +189,9 @@ std::string Blame(const CheckRequest& request, const Scenario& scenario, const R
 
 /// There is nothing to compare with.
 void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending,
-                        const std::string& objections, ScenarioVerdict& verdict) {
+                        const std::string& differs_from_truth, ScenarioVerdict& verdict) {
   LeavePending(request, pending);
-  verdict.details += objections;
+  verdict.details += differs_from_truth;
   if (verdict.verdict != Verdict::kPassed) return;
   verdict.verdict = Verdict::kPending;
   verdict.exit_code = ExitCode::kPending;
@@ -230,18 +229,24 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
       Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
               run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
   verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1);
-  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  const OracleComparison truth = CompareWithOracle(prepared.scenario, *prepared.program, run);
   const Golden pending =
-      PendingGolden(golden.value, run.timeline, request.id, prepared.scenario.grammar, derivation);
-  const std::vector<Objection> objections = Objections(golden.value, pending);
-  if (!golden.value) return JudgeWithoutGolden(request, pending, Text(objections), verdict);
+      PendingGolden(golden.value, run.timeline, request.id, prepared.scenario.grammar, truth);
+  if (!golden.value) return JudgeWithoutGolden(request, pending, GroundTruthText(truth), verdict);
+  const int accepted = AcceptedDiffering(golden.value->derived);
+  const bool truth_is_accepted = truth.Differing() == accepted;
   verdict.headroom = HeadroomText(comparison);
   verdict.boundaries = Boundaries(comparison);
-  if (comparison.Agrees() && objections.empty())
+  if (comparison.Agrees() && truth_is_accepted)
     return GoldenFiles(request.root).RemovePending(request.id);
   LeavePending(request, pending);
   if (!comparison.Agrees()) TellDifferences(request, prepared, run, comparison, verdict);
-  if (!objections.empty()) Fail(verdict, ExitCode::kDiffers, Summary(objections), Text(objections));
+  if (!truth_is_accepted) {
+    Fail(verdict, ExitCode::kDiffers,
+         DifferingText(truth.Differing()) +
+             (accepted > 0 ? fmt::format(", the golden says {}", accepted) : ""),
+         GroundTruthText(truth));
+  }
 }
 
 std::vector<std::string> FilesOfGolden(const CheckRequest& request) {

@@ -154,7 +154,7 @@ class Pairer {
       interval = {Converted(interval.begin, golden.ticks_per_second),
                   Converted(interval.end, golden.ticks_per_second)};
     }
-    for (const GoldenEvent& line : expected_) expected_taken_.push_back(!line.IsExpected());
+    expected_taken_.resize(expected_.size());
     actual_taken_.resize(actual_.size());
   }
 
@@ -193,9 +193,8 @@ class Pairer {
       std::vector<std::size_t> expected, actual;
     };
     std::map<std::string, Group> groups;
-    for (std::size_t i = 0; i < expected_.size(); ++i) {
-      if (!expected_taken_[i]) groups[expected_[i].event.Label()].expected.push_back(i);
-    }
+    for (std::size_t i = 0; i < expected_.size(); ++i)
+      groups[expected_[i].event.Label()].expected.push_back(i);
     for (std::size_t j = 0; j < actual_.size(); ++j) groups[actual_[j].Label()].actual.push_back(j);
     for (const auto& [label, group] : groups) {
       const std::size_t first_pair = comparison_.pairings.size();
