@@ -83,6 +83,10 @@ struct Comparison {
       const;  ///< first divergence first; pieces are told of by one
 };
 
+/// Of every two pairs that share their entities and of which at least one differs. Two boundaries
+/// count as equal when they are no further apart than the tolerance.
+std::vector<RelationChange> ChangedRelations(const std::vector<Pairing>& pairings);
+
 /// Compares in the ticks of `actual`; `default_tolerance` (ticks) is for golden lines without their
 /// own.
 Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
