@@ -28,7 +28,7 @@ TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
   EXPECT_EQ(fresh.exit_code, 5);
   EXPECT_TRUE(SaysIn(fresh, "new  rest/carton_rests\n    contact +0\\.0")) << fresh.out;
   EXPECT_TRUE(SaysIn(fresh,
-                     "\n    if right: prehend accept rest/carton_rests --reviewed [0-9a-f]{8} "
+                     "\n    if right: prehend accept rest/carton_rests --reviewed [0-9a-f]{16} "
                      "--reason \"...\"\n"));
   Accept();
   EXPECT_EQ(Do("review").exit_code, 0);
@@ -127,10 +127,16 @@ TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
     EXPECT_FALSE(fs::exists(Golden()));
   }
   const std::string now = Json::parse(Do("review --json").out)["pending"][0]["fingerprint"];
-  const Said no_fingerprint = Do("accept carton_rests --reason seen --reviewed ABCDEF01");
-  EXPECT_EQ(no_fingerprint.exit_code, 2);
-  EXPECT_NE(no_fingerprint.err.find("--reviewed: 'ABCDEF01' is no fingerprint; "),
-            std::string::npos);
+  for (const std::string typed : {"ABCDEF0123456789", "3fa90c11"}) {
+    const Said no_fingerprint = Do("accept carton_rests --reason seen --reviewed " + typed);
+    EXPECT_EQ(no_fingerprint.exit_code, 2);
+    EXPECT_EQ(no_fingerprint.err,
+              "prehend: --reviewed: '" + typed +
+                  "' is no fingerprint; 'prehend review' prints it, 16 digits from 0-9 and a-f, "
+                  "like 3fa90c11d27e5b60\n  again: prehend accept carton_rests --reason seen "
+                  "--reviewed " +
+                  typed + "\n");
+  }
   EXPECT_EQ(Do("accept carton_rests --reason seen --reviewed " + now).exit_code, 0);
 }
 
