@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "grammar/evaluate.h"
+#include "grammar/event.h"
 #include "grammar/fate.h"
 #include "grammar/history.h"
 #include "grammar/lanes.h"

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "grammar/name_events.h"
 #include "harness/outcome.h"
 #include "harness/sensing.h"
 
