@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "harness/abstract_fields.h"
+#include "harness/build_abstract.h"
 #include "physics/fill_vessel.h"
 #include "physics/geometry.h"
 #include "physics/random.h"

@@ -7,8 +7,9 @@
 #include <algorithm>
 #include <map>
 
-#include "harness/abstract_fields.h"
+#include "harness/build_abstract.h"
 #include "harness/build_person_steps.h"
+#include "harness/limits.h"
 #include "harness/scenario_fields.h"
 #include "physics/geometry.h"
 #include "physics/joint.h"

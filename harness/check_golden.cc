@@ -9,6 +9,7 @@
 
 #include "grammar/frame.h"
 #include "grammar/program.h"
+#include "harness/cast.h"
 #include "harness/event_text.h"
 #include "harness/golden_files.h"
 #include "harness/library_paths.h"

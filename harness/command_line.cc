@@ -13,6 +13,7 @@
 #include <regex>
 
 #include "harness/commands/command.h"
+#include "harness/project_paths.h"
 #include "harness/shell_word.h"
 
 namespace prehend::harness {

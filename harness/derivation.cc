@@ -40,7 +40,7 @@ std::string OffsetText(const Match& match, grammar::Tick ticks_per_second) {
 
 Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
                       const RunResult& run) {
-  Judged judged{.truth = TrueTimeline(scenario, run.recording, run.ticks + 1),
+  Judged judged{.truth = TrueTimeline(scenario.scene, run.recording, run.ticks + 1),
                 .found = run.timeline};
   std::erase_if(judged.found.events, [](const auto& event) { return !OracleDefines(event.event); });
   // A grammar is not judged by events that it has no rules for.

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <utility>
 
+#include "harness/cast.h"
 #include "harness/episode_file.h"
 #include "harness/load_grammar.h"
 #include "harness/prepare_run.h"

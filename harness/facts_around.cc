@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "harness/cast.h"
 #include "harness/event_text.h"
 #include "harness/sensing.h"
 

@@ -12,6 +12,8 @@
 #include "grammar/compile.h"
 #include "grammar/program.h"
 #include "harness/library_paths.h"
+#include "harness/project_library.h"
+#include "harness/project_paths.h"
 #include "harness/text_file.h"
 
 namespace prehend::harness {

@@ -10,24 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "harness/located.h"
 #include "harness/read_result.h"
 
 namespace prehend::harness {
 
 inline constexpr int kMaxYamlDepth = 64;
-
-/// A place in one of a document's sources.
-struct Where {
-  int source = 0;  ///< index into YamlDocument::sources
-  grammar::Place place;
-};
-
-/// A value that knows where it was written.
-template <class T>
-struct Located {
-  T value{};
-  Where where;
-};
 
 struct YamlNode {
   enum class Kind { kNull, kScalar, kSequence, kMapping };

@@ -7,9 +7,12 @@
 #include <iterator>
 
 #include "grammar/program.h"
+#include "harness/cast.h"
 #include "harness/library_paths.h"
 #include "harness/load_grammar.h"
 #include "harness/moment.h"
+#include "harness/project_library.h"
+#include "harness/read_scenario.h"
 #include "harness/scenario_fields.h"
 #include "harness/text_file.h"
 

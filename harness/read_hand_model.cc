@@ -10,7 +10,7 @@
 
 #include "harness/build_styles.h"
 #include "harness/hand_fields.h"
-#include "harness/library_paths.h"
+#include "harness/project_paths.h"
 #include "harness/record.h"
 
 namespace prehend::harness {
@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 using grammar::Diagnostics;
 using physics::HandModel;
 
-constexpr const char* kHandEnding = ".hand.yaml";
 constexpr const char* kGraspsEnding = ".grasps.yaml";
 
 /// Turns an entry into a model and complains about names and counts that do not fit together.

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "harness/body_track.h"
-#include "harness/farthest.h"
+#include "harness/limits.h"
 #include "harness/motion_track.h"
 #include "physics/skeleton.h"
 

@@ -105,6 +105,24 @@ inline physics::Abstract AbstractOf(const EntityEntry& entity) {
                               : kNot;
 }
 
+/// "a region", and so on; "" for what is not abstract.
+inline const char* NounOf(physics::Abstract abstract) {
+  using physics::Abstract;
+  switch (abstract) {
+    case Abstract::kNot:
+      return "";
+    case Abstract::kRegion:
+      return "a region";
+    case Abstract::kGazeTarget:
+      return "a gaze target";
+    case Abstract::kCamera:
+      return "a camera";
+    case Abstract::kLight:
+      return "a light";
+  }
+  return "";
+}
+
 /// Where it is said where it is.
 inline const Where& PlaceOf(const EntityEntry& entity) {
   return entity.in ? entity.in->where : entity.at_m.where;

@@ -10,6 +10,9 @@
 #include <iterator>
 #include <tuple>
 
+#include "harness/project_library.h"
+#include "harness/read_scenario.h"
+
 namespace prehend::harness {
 namespace {
 

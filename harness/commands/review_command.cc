@@ -17,6 +17,8 @@
 #include "harness/event_text.h"
 #include "harness/golden_files.h"
 #include "harness/orphans.h"
+#include "harness/project_library.h"
+#include "harness/read_scenario.h"
 #include "harness/select_scenarios.h"
 #include "harness/shell_word.h"
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "harness/cast.h"
 #include "harness/commands/command.h"
 #include "harness/commands/warn.h"
 #include "harness/episode_file.h"

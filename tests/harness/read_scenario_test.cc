@@ -7,6 +7,8 @@
 
 #include <numbers>
 
+#include "harness/cast.h"
+#include "harness/limits.h"
 #include "harness/scenario_fields.h"
 #include "tests/harness/scenario_fixture.h"
 
