@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <string>
 
-#include "harness/library_paths.h"
-#include "harness/prepare_run.h"
-#include "harness/project_paths.h"
-#include "harness/run_output.h"
-#include "harness/run_scenario.h"
-#include "harness/speed/four_rules.h"
+#include "harness/base/project_paths.h"
+#include "harness/run/find_scenario.h"
+#include "harness/run/load_run.h"
+#include "harness/run/run_scenario.h"
+#include "harness/run/run_text.h"
+#include "harness/speed/workload.h"
 
 namespace prehend::harness {
 namespace {

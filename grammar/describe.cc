@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "grammar/lanes.h"
+#include "grammar/engine/instances.h"
 
 namespace prehend::grammar {
 namespace {
@@ -60,7 +60,7 @@ class Waits {
         settled_[index] = Settled{whole->edge, WaitOf(rule, whole->edge)};
     }
     // The truth at a frame may have to wait for more than the end's decision: see
-    // grammar/engine_events.cc, UpdateKnown.
+    // grammar/engine/engine_events.cc, UpdateKnown.
     Wait& truth = truth_[index];
     truth = end;
     if (settling) Include(truth, WaitOf(rule, std::nullopt));

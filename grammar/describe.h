@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "grammar/program.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grammar/monitor.h"
 
-#include "grammar/engine.h"
+#include "grammar/engine/engine.h"
 
 namespace prehend::grammar {
 

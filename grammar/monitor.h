@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "grammar/compile.h"
-#include "grammar/event.h"
-#include "grammar/frame.h"
+#include "grammar/base/event.h"
+#include "grammar/base/frame.h"
+#include "grammar/compile/compile.h"
 
 namespace prehend::grammar {
 

@@ -2,7 +2,7 @@
 // Looks up names of rules, roles and attributes in the program, of entities in the cast.
 #include "grammar/name_events.h"
 
-#include "grammar/program.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/explain/clauses.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/clauses.h. Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/clauses.h"
 
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "harness/explain/nodes.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
 
 namespace prehend::harness::explain {
 

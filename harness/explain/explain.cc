@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/explain/explain.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/explain.h. Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/explain.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
-#include "harness/event_text.h"
 #include "harness/explain/bindings.h"
 #include "harness/explain/why_event.h"
 #include "harness/explain/why_missing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 namespace {

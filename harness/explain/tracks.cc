@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/explain/tracks.h. Tested by tests/harness/tracks_test.cc
+// See harness/explain/tracks.h. Tested by tests/harness/explain/tracks_test.cc
 #include "harness/explain/tracks.h"
 
 #include <fmt/format.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "harness/event_text.h"
 #include "harness/explain/nodes.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/explain/why_event.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/why_event.h. Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/why_event.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "grammar/allen.h"
-#include "harness/event_text.h"
+#include "grammar/base/allen.h"
 #include "harness/explain/nodes.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // See harness/explain/why_missing.h. Runs that were given up, and the choice of what to blame.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/why_missing.h"
 
 #include <fmt/format.h>
@@ -9,8 +9,8 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/event_text.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 

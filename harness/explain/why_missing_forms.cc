@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where there was no run: which clause kept each form from beginning one.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "grammar/allen.h"
-#include "harness/event_text.h"
+#include "grammar/base/allen.h"
 #include "harness/explain/bindings.h"
 #include "harness/explain/nodes.h"
+#include "harness/explain/phrasing.h"
 #include "harness/explain/why_missing.h"
-#include "harness/explain/wording.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 

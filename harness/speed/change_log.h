@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames in memory, each as what is new in it, to be played to monitors as often as one likes.
-// Tested by tests/harness/speed_test.cc
+// Tested by tests/harness/speed/workload_test.cc
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "grammar/frame.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::harness {
 

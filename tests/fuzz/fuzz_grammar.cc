@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "grammar/compile.h"
+#include "grammar/compile/compile.h"
 #include "grammar/describe.h"
-#include "grammar/program.h"
+#include "grammar/program/program.h"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "grammar/name_events.h"
-#include "grammar/program.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar::testing {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
-#include "grammar/timeline.h"
 
 namespace prehend::grammar::testing {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
-#include "grammar/program.h"
-#include "grammar/timeline.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar::testing {
 
