@@ -180,7 +180,7 @@ std::string ParamsText(const std::vector<ProgramParam>& params) {
 GrammarDescription Describe(const Program& program) {
   GrammarDescription description{.name = program.name,
                                  .params = program.params,
-                                 .bytes_per_pose = sizeof(FrameNumber) + sizeof(EntityLook),
+                                 .bytes_per_pose = sizeof(FrameNumber) + sizeof(EntitySample),
                                  .bytes_per_feeler = sizeof(Feeler)};
   const Waits waits(program);
   for (std::size_t i = 0; i < program.events.size(); ++i) {

@@ -48,11 +48,11 @@ struct CastMember {
 struct Cast {
   Tick ticks_per_second = 480;
   std::vector<CastMember> entities;
-  std::vector<std::string> styles;  ///< names of grasp styles; HandLook::style indexes them
+  std::vector<std::string> styles;  ///< names of grasp styles; HandSample::style indexes them
 };
 
 /// Pose and velocity of one entity's body frame B in the world W (z up).
-struct EntityLook {
+struct EntitySample {
   Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WB_m_per_s = Eigen::Vector3d::Zero();
@@ -72,16 +72,16 @@ struct Feeler {
 };
 
 /// How fast, up or down, their material moves against each other at a point, m/s.
-inline double VerticalSpeedBetween(const EntityLook& a, const EntityLook& b,
+inline double VerticalSpeedBetween(const EntitySample& a, const EntitySample& b,
                                    const Eigen::Vector3d& p_W_m) {
-  const auto velocity = [&](const EntityLook& look) -> Eigen::Vector3d {
+  const auto velocity = [&](const EntitySample& look) -> Eigen::Vector3d {
     return look.v_WB_m_per_s + look.w_WB_rad_per_s.cross(p_W_m - look.p_WB_m);
   };
   return std::abs(velocity(a).z() - velocity(b).z());
 }
 
 /// What is only known of hands.
-struct HandLook {
+struct HandSample {
   int entity = kNobody;
   double trigger = 0;  ///< commanded grip, 0 open .. 1 closed
   int style = 0;       ///< index into Cast::styles
@@ -110,15 +110,15 @@ struct Touch {
 /// next frame.
 struct Frame {
   Tick tick = 0;
-  std::span<const EntityLook> entities;  ///< one per Cast::entities, same order
-  std::span<const HandLook> hands;       ///< sorted by entity
-  std::span<const Touch> touches;        ///< sorted by (a, b)
+  std::span<const EntitySample> entities;  ///< one per Cast::entities, same order
+  std::span<const HandSample> hands;       ///< sorted by entity
+  std::span<const Touch> touches;          ///< sorted by (a, b)
 };
 
 /// One entity whose pose or velocity is not as it was.
 struct EntityChange {
   int entity = kNobody;
-  EntityLook look;
+  EntitySample look;
 };
 
 /// Two entities that touch no more, in any order.
@@ -133,7 +133,7 @@ struct Parting {
 struct FrameChanges {
   Tick tick = 0;
   std::span<const EntityChange> entities;  ///< each entity at most once
-  std::span<const HandLook> hands;         ///< each hand at most once
+  std::span<const HandSample> hands;       ///< each hand at most once
   std::span<const Touch> touches;          ///< begun, or pressed otherwise than before
   std::span<const Parting> partings;
 };

@@ -82,8 +82,8 @@ class Engine {
   bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);
   void EndFrame();
   void SortNewEvents();
-  void Look(int entity, const EntityLook& look);
-  void Look(const HandLook& hand);
+  void Look(int entity, const EntitySample& look);
+  void Look(const HandSample& hand);
   void Press(std::span<const Touch> touches);
   void BeginTouch(Lane& touching);
   void Part(int touching);

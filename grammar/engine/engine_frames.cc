@@ -12,14 +12,14 @@ namespace {
 // Far enough from the limits of a Tick that times can be added and subtracted.
 constexpr Tick kLatestTick = 1'000'000'000'000'000;
 
-bool Same(const EntityLook& a, const EntityLook& b) {
+bool Same(const EntitySample& a, const EntitySample& b) {
   return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() &&
          a.v_WB_m_per_s == b.v_WB_m_per_s && a.w_WB_rad_per_s == b.w_WB_rad_per_s &&
          a.joint_position == b.joint_position && a.joint_fraction == b.joint_fraction &&
          a.gazes_at == b.gazes_at;
 }
 
-bool SamePose(const HandLook& a, const HandSample& b) {
+bool SamePose(const HandSample& a, const HandSample& b) {
   const auto same = [](const Feeler& x, const Feeler& y) {
     return x.p_W_m == y.p_W_m && x.radius_m == y.radius_m;
   };
@@ -46,7 +46,7 @@ std::string_view Engine::WhyNotWatchable(const Frame& frame) {
   if (static_cast<int>(frame.entities.size()) != entity_count_)
     return "a frame shows another number of entities than the cast";
   int last_hand = kNobody;
-  for (const HandLook& hand : frame.hands) {
+  for (const HandSample& hand : frame.hands) {
     if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the cast";
     if (hand.entity <= last_hand)
       return "a frame shows a hand twice, or its hands are not in the order of the cast";
@@ -59,7 +59,7 @@ std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) {
   for (const EntityChange& change : changes.entities) {
     if (!IsEntity(change.entity)) return "a frame shows somebody who is not in the cast";
   }
-  for (const HandLook& hand : changes.hands) {
+  for (const HandSample& hand : changes.hands) {
     if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the cast";
   }
   for (const Parting& parting : changes.partings) {
@@ -91,7 +91,7 @@ void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
     if (!Same(frame.entities[i], history_.Look(entity, history_.now())))
       Look(entity, frame.entities[i]);
   }
-  for (const HandLook& hand : frame.hands) Look(hand);
+  for (const HandSample& hand : frame.hands) Look(hand);
   Press(frame.touches);
   // A touch that this frame does not show has ended.
   for (std::size_t i = touching_.size(); i-- > 0;) Part(touching_[i]);
@@ -101,7 +101,7 @@ void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
 void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
   if (!BeginFrame(changes, out)) return;
   for (const EntityChange& change : changes.entities) Look(change.entity, change.look);
-  for (const HandLook& hand : changes.hands) Look(hand);
+  for (const HandSample& hand : changes.hands) Look(hand);
   Press(changes.touches);
   for (const Parting& parting : changes.partings) {
     const int index = lanes_.FindTouch(parting.a, parting.b);
@@ -173,12 +173,12 @@ void Engine::Finish(Tick end, std::vector<Event>& out) {
   SortNewEvents();
 }
 
-void Engine::Look(int entity, const EntityLook& look) {
-  history_.SetLook(entity, look);
+void Engine::Look(int entity, const EntitySample& look) {
+  history_.SetSample(entity, look);
   WakeWatchers(lanes_.PoseWatchers(entity));
 }
 
-void Engine::Look(const HandLook& hand) {
+void Engine::Look(const HandSample& hand) {
   const HandSample* before = history_.Hand(hand.entity, history_.now());
   const bool same_grip = before != nullptr && before->look.trigger == hand.trigger;
   const bool same_pose = before != nullptr && SamePose(hand, *before);

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
 
 // From a point in the world to the oriented bounding box of an entity; 0 inside.
-double DistanceToBox(const Vector3d& p_W, const CastMember& member, const EntityLook& look) {
+double DistanceToBox(const Vector3d& p_W, const CastMember& member, const EntitySample& look) {
   const Vector3d p_B = look.q_WB.conjugate() * (p_W - look.p_WB_m);
   const Vector3d outside = ((p_B - member.p_BC_m).cwiseAbs() - member.half_size_m).cwiseMax(0);
   return outside.norm();
@@ -88,8 +88,8 @@ bool Evaluator::IsInside(const Node& node, const View& view) const {
   const auto who = static_cast<std::size_t>(Entity(node, view, 0)),
              room = static_cast<std::size_t>(Entity(node, view, 1));
   const CastMember& of = cast_.entities[room];
-  const EntityLook& look = history_.Look(static_cast<int>(who), view.frame);
-  const EntityLook& at = history_.Look(static_cast<int>(room), view.frame);
+  const EntitySample& look = history_.Look(static_cast<int>(who), view.frame);
+  const EntitySample& at = history_.Look(static_cast<int>(room), view.frame);
   const Vector3d centre_W = look.p_WB_m + look.q_WB * cast_.entities[who].p_BC_m;
   const Vector3d away_m = at.q_WB.conjugate() * (centre_W - at.p_WB_m) - of.p_BC_m;
   if (of.round) return away_m.norm() <= of.half_size_m.x();
@@ -359,7 +359,7 @@ bool Evaluator::SensorSet(const Node& node, const View& view) const {
 double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
   const HandSample* sample = history_.Hand(hand, frame);
   if (sample == nullptr) return 0;
-  const EntityLook& look = history_.Look(object, frame);
+  const EntitySample& look = history_.Look(object, frame);
   double gap = std::numeric_limits<double>::infinity();
   for (const Feeler& feeler : sample->feelers) {
     gap =
@@ -451,15 +451,15 @@ std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) co
 }
 
 Vector3d Evaluator::PositionOn(int a, int b, FrameNumber frame) const {
-  const EntityLook& on = history_.Look(b, frame);
+  const EntitySample& on = history_.Look(b, frame);
   return on.q_WB.conjugate() * (history_.Look(a, frame).p_WB_m - on.p_WB_m);
 }
 
 // Of a's origin, against the point of b that is there: turning counts, so a tray may turn under a
 // cup.
 Vector3d Evaluator::RelativeVelocity(int a, int b, FrameNumber frame) const {
-  const EntityLook& look_a = history_.Look(a, frame);
-  const EntityLook& look_b = history_.Look(b, frame);
+  const EntitySample& look_a = history_.Look(a, frame);
+  const EntitySample& look_b = history_.Look(b, frame);
   const Vector3d arm = look_a.p_WB_m - look_b.p_WB_m;
   return look_a.v_WB_m_per_s - (look_b.v_WB_m_per_s + look_b.w_WB_rad_per_s.cross(arm));
 }

@@ -22,16 +22,16 @@ void History::BeginFrame(Tick tick) {
   ++count_;
 }
 
-void History::SetLook(int entity, const EntityLook& look) {
-  Ring<LookSample>& samples = looks_[entity];
+void History::SetSample(int entity, const EntitySample& look) {
+  Ring<PoseSample>& samples = looks_[entity];
   ForgetSamples(samples, first_look_);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
-  LookSample& sample = samples.PushBack();
+  PoseSample& sample = samples.PushBack();
   sample.frame = now();
   sample.look = look;
 }
 
-void History::SetHand(const HandLook& look, std::uint64_t beyond) {
+void History::SetHand(const HandSample& look, std::uint64_t beyond) {
   int& index = hand_of_entity_[look.entity];
   if (index < 0) {
     index = static_cast<int>(hand_samples_.size());

@@ -24,7 +24,7 @@ struct Moment {
 
 struct HandSample {
   FrameNumber frame = 0;
-  HandLook look;  ///< its own span is empty, see `feelers`
+  HandSample look;  ///< its own span is empty, see `feelers`
   std::vector<Feeler> feelers;
   std::uint64_t beyond = 0;  ///< thresholds of the grammar that its grip is beyond
 };
@@ -55,8 +55,8 @@ class History {
 
   /// A new frame in which everything looks as before, until it is said otherwise.
   void BeginFrame(Tick tick);
-  void SetLook(int entity, const EntityLook& look);
-  void SetHand(const HandLook& look, std::uint64_t beyond = 0);
+  void SetSample(int entity, const EntitySample& look);
+  void SetHand(const HandSample& look, std::uint64_t beyond = 0);
 
   /// Forgets ticks of frames before `ticks` and looks that only frames before `looks` need; of an
   /// entity, when its next look comes.
@@ -78,8 +78,8 @@ class History {
   /// The last remembered frame at or before `tick`; the first one if there is none.
   FrameNumber LastNotAfter(Tick tick) const;
 
-  const EntityLook& Look(int entity, FrameNumber frame) const {
-    static const EntityLook kNotSeenYet;
+  const EntitySample& Look(int entity, FrameNumber frame) const {
+    static const EntitySample kNotSeenYet;
     return looks_[entity].empty() ? kNotSeenYet : SampleAt(looks_[entity], frame).look;
   }
   /// Null if this entity is no hand.
@@ -94,9 +94,9 @@ class History {
   Tick AtLeastTicks(double seconds) const;
 
  private:
-  struct LookSample {
+  struct PoseSample {
     FrameNumber frame = 0;
-    EntityLook look;
+    EntitySample look;
   };
 
   double ticks_per_second_;
@@ -104,7 +104,7 @@ class History {
   FrameNumber first_look_ = 0;
   bool complete_ = false;
   Ring<Tick> ticks_;
-  std::vector<Ring<LookSample>> looks_;         // by entity
+  std::vector<Ring<PoseSample>> looks_;         // by entity
   std::vector<Ring<HandSample>> hand_samples_;  // by hand, in order of first sight
   std::vector<int> hand_of_entity_;             // index into hand_samples_ or -1
 };

@@ -62,7 +62,7 @@ std::string BlameText(const std::optional<CheckRecord>& last_agreed,
           parting->entity.empty() ? "the run is not as long" : parting->entity + " does not move",
           kAgreed);
     }
-  } else if (!LookAlike(*its_trace, now.trace)) {
+  } else if (!SameSample(*its_trace, now.trace)) {
     text = fmt::format("blame: the looks are at other ticks; where both look everything moves {}",
                        kAgreed);
   }

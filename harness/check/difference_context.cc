@@ -85,12 +85,12 @@ std::string StateText(const grammar::Frame& frame, const std::set<int>& particip
                       const grammar::Cast& cast) {
   std::string text;
   for (const int id : participants) {
-    const grammar::EntityLook& look = frame.entities[static_cast<std::size_t>(id)];
+    const grammar::EntitySample& look = frame.entities[static_cast<std::size_t>(id)];
     text += fmt::format("    {} at ({:.3f}, {:.3f}, {:.3f}) m, {:.3f} m/s, rising {:.3f} m/s",
                         cast.entities[static_cast<std::size_t>(id)].name, Rounded(look.p_WB_m.x()),
                         Rounded(look.p_WB_m.y()), Rounded(look.p_WB_m.z()),
                         look.v_WB_m_per_s.norm(), Rounded(look.v_WB_m_per_s.z()));
-    for (const grammar::HandLook& hand : frame.hands) {
+    for (const grammar::HandSample& hand : frame.hands) {
       if (hand.entity == id) text += fmt::format(", grip {:.2f}", hand.trigger);
     }
     text += "\n";

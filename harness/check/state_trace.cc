@@ -46,7 +46,7 @@ std::optional<PartingPlace> FirstTickOfTheLonger(const PhysicsTrace& a, const Ph
   };
   const PhysicsTrace& longer = last(a) > last(b) ? a : b;
   const std::int64_t end = std::min(last(a), last(b));
-  const std::int64_t unseen = LookAlike(a, b) ? 1 : std::max(WidestGap(a), WidestGap(b));
+  const std::int64_t unseen = SameSample(a, b) ? 1 : std::max(WidestGap(a), WidestGap(b));
   if (last(longer) - end < unseen) return std::nullopt;
   return PartingPlace{.tick = *std::upper_bound(longer.ticks.begin(), longer.ticks.end(), end),
                       .entity = {}};
@@ -66,7 +66,7 @@ PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snaps
   return trace;
 }
 
-bool LookAlike(const PhysicsTrace& a, const PhysicsTrace& b) {
+bool SameSample(const PhysicsTrace& a, const PhysicsTrace& b) {
   const auto both = static_cast<std::ptrdiff_t>(std::min(a.ticks.size(), b.ticks.size()));
   return std::equal(a.ticks.begin(), a.ticks.begin() + both, b.ticks.begin());
 }

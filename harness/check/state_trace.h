@@ -32,7 +32,7 @@ struct PartingPlace {
 };
 
 /// Whether both look at the same ticks, as long as both run.
-bool LookAlike(const PhysicsTrace& a, const PhysicsTrace& b);
+bool SameSample(const PhysicsTrace& a, const PhysicsTrace& b);
 
 /// Nothing when the two move the same, as far as both look, and are as long.
 std::optional<PartingPlace> FirstParting(const PhysicsTrace& a, const PhysicsTrace& b);

@@ -14,7 +14,7 @@
 namespace prehend::harness {
 
 /// The grasp styles of all hands, each name once, in the order of the hands: what
-/// grammar::HandLook::style indexes, while a snapshot counts in its own hand's list.
+/// grammar::HandSample::style indexes, while a snapshot counts in its own hand's list.
 std::vector<std::string> StyleNames(const physics::Scene& scene);
 
 /// Who can be bound to roles: the scene's bodies first (same index), then its hands.

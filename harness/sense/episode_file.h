@@ -28,8 +28,8 @@ struct EpisodeHeader {
 /// A frame that owns what it shows.
 struct EpisodeFrame {
   grammar::Tick tick = 0;
-  std::vector<grammar::EntityLook> entities;
-  std::vector<grammar::HandLook> hands;               ///< their own spans are empty, see `feelers`
+  std::vector<grammar::EntitySample> entities;
+  std::vector<grammar::HandSample> hands;             ///< their own spans are empty, see `feelers`
   std::vector<std::vector<grammar::Feeler>> feelers;  ///< per hand
   std::vector<grammar::Touch> touches;
 

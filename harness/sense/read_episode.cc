@@ -303,12 +303,12 @@ class EpisodeReader {
     const double dt_s = static_cast<double>(tick - before) /
                         static_cast<double>(episode.header.cast.ticks_per_second);
     now_.tick = tick;
-    for (grammar::EntityLook& look : now_.entities)
+    for (grammar::EntitySample& look : now_.entities)
       look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
     for (const Named<LookEntry>& look : entry.looks) {
       const int index = IndexOf(look.name, look.name_where, complaints);
       if (index == grammar::kNobody) continue;
-      TakeLook(look.value, first ? 0 : dt_s, now_.entities[index]);
+      TakeSample(look.value, first ? 0 : dt_s, now_.entities[index]);
       if (const auto& gazes_at = look.value.gazes_at) {
         now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, complaints);
       }
@@ -325,8 +325,8 @@ class EpisodeReader {
   }
 
   /// Velocities that are not given are those from the previous look to this one.
-  static void TakeLook(const LookEntry& entry, double dt_s, grammar::EntityLook& look) {
-    const grammar::EntityLook before = look;
+  static void TakeSample(const LookEntry& entry, double dt_s, grammar::EntitySample& look) {
+    const grammar::EntitySample before = look;
     look.p_WB_m = entry.at_m;
     if (entry.quat_wxyz) {
       const Eigen::Vector4d& q = entry.quat_wxyz->value;
@@ -354,8 +354,8 @@ class EpisodeReader {
                             "its entity has no 'hand: true'");
     const auto slot = static_cast<std::size_t>(found - hands_.begin());
     const HandEntry& entry = named.value;
-    const grammar::EntityLook& look = now_.entities[static_cast<std::size_t>(entity)];
-    grammar::HandLook& hand = now_.hands[slot];
+    const grammar::EntitySample& look = now_.entities[static_cast<std::size_t>(entity)];
+    grammar::HandSample& hand = now_.hands[slot];
     hand.trigger = entry.trigger;
     hand.ahead_W = entry.ahead && !entry.ahead->isZero() ? entry.ahead->normalized()
                                                          : look.q_WB * Eigen::Vector3d::UnitX();
@@ -404,8 +404,8 @@ class EpisodeReader {
 
   /// Where the two touch is not known; the place of the one that the other bears is near it.
   double SpeedAtTheUpper(const grammar::Touch& touch) const {
-    const grammar::EntityLook &a = now_.entities[static_cast<std::size_t>(touch.a)],
-                              &b = now_.entities[static_cast<std::size_t>(touch.b)];
+    const grammar::EntitySample &a = now_.entities[static_cast<std::size_t>(touch.a)],
+                                &b = now_.entities[static_cast<std::size_t>(touch.b)];
     return grammar::VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
   }
 

@@ -57,7 +57,7 @@ std::vector<int> StyleIndices(const physics::HandModel& model,
   return indices;
 }
 
-grammar::EntityLook LookAt(const physics::BodyState& body) {
+grammar::EntitySample LookAt(const physics::BodyState& body) {
   return {.p_WB_m = body.X_WB.p_m,
           .q_WB = body.X_WB.q,
           .v_WB_m_per_s = body.v_WB_m_per_s,
@@ -66,7 +66,7 @@ grammar::EntityLook LookAt(const physics::BodyState& body) {
 }
 
 /// No grammar can tell them apart.
-bool LookAlike(const grammar::EntityLook& a, const grammar::EntityLook& b) {
+bool SameSample(const grammar::EntitySample& a, const grammar::EntitySample& b) {
   return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() &&
          a.v_WB_m_per_s == b.v_WB_m_per_s && a.w_WB_rad_per_s == b.w_WB_rad_per_s &&
          a.joint_position == b.joint_position && a.joint_fraction == b.joint_fraction &&
@@ -119,30 +119,30 @@ grammar::Frame Sensing::Whole() {
   return {tick_, entities_, hands_, touches_};
 }
 
-void Sensing::Show(int entity, const grammar::EntityLook& look) {
-  grammar::EntityLook& before = entities_[static_cast<std::size_t>(entity)];
-  if (!LookAlike(look, before)) shown_.push_back(entity);
+void Sensing::Show(int entity, const grammar::EntitySample& look) {
+  grammar::EntitySample& before = entities_[static_cast<std::size_t>(entity)];
+  if (!SameSample(look, before)) shown_.push_back(entity);
   before = look;
 }
 
 void Sensing::SenseBodies(const physics::Snapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.bodies.size(); ++i) {
     if (!snapshot.MayHaveMoved(i, tick_)) continue;
-    grammar::EntityLook look = LookAt(snapshot.bodies[i]);
+    grammar::EntitySample look = LookAt(snapshot.bodies[i]);
     look.joint_position = entities_[i].joint_position;
     look.joint_fraction = entities_[i].joint_fraction;
     look.gazes_at = entities_[i].gazes_at;
     Show(static_cast<int>(i), look);
   }
   for (std::size_t i = 0; i < snapshot.joints.size(); ++i) {
-    grammar::EntityLook look = entities_[static_cast<std::size_t>(jointed_[i])];
+    grammar::EntitySample look = entities_[static_cast<std::size_t>(jointed_[i])];
     look.joint_position = snapshot.joints[i].position;
     look.joint_fraction = snapshot.joints[i].fraction;
     Show(jointed_[i], look);
   }
   for (std::size_t i = 0; i < snapshot.gazes.size(); ++i) {
     const physics::GazeState& gaze = snapshot.gazes[i];
-    grammar::EntityLook look = entities_[static_cast<std::size_t>(heads_[i])];
+    grammar::EntitySample look = entities_[static_cast<std::size_t>(heads_[i])];
     look.gazes_at = gaze.hand >= 0   ? body_count_ + gaze.hand
                     : gaze.body >= 0 ? gaze.body
                                      : grammar::kNobody;

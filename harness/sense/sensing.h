@@ -45,7 +45,7 @@ class Sensing {
   using Touches = std::vector<grammar::Touch>;
 
   void SenseBodies(const physics::Snapshot& snapshot);
-  void Show(int entity, const grammar::EntityLook& look);
+  void Show(int entity, const grammar::EntitySample& look);
   void SenseHands(const physics::Snapshot& snapshot);
   void SenseTouches(const physics::Snapshot& snapshot);
   void ReadTouches(Points points, Touches& touches);
@@ -78,8 +78,8 @@ class Sensing {
   std::vector<int> heads_;    ///< for every person the body that is her head
   std::vector<int> jointed_;  ///< for every joint the body that hangs on it
   std::vector<HandGeometry> geometry_;
-  std::vector<grammar::EntityLook> entities_;
-  std::vector<grammar::HandLook> hands_;
+  std::vector<grammar::EntitySample> entities_;
+  std::vector<grammar::HandSample> hands_;
   std::vector<std::vector<grammar::Feeler>> feelers_;  ///< per hand, world frame
   std::vector<PairPoint> points_;
   /// What touches, sorted: now and in the snapshot before, between what may move and what rests.

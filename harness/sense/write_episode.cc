@@ -44,7 +44,7 @@ Json MemberJson(const grammar::CastMember& member, const grammar::Cast& cast) {
   return json;
 }
 
-Json LookJson(const grammar::EntityLook& look, const grammar::Cast& cast) {
+Json SampleJson(const grammar::EntitySample& look, const grammar::Cast& cast) {
   Json json = {{"at_m", ToJson(look.p_WB_m)},
                {"quat_wxyz", ToJson(look.q_WB)},
                {"v_m_per_s", ToJson(look.v_WB_m_per_s)},
@@ -56,7 +56,7 @@ Json LookJson(const grammar::EntityLook& look, const grammar::Cast& cast) {
   return json;
 }
 
-Json HandJson(const grammar::HandLook& hand, const grammar::Cast& cast) {
+Json HandJson(const grammar::HandSample& hand, const grammar::Cast& cast) {
   Json feelers = Json::array();
   for (const grammar::Feeler& feeler : hand.feelers) {
     feelers.push_back({feeler.p_W_m.x(), feeler.p_W_m.y(), feeler.p_W_m.z(), feeler.radius_m});
@@ -101,14 +101,14 @@ EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
 void EpisodeWriter::Write(const grammar::Frame& frame) {
   Json looks = Json::object();
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
-    Json look = LookJson(frame.entities[i], cast_);
+    Json look = SampleJson(frame.entities[i], cast_);
     std::string text = look.dump();
     if (text == shown_[i]) continue;
     looks[cast_.entities[i].name] = std::move(look);
     shown_[i] = std::move(text);
   }
   Json hands = Json::object(), touches = Json::array();
-  for (const grammar::HandLook& hand : frame.hands)
+  for (const grammar::HandSample& hand : frame.hands)
     hands[cast_.entities[hand.entity].name] = HandJson(hand, cast_);
   for (const grammar::Touch& touch : frame.touches) touches.push_back(TouchJson(touch, cast_));
   out_ << Json{{"tick", frame.tick},

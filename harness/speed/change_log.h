@@ -23,7 +23,7 @@ class ChangeLog {
   }
   void Add(const grammar::EntityChange& change) { entities_.push_back(change); }
   /// Without feelers: they would not outlive the call.
-  void Add(grammar::HandLook hand) {
+  void Add(grammar::HandSample hand) {
     hand.feelers = {};
     hands_.push_back(hand);
   }
@@ -51,7 +51,7 @@ class ChangeLog {
   };
   std::vector<Start> frames_;
   std::vector<grammar::EntityChange> entities_;
-  std::vector<grammar::HandLook> hands_;
+  std::vector<grammar::HandSample> hands_;
   std::vector<grammar::Touch> touches_;
   std::vector<grammar::Parting> partings_;
 };

@@ -122,7 +122,9 @@ class Stations {
   void Feel(int i, std::uint32_t sets) {
     log.Add(grammar::Touch{.a = i, .b = objects_ + i, .sensor_sets = sets});
   }
-  void Grip(int i, double trigger) { log.Add(grammar::HandLook{.entity = i, .trigger = trigger}); }
+  void Grip(int i, double trigger) {
+    log.Add(grammar::HandSample{.entity = i, .trigger = trigger});
+  }
 
   void Act(int i, int step) {
     const Visit& visit = visits_[static_cast<std::size_t>(i)];
@@ -249,7 +251,7 @@ ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker) {
   for (int frame = 0; frame < frames; ++frame) {
     log.Begin(frame);
     for (int i = 0; frame == 0 && i < objects; ++i) {
-      log.Add(grammar::HandLook{.entity = i, .trigger = flicker == Flicker::kFact ? 0.0 : 1.0});
+      log.Add(grammar::HandSample{.entity = i, .trigger = flicker == Flicker::kFact ? 0.0 : 1.0});
       log.Add(grammar::Touch{.a = i, .b = objects + i, .sensor_sets = 1});
     }
     for (int k = 0; frame > 0 && k < per_frame; ++k, next = (next + 1) % objects) {
@@ -323,7 +325,7 @@ Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
     const grammar::FrameChanges frame = log[i];
     for (const grammar::EntityChange& change : frame.entities)
       of(change.entity - objects).p_m = change.look.p_WB_m;
-    for (const grammar::HandLook& hand : frame.hands) of(hand.entity).trigger = hand.trigger;
+    for (const grammar::HandSample& hand : frame.hands) of(hand.entity).trigger = hand.trigger;
     for (const grammar::Touch& touch : frame.touches) {
       if (touch.a >= objects) {
         of(touch.a - objects).on_table = true;

@@ -41,12 +41,12 @@ void Watch(const std::shared_ptr<const Program>& program) {
                                {.name = "table", .classes = {"Fixed", "Thing", "Entity"}}},
                   .styles = {"wrap"}};
   Monitor monitor(program, cast);
-  std::vector<EntityLook> looks(3);
+  std::vector<EntitySample> looks(3);
   const Feeler feeler;
   std::vector<Event> events;
   for (int i = 0; i < 30; ++i) {
     looks[1].p_WB_m.z() = i < 10 ? 0 : 0.01 * i;
-    const HandLook hand{
+    const HandSample hand{
         .entity = 0, .trigger = i > 3 && i < 20 ? 1.0 : 0.0, .feelers = {&feeler, 1}};
     std::vector<Touch> touches;
     if (i > 2 && i < 22) touches.push_back({.a = 0, .b = 1, .normal_force_n = 2, .sensor_sets = 3});

@@ -99,12 +99,12 @@ class Stage {
         hands_.push_back({.entity = static_cast<int>(i)});
     }
     for (const Row& row : case_.facts) Apply(row, tick);
-    for (HandLook& hand : hands_) {
+    for (HandSample& hand : hands_) {
       feelers_[hand.entity] = {.p_W_m = looks_[hand.entity].p_WB_m, .radius_m = 0};
       hand.feelers = {&feelers_[hand.entity], 1};
     }
     for (Touch& touch : touches_) {
-      const EntityLook &a = looks_[touch.a], &b = looks_[touch.b];
+      const EntitySample &a = looks_[touch.a], &b = looks_[touch.b];
       touch.vertical_speed_m_per_s =
           VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
     }
@@ -131,7 +131,7 @@ class Stage {
         row.cells[std::min(static_cast<std::size_t>(tick / kColumnTicks), row.cells.size() - 1)];
     if (what == "x" || what == "y" || what == "z") {
       const int axis = what[0] - 'x';
-      EntityLook& look = looks_[Id(who)];
+      EntitySample& look = looks_[Id(who)];
       look.p_WB_m[axis] = Interpolate(row.cells, tick) / 100;
       // As a simulator does, the velocity is that of the step that led here.
       look.v_WB_m_per_s[axis] =
@@ -141,7 +141,7 @@ class Stage {
     } else if (what == "shakes") {
       if (cell == '#') Shake(looks_[Id(who)], static_cast<double>(tick) / kTicksPerSecond);
     } else if (what == "grip") {
-      for (HandLook& hand : hands_) {
+      for (HandSample& hand : hands_) {
         if (hand.entity == Id(who)) hand.trigger = cell == '#' ? 1 : Digit(cell) / 10.0;
       }
     } else if (what == "joint") {
@@ -158,7 +158,7 @@ class Stage {
 
   // Two centimetres around the other's origin; each column says by how many sixteenths of a turn it
   // goes on.
-  static void Circle(EntityLook& look, const Eigen::Vector3d& centre, const std::string& cells,
+  static void Circle(EntitySample& look, const Eigen::Vector3d& centre, const std::string& cells,
                      Tick tick) {
     constexpr double kRadius_m = 0.02;
     const auto full = static_cast<std::size_t>(tick / kColumnTicks);
@@ -196,7 +196,7 @@ class Stage {
     return touches_.back();
   }
 
-  static void Shake(EntityLook& look, double seconds) {
+  static void Shake(EntitySample& look, double seconds) {
     constexpr double kAmplitude_m = 0.0002;
     constexpr double kRadPerSecond = 300;
     look.p_WB_m.x() += kAmplitude_m * std::sin(kRadPerSecond * seconds);
@@ -222,9 +222,9 @@ class Stage {
 
   const CorpusCase& case_;
   std::map<std::string, int> ids_;
-  std::vector<EntityLook> looks_;
+  std::vector<EntitySample> looks_;
   std::vector<Feeler> feelers_;
-  std::vector<HandLook> hands_;
+  std::vector<HandSample> hands_;
   std::vector<Touch> touches_;
 };
 

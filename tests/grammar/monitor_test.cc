@@ -143,7 +143,7 @@ TEST(Monitor, RefusesFramesThatCannotBe) {
             "a frame's tick is too large");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::min(); }),
             "a frame's tick is too large");
-  static const std::vector<HandLook> kTwice(2, HandLook{.entity = Scene::kHand});
+  static const std::vector<HandSample> kTwice(2, HandSample{.entity = Scene::kHand});
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.hands = kTwice; }),
             "a frame shows a hand twice, or its hands are not in the order of the cast");
   EXPECT_EQ(error_after([](Scene& s, Frame& f) {

@@ -64,7 +64,7 @@ class RandomWorld {
   bool Sometimes() { return random_() % calm_ == 0; }
   double Choose(std::vector<double> values) { return values[random_() % values.size()]; }
 
-  void Move(EntityLook& look) {
+  void Move(EntitySample& look) {
     if (Sometimes()) {
       look.v_WB_m_per_s = {Choose({0, 0, 0, 0.3, -0.3}), Choose({0, 0, 0.1}),
                            Choose({0, 0, 0, 0.2, -0.2})};
@@ -106,8 +106,8 @@ class RandomWorld {
  public:
   Cast cast;
   Tick tick = 0;
-  std::vector<EntityLook> looks;
-  std::vector<HandLook> hands;
+  std::vector<EntitySample> looks;
+  std::vector<HandSample> hands;
   std::vector<std::vector<Feeler>> feelers;
   std::vector<Touch> touches;
 };

@@ -30,9 +30,9 @@ struct Scene {
                           .part_of = kTray},
                          {.name = "tray", .classes = {"Movable", "Thing", "Entity"}}},
             .styles = {"wrap", "pinch"}};
-  std::vector<EntityLook> looks = std::vector<EntityLook>(3);
+  std::vector<EntitySample> looks = std::vector<EntitySample>(3);
   Feeler feeler;
-  HandLook hand{.entity = kHand};
+  HandSample hand{.entity = kHand};
   std::vector<Touch> touches;
 
   Frame At(Tick tick) {

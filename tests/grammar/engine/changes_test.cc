@@ -30,7 +30,7 @@ class Differ {
     std::map<std::pair<int, int>, Touch> now;
     for (const Touch& touch : frame.touches) now[{touch.a, touch.b}] = touch;
     for (std::size_t i = 0; i < frame.entities.size(); ++i) {
-      const EntityLook& look = frame.entities[i];
+      const EntitySample& look = frame.entities[i];
       const bool is_new = looks_.empty() || look.p_WB_m != looks_[i].p_WB_m ||
                           look.v_WB_m_per_s != looks_[i].v_WB_m_per_s;
       if (is_new || repeat_) moved_.push_back({static_cast<int>(i), look});
@@ -53,7 +53,7 @@ class Differ {
 
  private:
   bool repeat_;
-  std::vector<EntityLook> looks_;
+  std::vector<EntitySample> looks_;
   std::map<std::pair<int, int>, Touch> before_;
   std::vector<EntityChange> moved_;
   std::vector<Touch> touches_;
@@ -206,7 +206,7 @@ TEST(Changes, WhatRestsForLongIsFreed) {
   }
   Monitor monitor(program, cast);
   std::vector<Event> events;
-  const HandLook hand{.entity = 0, .trigger = 1};
+  const HandSample hand{.entity = 0, .trigger = 1};
   monitor.AdvanceBy({.tick = 0, .hands = {&hand, 1}}, events);
   int most = 0;
   Tick tick = 0;

@@ -12,9 +12,9 @@ void Push(History& history, const Frame& frame) {
   history.BeginFrame(frame.tick);
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
     if (i != Scene::kTray || history.now() == 0)
-      history.SetLook(static_cast<int>(i), frame.entities[i]);
+      history.SetSample(static_cast<int>(i), frame.entities[i]);
   }
-  for (const HandLook& hand : frame.hands) history.SetHand(hand);
+  for (const HandSample& hand : frame.hands) history.SetHand(hand);
 }
 
 TEST(History, RemembersLooksOfEachFrame) {

@@ -44,7 +44,7 @@ class EpisodeFeed {
  private:
   const RandomEpisode& episode_;
   Monitor& monitor_;
-  std::vector<EntityLook> looks_;
+  std::vector<EntitySample> looks_;
   std::vector<Touch> touches_;
   int next_ = 0;
 };

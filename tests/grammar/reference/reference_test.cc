@@ -152,7 +152,7 @@ std::vector<Event> Watch(const std::shared_ptr<const Program>& program, const Ep
   for (const char* name : {"X", "P", "Q", "R"})
     cast.entities.push_back({.name = name, .classes = {name, "Thing", "Entity"}});
   Monitor monitor(program, cast);
-  const std::vector<EntityLook> looks(cast.entities.size());
+  const std::vector<EntitySample> looks(cast.entities.size());
   std::vector<Event> events;
   for (std::size_t i = 0; i < episode.p.size(); ++i) {
     std::vector<Touch> touches;

@@ -127,7 +127,7 @@ TEST(Sensing, FeelersFollowPalmAndLinks) {
   snapshot.hands[0].palm.X_WB.p_m = {0, 0, 5};
   snapshot.hands[0].X_WL[0].p_m = {1, 0, 5};
   snapshot.hands[0].X_WL[1].p_m = {2, 0, 5};
-  const grammar::HandLook hand = sensing.Sense(snapshot).hands[0];
+  const grammar::HandSample hand = sensing.Sense(snapshot).hands[0];
   ASSERT_EQ(hand.entity, 2);
   double low = 1e9, high = -1e9;
   for (const grammar::Feeler& feeler : hand.feelers) {
