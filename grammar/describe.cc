@@ -181,7 +181,7 @@ GrammarDescription Describe(const Program& program) {
   GrammarDescription description{.name = program.name,
                                  .params = program.params,
                                  .bytes_per_pose = sizeof(FrameNumber) + sizeof(EntitySample),
-                                 .bytes_per_feeler = sizeof(Feeler)};
+                                 .bytes_per_feeler = sizeof(CollisionSphere)};
   const Waits waits(program);
   for (std::size_t i = 0; i < program.events.size(); ++i) {
     const Rule& rule = program.events[i];
@@ -213,7 +213,7 @@ std::string Text(const GrammarDescription& description) {
   text += "\nmemory: poses of the last " + QuantityText({description.history_s, kSeconds}) + ", " +
           std::to_string(description.bytes_per_pose) + " bytes per frame and moving entity, " +
           std::to_string(description.bytes_per_feeler) +
-          " per frame and feeler of a hand; intervals are recent as long as " +
+          " per frame and collision sphere of a hand; intervals are recent as long as " +
           "their poses are kept\n";
   return text;
 }

@@ -66,7 +66,7 @@ struct EntitySample {
 };
 
 /// A ball that stands for a piece of a hand's surface, for distances from hand to object.
-struct Feeler {
+struct CollisionSphere {
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   double radius_m = 0;
 };
@@ -86,8 +86,8 @@ struct HandSample {
   double trigger = 0;  ///< commanded grip, 0 open .. 1 closed
   int style = 0;       ///< index into Cast::styles
   Eigen::Vector3d ahead_W =
-      Eigen::Vector3d::UnitX();     ///< unit vector from the palm to where the hand reaches
-  std::span<const Feeler> feelers;  ///< at least one
+      Eigen::Vector3d::UnitX();  ///< unit vector from the palm to where the hand reaches
+  std::span<const CollisionSphere> collision_spheres;  ///< at least one
 };
 
 /// Two entities whose surfaces touch now. At most one per pair, however many points or links touch.

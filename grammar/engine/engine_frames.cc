@@ -20,11 +20,12 @@ bool Same(const EntitySample& a, const EntitySample& b) {
 }
 
 bool SamePose(const HandSample& a, const HandSample& b) {
-  const auto same = [](const Feeler& x, const Feeler& y) {
+  const auto same = [](const CollisionSphere& x, const CollisionSphere& y) {
     return x.p_W_m == y.p_W_m && x.radius_m == y.radius_m;
   };
   return a.style == b.look.style && a.ahead_W == b.look.ahead_W &&
-         std::equal(a.feelers.begin(), a.feelers.end(), b.feelers.begin(), b.feelers.end(), same);
+         std::equal(a.collision_spheres.begin(), a.collision_spheres.end(),
+                    b.collision_spheres.begin(), b.collision_spheres.end(), same);
 }
 
 bool Same(const Touch& a, bool swapped, const TouchSample& b) {

@@ -361,9 +361,9 @@ double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
   if (sample == nullptr) return 0;
   const EntitySample& look = history_.Look(object, frame);
   double gap = std::numeric_limits<double>::infinity();
-  for (const Feeler& feeler : sample->feelers) {
-    gap =
-        std::min(gap, DistanceToBox(feeler.p_W_m, cast_.entities[object], look) - feeler.radius_m);
+  for (const CollisionSphere& collision_sphere : sample->collision_spheres) {
+    gap = std::min(gap, DistanceToBox(collision_sphere.p_W_m, cast_.entities[object], look) -
+                            collision_sphere.radius_m);
   }
   return std::max(gap, 0.0);
 }
@@ -382,8 +382,10 @@ double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
   const HandSample* before = history_.Hand(hand, frame - 1);
   if (now == nullptr || before == nullptr) return 0;
   double farthest = 0;
-  for (std::size_t i = 0; i < std::min(now->feelers.size(), before->feelers.size()); ++i) {
-    farthest = std::max(farthest, (now->feelers[i].p_W_m - before->feelers[i].p_W_m).norm());
+  for (std::size_t i = 0;
+       i < std::min(now->collision_spheres.size(), before->collision_spheres.size()); ++i) {
+    farthest = std::max(
+        farthest, (now->collision_spheres[i].p_W_m - before->collision_spheres[i].p_W_m).norm());
   }
   return farthest / history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
 }

@@ -41,8 +41,8 @@ void History::SetHand(const HandSample& look, std::uint64_t beyond) {
   HandSample& sample = hand_samples_[index].PushBack();
   sample.frame = now();
   sample.look = look;
-  sample.feelers.assign(look.feelers.begin(), look.feelers.end());
-  sample.look.feelers = {};
+  sample.collision_spheres.assign(look.collision_spheres.begin(), look.collision_spheres.end());
+  sample.look.collision_spheres = {};
   sample.beyond = beyond;
 }
 

@@ -24,8 +24,8 @@ struct Moment {
 
 struct HandSample {
   FrameNumber frame = 0;
-  HandSample look;  ///< its own span is empty, see `feelers`
-  std::vector<Feeler> feelers;
+  HandSample look;  ///< its own span is empty, see `collision_spheres`
+  std::vector<CollisionSphere> collision_spheres;
   std::uint64_t beyond = 0;  ///< thresholds of the grammar that its grip is beyond
 };
 

@@ -29,8 +29,8 @@ struct EpisodeHeader {
 struct EpisodeFrame {
   grammar::Tick tick = 0;
   std::vector<grammar::EntitySample> entities;
-  std::vector<grammar::HandSample> hands;             ///< their own spans are empty, see `feelers`
-  std::vector<std::vector<grammar::Feeler>> feelers;  ///< per hand
+  std::vector<grammar::HandSample> hands;  ///< their own spans are empty, see `collision_spheres`
+  std::vector<std::vector<grammar::CollisionSphere>> collision_spheres;  ///< per hand
   std::vector<grammar::Touch> touches;
 
   /// Lives as long as this and until it changes.

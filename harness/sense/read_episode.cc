@@ -250,8 +250,8 @@ class EpisodeReader {
       }
     }
     now_.entities.resize(names_.size());
-    for (const int hand : hands_) now_.hands.push_back({.entity = hand, .feelers = {}});
-    now_.feelers.resize(hands_.size());
+    for (const int hand : hands_) now_.hands.push_back({.entity = hand, .collision_spheres = {}});
+    now_.collision_spheres.resize(hands_.size());
   }
 
   /// Of what is no hand.
@@ -368,11 +368,11 @@ class EpisodeReader {
                                   entry.style->value, styles);
       hand.style = static_cast<int>(style - styles.begin());
     }
-    std::vector<grammar::Feeler>& feelers = now_.feelers[slot];
-    feelers.clear();
+    std::vector<grammar::CollisionSphere>& collision_spheres = now_.collision_spheres[slot];
+    collision_spheres.clear();
     for (const Eigen::Vector4d& f : entry.feelers_m)
-      feelers.push_back({f.head<3>(), std::max(f[3], 0.0)});
-    if (feelers.empty()) feelers.push_back({look.p_WB_m, 0});
+      collision_spheres.push_back({f.head<3>(), std::max(f[3], 0.0)});
+    if (collision_spheres.empty()) collision_spheres.push_back({look.p_WB_m, 0});
   }
 
   void TakeTouch(const TouchEntry& entry, Complaints& complaints) {
@@ -433,7 +433,7 @@ class EpisodeReader {
 }  // namespace
 
 grammar::Frame EpisodeFrame::View() {
-  for (std::size_t i = 0; i < hands.size(); ++i) hands[i].feelers = feelers[i];
+  for (std::size_t i = 0; i < hands.size(); ++i) hands[i].collision_spheres = collision_spheres[i];
   return {tick, entities, hands, touches};
 }
 

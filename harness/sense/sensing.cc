@@ -22,30 +22,30 @@ constexpr double kLoadBearingShare = 0.05;
 constexpr double kJustPushed_n_s = 1e-12;
 
 /// Balls inscribed in the palm's box, in the hand's frame.
-std::vector<grammar::Feeler> PalmFeelers(const physics::HandModel& model) {
+std::vector<grammar::CollisionSphere> PalmFeelers(const physics::HandModel& model) {
   const double radius = model.palm_size_m.z() / 2;
   const Eigen::Vector2d reach = model.palm_size_m.head<2>() / 2 - Eigen::Vector2d::Constant(radius);
-  std::vector<grammar::Feeler> feelers;
+  std::vector<grammar::CollisionSphere> collision_spheres;
   for (int i = 0; i < kPalmFeelersPerSide; ++i) {
     for (int j = 0; j < kPalmFeelersPerSide; ++j) {
       const double u = 2.0 * i / (kPalmFeelersPerSide - 1) - 1,
                    v = 2.0 * j / (kPalmFeelersPerSide - 1) - 1;
-      feelers.push_back({{u * reach.x(), v * reach.y(), 0}, radius});
+      collision_spheres.push_back({{u * reach.x(), v * reach.y(), 0}, radius});
     }
   }
-  return feelers;
+  return collision_spheres;
 }
 
 /// Balls inscribed in every link's box, in that link's frame (x along the link).
-std::vector<grammar::Feeler> LinkFeelers(const physics::HandModel& model) {
-  std::vector<grammar::Feeler> feelers;
+std::vector<grammar::CollisionSphere> LinkFeelers(const physics::HandModel& model) {
+  std::vector<grammar::CollisionSphere> collision_spheres;
   for (const physics::HandLink& link : model.links) {
     const double radius = std::min({link.half_thickness_m, link.half_width_m, link.length_m / 2});
     const double reach = link.length_m / 2 - radius;
     for (int i = 0; i < kFeelersPerLink; ++i)
-      feelers.push_back({{(2.0 * i / (kFeelersPerLink - 1) - 1) * reach, 0, 0}, radius});
+      collision_spheres.push_back({{(2.0 * i / (kFeelersPerLink - 1) - 1) * reach, 0, 0}, radius});
   }
-  return feelers;
+  return collision_spheres;
 }
 
 /// For each style of the hand its index in `names`, which has them all.
@@ -90,7 +90,7 @@ Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
   for (const physics::Hand& hand : scene.hands) {
     geometry_.push_back({hand.model, PalmFeelers(hand.model), LinkFeelers(hand.model),
                          StyleIndices(hand.model, styles)});
-    feelers_.emplace_back(geometry_.back().palm.size() + geometry_.back().links.size());
+    collision_spheres_.emplace_back(geometry_.back().palm.size() + geometry_.back().links.size());
   }
   for (const physics::Person& person : scene.persons) heads_.push_back(person.head);
   for (const physics::Joint& joint : scene.joints) jointed_.push_back(joint.body);
@@ -154,19 +154,22 @@ void Sensing::SenseHands(const physics::Snapshot& snapshot) {
   for (std::size_t h = 0; h < snapshot.hands.size(); ++h) {
     const physics::HandState& hand = snapshot.hands[h];
     const HandGeometry& geometry = geometry_[h];
-    std::vector<grammar::Feeler>& feelers = feelers_[h];
+    std::vector<grammar::CollisionSphere>& collision_spheres = collision_spheres_[h];
     std::size_t next = 0;
-    for (const grammar::Feeler& feeler : geometry.palm)
-      feelers[next++] = {hand.palm.X_WB * feeler.p_W_m, feeler.radius_m};
+    for (const grammar::CollisionSphere& collision_sphere : geometry.palm)
+      collision_spheres[next++] = {hand.palm.X_WB * collision_sphere.p_W_m,
+                                   collision_sphere.radius_m};
     for (std::size_t i = 0; i < geometry.links.size(); ++i) {
-      const grammar::Feeler& feeler = geometry.links[i];
-      feelers[next++] = {hand.X_WL[i / kFeelersPerLink] * feeler.p_W_m, feeler.radius_m};
+      const grammar::CollisionSphere& collision_sphere = geometry.links[i];
+      collision_spheres[next++] = {hand.X_WL[i / kFeelersPerLink] * collision_sphere.p_W_m,
+                                   collision_sphere.radius_m};
     }
     const int entity = body_count_ + static_cast<int>(h);
     Show(entity, LookAt(hand.palm));
     const auto style = static_cast<std::size_t>(hand.style);
     const int named = style < geometry.styles.size() ? geometry.styles[style] : grammar::kNobody;
-    hands_[h] = {entity, hand.trigger, named, hand.palm.X_WB.q * geometry.model.ahead, feelers};
+    hands_[h] = {entity, hand.trigger, named, hand.palm.X_WB.q * geometry.model.ahead,
+                 collision_spheres};
   }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the grammar gets to see: Snapshot -> Frame, or what is new in it. Points of contact become
-// touches of pairs, links become feelers and sensor sets. Knows geometry, knows nothing of events.
-// Bodies asleep, and what touches between them, are not looked at again: they cost no time.
-// Tested by tests/harness/sense/sensing_test.cc
+// touches of pairs, links become collision spheres and sensor sets. Knows geometry, knows nothing
+// of events. Bodies asleep, and what touches between them, are not looked at again: they cost no
+// time. Tested by tests/harness/sense/sensing_test.cc
 #pragma once
 
 #include <memory>
@@ -55,9 +55,10 @@ class Sensing {
 
   struct HandGeometry {
     physics::HandModel model;
-    std::vector<grammar::Feeler> palm;   ///< in the hand's frame
-    std::vector<grammar::Feeler> links;  ///< in the links' frames, the same number for each link
-    std::vector<int> styles;             ///< for each of the hand's styles its index in StyleNames
+    std::vector<grammar::CollisionSphere> palm;  ///< in the hand's frame
+    std::vector<grammar::CollisionSphere>
+        links;                ///< in the links' frames, the same number for each link
+    std::vector<int> styles;  ///< for each of the hand's styles its index in StyleNames
   };
 
   /// One contact point seen from the pair (a, b) with a < b.
@@ -80,7 +81,7 @@ class Sensing {
   std::vector<HandGeometry> geometry_;
   std::vector<grammar::EntitySample> entities_;
   std::vector<grammar::HandSample> hands_;
-  std::vector<std::vector<grammar::Feeler>> feelers_;  ///< per hand, world frame
+  std::vector<std::vector<grammar::CollisionSphere>> collision_spheres_;  ///< per hand, world frame
   std::vector<PairPoint> points_;
   /// What touches, sorted: now and in the snapshot before, between what may move and what rests.
   struct SensedTouches {

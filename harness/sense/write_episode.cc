@@ -57,13 +57,14 @@ Json SampleJson(const grammar::EntitySample& look, const grammar::Cast& cast) {
 }
 
 Json HandJson(const grammar::HandSample& hand, const grammar::Cast& cast) {
-  Json feelers = Json::array();
-  for (const grammar::Feeler& feeler : hand.feelers) {
-    feelers.push_back({feeler.p_W_m.x(), feeler.p_W_m.y(), feeler.p_W_m.z(), feeler.radius_m});
+  Json collision_spheres = Json::array();
+  for (const grammar::CollisionSphere& collision_sphere : hand.collision_spheres) {
+    collision_spheres.push_back({collision_sphere.p_W_m.x(), collision_sphere.p_W_m.y(),
+                                 collision_sphere.p_W_m.z(), collision_sphere.radius_m});
   }
   Json json = {{"trigger", hand.trigger},
                {"ahead", ToJson(hand.ahead_W)},
-               {"feelers_m", std::move(feelers)}};
+               {"feelers_m", std::move(collision_spheres)}};
   if (hand.style >= 0 && hand.style < static_cast<int>(cast.styles.size()))
     json["style"] = cast.styles[hand.style];
   return json;

@@ -22,9 +22,9 @@ class ChangeLog {
     frames_.push_back({tick, entities_.size(), hands_.size(), touches_.size(), partings_.size()});
   }
   void Add(const grammar::EntityChange& change) { entities_.push_back(change); }
-  /// Without feelers: they would not outlive the call.
+  /// Without collision spheres: they would not outlive the call.
   void Add(grammar::HandSample hand) {
-    hand.feelers = {};
+    hand.collision_spheres = {};
     hands_.push_back(hand);
   }
   void Add(const grammar::Touch& touch) { touches_.push_back(touch); }

@@ -42,12 +42,13 @@ void Watch(const std::shared_ptr<const Program>& program) {
                   .styles = {"wrap"}};
   Monitor monitor(program, cast);
   std::vector<EntitySample> looks(3);
-  const Feeler feeler;
+  const CollisionSphere collision_sphere;
   std::vector<Event> events;
   for (int i = 0; i < 30; ++i) {
     looks[1].p_WB_m.z() = i < 10 ? 0 : 0.01 * i;
-    const HandSample hand{
-        .entity = 0, .trigger = i > 3 && i < 20 ? 1.0 : 0.0, .feelers = {&feeler, 1}};
+    const HandSample hand{.entity = 0,
+                          .trigger = i > 3 && i < 20 ? 1.0 : 0.0,
+                          .collision_spheres = {&collision_sphere, 1}};
     std::vector<Touch> touches;
     if (i > 2 && i < 22) touches.push_back({.a = 0, .b = 1, .normal_force_n = 2, .sensor_sets = 3});
     if (i < 10 || i > 25) touches.push_back({.a = 1, .b = 2, .up_on_a = 1, .normal_force_n = 1});

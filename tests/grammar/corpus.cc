@@ -93,15 +93,15 @@ class Stage {
     looks_.assign(case_.cast.size(), {});
     touches_.clear();
     hands_.clear();
-    feelers_.assign(case_.cast.size(), {});
+    collision_spheres_.assign(case_.cast.size(), {});
     for (std::size_t i = 0; i < case_.cast.size(); ++i) {
       if (case_.cast[i].classes.front() == "Hand")
         hands_.push_back({.entity = static_cast<int>(i)});
     }
     for (const Row& row : case_.facts) Apply(row, tick);
     for (HandSample& hand : hands_) {
-      feelers_[hand.entity] = {.p_W_m = looks_[hand.entity].p_WB_m, .radius_m = 0};
-      hand.feelers = {&feelers_[hand.entity], 1};
+      collision_spheres_[hand.entity] = {.p_W_m = looks_[hand.entity].p_WB_m, .radius_m = 0};
+      hand.collision_spheres = {&collision_spheres_[hand.entity], 1};
     }
     for (Touch& touch : touches_) {
       const EntitySample &a = looks_[touch.a], &b = looks_[touch.b];
@@ -223,7 +223,7 @@ class Stage {
   const CorpusCase& case_;
   std::map<std::string, int> ids_;
   std::vector<EntitySample> looks_;
-  std::vector<Feeler> feelers_;
+  std::vector<CollisionSphere> collision_spheres_;
   std::vector<HandSample> hands_;
   std::vector<Touch> touches_;
 };

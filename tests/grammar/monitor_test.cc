@@ -58,7 +58,7 @@ void PlayRound(Scene& scene, Monitor& monitor, Tick start, std::vector<Event>& e
     scene.looks[Scene::kCup].v_WB_m_per_s.z() = speed;
     scene.looks[Scene::kHand].p_WB_m = {t < 300 ? 0.3 - static_cast<double>(t) * 0.001 : 0, 0,
                                         lift};
-    scene.feeler.p_W_m = scene.looks[Scene::kHand].p_WB_m;
+    scene.collision_sphere.p_W_m = scene.looks[Scene::kHand].p_WB_m;
     scene.hand.ahead_W = {-1, 0, 0};
     scene.hand.trigger = t >= 300 && t < 1900 ? 1 : 0;
     scene.touches.clear();
@@ -168,14 +168,14 @@ event carried(hand: Hand, object: Movable) from held(hand, object) begins
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::pair<const char*, std::function<void(Scene&, Frame&)>> spoilers[] = {
       {"hand not shown", [](Scene&, Frame& f) { f.hands = {}; }},
-      {"no feelers", [](Scene& s, Frame&) { s.hand.feelers = {}; }},
+      {"no collision spheres", [](Scene& s, Frame&) { s.hand.collision_spheres = {}; }},
       {"style unknown", [](Scene& s, Frame&) { s.hand.style = 99; }},
       {"not a number",
        [](Scene& s, Frame&) {
          s.looks[Scene::kCup].p_WB_m.setConstant(kNan);
          s.looks[Scene::kHand].v_WB_m_per_s.setConstant(kNan);
          s.hand.ahead_W.setConstant(kNan);
-         s.feeler.p_W_m.setConstant(kNan);
+         s.collision_sphere.p_W_m.setConstant(kNan);
        }},
       {"infinite", [](Scene& s, Frame&) { s.looks[Scene::kCup].p_WB_m.setConstant(1 / 0.0); }},
       {"touch twice",

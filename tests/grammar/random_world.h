@@ -23,7 +23,7 @@ class RandomWorld {
     for (int i = 0; i < kHands; ++i) {
       cast.entities.push_back({.name = "hand" + std::to_string(i), .classes = {"Hand", "Entity"}});
       hands.push_back({.entity = i});
-      feelers.push_back(std::vector<Feeler>(2));
+      collision_spheres.push_back(std::vector<CollisionSphere>(2));
     }
     for (int i = 0; i < kObjects; ++i) {
       cast.entities.push_back(
@@ -45,11 +45,11 @@ class RandomWorld {
     for (int i = 0; i < kHands; ++i) {
       if (Sometimes()) hands[i].trigger = Choose({0, 0.2, 0.3, 1});
       if (Sometimes()) hands[i].style = static_cast<int>(random_() % 2);
-      for (std::size_t k = 0; k < feelers[i].size(); ++k) {
-        feelers[i][k] = {looks[i].p_WB_m + Eigen::Vector3d(0, 0.02 * static_cast<double>(k), 0),
-                         0.01};
+      for (std::size_t k = 0; k < collision_spheres[i].size(); ++k) {
+        collision_spheres[i][k] = {
+            looks[i].p_WB_m + Eigen::Vector3d(0, 0.02 * static_cast<double>(k), 0), 0.01};
       }
-      hands[i].feelers = feelers[i];
+      hands[i].collision_spheres = collision_spheres[i];
     }
     for (int a = 0; a < static_cast<int>(looks.size()); ++a) {
       for (int b = a + 1; b < static_cast<int>(looks.size()) - (a < kHands ? kPlaces : 0); ++b)
@@ -108,7 +108,7 @@ class RandomWorld {
   Tick tick = 0;
   std::vector<EntitySample> looks;
   std::vector<HandSample> hands;
-  std::vector<std::vector<Feeler>> feelers;
+  std::vector<std::vector<CollisionSphere>> collision_spheres;
   std::vector<Touch> touches;
 };
 

@@ -14,8 +14,8 @@
 
 namespace prehend::grammar::testing {
 
-/// A hand with one feeler, a cup and a tray; the ids are their places in the cast. 1000 ticks per
-/// second.
+/// A hand with one collision sphere, a cup and a tray; the ids are their places in the cast. 1000
+/// ticks per second.
 struct Scene {
   static constexpr int kHand = 0;
   static constexpr int kCup = 1;
@@ -31,12 +31,12 @@ struct Scene {
                          {.name = "tray", .classes = {"Movable", "Thing", "Entity"}}},
             .styles = {"wrap", "pinch"}};
   std::vector<EntitySample> looks = std::vector<EntitySample>(3);
-  Feeler feeler;
+  CollisionSphere collision_sphere;
   HandSample hand{.entity = kHand};
   std::vector<Touch> touches;
 
   Frame At(Tick tick) {
-    hand.feelers = {&feeler, 1};
+    hand.collision_spheres = {&collision_sphere, 1};
     return {.tick = tick, .entities = looks, .hands = {&hand, 1}, .touches = touches};
   }
 };

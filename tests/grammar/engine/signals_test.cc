@@ -28,7 +28,7 @@ Scene KnownScene() {
   s.hand.ahead_W = {-1, 0, 0};
   s.hand.trigger = 0.7;
   s.hand.style = 1;
-  s.feeler = {.p_W_m = {0.55, 0.4, 0.2}, .radius_m = 0.01};
+  s.collision_sphere = {.p_W_m = {0.55, 0.4, 0.2}, .radius_m = 0.01};
   s.touches = {{.a = Scene::kHand,
                 .b = Scene::kCup,
                 .up_on_a = -0.2,
@@ -55,7 +55,7 @@ bool HoldsInScene(const std::string& condition) {
   Monitor monitor(program, scene.cast);
   std::vector<Event> events;
   monitor.Advance(scene.At(0), events);
-  scene.feeler.p_W_m.x() -= 0.01;
+  scene.collision_sphere.p_W_m.x() -= 0.01;
   monitor.Advance(scene.At(10), events);
   monitor.Finish(20, events);
   // The last frame decides: closing_speed has no value before there are two.

@@ -48,7 +48,7 @@ TEST(EpisodeFile, WhatIsLeftOutHasADefault) {
   EXPECT_EQ(last.touches[0].up_on_b, 0.5);
   EXPECT_EQ(last.touches[0].up_on_a, -0.5);
   EXPECT_EQ(last.touches[0].sensor_sets, 2u);
-  EXPECT_EQ(last.feelers[0].size(), 1u);
+  EXPECT_EQ(last.collision_spheres[0].size(), 1u);
   EXPECT_EQ(episode.value->end_tick, 11);
   EXPECT_EQ(episode.value->header.grammar, "pick_and_place");
 }
@@ -76,7 +76,7 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
   EXPECT_EQ(b.entities[1].joint_fraction, 0.25);
   EXPECT_EQ(b.hands[0].style, 1);
   EXPECT_EQ(b.hands[0].trigger, 0.4);
-  EXPECT_EQ(b.feelers[0][0].radius_m, 0.01);
+  EXPECT_EQ(b.collision_spheres[0][0].radius_m, 0.01);
   EXPECT_EQ(b.touches[0].up_on_b, 1);
   EXPECT_EQ(b.touches[0].normal_force_n, 2);
 }

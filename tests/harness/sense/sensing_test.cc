@@ -120,7 +120,7 @@ TEST(Sensing, LinksBecomeSensorSetsOfTheHandEntity) {
   EXPECT_EQ(sensing.Sense(snapshot).touches[0].sensor_sets, 0b100u);
 }
 
-TEST(Sensing, FeelersFollowPalmAndLinks) {
+TEST(Sensing, CollisionSpheresFollowPalmAndLinks) {
   const physics::Scene scene = TwoBodiesAndAHand();
   Sensing sensing(scene, 240);
   physics::Snapshot snapshot = StillSnapshot(2);
@@ -130,11 +130,11 @@ TEST(Sensing, FeelersFollowPalmAndLinks) {
   const grammar::HandSample hand = sensing.Sense(snapshot).hands[0];
   ASSERT_EQ(hand.entity, 2);
   double low = 1e9, high = -1e9;
-  for (const grammar::Feeler& feeler : hand.feelers) {
-    EXPECT_NEAR(feeler.p_W_m.z(), 5, 1e-12);
-    EXPECT_GT(feeler.radius_m, 0);
-    low = std::min(low, feeler.p_W_m.x() - feeler.radius_m);
-    high = std::max(high, feeler.p_W_m.x() + feeler.radius_m);
+  for (const grammar::CollisionSphere& collision_sphere : hand.collision_spheres) {
+    EXPECT_NEAR(collision_sphere.p_W_m.z(), 5, 1e-12);
+    EXPECT_GT(collision_sphere.radius_m, 0);
+    low = std::min(low, collision_sphere.p_W_m.x() - collision_sphere.radius_m);
+    high = std::max(high, collision_sphere.p_W_m.x() + collision_sphere.radius_m);
   }
   const physics::HandModel& model = scene.hands[0].model;
   EXPECT_NEAR(low, -model.palm_size_m.x() / 2, 1e-9);
