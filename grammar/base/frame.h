@@ -122,20 +122,20 @@ struct EntityChange {
 };
 
 /// Two entities that touch no more, in any order.
-struct Parting {
+struct ContactEnd {
   int a = kNobody;
   int b = kNobody;
 };
 
 /// One look at the world as what is new in it: whatever is not mentioned is as it was in the frame
 /// before. Before the first one, everything is at the origin and nothing touches. A pair among both
-/// touches and partings touches.
+/// touches and contact ends touches.
 struct FrameChanges {
   Tick tick = 0;
   std::span<const EntityChange> entities;  ///< each entity at most once
   std::span<const HandSample> hands;       ///< each hand at most once
   std::span<const Touch> touches;          ///< begun, or pressed otherwise than before
-  std::span<const Parting> partings;
+  std::span<const ContactEnd> contact_ends;
 };
 
 }  // namespace prehend::grammar

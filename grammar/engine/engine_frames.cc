@@ -63,9 +63,9 @@ std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) {
   for (const HandSample& hand : changes.hands) {
     if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the cast";
   }
-  for (const Parting& parting : changes.partings) {
-    if (!IsEntity(parting.a) || !IsEntity(parting.b))
-      return "a frame shows a parting of somebody not in the cast";
+  for (const ContactEnd& contact_end : changes.contact_ends) {
+    if (!IsEntity(contact_end.a) || !IsEntity(contact_end.b))
+      return "a frame shows a contact end of somebody not in the cast";
   }
   return WhyNoTouches(changes.touches);
 }
@@ -104,8 +104,8 @@ void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
   for (const EntityChange& change : changes.entities) Look(change.entity, change.look);
   for (const HandSample& hand : changes.hands) Look(hand);
   Press(changes.touches);
-  for (const Parting& parting : changes.partings) {
-    const int index = lanes_.FindTouch(parting.a, parting.b);
+  for (const ContactEnd& contact_end : changes.contact_ends) {
+    const int index = lanes_.FindTouch(contact_end.a, contact_end.b);
     if (index != kNone && lanes_[index].open) Part(index);
   }
   EndFrame();

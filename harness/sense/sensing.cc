@@ -111,7 +111,7 @@ grammar::FrameChanges Sensing::SenseChanges(const physics::Snapshot& snapshot) {
   entity_changes_.clear();
   for (const int entity : shown_)
     entity_changes_.push_back({entity, entities_[static_cast<std::size_t>(entity)]});
-  return {tick_, entity_changes_, hands_, touch_changes_, partings_};
+  return {tick_, entity_changes_, hands_, touch_changes_, contact_ends_};
 }
 
 grammar::Frame Sensing::Whole() {
@@ -177,7 +177,7 @@ void Sensing::SenseTouches(const physics::Snapshot& snapshot) {
   std::swap(now_.moving, before_.moving);
   ReadTouches(snapshot.contacts, now_.moving);
   touch_changes_.clear();
-  partings_.clear();
+  contact_ends_.clear();
   if (snapshot.resting == resting_points_) return CompareTouches(before_.moving, now_.moving);
   std::swap(now_.resting, before_.resting);
   resting_points_ = snapshot.resting;
@@ -195,12 +195,12 @@ void Sensing::CompareTouches(const Touches& before, const Touches& now) {
   auto old = before.begin();
   for (const grammar::Touch& touch : now) {
     for (; old != before.end() && PairOf(*old) < PairOf(touch); ++old)
-      partings_.push_back({old->a, old->b});
+      contact_ends_.push_back({old->a, old->b});
     const bool touched = old != before.end() && PairOf(*old) == PairOf(touch);
     if (!touched || !Alike(*old, touch)) touch_changes_.push_back(touch);
     if (touched) ++old;
   }
-  for (; old != before.end(); ++old) partings_.push_back({old->a, old->b});
+  for (; old != before.end(); ++old) contact_ends_.push_back({old->a, old->b});
 }
 
 void Sensing::ReadTouches(Points points, Touches& touches) {

@@ -96,7 +96,7 @@ class Sensing {
   std::vector<int> shown_;  ///< entities that look different
   std::vector<grammar::EntityChange> entity_changes_;
   Touches touch_changes_;
-  std::vector<grammar::Parting> partings_;
+  std::vector<grammar::ContactEnd> contact_ends_;
 };
 
 }  // namespace prehend::harness

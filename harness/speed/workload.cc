@@ -134,12 +134,12 @@ class Stations {
       Feel(i, 7);
       Grip(i, 1);
     } else if (step == visit.lift) {
-      log.Add(grammar::Parting{objects_ + i, 2 * objects_});
+      log.Add(grammar::ContactEnd{objects_ + i, 2 * objects_});
     } else if (step == visit.release) {
       Feel(i, 1);
       Grip(i, 0);
     } else if (step == visit.leave) {
-      log.Add(grammar::Parting{i, objects_ + i});
+      log.Add(grammar::ContactEnd{i, objects_ + i});
     } else {
       const bool rises = step <= visit.lift + kRiseFrames;
       const int way = rises ? step - visit.lift : visit.lower + kRiseFrames - step;
@@ -335,8 +335,9 @@ Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
         of(touch.a).sets = touch.sensor_sets;
       }
     }
-    for (const grammar::Parting& parting : frame.partings) {
-      (parting.a >= objects ? of(parting.a - objects).on_table : of(parting.a).touched) = false;
+    for (const grammar::ContactEnd& contact_end : frame.contact_ends) {
+      (contact_end.a >= objects ? of(contact_end.a - objects).on_table
+                                : of(contact_end.a).touched) = false;
     }
     for (int k = 0; k < objects; ++k) of(k).Step(k, objects + k, frame.tick, recognised);
   }

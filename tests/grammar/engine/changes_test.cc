@@ -25,7 +25,7 @@ class Differ {
 
   FrameChanges operator()(const Frame& frame) {
     moved_.clear();
-    partings_.clear();
+    contact_ends_.clear();
     touches_.clear();
     std::map<std::pair<int, int>, Touch> now;
     for (const Touch& touch : frame.touches) now[{touch.a, touch.b}] = touch;
@@ -36,7 +36,7 @@ class Differ {
       if (is_new || repeat_) moved_.push_back({static_cast<int>(i), look});
     }
     for (const auto& [pair, touch] : before_) {
-      if (!now.contains(pair)) partings_.push_back({pair.second, pair.first});
+      if (!now.contains(pair)) contact_ends_.push_back({pair.second, pair.first});
     }
     for (const auto& [pair, touch] : now) {
       const auto old = before_.find(pair);
@@ -48,7 +48,7 @@ class Differ {
     }
     before_ = std::move(now);
     looks_.assign(frame.entities.begin(), frame.entities.end());
-    return {frame.tick, moved_, frame.hands, touches_, partings_};
+    return {frame.tick, moved_, frame.hands, touches_, contact_ends_};
   }
 
  private:
@@ -57,7 +57,7 @@ class Differ {
   std::map<std::pair<int, int>, Touch> before_;
   std::vector<EntityChange> moved_;
   std::vector<Touch> touches_;
-  std::vector<Parting> partings_;
+  std::vector<ContactEnd> contact_ends_;
 };
 
 std::vector<std::string> Lines(const std::vector<Event>& events, const Program& program) {
@@ -213,9 +213,9 @@ TEST(Changes, WhatRestsForLongIsFreed) {
   for (int round = 0; round < 3; ++round) {
     for (int thing = 1; thing <= kThings; ++thing) {
       const Touch touch{.a = 0, .b = thing, .sensor_sets = 3};
-      const Parting parting{0, thing};
+      const ContactEnd contact_end{0, thing};
       monitor.AdvanceBy({.tick = tick += 10, .touches = {&touch, 1}}, events);
-      monitor.AdvanceBy({.tick = tick += 300, .partings = {&parting, 1}}, events);
+      monitor.AdvanceBy({.tick = tick += 300, .contact_ends = {&contact_end, 1}}, events);
       most = std::max(most, monitor.lanes_in_use());
     }
   }

@@ -490,13 +490,13 @@ Cast RandomGrammarCast() {
 void EpisodeFeed::Step(bool as_changes, std::vector<Event>& events) {
   const int frame = next_++;
   if (frame == episode_.frames()) return monitor_.Finish(episode_.ticks.back(), events);
-  std::vector<Parting> partings;
+  std::vector<ContactEnd> contact_ends;
   touches_.clear();
   for (std::size_t k = 0; k < episode_.touches.size(); ++k) {
     const int whom = static_cast<int>(k) + 1;
     if (episode_.touches[k][frame]) touches_.push_back({.a = 0, .b = whom});
     if (!episode_.touches[k][frame] && frame > 0 && episode_.touches[k][frame - 1])
-      partings.push_back({whom, 0});
+      contact_ends.push_back({whom, 0});
   }
   looks_[0].p_WB_m.z() = episode_.height_m[frame];
   const EntityChange change{.entity = 0, .look = looks_[0]};
@@ -508,7 +508,7 @@ void EpisodeFeed::Step(bool as_changes, std::vector<Event>& events) {
                       .entities = {&change, 1},
                       .hands = {},
                       .touches = touches_,
-                      .partings = partings},
+                      .contact_ends = contact_ends},
                      events);
 }
 

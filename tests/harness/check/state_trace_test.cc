@@ -35,10 +35,10 @@ TEST(PhysicsTrace, FindsWhereTwoRunsPart) {
 
   auto other = Recording(10);
   other[7].bodies[1].v_WB_m_per_s.z() = 1e-12;
-  const auto parting = FirstParting(trace, TraceOf(scene, other));
-  ASSERT_TRUE(parting);
-  EXPECT_EQ(parting->tick, 14);
-  EXPECT_EQ(parting->entity, "milk");
+  const auto contact_end = FirstParting(trace, TraceOf(scene, other));
+  ASSERT_TRUE(contact_end);
+  EXPECT_EQ(contact_end->tick, 14);
+  EXPECT_EQ(contact_end->entity, "milk");
 
   const auto shorter = FirstParting(trace, TraceOf(scene, Recording(8)));
   ASSERT_TRUE(shorter);

@@ -161,7 +161,7 @@ TEST(Sensing, ChangesAddUpToTheWhole) {
       std::exchange(asleep.contacts, {}));
   const grammar::FrameChanges nothing = by_changes.SenseChanges(asleep);
   EXPECT_TRUE(nothing.entities.empty());
-  EXPECT_TRUE(nothing.touches.empty() && nothing.partings.empty()) << "only asleep now";
+  EXPECT_TRUE(nothing.touches.empty() && nothing.contact_ends.empty()) << "only asleep now";
   EXPECT_EQ(by_changes.Whole().touches.size(), 1u);
 
   physics::Snapshot lifted = asleep;
@@ -175,8 +175,8 @@ TEST(Sensing, ChangesAddUpToTheWhole) {
   EXPECT_EQ(moved.entities[0].look.p_WB_m.z(), 0.2);
   ASSERT_EQ(moved.touches.size(), 1u);
   EXPECT_EQ(moved.touches[0].b, 2);
-  ASSERT_EQ(moved.partings.size(), 1u);
-  EXPECT_EQ(std::pair(moved.partings[0].a, moved.partings[0].b), std::pair(0, 1));
+  ASSERT_EQ(moved.contact_ends.size(), 1u);
+  EXPECT_EQ(std::pair(moved.contact_ends[0].a, moved.contact_ends[0].b), std::pair(0, 1));
 
   EXPECT_EQ(by_changes.Sense(first).entities[1].p_WB_m.z(), 0.1) << "an earlier moment";
 }
