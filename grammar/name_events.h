@@ -13,6 +13,7 @@ namespace prehend::grammar {
 struct Program;  // grammar/program/program.h
 
 /// Gives monitor events their names and sorts them into the canonical order.
-Timeline NameEvents(const Program& program, const Cast& cast, const std::vector<Event>& events);
+Timeline NameEvents(const Program& program, const EntityTable& entity_table,
+                    const std::vector<Event>& events);
 
 }  // namespace prehend::grammar

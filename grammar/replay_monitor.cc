@@ -5,8 +5,8 @@
 
 namespace prehend::grammar {
 
-Hindsight::Hindsight(std::shared_ptr<const Program> program, Cast cast)
-    : engine_(std::move(program), std::move(cast)) {
+Hindsight::Hindsight(std::shared_ptr<const Program> program, EntityTable entity_table)
+    : engine_(std::move(program), std::move(entity_table)) {
   engine_.Remember(fates_);
 }
 

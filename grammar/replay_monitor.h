@@ -17,16 +17,16 @@ namespace prehend::grammar {
 
 class Hindsight {
  public:
-  Hindsight(std::shared_ptr<const Program> program, Cast cast);
+  Hindsight(std::shared_ptr<const Program> program, EntityTable entity_table);
 
-  /// Empty, or why this program can't watch this cast or these frames.
+  /// Empty, or why this program can't watch this entity table or these frames.
   const std::string& error() const { return engine_.error(); }
   void Advance(const Frame& frame) { engine_.Advance(frame, events_); }
   /// As Monitor::Finish(). Before, nothing below may be asked for, and after, nothing be added.
   void Finish(Tick end);
 
   const Program& program() const { return engine_.program(); }
-  const Cast& cast() const { return engine_.cast(); }
+  const EntityTable& entity_table() const { return engine_.entity_table(); }
   const std::vector<Event>& events() const { return events_; }
 
   /// Frames are numbered from 0; number frames() is the end of the episode.

@@ -18,7 +18,7 @@ struct Event {
   std::array<int, kMaxRoles> roles = {kNobody, kNobody, kNobody, kNobody};  ///< entity ids
   Interval interval;
   Tick decided = 0;       ///< the tick of the frame at which it became certain
-  int style = kNobody;    ///< value of `with style = style(hand)`, index into Cast::styles
+  int style = kNobody;    ///< value of `with style = style(hand)`, index into EntityTable::styles
   bool open_end = false;  ///< closed by Finish(), not by what happened
   /// Values of `with name = value`, SI units, in the order of Program::events[rule].attributes.
   std::array<double, kMaxAttributes> attributes = {};

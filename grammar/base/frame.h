@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vocabulary of what can be observed: who takes part (Cast, fixed for a run) and what one look
-// at the world says (Frame). A grammar sees nothing else; simulated, recorded and hand-written
-// episodes all enter here.
+// The vocabulary of what can be observed: who takes part (EntityTable, fixed for a run) and what
+// one look at the world says (Frame). A grammar sees nothing else; simulated, recorded and
+// hand-written episodes all enter here.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -25,8 +25,8 @@ struct Interval {
 
 inline constexpr int kNobody = -1;
 
-/// One entity that can be bound to a role. Its index in Cast::entities is its id.
-struct CastMember {
+/// One entity that can be bound to a role. Its index in EntityTable::entities is its id.
+struct EntityInfo {
   std::string name;
   /// Most specific first, e.g. {"MilkCarton", "Movable", "Thing", "Entity"} or {"Hand", "Entity"}.
   /// The built-in roots are Entity; Hand and Thing (everything that is not a hand); Movable, Fixed
@@ -45,9 +45,9 @@ struct CastMember {
       0;  ///< hands only: the weight that it can lift; 0: not known, it lifts everything
 };
 
-struct Cast {
+struct EntityTable {
   Tick ticks_per_second = 480;
-  std::vector<CastMember> entities;
+  std::vector<EntityInfo> entities;
   std::vector<std::string> styles;  ///< names of grasp styles; HandSample::style indexes them
 };
 
@@ -84,7 +84,7 @@ inline double VerticalSpeedBetween(const EntitySample& a, const EntitySample& b,
 struct HandSample {
   int entity = kNobody;
   double trigger = 0;  ///< commanded grip, 0 open .. 1 closed
-  int style = 0;       ///< index into Cast::styles
+  int style = 0;       ///< index into EntityTable::styles
   Eigen::Vector3d ahead_W =
       Eigen::Vector3d::UnitX();  ///< unit vector from the palm to where the hand reaches
   std::span<const CollisionSphere> collision_spheres;  ///< at least one
@@ -110,7 +110,7 @@ struct Touch {
 /// next frame.
 struct Frame {
   Tick tick = 0;
-  std::span<const EntitySample> entities;  ///< one per Cast::entities, same order
+  std::span<const EntitySample> entities;  ///< one per EntityTable::entities, same order
   std::span<const HandSample> hands;       ///< sorted by entity
   std::span<const Touch> touches;          ///< sorted by (a, b)
 };

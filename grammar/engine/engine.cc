@@ -10,17 +10,17 @@ bool Later(const auto& a, const auto& b) { return a.tick > b.tick; }
 
 }  // namespace
 
-Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
+Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
     : program_(std::move(program)),
-      cast_(std::move(cast)),
-      entity_count_(static_cast<int>(cast_.entities.size())),
-      history_(cast_),
-      lanes_(*program_, cast_),
-      evaluator_(*program_, cast_, history_, lanes_),
+      entity_table_(std::move(entity_table)),
+      entity_count_(static_cast<int>(entity_table_.entities.size())),
+      history_(entity_table_),
+      lanes_(*program_, entity_table_),
+      evaluator_(*program_, entity_table_, history_, lanes_),
       thresholds_(program_->thresholds),
       recalls_touches_(program_->recalls_touches || program_->asks_touches),
       keeps_touches_(program_->asks_touches),
-      grips_(cast_.entities.size(), thresholds_.OfGrip(0)),
+      grips_(entity_table_.entities.size(), thresholds_.OfGrip(0)),
       awake_(program_->events.size()) {
   for (const Rule& rule : program_->events) {
     rule_ticks_.push_back({.bridging = history_.AtMostTicks(rule.bridging_s),

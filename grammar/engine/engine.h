@@ -31,7 +31,7 @@ namespace prehend::grammar {
 
 class Engine {
  public:
-  Engine(std::shared_ptr<const Program> program, Cast cast);
+  Engine(std::shared_ptr<const Program> program, EntityTable entity_table);
   Engine(const Engine&) = delete;  // the members refer to each other
   Engine& operator=(const Engine&) = delete;
 
@@ -48,7 +48,7 @@ class Engine {
     recalls_touches_ = keeps_touches_ = true;
   }
   const Program& program() const { return *program_; }
-  const Cast& cast() const { return cast_; }
+  const EntityTable& entity_table() const { return entity_table_; }
   const History& history() const { return history_; }
   Lanes& lanes() { return lanes_; }
   const Evaluator& evaluator() const { return evaluator_; }
@@ -190,7 +190,7 @@ class Engine {
   const RuleTicks& TicksOf(const Lane& lane) const { return rule_ticks_[lane.rule]; }
 
   std::shared_ptr<const Program> program_;
-  Cast cast_;
+  EntityTable entity_table_;
   int entity_count_ = 0;
   History history_;
   Lanes lanes_;

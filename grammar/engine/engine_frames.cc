@@ -45,12 +45,12 @@ std::string_view Engine::WhyNoTick(Tick tick) const {
 
 std::string_view Engine::WhyNotWatchable(const Frame& frame) {
   if (static_cast<int>(frame.entities.size()) != entity_count_)
-    return "a frame shows another number of entities than the cast";
+    return "a frame shows another number of entities than the entity table";
   int last_hand = kNobody;
   for (const HandSample& hand : frame.hands) {
-    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the cast";
+    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the entity table";
     if (hand.entity <= last_hand)
-      return "a frame shows a hand twice, or its hands are not in the order of the cast";
+      return "a frame shows a hand twice, or its hands are not in the order of the entity table";
     last_hand = hand.entity;
   }
   return WhyNoTouches(frame.touches);
@@ -58,14 +58,14 @@ std::string_view Engine::WhyNotWatchable(const Frame& frame) {
 
 std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) {
   for (const EntityChange& change : changes.entities) {
-    if (!IsEntity(change.entity)) return "a frame shows somebody who is not in the cast";
+    if (!IsEntity(change.entity)) return "a frame shows somebody who is not in the entity table";
   }
   for (const HandSample& hand : changes.hands) {
-    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the cast";
+    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the entity table";
   }
   for (const ContactEnd& contact_end : changes.contact_ends) {
     if (!IsEntity(contact_end.a) || !IsEntity(contact_end.b))
-      return "a frame shows a contact end of somebody not in the cast";
+      return "a frame shows a contact end of somebody not in the entity table";
   }
   return WhyNoTouches(changes.touches);
 }
@@ -76,7 +76,7 @@ std::string_view Engine::WhyNoTouches(std::span<const Touch> touches) {
   pressed_.clear();
   for (const Touch& touch : touches) {
     if (touch.a < 0 || touch.a >= touch.b || touch.b >= entity_count_) {
-      return "a frame shows a touch of somebody not in the cast";
+      return "a frame shows a touch of somebody not in the entity table";
     }
     const int lane = lanes_.FindTouch(touch.a, touch.b);
     if (lane != kNone) lanes_.Fetch(lane);

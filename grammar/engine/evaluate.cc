@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
 
 // From a point in the world to the oriented bounding box of an entity; 0 inside.
-double DistanceToBox(const Vector3d& p_W, const CastMember& member, const EntitySample& look) {
+double DistanceToBox(const Vector3d& p_W, const EntityInfo& member, const EntitySample& look) {
   const Vector3d p_B = look.q_WB.conjugate() * (p_W - look.p_WB_m);
   const Vector3d outside = ((p_B - member.p_BC_m).cwiseAbs() - member.half_size_m).cwiseMax(0);
   return outside.norm();
@@ -34,9 +34,9 @@ bool IsPosition(const Program& program, int node) {
 }
 
 /// Directly, or through other parts. A recording may have rings of them, hence the bound.
-bool IsPartOf(const Cast& cast, int part, int whole) {
-  for (std::size_t depth = 0; depth < cast.entities.size() && part != kNobody; ++depth) {
-    part = cast.entities[static_cast<std::size_t>(part)].part_of;
+bool IsPartOf(const EntityTable& entity_table, int part, int whole) {
+  for (std::size_t depth = 0; depth < entity_table.entities.size() && part != kNobody; ++depth) {
+    part = entity_table.entities[static_cast<std::size_t>(part)].part_of;
     if (part == whole) return true;
   }
   return false;
@@ -71,7 +71,7 @@ Kleene Evaluator::Truth(int index, const View& view) const {
     case Op::kInside:
       return Known(IsInside(node, view));
     case Op::kPartOf:
-      return Known(IsPartOf(cast_, Entity(node, view, 0), Entity(node, view, 1)));
+      return Known(IsPartOf(entity_table_, Entity(node, view, 0), Entity(node, view, 1)));
     case Op::kGazed:
       return Known(history_.Look(Entity(node, view, 0), view.frame).gazes_at ==
                    Entity(node, view, 1));
@@ -87,10 +87,10 @@ Kleene Evaluator::Truth(int index, const View& view) const {
 bool Evaluator::IsInside(const Node& node, const View& view) const {
   const auto who = static_cast<std::size_t>(Entity(node, view, 0)),
              room = static_cast<std::size_t>(Entity(node, view, 1));
-  const CastMember& of = cast_.entities[room];
+  const EntityInfo& of = entity_table_.entities[room];
   const EntitySample& look = history_.Look(static_cast<int>(who), view.frame);
   const EntitySample& at = history_.Look(static_cast<int>(room), view.frame);
-  const Vector3d centre_W = look.p_WB_m + look.q_WB * cast_.entities[who].p_BC_m;
+  const Vector3d centre_W = look.p_WB_m + look.q_WB * entity_table_.entities[who].p_BC_m;
   const Vector3d away_m = at.q_WB.conjugate() * (centre_W - at.p_WB_m) - of.p_BC_m;
   if (of.round) return away_m.norm() <= of.half_size_m.x();
   return (away_m.cwiseAbs().array() <= of.half_size_m.array()).all();
@@ -181,7 +181,7 @@ std::optional<Evaluator::Reach> Evaluator::ReachOf(const Node& node, const View&
   if (box) {
     const int entity = Entity(node, view, 0);
     const double distance =
-        DistanceToBox(*centre, cast_.entities[entity], history_.Look(entity, view.frame));
+        DistanceToBox(*centre, entity_table_.entities[entity], history_.Look(entity, view.frame));
     return Reach{.distance_m = distance, .radius_m = *radius};
   }
   const std::optional<Vector3d> point = Position(node.args[0], view);
@@ -331,7 +331,8 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
     case Op::kWeight:
       return Weight(a);
     case Op::kStrength:
-      return cast_.entities[a].strength_n > 0 ? cast_.entities[a].strength_n : kBoundless;
+      return entity_table_.entities[a].strength_n > 0 ? entity_table_.entities[a].strength_n
+                                                      : kBoundless;
     default:
       return 0;
   }
@@ -340,7 +341,7 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
 double Evaluator::Weight(int entity) const {
   constexpr double kGravity_m_per_s2 = 9.81;
   return lanes_.IsA(entity, "Fixed") ? kBoundless
-                                     : cast_.entities[entity].mass_kg * kGravity_m_per_s2;
+                                     : entity_table_.entities[entity].mass_kg * kGravity_m_per_s2;
 }
 
 bool Evaluator::SensorSet(const Node& node, const View& view) const {
@@ -349,7 +350,8 @@ bool Evaluator::SensorSet(const Node& node, const View& view) const {
   if (touch == nullptr) return false;
   int set = static_cast<int>(node.number) - 1;
   if (node.name != kNone) {
-    const std::vector<std::string>& names = cast_.entities[Entity(node, view, 0)].sensor_sets;
+    const std::vector<std::string>& names =
+        entity_table_.entities[Entity(node, view, 0)].sensor_sets;
     const auto found = std::find(names.begin(), names.end(), program_.sensor_sets[node.name].name);
     set = found == names.end() ? kNone : static_cast<int>(found - names.begin());
   }
@@ -362,8 +364,9 @@ double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
   const EntitySample& look = history_.Look(object, frame);
   double gap = std::numeric_limits<double>::infinity();
   for (const CollisionSphere& collision_sphere : sample->collision_spheres) {
-    gap = std::min(gap, DistanceToBox(collision_sphere.p_W_m, cast_.entities[object], look) -
-                            collision_sphere.radius_m);
+    gap =
+        std::min(gap, DistanceToBox(collision_sphere.p_W_m, entity_table_.entities[object], look) -
+                          collision_sphere.radius_m);
   }
   return std::max(gap, 0.0);
 }

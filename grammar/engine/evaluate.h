@@ -11,9 +11,10 @@ namespace prehend::grammar {
 
 class Evaluator {
  public:
-  Evaluator(const Program& program, const Cast& cast, const History& history, Lanes& lanes)
+  Evaluator(const Program& program, const EntityTable& entity_table, const History& history,
+            Lanes& lanes)
       : program_(program),
-        cast_(cast),
+        entity_table_(entity_table),
         history_(history),
         lanes_(lanes),
         thresholds_(program.thresholds) {}
@@ -97,7 +98,7 @@ class Evaluator {
   }
 
   const Program& program_;
-  const Cast& cast_;
+  const EntityTable& entity_table_;
   const History& history_;
   Lanes& lanes_;
   Thresholds thresholds_;

@@ -12,10 +12,10 @@ constexpr double kMostTicks = 1e15;
 
 }  // namespace
 
-History::History(const Cast& cast)
-    : ticks_per_second_(static_cast<double>(cast.ticks_per_second)),
-      looks_(cast.entities.size()),
-      hand_of_entity_(cast.entities.size(), -1) {}
+History::History(const EntityTable& entity_table)
+    : ticks_per_second_(static_cast<double>(entity_table.ticks_per_second)),
+      looks_(entity_table.entities.size()),
+      hand_of_entity_(entity_table.entities.size(), -1) {}
 
 void History::BeginFrame(Tick tick) {
   ticks_.PushBack() = tick;

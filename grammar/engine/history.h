@@ -51,7 +51,7 @@ void ForgetSamples(Ring<Sample>& samples, FrameNumber frame) {
 
 class History {
  public:
-  explicit History(const Cast& cast);
+  explicit History(const EntityTable& entity_table);
 
   /// A new frame in which everything looks as before, until it is said otherwise.
   void BeginFrame(Tick tick);

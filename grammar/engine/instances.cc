@@ -12,13 +12,13 @@ constexpr int kMaxLanes = 1'000'000;
 
 }  // namespace
 
-Lanes::Lanes(const Program& program, const Cast& cast)
+Lanes::Lanes(const Program& program, const EntityTable& entity_table)
     : program_(program),
-      cast_(cast),
+      entity_table_(entity_table),
       guarded_(program.events.size()),
-      pose_watchers_(cast.entities.size()),
-      grip_watchers_(cast.entities.size()),
-      name_rank_(cast.entities.size()) {
+      pose_watchers_(entity_table.entities.size()),
+      grip_watchers_(entity_table.entities.size()),
+      name_rank_(entity_table.entities.size()) {
   for (const int index : program.schedule) {
     const Rule& rule = program.events[index];
     // Compositions are made when a part has an interval for them.
@@ -30,20 +30,21 @@ Lanes::Lanes(const Program& program, const Cast& cast)
     std::vector<std::vector<bool>>& roles = fits_.emplace_back();
     for (const RuleRole& role : rule.roles) {
       std::vector<bool>& entities = roles.emplace_back();
-      for (std::size_t e = 0; e < cast.entities.size(); ++e) {
+      for (std::size_t e = 0; e < entity_table.entities.size(); ++e) {
         entities.push_back(IsA(static_cast<int>(e), role.class_name));
       }
     }
   }
-  std::vector<int> by_name(cast.entities.size());
+  std::vector<int> by_name(entity_table.entities.size());
   std::iota(by_name.begin(), by_name.end(), 0);
-  std::stable_sort(by_name.begin(), by_name.end(),
-                   [&](int a, int b) { return cast.entities[a].name < cast.entities[b].name; });
+  std::stable_sort(by_name.begin(), by_name.end(), [&](int a, int b) {
+    return entity_table.entities[a].name < entity_table.entities[b].name;
+  });
   for (std::size_t i = 0; i < by_name.size(); ++i) name_rank_[by_name[i]] = static_cast<int>(i);
 }
 
 bool Lanes::IsA(int entity, const std::string& class_name) const {
-  const std::vector<std::string>& classes = cast_.entities[entity].classes;
+  const std::vector<std::string>& classes = entity_table_.entities[entity].classes;
   return std::find(classes.begin(), classes.end(), class_name) != classes.end();
 }
 
@@ -100,7 +101,7 @@ void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard,
     BindRest(rule, entities, role + 1, guard, made);
     return;
   }
-  for (std::size_t e = 0; e < cast_.entities.size(); ++e) {
+  for (std::size_t e = 0; e < entity_table_.entities.size(); ++e) {
     if (!fits_[rule][role][e]) continue;
     if (std::find(entities.begin(), entities.end(), static_cast<int>(e)) != entities.end())
       continue;

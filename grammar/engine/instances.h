@@ -124,7 +124,7 @@ struct Watch {
 
 class Lanes {
  public:
-  Lanes(const Program& program, const Cast& cast);
+  Lanes(const Program& program, const EntityTable& entity_table);
 
   /// Binds the rules that have no guard.
   void BindUnguarded();
@@ -223,7 +223,7 @@ class Lanes {
   }
   void Unlink(int lane, int watcher, std::vector<int>& orphans);
   const Program& program_;
-  const Cast& cast_;
+  const EntityTable& entity_table_;
   Blocks<Lane> lanes_;  // a lane stays where it is when others are made
   std::vector<int> free_;
   LaneIndex<LaneKey> index_;

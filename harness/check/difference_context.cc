@@ -10,7 +10,7 @@
 #include <optional>
 #include <set>
 
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "harness/sense/sensing.h"
 #include "harness/timeline/event_text.h"
 
@@ -30,14 +30,15 @@ struct Touching {
 };
 
 /// Of what was expected and of what was recognised instead.
-std::set<int> Participants(const Pairing& difference, const grammar::Cast& cast) {
+std::set<int> Participants(const Pairing& difference, const grammar::EntityTable& entity_table) {
   std::set<int> ids;
   for (const std::optional<grammar::NamedEvent>* side :
        {&difference.expected, &difference.actual}) {
     if (!*side) continue;
-    for (std::size_t i = 0; i < cast.entities.size(); ++i) {
-      const bool takes_part = std::ranges::any_of(
-          (*side)->roles, [&](const auto& role) { return role.value == cast.entities[i].name; });
+    for (std::size_t i = 0; i < entity_table.entities.size(); ++i) {
+      const bool takes_part = std::ranges::any_of((*side)->roles, [&](const auto& role) {
+        return role.value == entity_table.entities[i].name;
+      });
       if (takes_part) ids.insert(static_cast<int>(i));
     }
   }
@@ -82,14 +83,15 @@ std::vector<Touching> TouchesIn(Interval window, const std::set<int>& participan
 double Rounded(double value) { return std::round(1000 * value) / 1000 + 0.0; }
 
 std::string StateText(const grammar::Frame& frame, const std::set<int>& participants,
-                      const grammar::Cast& cast) {
+                      const grammar::EntityTable& entity_table) {
   std::string text;
   for (const int id : participants) {
     const grammar::EntitySample& look = frame.entities[static_cast<std::size_t>(id)];
-    text += fmt::format("    {} at ({:.3f}, {:.3f}, {:.3f}) m, {:.3f} m/s, rising {:.3f} m/s",
-                        cast.entities[static_cast<std::size_t>(id)].name, Rounded(look.p_WB_m.x()),
-                        Rounded(look.p_WB_m.y()), Rounded(look.p_WB_m.z()),
-                        look.v_WB_m_per_s.norm(), Rounded(look.v_WB_m_per_s.z()));
+    text +=
+        fmt::format("    {} at ({:.3f}, {:.3f}, {:.3f}) m, {:.3f} m/s, rising {:.3f} m/s",
+                    entity_table.entities[static_cast<std::size_t>(id)].name,
+                    Rounded(look.p_WB_m.x()), Rounded(look.p_WB_m.y()), Rounded(look.p_WB_m.z()),
+                    look.v_WB_m_per_s.norm(), Rounded(look.v_WB_m_per_s.z()));
     for (const grammar::HandSample& hand : frame.hands) {
       if (hand.entity == id) text += fmt::format(", grip {:.2f}", hand.trigger);
     }
@@ -104,9 +106,9 @@ std::string FactsAround(const Scenario& scenario, std::span<const physics::Snaps
                         const Pairing& difference) {
   if (recording.empty()) return "";
   const Tick tick = difference.DivergenceTick();
-  const grammar::Cast cast = MakeCast(scenario);
-  const std::set<int> participants = Participants(difference, cast);
-  const Tick rate = cast.ticks_per_second;
+  const grammar::EntityTable entity_table = MakeEntityTable(scenario);
+  const std::set<int> participants = Participants(difference, entity_table);
+  const Tick rate = entity_table.ticks_per_second;
   const Tick around = TickAt(kAround_s, rate);
   Sensing sensing(scenario.scene, scenario.world.sensing_hz);
 
@@ -114,11 +116,13 @@ std::string FactsAround(const Scenario& scenario, std::span<const physics::Snaps
   const physics::Snapshot& snapshot = at == recording.end() ? recording.back() : *at;
   std::string text =
       fmt::format("  facts at {} s (tick {}):\n", SecondsText(snapshot.tick, rate), snapshot.tick);
-  text += StateText(sensing.Sense(snapshot), participants, cast);
+  text += StateText(sensing.Sense(snapshot), participants, entity_table);
   const std::vector<Touching> touches =
       TouchesIn({tick - around, tick + around}, participants, recording, sensing);
   for (std::size_t i = 0; i < std::min(touches.size(), kMostTouches); ++i) {
-    const auto name = [&](int id) { return cast.entities[static_cast<std::size_t>(id)].name; };
+    const auto name = [&](int id) {
+      return entity_table.entities[static_cast<std::size_t>(id)].name;
+    };
     text += fmt::format("    {} touches {} {}\n", name(touches[i].a), name(touches[i].b),
                         IntervalText(touches[i].interval, rate));
   }

@@ -12,7 +12,7 @@
 #include "harness/base/text_file.h"
 #include "harness/golden/golden_files.h"
 #include "harness/run/find_scenario.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "harness/sense/sensing.h"
 #include "harness/timeline/event_text.h"
 
@@ -29,11 +29,12 @@ class GoldenChecker {
       : file_(file),
         text_(text),
         rules_(prepared.program->events),
-        cast_(MakeCast(prepared.scenario)) {
+        entity_table_(MakeEntityTable(prepared.scenario)) {
     for (const grammar::Rule& rule : rules_) {
       if (rule.printed) events_.push_back(rule.name);
     }
-    for (const grammar::CastMember& member : cast_.entities) entities_.push_back(member.name);
+    for (const grammar::EntityInfo& member : entity_table_.entities)
+      entities_.push_back(member.name);
   }
 
   void CheckLine(const GoldenEvent& line) {
@@ -77,9 +78,9 @@ class GoldenChecker {
     if (IsAttribute(role)) {
       if (rule.style_role == grammar::kNone)
         return Complain(line, role.name + "=", fmt::format("'{}' has no style", rule.name), "");
-      if (std::ranges::count(cast_.styles, role.value) == 0)
+      if (std::ranges::count(entity_table_.styles, role.value) == 0)
         Unknown(line, role.name + "=", "no hand of the scenario has the style '" + role.value + "'",
-                role.value, cast_.styles);
+                role.value, entity_table_.styles);
       return;
     }
     Names roles;
@@ -117,7 +118,7 @@ class GoldenChecker {
 
   std::string_view file_, text_;
   const std::vector<grammar::Rule>& rules_;
-  const grammar::Cast cast_;
+  const grammar::EntityTable entity_table_;
   Names events_, entities_;
   grammar::Diagnostics diagnostics_;
 };

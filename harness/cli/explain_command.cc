@@ -38,7 +38,7 @@ void Declare(CLI::App& options) {
 OrderedJson ToJson(const std::string& episode, const grammar::Hindsight& past) {
   return {{"episode", episode},
           {"grammar", past.program().name},
-          {"ticks_per_second", past.cast().ticks_per_second}};
+          {"ticks_per_second", past.entity_table().ticks_per_second}};
 }
 
 OrderedJson ToJson(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_second) {
@@ -61,7 +61,7 @@ ExitCode ComplainOfNone(const CLI::App& options, grammar::Hindsight& past, const
                                     nearest.empty() ? " in the whole episode" : "; the nearest:");
   for (const WhyEvent& other : nearest) {
     message += fmt::format("\n  {}  {}", other.event,
-                           IntervalText(other.interval, past.cast().ticks_per_second));
+                           IntervalText(other.interval, past.entity_table().ticks_per_second));
   }
   message += fmt::format("\n  why not: {} --expected {}",
                          ExplainCommand(ValueOf(options, "scenario"), RequestOf(options, {})),
@@ -77,7 +77,7 @@ struct Question {
 
 ExitCode Answer(const CLI::App& options, const CommandContext& context, const std::string& episode,
                 const Question& question, grammar::Hindsight& past) {
-  const grammar::Tick per_second = past.cast().ticks_per_second;
+  const grammar::Tick per_second = past.entity_table().ticks_per_second;
   const bool as_json = IsGiven(options, "--json");
   OrderedJson json = ToJson(episode, past);
   if (question.expected) {
@@ -120,8 +120,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   for (const auto& [option, ask] :
        {std::pair{"--event", &question.event}, std::pair{"--expected", &question.expected}}) {
     if (!IsGiven(options, option)) continue;
-    const ReadResult<Ask> read = explain::ParseAsk(option, ValueOf(options, option),
-                                                   *source.value->program, source.value->cast);
+    const ReadResult<Ask> read = explain::ParseAsk(
+        option, ValueOf(options, option), *source.value->program, source.value->entity_table);
     if (!read.value) return Complain(context, read.diagnostics);
     *ask = *read.value;
   }

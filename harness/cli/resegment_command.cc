@@ -40,9 +40,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
       context.root, ValueOf(options, "--grammar", episode.value->header.grammar), *settings.value);
   if (!compiled.program) return Complain(context, compiled.diagnostics);
 
-  const grammar::Cast& cast = episode.value->header.cast;
-  WarnOf(*compiled.program, cast, context);
-  grammar::Monitor monitor(compiled.program, cast);
+  const grammar::EntityTable& entity_table = episode.value->header.entity_table;
+  WarnOf(*compiled.program, entity_table, context);
+  grammar::Monitor monitor(compiled.program, entity_table);
   std::vector<grammar::Event> events;
   for (EpisodeFrame& frame : episode.value->frames) monitor.Advance(frame.View(), events);
   monitor.Finish(episode.value->end_tick, events);
@@ -53,7 +53,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   RunResult run;
   run.status.kind = physics::RunStatus::Kind::kCompleted;
   run.ticks = episode.value->end_tick - 1;
-  run.timeline = grammar::NameEvents(*compiled.program, cast, events);
+  run.timeline = grammar::NameEvents(*compiled.program, entity_table, events);
   if (!IsGiven(options, "--json")) {
     context.out << RunTable(run);
     return ExitCode::kAgrees;

@@ -13,7 +13,7 @@
 #include "harness/cli/warn.h"
 #include "harness/run/run_text.h"
 #include "harness/run/run_trials.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "harness/sense/episode_file.h"
 
 namespace prehend::harness {
@@ -116,7 +116,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
       return Complain(context, ExitCode::kBadInput, "--record: " + record->problem());
     const Scenario& scenario = prepared.value->scenario;
     recorder.emplace(record->stream(),
-                     EpisodeHeader{scenario.name, scenario.grammar, MakeCast(scenario)});
+                     EpisodeHeader{scenario.name, scenario.grammar, MakeEntityTable(scenario)});
     how.watch = [&](const grammar::Frame& frame) { recorder->Write(frame); };
   }
   const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, how);

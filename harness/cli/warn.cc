@@ -9,9 +9,9 @@ void Warn(const CommandContext& context, const grammar::Diagnostics& warnings) {
   if (!warnings.empty()) context.err << Format(warnings);
 }
 
-void WarnOf(const grammar::Program& program, const grammar::Cast& cast,
+void WarnOf(const grammar::Program& program, const grammar::EntityTable& entity_table,
             const CommandContext& context) {
-  Warn(context, Warnings(program, cast));
+  Warn(context, Warnings(program, entity_table));
 }
 
 }  // namespace prehend::harness

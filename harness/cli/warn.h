@@ -10,8 +10,8 @@ namespace prehend::harness {
 
 /// Prints them; nothing when there are none.
 void Warn(const CommandContext& context, const grammar::Diagnostics& warnings);
-/// What looks like a mistake in a grammar that is to watch this cast.
-void WarnOf(const grammar::Program& program, const grammar::Cast& cast,
+/// What looks like a mistake in a grammar that is to watch this entity_table.
+void WarnOf(const grammar::Program& program, const grammar::EntityTable& entity_table,
             const CommandContext& context);
 
 }  // namespace prehend::harness

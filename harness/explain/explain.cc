@@ -33,7 +33,7 @@ std::vector<const Fate*> IntervalsOf(Hindsight& past, const Ask& ask) {
 }
 
 Tick TickOf(const Ask& ask, const Hindsight& past) {
-  return TickAt(*ask.time_s, past.cast().ticks_per_second);
+  return TickAt(*ask.time_s, past.entity_table().ticks_per_second);
 }
 
 // A time that was read off a table is rounded, so the end counts, too.

@@ -70,8 +70,9 @@ std::string Label(Hindsight& past, int lane) {
     const int role = is_any ? rule.references[0].roles[i] : static_cast<int>(i);
     const std::string class_name =
         named.hidden ? " " + named.roles[i].class_name : "";  // `any Cup`
-    roles += (i == 0 ? "" : ", ") +
-             (role == kNone ? "any" + class_name : past.cast().entities[entities[role]].name);
+    roles +=
+        (i == 0 ? "" : ", ") +
+        (role == kNone ? "any" + class_name : past.entity_table().entities[entities[role]].name);
   }
   return rule.name + "(" + roles + ")";
 }
@@ -92,7 +93,7 @@ std::string ClauseText(Hindsight& past, int lane, int node) {
       text += written[i];
       continue;
     }
-    text += past.cast().entities[past.At(lane).entities[written[i + 1] - '0']].name;
+    text += past.entity_table().entities[past.At(lane).entities[written[i + 1] - '0']].name;
     i += 2;
   }
   return text;

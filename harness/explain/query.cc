@@ -24,8 +24,8 @@ struct Word {
 class AskReader {
  public:
   AskReader(const std::string& option, const std::string& text, const grammar::Program& program,
-            const grammar::Cast& cast)
-      : option_(option), text_(text), program_(program), cast_(cast) {}
+            const grammar::EntityTable& entity_table)
+      : option_(option), text_(text), program_(program), entity_table_(entity_table) {}
 
   ReadResult<Ask> Read() {
     const std::size_t at = text_.find('@');
@@ -115,14 +115,14 @@ class AskReader {
 
   void ReadEntity(const Rule& rule, std::size_t place, const std::string& entity, int column) {
     std::vector<std::string> names;
-    for (const grammar::CastMember& member : cast_.entities) names.push_back(member.name);
+    for (const grammar::EntityInfo& member : entity_table_.entities) names.push_back(member.name);
     const auto found = std::find(names.begin(), names.end(), entity);
     if (found == names.end()) {
       return Complain(column, fmt::format("found '{}', wanted an entity of the episode", entity),
                       Hint(entity, names));
     }
     const int index = static_cast<int>(found - names.begin());
-    const std::vector<std::string>& classes = cast_.entities[index].classes;
+    const std::vector<std::string>& classes = entity_table_.entities[index].classes;
     const std::string& wanted = rule.roles[place].class_name;
     if (std::find(classes.begin(), classes.end(), wanted) == classes.end()) {
       return Complain(column,
@@ -158,7 +158,7 @@ class AskReader {
   const std::string& option_;
   const std::string& text_;
   const grammar::Program& program_;
-  const grammar::Cast& cast_;
+  const grammar::EntityTable& entity_table_;
   grammar::Diagnostics diagnostics_;
   Ask ask_;
 };
@@ -166,8 +166,9 @@ class AskReader {
 }  // namespace
 
 ReadResult<Ask> ParseAsk(const std::string& option, const std::string& text,
-                         const grammar::Program& program, const grammar::Cast& cast) {
-  return AskReader(option, text, program, cast).Read();
+                         const grammar::Program& program,
+                         const grammar::EntityTable& entity_table) {
+  return AskReader(option, text, program, entity_table).Read();
 }
 
 }  // namespace prehend::harness::explain

@@ -22,6 +22,6 @@ struct Ask {
 /// Roles come in the order of the rule's head or as role=entity; `any`, or none at all, leaves them
 /// open.
 ReadResult<Ask> ParseAsk(const std::string& option, const std::string& text,
-                         const grammar::Program& program, const grammar::Cast& cast);
+                         const grammar::Program& program, const grammar::EntityTable& entity_table);
 
 }  // namespace prehend::harness::explain

@@ -8,7 +8,7 @@ namespace prehend::harness::explain {
 
 Watched Watch(const EpisodeSource& source) {
   Watched watched;
-  watched.past = std::make_unique<grammar::Hindsight>(source.program, source.cast);
+  watched.past = std::make_unique<grammar::Hindsight>(source.program, source.entity_table);
   grammar::Hindsight& past = *watched.past;
   bool too_long = false;
   const EpisodeSource::Played played = source.play([&](const grammar::Frame& frame) {

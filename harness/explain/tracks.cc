@@ -73,7 +73,7 @@ std::string NameOf(const Program& program, const Signal& signal) {
 class Collector {
  public:
   Collector(Hindsight& past, const std::set<std::string>& only) : past_(past), only_(only) {
-    tracks_.ticks_per_second = past.cast().ticks_per_second;
+    tracks_.ticks_per_second = past.entity_table().ticks_per_second;
     for (FrameNumber frame = 0; frame < past.frames(); ++frame)
       tracks_.ticks.push_back(past.TickOf(frame));
   }

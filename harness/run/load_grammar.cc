@@ -83,11 +83,12 @@ void WarnOfStrangers(const std::vector<grammar::Named>& names, const std::set<st
 
 }  // namespace
 
-grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Cast& cast) {
+grammar::Diagnostics Warnings(const grammar::Program& program,
+                              const grammar::EntityTable& entity_table) {
   std::set<std::string> classes;
   std::set<std::string> sensor_sets;
   std::set<std::string> numbers;
-  for (const grammar::CastMember& member : cast.entities) {
+  for (const grammar::EntityInfo& member : entity_table.entities) {
     classes.insert(member.classes.begin(), member.classes.end());
     sensor_sets.insert(member.sensor_sets.begin(), member.sensor_sets.end());
     for (std::size_t i = 1; i <= member.sensor_sets.size(); ++i) numbers.insert(std::to_string(i));

@@ -19,7 +19,8 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
                                    std::vector<std::string>* files = nullptr);
 
 /// What is allowed and yet looks like a mistake: names that are not used; classes that nobody of
-/// the cast has, so that the rules about them never see anybody.
-grammar::Diagnostics Warnings(const grammar::Program& program, const grammar::Cast& cast);
+/// the entity table has, so that the rules about them never see anybody.
+grammar::Diagnostics Warnings(const grammar::Program& program,
+                              const grammar::EntityTable& entity_table);
 
 }  // namespace prehend::harness

@@ -14,7 +14,7 @@
 #include "harness/run/find_scenario.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/project_library.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 
 namespace prehend::harness {
 namespace {
@@ -108,7 +108,7 @@ ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string&
   }
   scenario.value->grammar = compiled.program->name;
   grammar::Diagnostics warnings = scenario.value->warnings;
-  std::ranges::move(Warnings(*compiled.program, MakeCast(*scenario.value)),
+  std::ranges::move(Warnings(*compiled.program, MakeEntityTable(*scenario.value)),
                     std::back_inserter(warnings));
   return {PreparedRun{std::move(*scenario.value), std::move(compiled.program), std::move(warnings)},
           {}};

@@ -9,7 +9,7 @@
 #include "harness/run/load_grammar.h"
 #include "harness/run/load_run.h"
 #include "harness/run/run_text.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "harness/sense/episode_file.h"
 
 namespace prehend::harness {
@@ -30,7 +30,7 @@ ReadResult<EpisodeSource> OpenScenario(const std::string& file, const std::strin
   const Scenario& scenario = prepared.value->scenario;
   EpisodeSource source{.name = scenario.name,
                        .program = prepared.value->program,
-                       .cast = MakeCast(scenario),
+                       .entity_table = MakeEntityTable(scenario),
                        .play = {}};
   source.play = [run = std::move(*prepared.value)](const EpisodeSource::Watcher& watch) {
     const RunResult result = RunScenario(run.scenario, run.program, {.watch = watch});
@@ -53,7 +53,7 @@ ReadResult<EpisodeSource> OpenRecording(const std::string& file, const std::stri
   if (!compiled.program) return {std::nullopt, std::move(compiled.diagnostics)};
   EpisodeSource source{.name = header.episode,
                        .program = std::move(compiled.program),
-                       .cast = header.cast,
+                       .entity_table = header.entity_table,
                        .play = {}};
   source.play = [recorded = std::move(*episode.value)](const EpisodeSource::Watcher& watch) {
     for (EpisodeFrame frame : recorded.frames) watch(frame.View());

@@ -22,7 +22,7 @@ struct EpisodeSource {
 
   std::string name;
   std::shared_ptr<const grammar::Program> program;
-  grammar::Cast cast;
+  grammar::EntityTable entity_table;
   std::function<Played(const Watcher&)> play;  ///< shows every frame
 };
 

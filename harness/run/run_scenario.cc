@@ -5,7 +5,7 @@
 
 #include "grammar/name_events.h"
 #include "harness/run/outcome.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "harness/sense/sensing.h"
 
 namespace prehend::harness {
@@ -36,8 +36,8 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
   RunResult result;
   physics::Simulation simulation(scenario.scene, scenario.script);
   Sensing sensing(scenario.scene, scenario.world.sensing_hz);
-  const grammar::Cast cast = MakeCast(scenario);
-  grammar::Monitor monitor(program, cast);
+  const grammar::EntityTable entity_table = MakeEntityTable(scenario);
+  grammar::Monitor monitor(program, entity_table);
   if (!monitor.error().empty()) {
     result.status = {physics::RunStatus::Kind::kFailed, 0, "",
                      "the grammar can't watch this scene: " + monitor.error(),
@@ -69,7 +69,7 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
   if (judge && result.status.kind == physics::RunStatus::Kind::kCompleted)
     result.outcome = judge->Judge(simulation.snapshot());
   result.state_hash = simulation.state_hash();
-  result.timeline = grammar::NameEvents(*program, cast, events);
+  result.timeline = grammar::NameEvents(*program, entity_table, events);
   clock.Lap(result.seconds.grammar);
   result.seconds.total = result.seconds.physics + result.seconds.sensing + result.seconds.grammar;
   return result;
@@ -78,13 +78,13 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
 grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
                             std::shared_ptr<const grammar::Program> program, grammar::Tick end) {
   Sensing sensing(scenario.scene, scenario.world.sensing_hz);
-  const grammar::Cast cast = MakeCast(scenario);
-  grammar::Monitor monitor(program, cast);
+  const grammar::EntityTable entity_table = MakeEntityTable(scenario);
+  grammar::Monitor monitor(program, entity_table);
   std::vector<grammar::Event> events;
   for (const physics::Snapshot& snapshot : recording)
     monitor.AdvanceBy(sensing.SenseChanges(snapshot), events);
   monitor.Finish(end, events);
-  return grammar::NameEvents(*program, cast, events);
+  return grammar::NameEvents(*program, entity_table, events);
 }
 
 }  // namespace prehend::harness

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/read/read_scenario_test.cc and tests/harness/sense/sensing_test.cc
-#include "harness/sense/cast.h"
-
 #include <algorithm>
 
 #include "harness/scenario/classes.h"
+#include "harness/sense/entity_table.h"
 
 namespace prehend::harness {
 
@@ -18,13 +17,13 @@ std::vector<std::string> StyleNames(const physics::Scene& scene) {
   return names;
 }
 
-grammar::Cast MakeCast(const Scenario& scenario) {
-  grammar::Cast cast;
-  cast.ticks_per_second = scenario.scene.world.rate_hz;
+grammar::EntityTable MakeEntityTable(const Scenario& scenario) {
+  grammar::EntityTable entity_table;
+  entity_table.ticks_per_second = scenario.scene.world.rate_hz;
   for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
     const physics::Body& body = scenario.scene.bodies[i];
     const physics::LocalBox box = physics::BoundingBox(body);
-    grammar::CastMember& member = cast.entities.emplace_back();
+    grammar::EntityInfo& member = entity_table.entities.emplace_back();
     member.name = body.name;
     member.classes = ClassesOf(scenario, i);
     member.part_of = scenario.body_part_of[i];
@@ -35,15 +34,15 @@ grammar::Cast MakeCast(const Scenario& scenario) {
     member.mass_kg = body.fixed ? 0 : body.mass_kg;
   }
   for (const physics::Hand& hand : scenario.scene.hands) {
-    grammar::CastMember& member = cast.entities.emplace_back();
+    grammar::EntityInfo& member = entity_table.entities.emplace_back();
     member.name = hand.name;
     member.classes = {"Hand", "Entity"};
     member.half_size_m = hand.model.palm_size_m / 2;
     member.sensor_sets = hand.model.sensor_sets;
     member.strength_n = hand.model.translation.limit;
   }
-  cast.styles = StyleNames(scenario.scene);
-  return cast;
+  entity_table.styles = StyleNames(scenario.scene);
+  return entity_table;
 }
 
 }  // namespace prehend::harness

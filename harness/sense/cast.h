@@ -18,6 +18,6 @@ namespace prehend::harness {
 std::vector<std::string> StyleNames(const physics::Scene& scene);
 
 /// Who can be bound to roles: the scene's bodies first (same index), then its hands.
-grammar::Cast MakeCast(const Scenario& scenario);
+grammar::EntityTable MakeEntityTable(const Scenario& scenario);
 
 }  // namespace prehend::harness

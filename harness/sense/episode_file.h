@@ -22,7 +22,7 @@ inline constexpr std::size_t kMaxEpisodeLineBytes = 1 << 20;
 struct EpisodeHeader {
   std::string episode;  ///< its name: of the scenario it was recorded from
   std::string grammar;  ///< that watches unless another one is asked for
-  grammar::Cast cast;
+  grammar::EntityTable entity_table;
 };
 
 /// A frame that owns what it shows.
@@ -55,7 +55,7 @@ class EpisodeWriter {
 
  private:
   std::ostream& out_;
-  grammar::Cast cast_;
+  grammar::EntityTable entity_table_;
   std::vector<std::string> shown_;  ///< per entity: how it looked when last written
 };
 

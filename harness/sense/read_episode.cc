@@ -227,13 +227,13 @@ class EpisodeReader {
   void TakeHeader(const HeaderEntry& header, Complaints& complaints) {
     episode.header.episode = header.episode;
     episode.header.grammar = header.grammar;
-    grammar::Cast& cast = episode.header.cast;
-    cast.ticks_per_second = header.ticks_per_second;
-    cast.styles = header.styles;
+    grammar::EntityTable& entity_table = episode.header.entity_table;
+    entity_table.ticks_per_second = header.ticks_per_second;
+    entity_table.styles = header.styles;
     for (const Named<MemberEntry>& entry : header.entities) names_.push_back(entry.name);
     for (const Named<MemberEntry>& entry : header.entities) {
       const MemberEntry& m = entry.value;
-      grammar::CastMember& member = cast.entities.emplace_back();
+      grammar::EntityInfo& member = entity_table.entities.emplace_back();
       member.name = entry.name;
       member.p_BC_m = m.centre_m;
       member.half_size_m = m.size_m / 2;
@@ -244,7 +244,7 @@ class EpisodeReader {
       if (m.hand) {
         member.classes = {"Hand", "Entity"};
         member.sensor_sets = m.sensor_sets;
-        hands_.push_back(static_cast<int>(cast.entities.size()) - 1);
+        hands_.push_back(static_cast<int>(entity_table.entities.size()) - 1);
       } else {
         member.classes = ClassesOf(m);
       }
@@ -301,7 +301,7 @@ class EpisodeReader {
           fmt::format("the ticks must increase: {} comes after {}", tick, before));
     }
     const double dt_s = static_cast<double>(tick - before) /
-                        static_cast<double>(episode.header.cast.ticks_per_second);
+                        static_cast<double>(episode.header.entity_table.ticks_per_second);
     now_.tick = tick;
     for (grammar::EntitySample& look : now_.entities)
       look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
@@ -360,7 +360,7 @@ class EpisodeReader {
     hand.ahead_W = entry.ahead && !entry.ahead->isZero() ? entry.ahead->normalized()
                                                          : look.q_WB * Eigen::Vector3d::UnitX();
     if (entry.style) {
-      const std::vector<std::string>& styles = episode.header.cast.styles;
+      const std::vector<std::string>& styles = episode.header.entity_table.styles;
       const auto style = std::find(styles.begin(), styles.end(), entry.style->value);
       if (style == styles.end())
         complaints.AddUnknownName(entry.style->where,
@@ -411,7 +411,7 @@ class EpisodeReader {
 
   std::uint32_t SetBit(const Located<std::string>& set, int a, int b,
                        Complaints& complaints) const {
-    const std::vector<grammar::CastMember>& members = episode.header.cast.entities;
+    const std::vector<grammar::EntityInfo>& members = episode.header.entity_table.entities;
     const std::vector<std::string>& sets =
         !members[a].sensor_sets.empty() ? members[a].sensor_sets : members[b].sensor_sets;
     const auto found = std::find(sets.begin(), sets.end(), set.value);

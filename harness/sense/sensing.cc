@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 
 namespace prehend::harness {
 

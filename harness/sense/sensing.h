@@ -19,8 +19,8 @@ namespace prehend::harness {
 
 class Sensing {
  public:
-  /// Entities are the scene's bodies, then its hands (as in MakeCast). `sensing_hz` <= the scene's
-  /// rate.
+  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). `sensing_hz` <= the
+  /// scene's rate.
   Sensing(const physics::Scene& scene, int sensing_hz);
 
   /// Whether the snapshot of this tick is looked at: the ticks at which another 1/sensing_hz is

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 Json ToJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Json ToJson(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
-bool IsHand(const grammar::CastMember& member) { return member.classes.front() == "Hand"; }
+bool IsHand(const grammar::EntityInfo& member) { return member.classes.front() == "Hand"; }
 
 /// Of what is no hand: its own class, what that is a kind of, and what is built in.
 void AddClasses(const std::vector<std::string>& classes, Json& json) {
@@ -29,9 +29,10 @@ void AddClasses(const std::vector<std::string>& classes, Json& json) {
   if (given + 1 != classes.end() && *(given + 1) == "Abstract") json["abstract"] = *given;
 }
 
-Json MemberJson(const grammar::CastMember& member, const grammar::Cast& cast) {
+Json MemberJson(const grammar::EntityInfo& member, const grammar::EntityTable& entity_table) {
   Json json = {{"centre_m", ToJson(member.p_BC_m)}, {"size_m", ToJson(2 * member.half_size_m)}};
-  if (member.part_of != grammar::kNobody) json["part_of"] = cast.entities[member.part_of].name;
+  if (member.part_of != grammar::kNobody)
+    json["part_of"] = entity_table.entities[member.part_of].name;
   if (member.mass_kg > 0) json["mass_kg"] = member.mass_kg;
   if (member.strength_n > 0) json["strength_n"] = member.strength_n;
   if (IsHand(member)) {
@@ -44,7 +45,7 @@ Json MemberJson(const grammar::CastMember& member, const grammar::Cast& cast) {
   return json;
 }
 
-Json SampleJson(const grammar::EntitySample& look, const grammar::Cast& cast) {
+Json SampleJson(const grammar::EntitySample& look, const grammar::EntityTable& entity_table) {
   Json json = {{"at_m", ToJson(look.p_WB_m)},
                {"quat_wxyz", ToJson(look.q_WB)},
                {"v_m_per_s", ToJson(look.v_WB_m_per_s)},
@@ -52,11 +53,12 @@ Json SampleJson(const grammar::EntitySample& look, const grammar::Cast& cast) {
   if (look.asleep) json["asleep"] = true;
   if (look.joint_position != 0) json["joint_position"] = look.joint_position;
   if (look.joint_fraction != 0) json["joint_fraction"] = look.joint_fraction;
-  if (look.gazes_at != grammar::kNobody) json["gazes_at"] = cast.entities[look.gazes_at].name;
+  if (look.gazes_at != grammar::kNobody)
+    json["gazes_at"] = entity_table.entities[look.gazes_at].name;
   return json;
 }
 
-Json HandJson(const grammar::HandSample& hand, const grammar::Cast& cast) {
+Json HandJson(const grammar::HandSample& hand, const grammar::EntityTable& entity_table) {
   Json collision_spheres = Json::array();
   for (const grammar::CollisionSphere& collision_sphere : hand.collision_spheres) {
     collision_spheres.push_back({collision_sphere.p_W_m.x(), collision_sphere.p_W_m.y(),
@@ -65,18 +67,20 @@ Json HandJson(const grammar::HandSample& hand, const grammar::Cast& cast) {
   Json json = {{"trigger", hand.trigger},
                {"ahead", ToJson(hand.ahead_W)},
                {"feelers_m", std::move(collision_spheres)}};
-  if (hand.style >= 0 && hand.style < static_cast<int>(cast.styles.size()))
-    json["style"] = cast.styles[hand.style];
+  if (hand.style >= 0 && hand.style < static_cast<int>(entity_table.styles.size()))
+    json["style"] = entity_table.styles[hand.style];
   return json;
 }
 
-Json TouchJson(const grammar::Touch& touch, const grammar::Cast& cast) {
-  Json json = {
-      {"a", cast.entities[touch.a].name}, {"b", cast.entities[touch.b].name},
-      {"up_on_a", touch.up_on_a},         {"up_on_b", touch.up_on_b},
-      {"force_n", touch.normal_force_n},  {"vertical_speed_m_per_s", touch.vertical_speed_m_per_s}};
+Json TouchJson(const grammar::Touch& touch, const grammar::EntityTable& entity_table) {
+  Json json = {{"a", entity_table.entities[touch.a].name},
+               {"b", entity_table.entities[touch.b].name},
+               {"up_on_a", touch.up_on_a},
+               {"up_on_b", touch.up_on_b},
+               {"force_n", touch.normal_force_n},
+               {"vertical_speed_m_per_s", touch.vertical_speed_m_per_s}};
   for (const int one : {touch.a, touch.b}) {
-    const std::vector<std::string>& sets = cast.entities[one].sensor_sets;
+    const std::vector<std::string>& sets = entity_table.entities[one].sensor_sets;
     for (std::size_t i = 0; i < sets.size(); ++i) {
       if (touch.sensor_sets >> i & 1) json["sensor_sets"].push_back(sets[i]);
     }
@@ -88,13 +92,16 @@ Json TouchJson(const grammar::Touch& touch, const grammar::Cast& cast) {
 }  // namespace
 
 EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
-    : out_(out), cast_(header.cast), shown_(header.cast.entities.size()) {
+    : out_(out), entity_table_(header.entity_table), shown_(header.entity_table.entities.size()) {
   Json entities = Json::object();
-  for (const grammar::CastMember& member : cast_.entities)
-    entities[member.name] = MemberJson(member, cast_);
-  out_ << Json{{"recording", kEpisodeVersion}, {"episode", header.episode},
-               {"grammar", header.grammar},    {"ticks_per_second", cast_.ticks_per_second},
-               {"styles", cast_.styles},       {"entities", std::move(entities)}}
+  for (const grammar::EntityInfo& member : entity_table_.entities)
+    entities[member.name] = MemberJson(member, entity_table_);
+  out_ << Json{{"recording", kEpisodeVersion},
+               {"episode", header.episode},
+               {"grammar", header.grammar},
+               {"ticks_per_second", entity_table_.ticks_per_second},
+               {"styles", entity_table_.styles},
+               {"entities", std::move(entities)}}
               .dump()
        << "\n";
 }
@@ -102,16 +109,17 @@ EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
 void EpisodeWriter::Write(const grammar::Frame& frame) {
   Json looks = Json::object();
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
-    Json look = SampleJson(frame.entities[i], cast_);
+    Json look = SampleJson(frame.entities[i], entity_table_);
     std::string text = look.dump();
     if (text == shown_[i]) continue;
-    looks[cast_.entities[i].name] = std::move(look);
+    looks[entity_table_.entities[i].name] = std::move(look);
     shown_[i] = std::move(text);
   }
   Json hands = Json::object(), touches = Json::array();
   for (const grammar::HandSample& hand : frame.hands)
-    hands[cast_.entities[hand.entity].name] = HandJson(hand, cast_);
-  for (const grammar::Touch& touch : frame.touches) touches.push_back(TouchJson(touch, cast_));
+    hands[entity_table_.entities[hand.entity].name] = HandJson(hand, entity_table_);
+  for (const grammar::Touch& touch : frame.touches)
+    touches.push_back(TouchJson(touch, entity_table_));
   out_ << Json{{"tick", frame.tick},
                {"looks", std::move(looks)},
                {"hands", std::move(hands)},

@@ -12,7 +12,7 @@ namespace prehend::harness {
 
 class ChangeLog {
  public:
-  grammar::Cast cast;
+  grammar::EntityTable entity_table;
 
   std::size_t size() const { return frames_.size(); }
   grammar::Tick end_tick() const { return frames_.empty() ? 0 : frames_.back().tick + 1; }

@@ -11,7 +11,7 @@
 
 #include "harness/run/load_run.h"
 #include "harness/run/run_scenario.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "harness/sense/sensing.h"
 #include "harness/speed/resting_boxes.h"
 #include "harness/speed/stopwatch.h"
@@ -39,7 +39,7 @@ class Measuring {
         .what = std::move(what), .unit = std::move(unit), .operations = operations * frames};
     figure.seconds = figure.by_hand_s = std::numeric_limits<double>::infinity();
     for (int run = 0; run < (quick_ ? 1 : kRuns); ++run) {
-      grammar::Monitor monitor(program_, log.cast);
+      grammar::Monitor monitor(program_, log.entity_table);
       const Watched by_grammar = WatchByGrammar(log, monitor, static_cast<std::size_t>(warm_up));
       const Watched by_hand = WatchByHand(log, static_cast<std::size_t>(warm_up));
       figure.seconds = std::min(figure.seconds, by_grammar.seconds);
@@ -79,7 +79,7 @@ class Measuring {
   SpeedFigure Idle(int objects) const {
     const int frames = Frames(1'000'000);
     const ChangeLog log = MakeStations(objects, 1, 10);
-    grammar::Monitor monitor(program_, log.cast);
+    grammar::Monitor monitor(program_, log.entity_table);
     std::vector<grammar::Event> events;
     monitor.AdvanceBy(log[0], events);
     grammar::Tick tick = 1;
@@ -102,7 +102,7 @@ class Measuring {
       std::vector<grammar::Event> events;
       const std::size_t bytes_before = mallinfo2().uordblks;
       const Stopwatch watch;
-      grammar::Monitor monitor(program_, log.cast);
+      grammar::Monitor monitor(program_, log.entity_table);
       monitor.AdvanceBy(log[0], events);
       figure.seconds = std::min(figure.seconds, watch.seconds());
       figure.operations = monitor.lanes_in_use();
@@ -131,7 +131,7 @@ double TimePhysics(const Scenario& scenario) {
 double TimeWatching(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                     std::span<const physics::Snapshot> recording) {
   Sensing sensing(scenario.scene, scenario.world.sensing_hz);
-  grammar::Monitor monitor(std::move(program), MakeCast(scenario));
+  grammar::Monitor monitor(std::move(program), MakeEntityTable(scenario));
   std::vector<grammar::Event> events;
   const Stopwatch watch;
   for (const physics::Snapshot& snapshot : recording)
@@ -164,7 +164,7 @@ SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool 
   const Scenario scenario = BoxesOnAFloor(boxes, kRate_hz);
   physics::Simulation simulation(scenario.scene, scenario.script);
   Sensing sensing(scenario.scene, scenario.world.sensing_hz);
-  grammar::Monitor monitor(std::move(program), MakeCast(scenario));
+  grammar::Monitor monitor(std::move(program), MakeEntityTable(scenario));
   std::vector<grammar::Event> events;
   while (simulation.snapshot().tick < kUntilAsleep_s * kRate_hz && simulation.Step())
     monitor.AdvanceBy(sensing.SenseChanges(simulation.snapshot()), events);

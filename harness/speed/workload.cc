@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "grammar/program/program.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "harness/speed/stopwatch.h"
 
 namespace prehend::harness {
@@ -43,16 +43,17 @@ constexpr Tick kRate_hz = 240;
 constexpr Tick kSupportTicks = 24;      // 100 ms
 constexpr Tick kUnansweredTicks = 120;  // 500 ms
 
-grammar::Cast MakeCast(int objects) {
-  grammar::Cast cast{.ticks_per_second = kRate_hz};
+grammar::EntityTable MakeEntityTable(int objects) {
+  grammar::EntityTable entity_table{.ticks_per_second = kRate_hz};
   for (int i = 0; i < objects; ++i)
-    cast.entities.push_back({.name = "hand" + std::to_string(i), .classes = {"Hand", "Entity"}});
+    entity_table.entities.push_back(
+        {.name = "hand" + std::to_string(i), .classes = {"Hand", "Entity"}});
   for (int i = 0; i < objects; ++i) {
-    cast.entities.push_back(
+    entity_table.entities.push_back(
         {.name = "object" + std::to_string(i), .classes = {"Movable", "Thing", "Entity"}});
   }
-  cast.entities.push_back({.name = "table", .classes = {"Fixed", "Thing", "Entity"}});
-  return cast;
+  entity_table.entities.push_back({.name = "table", .classes = {"Fixed", "Thing", "Entity"}});
+  return entity_table;
 }
 
 // A hand that takes an object, holds it up and puts it back: when each step is due, in frames from
@@ -70,7 +71,7 @@ class Stations {
       : objects_(objects),
         period_(static_cast<int>(period_s * static_cast<double>(kRate_hz))),
         random_(seed) {
-    log.cast = MakeCast(objects);
+    log.entity_table = MakeEntityTable(objects);
     visits_.resize(static_cast<std::size_t>(objects));
     // agenda_[frame % period]: who does something then; every visit is over before its period is.
     for (int i = 0; i < objects; ++i) {
@@ -245,7 +246,7 @@ ChangeLog MakeStations(int objects, int frames, double period_s, std::uint64_t s
 
 ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker) {
   ChangeLog log;
-  log.cast = MakeCast(objects);
+  log.entity_table = MakeEntityTable(objects);
   int next = 0;
   std::vector<bool> pressed(static_cast<std::size_t>(objects));
   for (int frame = 0; frame < frames; ++frame) {
@@ -308,7 +309,7 @@ Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::siz
 }
 
 Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
-  const int objects = static_cast<int>(log.cast.entities.size() / 2);
+  const int objects = static_cast<int>(log.entity_table.entities.size() / 2);
   std::vector<Automaton> automata(static_cast<std::size_t>(objects));
   const auto of = [&](int entity) -> Automaton& {
     return automata[static_cast<std::size_t>(entity)];

@@ -33,14 +33,15 @@ std::optional<GrammarText> Library(std::string_view name) {
 
 // A hand grasps a cup, lifts it and lets go.
 void Watch(const std::shared_ptr<const Program>& program) {
-  const Cast cast{.ticks_per_second = 100,
-                  .entities = {{.name = "hand",
-                                .classes = {"Hand", "Entity"},
-                                .sensor_sets = {"fingers", "thumb"}},
-                               {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}},
-                               {.name = "table", .classes = {"Fixed", "Thing", "Entity"}}},
-                  .styles = {"wrap"}};
-  Monitor monitor(program, cast);
+  const EntityTable entity_table{
+      .ticks_per_second = 100,
+      .entities = {{.name = "hand",
+                    .classes = {"Hand", "Entity"},
+                    .sensor_sets = {"fingers", "thumb"}},
+                   {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}},
+                   {.name = "table", .classes = {"Fixed", "Thing", "Entity"}}},
+      .styles = {"wrap"}};
+  Monitor monitor(program, entity_table);
   std::vector<EntitySample> looks(3);
   const CollisionSphere collision_sphere;
   std::vector<Event> events;

@@ -18,20 +18,21 @@ class RandomWorld {
   static constexpr int kHands = 2, kObjects = 5, kPlaces = 2;
 
   explicit RandomWorld(std::uint64_t seed) : random_(seed), looks(kHands + kObjects + kPlaces) {
-    cast.ticks_per_second = 1000;
-    cast.styles = {"wrap", "pinch"};
+    entity_table.ticks_per_second = 1000;
+    entity_table.styles = {"wrap", "pinch"};
     for (int i = 0; i < kHands; ++i) {
-      cast.entities.push_back({.name = "hand" + std::to_string(i), .classes = {"Hand", "Entity"}});
+      entity_table.entities.push_back(
+          {.name = "hand" + std::to_string(i), .classes = {"Hand", "Entity"}});
       hands.push_back({.entity = i});
       collision_spheres.push_back(std::vector<CollisionSphere>(2));
     }
     for (int i = 0; i < kObjects; ++i) {
-      cast.entities.push_back(
+      entity_table.entities.push_back(
           {.name = "object" + std::to_string(i), .classes = {"Movable", "Thing", "Entity"}});
-      cast.entities.back().half_size_m.setConstant(0.03);
+      entity_table.entities.back().half_size_m.setConstant(0.03);
     }
     for (int i = 0; i < kPlaces; ++i) {
-      cast.entities.push_back(
+      entity_table.entities.push_back(
           {.name = "place" + std::to_string(i), .classes = {"Fixed", "Thing", "Entity"}});
     }
     calm_ = 2 + random_() % 60;
@@ -104,7 +105,7 @@ class RandomWorld {
   std::map<std::pair<int, int>, Touch> touching_;
 
  public:
-  Cast cast;
+  EntityTable entity_table;
   Tick tick = 0;
   std::vector<EntitySample> looks;
   std::vector<HandSample> hands;

@@ -13,10 +13,10 @@ TEST(Timeline, NamesAndSortsEvents) {
   Program program;
   program.events.push_back({.name = "touching"});
   program.events.push_back({.name = "grasping", .roles = {{"hand", "Hand"}, {"object", "Thing"}}});
-  const Cast cast{.ticks_per_second = 240,
-                  .entities = {{.name = "milk"}, {.name = "right"}},
-                  .styles = {"wrap"}};
-  const Timeline timeline = NameEvents(program, cast,
+  const EntityTable entity_table{.ticks_per_second = 240,
+                                 .entities = {{.name = "milk"}, {.name = "right"}},
+                                 .styles = {"wrap"}};
+  const Timeline timeline = NameEvents(program, entity_table,
                                        {{.rule = 1,
                                          .roles = {1, 0, kNobody, kNobody},
                                          .interval = {20, 30},

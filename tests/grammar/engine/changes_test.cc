@@ -80,7 +80,8 @@ TEST(Changes, SayTheSameAsWholeFrames) {
   std::size_t count = 0;
   for (int round = 0; round < 20; ++round) {
     RandomWorld world(900 + round);
-    Monitor whole(program, world.cast), changes(program, world.cast), repeated(program, world.cast);
+    Monitor whole(program, world.entity_table), changes(program, world.entity_table),
+        repeated(program, world.entity_table);
     Differ differ(false), repeater(true);
     std::vector<Event> a, b, c;
     for (int i = 0; i < 1500; ++i) {
@@ -126,7 +127,7 @@ Compared CompareWithThorough(const std::shared_ptr<const Program>& program, int 
   Compared compared;
   for (int round = 0; round < rounds; ++round) {
     RandomWorld world(7000 + round);
-    Monitor quick(program, world.cast), slow(thorough, world.cast);
+    Monitor quick(program, world.entity_table), slow(thorough, world.entity_table);
     std::vector<Event> a, b;
     for (int i = 0; i < 1200; ++i, compared.object_frames += world.looks.size()) {
       const Frame frame = world.Next();
@@ -198,13 +199,13 @@ TEST(Changes, WhatRestsForLongIsFreed) {
   constexpr int kThings = 500;
   const auto program =
       testing::CompileLibrary("pick_and_place", {{"reach_back", "1 s"}, {"put_back", "1 s"}});
-  Cast cast{.ticks_per_second = 1000,
-            .entities = {{.name = "hand", .classes = {"Hand", "Entity"}}}};
+  EntityTable entity_table{.ticks_per_second = 1000,
+                           .entities = {{.name = "hand", .classes = {"Hand", "Entity"}}}};
   for (int i = 0; i < kThings; ++i) {
-    cast.entities.push_back(
+    entity_table.entities.push_back(
         {.name = "thing" + std::to_string(i), .classes = {"Movable", "Thing", "Entity"}});
   }
-  Monitor monitor(program, cast);
+  Monitor monitor(program, entity_table);
   std::vector<Event> events;
   const HandSample hand{.entity = 0, .trigger = 1};
   monitor.AdvanceBy({.tick = 0, .hands = {&hand, 1}}, events);

@@ -26,7 +26,7 @@ event reached(hand: Hand, cup: Cup, tray: Movable) while held(hand, cup) and dis
 std::string Served(const std::string& held, const std::string& placed) {
   const auto program = testing::CompileText(kGrammar);
   Scene scene;
-  Monitor monitor(program, scene.cast);
+  Monitor monitor(program, scene.entity_table);
   std::vector<Event> events;
   for (std::size_t t = 0; t < held.size(); ++t) {
     scene.touches.clear();

@@ -13,7 +13,7 @@ std::vector<Event> WatchTouch(const std::string& text, const std::vector<Tick>& 
   Scene scene;
   scene.touches = {
       {.a = Scene::kHand, .b = Scene::kCup, .normal_force_n = 3, .sensor_sets = 0b101}};
-  Monitor monitor(testing::CompileText("grammar t\n" + text), scene.cast);
+  Monitor monitor(testing::CompileText("grammar t\n" + text), scene.entity_table);
   std::vector<Event> events;
   for (const Tick tick : ticks) {
     scene.looks[Scene::kCup].p_WB_m.z() = static_cast<double>(tick) / 1000;
@@ -81,7 +81,7 @@ TEST(Forms, WhatWasNotAskedForBeforeBeginsTheNextOne) {
       testing::CompileText("grammar t\nevent e(h: Hand, c: Cup, t: Movable)\n"
                            "from touching(h, c) begins or touching(h, t) begins\n"
                            "to touching(h, c) ends during height(c) >= height(c)@begin or drop"),
-      scene.cast);
+      scene.entity_table);
   const Touch cup{.a = Scene::kHand, .b = Scene::kCup};
   const Touch tray{.a = Scene::kHand, .b = Scene::kTray};
   const std::vector<std::vector<Touch>> touches = {{cup}, {cup}, {cup}, {cup, tray}, {tray}};

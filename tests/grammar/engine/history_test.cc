@@ -19,7 +19,7 @@ void Push(History& history, const Frame& frame) {
 
 TEST(History, RemembersLooksOfEachFrame) {
   Scene scene;
-  History history(scene.cast);
+  History history(scene.entity_table);
   for (int i = 0; i < 100; ++i) {
     scene.looks[Scene::kCup].p_WB_m.x() = i;
     scene.hand.trigger = i / 100.0;
@@ -38,7 +38,7 @@ TEST(History, RemembersLooksOfEachFrame) {
 
 TEST(History, ForgetsButKeepsTheLookOfASleeper) {
   Scene scene;
-  History history(scene.cast);
+  History history(scene.entity_table);
   scene.looks[Scene::kTray].asleep = true;
   scene.looks[Scene::kTray].p_WB_m.x() = 7;
   for (int i = 0; i < 100; ++i) {

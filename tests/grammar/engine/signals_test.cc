@@ -16,8 +16,8 @@ using testing::Scene;
 // frame of 10 ms.
 Scene KnownScene() {
   Scene s;
-  s.cast.entities[Scene::kCup].half_size_m = {0.05, 0.05, 0.05};
-  s.cast.entities[Scene::kCup].p_BC_m = {0, 0, 0.05};
+  s.entity_table.entities[Scene::kCup].half_size_m = {0.05, 0.05, 0.05};
+  s.entity_table.entities[Scene::kCup].p_BC_m = {0, 0, 0.05};
   s.looks[Scene::kTray].v_WB_m_per_s = {0, 0, 0.05};
   s.looks[Scene::kTray].w_WB_rad_per_s = {0, 0, 1};
   s.looks[Scene::kTray].q_WB = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
@@ -52,7 +52,7 @@ bool HoldsInScene(const std::string& condition) {
       condition);
   if (!program) return false;
   Scene scene = KnownScene();
-  Monitor monitor(program, scene.cast);
+  Monitor monitor(program, scene.entity_table);
   std::vector<Event> events;
   monitor.Advance(scene.At(0), events);
   scene.collision_sphere.p_W_m.x() -= 0.01;
@@ -118,7 +118,7 @@ std::vector<Interval> Drifting(Where&& x_m, Tick step, Tick end, double tray_m_p
       "grammar t\nevent drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 1 "
       "cm/s");
   Scene scene;
-  Monitor monitor(program, scene.cast);
+  Monitor monitor(program, scene.entity_table);
   std::vector<Event> events;
   std::vector<Interval> drifting;
   for (Tick t = 0; t < end; t += step) {
@@ -159,7 +159,7 @@ TEST(Signals, DriftIsKnownWhenItsWindowIsComplete) {
       "event jumped(cup: Cup, tray: Movable) from drift_along(cup, tray, 100 ms) > 1 cm/s begins\n"
       "  to drift_along(cup, tray, 100 ms) < drift_along(cup, tray, 100 ms)@begin / 2 begins");
   Scene scene;
-  Monitor monitor(program, scene.cast);
+  Monitor monitor(program, scene.entity_table);
   std::vector<Event> events;
   for (Tick t = 0; t < 1000; t += 10) {
     scene.looks[Scene::kCup].p_WB_m.x() = t < 500 ? 0 : 0.002;
@@ -197,16 +197,17 @@ TEST(Signals, APartOfAPartIsAPartOfTheWhole) {
   const auto program = testing::CompileText(
       "grammar t\nevent e(part: Entity, whole: Entity) while part_of(part, whole)");
   Scene scene;
-  scene.cast.entities[Scene::kTray].part_of = Scene::kHand;  // and the cup is a part of the tray
+  scene.entity_table.entities[Scene::kTray].part_of =
+      Scene::kHand;  // and the cup is a part of the tray
   const auto pairs = [&] {
-    Monitor monitor(program, scene.cast);
+    Monitor monitor(program, scene.entity_table);
     std::vector<Event> events;
     monitor.Advance(scene.At(0), events);
     monitor.Finish(10, events);
     return events.size();
   };
   EXPECT_EQ(pairs(), 3u);
-  scene.cast.entities[Scene::kHand].part_of =
+  scene.entity_table.entities[Scene::kHand].part_of =
       Scene::kCup;  // a ring ends, too: each is a part of both others
   EXPECT_EQ(pairs(), 6u);
 }
@@ -215,13 +216,13 @@ TEST(Signals, InsideAsksTheCentreOfTheBox) {
   const auto program =
       testing::CompileText("grammar t\nevent e(cup: Cup, tray: Movable) while inside(cup, tray)");
   Scene scene;
-  CastMember& room = scene.cast.entities[Scene::kTray];
+  EntityInfo& room = scene.entity_table.entities[Scene::kTray];
   room.half_size_m = {0.5, 0.5, 0.1};
   room.p_BC_m = {0, 0, 0.1};
-  scene.cast.entities[Scene::kCup].p_BC_m = {0, 0, 0.05};
+  scene.entity_table.entities[Scene::kCup].p_BC_m = {0, 0, 0.05};
   const auto holds = [&](const Eigen::Vector3d& p_W_m) {
     scene.looks[Scene::kCup].p_WB_m = p_W_m;
-    Monitor monitor(program, scene.cast);
+    Monitor monitor(program, scene.entity_table);
     std::vector<Event> events;
     monitor.Advance(scene.At(0), events);
     monitor.Finish(10, events);

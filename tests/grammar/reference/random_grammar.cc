@@ -478,13 +478,13 @@ std::string Drawn(const RandomEpisode& episode) {
   return text + "\n";
 }
 
-Cast RandomGrammarCast() {
-  Cast cast{.ticks_per_second = 1000};
+EntityTable RandomEntityTable() {
+  EntityTable entity_table{.ticks_per_second = 1000};
   const std::pair<const char*, const char*> all[] = {
       {"x", "X"}, {"p1", "P"}, {"p2", "P"}, {"q", "Q"}, {"r", "R"}};
   for (const auto& [name, class_name] : all)
-    cast.entities.push_back({.name = name, .classes = {class_name, "Thing", "Entity"}});
-  return cast;
+    entity_table.entities.push_back({.name = name, .classes = {class_name, "Thing", "Entity"}});
+  return entity_table;
 }
 
 void EpisodeFeed::Step(bool as_changes, std::vector<Event>& events) {

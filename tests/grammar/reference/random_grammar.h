@@ -30,7 +30,7 @@ RandomEpisode MakeEpisode(std::mt19937_64& random, int frames, unsigned calm);
 /// The facts as rows of characters, for messages.
 std::string Drawn(const RandomEpisode& episode);
 
-Cast RandomGrammarCast();
+EntityTable RandomEntityTable();
 
 /// Shows an episode to a monitor, frame by frame, as whole frames or as what is new in them.
 class EpisodeFeed {

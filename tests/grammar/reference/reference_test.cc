@@ -148,11 +148,11 @@ std::vector<std::pair<std::string, Runs>> Expected(const Episode& e) {
 }
 
 std::vector<Event> Watch(const std::shared_ptr<const Program>& program, const Episode& episode) {
-  Cast cast{.ticks_per_second = 1000};
+  EntityTable entity_table{.ticks_per_second = 1000};
   for (const char* name : {"X", "P", "Q", "R"})
-    cast.entities.push_back({.name = name, .classes = {name, "Thing", "Entity"}});
-  Monitor monitor(program, cast);
-  const std::vector<EntitySample> looks(cast.entities.size());
+    entity_table.entities.push_back({.name = name, .classes = {name, "Thing", "Entity"}});
+  Monitor monitor(program, entity_table);
+  const std::vector<EntitySample> looks(entity_table.entities.size());
   std::vector<Event> events;
   for (std::size_t i = 0; i < episode.p.size(); ++i) {
     std::vector<Touch> touches;

@@ -80,8 +80,8 @@ class Trial {
   // Two monitors at once, one fed with whole frames, one with changes or either, in chunks of any
   // size.
   void Watch(const RandomEpisode& episode) {
-    Monitor plain(program_, RandomGrammarCast());
-    Monitor mixed(program_, RandomGrammarCast());
+    Monitor plain(program_, RandomEntityTable());
+    Monitor mixed(program_, RandomEntityTable());
     EpisodeFeed feed_plain(episode, plain), feed_mixed(episode, mixed);
     std::vector<Event> events_plain, events_mixed;
     while (!feed_plain.done() || !feed_mixed.done()) {

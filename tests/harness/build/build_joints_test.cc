@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "harness/read/read_scenario.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "physics/scene/geometry.h"
 #include "tests/harness/scenario_fixture.h"
 
@@ -50,12 +50,12 @@ TEST(BuildJoints, ADrawerWithAHandle) {
   EXPECT_EQ(joints[0].friction, 3);
   EXPECT_EQ(joints[1].kind, JointKind::kFixed);
   EXPECT_EQ(joints[1].base, 1);
-  const grammar::Cast cast = MakeCast(*read.value);
-  EXPECT_EQ(cast.entities[2].part_of, 1);
-  EXPECT_EQ(cast.entities[1].part_of, grammar::kNobody);
-  EXPECT_EQ(cast.entities[0].classes[1], "Fixed");
-  EXPECT_EQ(cast.entities[1].classes[1], "Jointed");
-  EXPECT_EQ(cast.entities[2].classes[1], "Jointed");
+  const grammar::EntityTable entity_table = MakeEntityTable(*read.value);
+  EXPECT_EQ(entity_table.entities[2].part_of, 1);
+  EXPECT_EQ(entity_table.entities[1].part_of, grammar::kNobody);
+  EXPECT_EQ(entity_table.entities[0].classes[1], "Fixed");
+  EXPECT_EQ(entity_table.entities[1].classes[1], "Jointed");
+  EXPECT_EQ(entity_table.entities[2].classes[1], "Jointed");
 }
 
 TEST(BuildJoints, AHingeIsInDegrees) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {
@@ -35,13 +35,13 @@ TEST(PersonsTest, ABodyIsAnEntityWithParts) {
   EXPECT_EQ(scenario.scene.persons[0].head, 2);
   EXPECT_EQ(scenario.scene.persons[0].right_hand, 0);
   EXPECT_EQ(scenario.scene.bodies.size(), 2u + 18u);
-  const grammar::Cast cast = MakeCast(scenario);
-  EXPECT_EQ(cast.entities[2].name, "anna");
-  EXPECT_EQ(cast.entities[2].classes, (std::vector<std::string>{"Person", "Entity"}));
-  EXPECT_EQ(cast.entities[3].name, "anna_neck");
-  EXPECT_EQ(cast.entities[3].classes, (std::vector<std::string>{"BodyPart", "Entity"}));
-  EXPECT_EQ(cast.entities[3].part_of, 2);
-  EXPECT_EQ(cast.entities.back().name, "right_hand");
+  const grammar::EntityTable entity_table = MakeEntityTable(scenario);
+  EXPECT_EQ(entity_table.entities[2].name, "anna");
+  EXPECT_EQ(entity_table.entities[2].classes, (std::vector<std::string>{"Person", "Entity"}));
+  EXPECT_EQ(entity_table.entities[3].name, "anna_neck");
+  EXPECT_EQ(entity_table.entities[3].classes, (std::vector<std::string>{"BodyPart", "Entity"}));
+  EXPECT_EQ(entity_table.entities[3].part_of, 2);
+  EXPECT_EQ(entity_table.entities.back().name, "right_hand");
 }
 
 TEST(PersonsTest, StepsAreUnderstood) {

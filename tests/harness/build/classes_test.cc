@@ -3,7 +3,7 @@
 
 #include "harness/build/validate_classes.h"
 #include "harness/read/read_scenario.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {
@@ -24,10 +24,10 @@ ReadResult<Scenario> Read(const std::string& classes) {
 TEST(Kinds, AMugIsACupIsAContainer) {
   const auto read = Read("{Mug: Cup, Cup: Container}");
   ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  const grammar::Cast cast = MakeCast(*read.value);
-  EXPECT_EQ(cast.entities[0].classes,
+  const grammar::EntityTable entity_table = MakeEntityTable(*read.value);
+  EXPECT_EQ(entity_table.entities[0].classes,
             (std::vector<std::string>{"Table", "Fixed", "Thing", "Entity"}));
-  EXPECT_EQ(cast.entities[1].classes,
+  EXPECT_EQ(entity_table.entities[1].classes,
             (std::vector<std::string>{"Mug", "Cup", "Container", "Movable", "Thing", "Entity"}));
 }
 

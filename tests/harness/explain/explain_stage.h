@@ -39,7 +39,7 @@ class Stage {
  public:
   explicit Stage(const std::string& grammar_text)
       : past_(std::make_unique<grammar::Hindsight>(
-            grammar::testing::CompileText("grammar test\n" + grammar_text), scene.cast)) {}
+            grammar::testing::CompileText("grammar test\n" + grammar_text), scene.entity_table)) {}
 
   void Show(int frames = 1) {
     for (int i = 0; i < frames; ++i) {
@@ -66,7 +66,7 @@ class Stage {
 };
 
 inline Ask Asked(grammar::Hindsight& past, const std::string& text) {
-  const ReadResult<Ask> ask = ParseAsk("--event", text, past.program(), past.cast());
+  const ReadResult<Ask> ask = ParseAsk("--event", text, past.program(), past.entity_table());
   EXPECT_TRUE(ask.value) << Format(ask.diagnostics);
   return ask.value.value_or(Ask{.rule = 0});
 }

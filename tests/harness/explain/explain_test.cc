@@ -447,8 +447,8 @@ TEST(Explain, RememberingChangesNothing) {
     const ReadResult<EpisodeSource> source =
         OpenScenario(root + "/scenarios/" + kSlide + ".yaml", grammar, {}, root);
     ASSERT_TRUE(source.value);
-    grammar::Monitor monitor(source.value->program, source.value->cast);
-    grammar::Hindsight past(source.value->program, source.value->cast);
+    grammar::Monitor monitor(source.value->program, source.value->entity_table);
+    grammar::Hindsight past(source.value->program, source.value->entity_table);
     std::vector<grammar::Event> events;
     const auto played = source.value->play([&](const grammar::Frame& frame) {
       monitor.Advance(frame, events);
@@ -457,7 +457,7 @@ TEST(Explain, RememberingChangesNothing) {
     monitor.Finish(played.end, events);
     past.Finish(played.end);
     const auto named = [&](const std::vector<grammar::Event>& all) {
-      return grammar::NameEvents(*source.value->program, source.value->cast, all).events;
+      return grammar::NameEvents(*source.value->program, source.value->entity_table, all).events;
     };
     const auto expected = named(events), remembered = named(past.events());
     ASSERT_EQ(remembered.size(), expected.size());
@@ -549,7 +549,7 @@ TEST(Ask, BadOnesNamePlaceAndRemedy) {
   stage.Show();
   grammar::Hindsight& past = stage.Finish();
   for (const BadAsk& bad : asks) {
-    const ReadResult<Ask> ask = ParseAsk("--event", bad.text, past.program(), past.cast());
+    const ReadResult<Ask> ask = ParseAsk("--event", bad.text, past.program(), past.entity_table());
     EXPECT_FALSE(ask.value);
     EXPECT_EQ(Format(ask.diagnostics), bad.complaint);
   }

@@ -5,7 +5,7 @@
 
 #include "harness/format/scenario_formats.h"
 #include "harness/read/read_scenario.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "physics/scene/geometry.h"
 #include "tests/harness/scenario_fixture.h"
 
@@ -58,7 +58,7 @@ TEST(AbstractEntities, StandWhereTheyAreAndAreNoThings) {
     const physics::Body& body = read.value->scene.bodies[2];
     EXPECT_EQ(body.abstract, row.abstract);
     EXPECT_FALSE(physics::IsThing(body));
-    EXPECT_EQ(MakeCast(*read.value).entities[2].classes, row.classes);
+    EXPECT_EQ(MakeEntityTable(*read.value).entities[2].classes, row.classes);
   }
 }
 
@@ -66,7 +66,7 @@ TEST(AbstractEntities, ARoundRegionHasNoCorners) {
   const auto read = Read(With("region: {radius_m: 0.5}, at_m: [1, 0, 0.8]"));
   ASSERT_TRUE(read.value) << Brief(read.diagnostics);
   const physics::Body& ball = read.value->scene.bodies[2];
-  EXPECT_TRUE(MakeCast(*read.value).entities[2].round);
+  EXPECT_TRUE(MakeEntityTable(*read.value).entities[2].round);
   EXPECT_TRUE(physics::IsInside(ball, ball.X_WB, {1.49, 0, 0.8}));
   EXPECT_FALSE(physics::IsInside(ball, ball.X_WB, {1.4, 0.4, 0.8}));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a good scenario becomes: bodies, hands, script, cast. What is wrong with bad ones:
+// What a good scenario becomes: bodies, hands, script, entity_table. What is wrong with bad ones:
 // tests/harness/format/scenario_errors_test.cc.
 #include "harness/read/read_scenario.h"
 
@@ -9,7 +9,7 @@
 
 #include "harness/format/limits.h"
 #include "harness/format/scenario_fields.h"
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {
@@ -174,18 +174,18 @@ TEST(ReadScenario, TenThousandEntitiesAreReadAndCheckedQuickly) {
             "6:3: entities: expected at most 10000, found 10001\n");
 }
 
-TEST(MakeCast, BodiesFirstThenHands) {
-  const grammar::Cast cast = MakeCast(Read(kProbe));
-  EXPECT_EQ(cast.ticks_per_second, 480);
-  ASSERT_EQ(cast.entities.size(), 3u);
-  EXPECT_EQ(cast.entities[0].classes,
+TEST(MakeEntityTable, BodiesFirstThenHands) {
+  const grammar::EntityTable entity_table = MakeEntityTable(Read(kProbe));
+  EXPECT_EQ(entity_table.ticks_per_second, 480);
+  ASSERT_EQ(entity_table.entities.size(), 3u);
+  EXPECT_EQ(entity_table.entities[0].classes,
             (std::vector<std::string>{"Table", "Fixed", "Thing", "Entity"}));
-  EXPECT_EQ(cast.entities[1].classes,
+  EXPECT_EQ(entity_table.entities[1].classes,
             (std::vector<std::string>{"Object", "Movable", "Thing", "Entity"}));
-  EXPECT_TRUE(cast.entities[1].half_size_m.isApprox(Eigen::Vector3d(0.035, 0.035, 0.1)));
-  EXPECT_EQ(cast.entities[2].name, "right_hand");
-  EXPECT_EQ(cast.entities[2].classes, (std::vector<std::string>{"Hand", "Entity"}));
-  EXPECT_EQ(cast.styles, (std::vector<std::string>{"wrap", "pinch"}));
+  EXPECT_TRUE(entity_table.entities[1].half_size_m.isApprox(Eigen::Vector3d(0.035, 0.035, 0.1)));
+  EXPECT_EQ(entity_table.entities[2].name, "right_hand");
+  EXPECT_EQ(entity_table.entities[2].classes, (std::vector<std::string>{"Hand", "Entity"}));
+  EXPECT_EQ(entity_table.styles, (std::vector<std::string>{"wrap", "pinch"}));
 }
 
 }  // namespace

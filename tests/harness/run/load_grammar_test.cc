@@ -81,10 +81,10 @@ TEST_F(LoadGrammarFiles, WarnsOfClassesThatNobodyHas) {
             "event on(c: Cup) while near(any Hand, c) and is(c, Pot)\n");
   const auto loaded = Load(file);
   ASSERT_TRUE(loaded.program) << Format(loaded.diagnostics);
-  const grammar::Cast cast{
+  const grammar::EntityTable entity_table{
       .entities = {{.name = "hand", .classes = {"Hand", "Entity"}},
                    {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}}}};
-  EXPECT_EQ(Format(Warnings(*loaded.program, cast)),
+  EXPECT_EQ(Format(Warnings(*loaded.program, entity_table)),
             file +
                 ":2:21: warning: nobody in this episode is a 'Cupp'\n"
                 "  event near(h: Hand, c: Cupp) while distance(h, c) < 1 cm\n"
@@ -102,14 +102,14 @@ TEST_F(LoadGrammarFiles, WarnsOfSensorSetsThatNoHandHas) {
             "sensor_set(h, \"left wing\", c)\n");
   const auto loaded = Load(file);
   ASSERT_TRUE(loaded.program) << Format(loaded.diagnostics);
-  const grammar::Cast cast{
+  const grammar::EntityTable entity_table{
       .entities = {
           {.name = "hand", .classes = {"Hand", "Entity"}, .sensor_sets = {"thumb", "palm"}},
           {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}}}};
   const std::string line =
       "  event held(h: Hand, c: Cup) while sensor_set(h, tumb, c) or sensor_set(h, \"left wing\", "
       "c)\n";
-  EXPECT_EQ(Format(Warnings(*loaded.program, cast)),
+  EXPECT_EQ(Format(Warnings(*loaded.program, entity_table)),
             file + ":2:49: warning: no hand of this episode has a sensor set 'tumb'\n" + line +
                 "  " + std::string(48, ' ') + "^\n  hint: did you mean 'thumb'?\n" + file +
                 ":2:75: warning: no hand of this episode has a sensor set 'left wing'\n" + line +
@@ -122,12 +122,12 @@ TEST_F(LoadGrammarFiles, WarnsOfNumbersOfSensorSetsThatNoHandHas) {
                                  "and sensor_set(h, 3, c)\n");
   const auto loaded = Load(file);
   ASSERT_TRUE(loaded.program) << Format(loaded.diagnostics);
-  const grammar::Cast cast{
+  const grammar::EntityTable entity_table{
       .entities = {
           {.name = "hand", .classes = {"Hand", "Entity"}, .sensor_sets = {"thumb", "palm"}},
           {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}}}};
   EXPECT_EQ(
-      Format(Warnings(*loaded.program, cast)),
+      Format(Warnings(*loaded.program, entity_table)),
       file +
           ":2:73: warning: no hand of this episode has a sensor set '3'\n"
           "  event held(h: Hand, c: Cup) while sensor_set(h, 2, c) and sensor_set(h, 3, c)\n  " +

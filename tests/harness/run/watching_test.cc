@@ -33,7 +33,7 @@ class Watching : public testing::TestWithParam<int> {
   RunResult PlayWatched(const PreparedRun& prepared) {
     const Scenario& scenario = prepared.scenario;
     std::ostringstream episode;
-    EpisodeWriter writer(episode, {scenario.name, scenario.grammar, MakeCast(scenario)});
+    EpisodeWriter writer(episode, {scenario.name, scenario.grammar, MakeEntityTable(scenario)});
     RunOptions options{.record = true,
                        .watch = [&](const grammar::Frame& frame) { writer.Write(frame); },
                        .judge = !scenario.outcomes.empty(),

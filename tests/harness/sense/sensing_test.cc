@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "harness/sense/cast.h"
+#include "harness/sense/entity_table.h"
 
 namespace prehend::harness {
 namespace {

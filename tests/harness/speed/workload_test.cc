@@ -9,7 +9,7 @@ namespace prehend::harness {
 namespace {
 
 Recognised Watch(const ChangeLog& log) {
-  grammar::Monitor monitor(CompileFourRules(), log.cast);
+  grammar::Monitor monitor(CompileFourRules(), log.entity_table);
   const Recognised recognised = WatchByGrammar(log, monitor, log.size() / 2).recognised;
   EXPECT_EQ(monitor.error(), "");
   return recognised;
