@@ -15,10 +15,10 @@ inline constexpr int kMaxAttributes = 4;
 /// One recognised event. Names are in Program::events[rule].
 struct Event {
   int rule = 0;
-  std::array<int, kMaxRoles> roles = {kNobody, kNobody, kNobody, kNobody};  ///< entity ids
+  std::array<int, kMaxRoles> roles = {kNoEntity, kNoEntity, kNoEntity, kNoEntity};  ///< entity ids
   Interval interval;
   Tick decided = 0;       ///< the tick of the frame at which it became certain
-  int style = kNobody;    ///< value of `with style = style(hand)`, index into EntityTable::styles
+  int style = kNoEntity;  ///< value of `with style = style(hand)`, index into EntityTable::styles
   bool open_end = false;  ///< closed by Finish(), not by what happened
   /// Values of `with name = value`, SI units, in the order of Program::events[rule].attributes.
   std::array<double, kMaxAttributes> attributes = {};

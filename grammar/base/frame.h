@@ -23,7 +23,7 @@ struct Interval {
   friend bool operator==(const Interval&, const Interval&) = default;
 };
 
-inline constexpr int kNobody = -1;
+inline constexpr int kNoEntity = -1;
 
 /// One entity that can be bound to a role. Its index in EntityTable::entities is its id.
 struct EntityInfo {
@@ -33,7 +33,7 @@ struct EntityInfo {
   /// and Jointed (Things; what hangs on a joint, as a drawer does, is only Jointed); Abstract (no
   /// matter: a Region, say) and Grains, which are no Things.
   std::vector<std::string> classes;
-  int part_of = kNobody;
+  int part_of = kNoEntity;
   /// Centre and half sizes of the oriented bounding box, in the entity's own frame, metres.
   Eigen::Vector3d p_BC_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
@@ -62,7 +62,7 @@ struct EntitySample {
   double joint_position = 0;
   double joint_fraction = 0;
   /// Of a person, camera or head: the entity it looks at.
-  int gazes_at = kNobody;
+  int gazes_at = kNoEntity;
 };
 
 /// A ball that stands for a piece of a hand's surface, for distances from hand to object.
@@ -82,7 +82,7 @@ inline double VerticalSpeedBetween(const EntitySample& a, const EntitySample& b,
 
 /// What is only known of hands.
 struct HandSample {
-  int entity = kNobody;
+  int entity = kNoEntity;
   double trigger = 0;  ///< commanded grip, 0 open .. 1 closed
   int style = 0;       ///< index into EntityTable::styles
   Eigen::Vector3d ahead_W =
@@ -92,8 +92,8 @@ struct HandSample {
 
 /// Two entities whose surfaces touch now. At most one per pair, however many points or links touch.
 struct Touch {
-  int a = kNobody;  ///< a < b
-  int b = kNobody;
+  int a = kNoEntity;  ///< a < b
+  int b = kNoEntity;
   /// Largest up (world z) component, over the touching points that carry load, of the contact
   /// normal on a (pointing out of b into a), and the same for b. 1: held from below. 0: side by
   /// side. -1: it lies below.
@@ -117,14 +117,14 @@ struct Frame {
 
 /// One entity whose pose or velocity is not as it was.
 struct EntityChange {
-  int entity = kNobody;
+  int entity = kNoEntity;
   EntitySample look;
 };
 
 /// Two entities that touch no more, in any order.
 struct ContactEnd {
-  int a = kNobody;
-  int b = kNobody;
+  int a = kNoEntity;
+  int b = kNoEntity;
 };
 
 /// One look at the world as what is new in it: whatever is not mentioned is as it was in the frame

@@ -73,7 +73,7 @@ bool Engine::CanMeasure(const Lane& lane) const {
 // What must be so of a touch and of a grip is so now.
 bool Engine::IsMeasured(const Lane& lane) const {
   const MeasuredPart& part = RuleOf(lane).measured;
-  const int hand = part.hand == kNone ? kNobody : lane.entities[part.hand];
+  const int hand = part.hand == kNone ? kNoEntity : lane.entities[part.hand];
   if (part.touch == kNone) return part.grip.Fit(grips_[hand]);
   const Lane& touch = lanes_[lane.references[part.touch]];
   return IsMeasured(part, hand, touch,

@@ -104,7 +104,7 @@ class Engine {
   /// Likewise, of a grip, if there is one, and a touch, which names the two the other way round
   /// than the rule if `turned`.
   bool IsMeasured(const MeasuredPart& part, int hand, const Lane& touch, bool turned) const {
-    if (hand != kNobody && !part.grip.Fit(grips_[hand])) return false;
+    if (hand != kNoEntity && !part.grip.Fit(grips_[hand])) return false;
     if (!touch.open) return !part.must_touch && part.press[0].Fit(thresholds_.OfNoTouch());
     return part.press[turned ? 1 : 0].Fit(touch.beyond);
   }
@@ -158,7 +158,7 @@ class Engine {
   void Begin(Lane& lane, FrameNumber frame);
   int StyleAt(const Lane& lane, FrameNumber frame) const {
     return RuleOf(lane).style_role == kNone
-               ? kNobody
+               ? kNoEntity
                : StyleOfHand(lane.entities[RuleOf(lane).style_role], frame);
   }
   int StyleOfHand(int hand, FrameNumber frame) const;

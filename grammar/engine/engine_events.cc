@@ -24,7 +24,7 @@ void Engine::Begin(Lane& lane, FrameNumber frame) {
 // A hand that no frame has shown yet has no style.
 int Engine::StyleOfHand(int entity, FrameNumber frame) const {
   const HandSample* hand = history_.Hand(entity, frame);
-  return hand == nullptr ? kNobody : hand->look.style;
+  return hand == nullptr ? kNoEntity : hand->look.style;
 }
 
 // False, with nothing changed, if it is not known yet whether the run is an interval.

@@ -46,7 +46,7 @@ std::string_view Engine::WhyNoTick(Tick tick) const {
 std::string_view Engine::WhyNotWatchable(const Frame& frame) {
   if (static_cast<int>(frame.entities.size()) != entity_count_)
     return "a frame shows another number of entities than the entity table";
-  int last_hand = kNobody;
+  int last_hand = kNoEntity;
   for (const HandSample& hand : frame.hands) {
     if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the entity table";
     if (hand.entity <= last_hand)
@@ -203,7 +203,7 @@ void Engine::Press(std::span<const Touch> touches) {
     const Touch& touch = touches[i];
     const int index = pressed_[i] != kNone
                           ? pressed_[i]
-                          : lanes_.Ensure(kTouchingRule, {touch.a, touch.b, kNobody, kNobody});
+                          : lanes_.Ensure(kTouchingRule, {touch.a, touch.b, kNoEntity, kNoEntity});
     if (index == kNone) continue;
     Lane& lane = lanes_[index];
     if (lane.touched == now) continue;  // said twice

@@ -35,7 +35,7 @@ bool IsPosition(const Program& program, int node) {
 
 /// Directly, or through other parts. A recording may have rings of them, hence the bound.
 bool IsPartOf(const EntityTable& entity_table, int part, int whole) {
-  for (std::size_t depth = 0; depth < entity_table.entities.size() && part != kNobody; ++depth) {
+  for (std::size_t depth = 0; depth < entity_table.entities.size() && part != kNoEntity; ++depth) {
     part = entity_table.entities[static_cast<std::size_t>(part)].part_of;
     if (part == whole) return true;
   }
@@ -282,7 +282,7 @@ std::optional<double> Evaluator::Arithmetic(const Node& node, const View& view) 
 double Evaluator::SignalOf(const Node& node, const View& view) const {
   const FrameNumber frame = view.frame;
   const int a = Entity(node, view, 0);
-  const int b = node.roles[1] == kNone ? kNobody : Entity(node, view, 1);
+  const int b = node.roles[1] == kNone ? kNoEntity : Entity(node, view, 1);
   bool swapped = false;
   switch (node.op) {
     case Op::kTrigger: {

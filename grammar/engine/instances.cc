@@ -97,7 +97,7 @@ void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard,
     made->push_back(lane);
     return;
   }
-  if (entities[role] != kNobody) {
+  if (entities[role] != kNoEntity) {
     BindRest(rule, entities, role + 1, guard, made);
     return;
   }
@@ -107,7 +107,7 @@ void Lanes::BindRest(int rule, Binding& entities, std::size_t role, int guard,
       continue;
     entities[role] = static_cast<int>(e);
     BindRest(rule, entities, role + 1, guard, made);
-    entities[role] = kNobody;
+    entities[role] = kNoEntity;
   }
 }
 
@@ -202,7 +202,7 @@ void Lanes::Refer(Lane& lane, int slot, int target) {
        .turned = instant && part.first != kNone && watched.entities[0] != lane.entities[part.first],
        .press = rule.watches_press,
        .instant = instant ? &part : nullptr,
-       .hand = instant && part.hand != kNone ? lane.entities[part.hand] : kNobody});
+       .hand = instant && part.hand != kNone ? lane.entities[part.hand] : kNoEntity});
   if (opened && !watched.awake) lane.moment = -1;  // else it may be on its way
 }
 
@@ -262,7 +262,7 @@ void Lanes::Free(int index, std::vector<int>& orphans) {
   lane.moment = kNever;
   lane.last_end = 0;
   lane.touched = -1;
-  lane.style = kNobody;
+  lane.style = kNoEntity;
   lane.rule = kNone;
   free_.push_back(index);
 }

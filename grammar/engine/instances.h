@@ -64,14 +64,14 @@ struct Watcher {
   bool turned = false;         ///< `instant` names the two of the touch the other way round
   ThresholdSet press = 0;      ///< what matters to it of how the two touch
   const MeasuredPart* instant =
-      nullptr;         ///< of its rule, if that is instant and the other one is its touch
-  int hand = kNobody;  ///< whose grip `instant` asks for
+      nullptr;           ///< of its rule, if that is instant and the other one is its touch
+  int hand = kNoEntity;  ///< whose grip `instant` asks for
 };
 
 /// A finished interval that waits for its confirmation.
 struct Pending {
   Span span;
-  int style = kNobody;
+  int style = kNoEntity;
   FrameNumber next = 0;  ///< first frame not yet searched for the confirmation
   std::array<double, kMaxAttributes> attributes = {};
 };
@@ -106,7 +106,7 @@ struct alignas(64) Lane : LaneKey {  // rule kNone: the lane is free
   std::vector<double> anchors;     ///< three numbers per Rule::anchors
   Ring<TouchSample> touches;       ///< kTouching only, where they change, if a rule asks for them
   std::size_t touching_place = 0;  ///< kTouching only: where among those that touch now
-  int style = kNobody;
+  int style = kNoEntity;
   std::array<int, kMaxRoles> watch_places =
       kUnbound;                   ///< by role: where in the list of the entity's watchers
   FrameNumber approach_from = 0;  ///< kUntilSince: no later interval reaches back before this frame

@@ -18,7 +18,7 @@ class Relation {
   Relation(const ScenarioEntry& entry, std::string to_itself, Complaints& complaints)
       : to_itself_(std::move(to_itself)),
         complaints_(complaints),
-        target_(entry.entities.size(), grammar::kNobody) {
+        target_(entry.entities.size(), grammar::kNoEntity) {
     for (const auto& named : entry.entities) names_.push_back(named.name);
   }
 
@@ -35,7 +35,7 @@ class Relation {
     if (!LeadsBackTo(i)) return true;
     complaints_.Add(name.where,
                     fmt::format("{}: '{}', directly or not, {}", key, names_[i], to_itself_));
-    target_[i] = grammar::kNobody;
+    target_[i] = grammar::kNoEntity;
     return false;
   }
 
@@ -45,9 +45,9 @@ class Relation {
  private:
   bool LeadsBackTo(std::size_t i) const {
     int next = target_[i];
-    while (next != grammar::kNobody && next != static_cast<int>(i))
+    while (next != grammar::kNoEntity && next != static_cast<int>(i))
       next = target_[static_cast<std::size_t>(next)];
-    return next != grammar::kNobody;
+    return next != grammar::kNoEntity;
   }
 
   const std::string to_itself_;

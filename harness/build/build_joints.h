@@ -13,7 +13,7 @@ namespace prehend::harness {
 /// on themselves, or that are fixed to something that cannot move.
 std::vector<physics::Joint> BuildJoints(const ScenarioEntry& entry, Complaints& complaints);
 
-/// For every entity the index of the one that it is part of, or grammar::kNobody. Complains about
+/// For every entity the index of the one that it is part of, or grammar::kNoEntity. Complains about
 /// unknown names and about entities that are, directly or not, parts of themselves.
 std::vector<int> PartsOf(const ScenarioEntry& entry, Complaints& complaints);
 

@@ -109,7 +109,7 @@ void AddPersonClasses(Scenario& scenario) {
         [&](const physics::Person& person) { return static_cast<std::size_t>(person.head) <= i; });
     const bool is_head = static_cast<std::size_t>(owner->head) == i;
     scenario.body_classes.push_back(is_head ? "Person" : "BodyPart");
-    scenario.body_part_of.push_back(is_head ? grammar::kNobody : owner->head);
+    scenario.body_part_of.push_back(is_head ? grammar::kNoEntity : owner->head);
   }
 }
 

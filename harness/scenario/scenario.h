@@ -53,7 +53,7 @@ struct Scenario {
   physics::Scene scene;
   std::vector<std::string> body_classes;  ///< one per scene body
   std::vector<KindEntry> kinds;           ///< each class at most once
-  std::vector<int> body_part_of;          ///< one per scene body: a scene body, or grammar::kNobody
+  std::vector<int> body_part_of;  ///< one per scene body: a scene body, or grammar::kNoEntity
   physics::Script script;
   std::vector<VariationEntry> variations;
   std::vector<Outcome> outcomes;

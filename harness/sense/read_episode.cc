@@ -272,12 +272,12 @@ class EpisodeReader {
     return classes;
   }
 
-  /// The entity of this name, or kNobody after complaining.
+  /// The entity of this name, or kNoEntity after complaining.
   int IndexOf(const std::string& name, const Where& where, Complaints& complaints) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     if (found != names_.end()) return static_cast<int>(found - names_.begin());
     complaints.AddUnknownName(where, fmt::format("no entity is called '{}'", name), name, names_);
-    return grammar::kNobody;
+    return grammar::kNoEntity;
   }
 
   void Take(const EndEntry& entry, Complaints& complaints) {
@@ -307,7 +307,7 @@ class EpisodeReader {
       look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
     for (const Named<LookEntry>& look : entry.looks) {
       const int index = IndexOf(look.name, look.name_where, complaints);
-      if (index == grammar::kNobody) continue;
+      if (index == grammar::kNoEntity) continue;
       TakeSample(look.value, first ? 0 : dt_s, now_.entities[index]);
       if (const auto& gazes_at = look.value.gazes_at) {
         now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, complaints);
@@ -335,7 +335,7 @@ class EpisodeReader {
     look.asleep = entry.asleep;
     look.joint_position = entry.joint_position;
     look.joint_fraction = entry.joint_fraction;
-    look.gazes_at = grammar::kNobody;
+    look.gazes_at = grammar::kNoEntity;
     if (dt_s > 0) {
       look.v_WB_m_per_s = (look.p_WB_m - before.p_WB_m) / dt_s;
       const Eigen::AngleAxisd turn(look.q_WB * before.q_WB.conjugate());
@@ -347,7 +347,7 @@ class EpisodeReader {
 
   void TakeHand(const Named<HandEntry>& named, Complaints& complaints) {
     const int entity = IndexOf(named.name, named.name_where, complaints);
-    if (entity == grammar::kNobody) return;
+    if (entity == grammar::kNoEntity) return;
     const auto found = std::find(hands_.begin(), hands_.end(), entity);
     if (found == hands_.end())
       return complaints.Add(named.name_where, fmt::format("'{}' is no hand", named.name),
@@ -378,7 +378,7 @@ class EpisodeReader {
   void TakeTouch(const TouchEntry& entry, Complaints& complaints) {
     int a = IndexOf(entry.a.value, entry.a.where, complaints),
         b = IndexOf(entry.b.value, entry.b.where, complaints);
-    if (a == grammar::kNobody || b == grammar::kNobody) return;
+    if (a == grammar::kNoEntity || b == grammar::kNoEntity) return;
     if (a == b)
       return complaints.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
     grammar::Touch touch{.a = a,

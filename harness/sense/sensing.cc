@@ -145,7 +145,7 @@ void Sensing::SenseBodies(const physics::Snapshot& snapshot) {
     grammar::EntitySample look = entities_[static_cast<std::size_t>(heads_[i])];
     look.gazes_at = gaze.hand >= 0   ? body_count_ + gaze.hand
                     : gaze.body >= 0 ? gaze.body
-                                     : grammar::kNobody;
+                                     : grammar::kNoEntity;
     Show(heads_[i], look);
   }
 }
@@ -167,7 +167,7 @@ void Sensing::SenseHands(const physics::Snapshot& snapshot) {
     const int entity = body_count_ + static_cast<int>(h);
     Show(entity, LookAt(hand.palm));
     const auto style = static_cast<std::size_t>(hand.style);
-    const int named = style < geometry.styles.size() ? geometry.styles[style] : grammar::kNobody;
+    const int named = style < geometry.styles.size() ? geometry.styles[style] : grammar::kNoEntity;
     hands_[h] = {entity, hand.trigger, named, hand.palm.X_WB.q * geometry.model.ahead,
                  collision_spheres};
   }

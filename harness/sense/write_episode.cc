@@ -31,7 +31,7 @@ void AddClasses(const std::vector<std::string>& classes, Json& json) {
 
 Json MemberJson(const grammar::EntityInfo& member, const grammar::EntityTable& entity_table) {
   Json json = {{"centre_m", ToJson(member.p_BC_m)}, {"size_m", ToJson(2 * member.half_size_m)}};
-  if (member.part_of != grammar::kNobody)
+  if (member.part_of != grammar::kNoEntity)
     json["part_of"] = entity_table.entities[member.part_of].name;
   if (member.mass_kg > 0) json["mass_kg"] = member.mass_kg;
   if (member.strength_n > 0) json["strength_n"] = member.strength_n;
@@ -53,7 +53,7 @@ Json SampleJson(const grammar::EntitySample& look, const grammar::EntityTable& e
   if (look.asleep) json["asleep"] = true;
   if (look.joint_position != 0) json["joint_position"] = look.joint_position;
   if (look.joint_fraction != 0) json["joint_fraction"] = look.joint_fraction;
-  if (look.gazes_at != grammar::kNobody)
+  if (look.gazes_at != grammar::kNoEntity)
     json["gazes_at"] = entity_table.entities[look.gazes_at].name;
   return json;
 }

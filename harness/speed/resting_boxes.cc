@@ -18,7 +18,7 @@ Scenario BoxesOnAFloor(int count, int rate_hz) {
   const auto add = [&](physics::Body body, const char* class_name) {
     scenario.scene.bodies.push_back(std::move(body));
     scenario.body_classes.emplace_back(class_name);
-    scenario.body_part_of.push_back(grammar::kNobody);
+    scenario.body_part_of.push_back(grammar::kNoEntity);
   };
   physics::Body floor{.name = "floor", .fixed = true};
   floor.shapes.push_back({physics::Box{{kSpacing_m * side, kSpacing_m * side, kSize_m}}, {}});

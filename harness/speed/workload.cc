@@ -192,7 +192,7 @@ struct Automaton {
     if (stands && !supported) support_begin = now;
     if (supported && !stands && now - support_begin >= kSupportTicks) {
       support_ends = true;
-      out.Add(kSupported, kNobody, object, {support_begin, now});
+      out.Add(kSupported, kNoEntity, object, {support_begin, now});
     }
     supported = stands;
 
@@ -223,13 +223,13 @@ struct Automaton {
   void Finish(int hand, int object, Tick end, Recognised& out) const {
     if (grasping) out.Add(kGrasping, hand, object, {grasp_begin, end});
     if (supported && end - support_begin >= kSupportTicks)
-      out.Add(kSupported, kNobody, object, {support_begin, end});
+      out.Add(kSupported, kNoEntity, object, {support_begin, end});
     if (waiting && end - touch_begin >= kUnansweredTicks)
       out.Add(kUnanswered, hand, object, {touch_begin, end});
     if (lifting) out.Add(kPickingUp, hand, object, {lift_begin, end});
   }
 
-  static constexpr int kNobody = grammar::kNobody;
+  static constexpr int kNoEntity = grammar::kNoEntity;
 };
 
 }  // namespace
@@ -288,7 +288,7 @@ Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::siz
       // has no hand.
       const int rule = event.rule - 1;
       const bool has_hand = rule != kSupported;
-      recognised.Add(rule, has_hand ? event.roles[0] : grammar::kNobody,
+      recognised.Add(rule, has_hand ? event.roles[0] : grammar::kNoEntity,
                      event.roles[has_hand ? 1 : 0], event.interval);
     }
     events.clear();

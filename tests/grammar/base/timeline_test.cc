@@ -18,12 +18,12 @@ TEST(Timeline, NamesAndSortsEvents) {
                                  .styles = {"wrap"}};
   const Timeline timeline = NameEvents(program, entity_table,
                                        {{.rule = 1,
-                                         .roles = {1, 0, kNobody, kNobody},
+                                         .roles = {1, 0, kNoEntity, kNoEntity},
                                          .interval = {20, 30},
                                          .decided = 31,
                                          .style = 0},
                                         {.rule = 1,
-                                         .roles = {1, 0, kNobody, kNobody},
+                                         .roles = {1, 0, kNoEntity, kNoEntity},
                                          .interval = {5, 9},
                                          .decided = 12,
                                          .open_end = true}});

@@ -80,9 +80,9 @@ TEST_F(TextFile, RefusesAnUnreadableFile) {
   const std::string path = Write("secret", "a: 1\n");
   std::filesystem::permissions(path, std::filesystem::perms::none);
   // Root reads everything, so for a moment it is nobody.
-  constexpr uid_t kNobody = 65534;
+  constexpr uid_t kNoEntity = 65534;
   const uid_t me = geteuid();
-  if (me == 0 && seteuid(kNobody) != 0)
+  if (me == 0 && seteuid(kNoEntity) != 0)
     GTEST_SKIP() << "root reads everything, and nobody is not known in this user namespace";
   const std::string complaint = Complaint(path);
   ASSERT_EQ(seteuid(me), 0);

@@ -52,7 +52,7 @@ TEST(BuildJoints, ADrawerWithAHandle) {
   EXPECT_EQ(joints[1].base, 1);
   const grammar::EntityTable entity_table = MakeEntityTable(*read.value);
   EXPECT_EQ(entity_table.entities[2].part_of, 1);
-  EXPECT_EQ(entity_table.entities[1].part_of, grammar::kNobody);
+  EXPECT_EQ(entity_table.entities[1].part_of, grammar::kNoEntity);
   EXPECT_EQ(entity_table.entities[0].classes[1], "Fixed");
   EXPECT_EQ(entity_table.entities[1].classes[1], "Jointed");
   EXPECT_EQ(entity_table.entities[2].classes[1], "Jointed");

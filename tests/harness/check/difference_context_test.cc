@@ -20,7 +20,7 @@ struct Stage {
       body.fixed = body.name == "table";
       scenario.scene.bodies.push_back(body);
       scenario.body_classes.push_back("Object");
-      scenario.body_part_of.push_back(grammar::kNobody);
+      scenario.body_part_of.push_back(grammar::kNoEntity);
     }
     scenario.world = {.rate_hz = 480, .sensing_hz = 480};
     scenario.scene.world.rate_hz = 480;
