@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/read/read_scenario_test.cc and tests/harness/sense/sensing_test.cc
+#include "harness/sense/entity_table.h"
+
 #include <algorithm>
 
 #include "harness/scenario/classes.h"
-#include "harness/sense/entity_table.h"
 
 namespace prehend::harness {
 
