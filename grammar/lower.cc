@@ -35,9 +35,11 @@ std::string Suggest(std::string_view name, const std::vector<std::string>& known
   return near.empty() ? std::string() : "did you mean " + Quoted(near) + "?";
 }
 
-int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file,
+int NoteName(std::vector<NameInSource>& names, std::string_view name, const std::string& file,
              Place place) {
-  const auto same = [&](const Named& named) { return named.name == name && named.file == file; };
+  const auto same = [&](const NameInSource& named) {
+    return named.name == name && named.file == file;
+  };
   const auto found = std::ranges::find_if(names, same);
   const auto index = static_cast<int>(found - names.begin());
   if (found == names.end()) names.push_back({std::string(name), file, place});

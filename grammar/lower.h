@@ -48,7 +48,7 @@ struct Symbols {
 
 /// Remembers a name that stands at a place of a file, once per name and file; which of the names it
 /// is.
-int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file,
+int NoteName(std::vector<NameInSource>& names, std::string_view name, const std::string& file,
              Place place);
 
 /// Likewise, a class that stands there, unless it is built in.

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "grammar/contents.h"
 #include "grammar/frame.h"
-#include "grammar/program.h"
 #include "harness/event_text.h"
 #include "harness/golden_files.h"
 #include "harness/library_paths.h"
@@ -27,30 +27,24 @@ class GoldenChecker {
   GoldenChecker(std::string_view file, std::string_view text, const PreparedRun& prepared)
       : file_(file),
         text_(text),
-        rules_(prepared.program->events),
+        signatures_(EventSignatures(*prepared.program)),
+        events_(EventNames(*prepared.program)),
         cast_(MakeCast(prepared.scenario)) {
-    for (const grammar::Rule& rule : rules_) {
-      if (rule.printed) events_.push_back(rule.name);
-    }
     for (const grammar::CastMember& member : cast_.entities) entities_.push_back(member.name);
   }
 
   void CheckLine(const GoldenEvent& line) {
     const std::string& event = line.event.event;
-    const auto rule = std::ranges::find_if(rules_, [&](const grammar::Rule& candidate) {
-      return candidate.printed && candidate.name == event;
-    });
-    if (rule == rules_.end())
+    const auto signature = std::ranges::find(signatures_, event, &grammar::EventSignature::name);
+    if (signature == signatures_.end())
       return Unknown(line, event, "the grammar has no event '" + event + "'", event, events_);
-    for (const grammar::Role& role : line.event.roles) CheckRole(line, *rule, role);
-    for (const grammar::RuleRole& role : rule->roles) {
-      if (RoleValue(line.event, role.name).empty())
+    for (const grammar::Role& role : line.event.roles) CheckRole(line, *signature, role);
+    for (const std::string& role : signature->roles) {
+      if (RoleValue(line.event, role).empty())
         Complain(line, event,
-                 fmt::format("'{}' has a role '{}', which is missing here", event, role.name), "");
+                 fmt::format("'{}' has a role '{}', which is missing here", event, role), "");
     }
-    Names values;
-    for (const grammar::RuleAttribute& attribute : rule->attributes)
-      values.push_back(attribute.name);
+    const Names& values = signature->attributes;
     for (const grammar::NamedValue& value : line.event.values) {
       if (std::ranges::count(values, value.name) == 0)
         Unknown(line, value.name + "~", fmt::format("'{}' has no value '{}'", event, value.name),
@@ -72,20 +66,20 @@ class GoldenChecker {
   grammar::Diagnostics Take() { return std::move(diagnostics_); }
 
  private:
-  void CheckRole(const GoldenEvent& line, const grammar::Rule& rule, const grammar::Role& role) {
+  void CheckRole(const GoldenEvent& line, const grammar::EventSignature& event,
+                 const grammar::Role& role) {
     if (IsAttribute(role)) {
-      if (rule.style_role == grammar::kNone)
-        return Complain(line, role.name + "=", fmt::format("'{}' has no style", rule.name), "");
+      if (!event.has_style)
+        return Complain(line, role.name + "=", fmt::format("'{}' has no style", event.name), "");
       if (std::ranges::count(cast_.styles, role.value) == 0)
         Unknown(line, role.name + "=", "no hand of the scenario has the style '" + role.value + "'",
                 role.value, cast_.styles);
       return;
     }
-    Names roles;
-    for (const grammar::RuleRole& known : rule.roles) roles.push_back(known.name);
-    if (std::ranges::count(roles, role.name) == 0)
+    if (std::ranges::count(event.roles, role.name) == 0)
       return Unknown(line, role.name + "=",
-                     fmt::format("'{}' has no role '{}'", rule.name, role.name), role.name, roles);
+                     fmt::format("'{}' has no role '{}'", event.name, role.name), role.name,
+                     event.roles);
     if (std::ranges::count(entities_, role.value) == 0)
       Unknown(line, role.name + "=", "the scenario has no '" + role.value + "'", role.value,
               entities_);
@@ -115,9 +109,10 @@ class GoldenChecker {
   }
 
   std::string_view file_, text_;
-  const std::vector<grammar::Rule>& rules_;
+  const std::vector<grammar::EventSignature> signatures_;
+  const Names events_;
   const grammar::Cast cast_;
-  Names events_, entities_;
+  Names entities_;
   grammar::Diagnostics diagnostics_;
 };
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "grammar/program.h"
+#include "grammar/contents.h"
 #include "harness/compare.h"
 #include "harness/event_text.h"
 #include "harness/golden.h"
@@ -21,10 +21,8 @@ Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
                 .found = run.timeline};
   std::erase_if(judged.found.events, [](const auto& event) { return !OracleDefines(event.event); });
   // A grammar is not blamed for events that it does not speak of.
-  std::erase_if(judged.truth.events, [&](const auto& event) {
-    return std::ranges::none_of(
-        program.events, [&](const auto& rule) { return rule.printed && rule.name == event.event; });
-  });
+  std::erase_if(judged.truth.events,
+                [&](const auto& event) { return !HasEvent(program, event.event); });
   return judged;
 }
 

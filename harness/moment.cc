@@ -8,6 +8,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "grammar/contents.h"
+
 namespace prehend::harness {
 
 std::optional<MomentName> ParseMoment(const std::string& text) {
@@ -34,16 +36,13 @@ std::optional<MomentProblem> WhyNoMoment(const std::string& text, const grammar:
                          "write seconds, like 1.25, or an event's boundary, like reaching.begin"};
   }
   if (moment->time_s) return std::nullopt;
-  std::vector<std::string> events;
-  for (const grammar::Rule& rule : program.events) {
-    if (!rule.printed) continue;
-    if (rule.name == moment->event) return std::nullopt;
-    events.push_back(rule.name);
-  }
+  if (HasEvent(program, moment->event)) return std::nullopt;
+  const std::vector<std::string> events = EventNames(program);
   const std::string near = grammar::NearestName(moment->event, events);
-  return MomentProblem{fmt::format("grammar '{}' has no event '{}'", program.name, moment->event),
-                       near.empty() ? fmt::format("known: {}", fmt::join(events, ", "))
-                                    : fmt::format("did you mean '{}'?", near)};
+  return MomentProblem{
+      fmt::format("grammar '{}' has no event '{}'", GrammarName(program), moment->event),
+      near.empty() ? fmt::format("known: {}", fmt::join(events, ", "))
+                   : fmt::format("did you mean '{}'?", near)};
 }
 
 Moment FindMoment(const std::string& text, const RunResult& run) {

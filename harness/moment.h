@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "grammar/program.h"
+#include "grammar/compile.h"
 #include "harness/run_scenario.h"
 
 namespace prehend::harness {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <iterator>
 
-#include "grammar/program.h"
+#include "grammar/contents.h"
 #include "harness/library_paths.h"
 #include "harness/load_grammar.h"
 #include "harness/moment.h"
@@ -103,7 +103,7 @@ ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string&
     grammar::Diagnostics pictures = CheckPictures(*scenario.value, *compiled.program);
     if (!pictures.empty()) return {std::nullopt, std::move(pictures)};
   }
-  scenario.value->grammar = compiled.program->name;
+  scenario.value->grammar = GrammarName(*compiled.program);
   grammar::Diagnostics warnings = scenario.value->warnings;
   std::ranges::move(Warnings(*compiled.program, MakeCast(*scenario.value)),
                     std::back_inserter(warnings));

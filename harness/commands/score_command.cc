@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "grammar/program.h"
+#include "grammar/contents.h"
 #include "harness/commands/command.h"
 #include "harness/commands/number_in.h"
 #include "harness/judge_episode.h"
@@ -147,10 +147,7 @@ std::vector<std::string> NotSpokenOf(const grammar::Program& program,
   std::vector<std::string> silent;
   for (const std::string_view event : OracleEvents()) {
     const bool judged = events.empty() || std::ranges::find(events, event) != events.end();
-    const bool spoken = std::ranges::any_of(program.events, [&](const grammar::Rule& rule) {
-      return rule.printed && rule.name == event;
-    });
-    if (judged && !spoken) silent.emplace_back(event);
+    if (judged && !HasEvent(program, event)) silent.emplace_back(event);
   }
   return silent;
 }

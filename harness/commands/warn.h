@@ -2,8 +2,8 @@
 // Warnings on standard error. Tested by tests/house/command_line_test.cc
 #pragma once
 
+#include "grammar/compile.h"
 #include "grammar/frame.h"
-#include "grammar/program.h"
 #include "harness/commands/command.h"
 
 namespace prehend::harness {

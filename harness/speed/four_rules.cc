@@ -6,7 +6,6 @@
 #include <random>
 #include <vector>
 
-#include "grammar/program.h"
 #include "harness/speed/stopwatch.h"
 
 namespace prehend::harness {
