@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "grammar/program.h"
+
 namespace prehend::harness {
 namespace {
 
