@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See event_text.h. Tested by tests/harness/golden_test.cc
+// See harness/event_text.h. Tested by tests/harness/golden_test.cc
 #include "harness/event_text.h"
 
 #include <fmt/format.h>

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "harness/cast.h"
 #include "harness/speed/stopwatch.h"
 
 namespace prehend::harness {
