@@ -131,7 +131,7 @@ std::string Watched(const Program& program, const Rule& rule) {
 
 // A composition remembers so many intervals of each part.
 std::size_t BytesPerBinding(const Rule& rule) {
-  return sizeof(Lane) + rule.references.size() * sizeof(int) +
+  return sizeof(RuleInstance) + rule.references.size() * sizeof(int) +
          rule.anchors.size() * 3 * sizeof(double) +
          rule.composition.parts.size() * kRememberedSpans * sizeof(Span);
 }

@@ -40,7 +40,7 @@ struct Fate {
     kWalkedBack,   ///< an `until` with some; what becomes of them is noted next
   };
   Kind kind = Kind::kInterval;
-  int lane = kNone;
+  int instance = kNone;
   Span span;
   FrameNumber cause = kNever;
   Tick decided = 0;

@@ -13,22 +13,23 @@ Hindsight::Hindsight(std::shared_ptr<const Program> program, Cast cast)
 void Hindsight::Finish(Tick end) {
   engine_.Finish(end, events_);
   end_tick_ = frames() == 0 ? end : std::max(end, engine_.history().At(frames() - 1).tick + 1);
-  by_lane_.resize(engine_.lanes().size());
+  by_instance_.resize(engine_.instances().size());
   // The fact has no fates: its intervals are what was seen.
-  for (int lane = 0; lane < engine_.lanes().size(); ++lane) {
-    if (At(lane).rule != kTouchingRule) continue;
-    const Ring<Span>& past = At(lane).past;
+  for (int instance = 0; instance < engine_.instances().size(); ++instance) {
+    if (At(instance).rule != kTouchingRule) continue;
+    const Ring<Span>& past = At(instance).past;
     for (std::size_t i = 0; i < past.size(); ++i) {
-      by_lane_[lane].push_back({.lane = lane, .span = past[i], .decided = past[i].end.tick});
+      by_instance_[instance].push_back(
+          {.instance = instance, .span = past[i], .decided = past[i].end.tick});
     }
   }
   for (Fate& fate : fates_) {
     if (fate.kind == Fate::Kind::kWalkedBack) {
-      by_lane_[fate.lane].push_back(fate);
+      by_instance_[fate.instance].push_back(fate);
       continue;
     }
     // What became of a walk back takes its place.
-    std::vector<Fate>& fates = by_lane_[fate.lane];
+    std::vector<Fate>& fates = by_instance_[fate.instance];
     const auto same = [&](const Fate& other) {
       return other.kind == Fate::Kind::kWalkedBack && other.span.end.frame == fate.span.end.frame;
     };
@@ -37,7 +38,7 @@ void Hindsight::Finish(Tick end) {
     std::erase_if(fates, same);
     fates.push_back(fate);
   }
-  for (std::vector<Fate>& fates : by_lane_) {
+  for (std::vector<Fate>& fates : by_instance_) {
     std::erase_if(fates, [](const Fate& fate) { return fate.kind == Fate::Kind::kWalkedBack; });
     std::stable_sort(fates.begin(), fates.end(), [](const Fate& a, const Fate& b) {
       return a.span.end.tick < b.span.end.tick;
@@ -54,41 +55,42 @@ FrameNumber Hindsight::FrameAt(Tick tick) const {
                                  std::max<FrameNumber>(frames() - 1, 0));
 }
 
-std::vector<int> Hindsight::LanesOf(int rule) {
-  std::vector<int> lanes;
-  for (int lane = 0; lane < engine_.lanes().size(); ++lane) {
-    if (At(lane).rule == rule) lanes.push_back(lane);
+std::vector<int> Hindsight::InstancesOf(int rule) {
+  std::vector<int> instances;
+  for (int instance = 0; instance < engine_.instances().size(); ++instance) {
+    if (At(instance).rule == rule) instances.push_back(instance);
   }
-  std::sort(lanes.begin(), lanes.end(),
+  std::sort(instances.begin(), instances.end(),
             [&](int a, int b) { return At(a).entities < At(b).entities; });
-  return lanes;
+  return instances;
 }
 
-const std::vector<Fate>& Hindsight::FatesOf(int lane) const {
+const std::vector<Fate>& Hindsight::FatesOf(int instance) const {
   static const std::vector<Fate> kNoFates;
-  return lane >= 0 && lane < static_cast<int>(by_lane_.size()) ? by_lane_[lane] : kNoFates;
+  return instance >= 0 && instance < static_cast<int>(by_instance_.size()) ? by_instance_[instance]
+                                                                           : kNoFates;
 }
 
-const Fate* Hindsight::LastBegun(int lane, FrameNumber frame) const {
+const Fate* Hindsight::LastBegun(int instance, FrameNumber frame) const {
   const Fate* last = nullptr;
-  for (const Fate& fate : FatesOf(lane)) {
+  for (const Fate& fate : FatesOf(instance)) {
     if (fate.kind == Fate::Kind::kInterval && fate.span.begin.frame <= frame) last = &fate;
   }
   return last;
 }
 
-const Fate* Hindsight::Covering(int lane, FrameNumber frame) const {
-  const Fate* last = LastBegun(lane, frame);
+const Fate* Hindsight::Covering(int instance, FrameNumber frame) const {
+  const Fate* last = LastBegun(instance, frame);
   return last != nullptr && frame < last->span.end.frame ? last : nullptr;
 }
 
 Evaluator::View Hindsight::View(const Moment& at) {
-  Lane& lane = engine_.lanes()[at.lane];
+  RuleInstance& instance = engine_.instances()[at.instance];
   const FrameNumber last = frames() - 1;
   // After the episode every value is known.
   if (at.begin)
-    static_cast<void>(engine_.evaluator().CaptureAnchors(lane, std::min(*at.begin, last)));
-  Evaluator::View view{.lane = lane, .frame = std::min(at.frame, last)};
+    static_cast<void>(engine_.evaluator().CaptureAnchors(instance, std::min(*at.begin, last)));
+  Evaluator::View view{.instance = instance, .frame = std::min(at.frame, last)};
   if (at.end) view.end = std::min(*at.end, last);
   return view;
 }

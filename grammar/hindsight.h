@@ -39,25 +39,29 @@ class Hindsight {
 
   /// The binding of a rule, whether or not anything ever happened to it; kNone if an entity's class
   /// does not fit.
-  int LaneOf(int rule, const Binding& entities) { return engine_.lanes().Ensure(rule, entities); }
+  int InstanceOf(int rule, const Binding& entities) {
+    return engine_.instances().Ensure(rule, entities);
+  }
   /// The binding that a reference of this one means, likewise.
-  int Referred(int lane, int slot) { return engine_.lanes().Resolve(engine_.lanes()[lane], slot); }
-  const Lane& At(int lane) { return engine_.lanes()[lane]; }
-  const Rule& RuleOf(int lane) { return program().events[At(lane).rule]; }
+  int Referred(int instance, int slot) {
+    return engine_.instances().Resolve(engine_.instances()[instance], slot);
+  }
+  const RuleInstance& At(int instance) { return engine_.instances()[instance]; }
+  const Rule& RuleOf(int instance) { return program().events[At(instance).rule]; }
   /// All bindings of a rule that were ever looked at, by entities.
-  std::vector<int> LanesOf(int rule);
+  std::vector<int> InstancesOf(int rule);
 
   /// What became of the runs of a binding, in the order of their ends.
-  const std::vector<Fate>& FatesOf(int lane) const;
+  const std::vector<Fate>& FatesOf(int instance) const;
   /// The last of its intervals that begins at or before the frame; null if there is none.
-  const Fate* LastBegun(int lane, FrameNumber frame) const;
+  const Fate* LastBegun(int instance, FrameNumber frame) const;
   /// The interval that contains the frame; null if there is none.
-  const Fate* Covering(int lane, FrameNumber frame) const;
+  const Fate* Covering(int instance, FrameNumber frame) const;
 
   /// A binding at a frame, with the boundaries of the interval that it is asked for, as far as the
   /// clause needs them.
   struct Moment {
-    int lane = kNone;
+    int instance = kNone;
     FrameNumber frame = 0;
     std::optional<FrameNumber> begin = std::nullopt;
     std::optional<FrameNumber> end = std::nullopt;
@@ -73,7 +77,7 @@ class Hindsight {
   Engine engine_;
   std::vector<Event> events_;
   Tick end_tick_ = 0;
-  std::vector<std::vector<Fate>> by_lane_;
+  std::vector<std::vector<Fate>> by_instance_;
 };
 
 }  // namespace prehend::grammar

@@ -20,8 +20,8 @@ using grammar::Tick;
 
 std::vector<const Fate*> IntervalsOf(Hindsight& past, const Ask& ask) {
   std::vector<const Fate*> intervals;
-  for (const int lane : BindingsThatFit(past, ask.rule, ask.entities)) {
-    for (const Fate& fate : past.FatesOf(lane)) {
+  for (const int instance : BindingsThatFit(past, ask.rule, ask.entities)) {
+    for (const Fate& fate : past.FatesOf(instance)) {
       if (fate.kind == Fate::Kind::kInterval) intervals.push_back(&fate);
     }
   }
@@ -48,9 +48,10 @@ std::vector<WhyEvent> ExplainAll(Hindsight& past) {
   EventReasons reasons(past);
   for (std::size_t rule = 0; rule < past.program().events.size(); ++rule) {
     if (!past.program().events[rule].printed) continue;
-    for (const int lane : past.LanesOf(static_cast<int>(rule))) {
-      for (const Fate& fate : past.FatesOf(lane)) {
-        if (fate.kind == Fate::Kind::kInterval) events.push_back(reasons.Explain(lane, fate, true));
+    for (const int instance : past.InstancesOf(static_cast<int>(rule))) {
+      for (const Fate& fate : past.FatesOf(instance)) {
+        if (fate.kind == Fate::Kind::kInterval)
+          events.push_back(reasons.Explain(instance, fate, true));
       }
     }
   }
@@ -66,7 +67,7 @@ std::vector<WhyEvent> ExplainEvents(Hindsight& past, const Ask& ask) {
   EventReasons reasons(past);
   for (const Fate* fate : IntervalsOf(past, ask)) {
     if (!ask.time_s || Contains(*fate, TickOf(ask, past)))
-      events.push_back(reasons.Explain(fate->lane, *fate));
+      events.push_back(reasons.Explain(fate->instance, *fate));
   }
   return events;
 }
@@ -84,15 +85,15 @@ std::vector<WhyEvent> NearestEvents(Hindsight& past, const Ask& ask) {
   if (intervals.size() > kMost) intervals.resize(kMost);
   std::vector<WhyEvent> events;
   EventReasons reasons(past);
-  for (const Fate* fate : intervals) events.push_back(reasons.Explain(fate->lane, *fate, true));
+  for (const Fate* fate : intervals) events.push_back(reasons.Explain(fate->instance, *fate, true));
   return events;
 }
 
 WhyMissing ExplainMissing(Hindsight& past, const Ask& ask) {
   std::optional<grammar::FrameNumber> at;
   if (ask.time_s) at = past.FrameAt(TickOf(ask, past));
-  const std::vector<int> lanes = BindingsThatFit(past, ask.rule, ask.entities);
-  if (!lanes.empty()) return MissingReasons(past).Explain(lanes, at);
+  const std::vector<int> instances = BindingsThatFit(past, ask.rule, ask.entities);
+  if (!instances.empty()) return MissingReasons(past).Explain(instances, at);
   WhyMissing why;
   why.event = past.program().events[ask.rule].name;
   why.because = "no entities of the episode fit its roles";

@@ -109,11 +109,11 @@ class Collector {
   void AddIntervals(int rule) {
     const Track::Kind kind =
         past_.program().events[rule].printed ? Track::Kind::kEvent : Track::Kind::kCondition;
-    for (const int lane : past_.LanesOf(rule)) {
-      auto* values = tracks_.problem.empty() ? Add(Label(past_, lane), kind, "") : nullptr;
+    for (const int instance : past_.InstancesOf(rule)) {
+      auto* values = tracks_.problem.empty() ? Add(Label(past_, instance), kind, "") : nullptr;
       if (values == nullptr) continue;
       std::fill(values->begin(), values->end(), 0);
-      for (const Fate& fate : past_.FatesOf(lane)) {
+      for (const Fate& fate : past_.FatesOf(instance)) {
         if (fate.kind != Fate::Kind::kInterval) continue;
         const FrameNumber end = std::min(fate.span.end.frame, past_.frames());
         for (FrameNumber frame = fate.span.begin.frame; frame < end; ++frame) (*values)[frame] = 1;
@@ -125,33 +125,33 @@ class Collector {
     const Rule& asked = past_.program().events[rule];
     for (const Signal& signal : SignalsOf(past_.program(), asked)) {
       if (!Wanted(NameOf(past_.program(), signal)) && !Wanted(asked.name)) continue;
-      for (const int lane : past_.LanesOf(rule)) {
-        if (tracks_.problem.empty()) AddSignal(lane, signal);
+      for (const int instance : past_.InstancesOf(rule)) {
+        if (tracks_.problem.empty()) AddSignal(instance, signal);
       }
     }
   }
 
-  void AddSignal(int lane, const Signal& signal) {
+  void AddSignal(int instance, const Signal& signal) {
     const Program& program = past_.program();
     const bool anchored =
         AsksFor(program, signal.node, Op::kAtBegin) || AsksFor(program, signal.node, Op::kAtEnd);
-    std::string name = ClauseText(past_, lane, signal.node);
+    std::string name = ClauseText(past_, instance, signal.node);
     if (name.empty()) return;
     if (signal.what == Signal::What::kDistance) name += ": from the centre";
     if (signal.what == Signal::What::kHeight) name += ": above or below the centre";
     // What is measured from an interval's boundary is another thing in each rule.
-    if (anchored) name = RuleName(past_, lane) + ": " + name;
+    if (anchored) name = RuleName(past_, instance) + ": " + name;
     const grammar::Dimension& dimension = signal.what == Signal::What::kNumber
                                               ? NoteOf(program, signal.node).dimension
                                               : grammar::kMetres;
     auto* values = Add(std::move(name), Track::Kind::kSignal,
                        dimension == grammar::kPlain ? "" : grammar::DimensionText(dimension));
     if (values == nullptr) return;
-    if (!anchored) return Fill(signal, 0, past_.frames(), {.lane = lane}, *values);
-    for (const Fate& fate : past_.FatesOf(lane)) {
+    if (!anchored) return Fill(signal, 0, past_.frames(), {.instance = instance}, *values);
+    for (const Fate& fate : past_.FatesOf(instance)) {
       const FrameNumber begin = fate.span.begin.frame;
       Fill(signal, begin, std::min(fate.span.end.frame + 1, past_.frames()),
-           {.lane = lane, .begin = begin, .end = fate.span.end.frame}, *values);
+           {.instance = instance, .begin = begin, .end = fate.span.end.frame}, *values);
     }
   }
 

@@ -61,15 +61,16 @@ MissingReasons::Window MissingReasons::Within(const Window& window, FrameNumber 
   return {std::max(around.first, window.first), std::min(around.last, window.last), frame};
 }
 
-WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<FrameNumber> at) {
+WhyMissing MissingReasons::Explain(const std::vector<int>& instances,
+                                   std::optional<FrameNumber> at) {
   const Window window = at ? Around(*at) : Whole();
   std::optional<Blame> worst;
-  int blamed = lanes.front();
-  for (const int lane : lanes) {
-    Blame blame = OfLane(lane, window, 0);
+  int blamed = instances.front();
+  for (const int instance : instances) {
+    Blame blame = OfInstance(instance, window, 0);
     if (worst && blame.closeness <= worst->closeness) continue;
     worst = std::move(blame);
-    blamed = lane;
+    blamed = instance;
   }
   const Rule& rule = past_.RuleOf(blamed);
   WhyMissing why{.event = Label(past_, blamed),
@@ -102,19 +103,19 @@ WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<
   return why;
 }
 
-MissingReasons::Blame MissingReasons::OfLane(int lane, const Window& window, int depth) {
-  if (lane == kNone || depth >= kDeepest) return {};
-  if (const Fate* run = NearestRun(lane, window))
+MissingReasons::Blame MissingReasons::OfInstance(int instance, const Window& window, int depth) {
+  if (instance == kNone || depth >= kDeepest) return {};
+  if (const Fate* run = NearestRun(instance, window))
     return OfRun(*run, depth, window.at ? grammar::kNever : window.last);
-  return OfForm(lane, window, depth);
+  return OfForm(instance, window, depth);
 }
 
 // Of the runs within the window that came to nothing, the one that was nearest to being an
 // interval.
-const Fate* MissingReasons::NearestRun(int lane, const Window& window) {
+const Fate* MissingReasons::NearestRun(int instance, const Window& window) {
   const Fate* nearest = nullptr;
   double closeness = 0;
-  for (const Fate& fate : past_.FatesOf(lane)) {
+  for (const Fate& fate : past_.FatesOf(instance)) {
     const bool within = fate.span.begin.frame <= window.last && fate.span.end.frame >= window.first;
     if (fate.kind == Fate::Kind::kInterval || !within) continue;
     const bool covers =
@@ -128,7 +129,7 @@ const Fate* MissingReasons::NearestRun(int lane, const Window& window) {
 }
 
 double MissingReasons::RunCloseness(const Fate& fate) {
-  const Rule& rule = past_.RuleOf(fate.lane);
+  const Rule& rule = past_.RuleOf(fate.instance);
   const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
   const double lasted_s = static_cast<double>(fate.span.end.tick - fate.span.begin.tick) /
                           static_cast<double>(past_.cast().ticks_per_second);
@@ -137,14 +138,14 @@ double MissingReasons::RunCloseness(const Fate& fate) {
       return 1 + 0.5 * lasted_s / rule.lasting_s;
     case Fate::Kind::kRefused: {
       const Moment at{
-          .lane = fate.lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
+          .instance = fate.instance, .frame = last, .begin = fate.span.begin.frame, .end = last};
       return 1 + 0.9 * clauses_.Nearness(rule.requirement, at, true);
     }
     case Fate::Kind::kUnconfirmed:
       return 1.9;
     case Fate::Kind::kNothingBack: {
       if (fate.span.end.frame == 0) return 0.9;  // nor could there be anything
-      const Moment before{.lane = fate.lane, .frame = last - 1, .end = last};
+      const Moment before{.instance = fate.instance, .frame = last - 1, .end = last};
       return 1 + 0.5 * clauses_.Nearness(rule.second, before, true);
     }
     default:
@@ -152,21 +153,21 @@ double MissingReasons::RunCloseness(const Fate& fate) {
   }
 }
 
-std::string MissingReasons::Awaited(int lane) {
-  const Rule& rule = past_.RuleOf(lane);
-  return (rule.absence ? "without " : "to ") + ClauseText(past_, lane, rule.second);
+std::string MissingReasons::Awaited(int instance) {
+  const Rule& rule = past_.RuleOf(instance);
+  return (rule.absence ? "without " : "to ") + ClauseText(past_, instance, rule.second);
 }
 
 // When what was waited for came after all, for the first time.
 std::string MissingReasons::HowLate(const Fate& fate) {
-  const Rule& rule = past_.RuleOf(fate.lane);
+  const Rule& rule = past_.RuleOf(fate.instance);
   const Tick per_second = past_.cast().ticks_per_second;
   const Tick within = past_.AtMostTicks(rule.within_s);
   for (FrameNumber frame = fate.span.begin.frame + 1; frame < past_.frames(); ++frame) {
     const Tick late = past_.TickOf(frame) - fate.span.begin.tick - within;
     if (late <= 0 ||
         !past_.Truth(rule.second,
-                     {.lane = fate.lane, .frame = frame, .begin = fate.span.begin.frame}))
+                     {.instance = fate.instance, .frame = frame, .begin = fate.span.begin.frame}))
       continue;
     return "but " + Duration(late, per_second) + " later, at " + clauses_.Time(frame);
   }
@@ -176,18 +177,19 @@ std::string MissingReasons::HowLate(const Fate& fate) {
 // What is required, as it was at the end; of alternatives, the one that came closest at any time of
 // the run stands first.
 Reasons MissingReasons::Requirement(const Fate& fate, int depth) {
-  const int node = past_.RuleOf(fate.lane).requirement;
+  const int node = past_.RuleOf(fate.instance).requirement;
   const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
-  const Moment at{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
+  const Moment at{
+      .instance = fate.instance, .frame = last, .begin = fate.span.begin.frame, .end = last};
   const Window run{fate.span.begin.frame, last};
   Reasons told;
   for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
     Reason reason = clauses_.Told(clause, at);
     const grammar::Node& n = past_.program().nodes[clause.node];
     const int target =
-        n.op == grammar::Op::kHolds && clause.truth ? past_.Referred(fate.lane, n.slot) : kNone;
+        n.op == grammar::Op::kHolds && clause.truth ? past_.Referred(fate.instance, n.slot) : kNone;
     if (reason.mark == Mark::kFailed && target != kNone)
-      reason.because = OfLane(target, run, depth + 1).reasons;
+      reason.because = OfInstance(target, run, depth + 1).reasons;
     reason.what = "requires " + reason.what;
     told.push_back(std::move(reason));
   }
@@ -197,10 +199,10 @@ Reasons MissingReasons::Requirement(const Fate& fate, int depth) {
 
 // Where the conditions that should have begun at the end came closest within the run.
 Reasons MissingReasons::EndThatNeverCame(const Fate& fate, FrameNumber look_until) {
-  const Rule& rule = past_.RuleOf(fate.lane);
+  const Rule& rule = past_.RuleOf(fate.instance);
   if (rule.absence) return {};
   const FrameNumber last = std::min({fate.span.end.frame, past_.frames() - 1, look_until});
-  const Moment end{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame};
+  const Moment end{.instance = fate.instance, .frame = last, .begin = fate.span.begin.frame};
   Reasons told;
   for (const Clauses::Clause& clause : clauses_.Split(rule.second, end, true)) {
     const grammar::Node& moment = past_.program().nodes[clause.node];
@@ -218,14 +220,14 @@ Reasons MissingReasons::EndThatNeverCame(const Fate& fate, FrameNumber look_unti
 }
 
 MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth, FrameNumber look_until) {
-  const int lane = fate.lane;
-  const Rule& rule = past_.RuleOf(lane);
+  const int instance = fate.instance;
+  const Rule& rule = past_.RuleOf(instance);
   const Tick per_second = past_.cast().ticks_per_second;
   const FrameNumber begin = fate.span.begin.frame;
   const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
   Reason run{
       .mark = Mark::kFailed,
-      .what = Label(past_, lane),
+      .what = Label(past_, instance),
       .how = "from " + clauses_.Time(begin) + " to " + At(fate.span.end.tick, per_second) + ": ",
       .where = Source(rule.file, rule.place),
       .tick = fate.span.begin.tick,
@@ -253,44 +255,45 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth, FrameNu
       break;
     case Fate::Kind::kUnconfirmed: {
       run.how += "not confirmed";
-      const int by = past_.Referred(lane, rule.confirmed_by);
-      const int within = past_.Referred(lane, rule.confirmed_within);
+      const int by = past_.Referred(instance, rule.confirmed_by);
+      const int within = past_.Referred(instance, rule.confirmed_within);
       const bool episode = fate.cause >= past_.frames();
       fail("confirmed by " + Label(past_, by),
            "it did not begin before " +
                (episode ? std::string("the episode ended") : Label(past_, within) + " was over") +
                " at " + clauses_.Time(fate.cause));
       const Window wait{fate.span.end.frame, std::min(fate.cause, past_.frames() - 1)};
-      run.because.back().because = OfLane(by, wait, depth + 1).reasons;
+      run.because.back().because = OfInstance(by, wait, depth + 1).reasons;
       break;
     }
     case Fate::Kind::kDropped:
       run.how += "dropped";
       run.because = EndThatNeverCame(fate, look_until);
-      clauses("during ", rule.during, {.lane = lane, .frame = fate.cause, .begin = begin});
+      clauses("during ", rule.during, {.instance = instance, .frame = fate.cause, .begin = begin});
       break;
     case Fate::Kind::kTooLate:
       run.how += "dropped";
-      fail(Awaited(lane), "it did not come within " +
-                              QuantityText(rule.within_s, grammar::kSeconds) + ", " +
-                              HowLate(fate));
+      fail(Awaited(instance), "it did not come within " +
+                                  QuantityText(rule.within_s, grammar::kSeconds) + ", " +
+                                  HowLate(fate));
       break;
     case Fate::Kind::kCame:
       run.how += "what must not come came";
-      fail(Awaited(lane), "it came after " + lasted + ", at " + At(fate.span.end.tick, per_second));
+      fail(Awaited(instance),
+           "it came after " + lasted + ", at " + At(fate.span.end.tick, per_second));
       break;
     case Fate::Kind::kUnfinished:
       run.how += "dropped";
-      fail(Awaited(lane), !rule.absence ? "the episode ended before"
-                                        : "it is decided only " +
-                                              QuantityText(rule.within_s, grammar::kSeconds) +
-                                              " later, the episode ended before");
+      fail(Awaited(instance), !rule.absence ? "the episode ended before"
+                                            : "it is decided only " +
+                                                  QuantityText(rule.within_s, grammar::kSeconds) +
+                                                  " later, the episode ended before");
       break;
     case Fate::Kind::kNothingBack: {
       run.how = "nothing before its end at " + clauses_.Time(fate.span.end.frame);
       const FrameNumber before = std::max<FrameNumber>(last - 1, 0);
       Reasons state =
-          clauses_.State(rule.second, {.lane = lane, .frame = before, .end = last}, true);
+          clauses_.State(rule.second, {.instance = instance, .frame = before, .end = last}, true);
       for (Reason& reason : state) {
         reason.what = "since " + reason.what;
         run.because.push_back(std::move(reason));
@@ -304,7 +307,7 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth, FrameNu
   if (has_end) {
     Reason ended{.mark = Mark::kNote,
                  .what = "it ended there",
-                 .because = events_.End(lane, fate, kDeepest - 1)};
+                 .because = events_.End(instance, fate, kDeepest - 1)};
     run.because.push_back(std::move(ended));
   }
   return {{std::move(run)}, RunCloseness(fate)};

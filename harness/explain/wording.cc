@@ -58,11 +58,11 @@ std::string Duration(Tick ticks, Tick ticks_per_second) {
                       grammar::kSeconds);
 }
 
-const std::string& RuleName(Hindsight& past, int lane) { return past.RuleOf(lane).name; }
+const std::string& RuleName(Hindsight& past, int instance) { return past.RuleOf(instance).name; }
 
-std::string Label(Hindsight& past, int lane) {
-  const Rule& rule = past.RuleOf(lane);
-  const auto& entities = past.At(lane).entities;
+std::string Label(Hindsight& past, int instance) {
+  const Rule& rule = past.RuleOf(instance);
+  const auto& entities = past.At(instance).entities;
   const bool is_any = rule.form == grammar::Form::kAny;
   const Rule& named = is_any ? past.program().events[rule.references[0].rule] : rule;
   std::string roles;
@@ -82,7 +82,7 @@ std::string Source(const std::string& file, const Place& place) {
                      place.line);
 }
 
-std::string ClauseText(Hindsight& past, int lane, int node) {
+std::string ClauseText(Hindsight& past, int instance, int node) {
   const std::string& written = NoteOf(past.program(), node).text;
   std::string text;
   for (std::size_t i = 0; i < written.size(); ++i) {
@@ -92,7 +92,7 @@ std::string ClauseText(Hindsight& past, int lane, int node) {
       text += written[i];
       continue;
     }
-    text += past.cast().entities[past.At(lane).entities[written[i + 1] - '0']].name;
+    text += past.cast().entities[past.At(instance).entities[written[i + 1] - '0']].name;
     i += 2;
   }
   return text;

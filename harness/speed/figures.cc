@@ -105,7 +105,7 @@ class Measuring {
       grammar::Monitor monitor(program_, log.cast);
       monitor.AdvanceBy(log[0], events);
       figure.seconds = std::min(figure.seconds, watch.seconds());
-      figure.operations = monitor.lanes_in_use();
+      figure.operations = monitor.instances_in_use();
       bytes = mallinfo2().uordblks - bytes_before;
     }
     figure.what = fmt::format("rules are bound to objects, {:.0f} bytes each",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whoever rests misses nothing: whole frames, changes only, and frames that repeat what has not
-// changed, which keeps lanes awake, give the same events at the same decision ticks. And what rests
-// for long is freed.
+// changed, which keeps instances awake, give the same events at the same decision ticks. And what
+// rests for long is freed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -216,12 +216,12 @@ TEST(Changes, WhatRestsForLongIsFreed) {
       const Parting parting{0, thing};
       monitor.AdvanceBy({.tick = tick += 10, .touches = {&touch, 1}}, events);
       monitor.AdvanceBy({.tick = tick += 300, .partings = {&parting, 1}}, events);
-      most = std::max(most, monitor.lanes_in_use());
+      most = std::max(most, monitor.instances_in_use());
     }
   }
   EXPECT_LT(most, 160) << "of " << kThings << " things, a few seconds at a time";
   for (int i = 0; i < 500; ++i) monitor.AdvanceBy({.tick = tick += 10}, events);
-  EXPECT_LT(monitor.lanes_in_use(), 20) << "only what no touch guards is left";
+  EXPECT_LT(monitor.instances_in_use(), 20) << "only what no touch guards is left";
   const auto count = [&](std::string_view name) {
     return std::count_if(events.begin(), events.end(),
                          [&](const Event& e) { return program->events[e.rule].name == name; });
