@@ -12,20 +12,20 @@ const std::string& GrammarName(const Program& program) { return program.name; }
 
 std::vector<std::string> EventNames(const Program& program) {
   std::vector<std::string> names;
-  for (const Rule& rule : program.events) {
+  for (const Rule& rule : program.rules) {
     if (rule.printed) names.push_back(rule.name);
   }
   return names;
 }
 
 bool HasEvent(const Program& program, std::string_view name) {
-  return std::ranges::any_of(program.events,
+  return std::ranges::any_of(program.rules,
                              [&](const Rule& rule) { return rule.printed && rule.name == name; });
 }
 
 std::vector<EventSignature> EventSignatures(const Program& program) {
   std::vector<EventSignature> events;
-  for (const Rule& rule : program.events) {
+  for (const Rule& rule : program.rules) {
     if (!rule.printed) continue;
     EventSignature& event = events.emplace_back();
     event.name = rule.name;

@@ -21,8 +21,8 @@ Engine::Engine(std::shared_ptr<const Program> program, Cast cast)
       recalls_touches_(program_->recalls_touches || program_->asks_touches),
       keeps_touches_(program_->asks_touches),
       grips_(cast_.entities.size(), thresholds_.OfGrip(0)),
-      awake_(program_->events.size()) {
-  for (const Rule& rule : program_->events) {
+      awake_(program_->rules.size()) {
+  for (const Rule& rule : program_->rules) {
     rule_ticks_.push_back({.bridging = history_.AtMostTicks(rule.bridging_s),
                            .lasting = history_.AtLeastTicks(rule.lasting_s),
                            .idle = history_.AtMostTicks(rule.idle_s),

@@ -187,7 +187,7 @@ class Engine {
   FrameNumber PartsSettled(const RuleInstance& composition) const;
   void StepCompose(RuleInstance& instance);
 
-  const Rule& RuleOf(const RuleInstance& instance) const { return program_->events[instance.rule]; }
+  const Rule& RuleOf(const RuleInstance& instance) const { return program_->rules[instance.rule]; }
   const RuleTicks& TicksOf(const RuleInstance& instance) const {
     return rule_ticks_[instance.rule];
   }

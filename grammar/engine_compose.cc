@@ -45,7 +45,7 @@ bool IsHopeless(const Program& program, const Rule& rule, const RuleInstance& in
           return false;
         const bool is_left = clause.left == part;
         const int other = is_left ? clause.right : clause.left;
-        if (program.events[rule.references[composition.parts[other]].rule].form == Form::kCompose)
+        if (program.rules[rule.references[composition.parts[other]].rule].form == Form::kCompose)
           return false;
         if ((clause.relations & (is_left ? kToLater : kToEarlier)) != 0) return false;
         const std::vector<Span>& others = instance.parts[other];
@@ -116,7 +116,7 @@ class Combinations {
 // plays them.
 void Engine::TellCompositions(const RuleInstance& part, const Span& span) {
   for (const PartOf& part_of : RuleOf(part).part_of) {
-    const Rule& whole = program_->events[part_of.rule];
+    const Rule& whole = program_->rules[part_of.rule];
     const Reference& reference = whole.references[whole.composition.parts[part_of.part]];
     for (int order = 0; order < (RuleOf(part).symmetric ? 2 : 1); ++order) {
       Binding from = part.entities;

@@ -507,7 +507,7 @@ std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
 }
 
 bool Evaluator::CaptureAnchors(RuleInstance& instance, FrameNumber frame) const {
-  const std::vector<int>& anchors = program_.events[instance.rule].anchors;
+  const std::vector<int>& anchors = program_.rules[instance.rule].anchors;
   const View view{.instance = instance, .frame = frame};
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     if (IsPosition(program_, anchors[i])) {

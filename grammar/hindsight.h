@@ -47,7 +47,7 @@ class Hindsight {
     return engine_.instances().Resolve(engine_.instances()[instance], slot);
   }
   const RuleInstance& At(int instance) { return engine_.instances()[instance]; }
-  const Rule& RuleOf(int instance) { return program().events[At(instance).rule]; }
+  const Rule& RuleOf(int instance) { return program().rules[At(instance).rule]; }
   /// All bindings of a rule that were ever looked at, by entities.
   std::vector<int> InstancesOf(int rule);
 

@@ -15,17 +15,17 @@ constexpr int kMaxInstances = 1'000'000;
 RuleInstances::RuleInstances(const Program& program, const Cast& cast)
     : program_(program),
       cast_(cast),
-      guarded_(program.events.size()),
+      guarded_(program.rules.size()),
       pose_watchers_(cast.entities.size()),
       grip_watchers_(cast.entities.size()),
       name_rank_(cast.entities.size()) {
   for (const int index : program.schedule) {
-    const Rule& rule = program.events[index];
+    const Rule& rule = program.rules[index];
     // Compositions are made when a part has an interval for them.
     if (rule.guard != kNone && rule.form != Form::kCompose)
       guarded_[rule.references[rule.guard].rule].push_back(index);
   }
-  for (const Rule& rule : program.events) {
+  for (const Rule& rule : program.rules) {
     symmetric_.push_back(rule.symmetric ? 1 : 0);
     std::vector<std::vector<bool>>& roles = fits_.emplace_back();
     for (const RuleRole& role : rule.roles) {
@@ -49,7 +49,7 @@ bool RuleInstances::IsA(int entity, const std::string& class_name) const {
 
 void RuleInstances::BindUnguarded() {
   for (const int rule : program_.schedule) {
-    if (program_.events[rule].form == Form::kTouching || program_.events[rule].guard != kNone)
+    if (program_.rules[rule].form == Form::kTouching || program_.rules[rule].guard != kNone)
       continue;
     double bindings = 1;
     for (const std::vector<bool>& role : fits_[rule]) {
@@ -65,7 +65,7 @@ void RuleInstances::BindUnguarded() {
 }
 
 std::string RuleInstances::WhyTooMany() const {
-  const Rule& rule = program_.events[too_many_];
+  const Rule& rule = program_.rules[too_many_];
   std::string roles;
   std::string counts;
   for (std::size_t i = 0; i < rule.roles.size(); ++i) {
@@ -87,7 +87,7 @@ void RuleInstances::EnsureAll(int rule, Binding entities, std::vector<int>& made
 void RuleInstances::BindRest(int rule, Binding& entities, std::size_t role, int guard,
                              std::vector<int>* made) {
   if (TooMany()) return;
-  if (role == program_.events[rule].roles.size()) {
+  if (role == program_.rules[rule].roles.size()) {
     if (Canonical(rule, entities).entities != entities)
       return;  // of a symmetric pair, the other order is what counts
     const int instance = Ensure(rule, entities);
@@ -111,7 +111,7 @@ void RuleInstances::BindRest(int rule, Binding& entities, std::size_t role, int 
 }
 
 bool RuleInstances::Fits(int rule, const Binding& entities) const {
-  for (std::size_t i = 0; i < program_.events[rule].roles.size(); ++i) {
+  for (std::size_t i = 0; i < program_.rules[rule].roles.size(); ++i) {
     if (!fits_[rule][i][entities[i]]) return false;
     for (std::size_t j = 0; j < i; ++j) {
       if (entities[i] == entities[j]) return false;
@@ -135,7 +135,7 @@ int RuleInstances::Make(const InstanceKey& key) {
   free_.pop_back();
   instance.rule = key.rule;
   instance.entities = key.entities;
-  const Rule& r = program_.events[key.rule];
+  const Rule& r = program_.rules[key.rule];
   instance.references.assign(r.references.size(), kNone);
   instance.anchors.assign(3 * r.anchors.size(), 0);
   instance.parts.resize(r.composition.parts.size());
@@ -152,16 +152,16 @@ int RuleInstances::Make(const InstanceKey& key) {
 // rest are free.
 void RuleInstances::MakeDependents(int instance, std::vector<int>& made) {
   const int guard_rule = instances_[instance].rule;
-  const bool both_orders = program_.events[guard_rule].symmetric;
+  const bool both_orders = program_.rules[guard_rule].symmetric;
   for (const int rule : guarded_[guard_rule]) {
-    const Rule& r = program_.events[rule];
+    const Rule& r = program_.rules[rule];
     const Binding& mapping = r.references[r.guard].roles;
     for (int order = 0; order < (both_orders ? 2 : 1); ++order) {
       Binding guard_entities = instances_[instance].entities;
       if (order == 1) std::swap(guard_entities[0], guard_entities[1]);
       Binding entities = kUnbound;
       bool fits = true;
-      for (std::size_t i = 0; i < program_.events[guard_rule].roles.size(); ++i) {
+      for (std::size_t i = 0; i < program_.rules[guard_rule].roles.size(); ++i) {
         if (mapping[i] == kNone) continue;
         entities[mapping[i]] = guard_entities[i];
         fits = fits && fits_[rule][mapping[i]][guard_entities[i]];
@@ -174,7 +174,7 @@ void RuleInstances::MakeDependents(int instance, std::vector<int>& made) {
 
 void RuleInstances::LinkToGuard(int index, int guard) {
   RuleInstance& instance = instances_[index];
-  const Rule& rule = program_.events[instance.rule];
+  const Rule& rule = program_.rules[instance.rule];
   if (rule.form == Form::kAny) {
     if (std::find(instance.members.begin(), instance.members.end(), guard) !=
         instance.members.end())
@@ -190,7 +190,7 @@ void RuleInstances::LinkToGuard(int index, int guard) {
 void RuleInstances::Refer(RuleInstance& instance, int slot, int target) {
   instance.references[slot] = target;
   if (target == kNone) return;
-  const Rule& rule = program_.events[instance.rule];
+  const Rule& rule = program_.rules[instance.rule];
   const MeasuredPart& part = rule.measured;
   RuleInstance& watched = instances_[target];
   const bool guarded = slot == rule.guard, opened = slot == rule.opened_by,
@@ -209,7 +209,7 @@ void RuleInstances::Refer(RuleInstance& instance, int slot, int target) {
 }
 
 void RuleInstances::WatchEntities(RuleInstance& instance) {
-  const Rule& rule = program_.events[instance.rule];
+  const Rule& rule = program_.rules[instance.rule];
   for (std::size_t role = 0; role < rule.roles.size(); ++role) {
     if (!rule.watches_pose[role] && !rule.watches_grip[role]) continue;
     std::vector<Watch>& watchers =
@@ -220,7 +220,7 @@ void RuleInstances::WatchEntities(RuleInstance& instance) {
 }
 
 void RuleInstances::UnwatchEntities(const RuleInstance& instance) {
-  const Rule& rule = program_.events[instance.rule];
+  const Rule& rule = program_.rules[instance.rule];
   for (std::size_t role = 0; role < rule.roles.size(); ++role) {
     if (!rule.watches_pose[role] && !rule.watches_grip[role]) continue;
     std::vector<Watch>& watchers =
@@ -270,7 +270,7 @@ void RuleInstances::Free(int index, std::vector<int>& orphans) {
 }
 
 bool RuleInstances::GuardRests(const RuleInstance& instance) const {
-  const Rule& rule = program_.events[instance.rule];
+  const Rule& rule = program_.rules[instance.rule];
   const auto rests = [&](int guard) { return !instances_[guard].awake && !instances_[guard].open; };
   if (rule.form == Form::kAny)
     return std::all_of(instance.members.begin(), instance.members.end(), rests);
@@ -280,9 +280,9 @@ bool RuleInstances::GuardRests(const RuleInstance& instance) const {
 }
 
 InstanceKey RuleInstances::Referred(const RuleInstance& instance, int slot) const {
-  const Reference& reference = program_.events[instance.rule].references[slot];
+  const Reference& reference = program_.rules[instance.rule].references[slot];
   Binding entities = kUnbound;
-  for (std::size_t i = 0; i < program_.events[reference.rule].roles.size(); ++i) {
+  for (std::size_t i = 0; i < program_.rules[reference.rule].roles.size(); ++i) {
     entities[i] = instance.entities[reference.roles[i]];
   }
   return Canonical(reference.rule, entities);

@@ -10,7 +10,7 @@ Timeline NameEvents(const Program& program, const Cast& cast, const std::vector<
   Timeline timeline{.ticks_per_second = cast.ticks_per_second, .events = {}};
   timeline.events.reserve(events.size());
   for (const Event& event : events) {
-    const Rule& rule = program.events[event.rule];
+    const Rule& rule = program.rules[event.rule];
     NamedEvent named{.event = rule.name,
                      .roles = {},
                      .interval = event.interval,

@@ -259,7 +259,7 @@ struct ProgramParam {
 /// output.
 struct Program {
   std::string name;
-  std::vector<Rule> events;
+  std::vector<Rule> rules;
   std::vector<int> schedule;  ///< rules so that each comes after those it refers to
   std::vector<Node> nodes;
   std::vector<NodeNote> notes;              ///< of the first so many nodes

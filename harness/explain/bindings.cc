@@ -14,7 +14,7 @@ using grammar::kNone;
 // Fills the open roles from `role` on with everybody whose class fits.
 void Fill(Hindsight& past, int rule, Binding& entities, std::size_t role,
           std::vector<int>& instances) {
-  const std::size_t roles = past.program().events[rule].roles.size();
+  const std::size_t roles = past.program().rules[rule].roles.size();
   if (instances.size() >= kMostBindings) return;
   if (role == roles) {
     const int instance = past.InstanceOf(rule, entities);
@@ -35,7 +35,7 @@ void Fill(Hindsight& past, int rule, Binding& entities, std::size_t role,
 }  // namespace
 
 std::vector<int> BindingsThatFit(Hindsight& past, int rule, const Binding& wanted) {
-  const grammar::Rule& asked = past.program().events[rule];
+  const grammar::Rule& asked = past.program().rules[rule];
   std::vector<int> instances;
   for (const int instance : past.InstancesOf(rule)) {
     const Binding& entities = past.At(instance).entities;

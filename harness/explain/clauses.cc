@@ -138,7 +138,7 @@ Reason Clauses::Boundary(int instance, const Fate& fate, bool end, const Follow&
 // Somebody's class does not fit, or somebody would play two roles.
 Reason Clauses::Impossible(int instance, int slot) {
   const grammar::Reference& reference = past_.RuleOf(instance).references[slot];
-  const grammar::Rule& rule = past_.program().events[reference.rule];
+  const grammar::Rule& rule = past_.program().rules[reference.rule];
   std::string names;
   std::string why = "an entity would play two roles";
   for (std::size_t role = 0; role < rule.roles.size(); ++role) {

@@ -46,8 +46,8 @@ bool Contains(const Fate& fate, Tick tick) {
 std::vector<WhyEvent> ExplainAll(Hindsight& past) {
   std::vector<WhyEvent> events;
   EventReasons reasons(past);
-  for (std::size_t rule = 0; rule < past.program().events.size(); ++rule) {
-    if (!past.program().events[rule].printed) continue;
+  for (std::size_t rule = 0; rule < past.program().rules.size(); ++rule) {
+    if (!past.program().rules[rule].printed) continue;
     for (const int instance : past.InstancesOf(static_cast<int>(rule))) {
       for (const Fate& fate : past.FatesOf(instance)) {
         if (fate.kind == Fate::Kind::kInterval)
@@ -95,7 +95,7 @@ WhyMissing ExplainMissing(Hindsight& past, const Ask& ask) {
   const std::vector<int> instances = BindingsThatFit(past, ask.rule, ask.entities);
   if (!instances.empty()) return MissingReasons(past).Explain(instances, at);
   WhyMissing why;
-  why.event = past.program().events[ask.rule].name;
+  why.event = past.program().rules[ask.rule].name;
   why.because = "no entities of the episode fit its roles";
   return why;
 }

@@ -79,7 +79,7 @@ class Collector {
   }
 
   Tracks Collect() {
-    const std::vector<Rule>& rules = past_.program().events;
+    const std::vector<Rule>& rules = past_.program().rules;
     for (std::size_t rule = 0; rule < rules.size(); ++rule) {
       if (!rules[rule].hidden && Wanted(rules[rule].name)) AddIntervals(static_cast<int>(rule));
     }
@@ -108,7 +108,7 @@ class Collector {
 
   void AddIntervals(int rule) {
     const Track::Kind kind =
-        past_.program().events[rule].printed ? Track::Kind::kEvent : Track::Kind::kCondition;
+        past_.program().rules[rule].printed ? Track::Kind::kEvent : Track::Kind::kCondition;
     for (const int instance : past_.InstancesOf(rule)) {
       auto* values = tracks_.problem.empty() ? Add(Label(past_, instance), kind, "") : nullptr;
       if (values == nullptr) continue;
@@ -122,7 +122,7 @@ class Collector {
   }
 
   void AddSignals(int rule) {
-    const Rule& asked = past_.program().events[rule];
+    const Rule& asked = past_.program().rules[rule];
     for (const Signal& signal : SignalsOf(past_.program(), asked)) {
       if (!Wanted(NameOf(past_.program(), signal)) && !Wanted(asked.name)) continue;
       for (const int instance : past_.InstancesOf(rule)) {
@@ -196,7 +196,7 @@ std::string CsvCell(const std::string& text) {
 
 std::vector<std::string> TrackNames(const Program& program) {
   std::set<std::string> names;
-  for (const Rule& rule : program.events) {
+  for (const Rule& rule : program.rules) {
     if (rule.hidden) continue;
     names.insert(rule.name);
     for (const Signal& signal : SignalsOf(program, rule)) names.insert(NameOf(program, signal));

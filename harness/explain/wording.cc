@@ -64,7 +64,7 @@ std::string Label(Hindsight& past, int instance) {
   const Rule& rule = past.RuleOf(instance);
   const auto& entities = past.At(instance).entities;
   const bool is_any = rule.form == grammar::Form::kAny;
-  const Rule& named = is_any ? past.program().events[rule.references[0].rule] : rule;
+  const Rule& named = is_any ? past.program().rules[rule.references[0].rule] : rule;
   std::string roles;
   for (std::size_t i = 0; i < named.roles.size(); ++i) {
     const int role = is_any ? rule.references[0].roles[i] : static_cast<int>(i);

@@ -63,7 +63,7 @@ class Differ {
 std::vector<std::string> Lines(const std::vector<Event>& events, const Program& program) {
   std::vector<std::string> lines;
   for (const Event& e : events) {
-    lines.push_back(program.events[e.rule].name + " " + std::to_string(e.roles[0]) + " " +
+    lines.push_back(program.rules[e.rule].name + " " + std::to_string(e.roles[0]) + " " +
                     std::to_string(e.roles[1]) + " [" + std::to_string(e.interval.begin) + "," +
                     std::to_string(e.interval.end) + ") at " + std::to_string(e.decided) +
                     (e.open_end ? " open" : "") + " style " + std::to_string(e.style));
@@ -104,7 +104,7 @@ TEST(Changes, SayTheSameAsWholeFrames) {
 // measured.
 std::shared_ptr<const Program> Thorough(const Program& program) {
   const auto thorough = std::make_shared<Program>(program);
-  for (Rule& rule : thorough->events) {
+  for (Rule& rule : thorough->rules) {
     rule.opened_by = kNone;
     rule.guarded_begin = false;
     rule.measured = {};
@@ -148,7 +148,7 @@ TEST(Changes, WhoeverIsNotWokenHasNothingToSay) {
               testing::LibraryIncluder());
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
   const auto rules = [&](auto which) {
-    return std::ranges::count_if(compiled.program->events, which);
+    return std::ranges::count_if(compiled.program->rules, which);
   };
   EXPECT_GE(rules([](const Rule& rule) { return rule.opened_by != kNone; }), 5);
   EXPECT_GE(rules([](const Rule& rule) { return rule.guarded_begin; }), 3);
@@ -186,7 +186,7 @@ event plain(hand: Hand, object: Movable) rest of gripped(hand, object) outside p
 TEST(Changes, WhatIsDecidedAtOnceNeedsNoPast) {
   const CompileResult compiled = Compile({"instant", kInstantRules}, nullptr);
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
-  EXPECT_GE(std::ranges::count_if(compiled.program->events,
+  EXPECT_GE(std::ranges::count_if(compiled.program->rules,
                                   [](const Rule& rule) { return rule.measured.instant; }),
             5);
   EXPECT_FALSE(compiled.program->recalls_touches);
@@ -224,7 +224,7 @@ TEST(Changes, WhatRestsForLongIsFreed) {
   EXPECT_LT(monitor.instances_in_use(), 20) << "only what no touch guards is left";
   const auto count = [&](std::string_view name) {
     return std::count_if(events.begin(), events.end(),
-                         [&](const Event& e) { return program->events[e.rule].name == name; });
+                         [&](const Event& e) { return program->rules[e.rule].name == name; });
   };
   EXPECT_EQ(count("contact"), 3 * kThings);
   EXPECT_EQ(count("grasping"), 3 * kThings);

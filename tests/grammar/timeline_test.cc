@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/name_events.h"
 #include "grammar/timeline.h"
 
 #include <gtest/gtest.h>
 
+#include "grammar/name_events.h"
 #include "grammar/program.h"
 
 namespace prehend::grammar {
@@ -11,8 +11,8 @@ namespace {
 
 TEST(Timeline, NamesAndSortsEvents) {
   Program program;
-  program.events.push_back({.name = "touching"});
-  program.events.push_back({.name = "grasping", .roles = {{"hand", "Hand"}, {"object", "Thing"}}});
+  program.rules.push_back({.name = "touching"});
+  program.rules.push_back({.name = "grasping", .roles = {{"hand", "Hand"}, {"object", "Thing"}}});
   const Cast cast{.ticks_per_second = 240,
                   .entities = {{.name = "milk"}, {.name = "right"}},
                   .styles = {"wrap"}};

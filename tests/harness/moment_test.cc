@@ -44,8 +44,8 @@ TEST(Moment, OneThatIsMissedIsTheEndAndSaysWhy) {
 TEST(Moment, TheGrammarMustHaveTheEvent) {
   grammar::Program program;
   program.name = "probe";
-  program.events.push_back({.name = "reaching", .printed = true});
-  program.events.push_back({.name = "hidden"});
+  program.rules.push_back({.name = "reaching", .printed = true});
+  program.rules.push_back({.name = "hidden"});
   EXPECT_FALSE(WhyNoMoment("reaching.begin", program));
   EXPECT_FALSE(WhyNoMoment("3.5", program));
   EXPECT_EQ(WhyNoMoment("reching.begin", program)->message,

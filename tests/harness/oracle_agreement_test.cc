@@ -29,7 +29,7 @@ class OracleAgreement : public testing::TestWithParam<ScenarioFile> {};
 bool Defines(const grammar::NamedEvent& event) { return OracleDefines(event.event); }
 
 bool SpeaksOfIt(const grammar::Program& program) {
-  return std::ranges::any_of(program.events, [](const grammar::Rule& rule) {
+  return std::ranges::any_of(program.rules, [](const grammar::Rule& rule) {
     return rule.printed && OracleDefines(rule.name);
   });
 }
