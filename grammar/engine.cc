@@ -100,7 +100,7 @@ bool Engine::MomentMayCome(const RuleInstance& instance) const {
 }
 
 // The truth of this instance is another one than in the frame before.
-void Engine::Tell(RuleInstance& instance) {
+void Engine::NotifyWatchers(RuleInstance& instance) {
   if (!instance.dependents_made) {
     scratch_.clear();
     instances_.MakeDependents(instance.index, scratch_);
@@ -109,7 +109,7 @@ void Engine::Tell(RuleInstance& instance) {
   for (const Watcher& watcher : instance.watchers) {
     RuleInstance& watching = instances_[watcher.instance];
     if (watcher.opened)
-      watching.moment = instance.told == Kleene::kUnknown ? kNever : history_.now();
+      watching.moment = instance.reported == Kleene::kUnknown ? kNever : history_.now();
     if (watching.awake) continue;
     if (watcher.instant != nullptr) {
       Measure(watching, watcher, instance);
@@ -118,22 +118,22 @@ void Engine::Tell(RuleInstance& instance) {
         Wake(watcher.instance);
     } else if (!instance.open && watcher.guarded) {
       // The guard has held up to the frame before; a moment here may still be told of.
-      watcher.guarded_begin&& instance.told == Kleene::kFalse ? RestOn(watching)
-                                                              : Wake(watcher.instance);
+      watcher.guarded_begin&& instance.reported == Kleene::kFalse ? RestOn(watching)
+                                                                  : Wake(watcher.instance);
     }
   }
 }
 
-void Engine::TellIfChanged(RuleInstance& instance) {
+void Engine::NotifyIfChanged(RuleInstance& instance) {
   if (!RuleOf(instance).referenced) return;
   const FrameNumber now = history_.now();
   const Kleene truth = instances_.TruthAt(instance.index, now);
   const bool at_an_edge = (instance.open && instance.begin.frame == now) ||
                           (!instance.past.empty() && (instance.past.back().end.frame == now ||
                                                       instance.past.back().begin.frame == now));
-  if (truth == instance.told && !at_an_edge) return;
-  instance.told = truth;
-  Tell(instance);
+  if (truth == instance.reported && !at_an_edge) return;
+  instance.reported = truth;
+  NotifyWatchers(instance);
 }
 
 void Engine::WakeAt(Tick tick, int instance) {
@@ -201,7 +201,7 @@ void Engine::StepRule(int rule) {
       return true;
     }
     StepInstance(instance);
-    TellIfChanged(instance);
+    NotifyIfChanged(instance);
     if (MayRest(instance)) {
       Rest(instance);
       return true;

@@ -89,7 +89,7 @@ class Engine {
   void Part(int touching);
   void CloseTouch(RuleInstance& touching, Moment end);
   void Keep(RuleInstance& touching, const Touch& touch, bool swapped);
-  void TellPress(const RuleInstance& touch, ThresholdSet crossed);
+  void NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed);
   void Measure(RuleInstance& instance, const Watcher& as, const RuleInstance& touch) {
     if (IsMeasured(*as.instant, as.hand, touch, as.turned) != instance.open) BeginOrEnd(instance);
   }
@@ -116,8 +116,8 @@ class Engine {
     return instance.moment >= history_.now() && MomentMayCome(instance);
   }
   bool MomentMayCome(const RuleInstance& instance) const;
-  void Tell(RuleInstance& instance);
-  void TellIfChanged(RuleInstance& instance);
+  void NotifyWatchers(RuleInstance& instance);
+  void NotifyIfChanged(RuleInstance& instance);
   void WakeAt(Tick tick, int instance);
   void RingAlarms();
   bool MayRest(const RuleInstance& instance);
@@ -182,7 +182,7 @@ class Engine {
   }
 
   // Compositions are told of each finished interval of their parts.
-  void TellCompositions(const RuleInstance& part, const Span& span);
+  void NotifyCompositions(const RuleInstance& part, const Span& span);
   FrameNumber Settled(const RuleInstance& instance) const;
   FrameNumber PartsSettled(const RuleInstance& composition) const;
   void StepCompose(RuleInstance& instance);
@@ -211,7 +211,7 @@ class Engine {
   std::vector<Alarm> alarms_;      // a heap, the next one first
   Ring<Retiree> retirees_;         // in the order in which they came to rest
   std::vector<int> scratch_;       // instances; kept for its memory
-  std::vector<int> told_;          // likewise
+  std::vector<int> notified_;      // likewise
   FrameNumber oldest_needed_ = 0;  // of the awake instances
   FrameNumber oldest_look_needed_ = 0;
   FrameNumber first_needed_ = 0;  // and what they can look back to

@@ -114,7 +114,7 @@ class Combinations {
 
 // Roles of the composition that the part does not name are free: its interval counts for whoever
 // plays them.
-void Engine::TellCompositions(const RuleInstance& part, const Span& span) {
+void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
   for (const PartOf& part_of : RuleOf(part).part_of) {
     const Rule& whole = program_->rules[part_of.rule];
     const Reference& reference = whole.references[whole.composition.parts[part_of.part]];
@@ -124,9 +124,9 @@ void Engine::TellCompositions(const RuleInstance& part, const Span& span) {
       Binding entities = kUnbound;
       for (std::size_t i = 0; i < RuleOf(part).roles.size(); ++i)
         entities[reference.roles[i]] = from[i];
-      told_.clear();
-      instances_.EnsureAll(part_of.rule, entities, told_);
-      for (const int index : told_) {
+      notified_.clear();
+      instances_.EnsureAll(part_of.rule, entities, notified_);
+      for (const int index : notified_) {
         std::vector<Span>& spans = instances_[index].parts[part_of.part];
         if (spans.size() == kRememberedSpans) spans.erase(spans.begin());
         spans.push_back(span);

@@ -91,7 +91,7 @@ void Engine::Emit(RuleInstance& instance, const Pending& finished) {
   const Span& span = finished.span;
   Note(instance, Fate::Kind::kInterval, span, rule.confirmed_by == kNone ? kNever : finished.next);
   if (rule.referenced) Keep(instance, span);
-  if (!rule.part_of.empty()) TellCompositions(instance, span);
+  if (!rule.part_of.empty()) NotifyCompositions(instance, span);
   if (!rule.printed) return;
   Event& event = out_->emplace_back();
   event.rule = instance.rule;

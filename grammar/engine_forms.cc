@@ -60,7 +60,7 @@ bool Engine::LooksTheSame(RuleInstance& instance) {
   const bool waits = rule.form == Form::kCompose ||
                      (rule.form == Form::kUntilSince && rule.referenced) || rule.within_s >= 0;
   if (instance.next != now || waits || !settled() ||
-      (rule.referenced && instance.told != Known(instance.open)))
+      (rule.referenced && instance.reported != Known(instance.open)))
     return false;
   const bool was_open = instance.open;
   if (!StepFrame(instance) || evaluator_.restless()) return false;

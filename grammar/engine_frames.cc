@@ -217,7 +217,7 @@ void Engine::Press(std::span<const Touch> touches) {
       continue;
     instance.beyond = beyond;
     if (recalls_touches_) Keep(instance, touch, swapped);
-    instance.open ? TellPress(instance, crossed | kAnyChange) : BeginTouch(instance);
+    instance.open ? NotifyOfThresholds(instance, crossed | kAnyChange) : BeginTouch(instance);
   }
 }
 
@@ -240,12 +240,12 @@ void Engine::BeginTouch(RuleInstance& touching) {
   touching.begin = history_.At(history_.now());
   touching.touching_place = touching_.size();
   touching_.push_back(touching.index);
-  touching.told = Kleene::kTrue;
-  Tell(touching);
+  touching.reported = Kleene::kTrue;
+  NotifyWatchers(touching);
 }
 
 // The two touch as before, but press otherwise: these thresholds were crossed.
-void Engine::TellPress(const RuleInstance& touch, ThresholdSet crossed) {
+void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed) {
   for (const Watcher& watcher : touch.watchers) {
     if ((watcher.press & crossed) == 0) continue;
     RuleInstance& watching = instances_[watcher.instance];
@@ -271,8 +271,8 @@ void Engine::BeginOrEnd(RuleInstance& instance) {
     instance.certain = TicksOf(instance).lasting == 0;
   }
   instance.known = kNever;
-  instance.told = Known(instance.open);
-  Tell(instance);
+  instance.reported = Known(instance.open);
+  NotifyWatchers(instance);
 }
 
 void Engine::Part(int touching) {
@@ -282,8 +282,8 @@ void Engine::Part(int touching) {
   touching_[instance.touching_place] = touching_.back();
   instances_[touching_.back()].touching_place = instance.touching_place;
   touching_.pop_back();
-  instance.told = Kleene::kFalse;
-  Tell(instance);
+  instance.reported = Kleene::kFalse;
+  NotifyWatchers(instance);
   RestOn(instance);
 }
 

@@ -260,7 +260,7 @@ void RuleInstances::Free(int index, std::vector<int>& orphans) {
   instance.touches.Clear();
   instance.beyonds.Clear();
   instance.dependents_made = false;
-  instance.told = Kleene::kFalse;
+  instance.reported = Kleene::kFalse;
   instance.moment = kNever;
   instance.last_end = 0;
   instance.touched = -1;

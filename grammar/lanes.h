@@ -80,13 +80,13 @@ struct Pending {
 struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is free
   int index = kNone;
   bool awake = false;
-  bool open = false;             ///< a run has begun
-  bool certain = false;          ///< the open run will be an interval whatever comes
-  bool in_gap = false;           ///< the run may have ended at `gap`
-  bool dependents_made = false;  ///< the instances that this one guards are there
-  bool retiring = false;         ///< waits to be freed
-  Kleene told = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
-  FrameNumber known = kNever;    ///< truth is final before this frame
+  bool open = false;                 ///< a run has begun
+  bool certain = false;              ///< the open run will be an interval whatever comes
+  bool in_gap = false;               ///< the run may have ended at `gap`
+  bool dependents_made = false;      ///< the instances that this one guards are there
+  bool retiring = false;             ///< waits to be freed
+  Kleene reported = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
+  FrameNumber known = kNever;        ///< truth is final before this frame
   Moment begin;
   FrameNumber moment =
       kNever;  ///< Rule::opened_by: nothing begins after this frame until its next change
