@@ -190,7 +190,7 @@ void Engine::Rest(RuleInstance& instance) {
   instance.awake = false;
   instance.resting_since = history_.now();
   if (!instance.open || (instance.certain && !instance.in_gap)) instance.known = kNever;
-  if (!instance.open) Retire(instance);
+  if (!instance.open) QueueIdle(instance);
 }
 
 void Engine::StepRule(int rule) {
@@ -233,24 +233,25 @@ void Engine::ForgetThePast() {
 
 // RuleInstances that have rested for so long that nobody can ask about what they were before.
 void Engine::FreeInstances() {
-  while (!retirees_.empty() && fates_ == nullptr && retirees_.front().since < history_.first()) {
-    RuleInstance& instance = instances_[retirees_.front().instance];
-    retirees_.PopFront();
-    instance.retiring = false;
+  while (!idle_queue_.empty() && fates_ == nullptr &&
+         idle_queue_.front().since < history_.first()) {
+    RuleInstance& instance = instances_[idle_queue_.front().instance];
+    idle_queue_.PopFront();
+    instance.idle_queued = false;
     if (instance.awake || instance.open) continue;  // retires when it rests again
     scratch_.assign(1, instance.index);
-    while (!scratch_.empty()) FreeOrRetire(scratch_);
+    while (!scratch_.empty()) FreeOrQueue(scratch_);
   }
 }
 
 // Of what only a freed instance asked about, most has rested for as long: with it goes the whole
 // chain.
-void Engine::FreeOrRetire(std::vector<int>& candidates) {
+void Engine::FreeOrQueue(std::vector<int>& candidates) {
   RuleInstance& instance = instances_[candidates.back()];
   candidates.pop_back();
-  if (instance.rule == kNone || instance.awake || instance.open || instance.retiring) return;
+  if (instance.rule == kNone || instance.awake || instance.open || instance.idle_queued) return;
   if (instance.resting_since >= history_.first()) {
-    Retire(instance);
+    QueueIdle(instance);
   } else if (CanBeFreed(instance)) {
     instances_.Free(instance.index, candidates);
   }

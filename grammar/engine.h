@@ -67,7 +67,7 @@ class Engine {
     Tick tick = 0;
     int instance = kNone;
   };
-  struct Retiree {
+  struct IdleEntry {
     FrameNumber since = 0;
     int instance = kNone;
   };
@@ -125,16 +125,16 @@ class Engine {
   /// Nothing of it has been looked at, as nothing can have begun, but now it may be of no more use.
   void RestOn(RuleInstance& instance) {
     instance.resting_since = history_.now();
-    Retire(instance);
+    QueueIdle(instance);
   }
-  void Retire(RuleInstance& instance) {
-    if (!instance.retiring) retirees_.PushBack() = {instance.resting_since, instance.index};
-    instance.retiring = true;
+  void QueueIdle(RuleInstance& instance) {
+    if (!instance.idle_queued) idle_queue_.PushBack() = {instance.resting_since, instance.index};
+    instance.idle_queued = true;
   }
   void StepRule(int rule);
   void ForgetThePast();
   void FreeInstances();
-  void FreeOrRetire(std::vector<int>& candidates);
+  void FreeOrQueue(std::vector<int>& candidates);
   bool CanBeFreed(const RuleInstance& instance) const;
   bool MayOverlap(const RuleInstance& instance) const;
 
@@ -209,7 +209,7 @@ class Engine {
   std::vector<int>
       pressed_;  // the instances of the touches that a frame tells of, kNone: there is none yet
   std::vector<Alarm> alarms_;      // a heap, the next one first
-  Ring<Retiree> retirees_;         // in the order in which they came to rest
+  Ring<IdleEntry> idle_queue_;     // in the order in which they came to rest
   std::vector<int> scratch_;       // instances; kept for its memory
   std::vector<int> notified_;      // likewise
   FrameNumber oldest_needed_ = 0;  // of the awake instances

@@ -84,7 +84,7 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
   bool certain = false;              ///< the open run will be an interval whatever comes
   bool in_gap = false;               ///< the run may have ended at `gap`
   bool dependents_made = false;      ///< the instances that this one guards are there
-  bool retiring = false;             ///< waits to be freed
+  bool idle_queued = false;          ///< waits to be freed
   Kleene reported = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
   FrameNumber known = kNever;        ///< truth is final before this frame
   Moment begin;
