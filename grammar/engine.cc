@@ -53,12 +53,12 @@ void Engine::Wake(int index) {
 
 void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
   for (const Watch& watch : watchers) {
-    if (MayStir(instances_[watch.instance])) Wake(watch.instance);
+    if (MayWake(instances_[watch.instance])) Wake(watch.instance);
   }
 }
 
 // What is not open does not begin while its guard rests, whatever else happens.
-bool Engine::MayStir(const RuleInstance& instance) const {
+bool Engine::MayWake(const RuleInstance& instance) const {
   return instance.open || (MayBegin(instance) && !instances_.GuardRests(instance));
 }
 
@@ -153,7 +153,7 @@ void Engine::RingAlarms() {
 // rings. A form that is not listed here never rests while it is open.
 bool Engine::MayRest(const RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
-  if (instance.next <= history_.now() || !instance.pending.empty() || evaluator_.restless())
+  if (instance.next <= history_.now() || !instance.pending.empty() || evaluator_.depends_on_time())
     return false;
   switch (rule.form) {
     case Form::kCompose:

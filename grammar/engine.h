@@ -9,8 +9,8 @@
 // landing) delays only the instances that ask about just those frames. An instance rests as soon as
 // its newest frame is decided and nothing but a change can decide otherwise: what it asks about
 // wakes it. What time alone changes is either an alarm (the end of a gap, the shortest duration)
-// or, where a value moves by itself (Evaluator::restless), keeps the instance awake. So a frame
-// costs as much as changes in it. Data structures: grammar/lanes.h (state per binding),
+// or, where a value moves by itself (Evaluator::depends_on_time), keeps the instance awake. So a
+// frame costs as much as changes in it. Data structures: grammar/lanes.h (state per binding),
 // grammar/history.h (the frames that some instance may still ask for). Tested by
 // tests/grammar/monitor_test.cc and the corpus in tests/grammar/corpus/
 #pragma once
@@ -98,7 +98,7 @@ class Engine {
   // Waking and resting.
   void Wake(int instance);
   void WakeWatchers(const std::vector<Watch>& watchers);
-  bool MayStir(const RuleInstance& instance) const;
+  bool MayWake(const RuleInstance& instance) const;
   bool CanMeasure(const RuleInstance& instance) const;
   bool IsMeasured(const RuleInstance& instance) const;
   /// Likewise, of a grip, if there is one, and a touch, which names the two the other way round

@@ -18,7 +18,7 @@ void Engine::StepInstance(RuleInstance& instance) {
 // One frame, if it can be decided.
 bool Engine::StepFrame(RuleInstance& instance) {
   bool decided = false;
-  evaluator_.CalmDown();
+  evaluator_.ResetTimeDependence();
   switch (RuleOf(instance).form) {
     case Form::kTouching:
     case Form::kCompose:
@@ -33,8 +33,8 @@ bool Engine::StepFrame(RuleInstance& instance) {
       const bool was_open = instance.open;
       decided = StepFromTo(instance, instance.next);
       if (was_open && !instance.open)
-        evaluator_.StirUp();  // what may begin the next one was not asked for, so nothing of it
-                              // would wake
+        evaluator_.MarkTimeDependent();  // what may begin the next one was not asked for, so
+                                         // nothing of it would wake
       break;
     }
     case Form::kUntilSince:
@@ -63,7 +63,7 @@ bool Engine::LooksTheSame(RuleInstance& instance) {
       (rule.referenced && instance.reported != Known(instance.open)))
     return false;
   const bool was_open = instance.open;
-  if (!StepFrame(instance) || evaluator_.restless()) return false;
+  if (!StepFrame(instance) || evaluator_.depends_on_time()) return false;
   return instance.open == was_open && settled() &&
          (!instance.open || instance.begin.frame != now) && instance.last_end != now;
 }

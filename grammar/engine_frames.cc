@@ -191,7 +191,7 @@ void Engine::Look(const HandLook& hand) {
   for (const Watch& watch : instances_.GripWatchers(hand.entity)) {
     const RuleInstance& instance = instances_[watch.instance];
     if (same_grip || instance.awake || (RuleOf(instance).watches_grips & crossed) == 0) continue;
-    if (MayStir(instance) && !SaysTheSame(instance)) Wake(watch.instance);
+    if (MayWake(instance) && !SaysTheSame(instance)) Wake(watch.instance);
   }
   WakeWatchers(instances_.PoseWatchers(hand.entity));
 }
@@ -252,7 +252,7 @@ void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed)
     if (watching.awake) continue;
     if (watcher.instant != nullptr) {
       Measure(watching, watcher, touch);
-    } else if (!SaysTheSame(watching) && MayStir(watching)) {
+    } else if (!SaysTheSame(watching) && MayWake(watching)) {
       Wake(watcher.instance);
     }
   }

@@ -106,7 +106,7 @@ Kleene Evaluator::Begins(int slot, const View& view) const {
 
 // What is true here only will be false at the next frame, where its parts are as they are.
 Kleene Evaluator::AtAnInstant(Kleene truth) const {
-  restless_ = restless_ || truth == Kleene::kTrue;
+  depends_on_time_ = depends_on_time_ || truth == Kleene::kTrue;
   return truth;
 }
 
@@ -123,8 +123,8 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
   const Kleene now = Truth(node.args[0], view);
   const Kleene wanted = begins ? now : Not(now);
   if (wanted == Kleene::kFalse) return wanted;
-  restless_ =
-      restless_ ||
+  depends_on_time_ =
+      depends_on_time_ ||
       now == Kleene::kUnknown;  // even if there is no change here, the next frame looks back at it
   const bool is_first = view.frame == 0;
   Kleene before = Kleene::kFalse;
@@ -372,14 +372,14 @@ double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
 }
 
 double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
-  restless_ = true;
+  depends_on_time_ = true;
   if (frame <= history_.first()) return 0;
   const double seconds = history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
   return (Gap(hand, object, frame - 1) - Gap(hand, object, frame)) / seconds;
 }
 
 double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
-  restless_ = true;
+  depends_on_time_ = true;
   if (frame <= history_.first()) return 0;
   const HandSample* now = history_.Hand(hand, frame);
   const HandSample* before = history_.Hand(hand, frame - 1);
@@ -395,7 +395,7 @@ double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
 // later; at the episode's begin and end it is cut off. Nothing while the later frame is still to
 // come.
 std::optional<Evaluator::Window> Evaluator::WindowAround(FrameNumber frame, double seconds) const {
-  restless_ = true;
+  depends_on_time_ = true;
   const Tick now = history_.At(frame).tick;
   const Tick half = history_.AtLeastTicks(seconds / 2);
   const Window window{history_.LastNotAfter(now - half),

@@ -54,12 +54,12 @@ class Evaluator {
   /// told.
   bool TooFarApart(int node, RuleInstance& instance, FrameNumber early, FrameNumber late) const;
 
-  /// Whether a value asked for since CalmDown() may change with time alone, though nothing that it
-  /// is made of changes: an instant that is over one frame later, a speed from frame to frame, a
-  /// window of time.
-  bool restless() const { return restless_; }
-  void CalmDown() { restless_ = false; }
-  void StirUp() { restless_ = true; }
+  /// Whether a value asked for since ResetTimeDependence() may change with time alone, though
+  /// nothing that it is made of changes: an instant that is over one frame later, a speed from
+  /// frame to frame, a window of time.
+  bool depends_on_time() const { return depends_on_time_; }
+  void ResetTimeDependence() { depends_on_time_ = false; }
+  void MarkTimeDependent() { depends_on_time_ = true; }
 
   /// Keeps the values of all anchors of the instance's rule at this frame. False while one is not
   /// known.
@@ -102,7 +102,7 @@ class Evaluator {
   const History& history_;
   RuleInstances& instances_;
   Thresholds thresholds_;
-  mutable bool restless_ = false;
+  mutable bool depends_on_time_ = false;
 };
 
 }  // namespace prehend::grammar

@@ -73,7 +73,7 @@ std::vector<std::string> Lines(const std::vector<Event>& events, const Program& 
 
 TEST(Changes, SayTheSameAsWholeFrames) {
   const CompileResult compiled =
-      Compile({"both", std::string("grammar both\n") + testing::kRestlessRules},
+      Compile({"both", std::string("grammar both\n") + testing::kTimeDependentRules},
               testing::LibraryIncluder());
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
   const auto program = compiled.program;
@@ -144,7 +144,7 @@ Compared CompareWithThorough(const std::shared_ptr<const Program>& program, int 
 
 TEST(Changes, WhoeverIsNotWokenHasNothingToSay) {
   const CompileResult compiled =
-      Compile({"both", std::string("grammar both\n") + testing::kRestlessRules},
+      Compile({"both", std::string("grammar both\n") + testing::kTimeDependentRules},
               testing::LibraryIncluder());
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
   const auto rules = [&](auto which) {
