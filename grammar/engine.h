@@ -84,14 +84,14 @@ class Engine {
   void SortNewEvents();
   void Look(int entity, const EntityLook& look);
   void Look(const HandLook& hand);
-  void Press(std::span<const Touch> touches);
+  void ApplyContacts(std::span<const Touch> touches);
   void BeginTouch(RuleInstance& touching);
   void Part(int touching);
   void CloseTouch(RuleInstance& touching, Moment end);
   void Keep(RuleInstance& touching, const Touch& touch, bool swapped);
   void NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed);
   void Measure(RuleInstance& instance, const Watcher& as, const RuleInstance& touch) {
-    if (IsMeasured(*as.instant, as.hand, touch, as.turned) != instance.open) BeginOrEnd(instance);
+    if (IsMeasured(*as.instant, as.hand, touch, as.swapped) != instance.open) BeginOrEnd(instance);
   }
   void BeginOrEnd(RuleInstance& instance);
 
@@ -102,12 +102,12 @@ class Engine {
   bool CanMeasure(const RuleInstance& instance) const;
   bool IsMeasured(const RuleInstance& instance) const;
   /// Likewise, of a grip, if there is one, and a touch, which names the two the other way round
-  /// than the rule if `turned`.
+  /// than the rule if `swapped`.
   bool IsMeasured(const MeasuredPart& part, int hand, const RuleInstance& touch,
-                  bool turned) const {
+                  bool swapped) const {
     if (hand != kNobody && !part.grip.Fit(grips_[hand])) return false;
     if (!touch.open) return !part.must_touch && part.press[0].Fit(thresholds_.OfNoTouch());
-    return part.press[turned ? 1 : 0].Fit(touch.beyond);
+    return part.press[swapped ? 1 : 0].Fit(touch.beyond);
   }
   bool SaysTheSame(const RuleInstance& instance) const;
   /// What begins with a moment does not begin at others. That moment may be told of later in this

@@ -92,7 +92,7 @@ void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
       Look(entity, frame.entities[i]);
   }
   for (const HandLook& hand : frame.hands) Look(hand);
-  Press(frame.touches);
+  ApplyContacts(frame.touches);
   // A touch that this frame does not show has ended.
   for (std::size_t i = touching_.size(); i-- > 0;) Part(touching_[i]);
   EndFrame();
@@ -102,7 +102,7 @@ void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
   if (!BeginFrame(changes, out)) return;
   for (const EntityChange& change : changes.entities) Look(change.entity, change.look);
   for (const HandLook& hand : changes.hands) Look(hand);
-  Press(changes.touches);
+  ApplyContacts(changes.touches);
   for (const Parting& parting : changes.partings) {
     const int index = instances_.FindTouch(parting.a, parting.b);
     if (index != kNone && instances_[index].open) Part(index);
@@ -196,7 +196,7 @@ void Engine::Look(const HandLook& hand) {
   WakeWatchers(instances_.PoseWatchers(hand.entity));
 }
 
-void Engine::Press(std::span<const Touch> touches) {
+void Engine::ApplyContacts(std::span<const Touch> touches) {
   const FrameNumber now = history_.now();
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Touch& touch = touches[i];

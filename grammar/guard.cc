@@ -288,9 +288,9 @@ bool AddMeasured(const Program& program, MeasuredPart& part, const ByThreshold& 
   if (part.touch != kNone && part.touch != value.slot) return false;
   part.touch = value.slot;
   if (part.first == kNone) part.first = value.roles[0];
-  const std::size_t turned = part.first == value.roles[0] ? 0 : 1;
-  add(part.press[turned], by.thresholds[0]);
-  add(part.press[1 - turned], by.thresholds[1]);
+  const std::size_t swapped = part.first == value.roles[0] ? 0 : 1;
+  add(part.press[swapped], by.thresholds[0]);
+  add(part.press[1 - swapped], by.thresholds[1]);
   return true;
 }
 

@@ -200,7 +200,7 @@ void RuleInstances::Refer(RuleInstance& instance, int slot, int target) {
        .guarded = guarded,
        .guarded_begin = guarded && rule.guarded_begin,
        .opened = opened,
-       .turned =
+       .swapped =
            instant && part.first != kNone && watched.entities[0] != instance.entities[part.first],
        .press = rule.watches_press,
        .instant = instant ? &part : nullptr,

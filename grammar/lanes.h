@@ -61,7 +61,7 @@ struct Watcher {
   bool guarded = false;        ///< the other one is its guard
   bool guarded_begin = false;  ///< likewise, see Rule
   bool opened = false;         ///< nothing of it begins but with a moment of the other one
-  bool turned = false;         ///< `instant` names the two of the touch the other way round
+  bool swapped = false;        ///< `instant` names the two of the touch the other way round
   ThresholdSet press = 0;      ///< what matters to it of how the two touch
   const MeasuredPart* instant =
       nullptr;         ///< of its rule, if that is instant and the other one is its touch
