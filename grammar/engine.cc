@@ -219,7 +219,7 @@ void Engine::StepRule(int rule) {
 
 // Keeps what a walk back may reach, and two frames more for differences between frames.
 void Engine::ForgetThePast() {
-  if (fates_ != nullptr) return;
+  if (log_ != nullptr) return;
   const auto reach = [&](FrameNumber needed, FrameNumber before) {
     const Tick earliest = history_.At(std::max(needed, history_.first())).tick - longest_look_back_;
     FrameNumber frame = std::max(before, history_.first());
@@ -233,8 +233,7 @@ void Engine::ForgetThePast() {
 
 // RuleInstances that have rested for so long that nobody can ask about what they were before.
 void Engine::FreeInstances() {
-  while (!idle_queue_.empty() && fates_ == nullptr &&
-         idle_queue_.front().since < history_.first()) {
+  while (!idle_queue_.empty() && log_ == nullptr && idle_queue_.front().since < history_.first()) {
     RuleInstance& instance = instances_[idle_queue_.front().instance];
     idle_queue_.PopFront();
     instance.idle_queued = false;

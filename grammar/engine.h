@@ -43,8 +43,8 @@ class Engine {
 
   // For grammar/hindsight.h. From now on nothing is forgotten, and what becomes of each run is
   // noted. Before the first frame.
-  void Remember(Fates& fates) {
-    fates_ = &fates;
+  void Remember(CandidateLog& outcomes) {
+    log_ = &outcomes;
     recalls_touches_ = keeps_touches_ = true;
   }
   const Program& program() const { return *program_; }
@@ -175,10 +175,10 @@ class Engine {
   void UpdateKnown(RuleInstance& instance);
   bool RunIsCertain(const RuleInstance& instance) const;
   void FinishInstance(RuleInstance& instance, Moment end);
-  void Note(const RuleInstance& instance, Fate::Kind kind, const Span& span,
+  void Note(const RuleInstance& instance, CandidateOutcome::Kind kind, const Span& span,
             FrameNumber cause = kNever, const WalkBack& walk = {}) {
-    if (fates_ != nullptr)
-      fates_->push_back({kind, instance.index, span, cause, DecidedAt(instance, span), walk});
+    if (log_ != nullptr)
+      log_->push_back({kind, instance.index, span, cause, DecidedAt(instance, span), walk});
   }
 
   // Compositions are told of each finished interval of their parts.
@@ -220,7 +220,7 @@ class Engine {
   Tick decided_ = 0;
   std::vector<Event>* out_ = nullptr;  // only during Advance and Finish
   std::size_t first_new_ = 0;          // among them, of this call
-  Fates* fates_ = nullptr;             // null unless they are to be remembered
+  CandidateLog* log_ = nullptr;        // null unless they are to be remembered
   std::string error_;
 };
 

@@ -142,7 +142,7 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
   if (instance.open) {
     const Kleene closes = evaluator_.Truth(rule.second, view);
     if (closes == Kleene::kTrue && rule.absence) {
-      Note(instance, Fate::Kind::kCame, {instance.begin, history_.At(frame)}, frame);
+      Note(instance, CandidateOutcome::Kind::kCame, {instance.begin, history_.At(frame)}, frame);
       instance.open = false;
     }
     if (closes == Kleene::kTrue) return !instance.open || Close(instance, history_.At(frame));
@@ -150,7 +150,7 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
     if (holds == Kleene::kFalse && !rule.or_drop) return Close(instance, history_.At(frame));
     if (closes == Kleene::kUnknown || holds == Kleene::kUnknown) return false;
     if (holds == Kleene::kFalse) {
-      Note(instance, Fate::Kind::kDropped, {instance.begin, history_.At(frame)}, frame);
+      Note(instance, CandidateOutcome::Kind::kDropped, {instance.begin, history_.At(frame)}, frame);
       instance.open = false;
     }
     return true;
@@ -175,7 +175,8 @@ bool Engine::MeetDeadline(RuleInstance& instance, Moment now) {
   const Tick deadline = instance.begin.tick + TicksOf(instance).within;
   if (now.tick < deadline || (now.tick == deadline && !rule.absence)) return true;
   if (!rule.absence) {
-    Note(instance, Fate::Kind::kTooLate, {instance.begin, {now.frame, deadline}}, now.frame);
+    Note(instance, CandidateOutcome::Kind::kTooLate, {instance.begin, {now.frame, deadline}},
+         now.frame);
     instance.open = false;
     return true;
   }
@@ -195,7 +196,8 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
     const WalkBack walk = ApproachBegin(instance, frame);
     const FrameNumber begin = walk.begin;
     if (begin == kNever) return false;
-    const Fate::Kind kind = begin < frame ? Fate::Kind::kWalkedBack : Fate::Kind::kNothingBack;
+    const CandidateOutcome::Kind kind =
+        begin < frame ? CandidateOutcome::Kind::kWalkedBack : CandidateOutcome::Kind::kNothingBack;
     Note(instance, kind, {history_.At(begin), history_.At(frame)}, frame, walk);
     if (begin < frame) {
       if (!evaluator_.CaptureAnchors(instance, begin)) return false;

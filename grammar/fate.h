@@ -26,7 +26,7 @@ struct WalkBack {
 };
 
 /// One run, from where it began to where it ended or was given up.
-struct Fate {
+struct CandidateOutcome {
   enum class Kind {
     kInterval,  ///< it is an interval; `cause` is the frame of its confirmation, if it needed one
     kTooShort,  ///< `lasting`
@@ -47,6 +47,6 @@ struct Fate {
   WalkBack walk = {};  ///< kUntilSince only
 };
 
-using Fates = std::vector<Fate>;
+using CandidateLog = std::vector<CandidateOutcome>;
 
 }  // namespace prehend::grammar

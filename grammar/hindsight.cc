@@ -7,14 +7,14 @@ namespace prehend::grammar {
 
 Hindsight::Hindsight(std::shared_ptr<const Program> program, Cast cast)
     : engine_(std::move(program), std::move(cast)) {
-  engine_.Remember(fates_);
+  engine_.Remember(log_);
 }
 
 void Hindsight::Finish(Tick end) {
   engine_.Finish(end, events_);
   end_tick_ = frames() == 0 ? end : std::max(end, engine_.history().At(frames() - 1).tick + 1);
   by_instance_.resize(engine_.instances().size());
-  // The fact has no fates: its intervals are what was seen.
+  // The fact has no outcomes: its intervals are what was seen.
   for (int instance = 0; instance < engine_.instances().size(); ++instance) {
     if (At(instance).rule != kTouchingRule) continue;
     const Ring<Span>& past = At(instance).past;
@@ -23,26 +23,31 @@ void Hindsight::Finish(Tick end) {
           {.instance = instance, .span = past[i], .decided = past[i].end.tick});
     }
   }
-  for (Fate& fate : fates_) {
-    if (fate.kind == Fate::Kind::kWalkedBack) {
-      by_instance_[fate.instance].push_back(fate);
+  for (CandidateOutcome& outcome : log_) {
+    if (outcome.kind == CandidateOutcome::Kind::kWalkedBack) {
+      by_instance_[outcome.instance].push_back(outcome);
       continue;
     }
     // What became of a walk back takes its place.
-    std::vector<Fate>& fates = by_instance_[fate.instance];
-    const auto same = [&](const Fate& other) {
-      return other.kind == Fate::Kind::kWalkedBack && other.span.end.frame == fate.span.end.frame;
+    std::vector<CandidateOutcome>& outcomes = by_instance_[outcome.instance];
+    const auto same = [&](const CandidateOutcome& other) {
+      return other.kind == CandidateOutcome::Kind::kWalkedBack &&
+             other.span.end.frame == outcome.span.end.frame;
     };
-    if (const auto walk = std::find_if(fates.begin(), fates.end(), same); walk != fates.end())
-      fate.walk = walk->walk;
-    std::erase_if(fates, same);
-    fates.push_back(fate);
+    if (const auto walk = std::find_if(outcomes.begin(), outcomes.end(), same);
+        walk != outcomes.end())
+      outcome.walk = walk->walk;
+    std::erase_if(outcomes, same);
+    outcomes.push_back(outcome);
   }
-  for (std::vector<Fate>& fates : by_instance_) {
-    std::erase_if(fates, [](const Fate& fate) { return fate.kind == Fate::Kind::kWalkedBack; });
-    std::stable_sort(fates.begin(), fates.end(), [](const Fate& a, const Fate& b) {
-      return a.span.end.tick < b.span.end.tick;
+  for (std::vector<CandidateOutcome>& outcomes : by_instance_) {
+    std::erase_if(outcomes, [](const CandidateOutcome& outcome) {
+      return outcome.kind == CandidateOutcome::Kind::kWalkedBack;
     });
+    std::stable_sort(outcomes.begin(), outcomes.end(),
+                     [](const CandidateOutcome& a, const CandidateOutcome& b) {
+                       return a.span.end.tick < b.span.end.tick;
+                     });
   }
 }
 
@@ -65,22 +70,23 @@ std::vector<int> Hindsight::InstancesOf(int rule) {
   return instances;
 }
 
-const std::vector<Fate>& Hindsight::FatesOf(int instance) const {
-  static const std::vector<Fate> kNoFates;
+const std::vector<CandidateOutcome>& Hindsight::OutcomesOf(int instance) const {
+  static const std::vector<CandidateOutcome> kNoOutcomes;
   return instance >= 0 && instance < static_cast<int>(by_instance_.size()) ? by_instance_[instance]
-                                                                           : kNoFates;
+                                                                           : kNoOutcomes;
 }
 
-const Fate* Hindsight::LastBegun(int instance, FrameNumber frame) const {
-  const Fate* last = nullptr;
-  for (const Fate& fate : FatesOf(instance)) {
-    if (fate.kind == Fate::Kind::kInterval && fate.span.begin.frame <= frame) last = &fate;
+const CandidateOutcome* Hindsight::LastBegun(int instance, FrameNumber frame) const {
+  const CandidateOutcome* last = nullptr;
+  for (const CandidateOutcome& outcome : OutcomesOf(instance)) {
+    if (outcome.kind == CandidateOutcome::Kind::kInterval && outcome.span.begin.frame <= frame)
+      last = &outcome;
   }
   return last;
 }
 
-const Fate* Hindsight::Covering(int instance, FrameNumber frame) const {
-  const Fate* last = LastBegun(instance, frame);
+const CandidateOutcome* Hindsight::Covering(int instance, FrameNumber frame) const {
+  const CandidateOutcome* last = LastBegun(instance, frame);
   return last != nullptr && frame < last->span.end.frame ? last : nullptr;
 }
 

@@ -52,11 +52,11 @@ class Hindsight {
   std::vector<int> InstancesOf(int rule);
 
   /// What became of the runs of a binding, in the order of their ends.
-  const std::vector<Fate>& FatesOf(int instance) const;
+  const std::vector<CandidateOutcome>& OutcomesOf(int instance) const;
   /// The last of its intervals that begins at or before the frame; null if there is none.
-  const Fate* LastBegun(int instance, FrameNumber frame) const;
+  const CandidateOutcome* LastBegun(int instance, FrameNumber frame) const;
   /// The interval that contains the frame; null if there is none.
-  const Fate* Covering(int instance, FrameNumber frame) const;
+  const CandidateOutcome* Covering(int instance, FrameNumber frame) const;
 
   /// A binding at a frame, with the boundaries of the interval that it is asked for, as far as the
   /// clause needs them.
@@ -73,11 +73,11 @@ class Hindsight {
  private:
   Evaluator::View View(const Moment& at);
 
-  Fates fates_;
+  CandidateLog log_;
   Engine engine_;
   std::vector<Event> events_;
   Tick end_tick_ = 0;
-  std::vector<std::vector<Fate>> by_instance_;
+  std::vector<std::vector<CandidateOutcome>> by_instance_;
 };
 
 }  // namespace prehend::grammar

@@ -12,7 +12,7 @@
 
 namespace prehend::harness::explain {
 
-using grammar::Fate;
+using grammar::CandidateOutcome;
 using grammar::FrameNumber;
 using grammar::kNone;
 using grammar::Node;
@@ -121,9 +121,10 @@ Reason Clauses::Leaf(int node, const Moment& at, bool truth, bool brief) {
   return reason;
 }
 
-Reason Clauses::Boundary(int instance, const Fate& fate, bool end, const Follow& follow) {
+Reason Clauses::Boundary(int instance, const CandidateOutcome& outcome, bool end,
+                         const Follow& follow) {
   const grammar::Rule& rule = past_.RuleOf(instance);
-  const FrameNumber frame = end ? fate.span.end.frame : fate.span.begin.frame;
+  const FrameNumber frame = end ? outcome.span.end.frame : outcome.span.begin.frame;
   return {.mark = Mark::kTurned,
           .what = Label(past_, instance),
           .how = end          ? "ended"
@@ -132,7 +133,7 @@ Reason Clauses::Boundary(int instance, const Fate& fate, bool end, const Follow&
           .where = rule.form == grammar::Form::kTouching ? "" : Source(rule.file, rule.place),
           .tick = past_.TickOf(frame),
           .reading = {},
-          .because = follow ? follow(instance, fate, end) : Reasons{}};
+          .because = follow ? follow(instance, outcome, end) : Reasons{}};
 }
 
 // Somebody's class does not fit, or somebody would play two roles.
@@ -159,7 +160,7 @@ Reason Clauses::Reference(int instance, int slot, FrameNumber frame, bool truth,
                           const Follow& follow) {
   const int target = past_.Referred(instance, slot);
   if (target == kNone) return Impossible(instance, slot);
-  const Fate* begun = past_.LastBegun(target, frame);
+  const CandidateOutcome* begun = past_.LastBegun(target, frame);
   Reason reason{.mark = Mark::kHeld,
                 .what = Label(past_, target),
                 .how = {},
@@ -178,8 +179,9 @@ Reason Clauses::Reference(int instance, int slot, FrameNumber frame, bool truth,
     reason.how =
         begun == nullptr ? "never held so far" : "had ended at " + Time(begun->span.end.frame);
     if (begun != nullptr) reason.tick = begun->span.end.tick;
-    for (const Fate& next : past_.FatesOf(target)) {
-      if (next.kind != Fate::Kind::kInterval || next.span.begin.frame <= frame) continue;
+    for (const CandidateOutcome& next : past_.OutcomesOf(target)) {
+      if (next.kind != CandidateOutcome::Kind::kInterval || next.span.begin.frame <= frame)
+        continue;
       reason.how += ", begins at " + Time(next.span.begin.frame);
       break;
     }
@@ -201,10 +203,10 @@ void Clauses::Edge(int node, const Moment& at, bool truth, const Follow& follow,
     Collect(n.args[0], at, !end, follow, brief, out);
   } else {
     const int target = past_.Referred(at.instance, arg.slot);
-    for (const Fate& fate : past_.FatesOf(target)) {
-      const FrameNumber boundary = end ? fate.span.end.frame : fate.span.begin.frame;
-      if (fate.kind != Fate::Kind::kInterval || boundary != at.frame) continue;
-      return out.push_back(Boundary(target, fate, end, follow));
+    for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
+      const FrameNumber boundary = end ? outcome.span.end.frame : outcome.span.begin.frame;
+      if (outcome.kind != CandidateOutcome::Kind::kInterval || boundary != at.frame) continue;
+      return out.push_back(Boundary(target, outcome, end, follow));
     }
   }
 }
@@ -247,9 +249,10 @@ std::string Clauses::WhenInstead(const Node& edge, const Moment& at) {
   const int target = past_.Referred(at.instance, NodeAt(edge.args[0]).slot);
   std::optional<FrameNumber> last;
   if (target == kNone) return {};
-  for (const Fate& fate : past_.FatesOf(target)) {
-    const FrameNumber frame = begins ? fate.span.begin.frame : fate.span.end.frame;
-    const bool is_one = fate.kind == Fate::Kind::kInterval && (begins || frame < past_.frames());
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
+    const FrameNumber frame = begins ? outcome.span.begin.frame : outcome.span.end.frame;
+    const bool is_one =
+        outcome.kind == CandidateOutcome::Kind::kInterval && (begins || frame < past_.frames());
     if (is_one && frame > at.frame) return "; it is next at " + Time(frame);
     if (is_one) last = frame;
   }

@@ -16,7 +16,8 @@ using Moment = grammar::Hindsight::Moment;
 class Clauses {
  public:
   /// Reasons that stand behind a boundary of another rule's interval: (binding, interval, its end).
-  using Follow = std::function<Reasons(int instance, const grammar::Fate& fate, bool end)>;
+  using Follow =
+      std::function<Reasons(int instance, const grammar::CandidateOutcome& outcome, bool end)>;
 
   explicit Clauses(grammar::Hindsight& past) : past_(past) {}
 
@@ -58,7 +59,8 @@ class Clauses {
     std::string of;  ///< " from the centre"
   };
   std::optional<Measured> Measure(int node, const Moment& at);
-  Reason Boundary(int instance, const grammar::Fate& fate, bool end, const Follow& follow);
+  Reason Boundary(int instance, const grammar::CandidateOutcome& outcome, bool end,
+                  const Follow& follow);
   void Edge(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out);
   Reason Leaf(int node, const Moment& at, bool truth, bool brief);
   Reason Measurement(const Clause& clause, const Moment& at, const std::optional<Measured>& before);

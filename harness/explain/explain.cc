@@ -14,21 +14,22 @@
 namespace prehend::harness::explain {
 namespace {
 
-using grammar::Fate;
+using grammar::CandidateOutcome;
 using grammar::Hindsight;
 using grammar::Tick;
 
-std::vector<const Fate*> IntervalsOf(Hindsight& past, const Ask& ask) {
-  std::vector<const Fate*> intervals;
+std::vector<const CandidateOutcome*> IntervalsOf(Hindsight& past, const Ask& ask) {
+  std::vector<const CandidateOutcome*> intervals;
   for (const int instance : BindingsThatFit(past, ask.rule, ask.entities)) {
-    for (const Fate& fate : past.FatesOf(instance)) {
-      if (fate.kind == Fate::Kind::kInterval) intervals.push_back(&fate);
+    for (const CandidateOutcome& outcome : past.OutcomesOf(instance)) {
+      if (outcome.kind == CandidateOutcome::Kind::kInterval) intervals.push_back(&outcome);
     }
   }
-  std::stable_sort(intervals.begin(), intervals.end(), [](const Fate* a, const Fate* b) {
-    return std::tie(a->span.begin.tick, a->span.end.tick) <
-           std::tie(b->span.begin.tick, b->span.end.tick);
-  });
+  std::stable_sort(intervals.begin(), intervals.end(),
+                   [](const CandidateOutcome* a, const CandidateOutcome* b) {
+                     return std::tie(a->span.begin.tick, a->span.end.tick) <
+                            std::tie(b->span.begin.tick, b->span.end.tick);
+                   });
   return intervals;
 }
 
@@ -37,8 +38,8 @@ Tick TickOf(const Ask& ask, const Hindsight& past) {
 }
 
 // A time that was read off a table is rounded, so the end counts, too.
-bool Contains(const Fate& fate, Tick tick) {
-  return fate.span.begin.tick <= tick + 1 && tick <= fate.span.end.tick;
+bool Contains(const CandidateOutcome& outcome, Tick tick) {
+  return outcome.span.begin.tick <= tick + 1 && tick <= outcome.span.end.tick;
 }
 
 }  // namespace
@@ -49,9 +50,9 @@ std::vector<WhyEvent> ExplainAll(Hindsight& past) {
   for (std::size_t rule = 0; rule < past.program().rules.size(); ++rule) {
     if (!past.program().rules[rule].printed) continue;
     for (const int instance : past.InstancesOf(static_cast<int>(rule))) {
-      for (const Fate& fate : past.FatesOf(instance)) {
-        if (fate.kind == Fate::Kind::kInterval)
-          events.push_back(reasons.Explain(instance, fate, true));
+      for (const CandidateOutcome& outcome : past.OutcomesOf(instance)) {
+        if (outcome.kind == CandidateOutcome::Kind::kInterval)
+          events.push_back(reasons.Explain(instance, outcome, true));
       }
     }
   }
@@ -65,27 +66,29 @@ std::vector<WhyEvent> ExplainAll(Hindsight& past) {
 std::vector<WhyEvent> ExplainEvents(Hindsight& past, const Ask& ask) {
   std::vector<WhyEvent> events;
   EventReasons reasons(past);
-  for (const Fate* fate : IntervalsOf(past, ask)) {
-    if (!ask.time_s || Contains(*fate, TickOf(ask, past)))
-      events.push_back(reasons.Explain(fate->instance, *fate));
+  for (const CandidateOutcome* outcome : IntervalsOf(past, ask)) {
+    if (!ask.time_s || Contains(*outcome, TickOf(ask, past)))
+      events.push_back(reasons.Explain(outcome->instance, *outcome));
   }
   return events;
 }
 
 std::vector<WhyEvent> NearestEvents(Hindsight& past, const Ask& ask) {
   constexpr std::size_t kMost = 3;
-  std::vector<const Fate*> intervals = IntervalsOf(past, ask);
-  const auto away = [&](const Fate* fate) {
+  std::vector<const CandidateOutcome*> intervals = IntervalsOf(past, ask);
+  const auto away = [&](const CandidateOutcome* outcome) {
     if (!ask.time_s) return Tick{0};
     const Tick tick = TickOf(ask, past);
-    return std::max({Tick{0}, fate->span.begin.tick - tick, tick - fate->span.end.tick});
+    return std::max({Tick{0}, outcome->span.begin.tick - tick, tick - outcome->span.end.tick});
   };
-  std::stable_sort(intervals.begin(), intervals.end(),
-                   [&](const Fate* a, const Fate* b) { return away(a) < away(b); });
+  std::stable_sort(
+      intervals.begin(), intervals.end(),
+      [&](const CandidateOutcome* a, const CandidateOutcome* b) { return away(a) < away(b); });
   if (intervals.size() > kMost) intervals.resize(kMost);
   std::vector<WhyEvent> events;
   EventReasons reasons(past);
-  for (const Fate* fate : intervals) events.push_back(reasons.Explain(fate->instance, *fate, true));
+  for (const CandidateOutcome* outcome : intervals)
+    events.push_back(reasons.Explain(outcome->instance, *outcome, true));
   return events;
 }
 

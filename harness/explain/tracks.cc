@@ -15,7 +15,7 @@
 namespace prehend::harness::explain {
 namespace {
 
-using grammar::Fate;
+using grammar::CandidateOutcome;
 using grammar::FrameNumber;
 using grammar::Hindsight;
 using grammar::kNone;
@@ -113,10 +113,11 @@ class Collector {
       auto* values = tracks_.problem.empty() ? Add(Label(past_, instance), kind, "") : nullptr;
       if (values == nullptr) continue;
       std::fill(values->begin(), values->end(), 0);
-      for (const Fate& fate : past_.FatesOf(instance)) {
-        if (fate.kind != Fate::Kind::kInterval) continue;
-        const FrameNumber end = std::min(fate.span.end.frame, past_.frames());
-        for (FrameNumber frame = fate.span.begin.frame; frame < end; ++frame) (*values)[frame] = 1;
+      for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+        if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
+        const FrameNumber end = std::min(outcome.span.end.frame, past_.frames());
+        for (FrameNumber frame = outcome.span.begin.frame; frame < end; ++frame)
+          (*values)[frame] = 1;
       }
     }
   }
@@ -148,10 +149,10 @@ class Collector {
                        dimension == grammar::kPlain ? "" : grammar::DimensionText(dimension));
     if (values == nullptr) return;
     if (!anchored) return Fill(signal, 0, past_.frames(), {.instance = instance}, *values);
-    for (const Fate& fate : past_.FatesOf(instance)) {
-      const FrameNumber begin = fate.span.begin.frame;
-      Fill(signal, begin, std::min(fate.span.end.frame + 1, past_.frames()),
-           {.instance = instance, .begin = begin, .end = fate.span.end.frame}, *values);
+    for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+      const FrameNumber begin = outcome.span.begin.frame;
+      Fill(signal, begin, std::min(outcome.span.end.frame + 1, past_.frames()),
+           {.instance = instance, .begin = begin, .end = outcome.span.end.frame}, *values);
     }
   }
 

@@ -13,7 +13,7 @@
 
 namespace prehend::harness::explain {
 
-using grammar::Fate;
+using grammar::CandidateOutcome;
 using grammar::Form;
 using grammar::FrameNumber;
 using grammar::kNone;
@@ -51,9 +51,9 @@ std::string EventReasons::Seconds(double seconds) const {
 }
 
 Clauses::Follow EventReasons::FollowFrom(int depth) {
-  return [this, depth](int instance, const Fate& fate, bool end) {
+  return [this, depth](int instance, const CandidateOutcome& outcome, bool end) {
     if (depth >= kDeepest) return Reasons{};
-    return end ? End(instance, fate, depth + 1) : Begin(instance, fate, depth + 1);
+    return end ? End(instance, outcome, depth + 1) : Begin(instance, outcome, depth + 1);
   };
 }
 
@@ -61,9 +61,9 @@ Reasons EventReasons::Change(int node, const Moment& at, bool truth, int depth) 
   return node == kNone ? Reasons{} : clauses_.Change(node, at, truth, FollowFrom(depth), brief_);
 }
 
-Reasons EventReasons::Begin(int instance, const Fate& fate, int depth) {
+Reasons EventReasons::Begin(int instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  const FrameNumber begin = fate.span.begin.frame;
+  const FrameNumber begin = outcome.span.begin.frame;
   switch (rule.form) {
     case Form::kTouching:
       return {};
@@ -82,19 +82,19 @@ Reasons EventReasons::Begin(int instance, const Fate& fate, int depth) {
       return reasons;
     }
     case Form::kUntilSince:
-      return BeginOfWalk(instance, fate, depth);
+      return BeginOfWalk(instance, outcome, depth);
     case Form::kRestOf:
       return BeginOrEndOfRest(instance, begin, true, depth);
     case Form::kCompose:
-      return Parts(instance, fate, depth);
+      return Parts(instance, outcome, depth);
   }
   return {};
 }
 
-Reasons EventReasons::End(int instance, const Fate& fate, int depth) {
+Reasons EventReasons::End(int instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  const FrameNumber begin = fate.span.begin.frame;
-  const FrameNumber end = fate.span.end.frame;
+  const FrameNumber begin = outcome.span.begin.frame;
+  const FrameNumber end = outcome.span.end.frame;
   // That B did not come is decided by time alone; what comes in that frame comes too late.
   if (rule.absence) return {Remark("nothing came within " + Seconds(rule.within_s))};
   if (end >= past_.frames()) return {Remark("the episode ends here")};
@@ -118,8 +118,8 @@ Reasons EventReasons::End(int instance, const Fate& fate, int depth) {
     case Form::kRestOf:
       return BeginOrEndOfRest(instance, end, false, depth);
     case Form::kCompose: {
-      std::vector<const Fate*> parts;
-      if (!ChooseParts(instance, fate, parts)) return {};
+      std::vector<const CandidateOutcome*> parts;
+      if (!ChooseParts(instance, outcome, parts)) return {};
       Reason last = Remark(Label(past_, parts.back()->instance), "ended");
       last.mark = Mark::kTurned;
       if (depth < kDeepest) last.because = End(parts.back()->instance, *parts.back(), depth + 1);
@@ -130,11 +130,11 @@ Reasons EventReasons::End(int instance, const Fate& fate, int depth) {
 }
 
 // What stopped the walk back from the end.
-Reasons EventReasons::BeginOfWalk(int instance, const Fate& fate, int depth) {
+Reasons EventReasons::BeginOfWalk(int instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  const FrameNumber begin = fate.span.begin.frame;
-  const FrameNumber end = fate.span.end.frame;
-  const FrameNumber at = fate.walk.at;
+  const FrameNumber begin = outcome.span.begin.frame;
+  const FrameNumber end = outcome.span.end.frame;
+  const FrameNumber at = outcome.walk.at;
   const auto signal = [&](FrameNumber frame) {
     return past_.Number(rule.approach, {.instance = instance, .frame = frame, .end = end})
         .value_or(0);
@@ -143,7 +143,7 @@ Reasons EventReasons::BeginOfWalk(int instance, const Fate& fate, int depth) {
     return QuantityText(value, NoteOf(past_.program(), rule.approach).dimension);
   };
   Reasons reasons;
-  switch (fate.walk.stop) {
+  switch (outcome.walk.stop) {
     case WalkBack::Stop::kFirstFrame:
       reasons = {Remark("it held from the first frame on")};
       break;
@@ -169,9 +169,9 @@ Reasons EventReasons::BeginOfWalk(int instance, const Fate& fate, int depth) {
       reasons.front().mark = Mark::kTurned;
       break;
   }
-  const bool later = fate.walk.stop != WalkBack::Stop::kReceding &&
-                     fate.walk.stop != WalkBack::Stop::kIdle &&
-                     begin > at + (fate.walk.stop == WalkBack::Stop::kSince ? 1 : 0);
+  const bool later = outcome.walk.stop != WalkBack::Stop::kReceding &&
+                     outcome.walk.stop != WalkBack::Stop::kIdle &&
+                     begin > at + (outcome.walk.stop == WalkBack::Stop::kSince ? 1 : 0);
   if (!later || rule.approach == kNone) return reasons;
   const grammar::Dimension of_signal = NoteOf(past_.program(), rule.approach).dimension;
   const grammar::Dimension dimension = rule.motion == kNone
@@ -208,9 +208,9 @@ Reasons EventReasons::BeginOrEndOfAny(int instance, FrameNumber frame, bool end,
   std::sort(members.begin(), members.end(),
             [&](int a, int b) { return past_.At(a).entities < past_.At(b).entities; });
   for (const int member : members) {
-    for (const Fate& fate : past_.FatesOf(member)) {
-      const FrameNumber boundary = end ? fate.span.end.frame : fate.span.begin.frame;
-      if (fate.kind != Fate::Kind::kInterval || boundary != frame) continue;
+    for (const CandidateOutcome& outcome : past_.OutcomesOf(member)) {
+      const FrameNumber boundary = end ? outcome.span.end.frame : outcome.span.begin.frame;
+      if (outcome.kind != CandidateOutcome::Kind::kInterval || boundary != frame) continue;
       const Rule& rule = past_.RuleOf(member);
       reasons.push_back({.mark = Mark::kTurned,
                          .what = Label(past_, member),
@@ -218,23 +218,24 @@ Reasons EventReasons::BeginOrEndOfAny(int instance, FrameNumber frame, bool end,
                          .where = rule.form == Form::kTouching ? "" : Source(rule.file, rule.place),
                          .tick = past_.TickOf(frame),
                          .reading = {},
-                         .because = FollowFrom(depth)(member, fate, end)});
+                         .because = FollowFrom(depth)(member, outcome, end)});
     }
   }
   return reasons;
 }
 
-bool EventReasons::ChooseParts(int instance, const Fate& whole, std::vector<const Fate*>& chosen) {
+bool EventReasons::ChooseParts(int instance, const CandidateOutcome& whole,
+                               std::vector<const CandidateOutcome*>& chosen) {
   const grammar::Composition& composition = past_.RuleOf(instance).composition;
   const std::size_t part = chosen.size();
   if (part == composition.parts.size()) return true;
   const int target = past_.Referred(instance, composition.parts[part]);
-  for (const Fate& fate : past_.FatesOf(target)) {
-    if (fate.kind != Fate::Kind::kInterval) continue;
-    if (part == 0 && fate.span.begin.frame != whole.span.begin.frame) continue;
-    if (part + 1 == composition.parts.size() && fate.span.end.frame != whole.span.end.frame)
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
+    if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
+    if (part == 0 && outcome.span.begin.frame != whole.span.begin.frame) continue;
+    if (part + 1 == composition.parts.size() && outcome.span.end.frame != whole.span.end.frame)
       continue;
-    chosen.push_back(&fate);
+    chosen.push_back(&outcome);
     const auto holds = [&](const grammar::Composition::Clause& clause) {
       if (std::max(clause.left, clause.right) != static_cast<int>(part)) return true;
       const auto ticks = [&](int i) {
@@ -250,11 +251,11 @@ bool EventReasons::ChooseParts(int instance, const Fate& whole, std::vector<cons
   return false;
 }
 
-Reasons EventReasons::Parts(int instance, const Fate& fate, int depth) {
-  std::vector<const Fate*> chosen;
+Reasons EventReasons::Parts(int instance, const CandidateOutcome& outcome, int depth) {
+  std::vector<const CandidateOutcome*> chosen;
   Reasons reasons;
-  if (!ChooseParts(instance, fate, chosen)) return reasons;
-  for (const Fate* part : chosen) {
+  if (!ChooseParts(instance, outcome, chosen)) return reasons;
+  for (const CandidateOutcome* part : chosen) {
     Reason reason = Remark(
         "part " + Label(past_, part->instance),
         IntervalText({part->span.begin.tick, part->span.end.tick}, past_.cast().ticks_per_second));
@@ -266,53 +267,53 @@ Reasons EventReasons::Parts(int instance, const Fate& fate, int depth) {
   return reasons;
 }
 
-Reasons EventReasons::Counted(int instance, const Fate& fate) {
+Reasons EventReasons::Counted(int instance, const CandidateOutcome& outcome) {
   const Rule& rule = past_.RuleOf(instance);
   const Tick per_second = past_.cast().ticks_per_second;
   Reasons reasons;
   if (rule.lasting_s > 0) {
-    reasons.push_back(
-        Remark("lasting " + Seconds(rule.lasting_s),
-               "it lasted " + Duration(fate.span.end.tick - fate.span.begin.tick, per_second)));
+    reasons.push_back(Remark(
+        "lasting " + Seconds(rule.lasting_s),
+        "it lasted " + Duration(outcome.span.end.tick - outcome.span.begin.tick, per_second)));
   }
   if (rule.requirement != kNone) {
-    const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
+    const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
     const Moment at{
-        .instance = instance, .frame = last, .begin = fate.span.begin.frame, .end = last};
+        .instance = instance, .frame = last, .begin = outcome.span.begin.frame, .end = last};
     for (Reason& reason : clauses_.State(rule.requirement, at, true)) {
       reason.what = "requires " + reason.what;
       reasons.push_back(std::move(reason));
     }
   }
-  if (rule.confirmed_by != kNone && fate.cause != grammar::kNever) {
+  if (rule.confirmed_by != kNone && outcome.cause != grammar::kNever) {
     const int by = past_.Referred(instance, rule.confirmed_by);
     const int within = past_.Referred(instance, rule.confirmed_within);
-    reasons.push_back(Remark(
-        "confirmed by " + Label(past_, by),
-        "it began at " + clauses_.Time(fate.cause) + ", while " + Label(past_, within) + " held"));
+    reasons.push_back(Remark("confirmed by " + Label(past_, by),
+                             "it began at " + clauses_.Time(outcome.cause) + ", while " +
+                                 Label(past_, within) + " held"));
   }
   return reasons;
 }
 
 // Why it was not known at its end already.
-Reasons EventReasons::Waited(int instance, const Fate& fate, int depth) {
+Reasons EventReasons::Waited(int instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  const Tick end = fate.span.end.tick;
+  const Tick end = outcome.span.end.tick;
   Reasons reasons;
-  if (fate.decided <= end || depth >= kDeepest) return reasons;
-  if (rule.bridging_s > 0 && !fate.span.open_end) {
+  if (outcome.decided <= end || depth >= kDeepest) return reasons;
+  if (rule.bridging_s > 0 && !outcome.span.open_end) {
     reasons.push_back(Remark(Label(past_, instance), "a gap of up to " + Seconds(rule.bridging_s) +
                                                          " would have been bridged"));
   }
-  if (rule.looks_around_s > 0 && !fate.span.open_end) {
+  if (rule.looks_around_s > 0 && !outcome.span.open_end) {
     reasons.push_back(Remark(Label(past_, instance), "a signal over a window looks " +
                                                          Seconds(rule.looks_around_s) + " ahead"));
   }
-  if (rule.confirmed_by != kNone && fate.cause != grammar::kNever) {
+  if (rule.confirmed_by != kNone && outcome.cause != grammar::kNever) {
     reasons.push_back(Remark(Label(past_, past_.Referred(instance, rule.confirmed_by)),
-                             "had to begin, and did so at " + clauses_.Time(fate.cause)));
+                             "had to begin, and did so at " + clauses_.Time(outcome.cause)));
   }
-  for (Reason& reason : WaitedFor(instance, fate, depth)) reasons.push_back(std::move(reason));
+  for (Reason& reason : WaitedFor(instance, outcome, depth)) reasons.push_back(std::move(reason));
   return reasons;
 }
 
@@ -330,7 +331,7 @@ double EventReasons::LooksBack_s(int instance) {
 
 // What it refers to and was known at that very moment only; or what might still have come in that
 // time.
-Reasons EventReasons::WaitedFor(int instance, const Fate& fate, int depth) {
+Reasons EventReasons::WaitedFor(int instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
   std::vector<int> targets = past_.At(instance).members;
   for (std::size_t slot = 0; slot < rule.references.size() && rule.form != Form::kAny; ++slot) {
@@ -339,12 +340,12 @@ Reasons EventReasons::WaitedFor(int instance, const Fate& fate, int depth) {
   std::erase(targets, kNone);
   Reasons reasons;
   for (const int target : targets) {
-    const std::vector<Fate>& fates = past_.FatesOf(target);
-    const auto only_then = [&](const Fate& other) {
-      return other.decided == fate.decided && other.span.end.tick < other.decided;
+    const std::vector<CandidateOutcome>& outcomes = past_.OutcomesOf(target);
+    const auto only_then = [&](const CandidateOutcome& other) {
+      return other.decided == outcome.decided && other.span.end.tick < other.decided;
     };
-    const auto other = std::find_if(fates.begin(), fates.end(), only_then);
-    if (other == fates.end()) continue;
+    const auto other = std::find_if(outcomes.begin(), outcomes.end(), only_then);
+    if (other == outcomes.end()) continue;
     Reason reason = Remark(Label(past_, target), "was decided only then");
     reason.because = Waited(target, *other, depth + 1);
     reasons.push_back(std::move(reason));
@@ -360,21 +361,21 @@ Reasons EventReasons::WaitedFor(int instance, const Fate& fate, int depth) {
   return reasons;
 }
 
-WhyEvent EventReasons::Explain(int instance, const Fate& fate, bool brief) {
+WhyEvent EventReasons::Explain(int instance, const CandidateOutcome& outcome, bool brief) {
   brief_ = brief;
   const Rule& rule = past_.RuleOf(instance);
   WhyEvent why{.event = Label(past_, instance),
                .where = Source(rule.file, rule.place),
-               .interval = {fate.span.begin.tick, fate.span.end.tick},
-               .decided = fate.decided,
-               .open_end = fate.span.open_end,
-               .began = Begin(instance, fate),
-               .ended = End(instance, fate),
+               .interval = {outcome.span.begin.tick, outcome.span.end.tick},
+               .decided = outcome.decided,
+               .open_end = outcome.span.open_end,
+               .began = Begin(instance, outcome),
+               .ended = End(instance, outcome),
                .counted = {},
                .waited = {}};
   if (brief) return why;
-  why.counted = Counted(instance, fate);
-  why.waited = Waited(instance, fate, 0);
+  why.counted = Counted(instance, outcome);
+  why.waited = Waited(instance, outcome, 0);
   return why;
 }
 

@@ -33,16 +33,17 @@ class MissingReasons {
   Window Within(const Window& window, grammar::FrameNumber frame);
 
   Blame OfInstance(int instance, const Window& window, int depth);
-  const grammar::Fate* NearestRun(int instance, const Window& window);
-  double RunCloseness(const grammar::Fate& fate);
+  const grammar::CandidateOutcome* NearestRun(int instance, const Window& window);
+  double RunCloseness(const grammar::CandidateOutcome& outcome);
   /// "to touching(hand, cup) ends", "without touching(hand, cup) begins"
   std::string Awaited(int instance);
-  std::string HowLate(const grammar::Fate& fate);
+  std::string HowLate(const grammar::CandidateOutcome& outcome);
   /// `look_until`: what came later than that could not have helped.
-  Blame OfRun(const grammar::Fate& fate, int depth,
+  Blame OfRun(const grammar::CandidateOutcome& outcome, int depth,
               grammar::FrameNumber look_until = grammar::kNever);
-  Reasons Requirement(const grammar::Fate& fate, int depth);
-  Reasons EndThatNeverCame(const grammar::Fate& fate, grammar::FrameNumber look_until);
+  Reasons Requirement(const grammar::CandidateOutcome& outcome, int depth);
+  Reasons EndThatNeverCame(const grammar::CandidateOutcome& outcome,
+                           grammar::FrameNumber look_until);
   Blame OfForm(int instance, const Window& window, int depth);
   Blame OfWhile(int instance, const Window& window, int depth);
   Blame OfFromTo(int instance, const Window& window, int depth);

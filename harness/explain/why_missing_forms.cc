@@ -14,7 +14,7 @@
 
 namespace prehend::harness::explain {
 
-using grammar::Fate;
+using grammar::CandidateOutcome;
 using grammar::Form;
 using grammar::FrameNumber;
 using grammar::kNone;
@@ -42,12 +42,13 @@ Reason Failed(std::string what, std::string how, Reasons because = {}) {
 // "contact(hand, cup)  1.0..2.0 s, 3.0..4.0 s"
 Reason MissingReasons::Intervals(int instance, std::string how) {
   std::size_t count = 0;
-  for (const Fate& fate : past_.FatesOf(instance)) {
-    if (fate.kind != Fate::Kind::kInterval) continue;
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+    if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
     if (count++ == kMostIntervals) how += ", ..";
     if (count > kMostIntervals) continue;
-    how += (count == 1 ? " " : ", ") +
-           IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second);
+    how +=
+        (count == 1 ? " " : ", ") + IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
+                                                 past_.cast().ticks_per_second);
   }
   return {.mark = Mark::kNote, .what = Label(past_, instance), .how = count == 0 ? "never" : how};
 }
@@ -77,7 +78,7 @@ MissingReasons::Blame MissingReasons::OfFact(int instance, const Window& window)
   Reason reason =
       Failed(Label(past_, instance),
              at ? "they did not touch at " + clauses_.Time(*window.at) : "they did not touch");
-  if (!past_.FatesOf(instance).empty())
+  if (!past_.OutcomesOf(instance).empty())
     reason.because.push_back(Intervals(instance, "they touched"));
   return {{std::move(reason)}, 0};
 }
@@ -175,7 +176,7 @@ MissingReasons::Blame MissingReasons::OfMoment(int node, int instance, const Win
       const int target = past_.Referred(instance, arg.slot);
       if (target == kNone) continue;
       const bool ever = past_.LastBegun(target, past_.frames()) != nullptr;
-      const Fate* last = past_.LastBegun(target, window.last);
+      const CandidateOutcome* last = past_.LastBegun(target, window.last);
       const bool here = last != nullptr && last->span.end.frame >= window.first;
       if (!here) blame = OfInstance(target, window, depth + 1);
       if (ever) {
@@ -210,14 +211,14 @@ MissingReasons::Blame MissingReasons::OfFromTo(int instance, const Window& windo
                              std::move(blame.reasons))};
     return {{std::move(reason)}, 0.5 * blame.closeness};
   }
-  for (const Fate& fate : past_.FatesOf(instance)) {
-    if (fate.span.begin.frame != from) continue;
-    if (fate.kind != Fate::Kind::kInterval) return OfRun(fate, depth);
-    reason.how =
-        "the one before, " +
-        IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second) +
-        ", was over already";
-    reason.because = events_.End(instance, fate);
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+    if (outcome.span.begin.frame != from) continue;
+    if (outcome.kind != CandidateOutcome::Kind::kInterval) return OfRun(outcome, depth);
+    reason.how = "the one before, " +
+                 IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
+                              past_.cast().ticks_per_second) +
+                 ", was over already";
+    reason.because = events_.End(instance, outcome);
     return {{std::move(reason)}, 0.9};
   }
   reason.how = "could have begun at " + clauses_.Time(from);
@@ -255,19 +256,19 @@ Reason MissingReasons::ClosestApproach(int instance, const Window& window) {
 std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(int instance, FrameNumber at,
                                                                 int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  for (const Fate& fate : past_.FatesOf(instance)) {
-    if (fate.span.end.frame <= at) continue;
-    const bool reaches = fate.span.end.tick - past_.TickOf(at) <= past_.AtMostTicks(rule.back_s);
-    const bool is_interval = fate.kind == Fate::Kind::kInterval;
-    if (reaches && !is_interval) return OfRun(fate, depth);
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+    if (outcome.span.end.frame <= at) continue;
+    const bool reaches = outcome.span.end.tick - past_.TickOf(at) <= past_.AtMostTicks(rule.back_s);
+    const bool is_interval = outcome.kind == CandidateOutcome::Kind::kInterval;
+    if (reaches && !is_interval) return OfRun(outcome, depth);
     Reason reason = Failed(Label(past_, instance), "");
     reason.where = Source(rule.file, rule.place);
     if (is_interval) {
-      reason.how = "begins at " + clauses_.Time(fate.span.begin.frame) + " only";
-      reason.because = events_.Begin(instance, fate);
+      reason.how = "begins at " + clauses_.Time(outcome.span.begin.frame) + " only";
+      reason.because = events_.Begin(instance, outcome);
     } else {
       const std::string back = QuantityText(rule.back_s, grammar::kSeconds);
-      reason.how = "the next end is at " + clauses_.Time(fate.span.end.frame) +
+      reason.how = "the next end is at " + clauses_.Time(outcome.span.end.frame) +
                    ", and it looks at most " + back + " back";
     }
     return Blame{{std::move(reason)}, 0.9};
@@ -320,15 +321,16 @@ MissingReasons::Blame MissingReasons::OfRest(int instance, const Window& window,
   for (const int slot : rule.outside) {
     const int target = past_.Referred(instance, slot);
     if (!covers(target, frame)) continue;
-    const Fate& fate = *past_.Covering(target, frame);
-    Reason covered = Failed("outside " + Label(past_, target),
-                            "it held " + IntervalText({fate.span.begin.tick, fate.span.end.tick},
-                                                      past_.cast().ticks_per_second));
+    const CandidateOutcome& outcome = *past_.Covering(target, frame);
+    Reason covered =
+        Failed("outside " + Label(past_, target),
+               "it held " + IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
+                                         past_.cast().ticks_per_second));
     if (past_.RuleOf(target).form == Form::kUntilSince) {
       const Moment at{.instance = target,
                       .frame = frame,
-                      .begin = fate.span.begin.frame,
-                      .end = fate.span.end.frame};
+                      .begin = outcome.span.begin.frame,
+                      .end = outcome.span.end.frame};
       covered.because = clauses_.State(past_.RuleOf(target).second, at, true);
     }
     reason.because.push_back(std::move(covered));
@@ -369,14 +371,16 @@ MissingReasons::Blame MissingReasons::OfCompose(int instance, const Window& wind
   }
   for (const grammar::Composition::Clause& clause : rule.composition.clauses) {
     if (!complete) break;
-    const auto ticks = [](const Fate& fate) {
-      return grammar::Interval{fate.span.begin.tick, fate.span.end.tick};
+    const auto ticks = [](const CandidateOutcome& outcome) {
+      return grammar::Interval{outcome.span.begin.tick, outcome.span.end.tick};
     };
     bool holds = false;
     std::string relation;
-    for (const Fate& left : past_.FatesOf(parts[clause.left])) {
-      for (const Fate& right : past_.FatesOf(parts[clause.right])) {
-        if (left.kind != Fate::Kind::kInterval || right.kind != Fate::Kind::kInterval) continue;
+    for (const CandidateOutcome& left : past_.OutcomesOf(parts[clause.left])) {
+      for (const CandidateOutcome& right : past_.OutcomesOf(parts[clause.right])) {
+        if (left.kind != CandidateOutcome::Kind::kInterval ||
+            right.kind != CandidateOutcome::Kind::kInterval)
+          continue;
         const grammar::Allen is = grammar::Relate(ticks(left), ticks(right));
         holds |= (grammar::Bit(is) & clause.relations) != 0;
         relation = grammar::kAllenNames[static_cast<std::size_t>(is)];
