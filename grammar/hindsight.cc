@@ -5,12 +5,12 @@
 
 namespace prehend::grammar {
 
-Hindsight::Hindsight(std::shared_ptr<const Program> program, Cast cast)
+ReplayMonitor::ReplayMonitor(std::shared_ptr<const Program> program, Cast cast)
     : engine_(std::move(program), std::move(cast)) {
   engine_.Remember(log_);
 }
 
-void Hindsight::Finish(Tick end) {
+void ReplayMonitor::Finish(Tick end) {
   engine_.Finish(end, events_);
   end_tick_ = frames() == 0 ? end : std::max(end, engine_.history().At(frames() - 1).tick + 1);
   by_instance_.resize(engine_.instances().size());
@@ -51,16 +51,16 @@ void Hindsight::Finish(Tick end) {
   }
 }
 
-Tick Hindsight::TickOf(FrameNumber frame) const {
+Tick ReplayMonitor::TickOf(FrameNumber frame) const {
   return frame < frames() ? engine_.history().At(std::max<FrameNumber>(frame, 0)).tick : end_tick_;
 }
 
-FrameNumber Hindsight::FrameAt(Tick tick) const {
+FrameNumber ReplayMonitor::FrameAt(Tick tick) const {
   return std::clamp<FrameNumber>(engine_.history().LastNotAfter(tick), 0,
                                  std::max<FrameNumber>(frames() - 1, 0));
 }
 
-std::vector<int> Hindsight::InstancesOf(int rule) {
+std::vector<int> ReplayMonitor::InstancesOf(int rule) {
   std::vector<int> instances;
   for (int instance = 0; instance < engine_.instances().size(); ++instance) {
     if (At(instance).rule == rule) instances.push_back(instance);
@@ -70,13 +70,13 @@ std::vector<int> Hindsight::InstancesOf(int rule) {
   return instances;
 }
 
-const std::vector<CandidateOutcome>& Hindsight::OutcomesOf(int instance) const {
+const std::vector<CandidateOutcome>& ReplayMonitor::OutcomesOf(int instance) const {
   static const std::vector<CandidateOutcome> kNoOutcomes;
   return instance >= 0 && instance < static_cast<int>(by_instance_.size()) ? by_instance_[instance]
                                                                            : kNoOutcomes;
 }
 
-const CandidateOutcome* Hindsight::LastBegun(int instance, FrameNumber frame) const {
+const CandidateOutcome* ReplayMonitor::LastBegun(int instance, FrameNumber frame) const {
   const CandidateOutcome* last = nullptr;
   for (const CandidateOutcome& outcome : OutcomesOf(instance)) {
     if (outcome.kind == CandidateOutcome::Kind::kInterval && outcome.span.begin.frame <= frame)
@@ -85,12 +85,12 @@ const CandidateOutcome* Hindsight::LastBegun(int instance, FrameNumber frame) co
   return last;
 }
 
-const CandidateOutcome* Hindsight::Covering(int instance, FrameNumber frame) const {
+const CandidateOutcome* ReplayMonitor::Covering(int instance, FrameNumber frame) const {
   const CandidateOutcome* last = LastBegun(instance, frame);
   return last != nullptr && frame < last->span.end.frame ? last : nullptr;
 }
 
-Evaluator::View Hindsight::View(const Moment& at) {
+Evaluator::View ReplayMonitor::View(const Moment& at) {
   RuleInstance& instance = engine_.instances()[at.instance];
   const FrameNumber last = frames() - 1;
   // After the episode every value is known.
@@ -101,15 +101,15 @@ Evaluator::View Hindsight::View(const Moment& at) {
   return view;
 }
 
-bool Hindsight::Truth(int node, const Moment& at) {
+bool ReplayMonitor::Truth(int node, const Moment& at) {
   return engine_.evaluator().Truth(node, View(at)) == Kleene::kTrue;
 }
 
-std::optional<double> Hindsight::Number(int node, const Moment& at) {
+std::optional<double> ReplayMonitor::Number(int node, const Moment& at) {
   return engine_.evaluator().Number(node, View(at));
 }
 
-std::optional<Evaluator::Reach> Hindsight::ReachOf(int node, const Moment& at) {
+std::optional<Evaluator::Reach> ReplayMonitor::ReachOf(int node, const Moment& at) {
   return engine_.evaluator().ReachOf(program().nodes[node], View(at));
 }
 

@@ -15,9 +15,9 @@
 
 namespace prehend::grammar {
 
-class Hindsight {
+class ReplayMonitor {
  public:
-  Hindsight(std::shared_ptr<const Program> program, Cast cast);
+  ReplayMonitor(std::shared_ptr<const Program> program, Cast cast);
 
   /// Empty, or why this program can't watch this cast or these frames.
   const std::string& error() const { return engine_.error(); }

@@ -8,11 +8,11 @@ namespace prehend::harness::explain {
 namespace {
 
 using grammar::Binding;
-using grammar::Hindsight;
 using grammar::kNone;
+using grammar::ReplayMonitor;
 
 // Fills the open roles from `role` on with everybody whose class fits.
-void Fill(Hindsight& past, int rule, Binding& entities, std::size_t role,
+void Fill(ReplayMonitor& past, int rule, Binding& entities, std::size_t role,
           std::vector<int>& instances) {
   const std::size_t roles = past.program().rules[rule].roles.size();
   if (instances.size() >= kMostBindings) return;
@@ -34,7 +34,7 @@ void Fill(Hindsight& past, int rule, Binding& entities, std::size_t role,
 
 }  // namespace
 
-std::vector<int> BindingsThatFit(Hindsight& past, int rule, const Binding& wanted) {
+std::vector<int> BindingsThatFit(ReplayMonitor& past, int rule, const Binding& wanted) {
   const grammar::Rule& asked = past.program().rules[rule];
   std::vector<int> instances;
   for (const int instance : past.InstancesOf(rule)) {

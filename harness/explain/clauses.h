@@ -11,7 +11,7 @@
 
 namespace prehend::harness::explain {
 
-using Moment = grammar::Hindsight::Moment;
+using Moment = grammar::ReplayMonitor::Moment;
 
 class Clauses {
  public:
@@ -19,7 +19,7 @@ class Clauses {
   using Follow =
       std::function<Reasons(int instance, const grammar::CandidateOutcome& outcome, bool end)>;
 
-  explicit Clauses(grammar::Hindsight& past) : past_(past) {}
+  explicit Clauses(grammar::ReplayMonitor& past) : past_(past) {}
 
   /// The clauses that make the node what it is at the frame: true, or false. What became so at this
   /// very frame is followed. `brief` leaves out what was so already.
@@ -73,7 +73,7 @@ class Clauses {
   std::string Since(int node, const Moment& at, bool truth);
   const grammar::Node& NodeAt(int node) const { return past_.program().nodes[node]; }
 
-  grammar::Hindsight& past_;
+  grammar::ReplayMonitor& past_;
 };
 
 }  // namespace prehend::harness::explain

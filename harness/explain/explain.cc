@@ -15,10 +15,10 @@ namespace prehend::harness::explain {
 namespace {
 
 using grammar::CandidateOutcome;
-using grammar::Hindsight;
+using grammar::ReplayMonitor;
 using grammar::Tick;
 
-std::vector<const CandidateOutcome*> IntervalsOf(Hindsight& past, const Ask& ask) {
+std::vector<const CandidateOutcome*> IntervalsOf(ReplayMonitor& past, const Ask& ask) {
   std::vector<const CandidateOutcome*> intervals;
   for (const int instance : BindingsThatFit(past, ask.rule, ask.entities)) {
     for (const CandidateOutcome& outcome : past.OutcomesOf(instance)) {
@@ -33,7 +33,7 @@ std::vector<const CandidateOutcome*> IntervalsOf(Hindsight& past, const Ask& ask
   return intervals;
 }
 
-Tick TickOf(const Ask& ask, const Hindsight& past) {
+Tick TickOf(const Ask& ask, const ReplayMonitor& past) {
   return TickAt(*ask.time_s, past.cast().ticks_per_second);
 }
 
@@ -44,7 +44,7 @@ bool Contains(const CandidateOutcome& outcome, Tick tick) {
 
 }  // namespace
 
-std::vector<WhyEvent> ExplainAll(Hindsight& past) {
+std::vector<WhyEvent> ExplainAll(ReplayMonitor& past) {
   std::vector<WhyEvent> events;
   EventReasons reasons(past);
   for (std::size_t rule = 0; rule < past.program().rules.size(); ++rule) {
@@ -63,7 +63,7 @@ std::vector<WhyEvent> ExplainAll(Hindsight& past) {
   return events;
 }
 
-std::vector<WhyEvent> ExplainEvents(Hindsight& past, const Ask& ask) {
+std::vector<WhyEvent> ExplainEvents(ReplayMonitor& past, const Ask& ask) {
   std::vector<WhyEvent> events;
   EventReasons reasons(past);
   for (const CandidateOutcome* outcome : IntervalsOf(past, ask)) {
@@ -73,7 +73,7 @@ std::vector<WhyEvent> ExplainEvents(Hindsight& past, const Ask& ask) {
   return events;
 }
 
-std::vector<WhyEvent> NearestEvents(Hindsight& past, const Ask& ask) {
+std::vector<WhyEvent> NearestEvents(ReplayMonitor& past, const Ask& ask) {
   constexpr std::size_t kMost = 3;
   std::vector<const CandidateOutcome*> intervals = IntervalsOf(past, ask);
   const auto away = [&](const CandidateOutcome* outcome) {
@@ -92,7 +92,7 @@ std::vector<WhyEvent> NearestEvents(Hindsight& past, const Ask& ask) {
   return events;
 }
 
-WhyMissing ExplainMissing(Hindsight& past, const Ask& ask) {
+WhyMissing ExplainMissing(ReplayMonitor& past, const Ask& ask) {
   std::optional<grammar::FrameNumber> at;
   if (ask.time_s) at = past.FrameAt(TickOf(ask, past));
   const std::vector<int> instances = BindingsThatFit(past, ask.rule, ask.entities);

@@ -17,11 +17,11 @@ namespace {
 
 using grammar::CandidateOutcome;
 using grammar::FrameNumber;
-using grammar::Hindsight;
 using grammar::kNone;
 using grammar::Node;
 using grammar::Op;
 using grammar::Program;
+using grammar::ReplayMonitor;
 using grammar::Rule;
 
 /// A number of one rule that can be plotted: a side of a comparison, or how far something is from a
@@ -72,7 +72,7 @@ std::string NameOf(const Program& program, const Signal& signal) {
 
 class Collector {
  public:
-  Collector(Hindsight& past, const std::set<std::string>& only) : past_(past), only_(only) {
+  Collector(ReplayMonitor& past, const std::set<std::string>& only) : past_(past), only_(only) {
     tracks_.ticks_per_second = past.cast().ticks_per_second;
     for (FrameNumber frame = 0; frame < past.frames(); ++frame)
       tracks_.ticks.push_back(past.TickOf(frame));
@@ -156,7 +156,7 @@ class Collector {
     }
   }
 
-  void Fill(const Signal& signal, FrameNumber first, FrameNumber end, Hindsight::Moment at,
+  void Fill(const Signal& signal, FrameNumber first, FrameNumber end, ReplayMonitor::Moment at,
             std::vector<std::optional<double>>& values) {
     for (at.frame = first; at.frame < end; ++at.frame) {
       if (signal.what == Signal::What::kNumber) {
@@ -168,7 +168,7 @@ class Collector {
     }
   }
 
-  Hindsight& past_;
+  ReplayMonitor& past_;
   const std::set<std::string>& only_;
   Tracks tracks_;
   std::set<std::string> names_;
@@ -206,7 +206,7 @@ std::vector<std::string> TrackNames(const Program& program) {
   return {names.begin(), names.end()};
 }
 
-Tracks CollectTracks(Hindsight& past, const std::set<std::string>& only) {
+Tracks CollectTracks(ReplayMonitor& past, const std::set<std::string>& only) {
   return Collector(past, only).Collect();
 }
 

@@ -10,7 +10,7 @@ namespace prehend::harness::explain {
 
 class EventReasons {
  public:
-  explicit EventReasons(grammar::Hindsight& past) : past_(past), clauses_(past) {}
+  explicit EventReasons(grammar::ReplayMonitor& past) : past_(past), clauses_(past) {}
 
   /// Everything about one interval of a binding. `brief`: only what turned, for one line per event.
   WhyEvent Explain(int instance, const grammar::CandidateOutcome& outcome, bool brief = false);
@@ -34,7 +34,7 @@ class EventReasons {
   const grammar::Node& NodeAt(int node) const { return past_.program().nodes[node]; }
   std::string Seconds(double seconds) const;
 
-  grammar::Hindsight& past_;
+  grammar::ReplayMonitor& past_;
   Clauses clauses_;
   bool brief_ = false;
 };

@@ -10,7 +10,8 @@ namespace prehend::harness::explain {
 
 class MissingReasons {
  public:
-  explicit MissingReasons(grammar::Hindsight& past) : past_(past), clauses_(past), events_(past) {}
+  explicit MissingReasons(grammar::ReplayMonitor& past)
+      : past_(past), clauses_(past), events_(past) {}
 
   /// Of the bindings the one that came closest. `at`: where it should have been; otherwise
   /// anywhere.
@@ -64,7 +65,7 @@ class MissingReasons {
   Blame OfMoment(int node, int instance, const Window& window, int depth);
   Reason Intervals(int instance, std::string how);
 
-  grammar::Hindsight& past_;
+  grammar::ReplayMonitor& past_;
   Clauses clauses_;
   EventReasons events_;
 };

@@ -13,9 +13,9 @@
 namespace prehend::harness::explain {
 
 using grammar::Dimension;
-using grammar::Hindsight;
 using grammar::kNone;
 using grammar::Place;
+using grammar::ReplayMonitor;
 using grammar::Rule;
 using grammar::Tick;
 
@@ -58,9 +58,11 @@ std::string Duration(Tick ticks, Tick ticks_per_second) {
                       grammar::kSeconds);
 }
 
-const std::string& RuleName(Hindsight& past, int instance) { return past.RuleOf(instance).name; }
+const std::string& RuleName(ReplayMonitor& past, int instance) {
+  return past.RuleOf(instance).name;
+}
 
-std::string Label(Hindsight& past, int instance) {
+std::string Label(ReplayMonitor& past, int instance) {
   const Rule& rule = past.RuleOf(instance);
   const auto& entities = past.At(instance).entities;
   const bool is_any = rule.form == grammar::Form::kAny;
@@ -82,7 +84,7 @@ std::string Source(const std::string& file, const Place& place) {
                      place.line);
 }
 
-std::string ClauseText(Hindsight& past, int instance, int node) {
+std::string ClauseText(ReplayMonitor& past, int instance, int node) {
   const std::string& written = NoteOf(past.program(), node).text;
   std::string text;
   for (std::size_t i = 0; i < written.size(); ++i) {
