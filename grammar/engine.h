@@ -208,11 +208,11 @@ class Engine {
   std::vector<int> touching_;            // the pairs that touch now
   std::vector<int>
       pressed_;  // the instances of the touches that a frame tells of, kNone: there is none yet
-  std::vector<Alarm> alarms_;      // a heap, the next one first
-  Ring<IdleEntry> idle_queue_;     // in the order in which they came to rest
-  std::vector<int> scratch_;       // instances; kept for its memory
-  std::vector<int> notified_;      // likewise
-  FrameNumber oldest_needed_ = 0;  // of the awake instances
+  std::vector<Alarm> alarms_;         // a heap, the next one first
+  RingBuffer<IdleEntry> idle_queue_;  // in the order in which they came to rest
+  std::vector<int> scratch_;          // instances; kept for its memory
+  std::vector<int> notified_;         // likewise
+  FrameNumber oldest_needed_ = 0;     // of the awake instances
   FrameNumber oldest_look_needed_ = 0;
   FrameNumber first_needed_ = 0;  // and what they can look back to
   FrameNumber first_look_needed_ = 0;

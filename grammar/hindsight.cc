@@ -17,7 +17,7 @@ void ReplayMonitor::Finish(Tick end) {
   // The fact has no outcomes: its intervals are what was seen.
   for (int instance = 0; instance < engine_.instances().size(); ++instance) {
     if (At(instance).rule != kTouchingRule) continue;
-    const Ring<Span>& past = At(instance).past;
+    const RingBuffer<Span>& past = At(instance).past;
     for (std::size_t i = 0; i < past.size(); ++i) {
       by_instance_[instance].push_back(
           {.instance = instance, .span = past[i], .decided = past[i].end.tick});

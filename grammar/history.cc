@@ -23,7 +23,7 @@ void History::BeginFrame(Tick tick) {
 }
 
 void History::SetLook(int entity, const EntityLook& look) {
-  Ring<LookSample>& samples = looks_[entity];
+  RingBuffer<LookSample>& samples = looks_[entity];
   ForgetSamples(samples, first_look_);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
   LookSample& sample = samples.PushBack();

@@ -91,21 +91,21 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
   FrameNumber moment =
       kNever;  ///< Rule::opened_by: nothing begins after this frame until its next change
   // The second line: what a touch is looked at for.
-  FrameNumber touched = -1;       ///< kTouching only: the last frame that said so
-  ThresholdSet beyond = 0;        ///< kTouching only, while it is open: of the newest sample
-  std::vector<Watcher> watchers;  ///< instances to wake when the truth of this one changes
-  Ring<BeyondSample> beyonds;     ///< kTouching only, where they change
+  FrameNumber touched = -1;          ///< kTouching only: the last frame that said so
+  ThresholdSet beyond = 0;           ///< kTouching only, while it is open: of the newest sample
+  std::vector<Watcher> watchers;     ///< instances to wake when the truth of this one changes
+  RingBuffer<BeyondSample> beyonds;  ///< kTouching only, where they change
   // The third line: what instances are stepped with.
   FrameNumber next = 0;  ///< first frame not yet looked at; nothing while at rest
   FrameNumber resting_since = 0;
-  Ring<Span> past;              ///< intervals, as long as somebody may ask
+  RingBuffer<Span> past;        ///< intervals, as long as somebody may ask
   std::vector<int> references;  ///< instances, one per Rule::references; kNone: not asked for yet
   // The rest.
   std::vector<Pending> pending;
   Moment gap;
-  std::vector<double> anchors;     ///< three numbers per Rule::anchors
-  Ring<TouchSample> touches;       ///< kTouching only, where they change, if a rule asks for them
-  std::size_t touching_place = 0;  ///< kTouching only: where among those that touch now
+  std::vector<double> anchors;      ///< three numbers per Rule::anchors
+  RingBuffer<TouchSample> touches;  ///< kTouching only, where they change, if a rule asks for them
+  std::size_t touching_place = 0;   ///< kTouching only: where among those that touch now
   int style = kNobody;
   std::array<int, kMaxRoles> watch_places =
       kUnbound;                   ///< by role: where in the list of the entity's watchers
@@ -226,7 +226,7 @@ class RuleInstances {
   void Unlink(int instance, int watcher, std::vector<int>& orphans);
   const Program& program_;
   const Cast& cast_;
-  Blocks<RuleInstance> instances_;  // an instance stays where it is when others are made
+  StableBlocks<RuleInstance> instances_;  // an instance stays where it is when others are made
   std::vector<int> free_;
   InstanceIndex<InstanceKey> index_;
   InstanceIndex<PairKey> touches_;                    // the instances of kTouchingRule
