@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "grammar/program.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar {
 

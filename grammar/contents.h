@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "grammar/diagnostic.h"
-#include "grammar/source.h"
+#include "grammar/base/diagnostic.h"
+#include "grammar/base/source.h"
 
 namespace prehend::grammar {
 
-struct Program;  // grammar/program.h
+struct Program;  // grammar/program/program.h
 
 /// As in the text: "grammar pick_and_place".
 const std::string& GrammarName(const Program& program);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // See harness/explain/why_missing.h. Runs that were given up, and the choice of what to blame.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/why_missing.h"
 
 #include <fmt/format.h>
@@ -9,8 +9,8 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/event_text.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 
@@ -86,7 +86,7 @@ WhyMissing MissingReasons::Explain(const std::vector<int>& instances,
       why.because += ": " + failure->because.front().what + " " + failure->because.front().how;
     }
     if (failure->tick && failure->reading)
-      why.because += ", at " + At(*failure->tick, past_.cast().ticks_per_second);
+      why.because += ", at " + At(*failure->tick, past_.entity_table().ticks_per_second);
   }
   for (const CandidateOutcome& outcome : past_.OutcomesOf(blamed)) {
     if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
@@ -133,7 +133,7 @@ double MissingReasons::RunCloseness(const CandidateOutcome& outcome) {
   const Rule& rule = past_.RuleOf(outcome.instance);
   const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
   const double lasted_s = static_cast<double>(outcome.span.end.tick - outcome.span.begin.tick) /
-                          static_cast<double>(past_.cast().ticks_per_second);
+                          static_cast<double>(past_.entity_table().ticks_per_second);
   switch (outcome.kind) {
     case CandidateOutcome::Kind::kTooShort:
       return 1 + 0.5 * lasted_s / rule.lasting_s;
@@ -164,7 +164,7 @@ std::string MissingReasons::Awaited(int instance) {
 // When what was waited for came after all, for the first time.
 std::string MissingReasons::HowLate(const CandidateOutcome& outcome) {
   const Rule& rule = past_.RuleOf(outcome.instance);
-  const Tick per_second = past_.cast().ticks_per_second;
+  const Tick per_second = past_.entity_table().ticks_per_second;
   const Tick within = past_.AtMostTicks(rule.within_s);
   for (FrameNumber frame = outcome.span.begin.frame + 1; frame < past_.frames(); ++frame) {
     const Tick late = past_.TickOf(frame) - outcome.span.begin.tick - within;
@@ -227,7 +227,7 @@ MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int
                                             FrameNumber look_until) {
   const int instance = outcome.instance;
   const Rule& rule = past_.RuleOf(instance);
-  const Tick per_second = past_.cast().ticks_per_second;
+  const Tick per_second = past_.entity_table().ticks_per_second;
   const FrameNumber begin = outcome.span.begin.frame;
   const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
   Reason run{

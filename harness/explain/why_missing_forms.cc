@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where there was no run: which clause kept each form from beginning one.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "grammar/allen.h"
-#include "harness/event_text.h"
+#include "grammar/base/allen.h"
 #include "harness/explain/bindings.h"
 #include "harness/explain/nodes.h"
+#include "harness/explain/phrasing.h"
 #include "harness/explain/why_missing.h"
-#include "harness/explain/wording.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 
@@ -48,7 +48,7 @@ Reason MissingReasons::Intervals(int instance, std::string how) {
     if (count > kMostIntervals) continue;
     how +=
         (count == 1 ? " " : ", ") + IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
-                                                 past_.cast().ticks_per_second);
+                                                 past_.entity_table().ticks_per_second);
   }
   return {.mark = Mark::kNote, .what = Label(past_, instance), .how = count == 0 ? "never" : how};
 }
@@ -216,7 +216,7 @@ MissingReasons::Blame MissingReasons::OfFromTo(int instance, const Window& windo
     if (outcome.kind != CandidateOutcome::Kind::kInterval) return OfRun(outcome, depth);
     reason.how = "the one before, " +
                  IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
-                              past_.cast().ticks_per_second) +
+                              past_.entity_table().ticks_per_second) +
                  ", was over already";
     reason.because = events_.End(instance, outcome);
     return {{std::move(reason)}, 0.9};
@@ -246,7 +246,7 @@ Reason MissingReasons::ClosestApproach(int instance, const Window& window) {
     smallest = value;
     reason.tick = past_.TickOf(frame);
   }
-  reason.how = "was smallest at " + At(*reason.tick, past_.cast().ticks_per_second) + ": " +
+  reason.how = "was smallest at " + At(*reason.tick, past_.entity_table().ticks_per_second) + ": " +
                QuantityText(smallest, NoteOf(past_.program(), rule.approach).dimension);
   return reason;
 }
@@ -325,7 +325,7 @@ MissingReasons::Blame MissingReasons::OfRest(int instance, const Window& window,
     Reason covered =
         Failed("outside " + Label(past_, target),
                "it held " + IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
-                                         past_.cast().ticks_per_second));
+                                         past_.entity_table().ticks_per_second));
     if (past_.RuleOf(target).form == Form::kUntilSince) {
       const Moment at{.instance = target,
                       .frame = frame,
