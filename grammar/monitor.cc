@@ -24,6 +24,6 @@ void Monitor::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
   state_->engine.AdvanceBy(changes, out);
 }
 void Monitor::Finish(Tick end, std::vector<Event>& out) { state_->engine.Finish(end, out); }
-int Monitor::lanes_in_use() const { return state_->engine.lanes_in_use(); }
+int Monitor::instances_in_use() const { return state_->engine.instances_in_use(); }
 
 }  // namespace prehend::grammar

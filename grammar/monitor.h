@@ -36,7 +36,7 @@ class Monitor {
   void Finish(Tick end, std::vector<Event>& out);
 
   /// Bindings that take memory now, of all rules.
-  int lanes_in_use() const;
+  int instances_in_use() const;
 
  private:
   struct State;

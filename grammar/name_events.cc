@@ -11,7 +11,7 @@ Timeline NameEvents(const Program& program, const EntityTable& entity_table,
   Timeline timeline{.ticks_per_second = entity_table.ticks_per_second, .events = {}};
   timeline.events.reserve(events.size());
   for (const Event& event : events) {
-    const Rule& rule = program.events[event.rule];
+    const Rule& rule = program.rules[event.rule];
     NamedEvent named{.event = rule.name,
                      .roles = {},
                      .interval = event.interval,

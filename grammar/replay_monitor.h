@@ -15,9 +15,9 @@
 
 namespace prehend::grammar {
 
-class Hindsight {
+class ReplayMonitor {
  public:
-  Hindsight(std::shared_ptr<const Program> program, EntityTable entity_table);
+  ReplayMonitor(std::shared_ptr<const Program> program, EntityTable entity_table);
 
   /// Empty, or why this program can't watch this entity table or these frames.
   const std::string& error() const { return engine_.error(); }
@@ -39,25 +39,29 @@ class Hindsight {
 
   /// The binding of a rule, whether or not anything ever happened to it; kNone if an entity's class
   /// does not fit.
-  int LaneOf(int rule, const Binding& entities) { return engine_.lanes().Ensure(rule, entities); }
+  int InstanceOf(int rule, const Binding& entities) {
+    return engine_.instances().Ensure(rule, entities);
+  }
   /// The binding that a reference of this one means, likewise.
-  int Referred(int lane, int slot) { return engine_.lanes().Resolve(engine_.lanes()[lane], slot); }
-  const Lane& At(int lane) { return engine_.lanes()[lane]; }
-  const Rule& RuleOf(int lane) { return program().events[At(lane).rule]; }
+  int Referred(int instance, int slot) {
+    return engine_.instances().Resolve(engine_.instances()[instance], slot);
+  }
+  const RuleInstance& At(int instance) { return engine_.instances()[instance]; }
+  const Rule& RuleOf(int instance) { return program().rules[At(instance).rule]; }
   /// All bindings of a rule that were ever looked at, by entities.
-  std::vector<int> LanesOf(int rule);
+  std::vector<int> InstancesOf(int rule);
 
   /// What became of the runs of a binding, in the order of their ends.
-  const std::vector<Fate>& FatesOf(int lane) const;
+  const std::vector<CandidateOutcome>& OutcomesOf(int instance) const;
   /// The last of its intervals that begins at or before the frame; null if there is none.
-  const Fate* LastBegun(int lane, FrameNumber frame) const;
+  const CandidateOutcome* LastBegun(int instance, FrameNumber frame) const;
   /// The interval that contains the frame; null if there is none.
-  const Fate* Covering(int lane, FrameNumber frame) const;
+  const CandidateOutcome* Covering(int instance, FrameNumber frame) const;
 
   /// A binding at a frame, with the boundaries of the interval that it is asked for, as far as the
   /// clause needs them.
   struct Moment {
-    int lane = kNone;
+    int instance = kNone;
     FrameNumber frame = 0;
     std::optional<FrameNumber> begin = std::nullopt;
     std::optional<FrameNumber> end = std::nullopt;
@@ -69,11 +73,11 @@ class Hindsight {
  private:
   Evaluator::View View(const Moment& at);
 
-  Fates fates_;
+  CandidateLog log_;
   Engine engine_;
   std::vector<Event> events_;
   Tick end_tick_ = 0;
-  std::vector<std::vector<Fate>> by_lane_;
+  std::vector<std::vector<CandidateOutcome>> by_instance_;
 };
 
 }  // namespace prehend::grammar

@@ -12,7 +12,7 @@ namespace prehend::grammar {
 inline constexpr int kMaxRoles = 4;
 inline constexpr int kMaxAttributes = 4;
 
-/// One recognised event. Names are in Program::events[rule].
+/// One recognised event. Names are in Program::rules[rule].
 struct Event {
   int rule = 0;
   std::array<int, kMaxRoles> roles = {kNoEntity, kNoEntity, kNoEntity, kNoEntity};  ///< entity ids
@@ -20,7 +20,7 @@ struct Event {
   Tick decided = 0;       ///< the tick of the frame at which it became certain
   int style = kNoEntity;  ///< value of `with style = style(hand)`, index into EntityTable::styles
   bool open_end = false;  ///< closed by Finish(), not by what happened
-  /// Values of `with name = value`, SI units, in the order of Program::events[rule].attributes.
+  /// Values of `with name = value`, SI units, in the order of Program::rules[rule].attributes.
   std::array<double, kMaxAttributes> attributes = {};
 };
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "grammar/base/diagnostic.h"
+
 namespace prehend::grammar {
 
 /// A grammar's text with the file name to report in diagnostics.
@@ -23,5 +25,12 @@ using Includer = std::function<std::optional<GrammarText>(std::string_view name)
 /// Parameter overrides, `name` -> `value with unit` as it would stand in the grammar ("25 cm",
 /// "0.3").
 using Overrides = std::map<std::string, std::string>;
+
+/// A name, where it first stands in its file.
+struct NameInSource {
+  std::string name;
+  std::string file;
+  Place place;
+};
 
 }  // namespace prehend::grammar

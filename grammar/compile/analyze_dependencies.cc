@@ -288,9 +288,9 @@ bool AddMeasured(const Program& program, MeasuredPart& part, const ByThreshold& 
   if (part.touch != kNone && part.touch != value.slot) return false;
   part.touch = value.slot;
   if (part.first == kNone) part.first = value.roles[0];
-  const std::size_t turned = part.first == value.roles[0] ? 0 : 1;
-  add(part.press[turned], by.thresholds[0]);
-  add(part.press[1 - turned], by.thresholds[1]);
+  const std::size_t swapped = part.first == value.roles[0] ? 0 : 1;
+  add(part.press[swapped], by.thresholds[0]);
+  add(part.press[1 - swapped], by.thresholds[1]);
   return true;
 }
 
@@ -359,15 +359,15 @@ void WatchEntities(const Program& program, Rule& rule, int index) {
 
 // A composition is told of finished intervals; every other rule asks for the truth at a frame.
 void MarkReferenced(Program& program, int index) {
-  const Rule& rule = program.events[index];
+  const Rule& rule = program.rules[index];
   if (rule.form != Form::kCompose) {
     for (const Reference& reference : rule.references)
-      program.events[reference.rule].referenced = true;
+      program.rules[reference.rule].referenced = true;
     return;
   }
   for (std::size_t part = 0; part < rule.composition.parts.size(); ++part) {
     const int target = rule.references[rule.composition.parts[part]].rule;
-    program.events[target].part_of.push_back({index, static_cast<int>(part)});
+    program.rules[target].part_of.push_back({index, static_cast<int>(part)});
   }
 }
 
@@ -375,9 +375,9 @@ void MarkReferenced(Program& program, int index) {
 
 void ChooseGuards(Program& program) {
   for (Node& node : program.nodes) FindThreshold(program, node);
-  for (std::size_t i = 0; i < program.events.size(); ++i)
+  for (std::size_t i = 0; i < program.rules.size(); ++i)
     MarkReferenced(program, static_cast<int>(i));
-  for (Rule& rule : program.events) {
+  for (Rule& rule : program.rules) {
     rule.guard = ChooseGuard(program, rule);
     rule.guarded_begin = GuardsBegin(program, rule);
     // An `until` that others ask about must know at all times how far back a later one can reach.

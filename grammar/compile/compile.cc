@@ -162,14 +162,14 @@ class Compiler {
   }
 
   void CollectHeads() {
-    program_.events.push_back({.name = "touching",
-                               .roles = {{"a", "Entity"}, {"b", "Entity"}},
-                               .form = Form::kTouching,
-                               .symmetric = true});
+    program_.rules.push_back({.name = "touching",
+                              .roles = {{"a", "Entity"}, {"b", "Entity"}},
+                              .form = Form::kTouching,
+                              .symmetric = true});
     for (const Source& source : sources_) {
       for (const Definition& definition : source.file.definitions) CollectHead(source, definition);
     }
-    if (program_.events.size() == 1 && diagnostics_.empty()) {
+    if (program_.rules.size() == 1 && diagnostics_.empty()) {
       Complain(sources_.back(), {1, 1}, "the grammar defines no event",
                "for example: event held(hand: Hand, "
                "object: Thing) while sensor_sets(hand, object) >= 2");
@@ -177,9 +177,9 @@ class Compiler {
   }
 
   void CollectHead(const Source& source, const Definition& definition) {
-    const int index = static_cast<int>(program_.events.size());
-    if (program_.events.size() > kMaxRules) {
-      if (program_.events.size() == kMaxRules + 1)
+    const int index = static_cast<int>(program_.rules.size());
+    if (program_.rules.size() > kMaxRules) {
+      if (program_.rules.size() == kMaxRules + 1)
         Complain(source, definition.place, "the grammar has more than 1000 rules");
       return;
     }
@@ -189,7 +189,7 @@ class Compiler {
     }
     const auto [entry, is_new] = symbols_.rules.try_emplace(definition.name, index);
     if (!is_new) {
-      const Rule& first = program_.events[entry->second];
+      const Rule& first = program_.rules[entry->second];
       return Complain(source, definition.place, "'" + definition.name + "' is defined twice",
                       FirstAt(first.file, first.place));
     }
@@ -200,7 +200,7 @@ class Compiler {
     CheckRoles(source, definition);
     for (const ast::Role& role : definition.roles)
       rule.roles.push_back({role.name, role.class_name});
-    program_.events.push_back(std::move(rule));
+    program_.rules.push_back(std::move(rule));
     definitions_.push_back({&source, &definition});
   }
 
@@ -229,7 +229,7 @@ class Compiler {
       for (const ast::Define& define : source.file.defines) {
         const auto rule = symbols_.rules.find(define.name);
         if (rule != symbols_.rules.end() &&
-            IsLater(program_.events[rule->second].file, source.text.file)) {
+            IsLater(program_.rules[rule->second].file, source.text.file)) {
           const Located& located = definitions_[rule->second - 1];
           Complain(*located.source, located.definition->place,
                    "'" + define.name + "' is defined twice",
@@ -289,16 +289,16 @@ class Compiler {
       Symbols symbols{
           scratch, symbols_.rules, symbols_.params, symbols_.files, symbols_.defines, {}, {}, {},
           {}};
-      scratch.events.resize(program_.events.size());
+      scratch.rules.resize(program_.rules.size());
       scratch.nodes.clear();
-      Rule& rule = scratch.events.emplace_back();
+      Rule& rule = scratch.rules.emplace_back();
       rule.place = source.define->place;
       for (const ast::Role& parameter : source.define->parameters) {
         if (parameter.class_name != "number" && parameter.class_name != "position") {
           rule.roles.push_back({parameter.name, parameter.class_name});
         }
       }
-      Lowering(symbols, static_cast<int>(scratch.events.size()) - 1, *source.text, diagnostics_)
+      Lowering(symbols, static_cast<int>(scratch.rules.size()) - 1, *source.text, diagnostics_)
           .Check(source);
       symbols_.used_params.merge(symbols.used_params);
       if (!diagnostics_.empty()) return;
@@ -366,17 +366,17 @@ class Compiler {
   // Depth first; a rule that is met again while its own references are followed refers to itself.
   void Order() {
     enum class Mark { kNew, kOpen, kDone };
-    std::vector<Mark> marks(program_.events.size(), Mark::kNew);
+    std::vector<Mark> marks(program_.rules.size(), Mark::kNew);
     struct Step {
       int rule;
       std::size_t next = 0;
     };
-    for (std::size_t root = 0; root < program_.events.size(); ++root) {
+    for (std::size_t root = 0; root < program_.rules.size(); ++root) {
       std::vector<Step> path;
       if (marks[root] == Mark::kNew) path.push_back({static_cast<int>(root)});
       while (!path.empty()) {
         Step& step = path.back();
-        const Rule& rule = program_.events[step.rule];
+        const Rule& rule = program_.rules[step.rule];
         marks[step.rule] = Mark::kOpen;
         if (step.next == rule.references.size()) {
           marks[step.rule] = Mark::kDone;
@@ -399,12 +399,12 @@ class Compiler {
   // Rules that each use the next one, and the last one the first; those made for an `any` are not
   // told.
   void ComplainCycle(std::vector<int> circle) {
-    std::erase_if(circle, [&](int rule) { return program_.events[rule].hidden; });
-    const Rule& first = program_.events[circle.front()];
+    std::erase_if(circle, [&](int rule) { return program_.rules[rule].hidden; });
+    const Rule& first = program_.rules[circle.front()];
     std::string hint;
     for (std::size_t i = 0; circle.size() > 1 && i < circle.size(); ++i) {
-      hint += (i == 0 ? "" : ", ") + program_.events[circle[i]].name + " uses " +
-              program_.events[circle[(i + 1) % circle.size()]].name;
+      hint += (i == 0 ? "" : ", ") + program_.rules[circle[i]].name + " uses " +
+              program_.rules[circle[(i + 1) % circle.size()]].name;
     }
     Complain(*definitions_[circle.front() - 1].source, first.place,
              "'" + first.name + "' refers to itself",
@@ -430,11 +430,11 @@ class Compiler {
       warn(define.place, "the definition '" + define.name + "' is not used",
            "use it, or leave it out");
     }
-    std::vector<bool> reached(program_.events.size());
+    std::vector<bool> reached(program_.rules.size());
     for (auto rule = program_.schedule.rbegin(); rule != program_.schedule.rend(); ++rule) {
-      if (!reached[*rule] && !program_.events[*rule].printed) continue;
+      if (!reached[*rule] && !program_.rules[*rule].printed) continue;
       reached[*rule] = true;
-      for (const Reference& reference : program_.events[*rule].references)
+      for (const Reference& reference : program_.rules[*rule].references)
         reached[reference.rule] = true;
     }
     for (const Definition& definition : own.file.definitions) {

@@ -35,9 +35,11 @@ std::string Suggest(std::string_view name, const std::vector<std::string>& known
   return near.empty() ? std::string() : "did you mean " + Quoted(near) + "?";
 }
 
-int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file,
+int NoteName(std::vector<NameInSource>& names, std::string_view name, const std::string& file,
              Place place) {
-  const auto same = [&](const Named& named) { return named.name == name && named.file == file; };
+  const auto same = [&](const NameInSource& named) {
+    return named.name == name && named.file == file;
+  };
   const auto found = std::ranges::find_if(names, same);
   const auto index = static_cast<int>(found - names.begin());
   if (found == names.end()) names.push_back({std::string(name), file, place});
@@ -63,7 +65,7 @@ Lowering::Lowering(Symbols& symbols, int rule, const GrammarText& source, Diagno
       rule_(rule),
       source_(&source),
       diagnostics_(diagnostics),
-      role_used_(symbols.program.events[rule].roles.size()) {}
+      role_used_(symbols.program.rules[rule].roles.size()) {}
 
 void Lowering::Complain(Place place, std::string message, std::string hint) {
   diagnostics_.push_back(
@@ -209,7 +211,7 @@ int Lowering::FindRole(std::string_view name) const {
     const auto found = scope_->roles.find(name);
     return found == scope_->roles.end() ? kNone : found->second;
   }
-  const std::vector<RuleRole>& roles = symbols_.program.events[rule_].roles;
+  const std::vector<RuleRole>& roles = symbols_.program.rules[rule_].roles;
   for (std::size_t i = 0; i < roles.size(); ++i) {
     if (roles[i].name == name) return static_cast<int>(i);
   }
@@ -236,7 +238,7 @@ std::vector<std::string> Lowering::KnownNames(bool calls) const {
       for (const auto& [name, role] : scope_->roles) names.push_back(name);
       for (const auto& [name, value] : scope_->values) names.push_back(name);
     } else {
-      for (const RuleRole& role : symbols_.program.events[rule_].roles) names.push_back(role.name);
+      for (const RuleRole& role : symbols_.program.rules[rule_].roles) names.push_back(role.name);
     }
   }
   return names;

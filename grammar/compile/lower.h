@@ -29,7 +29,7 @@ struct DefineSource {
 /// What all rules share while a grammar is compiled.
 struct Symbols {
   Program& program;
-  std::map<std::string, int, std::less<>> rules;   ///< name -> index in Program::events
+  std::map<std::string, int, std::less<>> rules;   ///< name -> index in Program::rules
   std::map<std::string, int, std::less<>> params;  ///< name -> index in Program::params
   std::map<std::string, int, std::less<>>
       files;  ///< name -> place in the order in which they were read, what is used first
@@ -48,7 +48,7 @@ struct Symbols {
 
 /// Remembers a name that stands at a place of a file, once per name and file; which of the names it
 /// is.
-int NoteName(std::vector<Named>& names, std::string_view name, const std::string& file,
+int NoteName(std::vector<NameInSource>& names, std::string_view name, const std::string& file,
              Place place);
 
 /// Likewise, a class that stands there, unless it is built in.
@@ -67,7 +67,7 @@ std::string Suggest(std::string_view name, const std::vector<std::string>& known
 
 class Lowering {
  public:
-  /// Writes into symbols.program.events[rule], whose roles are filled in already.
+  /// Writes into symbols.program.rules[rule], whose roles are filled in already.
   Lowering(Symbols& symbols, int rule, const GrammarText& source, Diagnostics& diagnostics);
 
   /// Where values of the interval's own boundaries can be asked for.
@@ -135,7 +135,7 @@ class Lowering {
     std::map<std::string, int, std::less<>> roles = {};
     std::map<std::string, Value, std::less<>> values = {};
   };
-  Rule& rule() { return symbols_.program.events[rule_]; }
+  Rule& rule() { return symbols_.program.rules[rule_]; }
 
   Typed Lower(const ast::Expr& expr);
   Typed LowerKind(const ast::Expr& expr);

@@ -78,7 +78,7 @@ Lowering::Typed Lowering::LowerCall(const Expr& expr) {
 }
 
 Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
-  const std::vector<RuleRole> wanted = symbols_.program.events[rule].roles;
+  const std::vector<RuleRole> wanted = symbols_.program.rules[rule].roles;
   if (wanted.size() != expr.args.size()) {
     return Bad(expr.place, Quoted(expr.text) + " takes " + std::to_string(wanted.size()) +
                                " roles, found " + std::to_string(expr.args.size()));
@@ -117,7 +117,7 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
   }
   if (kept.empty()) return Bad(expr.place, "at least one role must be named; all are 'any'");
   // It may begin long before it is complete, so nobody can be told in time where it holds.
-  const bool composed = symbols_.program.events[rule].form == Form::kCompose;
+  const bool composed = symbols_.program.rules[rule].form == Form::kCompose;
   if (composed && (!part_ || narrowed || kept.size() < wanted.size())) {
     return Bad(
         expr.place,
@@ -132,10 +132,10 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
 
 // The hidden rule "`rule`, but only for these classes".
 int Lowering::NarrowedRule(int rule, const std::vector<std::string>& classes) {
-  const int next = static_cast<int>(symbols_.program.events.size());
+  const int next = static_cast<int>(symbols_.program.rules.size());
   const auto [entry, is_new] = symbols_.narrowed_rules.try_emplace({rule, classes}, next);
   if (!is_new) return entry->second;
-  const Rule& source = symbols_.program.events[rule];
+  const Rule& source = symbols_.program.rules[rule];
   Rule narrowed{.name = source.name,
                 .file = source.file,
                 .place = source.place,
@@ -148,16 +148,16 @@ int Lowering::NarrowedRule(int rule, const std::vector<std::string>& classes) {
   }
   narrowed.references = {whole};
   narrowed.first = Add({.op = Op::kHolds, .slot = 0});
-  symbols_.program.events.push_back(std::move(narrowed));
+  symbols_.program.rules.push_back(std::move(narrowed));
   return next;
 }
 
 // The hidden rule "some binding of `rule` with these roles holds".
 int Lowering::AnyRule(int rule, const std::vector<int>& kept) {
-  const auto [entry, is_new] = symbols_.any_rules.try_emplace(
-      {rule, kept}, static_cast<int>(symbols_.program.events.size()));
+  const auto [entry, is_new] =
+      symbols_.any_rules.try_emplace({rule, kept}, static_cast<int>(symbols_.program.rules.size()));
   if (is_new) {
-    const Rule& source = symbols_.program.events[rule];
+    const Rule& source = symbols_.program.rules[rule];
     Rule any{.name = source.name,
              .file = source.file,
              .place = source.place,
@@ -170,7 +170,7 @@ int Lowering::AnyRule(int rule, const std::vector<int>& kept) {
     }
     any.references = {guard};
     any.guard = 0;
-    symbols_.program.events.push_back(std::move(any));
+    symbols_.program.rules.push_back(std::move(any));
   }
   return entry->second;
 }

@@ -24,7 +24,7 @@ class DefinitionLowering {
 
  private:
   // Lowering may add rules, so the rule is looked up again after each step.
-  Rule& Here() { return program_.events[index_]; }
+  Rule& Here() { return program_.rules[index_]; }
 
   void LowerForm() {
     using Form_ = Definition::Form;
@@ -146,7 +146,7 @@ class DefinitionLowering {
   // same.
   bool Covers(const Reference& other, const Reference& whole) const {
     if (other.rule == whole.rule) return other.roles == whole.roles;
-    const Rule& some = program_.events[other.rule];
+    const Rule& some = program_.rules[other.rule];
     if (some.form != Form::kAny || some.references[0].rule != whole.rule) return false;
     for (std::size_t role = 0; role < kMaxRoles; ++role) {
       const int kept = some.references[0].roles[role];

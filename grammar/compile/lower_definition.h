@@ -7,7 +7,7 @@
 
 namespace prehend::grammar {
 
-/// Fills in program.events[index], whose head is there already. Mistakes go to the diagnostics of
+/// Fills in program.rules[index], whose head is there already. Mistakes go to the diagnostics of
 /// `lowering`.
 void LowerDefinitionInto(Program& program, int index, const ast::Definition& definition,
                          Lowering& lowering);

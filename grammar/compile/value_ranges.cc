@@ -136,7 +136,7 @@ std::string Signature(const Program& program, const Rule& rule, int index) {
     const Reference& reference = rule.references[node.slot];
     roles.assign(reference.roles.begin(), reference.roles.end());
     text += "e" + std::to_string(reference.rule);
-    either_way = program.events[reference.rule].symmetric;
+    either_way = program.rules[reference.rule].symmetric;
   }
   if (node.op == Op::kIsA) text += program.class_names[node.slot];
   if (either_way) {

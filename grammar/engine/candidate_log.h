@@ -26,7 +26,7 @@ struct WalkBack {
 };
 
 /// One run, from where it began to where it ended or was given up.
-struct Fate {
+struct CandidateOutcome {
   enum class Kind {
     kInterval,  ///< it is an interval; `cause` is the frame of its confirmation, if it needed one
     kTooShort,  ///< `lasting`
@@ -40,13 +40,13 @@ struct Fate {
     kWalkedBack,   ///< an `until` with some; what becomes of them is noted next
   };
   Kind kind = Kind::kInterval;
-  int lane = kNone;
+  int instance = kNone;
   Span span;
   FrameNumber cause = kNever;
   Tick decided = 0;
   WalkBack walk = {};  ///< kUntilSince only
 };
 
-using Fates = std::vector<Fate>;
+using CandidateLog = std::vector<CandidateOutcome>;
 
 }  // namespace prehend::grammar

@@ -35,7 +35,7 @@ constexpr AllenSet kToLater =
 // Some relation to another part holds to none of the remembered intervals, nor to one that ends
 // later than all of them. Compositions come in the order in which they are complete, not in that of
 // their ends, so all may still be hoped of them.
-bool IsHopeless(const Program& program, const Rule& rule, const Lane& lane, int part,
+bool IsHopeless(const Program& program, const Rule& rule, const RuleInstance& instance, int part,
                 const Span& span) {
   const Composition& composition = rule.composition;
   return std::any_of(
@@ -45,10 +45,10 @@ bool IsHopeless(const Program& program, const Rule& rule, const Lane& lane, int 
           return false;
         const bool is_left = clause.left == part;
         const int other = is_left ? clause.right : clause.left;
-        if (program.events[rule.references[composition.parts[other]].rule].form == Form::kCompose)
+        if (program.rules[rule.references[composition.parts[other]].rule].form == Form::kCompose)
           return false;
         if ((clause.relations & (is_left ? kToLater : kToEarlier)) != 0) return false;
-        const std::vector<Span>& others = lane.parts[other];
+        const std::vector<Span>& others = instance.parts[other];
         return std::none_of(others.begin(), others.end(), [&](const Span& one) {
           const Allen relation =
               is_left ? Relate(TicksOf(span), TicksOf(one)) : Relate(TicksOf(one), TicksOf(span));
@@ -60,8 +60,8 @@ bool IsHopeless(const Program& program, const Rule& rule, const Lane& lane, int 
 // Tries all ways to complete `chosen` and keeps the best one.
 class Combinations {
  public:
-  Combinations(const Composition& composition, const Lane& lane, FrameNumber settled)
-      : composition_(composition), lane_(lane), settled_(settled) {
+  Combinations(const Composition& composition, const RuleInstance& instance, FrameNumber settled)
+      : composition_(composition), lane_(instance), settled_(settled) {
     Choose(0);
   }
   const Span* best() const { return found_ ? &best_ : nullptr; }
@@ -103,7 +103,7 @@ class Combinations {
   }
 
   const Composition& composition_;
-  const Lane& lane_;
+  const RuleInstance& lane_;
   FrameNumber settled_;
   std::array<const Span*, kMaxParts> chosen_ = {};
   Span best_;
@@ -114,9 +114,9 @@ class Combinations {
 
 // Roles of the composition that the part does not name are free: its interval counts for whoever
 // plays them.
-void Engine::TellCompositions(const Lane& part, const Span& span) {
+void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
   for (const PartOf& part_of : RuleOf(part).part_of) {
-    const Rule& whole = program_->events[part_of.rule];
+    const Rule& whole = program_->rules[part_of.rule];
     const Reference& reference = whole.references[whole.composition.parts[part_of.part]];
     for (int order = 0; order < (RuleOf(part).symmetric ? 2 : 1); ++order) {
       Binding from = part.entities;
@@ -124,10 +124,10 @@ void Engine::TellCompositions(const Lane& part, const Span& span) {
       Binding entities = kUnbound;
       for (std::size_t i = 0; i < RuleOf(part).roles.size(); ++i)
         entities[reference.roles[i]] = from[i];
-      told_.clear();
-      lanes_.EnsureAll(part_of.rule, entities, told_);
-      for (const int index : told_) {
-        std::vector<Span>& spans = lanes_[index].parts[part_of.part];
+      notified_.clear();
+      instances_.EnsureAll(part_of.rule, entities, notified_);
+      for (const int index : notified_) {
+        std::vector<Span>& spans = instances_[index].parts[part_of.part];
         if (spans.size() == kRememberedSpans) spans.erase(spans.begin());
         spans.push_back(span);
         Wake(index);
@@ -136,53 +136,53 @@ void Engine::TellCompositions(const Lane& part, const Span& span) {
   }
 }
 
-// All intervals of the lane that end at or before this frame are out; of a composition, all that
-// are complete by then.
-FrameNumber Engine::Settled(const Lane& lane) const {
+// All intervals of the instance that end at or before this frame are out; of a composition, all
+// that are complete by then.
+FrameNumber Engine::Settled(const RuleInstance& instance) const {
   // A composition rests though its parts do not, as each of their intervals wakes it.
-  if (RuleOf(lane).form == Form::kCompose && !lane.awake) return PartsSettled(lane);
-  FrameNumber settled = lane.awake ? lane.next - 1 : finishing_ ? kNever : history_.now();
-  if (lane.in_gap) settled = std::min(settled, lane.gap.frame - 1);
-  for (const Pending& pending : lane.pending)
+  if (RuleOf(instance).form == Form::kCompose && !instance.awake) return PartsSettled(instance);
+  FrameNumber settled = instance.awake ? instance.next - 1 : finishing_ ? kNever : history_.now();
+  if (instance.in_gap) settled = std::min(settled, instance.gap.frame - 1);
+  for (const Pending& pending : instance.pending)
     settled = std::min(settled, pending.span.end.frame - 1);
   return settled;
 }
 
-FrameNumber Engine::PartsSettled(const Lane& composition) const {
+FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
   FrameNumber settled = finishing_ ? kNever : history_.now();
   for (const int part : RuleOf(composition).composition.parts) {
-    const int index = lanes_.Find(composition, part);
-    if (index != kNone) settled = std::min(settled, Settled(lanes_[index]));
+    const int index = instances_.Find(composition, part);
+    if (index != kNone) settled = std::min(settled, Settled(instances_[index]));
   }
   return settled;
 }
 
-void Engine::StepCompose(Lane& lane) {
-  const Rule& rule = RuleOf(lane);
-  const FrameNumber settled = PartsSettled(lane);
+void Engine::StepCompose(RuleInstance& instance) {
+  const Rule& rule = RuleOf(instance);
+  const FrameNumber settled = PartsSettled(instance);
   for (;;) {
-    const Combinations combinations(rule.composition, lane, settled);
+    const Combinations combinations(rule.composition, instance, settled);
     if (combinations.best() == nullptr) break;
     const Span whole = *combinations.best();
-    lane.last_end = whole.end.frame;
+    instance.last_end = whole.end.frame;
     // The next one begins with a first part that begins, and ends with a last part that ends, later
     // than this ends.
-    std::erase_if(lane.parts.front(),
-                  [&](const Span& span) { return span.begin.frame < lane.last_end; });
-    std::erase_if(lane.parts.back(),
-                  [&](const Span& span) { return span.end.frame <= lane.last_end; });
-    Conclude(lane, whole);
+    std::erase_if(instance.parts.front(),
+                  [&](const Span& span) { return span.begin.frame < instance.last_end; });
+    std::erase_if(instance.parts.back(),
+                  [&](const Span& span) { return span.end.frame <= instance.last_end; });
+    Conclude(instance, whole);
   }
   for (bool again = true; again;) {
     again = false;
-    for (std::size_t part = 0; part < lane.parts.size(); ++part) {
-      again |= std::erase_if(lane.parts[part], [&](const Span& span) {
+    for (std::size_t part = 0; part < instance.parts.size(); ++part) {
+      again |= std::erase_if(instance.parts[part], [&](const Span& span) {
                  return span.Complete().frame <= settled &&
-                        IsHopeless(*program_, rule, lane, static_cast<int>(part), span);
+                        IsHopeless(*program_, rule, instance, static_cast<int>(part), span);
                }) > 0;
     }
   }
-  lane.next = lane.known = std::min(settled, history_.now()) + 1;
+  instance.next = instance.known = std::min(settled, history_.now()) + 1;
 }
 
 }  // namespace prehend::grammar

@@ -70,7 +70,7 @@ std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) {
   return WhyNoTouches(changes.touches);
 }
 
-// Looks up their lanes, too: one look-up does not wait for another one, as it would between
+// Looks up their instances, too: one look-up does not wait for another one, as it would between
 // changes.
 std::string_view Engine::WhyNoTouches(std::span<const Touch> touches) {
   pressed_.clear();
@@ -78,9 +78,9 @@ std::string_view Engine::WhyNoTouches(std::span<const Touch> touches) {
     if (touch.a < 0 || touch.a >= touch.b || touch.b >= entity_count_) {
       return "a frame shows a touch of somebody not in the entity table";
     }
-    const int lane = lanes_.FindTouch(touch.a, touch.b);
-    if (lane != kNone) lanes_.Fetch(lane);
-    pressed_.push_back(lane);
+    const int instance = instances_.FindTouch(touch.a, touch.b);
+    if (instance != kNone) instances_.Fetch(instance);
+    pressed_.push_back(instance);
   }
   return {};
 }
@@ -93,7 +93,7 @@ void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
       Look(entity, frame.entities[i]);
   }
   for (const HandSample& hand : frame.hands) Look(hand);
-  Press(frame.touches);
+  ApplyContacts(frame.touches);
   // A touch that this frame does not show has ended.
   for (std::size_t i = touching_.size(); i-- > 0;) Part(touching_[i]);
   EndFrame();
@@ -103,10 +103,10 @@ void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
   if (!BeginFrame(changes, out)) return;
   for (const EntityChange& change : changes.entities) Look(change.entity, change.look);
   for (const HandSample& hand : changes.hands) Look(hand);
-  Press(changes.touches);
+  ApplyContacts(changes.touches);
   for (const ContactEnd& contact_end : changes.contact_ends) {
-    const int index = lanes_.FindTouch(contact_end.a, contact_end.b);
-    if (index != kNone && lanes_[index].open) Part(index);
+    const int index = instances_.FindTouch(contact_end.a, contact_end.b);
+    if (index != kNone && instances_[index].open) Part(index);
   }
   EndFrame();
 }
@@ -134,8 +134,8 @@ void Engine::EndFrame() {
     if (!awake_[rule].empty()) StepRule(rule);
   }
   ForgetThePast();
-  FreeLanes();
-  if (lanes_.TooMany()) error_ = lanes_.WhyTooMany();
+  FreeInstances();
+  if (instances_.TooMany()) error_ = instances_.WhyTooMany();
   SortNewEvents();
 }
 
@@ -159,16 +159,16 @@ void Engine::Finish(Tick end, std::vector<Event>& out) {
   const Moment last{history_.now() + 1,
                     std::clamp(end, history_.At(history_.now()).tick + 1, kLatestTick + 1)};
   decided_ = last.tick;
-  for (const int touching : touching_) CloseTouch(lanes_[touching], last);
+  for (const int touching : touching_) CloseTouch(instances_[touching], last);
   // What rests is decided; if it is open, it ends now.
-  for (int i = 0; i < lanes_.size(); ++i) {
-    Lane& lane = lanes_[i];
-    if (lane.rule == kNone || lane.awake || !lane.open) continue;
+  for (int i = 0; i < instances_.size(); ++i) {
+    RuleInstance& instance = instances_[i];
+    if (instance.rule == kNone || instance.awake || !instance.open) continue;
     Wake(i);
-    lane.next = history_.now() + 1;
+    instance.next = history_.now() + 1;
   }
   for (const int rule : program_->schedule) {
-    for (const int lane : awake_[rule]) FinishLane(lanes_[lane], last);
+    for (const int instance : awake_[rule]) FinishInstance(instances_[instance], last);
     awake_[rule].clear();
   }
   SortNewEvents();
@@ -176,7 +176,7 @@ void Engine::Finish(Tick end, std::vector<Event>& out) {
 
 void Engine::Look(int entity, const EntitySample& look) {
   history_.SetSample(entity, look);
-  WakeWatchers(lanes_.PoseWatchers(entity));
+  WakeWatchers(instances_.PoseWatchers(entity));
 }
 
 void Engine::Look(const HandSample& hand) {
@@ -189,39 +189,41 @@ void Engine::Look(const HandSample& hand) {
       before == nullptr ? ~ThresholdSet{0} : kAnyChange | (beyond ^ before->beyond);
   history_.SetHand(hand, beyond);
   grips_[hand.entity] = beyond;
-  for (const Watch& watch : lanes_.GripWatchers(hand.entity)) {
-    const Lane& lane = lanes_[watch.lane];
-    if (same_grip || lane.awake || (RuleOf(lane).watches_grips & crossed) == 0) continue;
-    if (MayStir(lane) && !SaysTheSame(lane)) Wake(watch.lane);
+  for (const Watch& watch : instances_.GripWatchers(hand.entity)) {
+    const RuleInstance& instance = instances_[watch.instance];
+    if (same_grip || instance.awake || (RuleOf(instance).watches_grips & crossed) == 0) continue;
+    if (MayWake(instance) && !SaysTheSame(instance)) Wake(watch.instance);
   }
-  WakeWatchers(lanes_.PoseWatchers(hand.entity));
+  WakeWatchers(instances_.PoseWatchers(hand.entity));
 }
 
-void Engine::Press(std::span<const Touch> touches) {
+void Engine::ApplyContacts(std::span<const Touch> touches) {
   const FrameNumber now = history_.now();
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Touch& touch = touches[i];
-    const int index = pressed_[i] != kNone
-                          ? pressed_[i]
-                          : lanes_.Ensure(kTouchingRule, {touch.a, touch.b, kNoEntity, kNoEntity});
+    const int index =
+        pressed_[i] != kNone
+            ? pressed_[i]
+            : instances_.Ensure(kTouchingRule, {touch.a, touch.b, kNoEntity, kNoEntity});
     if (index == kNone) continue;
-    Lane& lane = lanes_[index];
-    if (lane.touched == now) continue;  // said twice
-    lane.touched = now;
-    const bool swapped = lane.entities[0] != touch.a;
+    RuleInstance& instance = instances_[index];
+    if (instance.touched == now) continue;  // said twice
+    instance.touched = now;
+    const bool swapped = instance.entities[0] != touch.a;
     const ThresholdSet beyond = thresholds_.OfTouch(
         swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b,
         touch.normal_force_n, touch.vertical_speed_m_per_s, touch.sensor_sets);
-    const ThresholdSet crossed = beyond ^ lane.beyond;
-    if (lane.open && (keeps_touches_ ? Same(touch, swapped, lane.touches.back()) : crossed == 0))
+    const ThresholdSet crossed = beyond ^ instance.beyond;
+    if (instance.open &&
+        (keeps_touches_ ? Same(touch, swapped, instance.touches.back()) : crossed == 0))
       continue;
-    lane.beyond = beyond;
-    if (recalls_touches_) Keep(lane, touch, swapped);
-    lane.open ? TellPress(lane, crossed | kAnyChange) : BeginTouch(lane);
+    instance.beyond = beyond;
+    if (recalls_touches_) Keep(instance, touch, swapped);
+    instance.open ? NotifyOfThresholds(instance, crossed | kAnyChange) : BeginTouch(instance);
   }
 }
 
-void Engine::Keep(Lane& touching, const Touch& touch, bool swapped) {
+void Engine::Keep(RuleInstance& touching, const Touch& touch, bool swapped) {
   ForgetSamples(touching.beyonds, history_.first_look());
   touching.beyonds.PushBack() = {history_.now(), touching.beyond};
   if (!keeps_touches_) return;
@@ -235,61 +237,61 @@ void Engine::Keep(Lane& touching, const Touch& touch, bool swapped) {
   sample.sensor_sets = touch.sensor_sets;
 }
 
-void Engine::BeginTouch(Lane& touching) {
+void Engine::BeginTouch(RuleInstance& touching) {
   touching.open = touching.certain = true;
   touching.begin = history_.At(history_.now());
   touching.touching_place = touching_.size();
   touching_.push_back(touching.index);
-  touching.told = Kleene::kTrue;
-  Tell(touching);
+  touching.reported = Kleene::kTrue;
+  NotifyWatchers(touching);
 }
 
 // The two touch as before, but press otherwise: these thresholds were crossed.
-void Engine::TellPress(const Lane& touch, ThresholdSet crossed) {
+void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed) {
   for (const Watcher& watcher : touch.watchers) {
     if ((watcher.press & crossed) == 0) continue;
-    Lane& watching = lanes_[watcher.lane];
+    RuleInstance& watching = instances_[watcher.instance];
     if (watching.awake) continue;
     if (watcher.instant != nullptr) {
       Measure(watching, watcher, touch);
-    } else if (!SaysTheSame(watching) && MayStir(watching)) {
-      Wake(watcher.lane);
+    } else if (!SaysTheSame(watching) && MayWake(watching)) {
+      Wake(watcher.instance);
     }
   }
 }
 
-// The rest of what a resting lane asks for is known already: hands are looked at before touches
+// The rest of what a resting instance asks for is known already: hands are looked at before touches
 // are, and no touch is told of twice. So its interval begins or ends here and now, if something has
 // changed.
-void Engine::BeginOrEnd(Lane& lane) {
+void Engine::BeginOrEnd(RuleInstance& instance) {
   const Moment now = history_.At(history_.now());
-  if (lane.open) {
-    Close(lane, now);
-    RestOn(lane);
+  if (instance.open) {
+    Close(instance, now);
+    RestOn(instance);
   } else {
-    Begin(lane, now.frame);
-    lane.certain = TicksOf(lane).lasting == 0;
+    Begin(instance, now.frame);
+    instance.certain = TicksOf(instance).lasting == 0;
   }
-  lane.known = kNever;
-  lane.told = Known(lane.open);
-  Tell(lane);
+  instance.known = kNever;
+  instance.reported = Known(instance.open);
+  NotifyWatchers(instance);
 }
 
 void Engine::Part(int touching) {
-  Lane& lane = lanes_[touching];
-  if (lane.touched == history_.now()) return;
-  CloseTouch(lane, history_.At(history_.now()));
-  touching_[lane.touching_place] = touching_.back();
-  lanes_[touching_.back()].touching_place = lane.touching_place;
+  RuleInstance& instance = instances_[touching];
+  if (instance.touched == history_.now()) return;
+  CloseTouch(instance, history_.At(history_.now()));
+  touching_[instance.touching_place] = touching_.back();
+  instances_[touching_.back()].touching_place = instance.touching_place;
   touching_.pop_back();
-  lane.told = Kleene::kFalse;
-  Tell(lane);
-  RestOn(lane);
+  instance.reported = Kleene::kFalse;
+  NotifyWatchers(instance);
+  RestOn(instance);
 }
 
-void Engine::CloseTouch(Lane& lane, Moment end) {
-  Keep(lane, {lane.begin, end});
-  lane.open = false;
+void Engine::CloseTouch(RuleInstance& instance, Moment end) {
+  Keep(instance, {instance.begin, end});
+  instance.open = false;
 }
 
 }  // namespace prehend::grammar

@@ -78,7 +78,7 @@ Kleene Evaluator::Truth(int index, const View& view) const {
     case Op::kSensorSet:
       return Known(SensorSet(node, view));
     case Op::kIsA:
-      return Known(lanes_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));
+      return Known(instances_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));
     default:
       return Compare(node, view);
   }
@@ -97,16 +97,16 @@ bool Evaluator::IsInside(const Node& node, const View& view) const {
 }
 
 Kleene Evaluator::Holds(int slot, const View& view) const {
-  return lanes_.TruthAt(lanes_.Resolve(view.lane, slot), view.frame);
+  return instances_.TruthAt(instances_.Resolve(view.instance, slot), view.frame);
 }
 
 Kleene Evaluator::Begins(int slot, const View& view) const {
-  return AtAnInstant(lanes_.BeginsAt(lanes_.Resolve(view.lane, slot), view.frame));
+  return AtAnInstant(instances_.BeginsAt(instances_.Resolve(view.instance, slot), view.frame));
 }
 
 // What is true here only will be false at the next frame, where its parts are as they are.
 Kleene Evaluator::AtAnInstant(Kleene truth) const {
-  restless_ = restless_ || truth == Kleene::kTrue;
+  depends_on_time_ = depends_on_time_ || truth == Kleene::kTrue;
   return truth;
 }
 
@@ -116,20 +116,21 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
   const bool begins = node.op == Op::kBegins;
   const Node& arg = program_.nodes[node.args[0]];
   if (arg.op == Op::kHolds) {
-    const int lane = lanes_.Resolve(view.lane, arg.slot);
-    return AtAnInstant(begins ? lanes_.BeginsAt(lane, view.frame)
-                              : lanes_.EndsAt(lane, view.frame));
+    const int instance = instances_.Resolve(view.instance, arg.slot);
+    return AtAnInstant(begins ? instances_.BeginsAt(instance, view.frame)
+                              : instances_.EndsAt(instance, view.frame));
   }
   const Kleene now = Truth(node.args[0], view);
   const Kleene wanted = begins ? now : Not(now);
   if (wanted == Kleene::kFalse) return wanted;
-  restless_ =
-      restless_ ||
+  depends_on_time_ =
+      depends_on_time_ ||
       now == Kleene::kUnknown;  // even if there is no change here, the next frame looks back at it
   const bool is_first = view.frame == 0;
   Kleene before = Kleene::kFalse;
   if (!is_first)
-    before = Truth(node.args[0], {.lane = view.lane, .frame = view.frame - 1, .end = view.end});
+    before =
+        Truth(node.args[0], {.instance = view.instance, .frame = view.frame - 1, .end = view.end});
   return AtAnInstant(And(wanted, begins ? Not(before) : before));
 }
 
@@ -142,7 +143,7 @@ Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const
     const HandSample* hand = history_.Hand(Entity(value, view, 0), view.frame);
     beyond = hand != nullptr ? hand->beyond : thresholds_.OfGrip(0);
   } else {
-    const Lane* touching = Touching(value, view, swapped);
+    const RuleInstance* touching = Touching(value, view, swapped);
     const bool is_now = view.frame == history_.now() && touching != nullptr && touching->open;
     beyond = touching == nullptr ? thresholds_.OfNoTouch()
              : is_now            ? touching->beyond
@@ -196,22 +197,24 @@ std::optional<Evaluator::Reach> Evaluator::ReachOf(const Node& node, const View&
                .most_height_m = *height};
 }
 
-bool Evaluator::TooFarApart(int index, Lane& lane, FrameNumber early, FrameNumber late) const {
+bool Evaluator::TooFarApart(int index, RuleInstance& instance, FrameNumber early,
+                            FrameNumber late) const {
   const Node& node = program_.nodes[index];
   if (node.op == Op::kAnd) {
-    return TooFarApart(node.args[0], lane, early, late) ||
-           TooFarApart(node.args[1], lane, early, late);
+    return TooFarApart(node.args[0], instance, early, late) ||
+           TooFarApart(node.args[1], instance, early, late);
   }
   const bool sphere = node.op == Op::kInSphere;
   if ((!sphere && node.op != Op::kInCylinder) || program_.nodes[node.args[1]].op != Op::kAtEnd)
     return false;
-  const std::optional<Vector3d> from = Position(node.args[0], {.lane = lane, .frame = early});
-  const std::optional<Vector3d> to = Position(node.args[0], {.lane = lane, .frame = late});
-  const std::optional<double> radius = Number(node.args[2], {.lane = lane, .frame = late});
+  const std::optional<Vector3d> from =
+      Position(node.args[0], {.instance = instance, .frame = early});
+  const std::optional<Vector3d> to = Position(node.args[0], {.instance = instance, .frame = late});
+  const std::optional<double> radius = Number(node.args[2], {.instance = instance, .frame = late});
   if (!from || !to || !radius) return false;
   const Vector3d offset = *to - *from;
   if (sphere) return offset.norm() > 2 * *radius;
-  const std::optional<double> height = Number(node.args[3], {.lane = lane, .frame = late});
+  const std::optional<double> height = Number(node.args[3], {.instance = instance, .frame = late});
   return height && (offset.head<2>().norm() > 2 * *radius || std::abs(offset.z()) > 2 * *height);
 }
 
@@ -221,10 +224,10 @@ std::optional<double> Evaluator::Number(int index, const View& view) const {
     case Op::kNumber:
       return node.number;
     case Op::kAtBegin:
-      return view.lane.anchors[3 * node.slot];
+      return view.instance.anchors[3 * node.slot];
     case Op::kAtEnd:
       if (!view.end) return std::nullopt;
-      return Number(node.args[0], {.lane = view.lane, .frame = *view.end, .end = view.end});
+      return Number(node.args[0], {.instance = view.instance, .frame = *view.end, .end = view.end});
     case Op::kDistance: {
       const std::optional<Vector3d> a = Position(node.args[0], view);
       const std::optional<Vector3d> b = Position(node.args[1], view);
@@ -340,8 +343,9 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
 
 double Evaluator::Weight(int entity) const {
   constexpr double kGravity_m_per_s2 = 9.81;
-  return lanes_.IsA(entity, "Fixed") ? kBoundless
-                                     : entity_table_.entities[entity].mass_kg * kGravity_m_per_s2;
+  return instances_.IsA(entity, "Fixed")
+             ? kBoundless
+             : entity_table_.entities[entity].mass_kg * kGravity_m_per_s2;
 }
 
 bool Evaluator::SensorSet(const Node& node, const View& view) const {
@@ -372,14 +376,14 @@ double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
 }
 
 double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
-  restless_ = true;
+  depends_on_time_ = true;
   if (frame <= history_.first()) return 0;
   const double seconds = history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
   return (Gap(hand, object, frame - 1) - Gap(hand, object, frame)) / seconds;
 }
 
 double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
-  restless_ = true;
+  depends_on_time_ = true;
   if (frame <= history_.first()) return 0;
   const HandSample* now = history_.Hand(hand, frame);
   const HandSample* before = history_.Hand(hand, frame - 1);
@@ -397,7 +401,7 @@ double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
 // later; at the episode's begin and end it is cut off. Nothing while the later frame is still to
 // come.
 std::optional<Evaluator::Window> Evaluator::WindowAround(FrameNumber frame, double seconds) const {
-  restless_ = true;
+  depends_on_time_ = true;
   const Tick now = history_.At(frame).tick;
   const Tick half = history_.AtLeastTicks(seconds / 2);
   const Window window{history_.LastNotAfter(now - half),
@@ -415,9 +419,9 @@ std::optional<double> Evaluator::Rate(const Node& node, const View& view) const 
   if (!window) return std::nullopt;
   if (window->early == window->late) return 0;
   const std::optional<double> before =
-      Number(node.args[0], {.lane = view.lane, .frame = window->early, .end = view.end});
+      Number(node.args[0], {.instance = view.instance, .frame = window->early, .end = view.end});
   const std::optional<double> after =
-      Number(node.args[0], {.lane = view.lane, .frame = window->late, .end = view.end});
+      Number(node.args[0], {.instance = view.instance, .frame = window->late, .end = view.end});
   if (!before || !after) return std::nullopt;
   return (*after - *before) / SecondsBetween(window->early, window->late);
 }
@@ -470,17 +474,17 @@ Vector3d Evaluator::RelativeVelocity(int a, int b, FrameNumber frame) const {
 }
 
 // Null where the two do not touch.
-const Lane* Evaluator::Touching(const Node& node, const View& view, bool& swapped) const {
-  const int index = lanes_.Resolve(view.lane, node.slot);
-  if (lanes_.TruthAt(index, view.frame) != Kleene::kTrue) return nullptr;
-  const Lane& lane = lanes_[index];
-  swapped = lane.entities[0] != Entity(node, view, 0);
-  return &lane;
+const RuleInstance* Evaluator::Touching(const Node& node, const View& view, bool& swapped) const {
+  const int index = instances_.Resolve(view.instance, node.slot);
+  if (instances_.TruthAt(index, view.frame) != Kleene::kTrue) return nullptr;
+  const RuleInstance& instance = instances_[index];
+  swapped = instance.entities[0] != Entity(node, view, 0);
+  return &instance;
 }
 
 // Likewise.
 const TouchSample* Evaluator::Touch(const Node& node, const View& view, bool& swapped) const {
-  const Lane* touching = Touching(node, view, swapped);
+  const RuleInstance* touching = Touching(node, view, swapped);
   return touching == nullptr ? nullptr : &SampleAt(touching->touches, view.frame);
 }
 
@@ -488,10 +492,11 @@ std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
   const Node& node = program_.nodes[index];
   switch (node.op) {
     case Op::kAtBegin:
-      return Eigen::Map<const Vector3d>(view.lane.anchors.data() + 3 * node.slot);
+      return Eigen::Map<const Vector3d>(view.instance.anchors.data() + 3 * node.slot);
     case Op::kAtEnd:
       if (!view.end) return std::nullopt;
-      return Position(node.args[0], {.lane = view.lane, .frame = *view.end, .end = view.end});
+      return Position(node.args[0],
+                      {.instance = view.instance, .frame = *view.end, .end = view.end});
     case Op::kPositionOn:
       return PositionOn(Entity(node, view, 0), Entity(node, view, 1), view.frame);
     case Op::kAhead: {
@@ -507,19 +512,19 @@ std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
   }
 }
 
-bool Evaluator::CaptureAnchors(Lane& lane, FrameNumber frame) const {
-  const std::vector<int>& anchors = program_.events[lane.rule].anchors;
-  const View view{.lane = lane, .frame = frame};
+bool Evaluator::CaptureAnchors(RuleInstance& instance, FrameNumber frame) const {
+  const std::vector<int>& anchors = program_.rules[instance.rule].anchors;
+  const View view{.instance = instance, .frame = frame};
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     if (IsPosition(program_, anchors[i])) {
       const std::optional<Vector3d> value = Position(anchors[i], view);
       if (!value) return false;
       std::copy(value->data(), value->data() + 3,
-                lane.anchors.begin() + static_cast<std::ptrdiff_t>(3 * i));
+                instance.anchors.begin() + static_cast<std::ptrdiff_t>(3 * i));
     } else {
       const std::optional<double> value = Number(anchors[i], view);
       if (!value) return false;
-      lane.anchors[3 * i] = *value;
+      instance.anchors[3 * i] = *value;
     }
   }
   return true;

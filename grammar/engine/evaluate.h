@@ -12,16 +12,16 @@ namespace prehend::grammar {
 class Evaluator {
  public:
   Evaluator(const Program& program, const EntityTable& entity_table, const History& history,
-            Lanes& lanes)
+            RuleInstances& instances)
       : program_(program),
         entity_table_(entity_table),
         history_(history),
-        lanes_(lanes),
+        instances_(instances),
         thresholds_(program.thresholds) {}
 
   /// Whose roles, at which frame, and at which frame the interval ends, if that is known.
   struct View {
-    Lane& lane;
+    RuleInstance& instance;
     FrameNumber frame = 0;
     std::optional<FrameNumber> end = std::nullopt;
   };
@@ -52,18 +52,18 @@ class Evaluator {
   /// True if no interval can hold at both frames, wherever it will end: both would have to lie in
   /// one region anchored at the end, and they are too far apart for that. False if this cannot be
   /// told.
-  bool TooFarApart(int node, Lane& lane, FrameNumber early, FrameNumber late) const;
+  bool TooFarApart(int node, RuleInstance& instance, FrameNumber early, FrameNumber late) const;
 
-  /// Whether a value asked for since CalmDown() may change with time alone, though nothing that it
-  /// is made of changes: an instant that is over one frame later, a speed from frame to frame, a
-  /// window of time.
-  bool restless() const { return restless_; }
-  void CalmDown() { restless_ = false; }
-  void StirUp() { restless_ = true; }
+  /// Whether a value asked for since ResetTimeDependence() may change with time alone, though
+  /// nothing that it is made of changes: an instant that is over one frame later, a speed from
+  /// frame to frame, a window of time.
+  bool depends_on_time() const { return depends_on_time_; }
+  void ResetTimeDependence() { depends_on_time_ = false; }
+  void MarkTimeDependent() { depends_on_time_ = true; }
 
-  /// Keeps the values of all anchors of the lane's rule at this frame. False while one is not
+  /// Keeps the values of all anchors of the instance's rule at this frame. False while one is not
   /// known.
-  [[nodiscard]] bool CaptureAnchors(Lane& lane, FrameNumber frame) const;
+  [[nodiscard]] bool CaptureAnchors(RuleInstance& instance, FrameNumber frame) const;
 
  private:
   Kleene AtAnInstant(Kleene truth) const;
@@ -91,18 +91,18 @@ class Evaluator {
   std::optional<double> TurnRate(const Node& node, const View& view) const;
   Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;
   Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;
-  const Lane* Touching(const Node& node, const View& view, bool& swapped) const;
+  const RuleInstance* Touching(const Node& node, const View& view, bool& swapped) const;
   const TouchSample* Touch(const Node& node, const View& view, bool& swapped) const;
   int Entity(const Node& node, const View& view, int i) const {
-    return view.lane.entities[node.roles[i]];
+    return view.instance.entities[node.roles[i]];
   }
 
   const Program& program_;
   const EntityTable& entity_table_;
   const History& history_;
-  Lanes& lanes_;
+  RuleInstances& instances_;
   Thresholds thresholds_;
-  mutable bool restless_ = false;
+  mutable bool depends_on_time_ = false;
 };
 
 }  // namespace prehend::grammar

@@ -23,7 +23,7 @@ void History::BeginFrame(Tick tick) {
 }
 
 void History::SetSample(int entity, const EntitySample& look) {
-  Ring<PoseSample>& samples = looks_[entity];
+  RingBuffer<PoseSample>& samples = looks_[entity];
   ForgetSamples(samples, first_look_);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
   PoseSample& sample = samples.PushBack();

@@ -32,7 +32,7 @@ struct HandSample {
 /// The last sample at or before `frame`, or the first one; the newest is asked for most. Samples
 /// are sorted by frame, and there is one.
 template <typename Sample>
-const Sample& SampleAt(const Ring<Sample>& samples, FrameNumber frame) {
+const Sample& SampleAt(const RingBuffer<Sample>& samples, FrameNumber frame) {
   if (samples.back().frame <= frame) return samples.back();
   std::size_t low = 0;
   std::size_t high = samples.size();
@@ -45,7 +45,7 @@ const Sample& SampleAt(const Ring<Sample>& samples, FrameNumber frame) {
 
 /// Drops what only frames before `frame` need.
 template <typename Sample>
-void ForgetSamples(Ring<Sample>& samples, FrameNumber frame) {
+void ForgetSamples(RingBuffer<Sample>& samples, FrameNumber frame) {
   while (samples.size() > 1 && samples[1].frame <= frame) samples.PopFront();
 }
 
@@ -103,10 +103,10 @@ class History {
   FrameNumber count_ = 0;
   FrameNumber first_look_ = 0;
   bool complete_ = false;
-  Ring<Tick> ticks_;
-  std::vector<Ring<PoseSample>> looks_;         // by entity
-  std::vector<Ring<HandSample>> hand_samples_;  // by hand, in order of first sight
-  std::vector<int> hand_of_entity_;             // index into hand_samples_ or -1
+  RingBuffer<Tick> ticks_;
+  std::vector<RingBuffer<PoseSample>> looks_;         // by entity
+  std::vector<RingBuffer<HandSample>> hand_samples_;  // by hand, in order of first sight
+  std::vector<int> hand_of_entity_;                   // index into hand_samples_ or -1
 };
 
 }  // namespace prehend::grammar

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what a lane is about to the lane: hash tables in one block of memory. Looked up only, never
-// walked. Algorithm: linear probing; what is removed is filled by moving the rest of its run up
-// (Knuth, TAOCP 6.4, algorithm R). Tested by tests/grammar/engine/instance_index_test.cc
+// From what an instance is about to the instance: hash tables in one block of memory. Looked up
+// only, never walked. Algorithm: linear probing; what is removed is filled by moving the rest of
+// its run up (Knuth, TAOCP 6.4, algorithm R). Tested by tests/grammar/engine/instance_index_test.cc
 #pragma once
 
 #include <algorithm>
@@ -14,12 +14,12 @@
 
 namespace prehend::grammar {
 
-/// Any lane: a rule and whom it is bound to.
-struct LaneKey {
+/// Any instance: a rule and whom it is bound to.
+struct InstanceKey {
   int rule = kNone;
   Binding entities = kUnbound;
   // Number by number: what was just written so is not ready to be read as one block.
-  friend bool operator==(const LaneKey& a, const LaneKey& b) {
+  friend bool operator==(const InstanceKey& a, const InstanceKey& b) {
     return a.rule == b.rule && a.entities[0] == b.entities[0] && a.entities[1] == b.entities[1] &&
            a.entities[2] == b.entities[2] && a.entities[3] == b.entities[3];
   }
@@ -35,7 +35,7 @@ struct LaneKey {
   }
 };
 
-/// The lane of a touch: two entities in any order. A frame asks for each pair that it tells of.
+/// The instance of a touch: two entities in any order. A frame asks for each pair that it tells of.
 struct PairKey {
   std::uint64_t both = 0;
   PairKey() = default;
@@ -49,27 +49,27 @@ struct PairKey {
 };
 
 template <typename Key>
-class LaneIndex {
+class InstanceIndex {
  public:
   /// kNone if there is none.
   int Find(const Key& key) const {
-    for (std::size_t at = Home(key); slots_[at].lane != kNone; at = Next(at)) {
-      if (slots_[at].key == key) return slots_[at].lane;
+    for (std::size_t at = Home(key); slots_[at].instance != kNone; at = Next(at)) {
+      if (slots_[at].key == key) return slots_[at].instance;
     }
     return kNone;
   }
 
   /// The key is not in the table yet.
-  void Insert(int lane, const Key& key) {
+  void Insert(int instance, const Key& key) {
     if (2 * ++count_ > slots_.size()) {
       std::vector<Slot> old(2 * slots_.size());
       old.swap(slots_);
       last_ = slots_.size() - 1;
       for (const Slot& slot : old) {
-        if (slot.lane != kNone) Put(slot);
+        if (slot.instance != kNone) Put(slot);
       }
     }
-    Put({key, lane});
+    Put({key, instance});
   }
 
   /// The key is in the table.
@@ -78,7 +78,7 @@ class LaneIndex {
     while (!(slots_[hole].key == key)) hole = Next(hole);
     slots_[hole] = {};
     --count_;
-    for (std::size_t at = Next(hole); slots_[at].lane != kNone; at = Next(at)) {
+    for (std::size_t at = Next(hole); slots_[at].instance != kNone; at = Next(at)) {
       const std::size_t way_from_home = (at - Home(slots_[at].key)) & last_;
       if (way_from_home < ((at - hole) & last_)) continue;
       slots_[hole] = std::exchange(slots_[at], {});
@@ -89,14 +89,14 @@ class LaneIndex {
  private:
   struct Slot {
     Key key;
-    int lane = kNone;
+    int instance = kNone;
   };
 
   std::size_t Home(const Key& key) const { return key.Hash() & last_; }
   std::size_t Next(std::size_t at) const { return (at + 1) & last_; }
   void Put(const Slot& slot) {
     std::size_t at = Home(slot.key);
-    while (slots_[at].lane != kNone) at = Next(at);
+    while (slots_[at].instance != kNone) at = Next(at);
     slots_[at] = slot;
   }
 

@@ -13,7 +13,7 @@
 namespace prehend::grammar {
 
 template <typename T>
-class Ring {
+class RingBuffer {
  public:
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }

@@ -11,7 +11,7 @@
 namespace prehend::grammar {
 
 template <typename T>
-class Blocks {
+class StableBlocks {
  public:
   std::size_t size() const { return size_; }
   T& operator[](std::size_t i) { return (*blocks_[i / kBlock])[i % kBlock]; }

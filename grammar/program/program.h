@@ -13,6 +13,7 @@
 #include "grammar/base/diagnostic.h"
 #include "grammar/base/event.h"
 #include "grammar/base/quantity.h"
+#include "grammar/base/source.h"
 #include "grammar/program/thresholds.h"
 
 namespace prehend::grammar {
@@ -246,14 +247,6 @@ struct NodeNote {
   Place place;
 };
 
-/// What the text of a grammar names and an episode may have or not, where it first stands in its
-/// file.
-struct Named {
-  std::string name;
-  std::string file;
-  Place place;
-};
-
 struct ProgramParam {
   std::string name;
   Quantity value;
@@ -266,15 +259,15 @@ struct ProgramParam {
 /// output.
 struct Program {
   std::string name;
-  std::vector<Rule> events;
+  std::vector<Rule> rules;
   std::vector<int> schedule;  ///< rules so that each comes after those it refers to
   std::vector<Node> nodes;
-  std::vector<NodeNote> notes;           ///< of the first so many nodes
-  std::vector<std::string> class_names;  ///< for kIsA
-  std::vector<Named> sensor_sets;        ///< for kSensorSet
-  std::vector<Named> numbered_sets;      ///< "3": sensor sets that are asked for by number
-  std::vector<Named> named_classes;      ///< all but the built-in ones
-  Diagnostics warnings;                  ///< what Compile() warned of
+  std::vector<NodeNote> notes;              ///< of the first so many nodes
+  std::vector<std::string> class_names;     ///< for kIsA
+  std::vector<NameInSource> sensor_sets;    ///< for kSensorSet
+  std::vector<NameInSource> numbered_sets;  ///< "3": sensor sets that are asked for by number
+  std::vector<NameInSource> named_classes;  ///< all but the built-in ones
+  Diagnostics warnings;                     ///< what Compile() warned of
   std::vector<ProgramParam> params;
   std::vector<Threshold>
       thresholds;  ///< at most kMaxThresholds; what is compared with others counts as kAnyChange

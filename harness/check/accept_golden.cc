@@ -134,7 +134,7 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
 std::string Fingerprint(const Golden& pending) { return ContentHash(WriteGolden(pending)); }
 
 std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint) {
-  return fmt::format("prehend accept {} --reviewed {} --reason \"...\"", ShellWord(scenario),
+  return fmt::format("prehend accept {} --reviewed {} --reason \"...\"", ShellQuoted(scenario),
                      fingerprint);
 }
 

@@ -32,9 +32,9 @@ namespace fs = std::filesystem;
 /// The options of the command line that ask for these changes.
 std::vector<std::string> OptionsOf(const RunRequest& changes) {
   std::vector<std::string> options;
-  if (!changes.grammar.empty()) options.push_back("--grammar " + ShellWord(changes.grammar));
+  if (!changes.grammar.empty()) options.push_back("--grammar " + ShellQuoted(changes.grammar));
   for (const std::string& setting : changes.settings)
-    options.push_back("--set " + ShellWord(setting));
+    options.push_back("--set " + ShellQuoted(setting));
   return options;
 }
 
@@ -100,7 +100,7 @@ void JudgePictures(const CheckRequest& request, const Scenario& scenario,
   const std::string accept =
       AsItsFileSays(request)
           ? fmt::format("  accept it with: prehend accept {} --pictures --reason \"...\"\n",
-                        ShellWord(request.id))
+                        ShellQuoted(request.id))
           : "";
   for (const ReportedPicture& picture : verdict.pictures) {
     const fs::path drawn = fs::path(request.report_folder) / picture.file;
@@ -122,7 +122,7 @@ void JudgePictures(const CheckRequest& request, const Scenario& scenario,
        UnaskedPictures(request.id, scenario.pictures.size(), request.root)) {
     Fail(verdict, ExitCode::kDiffers, "a golden picture that the scenario does not ask for",
          UnaskedText(unasked, scenario.pictures.size()) + "\n  remove it, or: prehend accept " +
-             ShellWord(request.id) + " --pictures --reason \"...\"\n");
+             ShellQuoted(request.id) + " --pictures --reason \"...\"\n");
   }
 }
 
@@ -136,13 +136,13 @@ std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& prog
   return latency;
 }
 
-void JudgeInvariants(const PreparedRun& prepared, const RunResult& run, ScenarioVerdict& verdict) {
-  const WorldEntry& world = prepared.scenario.world;
+void JudgeInvariants(const LoadedRun& loaded, const RunResult& run, ScenarioVerdict& verdict) {
+  const WorldEntry& world = loaded.scenario.world;
   EpisodeFacts facts{.end = run.ticks + 1};
   facts.ticks_per_frame = DefaultTolerance(world.rate_hz, world.sensing_hz) / 2;
-  facts.latency = LatencyByEvent(*prepared.program);
+  facts.latency = LatencyByEvent(*loaded.program);
   // A grammar without phases, as that of pouring, cannot cover a grasp with them.
-  if (facts.latency.contains("transporting")) facts.movable = MovableEntities(prepared.scenario);
+  if (facts.latency.contains("transporting")) facts.movable = MovableEntities(loaded.scenario);
   const Violations violations = CheckInvariants(run.timeline, facts);
   std::string details;
   for (const Violation& violation : violations) {
@@ -200,11 +200,11 @@ void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending,
 }
 
 /// What differs, with the facts around the first of it, and whose doing it is.
-void TellDifferences(const CheckRequest& request, const PreparedRun& prepared, const RunResult& run,
+void TellDifferences(const CheckRequest& request, const LoadedRun& loaded, const RunResult& run,
                      const Comparison& comparison, ScenarioVerdict& verdict) {
-  verdict.blame = Blame(request, prepared.scenario, run, verdict.inputs);
+  verdict.blame = Blame(request, loaded.scenario, run, verdict.inputs);
   const std::string facts =
-      FactsAround(prepared.scenario, run.recording, *comparison.FirstDivergence());
+      FactsAround(loaded.scenario, run.recording, *comparison.FirstDivergence());
   verdict.differences = DifferencesJson(comparison, ExplainCommand(request.id, request.run));
   verdict.relations = RelationsJson(comparison);
   const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
@@ -215,8 +215,8 @@ void TellDifferences(const CheckRequest& request, const PreparedRun& prepared, c
        DifferenceText(comparison, ExplainCommand(request.id, request.run), facts) + verdict.blame);
 }
 
-void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared,
-                        const RunResult& run, ScenarioVerdict& verdict) {
+void JudgeAgainstGolden(const CheckRequest& request, const LoadedRun& loaded, const RunResult& run,
+                        ScenarioVerdict& verdict) {
   const ReadResult<Golden> golden = request.has_golden
                                         ? GoldenFiles(request.root).ReadGoldenOf(request.id)
                                         : ReadResult<Golden>{};
@@ -224,14 +224,14 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
     return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read",
                 Format(golden.diagnostics));
   }
-  const WorldEntry& world = prepared.scenario.world;
+  const WorldEntry& world = loaded.scenario.world;
   const Comparison comparison =
       Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
               run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
   verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1);
-  const OracleComparison truth = CompareWithOracle(prepared.scenario, *prepared.program, run);
+  const OracleComparison truth = CompareWithOracle(loaded.scenario, *loaded.program, run);
   const Golden pending =
-      PendingGolden(golden.value, run.timeline, request.id, prepared.scenario.grammar, truth);
+      PendingGolden(golden.value, run.timeline, request.id, loaded.scenario.grammar, truth);
   if (!golden.value) return JudgeWithoutGolden(request, pending, GroundTruthText(truth), verdict);
   const int accepted = AcceptedDiffering(golden.value->derived);
   const bool truth_is_accepted = truth.Differing() == accepted;
@@ -240,7 +240,7 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
   if (comparison.Agrees() && truth_is_accepted)
     return GoldenFiles(request.root).RemovePending(request.id);
   LeavePending(request, pending);
-  if (!comparison.Agrees()) TellDifferences(request, prepared, run, comparison, verdict);
+  if (!comparison.Agrees()) TellDifferences(request, loaded, run, comparison, verdict);
   if (!truth_is_accepted) {
     Fail(verdict, ExitCode::kDiffers,
          DifferingText(truth.Differing()) +
@@ -268,10 +268,10 @@ void AddPictures(const CheckRequest& request, const Scenario& scenario,
 }
 
 /// A planar scenario has the same events in both engines. How they differ waits for `review`.
-void JudgeOtherEngine(const CheckRequest& request, const PreparedRun& prepared,
-                      const RunResult& run, ScenarioVerdict& verdict) {
-  const auto compared = CompareEngines(prepared.scenario, prepared.program, run.timeline);
-  const std::string text = compared ? EngineDifferenceText(prepared.scenario, *compared,
+void JudgeOtherEngine(const CheckRequest& request, const LoadedRun& loaded, const RunResult& run,
+                      ScenarioVerdict& verdict) {
+  const auto compared = CompareEngines(loaded.scenario, loaded.program, run.timeline);
+  const std::string text = compared ? EngineDifferenceText(loaded.scenario, *compared,
                                                            ExplainCommand(request.id, request.run))
                                     : "";
   // Whether it could be written is only news to `review`; `accept` plays both engines itself.
@@ -291,46 +291,46 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.command = RepeatCommand(request.id, request.run);
   std::vector<std::string> files =
       request.has_golden ? FilesOfGolden(request) : std::vector<std::string>();
-  const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root, &files);
-  if (prepared.value && request.has_golden) AddPictures(request, prepared.value->scenario, files);
+  const ReadResult<LoadedRun> loaded = LoadRun(request.run, request.root, &files);
+  if (loaded.value && request.has_golden) AddPictures(request, loaded.value->scenario, files);
   verdict.inputs = HashFiles(files);
-  if (!prepared.value) {
-    Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(prepared.diagnostics));
-    verdict.command = "prehend validate " + ShellWord(request.id) + ChangesText(request.run);
+  if (!loaded.value) {
+    Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(loaded.diagnostics));
+    verdict.command = "prehend validate " + ShellQuoted(request.id) + ChangesText(request.run);
     return verdict;
   }
-  const Scenario& scenario = prepared.value->scenario;
+  const Scenario& scenario = loaded.value->scenario;
   verdict.shows = scenario.shows;
 
   RunOptions how{.record = true};
   if (request.last_tick)
     how.watch = [&](const grammar::Frame& frame) { request.last_tick->store(frame.tick); };
-  const RunResult run = RunScenario(scenario, prepared.value->program, how);
+  const RunResult run = RunScenario(scenario, loaded.value->program, how);
   Draw(request, scenario, run, verdict);
   verdict.state_hash = HashText(run.state_hash);
   verdict.ticks = run.ticks;
 
   if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
     Fail(verdict, ExitCode::kFailure, "the simulation failed", StatusText(run) + "\n");
-    verdict.command = "prehend run " + ShellWord(request.id) + ChangesText(request.run);
+    verdict.command = "prehend run " + ShellQuoted(request.id) + ChangesText(request.run);
     return verdict;
   }
-  JudgeInvariants(*prepared.value, run, verdict);
-  JudgeAgainstGolden(request, *prepared.value, run, verdict);
-  JudgeOtherEngine(request, *prepared.value, run, verdict);
+  JudgeInvariants(*loaded.value, run, verdict);
+  JudgeAgainstGolden(request, *loaded.value, run, verdict);
+  JudgeOtherEngine(request, *loaded.value, run, verdict);
   JudgePictures(request, scenario, verdict);
   if (verdict.verdict == Verdict::kPending && request.has_golden && AsItsFileSays(request))
-    verdict.command = "prehend review " + ShellWord(request.id);
+    verdict.command = "prehend review " + ShellQuoted(request.id);
   if (verdict.verdict == Verdict::kPassed) LeaveTrace(request, scenario, run);
   return verdict;
 }
 
 std::string ExplainCommand(const std::string& id, const RunRequest& changes) {
-  return "prehend explain " + ShellWord(id) + ChangesText(changes);
+  return "prehend explain " + ShellQuoted(id) + ChangesText(changes);
 }
 
 std::string RepeatCommand(const std::string& id, const RunRequest& changes) {
-  return "prehend check " + ShellWord(id) + ChangesText(changes);
+  return "prehend check " + ShellQuoted(id) + ChangesText(changes);
 }
 
 }  // namespace prehend::harness

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <regex>
 
-#include "grammar/program/program.h"
+#include "grammar/contents.h"
 #include "harness/golden/compare.h"
 #include "harness/oracle/oracle.h"
 #include "harness/timeline/event_text.h"
@@ -45,10 +45,8 @@ Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
                 .found = run.timeline};
   std::erase_if(judged.found.events, [](const auto& event) { return !OracleDefines(event.event); });
   // A grammar is not judged by events that it has no rules for.
-  std::erase_if(judged.truth.events, [&](const auto& event) {
-    return std::ranges::none_of(
-        program.events, [&](const auto& rule) { return rule.printed && rule.name == event.event; });
-  });
+  std::erase_if(judged.truth.events,
+                [&](const auto& event) { return !HasEvent(program, event.event); });
   return judged;
 }
 

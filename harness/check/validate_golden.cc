@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "grammar/base/frame.h"
-#include "grammar/program/program.h"
+#include "grammar/contents.h"
 #include "harness/base/text_file.h"
 #include "harness/golden/golden_files.h"
 #include "harness/run/find_scenario.h"
@@ -25,34 +25,28 @@ using Names = std::vector<std::string>;
 
 class GoldenChecker {
  public:
-  GoldenChecker(std::string_view file, std::string_view text, const PreparedRun& prepared)
+  GoldenChecker(std::string_view file, std::string_view text, const LoadedRun& loaded)
       : file_(file),
         text_(text),
-        rules_(prepared.program->events),
-        entity_table_(MakeEntityTable(prepared.scenario)) {
-    for (const grammar::Rule& rule : rules_) {
-      if (rule.printed) events_.push_back(rule.name);
-    }
+        signatures_(EventSignatures(*loaded.program)),
+        events_(EventNames(*loaded.program)),
+        entity_table_(MakeEntityTable(loaded.scenario)) {
     for (const grammar::EntityInfo& member : entity_table_.entities)
       entities_.push_back(member.name);
   }
 
   void CheckLine(const GoldenEvent& line) {
     const std::string& event = line.event.event;
-    const auto rule = std::ranges::find_if(rules_, [&](const grammar::Rule& candidate) {
-      return candidate.printed && candidate.name == event;
-    });
-    if (rule == rules_.end())
+    const auto signature = std::ranges::find(signatures_, event, &grammar::EventSignature::name);
+    if (signature == signatures_.end())
       return Unknown(line, event, "the grammar has no event '" + event + "'", event, events_);
-    for (const grammar::Role& role : line.event.roles) CheckRole(line, *rule, role);
-    for (const grammar::RuleRole& role : rule->roles) {
-      if (RoleValue(line.event, role.name).empty())
+    for (const grammar::Role& role : line.event.roles) CheckRole(line, *signature, role);
+    for (const std::string& role : signature->roles) {
+      if (RoleValue(line.event, role).empty())
         Complain(line, event,
-                 fmt::format("'{}' has a role '{}', which is missing here", event, role.name), "");
+                 fmt::format("'{}' has a role '{}', which is missing here", event, role), "");
     }
-    Names values;
-    for (const grammar::RuleAttribute& attribute : rule->attributes)
-      values.push_back(attribute.name);
+    const Names& values = signature->attributes;
     for (const grammar::NamedValue& value : line.event.values) {
       if (std::ranges::count(values, value.name) == 0)
         Unknown(line, value.name + "~", fmt::format("'{}' has no value '{}'", event, value.name),
@@ -74,20 +68,20 @@ class GoldenChecker {
   grammar::Diagnostics Take() { return std::move(diagnostics_); }
 
  private:
-  void CheckRole(const GoldenEvent& line, const grammar::Rule& rule, const grammar::Role& role) {
+  void CheckRole(const GoldenEvent& line, const grammar::EventSignature& event,
+                 const grammar::Role& role) {
     if (IsAttribute(role)) {
-      if (rule.style_role == grammar::kNone)
-        return Complain(line, role.name + "=", fmt::format("'{}' has no style", rule.name), "");
+      if (!event.has_style)
+        return Complain(line, role.name + "=", fmt::format("'{}' has no style", event.name), "");
       if (std::ranges::count(entity_table_.styles, role.value) == 0)
         Unknown(line, role.name + "=", "no hand of the scenario has the style '" + role.value + "'",
                 role.value, entity_table_.styles);
       return;
     }
-    Names roles;
-    for (const grammar::RuleRole& known : rule.roles) roles.push_back(known.name);
-    if (std::ranges::count(roles, role.name) == 0)
+    if (std::ranges::count(event.roles, role.name) == 0)
       return Unknown(line, role.name + "=",
-                     fmt::format("'{}' has no role '{}'", rule.name, role.name), role.name, roles);
+                     fmt::format("'{}' has no role '{}'", event.name, role.name), role.name,
+                     event.roles);
     if (std::ranges::count(entities_, role.value) == 0)
       Unknown(line, role.name + "=", "the scenario has no '" + role.value + "'", role.value,
               entities_);
@@ -117,9 +111,10 @@ class GoldenChecker {
   }
 
   std::string_view file_, text_;
-  const std::vector<grammar::Rule>& rules_;
+  const std::vector<grammar::EventSignature> signatures_;
+  const Names events_;
   const grammar::EntityTable entity_table_;
-  Names events_, entities_;
+  Names entities_;
   grammar::Diagnostics diagnostics_;
 };
 
@@ -139,15 +134,15 @@ std::string ScenarioOfGoldenAt(const std::string& path, const std::string& root)
 }  // namespace
 
 grammar::Diagnostics CheckGoldenFile(const std::string& path, const std::string& id,
-                                     const PreparedRun& prepared) {
+                                     const LoadedRun& loaded) {
   ReadResult<std::string> text = ReadTextFile(path);
   if (!text.value) return std::move(text.diagnostics);
   ReadResult<Golden> golden = ReadGolden(path, *text.value);
   if (!golden.value) return std::move(golden.diagnostics);
   grammar::Diagnostics other = OfAnotherScenario(path, *text.value, *golden.value, id);
   if (!other.empty()) return other;
-  GoldenChecker checker(path, *text.value, prepared);
-  checker.CheckGrammar(golden.value->grammar, prepared.scenario.grammar);
+  GoldenChecker checker(path, *text.value, loaded);
+  checker.CheckGrammar(golden.value->grammar, loaded.scenario.grammar);
   for (const GoldenEvent& line : golden.value->events) checker.CheckLine(line);
   return checker.Take();
 }
@@ -167,9 +162,8 @@ grammar::Diagnostics CheckGoldenAlone(const std::string& path, const std::string
     return {grammar::DiagnosticAt(path, *text.value, ScenarioLine(*text.value),
                                   "there is no scenario '" + id + "'", HintForScenario(all, id))};
   }
-  const ReadResult<PreparedRun> prepared =
-      PrepareRun({.scenario_file = scenario->path}, root, &inputs);
-  return prepared.value ? CheckGoldenFile(path, id, *prepared.value) : prepared.diagnostics;
+  const ReadResult<LoadedRun> loaded = LoadRun({.scenario_file = scenario->path}, root, &inputs);
+  return loaded.value ? CheckGoldenFile(path, id, *loaded.value) : loaded.diagnostics;
 }
 
 }  // namespace prehend::harness

@@ -35,7 +35,7 @@ void Declare(CLI::App& options) {
   DeclareFlag(options, "--json", "one JSON object instead of text");
 }
 
-OrderedJson ToJson(const std::string& episode, const grammar::Hindsight& past) {
+OrderedJson ToJson(const std::string& episode, const grammar::ReplayMonitor& past) {
   return {{"episode", episode},
           {"grammar", past.program().name},
           {"ticks_per_second", past.entity_table().ticks_per_second}};
@@ -53,7 +53,7 @@ void PrintEvents(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_se
     out << (&why == &events.front() ? "" : "\n") << explain::Text(why, ticks_per_second);
 }
 
-ExitCode ComplainOfNone(const CLI::App& options, grammar::Hindsight& past, const Ask& ask,
+ExitCode ComplainOfNone(const CLI::App& options, grammar::ReplayMonitor& past, const Ask& ask,
                         const CommandContext& context) {
   const std::string typed = ValueOf(options, "--event");
   const std::vector<WhyEvent> nearest = explain::NearestEvents(past, ask);
@@ -65,7 +65,7 @@ ExitCode ComplainOfNone(const CLI::App& options, grammar::Hindsight& past, const
   }
   message += fmt::format("\n  why not: {} --expected {}",
                          ExplainCommand(ValueOf(options, "scenario"), RequestOf(options, {})),
-                         ShellWord(typed));
+                         ShellQuoted(typed));
   return Complain(context, ExitCode::kNothing, message);
 }
 
@@ -76,7 +76,7 @@ struct Question {
 };
 
 ExitCode Answer(const CLI::App& options, const CommandContext& context, const std::string& episode,
-                const Question& question, grammar::Hindsight& past) {
+                const Question& question, grammar::ReplayMonitor& past) {
   const grammar::Tick per_second = past.entity_table().ticks_per_second;
   const bool as_json = IsGiven(options, "--json");
   OrderedJson json = ToJson(episode, past);

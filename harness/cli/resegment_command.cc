@@ -4,8 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "grammar/contents.h"
 #include "grammar/name_events.h"
-#include "grammar/program/program.h"
 #include "harness/cli/command.h"
 #include "harness/cli/warn.h"
 #include "harness/run/load_grammar.h"
@@ -60,7 +60,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
   Scenario watched;
   watched.name = episode.value->header.episode;
-  watched.grammar = compiled.program->name;
+  watched.grammar = GrammarName(*compiled.program);
   OrderedJson json = RunJson(watched, run);
   json.erase("state_hash");  // nothing was simulated
   context.out << json.dump(2) << "\n";

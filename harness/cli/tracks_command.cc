@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "grammar/contents.h"
 #include "harness/base/atomic_file.h"
 #include "harness/cli/command.h"
 #include "harness/explain/replay.h"
@@ -40,7 +41,7 @@ std::string WhyNotKnown(const std::vector<std::string>& only, const grammar::Pro
     const std::string near = grammar::NearestName(name, known);
     return fmt::format(
         "--only: found '{}', wanted an event, condition or signal of grammar '{}'; {}", name,
-        program.name,
+        GrammarName(program),
         near.empty() ? fmt::format("there are: {}", fmt::join(known, ", "))
                      : fmt::format("did you mean '{}'?", near));
   }
@@ -78,7 +79,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!tracks.problem.empty()) return Complain(context, ExitCode::kBadInput, tracks.problem);
   std::ostream& out = file ? file->stream() : context.out;
   if (as_json) {
-    explain::WriteJson(tracks, source.value->name, source.value->program->name, out);
+    explain::WriteJson(tracks, source.value->name, GrammarName(*source.value->program), out);
   } else {
     explain::WriteCsv(tracks, out);
   }

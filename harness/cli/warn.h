@@ -3,7 +3,7 @@
 #pragma once
 
 #include "grammar/base/frame.h"
-#include "grammar/program/program.h"
+#include "grammar/compile/compile.h"
 #include "harness/cli/command.h"
 
 namespace prehend::harness {

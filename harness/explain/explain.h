@@ -14,15 +14,15 @@
 namespace prehend::harness::explain {
 
 /// Every event of the episode in the order of time, with what turned at its boundaries.
-std::vector<WhyEvent> ExplainAll(grammar::Hindsight& past);
+std::vector<WhyEvent> ExplainAll(grammar::ReplayMonitor& past);
 /// The intervals that are asked for, in the order of time: those that contain its moment, if it has
 /// one.
-std::vector<WhyEvent> ExplainEvents(grammar::Hindsight& past, const Ask& ask);
+std::vector<WhyEvent> ExplainEvents(grammar::ReplayMonitor& past, const Ask& ask);
 /// The intervals of the asked name and entities that are nearest to its moment, at most three;
 /// without reasons.
-std::vector<WhyEvent> NearestEvents(grammar::Hindsight& past, const Ask& ask);
+std::vector<WhyEvent> NearestEvents(grammar::ReplayMonitor& past, const Ask& ask);
 /// Why there is none.
-WhyMissing ExplainMissing(grammar::Hindsight& past, const Ask& ask);
+WhyMissing ExplainMissing(grammar::ReplayMonitor& past, const Ask& ask);
 
 std::string Text(const WhyEvent& why, grammar::Tick ticks_per_second);
 std::string Text(const WhyMissing& why, grammar::Tick ticks_per_second);

@@ -13,9 +13,9 @@
 namespace prehend::harness::explain {
 
 using grammar::Dimension;
-using grammar::Hindsight;
 using grammar::kNone;
 using grammar::Place;
+using grammar::ReplayMonitor;
 using grammar::Rule;
 using grammar::Tick;
 
@@ -58,13 +58,15 @@ std::string Duration(Tick ticks, Tick ticks_per_second) {
                       grammar::kSeconds);
 }
 
-const std::string& RuleName(Hindsight& past, int lane) { return past.RuleOf(lane).name; }
+const std::string& RuleName(ReplayMonitor& past, int instance) {
+  return past.RuleOf(instance).name;
+}
 
-std::string Label(Hindsight& past, int lane) {
-  const Rule& rule = past.RuleOf(lane);
-  const auto& entities = past.At(lane).entities;
+std::string Label(ReplayMonitor& past, int instance) {
+  const Rule& rule = past.RuleOf(instance);
+  const auto& entities = past.At(instance).entities;
   const bool is_any = rule.form == grammar::Form::kAny;
-  const Rule& named = is_any ? past.program().events[rule.references[0].rule] : rule;
+  const Rule& named = is_any ? past.program().rules[rule.references[0].rule] : rule;
   std::string roles;
   for (std::size_t i = 0; i < named.roles.size(); ++i) {
     const int role = is_any ? rule.references[0].roles[i] : static_cast<int>(i);
@@ -83,7 +85,7 @@ std::string Source(const std::string& file, const Place& place) {
                      place.line);
 }
 
-std::string ClauseText(Hindsight& past, int lane, int node) {
+std::string ClauseText(ReplayMonitor& past, int instance, int node) {
   const std::string& written = NoteOf(past.program(), node).text;
   std::string text;
   for (std::size_t i = 0; i < written.size(); ++i) {
@@ -93,7 +95,7 @@ std::string ClauseText(Hindsight& past, int lane, int node) {
       text += written[i];
       continue;
     }
-    text += past.entity_table().entities[past.At(lane).entities[written[i + 1] - '0']].name;
+    text += past.entity_table().entities[past.At(instance).entities[written[i + 1] - '0']].name;
     i += 2;
   }
   return text;

@@ -65,7 +65,7 @@ class AskReader {
   }
 
   std::string Example() const {
-    for (const Rule& rule : program_.events) {
+    for (const Rule& rule : program_.rules) {
       if (rule.printed) return rule.name + "@1.2s";
     }
     return "reaching@1.2s";
@@ -73,8 +73,8 @@ class AskReader {
 
   bool FindRule(const Word& word) {
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < program_.events.size(); ++i) {
-      const Rule& rule = program_.events[i];
+    for (std::size_t i = 0; i < program_.rules.size(); ++i) {
+      const Rule& rule = program_.rules[i];
       if (rule.hidden) continue;
       if (rule.name == word.text) ask_.rule = static_cast<int>(i);
       names.push_back(rule.name);
@@ -89,7 +89,7 @@ class AskReader {
   }
 
   void ReadRole(const Word& word, std::size_t place) {
-    const Rule& rule = program_.events[ask_.rule];
+    const Rule& rule = program_.rules[ask_.rule];
     const std::size_t equals = word.text.find('=');
     std::string entity = word.text;
     int column = word.column;

@@ -8,8 +8,8 @@ namespace prehend::harness::explain {
 
 Watched Watch(const EpisodeSource& source) {
   Watched watched;
-  watched.past = std::make_unique<grammar::Hindsight>(source.program, source.entity_table);
-  grammar::Hindsight& past = *watched.past;
+  watched.past = std::make_unique<grammar::ReplayMonitor>(source.program, source.entity_table);
+  grammar::ReplayMonitor& past = *watched.past;
   bool too_long = false;
   const EpisodeSource::Played played = source.play([&](const grammar::Frame& frame) {
     too_long = too_long || past.frames() >= kMostFrames;

@@ -14,7 +14,7 @@ namespace prehend::harness::explain {
 inline constexpr grammar::FrameNumber kMostFrames = 100'000;
 
 struct Watched {
-  std::unique_ptr<grammar::Hindsight> past;
+  std::unique_ptr<grammar::ReplayMonitor> past;
   std::string failure;  ///< empty, or why the simulation ended early
   std::string problem;  ///< empty, or why the grammar cannot watch this; then nothing may be asked
 };

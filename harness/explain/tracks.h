@@ -38,7 +38,7 @@ struct Tracks {
 std::vector<std::string> TrackNames(const grammar::Program& program);
 
 /// `only`: these names; empty: all.
-Tracks CollectTracks(grammar::Hindsight& past, const std::set<std::string>& only);
+Tracks CollectTracks(grammar::ReplayMonitor& past, const std::set<std::string>& only);
 
 /// One line per frame: time_s, tick, and a column per track, the unit in brackets. Values that are
 /// none are empty.

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "grammar/compile/compile.h"
-#include "grammar/program/program.h"
+#include "grammar/contents.h"
 #include "harness/base/project_paths.h"
 #include "harness/base/text_file.h"
 #include "harness/run/find_scenario.h"
@@ -65,10 +65,10 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
 namespace {
 
 // What the grammar names and nobody in the episode has.
-void WarnOfStrangers(const std::vector<grammar::Named>& names, const std::set<std::string>& known,
-                     std::string_view message, const std::string& remedy,
-                     grammar::Diagnostics& warnings) {
-  for (const grammar::Named& named : names) {
+void WarnOfStrangers(const std::vector<grammar::NameInSource>& names,
+                     const std::set<std::string>& known, std::string_view message,
+                     const std::string& remedy, grammar::Diagnostics& warnings) {
+  for (const grammar::NameInSource& named : names) {
     if (known.contains(named.name)) continue;
     const bool is_number = named.name.find_first_not_of("0123456789") == std::string::npos;
     const std::string near =
@@ -93,13 +93,13 @@ grammar::Diagnostics Warnings(const grammar::Program& program,
     sensor_sets.insert(member.sensor_sets.begin(), member.sensor_sets.end());
     for (std::size_t i = 1; i <= member.sensor_sets.size(); ++i) numbers.insert(std::to_string(i));
   }
-  grammar::Diagnostics warnings = program.warnings;
-  WarnOfStrangers(program.named_classes, classes, "nobody in this episode is a", "", warnings);
+  grammar::Diagnostics warnings = CompileWarnings(program);
+  WarnOfStrangers(NamedClasses(program), classes, "nobody in this episode is a", "", warnings);
   WarnOfStrangers(
-      program.sensor_sets, sensor_sets, "no hand of this episode has a sensor set",
+      NamedSensorSets(program), sensor_sets, "no hand of this episode has a sensor set",
       sensor_sets.empty() ? "" : fmt::format("there are: {}", fmt::join(sensor_sets, ", ")),
       warnings);
-  WarnOfStrangers(program.numbered_sets, numbers, "no hand of this episode has a sensor set",
+  WarnOfStrangers(NumberedSensorSets(program), numbers, "no hand of this episode has a sensor set",
                   fmt::format("a hand has {} of them here at most", numbers.size()), warnings);
   return warnings;
 }

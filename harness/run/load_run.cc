@@ -6,7 +6,7 @@
 #include <functional>
 #include <iterator>
 
-#include "grammar/program/program.h"
+#include "grammar/contents.h"
 #include "harness/base/text_file.h"
 #include "harness/format/scenario_fields.h"
 #include "harness/read/read_scenario.h"
@@ -53,7 +53,7 @@ Settings Split(const std::vector<std::string>& settings,
 grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Program& program) {
   grammar::Diagnostics diagnostics;
   for (const PictureEntry& picture : scenario.pictures) {
-    const auto problem = WhyNoMoment(picture.at.value, program);
+    const auto problem = WhyNoEventTime(picture.at.value, program);
     if (!problem) continue;
     const bool in_file = picture.at.where.source == 0;
     const ReadResult<std::string> text =
@@ -84,8 +84,8 @@ bool IsFieldOfScenario(const std::string& name) {
          ScenarioFormat().schema.at("properties").contains(name);
 }
 
-ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root,
-                                   std::vector<std::string>* files) {
+ReadResult<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                              std::vector<std::string>* files) {
   Settings settings = Split(request.settings, IsFieldOfScenario);
   if (!settings.diagnostics.empty()) return {std::nullopt, std::move(settings.diagnostics)};
   if (files) files->push_back(request.scenario_file);
@@ -106,11 +106,11 @@ ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string&
     grammar::Diagnostics pictures = CheckPictures(*scenario.value, *compiled.program);
     if (!pictures.empty()) return {std::nullopt, std::move(pictures)};
   }
-  scenario.value->grammar = compiled.program->name;
+  scenario.value->grammar = GrammarName(*compiled.program);
   grammar::Diagnostics warnings = scenario.value->warnings;
   std::ranges::move(Warnings(*compiled.program, MakeEntityTable(*scenario.value)),
                     std::back_inserter(warnings));
-  return {PreparedRun{std::move(*scenario.value), std::move(compiled.program), std::move(warnings)},
+  return {LoadedRun{std::move(*scenario.value), std::move(compiled.program), std::move(warnings)},
           {}};
 }
 

@@ -105,7 +105,7 @@ class Measuring {
       grammar::Monitor monitor(program_, log.entity_table);
       monitor.AdvanceBy(log[0], events);
       figure.seconds = std::min(figure.seconds, watch.seconds());
-      figure.operations = monitor.lanes_in_use();
+      figure.operations = monitor.instances_in_use();
       bytes = mallinfo2().uordblks - bytes_before;
     }
     figure.what = fmt::format("rules are bound to objects, {:.0f} bytes each",
@@ -141,7 +141,7 @@ double TimeWatching(const Scenario& scenario, std::shared_ptr<const grammar::Pro
 
 // One hand takes one carton: what physics costs, and what watching adds to it. Apart, so that the
 // clock of the processor, which is slow to read, is read twice only.
-SpeedFigure WatchCarton(const PreparedRun& carton, bool quick) {
+SpeedFigure WatchCarton(const LoadedRun& carton, bool quick) {
   SpeedFigure figure{.what = "pick_and_place on " + carton.scenario.name + ", sensing included",
                      .unit = "physics tick"};
   const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
@@ -194,8 +194,8 @@ SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool 
 }  // namespace
 
 ReadResult<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool quick) {
-  ReadResult<PreparedRun> carton =
-      PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root);
+  ReadResult<LoadedRun> carton =
+      LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root);
   if (!carton.value) return {.value = std::nullopt, .diagnostics = std::move(carton.diagnostics)};
   const Measuring measuring(quick);
   std::vector<SpeedFigure> figures = {

@@ -6,7 +6,6 @@
 #include <random>
 #include <vector>
 
-#include "grammar/program/program.h"
 #include "harness/sense/entity_table.h"
 #include "harness/speed/stopwatch.h"
 

@@ -115,7 +115,7 @@ class RandomWorld {
 
 /// Rules that ask everything at all times, so that something is always awake, to stand beside those
 /// of the library.
-inline constexpr const char* kRestlessRules = R"(
+inline constexpr const char* kTimeDependentRules = R"(
 use pick_and_place
 event near(hand: Hand, object: Movable) while distance(hand, object) < 10 cm bridging 50 ms lasting 30 ms
 event apart(object: Movable, support: Thing)

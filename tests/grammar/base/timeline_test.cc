@@ -11,8 +11,8 @@ namespace {
 
 TEST(Timeline, NamesAndSortsEvents) {
   Program program;
-  program.events.push_back({.name = "touching"});
-  program.events.push_back({.name = "grasping", .roles = {{"hand", "Hand"}, {"object", "Thing"}}});
+  program.rules.push_back({.name = "touching"});
+  program.rules.push_back({.name = "grasping", .roles = {{"hand", "Hand"}, {"object", "Thing"}}});
   const EntityTable entity_table{.ticks_per_second = 240,
                                  .entities = {{.name = "milk"}, {.name = "right"}},
                                  .styles = {"wrap"}};

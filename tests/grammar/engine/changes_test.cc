@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whoever rests misses nothing: whole frames, changes only, and frames that repeat what has not
-// changed, which keeps lanes awake, give the same events at the same decision ticks. And what rests
-// for long is freed.
+// changed, which keeps instances awake, give the same events at the same decision ticks. And what
+// rests for long is freed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ class Differ {
 std::vector<std::string> Lines(const std::vector<Event>& events, const Program& program) {
   std::vector<std::string> lines;
   for (const Event& e : events) {
-    lines.push_back(program.events[e.rule].name + " " + std::to_string(e.roles[0]) + " " +
+    lines.push_back(program.rules[e.rule].name + " " + std::to_string(e.roles[0]) + " " +
                     std::to_string(e.roles[1]) + " [" + std::to_string(e.interval.begin) + "," +
                     std::to_string(e.interval.end) + ") at " + std::to_string(e.decided) +
                     (e.open_end ? " open" : "") + " style " + std::to_string(e.style));
@@ -73,7 +73,7 @@ std::vector<std::string> Lines(const std::vector<Event>& events, const Program& 
 
 TEST(Changes, SayTheSameAsWholeFrames) {
   const CompileResult compiled =
-      Compile({"both", std::string("grammar both\n") + testing::kRestlessRules},
+      Compile({"both", std::string("grammar both\n") + testing::kTimeDependentRules},
               testing::LibraryIncluder());
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
   const auto program = compiled.program;
@@ -105,7 +105,7 @@ TEST(Changes, SayTheSameAsWholeFrames) {
 // measured.
 std::shared_ptr<const Program> Thorough(const Program& program) {
   const auto thorough = std::make_shared<Program>(program);
-  for (Rule& rule : thorough->events) {
+  for (Rule& rule : thorough->rules) {
     rule.opened_by = kNone;
     rule.guarded_begin = false;
     rule.measured = {};
@@ -145,11 +145,11 @@ Compared CompareWithThorough(const std::shared_ptr<const Program>& program, int 
 
 TEST(Changes, WhoeverIsNotWokenHasNothingToSay) {
   const CompileResult compiled =
-      Compile({"both", std::string("grammar both\n") + testing::kRestlessRules},
+      Compile({"both", std::string("grammar both\n") + testing::kTimeDependentRules},
               testing::LibraryIncluder());
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
   const auto rules = [&](auto which) {
-    return std::ranges::count_if(compiled.program->events, which);
+    return std::ranges::count_if(compiled.program->rules, which);
   };
   EXPECT_GE(rules([](const Rule& rule) { return rule.opened_by != kNone; }), 5);
   EXPECT_GE(rules([](const Rule& rule) { return rule.guarded_begin; }), 3);
@@ -187,7 +187,7 @@ event plain(hand: Hand, object: Movable) rest of gripped(hand, object) outside p
 TEST(Changes, WhatIsDecidedAtOnceNeedsNoPast) {
   const CompileResult compiled = Compile({"instant", kInstantRules}, nullptr);
   ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
-  EXPECT_GE(std::ranges::count_if(compiled.program->events,
+  EXPECT_GE(std::ranges::count_if(compiled.program->rules,
                                   [](const Rule& rule) { return rule.measured.instant; }),
             5);
   EXPECT_FALSE(compiled.program->recalls_touches);
@@ -217,15 +217,15 @@ TEST(Changes, WhatRestsForLongIsFreed) {
       const ContactEnd contact_end{0, thing};
       monitor.AdvanceBy({.tick = tick += 10, .touches = {&touch, 1}}, events);
       monitor.AdvanceBy({.tick = tick += 300, .contact_ends = {&contact_end, 1}}, events);
-      most = std::max(most, monitor.lanes_in_use());
+      most = std::max(most, monitor.instances_in_use());
     }
   }
   EXPECT_LT(most, 160) << "of " << kThings << " things, a few seconds at a time";
   for (int i = 0; i < 500; ++i) monitor.AdvanceBy({.tick = tick += 10}, events);
-  EXPECT_LT(monitor.lanes_in_use(), 20) << "only what no touch guards is left";
+  EXPECT_LT(monitor.instances_in_use(), 20) << "only what no touch guards is left";
   const auto count = [&](std::string_view name) {
     return std::count_if(events.begin(), events.end(),
-                         [&](const Event& e) { return program->events[e.rule].name == name; });
+                         [&](const Event& e) { return program->rules[e.rule].name == name; });
   };
   EXPECT_EQ(count("contact"), 3 * kThings);
   EXPECT_EQ(count("grasping"), 3 * kThings);

@@ -38,7 +38,7 @@ std::string Served(const std::string& held, const std::string& placed) {
   const auto text = [&](const std::string& name) {
     std::string found;
     for (const Event& e : events) {
-      if (program->events[e.rule].name != name) continue;
+      if (program->rules[e.rule].name != name) continue;
       found += "[" + std::to_string(e.interval.begin) + "," + std::to_string(e.interval.end) +
                ")@" + std::to_string(e.decided) + " ";
     }

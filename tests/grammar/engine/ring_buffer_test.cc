@@ -9,8 +9,8 @@
 namespace prehend::grammar {
 namespace {
 
-TEST(Ring, BehavesAsADeque) {
-  Ring<int> ring;
+TEST(RingBuffer, BehavesAsADeque) {
+  RingBuffer<int> ring;
   std::deque<int> deque;
   std::mt19937 random(1);
   for (int i = 0; i < 10000; ++i) {

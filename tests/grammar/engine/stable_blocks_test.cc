@@ -6,8 +6,8 @@
 namespace prehend::grammar {
 namespace {
 
-TEST(Blocks, ElementsStayWhereTheyAre) {
-  Blocks<int> numbers;
+TEST(StableBlocks, ElementsStayWhereTheyAre) {
+  StableBlocks<int> numbers;
   EXPECT_EQ(numbers.size(), 0u);
   const int* first = &numbers.PushBack();
   for (int i = 1; i < 1000; ++i) numbers.PushBack() = i;

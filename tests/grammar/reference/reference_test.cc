@@ -201,7 +201,7 @@ bool Agrees(const std::shared_ptr<const Program>& program, const Episode& episod
   for (const auto& [name, expected] : all) {
     std::vector<Interval> found;
     for (const Event& event : events) {
-      if (program->events[event.rule].name != name) continue;
+      if (program->rules[event.rule].name != name) continue;
       found.push_back(event.interval);
       EXPECT_GE(event.decided, event.interval.begin);
     }

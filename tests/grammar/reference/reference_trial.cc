@@ -14,7 +14,7 @@ using Found = std::map<std::string, std::vector<Interval>>;
 Found ByRule(const Program& program, const std::vector<Event>& events) {
   Found found;
   for (const Event& event : events) {
-    const Rule& rule = program.events[event.rule];
+    const Rule& rule = program.rules[event.rule];
     std::string name = rule.name;
     for (std::size_t i = 0; i < rule.roles.size(); ++i) {
       if (rule.roles[i].class_name == "P") name += event.roles[i] == 1 ? "(p1)" : "(p2)";

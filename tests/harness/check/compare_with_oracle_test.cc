@@ -17,10 +17,10 @@ class DerivationTest : public testing::Test {
   void SetUp() override {
     const RunRequest request{.scenario_file = PREHEND_SOURCE_DIR
                              "/scenarios/pick_and_place/milk_carton_wrap.yaml"};
-    auto read = PrepareRun(request, PREHEND_SOURCE_DIR);
+    auto read = LoadRun(request, PREHEND_SOURCE_DIR);
     ASSERT_TRUE(read.value) << grammar::Format(read.diagnostics);
-    prepared = std::move(*read.value);
-    run = RunScenario(prepared.scenario, prepared.program, {.record = true});
+    loaded = std::move(*read.value);
+    run = RunScenario(loaded.scenario, loaded.program, {.record = true});
   }
   grammar::NamedEvent& Find(const std::string& event) {
     return *std::ranges::find(run.timeline.events, event, &grammar::NamedEvent::event);
@@ -30,10 +30,10 @@ class DerivationTest : public testing::Test {
     return IntervalText(Find(event).interval, run.timeline.ticks_per_second);
   }
   OracleComparison Compared() const {
-    return CompareWithOracle(prepared.scenario, *prepared.program, run);
+    return CompareWithOracle(loaded.scenario, *loaded.program, run);
   }
 
-  PreparedRun prepared;
+  LoadedRun loaded;
   RunResult run;
 };
 

@@ -17,8 +17,8 @@
 namespace prehend::harness::explain::testing {
 
 /// `name` is skill/name; `settings` as for --set.
-inline grammar::Hindsight& Played(const std::string& name,
-                                  const std::vector<std::string>& settings = {}) {
+inline grammar::ReplayMonitor& Played(const std::string& name,
+                                      const std::vector<std::string>& settings = {}) {
   static std::map<std::string, Watched> played;
   std::string key = name;
   for (const std::string& setting : settings) key += " " + setting;
@@ -38,7 +38,7 @@ inline grammar::Hindsight& Played(const std::string& name,
 class Stage {
  public:
   explicit Stage(const std::string& grammar_text)
-      : past_(std::make_unique<grammar::Hindsight>(
+      : past_(std::make_unique<grammar::ReplayMonitor>(
             grammar::testing::CompileText("grammar test\n" + grammar_text), scene.entity_table)) {}
 
   void Show(int frames = 1) {
@@ -53,7 +53,7 @@ class Stage {
     scene.touches.clear();
     if (touches) scene.touches.push_back({.a = scene.kHand, .b = scene.kCup});
   }
-  grammar::Hindsight& Finish() {
+  grammar::ReplayMonitor& Finish() {
     past_->Finish(tick_);
     return *past_;
   }
@@ -61,24 +61,24 @@ class Stage {
   grammar::testing::Scene scene;
 
  private:
-  std::unique_ptr<grammar::Hindsight> past_;
+  std::unique_ptr<grammar::ReplayMonitor> past_;
   grammar::Tick tick_ = 0;
 };
 
-inline Ask Asked(grammar::Hindsight& past, const std::string& text) {
+inline Ask Asked(grammar::ReplayMonitor& past, const std::string& text) {
   const ReadResult<Ask> ask = ParseAsk("--event", text, past.program(), past.entity_table());
   EXPECT_TRUE(ask.value) << Format(ask.diagnostics);
   return ask.value.value_or(Ask{.rule = 0});
 }
 
 /// The only event that answers.
-inline WhyEvent Why(grammar::Hindsight& past, const std::string& text) {
+inline WhyEvent Why(grammar::ReplayMonitor& past, const std::string& text) {
   const std::vector<WhyEvent> events = ExplainEvents(past, Asked(past, text));
   EXPECT_EQ(events.size(), 1) << text;
   return events.empty() ? WhyEvent{} : events.front();
 }
 
-inline WhyMissing WhyNot(grammar::Hindsight& past, const std::string& text) {
+inline WhyMissing WhyNot(grammar::ReplayMonitor& past, const std::string& text) {
   const Ask ask = Asked(past, text);
   EXPECT_TRUE(ExplainEvents(past, ask).empty()) << text << " did happen";
   return ExplainMissing(past, ask);

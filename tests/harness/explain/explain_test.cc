@@ -368,7 +368,7 @@ TEST(ExplainMissing, NothingBeforeIsToldOfTheEndThatCameClosest) {
     stage.Touch(true);
     stage.Show(5);
   }
-  grammar::Hindsight& past = stage.Finish();
+  grammar::ReplayMonitor& past = stage.Finish();
   EXPECT_EQ(WhyNot(past, "toward").because,
             "since height(cup) > 1 m: is 600 mm, 400 mm below 1 m, at 0.1600 s");
 }
@@ -381,7 +381,7 @@ TEST(ExplainMissing, AnEndThatDoesNotReachBackIsNoReason) {
   stage.Show(100);
   stage.Touch(true);
   stage.Show(2);
-  grammar::Hindsight& past = stage.Finish();
+  grammar::ReplayMonitor& past = stage.Finish();
   EXPECT_EQ(WhyNot(past, "toward@0.3s").because,
             "toward(hand, cup): the next end is at 1.0000 s, and it looks at most 100 ms back");
   EXPECT_EQ(WhyNot(past, "toward@0.95s").because,
@@ -448,7 +448,7 @@ TEST(Explain, RememberingChangesNothing) {
         OpenScenario(root + "/scenarios/" + kSlide + ".yaml", grammar, {}, root);
     ASSERT_TRUE(source.value);
     grammar::Monitor monitor(source.value->program, source.value->entity_table);
-    grammar::Hindsight past(source.value->program, source.value->entity_table);
+    grammar::ReplayMonitor past(source.value->program, source.value->entity_table);
     std::vector<grammar::Event> events;
     const auto played = source.value->play([&](const grammar::Frame& frame) {
       monitor.Advance(frame, events);
@@ -547,7 +547,7 @@ TEST(Ask, BadOnesNamePlaceAndRemedy) {
   };
   Stage stage("event moved(c: Cup, t: Movable) while distance(position(c), position(t)) > 20 cm");
   stage.Show();
-  grammar::Hindsight& past = stage.Finish();
+  grammar::ReplayMonitor& past = stage.Finish();
   for (const BadAsk& bad : asks) {
     const ReadResult<Ask> ask = ParseAsk("--event", bad.text, past.program(), past.entity_table());
     EXPECT_FALSE(ask.value);
@@ -558,7 +558,7 @@ TEST(Ask, BadOnesNamePlaceAndRemedy) {
 TEST(Ask, RolesAndTimesInAnyFashion) {
   Stage stage("event moved(c: Cup, t: Movable) while distance(position(c), position(t)) > 20 cm");
   stage.Show();
-  grammar::Hindsight& past = stage.Finish();
+  grammar::ReplayMonitor& past = stage.Finish();
   for (const char* text : {"moved cup tray@1.5s", "moved(cup, tray) @ 1500ms",
                            "moved t=tray c=cup@1.5", "moved cup,tray @1500 ms"}) {
     const Ask ask = Asked(past, text);

@@ -17,7 +17,7 @@ constexpr const char* kGrammar =
     "event pushed(h: Hand, c: Cup) while met(h, c) requires displacement(c) > 10 cm and height(c) "
     "< 1 m";
 
-grammar::Hindsight& Push(Stage& stage) {
+grammar::ReplayMonitor& Push(Stage& stage) {
   stage.Show(2);
   stage.Touch(true);
   stage.Show(1);
@@ -45,7 +45,7 @@ TEST(Tracks, AColumnPerConditionAndSignalARowPerFrame) {
 
 TEST(Tracks, SomeOfThemByName) {
   Stage stage(kGrammar);
-  grammar::Hindsight& past = Push(stage);
+  grammar::ReplayMonitor& past = Push(stage);
   EXPECT_EQ(TrackNames(past.program()),
             (std::vector<std::string>{"displacement", "height", "met", "pushed", "touching"}));
   std::ostringstream csv;
@@ -56,7 +56,7 @@ TEST(Tracks, SomeOfThemByName) {
 
 TEST(Tracks, JsonSaysWhatEachIs) {
   Stage stage(kGrammar);
-  grammar::Hindsight& past = Push(stage);
+  grammar::ReplayMonitor& past = Push(stage);
   std::ostringstream out;
   WriteJson(CollectTracks(past, {}), "episode", "test", out);
   const auto json = nlohmann::json::parse(out.str());

@@ -30,15 +30,15 @@ class Watching : public testing::TestWithParam<int> {
   ~Watching() override { fs::remove_all(folder_); }
 
   /// Everything at once that a command can ask of a run: `run --record`, `check`, `render`.
-  RunResult PlayWatched(const PreparedRun& prepared) {
-    const Scenario& scenario = prepared.scenario;
+  RunResult PlayWatched(const LoadedRun& loaded) {
+    const Scenario& scenario = loaded.scenario;
     std::ostringstream episode;
     EpisodeWriter writer(episode, {scenario.name, scenario.grammar, MakeEntityTable(scenario)});
     RunOptions options{.record = true,
                        .watch = [&](const grammar::Frame& frame) { writer.Write(frame); },
                        .judge = !scenario.outcomes.empty(),
                        .measure = true};
-    RunResult run = RunScenario(scenario, prepared.program, options);
+    RunResult run = RunScenario(scenario, loaded.program, options);
     EXPECT_FALSE(run.recording.empty());
     EXPECT_FALSE(episode.str().empty());
     if (CanDrawPictures()) {
@@ -59,11 +59,11 @@ TEST_P(Watching, ChangesNothing) {
   ASSERT_GE(all.size(), static_cast<std::size_t>(kParts));
   for (std::size_t i = static_cast<std::size_t>(GetParam()); i < all.size(); i += kParts) {
     SCOPED_TRACE(IdOf(all[i]));
-    const ReadResult<PreparedRun> prepared =
-        PrepareRun({.scenario_file = all[i].path}, PREHEND_SOURCE_DIR);
-    ASSERT_TRUE(prepared.value) << Format(prepared.diagnostics);
-    const RunResult watched = PlayWatched(*prepared.value);
-    const RunResult plain = RunScenario(prepared.value->scenario, prepared.value->program);
+    const ReadResult<LoadedRun> loaded =
+        LoadRun({.scenario_file = all[i].path}, PREHEND_SOURCE_DIR);
+    ASSERT_TRUE(loaded.value) << Format(loaded.diagnostics);
+    const RunResult watched = PlayWatched(*loaded.value);
+    const RunResult plain = RunScenario(loaded.value->scenario, loaded.value->program);
     EXPECT_EQ(watched.status.kind, plain.status.kind);
     EXPECT_EQ(watched.ticks, plain.ticks);
     EXPECT_EQ(watched.state_hash, plain.state_hash) << "it moves differently when it is watched";
