@@ -60,12 +60,16 @@ std::string DumpForm(const Definition& d) {
   return {};
 }
 
+std::string DumpHead(const std::string& name, const std::vector<Role>& roles) {
+  std::string text = name + "(";
+  for (const Role& role : roles)
+    text += (&role == &roles.front() ? "" : ", ") + role.name + ": " + role.class_name;
+  return text + ") ";
+}
+
 std::string DumpDefinition(const Definition& d) {
   std::string text = d.symmetric ? "symmetric event " : d.is_event ? "event " : "condition ";
-  text += d.name + "(";
-  for (const Role& role : d.roles)
-    text += (&role == &d.roles.front() ? "" : ", ") + role.name + ": " + role.class_name;
-  text += ") " + DumpForm(d);
+  text += DumpHead(d.name, d.roles) + DumpForm(d);
   if (d.bridging) text += " bridging " + Dump(*d.bridging);
   if (d.lasting) text += " lasting " + Dump(*d.lasting);
   if (d.requirement) text += " requires " + Dump(*d.requirement);
@@ -111,6 +115,21 @@ std::string Dump(const Expr& expr) {
   return {};
 }
 
+std::string Dump(const Law& law) {
+  const std::string subjects = Joined(law.subjects, ", ");
+  switch (law.form) {
+    case Law::Form::kCovered:
+      return "rest of " + subjects + " outside " + Joined(law.others, ", ") + " is empty";
+    case Law::Form::kApart:
+      return subjects + " do not overlap";
+    case Law::Form::kRelated:
+      break;
+  }
+  std::string relations;
+  for (const std::string& name : law.relations) relations += (relations.empty() ? "" : "|") + name;
+  return subjects + " " + relations + " " + Joined(law.others, " or ");
+}
+
 std::string Dump(const File& file) {
   std::string text = "grammar " + file.name + "\n";
   for (const Use& use : file.uses)
@@ -119,6 +138,8 @@ std::string Dump(const File& file) {
     text += "param " + param.name + " = " + QuantityText(param.value) + "\n";
   for (const Define& define : file.defines) text += DumpDefine(define);
   for (const Definition& definition : file.definitions) text += DumpDefinition(definition);
+  for (const Law& law : file.laws)
+    text += "law " + DumpHead(law.name, law.roles) + Dump(law) + "\n";
   return text;
 }
 

@@ -114,6 +114,23 @@ struct Define {
   Expr body;
 };
 
+/// What must hold of the events of every episode.
+struct Law {
+  enum class Form {
+    kCovered,  ///< rest of E outside X, Y is empty
+    kRelated,  ///< E, F meets X or Y
+    kApart,    ///< E, F do not overlap
+  };
+  std::string name;
+  Place place;
+  std::vector<Role> roles;
+  Form form = Form::kCovered;
+  std::vector<Expr> subjects;          ///< events that it speaks about
+  std::vector<std::string> relations;  ///< kRelated: Allen's, or `lies inside` alone
+  Place relations_place;
+  std::vector<Expr> others;  ///< X, Y
+};
+
 struct Param {
   std::string name;
   Place place;
@@ -132,9 +149,12 @@ struct File {
   std::vector<Param> params;
   std::vector<Define> defines;
   std::vector<Definition> definitions;
+  std::vector<Law> laws;
 };
 
 std::string Dump(const Expr& expr);
+/// What the law says, without its name and roles.
+std::string Dump(const Law& law);
 /// The whole file as fully bracketed text in SI units, one definition per line.
 std::string Dump(const File& file);
 

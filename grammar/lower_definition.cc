@@ -228,7 +228,7 @@ class DefinitionLowering {
         const std::optional<Allen> allen = AllenNamed(name);
         if (!allen) {
           lowering_.Complain(relation.place, "'" + name + "' is none of Allen's relations",
-                             "they are " + JoinedAllenNames());
+                             "they are " + AllenNames());
           continue;
         }
         clause.relations |= Bit(*allen);
@@ -264,13 +264,6 @@ class DefinitionLowering {
                        "this is never an event: the last part, '" + d_.parts.back().label +
                            "', ends before the first one, '" + d_.parts.front().label + "', begins",
                        "list the parts as they follow each other in time");
-  }
-
-  static std::string JoinedAllenNames() {
-    std::string text;
-    for (const std::string_view name : kAllenNames)
-      text += (text.empty() ? "" : ", ") + std::string(name);
-    return text;
   }
 
   void LowerModifiers() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grammar/parser.h"
 
-#include "grammar/expression_parser.h"
+#include "grammar/law_parser.h"
 
 namespace prehend::grammar {
 namespace {
@@ -11,9 +11,9 @@ using ast::Expr;
 
 constexpr std::size_t kMaxDefinitions = 1000;
 
-class Parser : public ExpressionParser {
+class Parser : public LawParser {
  public:
-  using ExpressionParser::ExpressionParser;
+  using LawParser::LawParser;
 
   ast::File ParseFile() {
     ast::File file;
@@ -54,13 +54,15 @@ class Parser : public ExpressionParser {
       std::string name = ExpectName("a parameter's name");
       Expect("=");
       file.params.push_back({std::move(name), name_place, ParseSignedQuantity()});
-    } else if (At("define") || At("event") || At("condition") || At("symmetric")) {
-      if (file.definitions.size() + file.defines.size() == kMaxDefinitions) {
+    } else if (At("define") || At("event") || At("condition") || At("symmetric") || At("law")) {
+      if (file.definitions.size() + file.defines.size() + file.laws.size() == kMaxDefinitions) {
         SkipToEnd();
         FailAt(place, "more than " + std::to_string(kMaxDefinitions) + " definitions in one file");
       }
       if (Accept("define")) {
         file.defines.push_back(ParseDefine());
+      } else if (Accept("law")) {
+        file.laws.push_back(ParseLaw());
       } else {
         file.definitions.push_back(ParseDefinition());
       }
@@ -68,7 +70,7 @@ class Parser : public ExpressionParser {
       FailAt(place, "a second 'grammar' line",
              "one file holds one grammar; `use NAME` reads another one");
     } else {
-      Fail("expected 'use', 'param', 'define', 'condition' or 'event', found " + Found(),
+      Fail("expected 'use', 'param', 'define', 'condition', 'event' or 'law', found " + Found(),
            WordHint());
     }
   }
@@ -123,22 +125,12 @@ class Parser : public ExpressionParser {
     if (definition.is_event) Expect("event");
     definition.place = Peek().place;
     definition.name = ExpectName("the name of an event or condition");
-    ParseRoles(definition);
+    definition.roles =
+        ParseRoles("an event names who takes part: event grasping(hand: Hand, object: Thing)");
     ParseForm(definition);
     while (ParseModifier(definition)) {
     }
     return definition;
-  }
-
-  void ParseRoles(Definition& definition) {
-    Expect("(", "an event names who takes part: event grasping(hand: Hand, object: Thing)");
-    do {
-      const Place place = Peek().place;
-      std::string name = ExpectName("a role's name");
-      Expect(":", "every role has a class: object: Movable");
-      definition.roles.push_back({std::move(name), ExpectName("a class"), place});
-    } while (Accept(","));
-    Expect(")");
   }
 
   void ParseForm(Definition& definition) {

@@ -11,6 +11,7 @@
 
 #include "grammar/allen.h"
 #include "grammar/diagnostic.h"
+#include "grammar/law.h"
 #include "grammar/monitor.h"
 #include "grammar/quantity.h"
 #include "grammar/thresholds.h"
@@ -276,6 +277,7 @@ struct Program {
   std::vector<Named> named_classes;      ///< all but the built-in ones
   Diagnostics warnings;                  ///< what Compile() warned of
   std::vector<ProgramParam> params;
+  std::vector<Law> laws;  ///< in the order of the files
   std::vector<Threshold>
       thresholds;  ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
   bool asks_touches =

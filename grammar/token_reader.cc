@@ -9,8 +9,8 @@
 namespace prehend::grammar {
 namespace {
 
-constexpr std::array<std::string_view, 7> kItemWords = {"grammar",   "use",   "param",    "define",
-                                                        "condition", "event", "symmetric"};
+constexpr std::array<std::string_view, 8> kItemWords = {"grammar",   "use",   "param",     "define",
+                                                        "condition", "event", "symmetric", "law"};
 constexpr std::array<std::string_view, 33> kOtherWords = {
     "while",    "from",        "to",       "during",    "until",   "since",   "at",
     "most",     "back",        "rest",     "of",        "outside", "compose", "where",

@@ -143,8 +143,6 @@ void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, cons
   EpisodeFacts facts{.end = plain.ticks + 1};
   facts.ticks_per_frame = DefaultTolerance(world.rate_hz, world.sensing_hz) / 2;
   facts.latency = LatencyByEvent(*prepared.program);
-  // A grammar without phases, as that of pouring, cannot cover a grasp with them.
-  if (facts.latency.contains("transporting")) facts.movable = MovableEntities(prepared.scenario);
   Violations violations =
       CheckSameTimeline(watched.timeline, watched.state_hash, plain.timeline, plain.state_hash);
   for (Violation& violation : CheckInvariants(plain.timeline, facts))
@@ -154,6 +152,16 @@ void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, cons
     details += "violated: " + Text(violation, plain.timeline.ticks_per_second) + "\n";
   }
   if (!violations.empty()) Fail(verdict, ExitCode::kDiffers, "invariant violated", details);
+}
+
+/// The laws of the scenario's own grammar.
+void JudgeLaws(const PreparedRun& prepared, const RunResult& run, ScenarioVerdict& verdict) {
+  std::string details;
+  for (const grammar::LawViolation& violation :
+       CheckLaws(*prepared.program, MakeCast(prepared.scenario), run.timeline))
+    details += "violated: " + Text(violation, run.timeline.ticks_per_second) + "\n";
+  if (!details.empty())
+    Fail(verdict, ExitCode::kDiffers, "a law of the grammar is violated", details);
 }
 
 void LeavePending(const CheckRequest& request, const Golden& pending) {
@@ -320,6 +328,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
     return verdict;
   }
   JudgeInvariants(*prepared.value, watched, plain, verdict);
+  JudgeLaws(*prepared.value, plain, verdict);
   JudgeAgainstGolden(request, *prepared.value, watched, plain, verdict);
   JudgeOtherEngine(request, *prepared.value, plain, verdict);
   JudgePictures(request, scenario, verdict);

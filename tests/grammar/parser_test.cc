@@ -49,6 +49,23 @@ TEST(Parser, BindsOperatorsAsDocumented) {
   }
 }
 
+TEST(Parser, ReadsLaws) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"rest of a(x, y) outside b(x, any Cup), c(y) is empty", ""},
+      {"a(x, y), b(y, x) do not overlap", ""},
+      {"a(x, y), b(y, x) lie inside c(any) or d(x)", "a(x, y), b(y, x) lies inside c(any) or d(x)"},
+      {"a(x, y) meets|before b(x) or c(y)", ""},
+  };
+  for (const auto& [text, dumped] : cases) {
+    const std::string head = "grammar g\nlaw l(x: X, y: Y) ";
+    EXPECT_EQ(DumpOf(head + text), head + (*dumped ? dumped : text) + "\n");
+  }
+  // These words are names elsewhere.
+  EXPECT_EQ(
+      DumpOf("grammar g\nevent is(do: X) while empty(do)\nlaw lies(do: X) is(do) meets is(do)"),
+      "grammar g\nevent is(do: X) while empty(do)\nlaw lies(do: X) is(do) meets is(do)\n");
+}
+
 TEST(Parser, ADumpReadsBackAsItself) {
   for (const char* name : {"contact", "grasp", "pick_and_place"}) {
     const std::string once = DumpOf(testing::LibraryIncluder()(name)->text);
