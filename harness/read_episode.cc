@@ -11,6 +11,7 @@
 #include <optional>
 #include <variant>
 
+#include "harness/default_grammar.h"
 #include "harness/episode_file.h"
 #include "harness/record.h"
 #include "harness/text_file.h"
@@ -45,7 +46,7 @@ struct MemberEntry {
 struct HeaderEntry {
   int version = kEpisodeVersion;
   std::string episode;
-  std::string grammar = "pick_and_place";
+  std::string grammar = kDefaultGrammar;
   std::int64_t ticks_per_second = 0;
   std::vector<std::string> styles;
   std::vector<Named<MemberEntry>> entities;
