@@ -22,6 +22,7 @@ std::string DumpUntil(const Definition& d) {
               Dump(*d.approach->idle);
     }
   }
+      if (d.approach->onset) text += ", onset " + Dump(*d.approach->onset);
   return text + " at most " + Dump(d.at_most_back) + " back";
 }
 

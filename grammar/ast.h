@@ -38,7 +38,8 @@ struct Role {
   Place place;
 };
 
-/// `approaching signal receding at most slack [, [with motion] slower than speed at most idle]`
+/// `approaching signal receding at most slack [, [with motion] slower than speed at most idle
+/// [, onset speed]]`
 struct Approach {
   Expr signal;
   Expr slack;
@@ -46,6 +47,7 @@ struct Approach {
   std::optional<Expr> speed;
   std::optional<Expr> idle;
 };
+  std::optional<Expr> onset;
 
 /// `with name = value`
 struct Attribute {

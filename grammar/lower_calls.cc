@@ -346,7 +346,9 @@ Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
 }
 
 Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr) {
-  if (expr.args.size() != builtin.arguments.size()) {
+  const std::size_t most = builtin.arguments.size();
+  const std::size_t least = builtin.left_out_m > 0 ? most - 1 : most;
+  if (expr.args.size() < least || expr.args.size() > most) {
     return Bad(expr.place,
                Quoted(builtin.name) + " takes " + std::to_string(builtin.arguments.size()) +
                    " arguments, found " + std::to_string(expr.args.size()),
@@ -366,6 +368,8 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
     }
   }
   attribute_ = in_attribute;
+  if (expr.args.size() < most)
+    node.args[next_node++] = NumberNode(builtin.left_out_m, kMetres, expr.place).node;
   if (node.op == Op::kRate) result.dimension = Quotient(result.dimension, kSeconds);
   if (!checking_ && LiesOnItself(node)) {
     return Bad(expr.args[1].place,

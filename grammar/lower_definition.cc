@@ -12,6 +12,9 @@ namespace {
 
 using ast::Definition;
 
+/// Where a grammar does not say `onset`: a tenth of the speed below which something pauses.
+constexpr double kPausePerOnset = 10;
+
 class DefinitionLowering {
  public:
   DefinitionLowering(Program& program, int index, const Definition& definition, Lowering& lowering)
@@ -186,11 +189,15 @@ class DefinitionLowering {
       speed = lowering_.Constant(*approach.speed, motion_dimension, "'slower than'");
       idle_s = lowering_.Constant(*approach.idle, kSeconds, "'slower than .. at most'");
     }
+    const double onset = approach.onset
+                             ? lowering_.Constant(*approach.onset, motion_dimension, "'onset'")
+                             : speed / kPausePerOnset;
     Rule& rule = Here();
     rule.approach = signal;
     rule.slack = slack;
     rule.motion = motion;
     rule.speed = speed;
+    rule.onset = onset;
     rule.idle_s = idle_s;
   }
 

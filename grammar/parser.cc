@@ -210,6 +210,11 @@ class Parser : public LawParser {
     approach.speed = ParseSum();
     ExpectAtMost();
     approach.idle = ParseSum();
+    if (At(",") && At("onset", 1)) {
+      SkipOne();
+      SkipOne();
+      approach.onset = ParseSum();
+    }
     return approach;
   }
 

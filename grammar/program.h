@@ -201,6 +201,7 @@ struct Rule {
   int motion = kNone;    ///< node: how fast it moves; kNone: as fast as the signal falls
   double speed = 0;      ///< in the unit of the motion
   double idle_s = -1;    ///< negative: pausing is allowed
+  double onset = 0;      ///< likewise: from which on a movement begins
   double back_s = 0;
   std::vector<int> outside;  ///< references
   Composition composition;
