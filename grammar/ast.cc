@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grammar/ast.h"
 
+#include <string_view>
+
 namespace prehend::grammar::ast {
 namespace {
 
@@ -20,9 +22,9 @@ std::string DumpUntil(const Definition& d) {
           d.approach->motion ? "with " + Dump(*d.approach->motion) + " " : "";
       text += ", " + motion + "slower than " + Dump(*d.approach->speed) + " at most " +
               Dump(*d.approach->idle);
+      if (d.approach->onset) text += ", onset " + Dump(*d.approach->onset);
     }
   }
-      if (d.approach->onset) text += ", onset " + Dump(*d.approach->onset);
   return text + " at most " + Dump(d.at_most_back) + " back";
 }
 
@@ -61,6 +63,23 @@ std::string DumpForm(const Definition& d) {
   return {};
 }
 
+std::string DumpDrawing(const Drawing& drawing) {
+  std::string text;
+  if (drawing.as == DrawnAs::kPhase) text += " as phase";
+  if (drawing.as == DrawnAs::kGrasp) text += " as grasp";
+  if (drawing.as == DrawnAs::kSupport) text += " as support";
+  if (drawing.color) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    text += " \"#";
+    for (int shift = 20; shift >= 0; shift -= 4) text += kDigits[*drawing.color >> shift & 15];
+    text += '"';
+  }
+  if (drawing.as == DrawnAs::kNothing) text += " without row";
+  if (drawing.ghost == Ghost::kNone) text += " without ghost";
+  if (drawing.ghost == Ghost::kAtEnd) text += " with ghost at end";
+  return text;
+}
+
 std::string DumpHead(const std::string& name, const std::vector<Role>& roles) {
   std::string text = name + "(";
   for (const Role& role : roles)
@@ -79,6 +98,7 @@ std::string DumpDefinition(const Definition& d) {
   if (d.style) text += " with style = style(" + Dump(*d.style) + ")";
   for (const Attribute& attribute : d.attributes)
     text += " with " + attribute.name + " = " + Dump(attribute.value);
+  if (d.drawn) text += " drawn" + DumpDrawing(d.drawn->drawing);
   return text + "\n";
 }
 

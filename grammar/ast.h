@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grammar/diagnostic.h"
+#include "grammar/drawing.h"
 #include "grammar/quantity.h"
 
 namespace prehend::grammar::ast {
@@ -46,14 +47,20 @@ struct Approach {
   std::optional<Expr> motion;
   std::optional<Expr> speed;
   std::optional<Expr> idle;
-};
   std::optional<Expr> onset;
+};
 
 /// `with name = value`
 struct Attribute {
   std::string name;
   Place place;
   Expr value;
+};
+
+/// `drawn as phase "#D62728" with ghost at end`
+struct Drawn {
+  Place place;
+  Drawing drawing;
 };
 
 struct Confirmation {
@@ -104,6 +111,7 @@ struct Definition {
   std::optional<Confirmation> confirmed;
   std::optional<Expr> style;  ///< with style = style(hand)
   std::vector<Attribute> attributes;
+  std::optional<Drawn> drawn;
 };
 
 /// `define name(parameters) = body`. A parameter's class may also be a unit, `number` or

@@ -439,7 +439,6 @@ std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) 
 // The angle between the way in the first and the way in the second half of the window, per time
 // between their middles.
 std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) const {
-  constexpr double kShortest_m = 0.001;  // less has no direction
   const std::optional<Window> window = WindowAround(view.frame, node.number);
   if (!window) return std::nullopt;
   const Vector2d before = WayOn(node, view, window->early, view.frame);

@@ -305,11 +305,29 @@ class DefinitionLowering {
       Here().confirmed_by = by;
       Here().confirmed_within = within;
     }
+    if (d_.drawn) CheckDrawn(*d_.drawn);
     if (d_.style) {
       const int role = lowering_.HandRole(*d_.style);
       Here().style_role = role;
     }
     LowerAttributes();
+  }
+
+  void CheckDrawn(const ast::Drawn& drawn) {
+    const std::vector<RuleRole>& roles = Here().roles;
+    const bool has_hand = std::any_of(
+        roles.begin(), roles.end(), [](const RuleRole& role) { return role.class_name == "Hand"; });
+    const DrawnAs as = drawn.drawing.as;
+    if (!d_.is_event) {
+      lowering_.Complain(drawn.place, "a condition is not drawn", "make it an event");
+    } else if ((as == DrawnAs::kPhase || as == DrawnAs::kGrasp) && !has_hand) {
+      lowering_.Complain(drawn.place, "this is drawn of a hand, and no role is a Hand",
+                         "a phase is what a hand does, a grasp what it holds");
+    } else if ((as == DrawnAs::kGrasp || as == DrawnAs::kSupport) && roles.size() < 2) {
+      lowering_.Complain(drawn.place, "this is drawn of two, and the event has one role",
+                         "a hand and what it holds, a thing and what it stands on");
+    }
+    Here().drawing = drawn.drawing;
   }
 
   // A form that can say how long an interval is at most must not be asked for longer ones.

@@ -268,10 +268,64 @@ class Parser : public LawParser {
       Once(definition.confirmed, std::move(confirmation), word);
     } else if (Accept("with")) {
       ParseAttribute(definition);
+    } else if (Accept("drawn")) {
+      Once(definition.drawn, ParseDrawn(word.place), word);
     } else {
       return false;
     }
     return true;
+  }
+
+  // `with name = value` may follow, so `with ghost` alone is not enough.
+  ast::Drawn ParseDrawn(Place place) {
+    ast::Drawn drawn{.place = place, .drawing = {}};
+    Drawing& drawing = drawn.drawing;
+    if (Accept("as")) drawing.as = ParseDrawnAs();
+    if (Peek().kind == Token::Kind::kText) drawing.color = ParseColor();
+    if (Accept("without")) {
+      const bool row = drawing.as == DrawnAs::kRow;
+      const bool ghost = drawing.as == DrawnAs::kPhase;
+      if (row && Accept("row")) {
+        drawing.as = DrawnAs::kNothing;
+      } else if (ghost && Accept("ghost")) {
+        drawing.ghost = Ghost::kNone;
+      } else {
+        Fail(std::string(row     ? "expected 'row'"
+                         : ghost ? "expected 'ghost'"
+                                 : "expected nothing after 'without'") +
+                 ", found " + Found(),
+             "a phase may be drawn without ghost, any other event without row");
+      }
+    } else if (At("with") && At("ghost", 1) && At("at", 2)) {
+      if (drawing.as != DrawnAs::kPhase)
+        Fail("only a phase has a ghost", "drawn as phase with ghost at end");
+      SkipOne();
+      SkipOne();
+      SkipOne();
+      if (Accept("end")) {
+        drawing.ghost = Ghost::kAtEnd;
+      } else {
+        Expect("begin", "a ghost stands where the event begins or where it ends");
+      }
+    }
+    return drawn;
+  }
+
+  DrawnAs ParseDrawnAs() {
+    if (Accept("phase")) return DrawnAs::kPhase;
+    if (Accept("grasp")) return DrawnAs::kGrasp;
+    if (Accept("support")) return DrawnAs::kSupport;
+    Fail("expected 'phase', 'grasp' or 'support', found " + Found(),
+         "any other event is drawn in a row of its own");
+  }
+
+  std::uint32_t ParseColor() {
+    const std::string& text = Peek().text;
+    const bool is_color = text.size() == 7 && text[0] == '#' &&
+                          text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+    if (!is_color)
+      Fail("expected a colour, found " + Found(), "red, green and blue in two digits: \"#D62728\"");
+    return static_cast<std::uint32_t>(std::stoul(Take().text.substr(1), nullptr, 16));
   }
 
   // `style` is a word of the language only because of `with style = style(hand)`.

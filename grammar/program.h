@@ -11,6 +11,7 @@
 
 #include "grammar/allen.h"
 #include "grammar/diagnostic.h"
+#include "grammar/drawing.h"
 #include "grammar/law.h"
 #include "grammar/monitor.h"
 #include "grammar/quantity.h"
@@ -200,8 +201,8 @@ struct Rule {
   double slack = 0;      ///< in the signal's unit
   int motion = kNone;    ///< node: how fast it moves; kNone: as fast as the signal falls
   double speed = 0;      ///< in the unit of the motion
-  double idle_s = -1;    ///< negative: pausing is allowed
   double onset = 0;      ///< likewise: from which on a movement begins
+  double idle_s = -1;    ///< negative: pausing is allowed
   double back_s = 0;
   std::vector<int> outside;  ///< references
   Composition composition;
@@ -213,6 +214,7 @@ struct Rule {
   int confirmed_within = kNone;  ///< reference
   int style_role = kNone;
   std::vector<RuleAttribute> attributes;  ///< at most kMaxAttributes
+  Drawing drawing;
 
   std::vector<Reference> references;
   std::vector<int> anchors;  ///< nodes whose values are kept from where an interval begins
