@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See interval_set.h. Tested by tests/grammar/interval_set_test.cc
+// See grammar/interval_set.h. Tested by tests/grammar/interval_set_test.cc
 #include "grammar/interval_set.h"
 
 #include <algorithm>

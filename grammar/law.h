@@ -3,13 +3,11 @@
 // Program; CheckLaws() (grammar/check_laws.h) finds where it is broken.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
 #include "grammar/allen.h"
 #include "grammar/diagnostic.h"
-#include "grammar/monitor.h"
 
 namespace prehend::grammar {
 

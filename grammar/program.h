@@ -12,8 +12,8 @@
 #include "grammar/allen.h"
 #include "grammar/diagnostic.h"
 #include "grammar/drawing.h"
+#include "grammar/event.h"
 #include "grammar/law.h"
-#include "grammar/monitor.h"
 #include "grammar/quantity.h"
 #include "grammar/thresholds.h"
 

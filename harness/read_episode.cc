@@ -11,6 +11,7 @@
 #include <optional>
 #include <variant>
 
+#include "harness/classes.h"
 #include "harness/default_grammar.h"
 #include "harness/episode_file.h"
 #include "harness/record.h"

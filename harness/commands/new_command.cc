@@ -7,6 +7,8 @@
 
 #include "harness/commands/command.h"
 #include "harness/default_grammar.h"
+#include "harness/project_library.h"
+#include "harness/read_scenario.h"
 #include "harness/scenario_copy.h"
 #include "harness/text_file.h"
 #include "harness/whole_file.h"

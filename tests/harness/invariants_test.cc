@@ -101,19 +101,6 @@ TEST(Invariants, EachOfTheTableIsBrokenAbove) {
   EXPECT_EQ(Invariants().size(), 3u);  // a new one belongs into the table above, too
 }
 
-TEST(Invariants, WatchingMustChangeNothing) {
-  EXPECT_TRUE(CheckSameTimeline(PickAndPlace(), 1, PickAndPlace(), 1).empty());
-  EXPECT_EQ(CheckSameTimeline(PickAndPlace(), 1, PickAndPlace(), 2).size(), 1u);
-  Timeline other = PickAndPlace();
-  other.events.pop_back();
-  const Violations violations = CheckSameTimeline(PickAndPlace(), 1, other, 1);
-  ASSERT_EQ(violations.size(), 1u);
-  EXPECT_EQ(violations[0].what, "supported_by(cup, table) differs with and without recording");
-  other = PickAndPlace();
-  other.events[3].decided += 1;
-  EXPECT_EQ(CheckSameTimeline(PickAndPlace(), 1, other, 1).size(), 1u);
-}
-
 TEST(Invariants, ALawIsReportedWithItsTextAndPlace) {
   grammar::Law law{.name = "cups_touch",
                    .file = "cups.grammar",
