@@ -23,6 +23,7 @@ struct WorldEntry {
   std::optional<Located<bool>> planar;  ///< default: as the engine needs it
   int rate_hz = 480;
   int sensing_hz = 240;
+  double bearing_share = 0.05;  ///< of the load of two that touch: a point with less bears nothing
   std::uint64_t seed = 1;
 };
 

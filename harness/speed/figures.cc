@@ -132,7 +132,7 @@ double TimePhysics(const Scenario& scenario) {
 /// What sensing and grammar make of snapshots that were taken before.
 double TimeWatching(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                     std::span<const physics::Snapshot> recording) {
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz);
+  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
   grammar::Monitor monitor(std::move(program), MakeCast(scenario));
   std::vector<grammar::Event> events;
   const Stopwatch watch;
@@ -165,7 +165,7 @@ SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool 
   const int boxes = quick ? 50 : 5000, ticks = quick ? 20 : 400;
   const Scenario scenario = BoxesOnAFloor(boxes, kRate_hz);
   physics::Simulation simulation(scenario.scene, scenario.script);
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz);
+  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
   grammar::Monitor monitor(std::move(program), MakeCast(scenario));
   std::vector<grammar::Event> events;
   while (simulation.snapshot().tick < kUntilAsleep_s * kRate_hz && simulation.Step())
