@@ -237,7 +237,7 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
   const Comparison comparison =
       Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
               run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
-  verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1);
+  verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1, run.drawings);
   const OracleComparison truth = CompareWithOracle(prepared.scenario, *prepared.program, run);
   const Golden pending =
       PendingGolden(golden.value, run.timeline, request.id, prepared.scenario.grammar, truth);

@@ -70,6 +70,7 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
     result.outcome = judge->Judge(simulation.snapshot());
   result.state_hash = simulation.state_hash();
   result.timeline = grammar::NameEvents(*program, cast, events);
+  result.drawings = EventDrawings(*program);
   clock.Lap(result.seconds.grammar);
   result.seconds.total = result.seconds.physics + result.seconds.sensing + result.seconds.grammar;
   return result;

@@ -12,6 +12,7 @@
 
 #include "grammar/monitor.h"
 #include "grammar/timeline.h"
+#include "harness/event_drawings.h"
 #include "harness/scenario.h"
 #include "physics/simulation.h"
 
@@ -34,6 +35,7 @@ struct RunResult {
   grammar::Tick ticks = 0;
   std::uint64_t state_hash = 0;
   grammar::Timeline timeline;                ///< what was recognised up to where the run ended
+  EventDrawings drawings;                    ///< how the grammar wants its events drawn
   std::vector<physics::Snapshot> recording;  ///< empty unless asked for
   std::vector<physics::ScriptNote> notes;
   std::string outcome;  ///< empty unless judged
