@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "grammar/lanes.h"
+#include "grammar/engine/instances.h"
 
 namespace prehend::grammar {
 namespace {
@@ -60,7 +60,7 @@ class Waits {
         settled_[index] = Settled{whole->edge, WaitOf(rule, whole->edge)};
     }
     // The truth at a frame may have to wait for more than the end's decision: see
-    // grammar/engine_events.cc, UpdateKnown.
+    // grammar/engine/engine_events.cc, UpdateKnown.
     Wait& truth = truth_[index];
     truth = end;
     if (settling) Include(truth, WaitOf(rule, std::nullopt));
@@ -180,8 +180,8 @@ std::string ParamsText(const std::vector<ProgramParam>& params) {
 GrammarDescription Describe(const Program& program) {
   GrammarDescription description{.name = program.name,
                                  .params = program.params,
-                                 .bytes_per_pose = sizeof(FrameNumber) + sizeof(EntityLook),
-                                 .bytes_per_feeler = sizeof(Feeler)};
+                                 .bytes_per_pose = sizeof(FrameNumber) + sizeof(EntitySample),
+                                 .bytes_per_feeler = sizeof(CollisionSphere)};
   const Waits waits(program);
   for (std::size_t i = 0; i < program.events.size(); ++i) {
     const Rule& rule = program.events[i];
@@ -215,7 +215,7 @@ std::string Text(const GrammarDescription& description) {
   text += "\nmemory: poses of the last " + QuantityText({description.history_s, kSeconds}) + ", " +
           std::to_string(description.bytes_per_pose) + " bytes per frame and moving entity, " +
           std::to_string(description.bytes_per_feeler) +
-          " per frame and feeler of a hand; intervals are recent as long as " +
+          " per frame and collision sphere of a hand; intervals are recent as long as " +
           "their poses are kept\n";
   return text;
 }

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "grammar/frame.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::grammar {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "grammar/allen.h"
-#include "grammar/diagnostic.h"
+#include "grammar/base/allen.h"
+#include "grammar/base/diagnostic.h"
 
 namespace prehend::grammar {
 

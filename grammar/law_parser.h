@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Laws and heads of the grammar language. Part of the parser. Tested by
-// tests/grammar/parser_test.cc and tests/grammar/errors.txt
+// tests/grammar/language/parser_test.cc and tests/grammar/errors.txt
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "grammar/ast.h"
-#include "grammar/expression_parser.h"
+#include "grammar/language/ast.h"
+#include "grammar/language/expression_parser.h"
 
 namespace prehend::grammar {
 

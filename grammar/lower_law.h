@@ -3,7 +3,7 @@
 // tests/grammar/check_laws_test.cc
 #pragma once
 
-#include "grammar/lower.h"
+#include "grammar/compile/lower.h"
 
 namespace prehend::grammar {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which grammar watches where none is named: a file of grammar/library/.
-// Tested by tests/harness/read_scenario_test.cc
+// Tested by tests/harness/read/read_scenario_test.cc
 #pragma once
 
 namespace prehend::harness {

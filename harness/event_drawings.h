@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
-#include "grammar/program.h"
-#include "grammar/timeline.h"
+#include "grammar/base/timeline.h"
+#include "grammar/program/program.h"
 
 namespace prehend::harness {
 

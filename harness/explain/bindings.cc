@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/explain/bindings.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/bindings.h. Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/bindings.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ void Fill(Hindsight& past, int rule, Binding& entities, std::size_t role, std::v
     return;
   }
   if (entities[role] != kNone) return Fill(past, rule, entities, role + 1, lanes);
-  for (int entity = 0; entity < static_cast<int>(past.cast().entities.size()); ++entity) {
+  for (int entity = 0; entity < static_cast<int>(past.entity_table().entities.size()); ++entity) {
     if (std::find(entities.begin(), entities.end(), entity) != entities.end()) continue;
     entities[role] = entity;
     Fill(past, rule, entities, role + 1, lanes);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bindings of a rule that could be meant where some of its roles are left open.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
 #include <vector>
 
-#include "grammar/hindsight.h"
+#include "grammar/replay_monitor.h"
 
 namespace prehend::harness::explain {
 

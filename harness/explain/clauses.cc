@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/explain/clauses.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/clauses.h. Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/clauses.h"
 
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "harness/explain/nodes.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
 
 namespace prehend::harness::explain {
 
@@ -20,7 +20,7 @@ using grammar::Op;
 using Mark = Reason::Mark;
 
 std::string Clauses::Time(FrameNumber frame) {
-  return At(past_.TickOf(frame), past_.cast().ticks_per_second);
+  return At(past_.TickOf(frame), past_.entity_table().ticks_per_second);
 }
 
 bool Clauses::IsChoice(int node, bool truth) const {
@@ -143,8 +143,8 @@ Reason Clauses::Impossible(int lane, int slot) {
   std::string why = "an entity would play two roles";
   for (std::size_t role = 0; role < rule.roles.size(); ++role) {
     if (reference.roles[role] == kNone) continue;
-    const grammar::CastMember& member =
-        past_.cast().entities[past_.At(lane).entities[reference.roles[role]]];
+    const grammar::EntityInfo& member =
+        past_.entity_table().entities[past_.At(lane).entities[reference.roles[role]]];
     const std::string& wanted = rule.roles[role].class_name;
     names += (names.empty() ? "" : ", ") + member.name;
     if (std::ranges::count(member.classes, wanted) == 0)

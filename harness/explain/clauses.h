@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clauses of a condition at a frame: which of them made it true or false, with what they
-// measured. Knows the forms of the language, no rule. Tested by tests/harness/explain_test.cc
+// measured. Knows the forms of the language, no rule. Tested by
+// tests/harness/explain/explain_test.cc
 #pragma once
 
 #include <functional>
 #include <optional>
 
-#include "grammar/hindsight.h"
-#include "harness/explain/reason.h"
+#include "grammar/replay_monitor.h"
+#include "harness/explain/explanation.h"
 
 namespace prehend::harness::explain {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/explain/explain.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/explain.h. Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/explain.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
-#include "harness/event_text.h"
 #include "harness/explain/bindings.h"
 #include "harness/explain/why_event.h"
 #include "harness/explain/why_missing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 namespace {
@@ -33,7 +33,7 @@ std::vector<const Fate*> IntervalsOf(Hindsight& past, const Ask& ask) {
 }
 
 Tick TickOf(const Ask& ask, const Hindsight& past) {
-  return TickAt(*ask.time_s, past.cast().ticks_per_second);
+  return TickAt(*ask.time_s, past.entity_table().ticks_per_second);
 }
 
 // A time that was read off a table is rounded, so the end counts, too.

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Answers of `prehend explain`, as values, as text and as JSON.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "grammar/hindsight.h"
-#include "harness/explain/ask.h"
-#include "harness/explain/reason.h"
+#include "grammar/replay_monitor.h"
+#include "harness/explain/explanation.h"
+#include "harness/explain/query.h"
 
 namespace prehend::harness::explain {
 

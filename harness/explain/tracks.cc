@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/explain/tracks.h. Tested by tests/harness/tracks_test.cc
+// See harness/explain/tracks.h. Tested by tests/harness/explain/tracks_test.cc
 #include "harness/explain/tracks.h"
 
 #include <fmt/format.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "harness/event_text.h"
 #include "harness/explain/nodes.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 namespace {
@@ -73,7 +73,7 @@ std::string NameOf(const Program& program, const Signal& signal) {
 class Collector {
  public:
   Collector(Hindsight& past, const std::set<std::string>& only) : past_(past), only_(only) {
-    tracks_.ticks_per_second = past.cast().ticks_per_second;
+    tracks_.ticks_per_second = past.entity_table().ticks_per_second;
     for (FrameNumber frame = 0; frame < past.frames(); ++frame)
       tracks_.ticks.push_back(past.TickOf(frame));
   }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/explain/why_event.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/why_event.h. Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/why_event.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "grammar/allen.h"
-#include "harness/event_text.h"
+#include "grammar/base/allen.h"
 #include "harness/explain/nodes.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 
@@ -253,9 +253,9 @@ Reasons EventReasons::Parts(int lane, const Fate& fate, int depth) {
   Reasons reasons;
   if (!ChooseParts(lane, fate, chosen)) return reasons;
   for (const Fate* part : chosen) {
-    Reason reason = Remark(
-        "part " + Label(past_, part->lane),
-        IntervalText({part->span.begin.tick, part->span.end.tick}, past_.cast().ticks_per_second));
+    Reason reason = Remark("part " + Label(past_, part->lane),
+                           IntervalText({part->span.begin.tick, part->span.end.tick},
+                                        past_.entity_table().ticks_per_second));
     if (part == chosen.front()) reason.mark = Mark::kTurned;
     if (part == chosen.front() && depth < kDeepest)
       reason.because = Begin(part->lane, *part, depth + 1);
@@ -266,7 +266,7 @@ Reasons EventReasons::Parts(int lane, const Fate& fate, int depth) {
 
 Reasons EventReasons::Counted(int lane, const Fate& fate) {
   const Rule& rule = past_.RuleOf(lane);
-  const Tick per_second = past_.cast().ticks_per_second;
+  const Tick per_second = past_.entity_table().ticks_per_second;
   Reasons reasons;
   if (rule.lasting_s > 0) {
     reasons.push_back(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why an interval has its boundaries, counts, and was decided when it was: from the form of its
 // rule and the clauses that turned, into the rules that those refer to. Tested by
-// tests/harness/explain_test.cc
+// tests/harness/explain/explain_test.cc
 #pragma once
 
 #include "harness/explain/clauses.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // See harness/explain/why_missing.h. Runs that were given up, and the choice of what to blame.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/why_missing.h"
 
 #include <fmt/format.h>
@@ -9,8 +9,8 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/event_text.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 
@@ -85,7 +85,7 @@ WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<
       why.because += ": " + failure->because.front().what + " " + failure->because.front().how;
     }
     if (failure->tick && failure->reading)
-      why.because += ", at " + At(*failure->tick, past_.cast().ticks_per_second);
+      why.because += ", at " + At(*failure->tick, past_.entity_table().ticks_per_second);
   }
   for (const Fate& fate : past_.FatesOf(blamed)) {
     if (fate.kind != Fate::Kind::kInterval) continue;
@@ -131,7 +131,7 @@ double MissingReasons::RunCloseness(const Fate& fate) {
   const Rule& rule = past_.RuleOf(fate.lane);
   const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
   const double lasted_s = static_cast<double>(fate.span.end.tick - fate.span.begin.tick) /
-                          static_cast<double>(past_.cast().ticks_per_second);
+                          static_cast<double>(past_.entity_table().ticks_per_second);
   switch (fate.kind) {
     case Fate::Kind::kTooShort:
       return 1 + 0.5 * lasted_s / rule.lasting_s;
@@ -160,7 +160,7 @@ std::string MissingReasons::Awaited(int lane) {
 // When what was waited for came after all, for the first time.
 std::string MissingReasons::HowLate(const Fate& fate) {
   const Rule& rule = past_.RuleOf(fate.lane);
-  const Tick per_second = past_.cast().ticks_per_second;
+  const Tick per_second = past_.entity_table().ticks_per_second;
   const Tick within = past_.AtMostTicks(rule.within_s);
   for (FrameNumber frame = fate.span.begin.frame + 1; frame < past_.frames(); ++frame) {
     const Tick late = past_.TickOf(frame) - fate.span.begin.tick - within;
@@ -220,7 +220,7 @@ Reasons MissingReasons::EndThatNeverCame(const Fate& fate, FrameNumber look_unti
 MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth, FrameNumber look_until) {
   const int lane = fate.lane;
   const Rule& rule = past_.RuleOf(lane);
-  const Tick per_second = past_.cast().ticks_per_second;
+  const Tick per_second = past_.entity_table().ticks_per_second;
   const FrameNumber begin = fate.span.begin.frame;
   const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
   Reason run{

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why an interval that was expected is none: the run that nearly was one and what it lacked, or
 // else the first clause that failed where the condition came closest, into the rules that it refers
-// to. Tested by tests/harness/explain_test.cc
+// to. Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
 #include "harness/explain/why_event.h"

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where there was no run: which clause kept each form from beginning one.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "grammar/allen.h"
-#include "harness/event_text.h"
+#include "grammar/base/allen.h"
 #include "harness/explain/bindings.h"
 #include "harness/explain/nodes.h"
+#include "harness/explain/phrasing.h"
 #include "harness/explain/why_missing.h"
-#include "harness/explain/wording.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 
@@ -46,8 +46,8 @@ Reason MissingReasons::Intervals(int lane, std::string how) {
     if (fate.kind != Fate::Kind::kInterval) continue;
     if (count++ == kMostIntervals) how += ", ..";
     if (count > kMostIntervals) continue;
-    how += (count == 1 ? " " : ", ") +
-           IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second);
+    how += (count == 1 ? " " : ", ") + IntervalText({fate.span.begin.tick, fate.span.end.tick},
+                                                    past_.entity_table().ticks_per_second);
   }
   return {.mark = Mark::kNote, .what = Label(past_, lane), .how = count == 0 ? "never" : how};
 }
@@ -212,10 +212,10 @@ MissingReasons::Blame MissingReasons::OfFromTo(int lane, const Window& window, i
   for (const Fate& fate : past_.FatesOf(lane)) {
     if (fate.span.begin.frame != from) continue;
     if (fate.kind != Fate::Kind::kInterval) return OfRun(fate, depth);
-    reason.how =
-        "the one before, " +
-        IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second) +
-        ", was over already";
+    reason.how = "the one before, " +
+                 IntervalText({fate.span.begin.tick, fate.span.end.tick},
+                              past_.entity_table().ticks_per_second) +
+                 ", was over already";
     reason.because = events_.End(lane, fate);
     return {{std::move(reason)}, 0.9};
   }
@@ -243,7 +243,7 @@ Reason MissingReasons::ClosestApproach(int lane, const Window& window) {
     smallest = value;
     reason.tick = past_.TickOf(frame);
   }
-  reason.how = "was smallest at " + At(*reason.tick, past_.cast().ticks_per_second) + ": " +
+  reason.how = "was smallest at " + At(*reason.tick, past_.entity_table().ticks_per_second) + ": " +
                QuantityText(smallest, NoteOf(past_.program(), rule.approach).dimension);
   return reason;
 }
@@ -320,7 +320,7 @@ MissingReasons::Blame MissingReasons::OfRest(int lane, const Window& window, int
     const Fate& fate = *past_.Covering(target, frame);
     Reason covered = Failed("outside " + Label(past_, target),
                             "it held " + IntervalText({fate.span.begin.tick, fate.span.end.tick},
-                                                      past_.cast().ticks_per_second));
+                                                      past_.entity_table().ticks_per_second));
     if (past_.RuleOf(target).form == Form::kUntilSince) {
       const Moment at{.lane = target,
                       .frame = frame,

@@ -19,9 +19,9 @@ NamedEvent OfHand(const std::string& event, Tick begin, Tick end) {
   return Event(event, {{"hand", "hand"}, {"object", "cup"}}, begin, end);
 }
 
-Cast SmallCast() {
+EntityTable SmallCast() {
   const auto thing = [](const std::string& name, const std::string& moves) {
-    return CastMember{.name = name, .classes = {moves, "Thing", "Entity"}};
+    return EntityInfo{.name = name, .classes = {moves, "Thing", "Entity"}};
   };
   return {.entities = {{.name = "hand", .classes = {"Hand", "Entity"}},
                        {.name = "other_hand", .classes = {"Hand", "Entity"}},

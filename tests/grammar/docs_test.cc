@@ -33,9 +33,10 @@ std::vector<Row> Sorted(std::vector<Row> rows) {
 // A row "violated NAME" per law that is broken, drawn where it is.
 std::vector<Row> DrawViolations(const CorpusCase& drawn, const Program& program,
                                 const Timeline& timeline) {
-  const Cast cast{.ticks_per_second = kCorpusTicksPerSecond, .entities = drawn.cast};
+  const EntityTable entity_table{.ticks_per_second = kCorpusTicksPerSecond,
+                                 .entities = drawn.entity_table};
   Timeline violations{.ticks_per_second = kCorpusTicksPerSecond};
-  for (const LawViolation& violation : CheckLaws(program, cast, timeline))
+  for (const LawViolation& violation : CheckLaws(program, entity_table, timeline))
     violations.events.push_back(
         {.event = "violated " + violation.law->name, .interval = violation.when});
   std::vector<Row> rows = DrawEvents(drawn, violations);
@@ -52,7 +53,7 @@ TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
     const CompileResult compiled = Compile({"docs", blocks[i]}, LibraryIncluder());
     ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
     EXPECT_EQ(Format(compiled.warnings), "");
-    ASSERT_TRUE(i + 1 < blocks.size() && blocks[i + 1].starts_with("cast "))
+    ASSERT_TRUE(i + 1 < blocks.size() && blocks[i + 1].starts_with("entities "))
         << "nothing is drawn below\n"
         << blocks[i];
     const CorpusCase drawn = ReadCorpusText("docs", "== example\n" + blocks[i + 1]).front();

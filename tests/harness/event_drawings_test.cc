@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "grammar/compile.h"
+#include "grammar/compile/compile.h"
 
 namespace prehend::harness {
 namespace {

@@ -6,7 +6,7 @@
 #include <regex>
 #include <set>
 
-#include "tests/house/small_project.h"
+#include "tests/program/small_project.h"
 
 namespace prehend::house {
 namespace {
