@@ -7,7 +7,7 @@
 #include <map>
 #include <tuple>
 
-#include "grammar/interval_set.h"
+#include "grammar/base/interval_set.h"
 
 namespace prehend::grammar {
 namespace {

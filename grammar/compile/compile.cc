@@ -11,8 +11,8 @@
 #include "grammar/compile/analyze_dependencies.h"
 #include "grammar/compile/lower.h"
 #include "grammar/compile/lower_definition.h"
+#include "grammar/compile/lower_law.h"
 #include "grammar/language/parser.h"
-#include "grammar/lower_law.h"
 
 namespace prehend::grammar {
 namespace {

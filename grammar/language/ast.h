@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "grammar/base/diagnostic.h"
+#include "grammar/base/drawing.h"
 #include "grammar/base/quantity.h"
-#include "grammar/drawing.h"
 
 namespace prehend::grammar::ast {
 

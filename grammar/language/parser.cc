@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grammar/language/parser.h"
 
-#include "grammar/law_parser.h"
+#include "grammar/language/law_parser.h"
 
 namespace prehend::grammar {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "grammar/base/allen.h"
 #include "grammar/base/diagnostic.h"
+#include "grammar/base/drawing.h"
 #include "grammar/base/event.h"
 #include "grammar/base/quantity.h"
-#include "grammar/drawing.h"
-#include "grammar/law.h"
+#include "grammar/program/law.h"
 #include "grammar/program/thresholds.h"
 
 namespace prehend::grammar {

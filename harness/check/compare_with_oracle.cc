@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See derivation.h. Tested by tests/harness/check/compare_with_oracle_test.cc
+// See harness/check/compare_with_oracle.h. Tested by
+// tests/harness/check/compare_with_oracle_test.cc
 #include "harness/check/compare_with_oracle.h"
 
 #include <fmt/format.h>

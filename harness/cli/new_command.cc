@@ -6,9 +6,9 @@
 #include <regex>
 
 #include "harness/base/atomic_file.h"
+#include "harness/base/default_grammar.h"
 #include "harness/base/text_file.h"
 #include "harness/cli/command.h"
-#include "harness/default_grammar.h"
 #include "harness/format/scenario_copy.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"

@@ -9,11 +9,11 @@
 #include <thread>
 
 #include "grammar/program/program.h"
+#include "harness/base/default_grammar.h"
 #include "harness/base/project_paths.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/cli/command.h"
 #include "harness/cli/number_in.h"
-#include "harness/default_grammar.h"
 #include "harness/oracle/oracle.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Limits on the size of a scenario, so that a typing error does not cost an hour. Tested by
-// tests/harness/read/read_scenario_test.cc and scenario_errors_test.cc
+// tests/harness/read/read_scenario_test.cc and tests/harness/format/scenario_errors_test.cc
 #pragma once
 
 #include <cstddef>

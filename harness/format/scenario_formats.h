@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parts of the scenario format, one function per kind of entry. Each file NAME_fields.cc
-// declares the keys of its part; scenario_fields.cc puts them together.
-// Tested by tests/harness/format/scenario_fields_test.cc, abstract_entities_test.cc, vary_test.cc
-// and outcome_test.cc
+// declares the keys of its part; harness/format/scenario_fields.cc puts them together.
+// Tested by tests/harness/format/scenario_fields_test.cc,
+// tests/harness/format/abstract_entities_test.cc, tests/harness/read/sample_variations_test.cc and
+// tests/harness/run/outcome_test.cc
 #pragma once
 
 #include <vector>
@@ -14,10 +15,10 @@
 
 namespace prehend::harness {
 
-// entity_fields.cc: shape, material, and what it hangs on.
+// harness/format/entity_fields.cc: shape, material, and what it hangs on.
 Format<EntityEntry> EntityFormat();
 
-// shape_fields.cc
+// harness/format/shape_fields.cc
 Format<physics::Box> BoxFormat();
 Format<physics::Sphere> SphereFormat();
 Format<physics::Cylinder> CylinderFormat();
@@ -30,7 +31,7 @@ Format<physics::Hull> HullFormat();
 Format<GrainsEntry> GrainsFormat();
 Format<PartEntry> PartFormat();
 
-// abstract_fields.cc: what has a place but no matter.
+// harness/format/abstract_fields.cc: what has a place but no matter.
 Format<RegionEntry> RegionFormat();
 Format<GazeTargetEntry> GazeTargetFormat();
 Format<CameraEntry> CameraFormat();
@@ -39,14 +40,14 @@ Format<LightEntry> LightFormat();
 /// Complains about what only matter has: a mass, a surface, joints, something that it stands on.
 void CheckAbstract(const YamlNode& node, const EntityEntry& entity, Complaints& complaints);
 
-// actor_fields.cc
+// harness/format/actor_fields.cc
 Format<ActorEntry> ActorFormat();
 Format<physics::Eyes> EyesFormat();
 
-// step_fields.cc: each step is told by its action key.
+// harness/format/step_fields.cc: each step is told by its action key.
 Format<StepEntry> StepFormat();
 
-// trial_fields.cc
+// harness/format/trial_fields.cc
 Format<VariationEntry> VariationFormat();
 Format<std::vector<ConditionEntry>> OutcomeFormat();
 

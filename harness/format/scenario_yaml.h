@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "harness/default_grammar.h"
+#include "harness/base/default_grammar.h"
 #include "harness/scenario/scenario.h"
 #include "harness/yaml/value_format.h"
 #include "physics/motion/script.h"

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "harness/event_drawings.h"
 #include "harness/golden/compare.h"
+#include "harness/timeline/event_drawings.h"
 
 namespace prehend::harness {
 

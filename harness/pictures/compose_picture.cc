@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <set>
 
-#include "harness/event_drawings.h"
 #include "harness/run/event_time.h"
+#include "harness/timeline/event_drawings.h"
 
 namespace prehend::harness {
 

@@ -12,8 +12,8 @@
 
 #include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
-#include "harness/event_drawings.h"
 #include "harness/scenario/scenario.h"
+#include "harness/timeline/event_drawings.h"
 #include "physics/simulation.h"
 
 namespace prehend::harness {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
+#include "harness/base/default_grammar.h"
 #include "harness/base/located.h"
-#include "harness/default_grammar.h"
 #include "harness/scenario/variations.h"
 #include "physics/motion/script.h"
 #include "physics/scene/scene.h"

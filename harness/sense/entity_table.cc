@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/read/read_scenario_test.cc and sensing_test.cc
+// Tested by tests/harness/read/read_scenario_test.cc and tests/harness/sense/sensing_test.cc
 #include "harness/sense/entity_table.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the grammar is told of a scenario before its first frame: the entities, in the order of
-// their indices in a Frame. Tested by tests/harness/read/read_scenario_test.cc and sensing_test.cc
+// their indices in a Frame. Tested by tests/harness/read/read_scenario_test.cc and
+// tests/harness/sense/sensing_test.cc
 #pragma once
 
 #include <string>

@@ -11,8 +11,8 @@
 #include <optional>
 #include <variant>
 
+#include "harness/base/default_grammar.h"
 #include "harness/base/text_file.h"
-#include "harness/default_grammar.h"
 #include "harness/scenario/classes.h"
 #include "harness/sense/episode_file.h"
 #include "harness/yaml/struct_format.h"

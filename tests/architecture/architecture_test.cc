@@ -11,10 +11,12 @@
 #include <map>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/architecture/source_tree.h"
+
+namespace prehend::architecture {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,9 +30,7 @@ const std::vector<std::string> kRooms = {"grammar", "physics", "render",
 const std::map<std::string, std::vector<std::string>> kArrows = {
     {"grammar", {}},
     {"physics", {}},
-    {"render",
-     {"physics/scene/scene.h", "physics/scene/snapshot.h", "physics/scene/pose.h",
-      "physics/scene/hand_model.h"}},
+    {"render", {"physics/scene/"}},
     {"harness", {"grammar/", "physics/", "render/"}},
     {"tests", {"grammar/", "physics/", "render/", "harness/", "tests/"}},
     {"bench", {"grammar/", "physics/", "render/", "harness/"}},
@@ -46,8 +46,8 @@ struct LibraryRule {
 const std::vector<LibraryRule>& LibraryRules() {
   static const std::vector<LibraryRule> rules = {
       {"Bullet", std::regex("(bt[A-Z]|Bullet|LinearMath).*"),
-       std::regex("(physics|bench|tests/physics)/bullet_.*")},
-      {"Box2D", std::regex("box2d/.*"), std::regex("physics/box2d_.*")},
+       std::regex("(physics/bullet/|tests/physics/bullet/|bench/bullet_).*")},
+      {"Box2D", std::regex("box2d/.*"), std::regex("physics/box2d/.*")},
       {"yaml-cpp", std::regex("yaml-cpp/.*"), std::regex("harness/.*")},
       {"JSON", std::regex("nlohmann/.*"), std::regex("(harness|tests|bench)/.*")},
       {"fmt", std::regex("fmt/.*"), std::regex("(harness|tests|bench)/.*")},
@@ -73,16 +73,10 @@ std::string RoomOf(const std::string& path) { return path.substr(0, path.find('/
 std::vector<std::string> Violations(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   const std::string room = RoomOf(path);
-  static const std::regex include_line("^\\s*#\\s*include\\s*[<\"]([^>\"]+)[>\"]");
-  std::istringstream lines(text);
-  std::string line;
-  int count = 0;
-  while (std::getline(lines, line)) {
-    ++count;
-    std::smatch match;
-    if (!std::regex_search(line, match, include_line)) continue;
-    const std::string header = match[1];
-    const std::string where = path + ":" + std::to_string(count) + ": ";
+  const auto count = std::ranges::count(text, '\n');
+  for (const Include& include : IncludesOf(text)) {
+    const std::string& header = include.header;
+    const std::string where = path + ":" + std::to_string(include.line) + ": ";
     const std::string other = RoomOf(header);
     if (header.find('/') != std::string::npos && std::ranges::count(kRooms, other) &&
         other != room) {
@@ -107,30 +101,12 @@ std::vector<std::string> Violations(const std::string& path, const std::string& 
   return found;
 }
 
-std::string Slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::vector<fs::path> SourceFiles() {
-  std::vector<fs::path> files;
-  for (const std::string& room : kRooms) {
-    for (const auto& entry :
-         fs::recursive_directory_iterator(fs::path(PREHEND_SOURCE_DIR) / room)) {
-      const auto extension = entry.path().extension();
-      if (extension == ".cc" || extension == ".h") files.push_back(entry.path());
-    }
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
 TEST(Architecture, EveryFileKeepsTheBorders) {
-  const auto files = SourceFiles();
+  const auto files = SourceFiles(kRooms);
   ASSERT_GT(files.size(), 30u) << "the source tree was not found";
-  for (const fs::path& file : files) {
-    const std::string path = fs::relative(file, PREHEND_SOURCE_DIR).generic_string();
-    for (const std::string& violation : Violations(path, Slurp(file))) ADD_FAILURE() << violation;
+  for (const SourceFile& file : files) {
+    for (const std::string& violation : Violations(file.path, file.text))
+      ADD_FAILURE() << violation;
   }
 }
 
@@ -139,7 +115,8 @@ TEST(Architecture, EveryFileIsLaidOutByClangFormat) {
   const fs::path complaints = fs::path(testing::TempDir()) / "layout_complaints.txt";
   {
     std::ofstream out(list);
-    for (const fs::path& file : SourceFiles()) out << file.string() << "\n";
+    for (const SourceFile& file : SourceFiles(kRooms))
+      out << (fs::path(PREHEND_SOURCE_DIR) / file.path).string() << "\n";
   }
   const std::string command = "xargs clang-format --dry-run -Werror < '" + list.string() +
                               "' 2> '" + complaints.string() + "'";
@@ -149,10 +126,8 @@ TEST(Architecture, EveryFileIsLaidOutByClangFormat) {
 
 TEST(Architecture, MedianFileIsShort) {
   std::vector<long> lengths;
-  for (const fs::path& file : SourceFiles()) {
-    const std::string text = Slurp(file);
-    lengths.push_back(std::ranges::count(text, '\n'));
-  }
+  for (const SourceFile& file : SourceFiles(kRooms))
+    lengths.push_back(std::ranges::count(file.text, '\n'));
   std::ranges::nth_element(lengths, lengths.begin() + lengths.size() / 2);
   EXPECT_LE(lengths[lengths.size() / 2], 200);
 }
@@ -217,3 +192,4 @@ TEST(ArchitectureRuleOfLength, ComplainsAboveTheLimit) {
 }
 
 }  // namespace
+}  // namespace prehend::architecture

@@ -19,7 +19,7 @@ NamedEvent OfHand(const std::string& event, Tick begin, Tick end) {
   return Event(event, {{"hand", "hand"}, {"object", "cup"}}, begin, end);
 }
 
-EntityTable SmallCast() {
+EntityTable SmallEntityTable() {
   const auto thing = [](const std::string& name, const std::string& moves) {
     return EntityInfo{.name = name, .classes = {moves, "Thing", "Entity"}};
   };
@@ -34,7 +34,7 @@ EntityTable SmallCast() {
 std::string Violations(const Program& program, Timeline timeline) {
   Sort(timeline);
   std::string text;
-  for (const LawViolation& violation : CheckLaws(program, SmallCast(), timeline)) {
+  for (const LawViolation& violation : CheckLaws(program, SmallEntityTable(), timeline)) {
     text += violation.law->name + " " + std::to_string(violation.when.begin) + ".." +
             std::to_string(violation.when.end) + ": " + violation.what + "\n";
   }

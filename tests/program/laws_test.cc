@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of a grammar as a person meets them, and that C++ has none of its own: it knows no event by
-// name.
-#include <algorithm>
-#include <filesystem>
+// Laws of a grammar as a person meets them.
 #include <regex>
-#include <set>
 
 #include "tests/program/small_project.h"
 
 namespace prehend::house {
 namespace {
-
-namespace fs = std::filesystem;
 
 class Laws : public SmallProject {
  protected:
@@ -69,39 +63,6 @@ TEST_F(Laws, AreListedWithTheRules) {
                           "Table) outside contact(object, any) is empty\n"),
             std::string::npos)
       << said.out;
-}
-
-std::set<std::string> EventsOfTheLibrary() {
-  std::set<std::string> names;
-  const std::regex head("(?:^|\n)(?:symmetric )?event (\\w+)\\(");
-  for (const auto& file :
-       fs::directory_iterator(fs::path(PREHEND_SOURCE_DIR) / "grammar/library")) {
-    const std::string text = ReadFile(file.path());
-    for (std::sregex_iterator at(text.begin(), text.end(), head), end; at != end; ++at)
-      names.insert((*at)[1]);
-  }
-  return names;
-}
-
-// Examples in help texts and hints may name events, as may the oracle and what `bench` plays; the
-// default grammar is called like the event that it is about.
-TEST(EventNames, AreUnknownToTheProgram) {
-  const std::set<std::string> names = EventsOfTheLibrary();
-  ASSERT_GE(names.size(), 30u);
-  const std::regex literal("\"((?:[^\"\\\\\n]|\\\\.)*)\"");
-  for (const char* room : {"grammar", "harness"}) {
-    for (const auto& entry :
-         fs::recursive_directory_iterator(fs::path(PREHEND_SOURCE_DIR) / room)) {
-      const std::string path = fs::relative(entry.path(), PREHEND_SOURCE_DIR).generic_string();
-      const std::string ending = entry.path().extension().string();
-      if ((ending != ".cc" && ending != ".h") || path.starts_with("harness/oracle/") ||
-          path.starts_with("harness/speed/") || path.ends_with("/default_grammar.h"))
-        continue;
-      const std::string text = ReadFile(entry.path());
-      for (std::sregex_iterator at(text.begin(), text.end(), literal), end; at != end; ++at)
-        EXPECT_FALSE(names.contains((*at)[1])) << path << " knows the event " << (*at)[1];
-    }
-  }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/lower_law.h"
+#include "grammar/compile/lower_law.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See grammar/interval_set.h. Tested by tests/grammar/interval_set_test.cc
-#include "grammar/interval_set.h"
+// See grammar/base/interval_set.h. Tested by tests/grammar/base/interval_set_test.cc
+#include "grammar/base/interval_set.h"
 
 #include <algorithm>
 

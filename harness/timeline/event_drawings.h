@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the events of a grammar are drawn in pictures and reports: what its `drawn` clauses say, and
 // a colour of a palette for each event that names none. Tested by
-// tests/harness/event_drawings_test.cc
+// tests/harness/timeline/event_drawings_test.cc
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sets of ticks as sorted lists of disjoint half-open intervals. Tested by
-// tests/grammar/interval_set_test.cc
+// tests/grammar/base/interval_set_test.cc
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/event_drawings.h"
+#include "harness/timeline/event_drawings.h"
 
 #include <gtest/gtest.h>
 

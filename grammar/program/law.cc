@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/law.h"
+#include "grammar/program/law.h"
 
 namespace prehend::grammar {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/interval_set.h"
+#include "grammar/base/interval_set.h"
 
 #include <gtest/gtest.h>
 

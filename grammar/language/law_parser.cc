@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/law_parser.h"
+#include "grammar/language/law_parser.h"
 
 namespace prehend::grammar {
 
