@@ -22,6 +22,9 @@ Format<WorldEntry> WorldFormat() {
       .Optional("rate_hz", &W::rate_hz, Integer<int>(60, 4800), "Physics steps per second.")
       .Optional("sensing_hz", &W::sensing_hz, Integer<int>(1, 4800),
                 "Looks of the grammar per second, at most rate_hz.")
+      .Optional("bearing_share", &W::bearing_share, Number(0, 0.5),
+                "Of the load between two that touch: a point of contact with a smaller share bears "
+                "nothing, so its normal does not say what is held from below.")
       .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
                 "Seed of all randomness.")
       .Check([](const YamlNode&, const W& world, Complaints& complaints) {
