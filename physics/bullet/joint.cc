@@ -53,7 +53,7 @@ BulletJoint::BulletJoint(const Joint& joint, int sharers, btRigidBody& base, btR
   const Eigen::Vector3d pivot_W_m = joint.kind == JointKind::kSlider
                                         ? FromBullet(body.getCenterOfMassPosition())
                                         : joint.pivot_W_m;
-  const Pose X_WJ{pivot_W_m, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), axis_W)};
+  const Pose X_WJ{pivot_W_m, RotationBetween(Eigen::Vector3d::UnitX(), axis_W)};
   const auto in_body = [&](const btRigidBody& owner) {
     return owner.getCenterOfMassTransform().inverse() * ToBullet(X_WJ);
   };

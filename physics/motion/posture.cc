@@ -8,7 +8,7 @@ namespace prehend::physics {
 namespace {
 
 Eigen::Vector3d TurnedToward(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double share) {
-  const Eigen::Quaterniond whole = Eigen::Quaterniond::FromTwoVectors(a, b);
+  const Eigen::Quaterniond whole = RotationBetween(a, b);
   return Eigen::Quaterniond::Identity().slerp(share, whole) * a;
 }
 

@@ -26,7 +26,7 @@ double AngleDeg(const Vector3d& a, const Vector3d& b) {
 }
 
 Vector3d Between(const Vector3d& from, const Vector3d& to, double x) {
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(from, to);
+  const Eigen::Quaterniond turn = RotationBetween(from, to);
   return (Eigen::Quaterniond::Identity().slerp(x, turn) * from).normalized();
 }
 

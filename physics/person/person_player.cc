@@ -134,8 +134,7 @@ Posture::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
     if (limb < 2) forearm_W = ForearmOf(motion.end, person_, resting);
   }
   const Vector3d from_W = posture_.X_WS * motion.from_S_m;
-  const Eigen::Quaterniond turn =
-      Eigen::Quaterniond::FromTwoVectors(posture_.X_WS.q * motion.forearm_S, forearm_W);
+  const Eigen::Quaterniond turn = RotationBetween(posture_.X_WS.q * motion.forearm_S, forearm_W);
   const Eigen::Quaterniond turned = Eigen::Quaterniond::Identity().slerp(progress, turn);
   return {motion.end, from_W + progress * (to_W - from_W),
           turned * (posture_.X_WS.q * motion.forearm_S)};

@@ -208,7 +208,7 @@ std::vector<Bone> BonesOf(const Person& person, const Posture& posture) {
 Pose PlaceOf(const Bone& bone, const Pose* before) {
   const Vector3d axis = (bone.upper_W_m - bone.lower_W_m).normalized();
   const Eigen::Quaterniond q = before ? before->q : Eigen::Quaterniond::Identity();
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(q * Vector3d::UnitZ(), axis);
+  const Eigen::Quaterniond turn = RotationBetween(q * Vector3d::UnitZ(), axis);
   return {(bone.lower_W_m + bone.upper_W_m) / 2, (turn * q).normalized()};
 }
 

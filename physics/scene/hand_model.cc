@@ -138,7 +138,7 @@ std::vector<Pose> LinkPoses(const HandModel& model, const std::vector<double>& j
     const Pose joint = JointMotion(link, joints[i]);
     moved[i] = link.parent < 0 ? joint : moved[static_cast<std::size_t>(link.parent)] * joint;
     const Pose rest{link.pivot_m + link.direction * (link.length_m / 2),
-                    Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), link.direction)};
+                    RotationBetween(Eigen::Vector3d::UnitX(), link.direction)};
     centres[i] = moved[i] * rest;
   }
   return centres;
