@@ -29,7 +29,7 @@ class BulletHand {
   BulletHand(const BulletHand&) = delete;
   BulletHand& operator=(const BulletHand&) = delete;
 
-  /// Forces and motor targets for the coming tick.
+  /// Sets forces and motor targets for the coming tick.
   void Drive(const HandCommand& command, double dt_s, double gravity_m_per_s2);
   void Describe(HandState& state) const;
 

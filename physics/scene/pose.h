@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rigid pose X_AB: where frame B stands in frame A; and rotations. Tested by
+// Rigid poses and rotations. X_AB is the pose of frame B in frame A. Tested by
 // tests/physics/pose_test.cc
 #pragma once
 
@@ -22,7 +22,7 @@ struct Pose {
   Pose inverse() const { return {q.conjugate() * -p_m, q.conjugate()}; }
 };
 
-/// The rotation as a vector: unit axis times angle in [0, pi].
+/// The rotation vector: unit axis times angle in [0, pi].
 inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& q) {
   const double sign = q.w() < 0 ? -1 : 1;
   const double sine = q.vec().norm();
