@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies of a planar scene as Box2D bodies, made of the cross-sections of their shapes. Only for
-// box2d_*.cc. Tested by tests/physics/box2d/world_test.cc
+// physics/box2d. Tested by tests/physics/box2d/world_test.cc
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contacts of Box2D: mixes friction and restitution as the other engine does, reads contact points
-// after a step, and adds the rolling friction that Box2D lacks. Only for box2d_*.cc. Tested by
+// after a step, and adds the rolling friction that Box2D lacks. Only for physics/box2d. Tested by
 // tests/physics/box2d/world_test.cc
 #pragma once
 

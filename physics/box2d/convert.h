@@ -2,8 +2,8 @@
 // Conversions between our vectors and Box2D's: its x is the world's x, its y is the world's z.
 // Box2D's tolerances are made for objects of metres, and ours measure centimetres: inside Box2D,
 // lengths, speeds and forces are ten times larger, torques and moments of inertia a hundred times.
-// Angles in Box2D turn from x towards z, which is a rotation about -y. Only for box2d_*.cc. Tested
-// by tests/physics/box2d/world_test.cc
+// Angles in Box2D turn from x towards z, which is a rotation about -y. Only for physics/box2d.
+// Tested by tests/physics/box2d/world_test.cc
 #pragma once
 
 #include <box2d/box2d.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A hand in the plane: palm and links are Box2D bodies on driven joints, and the palm follows its
 // target with the same limited PIDs as in Bullet. It holds objects by friction only; nothing ever
-// ties an object to it. Only for box2d_*.cc. Tested by tests/physics/box2d/world_test.cc
+// ties an object to it. Only for physics/box2d. Tested by tests/physics/box2d/world_test.cc
 #pragma once
 
 #include <vector>

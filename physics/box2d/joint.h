@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slider or a hinge of a planar scene in Box2D. Only for box2d_*.cc. Tested by
+// A slider or a hinge of a planar scene in Box2D. Only for physics/box2d. Tested by
 // tests/physics/box2d/world_test.cc
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A body of the scene, together with all bodies that fixed joints tie to it, as one Bullet rigid
 // body. Bullet requires a frame at the centre of mass with principal axes; our frame B stays where
-// the scene put it. Only for bullet_*.cc. Tested by tests/physics/world/world_test.cc
+// the scene put it. Only for physics/bullet. Tested by tests/physics/world/world_test.cc
 #pragma once
 
 #include <btBulletDynamicsCommon.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads contact facts from Bullet's manifolds after a step (less than 1 % of a tick). Only for
-// bullet_*.cc. Tested by tests/physics/world/world_test.cc
+// physics/bullet. Tested by tests/physics/world/world_test.cc
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>

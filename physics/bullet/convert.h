@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Conversions between our vectors and Bullet's. Only for bullet_*.cc. Tested by
+// Conversions between our vectors and Bullet's. Only for physics/bullet. Tested by
 // tests/physics/world/world_test.cc
 #pragma once
 

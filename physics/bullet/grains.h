@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grains of one body: many Bullet spheres that share one shape. Only for bullet_*.cc. Tested by
-// tests/physics/world/grains_test.cc
+// The grains of one body: many Bullet spheres that share one shape. Only for physics/bullet. Tested
+// by tests/physics/world/grains_test.cc
 #pragma once
 
 #include <btBulletDynamicsCommon.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A joint between two bodies in Bullet: one constraint with six axes, some of which are free. Only
-// for bullet_*.cc. Tested by tests/physics/scene/joint_test.cc
+// for physics/bullet. Tested by tests/physics/scene/joint_test.cc
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -22,7 +22,7 @@ class BulletJoint {
   /// limits are rows of the constraint. Nothing moves yet, so that joints that share a body all
   /// read the state after the last tick.
   void Prepare(double dt_s);
-  /// Applies spring and damping; call after all joints are prepared.
+  /// Applies spring and damping; call after all joints are loaded.
   void Pull();
   btTypedConstraint& constraint() { return *constraint_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rotations that are costly to compile. Tested by tests/physics/pose_test.cc
+// Rotations that are costly to compile. Tested by tests/physics/scene/pose_test.cc
 #include "physics/scene/pose.h"
 
 namespace prehend::physics {

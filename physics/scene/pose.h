@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rigid poses and rotations. X_AB is the pose of frame B in frame A. Tested by
-// tests/physics/pose_test.cc
+// tests/physics/scene/pose_test.cc
 #pragma once
 
 #include <Eigen/Geometry>

@@ -2,7 +2,7 @@
 // Normals of contact points that Bullet keeps from tick to tick. Bullet moves kept points with
 // their bodies but not their normals, and while two boxes rest on each other without overlap no
 // point is found anew. A box would therefore lie still on a tilting board, held by normals that
-// point up. Only for bullet_*.cc. Tested by tests/physics/world/tipping_test.cc
+// point up. Only for physics/bullet. Tested by tests/physics/world/tipping_test.cc
 #pragma once
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>

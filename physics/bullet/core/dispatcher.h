@@ -2,7 +2,7 @@
 // Bullet's narrow phase for pairs with at least one body awake. Bullet sorts all overlapping pairs
 // in every tick, because determinism needs an order, and then skips those that sleep. Normals of
 // kept contact points are rotated with their bodies (physics/bullet/core/contact_normals.h). Only
-// for bullet_*.cc. Tested by tests/physics/world/world_test.cc
+// for physics/bullet. Tested by tests/physics/world/world_test.cc
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>

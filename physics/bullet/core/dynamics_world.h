@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bullet's world with loops that skip sleeping bodies. Bullet visits all bodies some eight times
-// per tick and predicts their motion. Only for bullet_*.cc. Tested by
+// per tick and predicts their motion. Only for physics/bullet. Tested by
 // tests/physics/world/world_test.cc
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contact points of fast impacts. Except for box against box, Bullet finds one point per tick and
 // accumulates them: a can that falls flat on its base is stopped at one point of its rim and tips
-// over. Only for bullet_*.cc. Tested by tests/physics/world/bounce_test.cc
+// over. Only for physics/bullet. Tested by tests/physics/world/bounce_test.cc
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // When and how fast bodies bounce in Bullet. Bullet closes a gap within one tick, which is right
 // for a body that does not bounce, and adds the rebound velocity on top: a bouncing body rebounds
-// up to one tick early and loses gap / dt of its speed. Only for bullet_*.cc. Tested by
+// up to one tick early and loses gap / dt of its speed. Only for physics/bullet. Tested by
 // tests/physics/world/bounce_test.cc
 #pragma once
 
