@@ -15,8 +15,11 @@ Format<WorldEntry> WorldFormat() {
   using physics::Engine;
   return Record<W>("the world")
       .Optional("engine", &W::engine,
-                Choice<Engine>({{"bullet", Engine::kBullet}, {"box2d", Engine::kBox2d}}),
-                "The physics engine; box2d is planar.")
+                Choice<Engine>({{"bullet", Engine::kBullet},
+                                {"box2d", Engine::kBox2d},
+                                {"bullet_stock", Engine::kBulletStock}}),
+                "The physics engine. box2d is planar; bullet_stock is Bullet without this "
+                "project's changes, to compare.")
       .Optional("planar", &W::planar, Flag(),
                 "Everything stays in the plane y = 0; always so with box2d, else not unless given.")
       .Optional("rate_hz", &W::rate_hz, Integer<int>(60, 4800), "Physics steps per second.")
