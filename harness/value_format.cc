@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/field_table_test.cc
+// Tested by tests/harness/yaml/struct_format_test.cc
 #include "harness/value_format.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 #include <cmath>
 #include <memory>
 
-#include "harness/yaml_scalar.h"
+#include "harness/yaml/yaml_scalar.h"
 
 namespace prehend::harness {
 namespace {

@@ -14,7 +14,7 @@
 //
 // Members may be T, std::optional<T>, Located<T> (remembers its place, for checks across fields;
 // see Complaints) or std::optional<Located<T>>. A struct with a member `Where where` learns its own
-// place. Tested by tests/harness/field_table_test.cc
+// place. Tested by tests/harness/yaml/struct_format_test.cc
 #pragma once
 
 #include <Eigen/Core>
@@ -25,8 +25,8 @@
 #include <utility>
 #include <vector>
 
-#include "harness/complaints.h"
-#include "harness/located_yaml.h"
+#include "harness/yaml/diagnostic_list.h"
+#include "harness/yaml/located_yaml.h"
 
 namespace prehend::harness {
 

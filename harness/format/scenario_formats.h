@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of the scenario format, one function per kind of entry. Each file NAME_fields.cc
+// declares the keys of its part; harness/format/scenario_fields.cc puts them together.
+// Tested by tests/harness/format/scenario_fields_test.cc,
+// tests/harness/format/abstract_entities_test.cc, tests/harness/read/sample_variations_test.cc and
+// tests/harness/run/outcome_test.cc
+#pragma once
+
+#include <vector>
+
+#include "harness/format/scenario_yaml.h"
+#include "harness/scenario/variations.h"
+#include "harness/value_format.h"
+#include "harness/yaml/diagnostic_list.h"
+
+namespace prehend::harness {
+
+// harness/format/entity_fields.cc: shape, material, and what it hangs on.
+ValueFormat<EntityEntry> EntityFormat();
+
+// harness/format/shape_fields.cc
+ValueFormat<physics::Box> BoxFormat();
+ValueFormat<physics::Sphere> SphereFormat();
+ValueFormat<physics::Cylinder> CylinderFormat();
+ValueFormat<physics::Capsule> CapsuleFormat();
+ValueFormat<physics::Tray> TrayFormat();
+ValueFormat<physics::Mug> MugFormat();
+ValueFormat<physics::Bowl> BowlFormat();
+ValueFormat<physics::Shelf> ShelfFormat();
+ValueFormat<physics::Hull> HullFormat();
+ValueFormat<GrainsEntry> GrainsFormat();
+ValueFormat<PartEntry> PartFormat();
+
+// harness/format/abstract_fields.cc: what has a place but no matter.
+ValueFormat<RegionEntry> RegionFormat();
+ValueFormat<GazeTargetEntry> GazeTargetFormat();
+ValueFormat<CameraEntry> CameraFormat();
+ValueFormat<LightEntry> LightFormat();
+
+/// Complains about what only matter has: a mass, a surface, joints, something that it stands on.
+void CheckAbstract(const YamlNode& node, const EntityEntry& entity, Complaints& complaints);
+
+// harness/format/actor_fields.cc
+ValueFormat<ActorEntry> ActorFormat();
+ValueFormat<physics::Eyes> EyesFormat();
+
+// harness/format/step_fields.cc: each step is told by its action key.
+ValueFormat<StepEntry> StepFormat();
+
+// harness/format/trial_fields.cc
+ValueFormat<VariationEntry> VariationFormat();
+ValueFormat<std::vector<ConditionEntry>> OutcomeFormat();
+
+}  // namespace prehend::harness
