@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "harness/scenario/variations.h"
-#include "harness/value_format.h"
 #include "harness/yaml/diagnostic_list.h"
+#include "harness/yaml/value_format.h"
 #include "physics/motion/script.h"
 #include "physics/scene/scene.h"
 

@@ -4,7 +4,7 @@
 
 #include "harness/format/limits.h"
 #include "harness/format/scenario_formats.h"
-#include "harness/struct_format.h"
+#include "harness/yaml/struct_format.h"
 
 namespace prehend::harness {
 namespace {

@@ -8,7 +8,7 @@
 #include "harness/format/scenario_fields.h"
 #include "harness/format/scenario_formats.h"
 #include "harness/scenario/classes.h"
-#include "harness/struct_format.h"
+#include "harness/yaml/struct_format.h"
 
 namespace prehend::harness {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/struct_format.h"
+#include "harness/yaml/struct_format.h"
 
 namespace prehend::harness {
 namespace {

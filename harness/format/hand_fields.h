@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/value_format.h"
+#include "harness/yaml/value_format.h"
 #include "physics/scene/hand_model.h"
 
 namespace prehend::harness {

@@ -10,8 +10,8 @@
 
 #include "harness/format/scenario_yaml.h"
 #include "harness/scenario/variations.h"
-#include "harness/value_format.h"
 #include "harness/yaml/diagnostic_list.h"
+#include "harness/yaml/value_format.h"
 
 namespace prehend::harness {
 

@@ -12,7 +12,7 @@
 
 #include "harness/base/default_grammar.h"
 #include "harness/scenario/scenario.h"
-#include "harness/value_format.h"
+#include "harness/yaml/value_format.h"
 #include "physics/motion/script.h"
 #include "physics/scene/compounds.h"
 #include "physics/scene/scene.h"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "harness/format/scenario_formats.h"
-#include "harness/struct_format.h"
+#include "harness/yaml/struct_format.h"
 
 namespace prehend::harness {
 namespace {

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "harness/motion/hand_motion.h"
-#include "harness/struct_format.h"
+#include "harness/yaml/struct_format.h"
 
 namespace prehend::harness {
 namespace {

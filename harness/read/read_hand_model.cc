@@ -11,7 +11,7 @@
 #include "harness/base/project_paths.h"
 #include "harness/build/build_styles.h"
 #include "harness/format/hand_fields.h"
-#include "harness/struct_format.h"
+#include "harness/yaml/struct_format.h"
 
 namespace prehend::harness {
 namespace {

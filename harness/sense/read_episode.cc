@@ -15,7 +15,7 @@
 #include "harness/base/text_file.h"
 #include "harness/scenario/classes.h"
 #include "harness/sense/episode_file.h"
-#include "harness/struct_format.h"
+#include "harness/yaml/struct_format.h"
 
 namespace prehend::harness {
 namespace {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table on a small struct of its own: what is read, what is refused, what the schema says.
+#include "harness/yaml/struct_format.h"
+
 #include <gtest/gtest.h>
 
-#include "harness/struct_format.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a value is written in YAML: one object that both reads it and states its JSON Schema, so that
 // the two cannot disagree. This file has the formats of single values and of lists and mappings of
-// them; harness/struct_format.h has the format of a struct.
+// them; harness/yaml/struct_format.h has the format of a struct.
 //
 // How to use it, for a file of your own:
 //

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The format of a struct: every field is declared once, with key, member, format and a sentence for
-// people; reader and JSON Schema follow from it. See harness/value_format.h for how to use it.
+// people; reader and JSON Schema follow from it. See harness/yaml/value_format.h for how to use it.
 //
 // A field is kept without the types of its struct and of its value: as an offset and a function
 // that reads a value into the member there. So a table of fields compiles to data, and the work is
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/value_format.h"
+#include "harness/yaml/value_format.h"
 
 namespace prehend::harness {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/yaml/struct_format_test.cc
-#include "harness/struct_format.h"
+#include "harness/yaml/struct_format.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
