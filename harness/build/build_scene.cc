@@ -176,11 +176,11 @@ class Stacking {
       return complaints_.Add(entity.in->where,
                              fmt::format("in: '{}' does not stand upright", vessel->name));
     }
-    constexpr int kMostGrains = 500;
+    constexpr int kMaxGrains = 500;
     grains_so_far_ += entity.grains->count;
-    if (grains_so_far_ > kMostGrains) {
+    if (grains_so_far_ > kMaxGrains) {
       return complaints_.Add(entity.in->where,
-                             fmt::format("more than {} grains in the scenario", kMostGrains));
+                             fmt::format("more than {} grains in the scenario", kMaxGrains));
     }
     const std::uint64_t seed =
         physics::Random(entry_.world.seed ^ physics::Random(i).Next()).Next();

@@ -18,7 +18,7 @@ namespace prehend::harness {
 namespace {
 
 /// So far outside of a thing a point to grasp may be: written numbers are rounded.
-constexpr double kFarthestPointM = 0.005;
+constexpr double kMaxOutside_m = 0.005;
 
 template <class T>
 std::vector<std::string> NamesOf(const std::vector<Named<T>>& entries) {
@@ -128,10 +128,10 @@ struct StepMaker {
     const auto index = static_cast<std::size_t>(found - entities.begin());
     if (index >= scene.bodies.size() || scene.bodies[index].shapes.empty()) return;
     const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
-    if (away_m <= kFarthestPointM) return;
+    if (away_m <= kMaxOutside_m) return;
     complaints.Add(e.point_m->where,
                    fmt::format("point_m: the point is {:.1f} mm outside of '{}', more than {:g} mm",
-                               1000 * away_m, *found, 1000 * kFarthestPointM),
+                               1000 * away_m, *found, 1000 * kMaxOutside_m),
                    "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
   }
 
@@ -195,9 +195,9 @@ void CheckLength(const ScenarioEntry& entry, const physics::Script& script,
     }
     total_s += DurationOf(script.beats[i]);
     const Where where = entry.script[i].front().name_where;
-    if (total_s > kMaxDurationS) {
+    if (total_s > kMaxDuration_s) {
       return complaints.Add(
-          where, fmt::format("the script takes more than {} s up to here", kMaxDurationS));
+          where, fmt::format("the script takes more than {} s up to here", kMaxDuration_s));
     }
     if (poses > kMaxPoses)
       return complaints.Add(where, fmt::format("more than {} poses up to here", kMaxPoses));

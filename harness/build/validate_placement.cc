@@ -16,7 +16,7 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kAllowedM = 0.001;  // as deep as collision margins hide
+constexpr double kMaxOverlap_m = 0.001;  // as deep as collision margins hide
 
 /// A body or a hand.
 struct Occupant {
@@ -167,7 +167,7 @@ void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene,
       if (occupants[by_x[j]].bounds.min().x() > occupants[by_x[i]].bounds.max().x()) break;
       if (complained.contains(later)) continue;
       const double depth_m = Depth(occupants[earlier], occupants[later]);
-      if (depth_m <= kAllowedM || Joined(scene, earlier, later)) continue;
+      if (depth_m <= kMaxOverlap_m || Joined(scene, earlier, later)) continue;
       if (MayOverlap(occupants[earlier], occupants[later])) continue;
       Complain(occupants[later], occupants[earlier], depth_m, complaints);
       complained.insert(later);

@@ -11,16 +11,16 @@ namespace {
 
 using physics::Abstract;
 
-constexpr double kSmallestM = 0.001, kLargestM = 100;
+constexpr double kMinSize_m = 0.001, kMaxSize_m = 100;
 
 }  // namespace
 
 ValueFormat<RegionEntry> RegionFormat() {
   using R = RegionEntry;
   return StructFormat<R>("a region")
-      .Optional("size_m", &R::size_m, Vector<3>(kSmallestM, kLargestM),
+      .Optional("size_m", &R::size_m, Vector<3>(kMinSize_m, kMaxSize_m),
                 "Full edge lengths [x, y, z] of a box.")
-      .Optional("radius_m", &R::radius_m, Number(kSmallestM, kLargestM), "Radius of a ball.")
+      .Optional("radius_m", &R::radius_m, Number(kMinSize_m, kMaxSize_m), "Radius of a ball.")
       .ExactlyOneOf({"size_m", "radius_m"})
       .format();
 }
@@ -28,7 +28,7 @@ ValueFormat<RegionEntry> RegionFormat() {
 ValueFormat<GazeTargetEntry> GazeTargetFormat() {
   using G = GazeTargetEntry;
   return StructFormat<G>("a gaze target")
-      .Optional("radius_m", &G::radius_m, Number(kSmallestM, 10),
+      .Optional("radius_m", &G::radius_m, Number(kMinSize_m, 10),
                 "Radius of the ball that is looked at.")
       .format();
 }
@@ -36,7 +36,7 @@ ValueFormat<GazeTargetEntry> GazeTargetFormat() {
 ValueFormat<CameraEntry> CameraFormat() {
   using C = CameraEntry;
   return StructFormat<C>("a camera")
-      .Required("toward_m", &C::toward_m, Vector<3>(-kFarthestM, kFarthestM),
+      .Required("toward_m", &C::toward_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "A point in the middle of its picture, in the world.")
       .Optional("view_deg", &C::view_deg, Number(5, 120), "How much it sees, from below to above.")
       .format();
@@ -66,7 +66,7 @@ void CheckAbstract(const YamlNode& node, const EntityEntry& entity, Complaints& 
                    "call it otherwise");
   if (entity.camera && entity.at_m.value.size() == 3) {
     const Eigen::Vector3d at_m(entity.at_m.value[0], entity.at_m.value[1], entity.at_m.value[2]);
-    if ((entity.camera->toward_m.value - at_m).norm() < kSmallestM)
+    if ((entity.camera->toward_m.value - at_m).norm() < kMinSize_m)
       complaints.Add(entity.camera->toward_m.where, "toward_m: the camera stands there",
                      "a point that it looks at");
   }

@@ -68,7 +68,7 @@ ValueFormat<physics::TrackerSettings> TrackingFormat() {
 }
 
 /// What hands and persons have in common.
-ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
+ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kMaxDistance_m, kMaxDistance_m); }
 
 ValueFormat<HandActor> HandActorFormat() {
   using A = HandActor;

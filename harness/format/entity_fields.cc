@@ -13,10 +13,10 @@
 namespace prehend::harness {
 namespace {
 
-constexpr std::size_t kMostParts = 256;
-constexpr double kMostResistance = 1e5;
-constexpr double kFarthestSlideM = 10;
-constexpr double kFarthestTurnDeg = 170;  // at half a turn the two ways could not be told apart
+constexpr std::size_t kMaxParts = 256;
+constexpr double kMaxResistance = 1e5;
+constexpr double kMaxSlide_m = 10;
+constexpr double kMaxTurn_deg = 170;  // at half a turn the two ways could not be told apart
 
 /// A joint's range is [least, most] and holds 0, where it was placed.
 void CheckRange(const YamlNode&, const JointEntry& joint, Complaints& complaints) {
@@ -56,16 +56,15 @@ ValueFormat<JointEntry> SliderFormat() {
   return JointRecord("a slider")
       .Required("axis", &J::axis, Axis(),
                 "The direction in which it opens, in the world, as placed.")
-      .Required("range_m", &J::range, Vector<2>(-kFarthestSlideM, kFarthestSlideM),
+      .Required("range_m", &J::range, Vector<2>(-kMaxSlide_m, kMaxSlide_m),
                 "How far it goes from where it is placed: [least, most].")
-      .Optional("friction_n", &J::friction, Number(0, kMostResistance),
+      .Optional("friction_n", &J::friction, Number(0, kMaxResistance),
                 "Largest force that it holds against.")
-      .Optional("damping_n_s_per_m", &J::damping, Number(0, kMostResistance),
+      .Optional("damping_n_s_per_m", &J::damping, Number(0, kMaxResistance),
                 "Force against its speed.")
-      .Optional("spring_n_per_m", &J::spring, Number(0, kMostResistance),
+      .Optional("spring_n_per_m", &J::spring, Number(0, kMaxResistance),
                 "Force that pulls it to rest_m.")
-      .Optional("rest_m", &J::rest, Number(-kFarthestSlideM, kFarthestSlideM),
-                "Where its spring is slack.")
+      .Optional("rest_m", &J::rest, Number(-kMaxSlide_m, kMaxSlide_m), "Where its spring is slack.")
       .Check(CheckAxis)
       .Check(CheckRange)
       .Check(SpringPullsTo("rest_m", "spring_n_per_m"))
@@ -75,19 +74,19 @@ ValueFormat<JointEntry> SliderFormat() {
 ValueFormat<JointEntry> HingeFormat() {
   using J = JointEntry;
   return JointRecord("a hinge")
-      .Required("at_m", &J::at_m, Vector<3>(-kFarthestM, kFarthestM),
+      .Required("at_m", &J::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "A point of its axis, in the world, as placed.")
       .Required("axis", &J::axis, Axis(),
                 "The direction of its axis; it opens the way that a right-handed screw turns.")
-      .Required("range_deg", &J::range, Vector<2>(-kFarthestTurnDeg, kFarthestTurnDeg),
+      .Required("range_deg", &J::range, Vector<2>(-kMaxTurn_deg, kMaxTurn_deg),
                 "How far it turns from where it is placed: [least, most].")
-      .Optional("friction_nm", &J::friction, Number(0, kMostResistance),
+      .Optional("friction_nm", &J::friction, Number(0, kMaxResistance),
                 "Largest torque that it holds against.")
-      .Optional("damping_nm_s_per_rad", &J::damping, Number(0, kMostResistance),
+      .Optional("damping_nm_s_per_rad", &J::damping, Number(0, kMaxResistance),
                 "Torque against its speed.")
-      .Optional("spring_nm_per_rad", &J::spring, Number(0, kMostResistance),
+      .Optional("spring_nm_per_rad", &J::spring, Number(0, kMaxResistance),
                 "Torque that turns it to rest_deg.")
-      .Optional("rest_deg", &J::rest, Number(-kFarthestTurnDeg, kFarthestTurnDeg),
+      .Optional("rest_deg", &J::rest, Number(-kMaxTurn_deg, kMaxTurn_deg),
                 "Where its spring is slack.")
       .Check(CheckAxis)
       .Check(CheckRange)
@@ -97,7 +96,7 @@ ValueFormat<JointEntry> HingeFormat() {
 
 ValueFormat<JointEntry> BallJointFormat() {
   return JointRecord("a ball joint")
-      .Required("at_m", &JointEntry::at_m, Vector<3>(-kFarthestM, kFarthestM),
+      .Required("at_m", &JointEntry::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "The point about which it turns any way, in the world, as placed.")
       .format();
 }
@@ -197,7 +196,7 @@ ValueFormat<EntityEntry> EntityFormat() {
       .Optional("bowl", &E::bowl, BowlFormat(), "Its shape: a round dish.")
       .Optional("shelf", &E::shelf, ShelfFormat(),
                 "Its shape: boards between two sides; a cupboard has two.")
-      .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMostParts),
+      .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMaxParts),
                 "Its shape: several shapes, rigidly together.")
       .Optional("grains", &E::grains, GrainsFormat(),
                 "Many loose balls in a vessel, seen as one entity.")
@@ -230,7 +229,7 @@ ValueFormat<EntityEntry> EntityFormat() {
       .Optional("hinge", &E::hinge, HingeFormat(), "It turns on another entity, as a door does.")
       .Optional("ball_joint", &E::ball_joint, BallJointFormat(),
                 "It swings any way about a point of another entity.")
-      .Optional("at_m", &E::at_m, ListOf(Number(-kFarthestM, kFarthestM), 2, 3),
+      .Optional("at_m", &E::at_m, ListOf(Number(-kMaxDistance_m, kMaxDistance_m), 2, 3),
                 "World coordinates of its centre: [x, y, z], or [x, y] with 'on'.")
       .Optional("rpy_deg", &E::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis.")

@@ -71,9 +71,9 @@ double DegreesBetween(const Vector3d& a, const Vector3d& b) {
 void CheckAcross(const YamlNode& node, const char* key, const Vector3d& direction,
                  const std::string& other_key, const Vector3d& other, Complaints& complaints,
                  const std::string& hint) {
-  constexpr double kMostOff_deg = 1;  // two written digits
+  constexpr double kMaxOff_deg = 1;  // two written digits
   const double degrees = DegreesBetween(direction, other);
-  if (90 - degrees <= kMostOff_deg) return;
+  if (90 - degrees <= kMaxOff_deg) return;
   complaints.Add(node.Find(key)->where,
                  fmt::format("{}: expected a direction at right angles to {}, found one at {:.3g} "
                              "degrees to it",
@@ -179,9 +179,9 @@ ValueFormat<JawEntry> JawFormat() {
 
 /// A joint at the last part that turns it about its own length neither opens nor closes anything.
 void CheckLastJoint(const YamlNode& node, const DigitEntry& digit, Complaints& complaints) {
-  constexpr double kLeastOff_deg = 1;
+  constexpr double kMinAngle_deg = 1;
   if (digit.phalanges.empty()) return;
-  if (DegreesBetween(digit.phalanges.back().joint_axis, digit.direction) >= kLeastOff_deg) return;
+  if (DegreesBetween(digit.phalanges.back().joint_axis, digit.direction) >= kMinAngle_deg) return;
   const YamlNode& last = node.Find("phalanges")->children.back();
   const YamlNode* axis = last.Find("joint_axis");
   complaints.Add(axis ? axis->where : last.where,

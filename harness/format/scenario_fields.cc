@@ -59,7 +59,7 @@ ValueFormat<std::string> ClassName() {
 
 /// A moment is an event's boundary or a time; PictureEntry keeps both as text.
 ValueFormat<std::string> MomentFormat() {
-  const auto seconds = Number(0, kMaxDurationS);
+  const auto seconds = Number(0, kMaxDuration_s);
   const auto boundary =
       Word("[a-z][a-z0-9_]*\\.(begin|end)", "a time in seconds, or an event like 'reaching.begin'");
   return ValueFormat<std::string>(

@@ -8,14 +8,14 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kSmallestM =
+constexpr double kMinSize_m =
     0.001;  // below, the collision margins (1 mm) would be larger than the thing
-constexpr double kLargestM = 100;
-constexpr double kFarthestPartM = 10;
-constexpr int kMostBoards = 20;
+constexpr double kMaxSize_m = 100;
+constexpr double kMaxPartOffset_m = 10;
+constexpr int kMaxBoards = 20;
 
-ValueFormat<double> Length() { return Number(kSmallestM, kLargestM); }
-ValueFormat<Eigen::Vector3d> Size() { return Vector<3>(kSmallestM, kLargestM); }
+ValueFormat<double> Length() { return Number(kMinSize_m, kMaxSize_m); }
+ValueFormat<Eigen::Vector3d> Size() { return Vector<3>(kMinSize_m, kMaxSize_m); }
 
 /// Cylinders and capsules: the axis is along z.
 template <class Round>
@@ -64,8 +64,8 @@ ValueFormat<physics::Hull> HullFormat() {
   const ValueFormat<Points> written =
       StructFormat<Points>("a hull")
           .Required("points_m", &Points::points_m,
-                    ListOf(Vector<3>(-kFarthestPartM, kFarthestPartM), physics::kFewestHullPoints,
-                           physics::kMostHullPoints),
+                    ListOf(Vector<3>(-kMaxPartOffset_m, kMaxPartOffset_m), physics::kMinHullPoints,
+                           physics::kMaxHullPoints),
                     "Its corners [x, y, z] in its own frame, in any order.")
           .format();
   return ValueFormat<physics::Hull>(
@@ -104,12 +104,12 @@ ValueFormat<physics::Mug> MugFormat() {
       .Required("radius_m", &M::radius_m, Length(), "Outer radius, without the handle.")
       .Required("height_m", &M::height_m, Length(), "Height.")
       .Optional("wall_m", &M::wall_m, Length(), "Thickness of floor and wall.")
-      .Optional("handle_m", &M::handle_m, Number(0, kLargestM),
+      .Optional("handle_m", &M::handle_m, Number(0, kMaxSize_m),
                 "How far its handle stands out to +x; 0: it has none.")
       .Check([](const YamlNode& node, const M& mug, Complaints& complaints) {
         CheckWall(node, mug.wall_m, 2 * std::min(mug.radius_m, mug.height_m), complaints);
-        constexpr double kLeastHandleM = 0.011;  // its bar is 10 mm thick
-        if (mug.handle_m > 0 && mug.handle_m < kLeastHandleM) {
+        constexpr double kMinHandle_m = 0.011;  // its bar is 10 mm thick
+        if (mug.handle_m > 0 && mug.handle_m < kMinHandle_m) {
           complaints.Add(
               node.Find("handle_m")->where,
               fmt::format("handle_m: expected 0, or at least 0.011, found {}", mug.handle_m));
@@ -135,7 +135,7 @@ ValueFormat<physics::Shelf> ShelfFormat() {
   using S = physics::Shelf;
   return StructFormat<S>("a shelf")
       .Required("size_m", &S::size_m, Size(), "Outer edge lengths [x, y, z]; it is open to -x.")
-      .Optional("boards", &S::boards, Integer<int>(2, kMostBoards),
+      .Optional("boards", &S::boards, Integer<int>(2, kMaxBoards),
                 "How many, at even distances, with the lowest and the highest.")
       .Optional("wall_m", &S::wall_m, Length(), "Thickness of boards, sides and back.")
       .Optional("back", &S::back, Flag(), "False: open to +x, too.")
@@ -149,11 +149,11 @@ ValueFormat<physics::Shelf> ShelfFormat() {
 
 ValueFormat<GrainsEntry> GrainsFormat() {
   using G = GrainsEntry;
-  constexpr int kMostGrains = 500;
-  constexpr double kSmallestGrainM = 0.002, kLargestGrainM = 0.05;
+  constexpr int kMaxGrains = 500;
+  constexpr double kMinGrainRadius_m = 0.002, kMaxGrainRadius_m = 0.05;
   return StructFormat<G>("grains")
-      .Required("count", &G::count, Integer<int>(1, kMostGrains), "How many.")
-      .Required("radius_m", &G::radius_m, Number(kSmallestGrainM, kLargestGrainM),
+      .Required("count", &G::count, Integer<int>(1, kMaxGrains), "How many.")
+      .Required("radius_m", &G::radius_m, Number(kMinGrainRadius_m, kMaxGrainRadius_m),
                 "Radius of each.")
       .format();
 }
@@ -166,7 +166,7 @@ ValueFormat<PartEntry> PartFormat() {
       .Optional("cylinder", &P::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")
       .Optional("capsule", &P::capsule, CapsuleFormat(), "Its shape: a capsule, axis along z.")
       .Optional("hull", &P::hull, HullFormat(), "Its shape: a solid of flat faces, by its corners.")
-      .Optional("at_m", &P::at_m, Vector<3>(-kFarthestPartM, kFarthestPartM),
+      .Optional("at_m", &P::at_m, Vector<3>(-kMaxPartOffset_m, kMaxPartOffset_m),
                 "Its centre in the entity's own frame, whose origin is at the entity's at_m.")
       .Optional("rpy_deg", &P::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw in degrees: turns about the entity's x, then y, then z axis.")

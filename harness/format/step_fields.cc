@@ -12,12 +12,12 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kLongestMoveM = 10;
-constexpr double kMostSwayM = 0.4;   // farther, nobody stays on her feet
-constexpr double kShortestS = 0.01;  // below, no human hand moves
-constexpr double kLongestS = 600;
+constexpr double kMaxMove_m = 10;
+constexpr double kMaxSway_m = 0.4;   // farther, nobody stays on her feet
+constexpr double kMinStep_s = 0.01;  // below, no human hand moves
+constexpr double kMaxStep_s = 600;
 
-ValueFormat<double> Duration() { return Number(kShortestS, kLongestS); }
+ValueFormat<double> Duration() { return Number(kMinStep_s, kMaxStep_s); }
 const std::string kOverDoc = "Duration in seconds.";
 const std::string kStyleDoc = "The grasp style that the hand takes; default: it keeps its own.";
 
@@ -44,9 +44,9 @@ ValueFormat<StepEntry> ReachFormat() {
                                       {"above", Approach::kAbove},
                                       {"side", Approach::kSide}}),
                     "Where the hand comes from; auto chooses by style and shape.")
-          .Optional("offset_m", &R::offset_m, Vector<3>(-kLongestMoveM, kLongestMoveM),
+          .Optional("offset_m", &R::offset_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
                     "Added to where the hand goes, world axes: reach beside or above the entity.")
-          .Optional("point_m", &R::point_m, Vector<3>(-kFarthestM, kFarthestM),
+          .Optional("point_m", &R::point_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                     "The point to grasp, in the entity's own frame; default: its centre.")
           .Optional("over_s", &R::over_s, Duration(), kOverDoc)
           .format());
@@ -74,9 +74,9 @@ ValueFormat<StepEntry> WaitFormat() {
 ValueFormat<PoseEntry> PoseFormat() {
   using P = PoseEntry;
   return StructFormat<P>("a pose")
-      .Required("t_s", &P::t_s, Number(0, kMaxDurationS),
+      .Required("t_s", &P::t_s, Number(0, kMaxDuration_s),
                 "When, since the start of the step; increasing.")
-      .Required("at_m", &P::at_m, Vector<3>(-kFarthestM, kFarthestM),
+      .Required("at_m", &P::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "World coordinates of the palm's centre.")
       .Optional("rpy_deg", &P::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw; default is no rotation.")
@@ -123,7 +123,7 @@ void CheckKindOfRecording(const YamlNode& node, const RecordingEntry& entry,
 
 ValueFormat<StepEntry> RecordingFormat() {
   using R = RecordingEntry;
-  const auto seconds = Number(0, kMaxDurationS);
+  const auto seconds = Number(0, kMaxDuration_s);
   return AsAlternative<StepEntry>(
       StructFormat<R>("a recording step")
           .Required("recording", &R::recording,
@@ -139,7 +139,7 @@ ValueFormat<StepEntry> RecordingFormat() {
           .Optional("style", &R::style, Identifier(), kStyleDoc)
           .Optional("from_s", &R::from_s, seconds, "What came before is left out.")
           .Optional("to_s", &R::to_s, seconds, "What comes after is left out; default: nothing.")
-          .Optional("start_at_m", &R::start_at_m, Vector<3>(-kFarthestM, kFarthestM),
+          .Optional("start_at_m", &R::start_at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                     "The motion is shifted so that the palm starts here; default: not shifted.")
           .Optional("yaw_deg", &R::yaw_deg, Number(-360, 360),
                     "The motion is turned by this about the vertical, before it is shifted.")
@@ -170,7 +170,7 @@ ValueFormat<StepEntry> MoveLimbFormat() {
                                      {"right_foot", LimbEnd::kRightFoot},
                                      {"left_foot", LimbEnd::kLeftFoot}}),
                     "Which part of a person goes there; the rest of the limb follows.")
-          .Optional("to_m", &M::to_m, Vector<3>(-kFarthestM, kFarthestM),
+          .Optional("to_m", &M::to_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                     "World coordinates; without it the limb goes back to where it hangs or stands.")
           .Optional("most_n", &M::most_n, Number(1, 10000),
                     "The limb yields: it slows down so that it pushes with no more than this.")
@@ -189,19 +189,18 @@ ValueFormat<StepEntry> StepFormat() {
                               "Grip: 0 open, 1 closed with full effort.")},
        {"open_to", TimedStep("open_to", &OpenEntry::open_to, grip,
                              "Grip: 0 open, 1 closed with full effort.")},
-       {"lift_by_m",
-        TimedStep("lift_by_m", &LiftEntry::lift_by_m, Number(-kLongestMoveM, kLongestMoveM),
-                  "Straight up by this much; negative is down.")},
+       {"lift_by_m", TimedStep("lift_by_m", &LiftEntry::lift_by_m, Number(-kMaxMove_m, kMaxMove_m),
+                               "Straight up by this much; negative is down.")},
        {"move_by_m",
-        TimedStep("move_by_m", &MoveEntry::move_by_m, Vector<3>(-kLongestMoveM, kLongestMoveM),
+        TimedStep("move_by_m", &MoveEntry::move_by_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
                   "Straight by [x, y, z], world axes.")},
        {"carry_to_m",
-        TimedStep("carry_to_m", &CarryEntry::carry_to_m, Vector<2>(-kFarthestM, kFarthestM),
+        TimedStep("carry_to_m", &CarryEntry::carry_to_m, Vector<2>(-kMaxDistance_m, kMaxDistance_m),
                   "The held object's centre goes to this [x, y], height kept.")},
        {"place_on", TimedStep("place_on", &PlaceEntry::place_on, Identifier(),
                               "Lower until the held object stands on this entity.")},
        {"retreat_by_m",
-        TimedStep("retreat_by_m", &RetreatEntry::retreat_by_m, Number(0, kLongestMoveM),
+        TimedStep("retreat_by_m", &RetreatEntry::retreat_by_m, Number(0, kMaxMove_m),
                   "Back by this much, along the way the hand came.")},
        {"follow_joint", FollowJointFormat()},
        {"wait_s", WaitFormat()},
@@ -209,20 +208,20 @@ ValueFormat<StepEntry> StepFormat() {
        {"recording", RecordingFormat()},
        {"look_at", TimedStep("look_at", &LookAtEntry::look_at, Identifier(),
                              "The entity or hand that a person looks at from now on.")},
-       {"look_at_m",
-        TimedStep("look_at_m", &LookAtPointEntry::look_at_m, Vector<3>(-kFarthestM, kFarthestM),
-                  "The place that a person looks at from now on.")},
+       {"look_at_m", TimedStep("look_at_m", &LookAtPointEntry::look_at_m,
+                               Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                               "The place that a person looks at from now on.")},
        {"eyes", TimedStep("eyes", &EyesEntry::eyes, EyesFormat(),
                           "A person's eyes lead her hands again, or look ahead.")},
        {"walk_to_m",
-        TimedStep("walk_to_m", &WalkEntry::walk_to_m, Vector<2>(-kFarthestM, kFarthestM),
+        TimedStep("walk_to_m", &WalkEntry::walk_to_m, Vector<2>(-kMaxDistance_m, kMaxDistance_m),
                   "The place between a person's feet goes to this [x, y].")},
        {"turn_to_deg", TimedStep("turn_to_deg", &TurnEntry::turn_to_deg, Number(-360, 360),
                                  "A person turns to this yaw.")},
        {"lean_deg", TimedStep("lean_deg", &LeanEntry::lean_deg, Number(-30, 90),
                               "A person's trunk leans forwards by this.")},
        {"sway_by_m",
-        TimedStep("sway_by_m", &SwayEntry::sway_by_m, Vector<2>(-kMostSwayM, kMostSwayM),
+        TimedStep("sway_by_m", &SwayEntry::sway_by_m, Vector<2>(-kMaxSway_m, kMaxSway_m),
                   "A person's hips go this far [ahead, left] of over her feet.")},
        {"move_limb", MoveLimbFormat()}});
 }

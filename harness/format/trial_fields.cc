@@ -51,15 +51,15 @@ void CheckCondition(const YamlNode& node, const ConditionEntry& wanted, Complain
 
 ValueFormat<ConditionEntry> ConditionFormat() {
   using C = ConditionEntry;
-  const auto height = Number(-kFarthestM, kFarthestM);
+  const auto height = Number(-kMaxDistance_m, kMaxDistance_m);
   const auto angle = Number(0, 180);
   const auto fraction = Number(0, 1);
   return StructFormat<C>("a condition")
       .Required("entity", &C::entity, Identifier(), "The entity that it is about.")
-      .Optional("at_s", &C::at_s, Number(0, kMaxDurationS), "When; default: when the run ends.")
+      .Optional("at_s", &C::at_s, Number(0, kMaxDuration_s), "When; default: when the run ends.")
       .Optional("near_m", &C::near_m, ListOf(height, 2, 3),
                 "Its centre is near [x, y] or [x, y, z] ...")
-      .Optional("within_m", &C::within_m, Number(0, kFarthestM), "... as near as this.")
+      .Optional("within_m", &C::within_m, Number(0, kMaxDistance_m), "... as near as this.")
       .Optional("above_m", &C::above_m, height, "Its centre is higher than this.")
       .Optional("below_m", &C::below_m, height, "Its centre is lower than this.")
       .Optional("tilt_below_deg", &C::tilt_below_deg, angle,

@@ -14,7 +14,7 @@ namespace prehend::harness {
 namespace {
 
 constexpr double kSPerMs = 1e-3;
-constexpr int kMostButtons = 1000;
+constexpr int kMaxButtons = 1000;
 constexpr std::string_view kButtonEvents[] = {"buttonchanged", "buttondown", "buttonup"};
 
 struct XyzEntry {
@@ -37,7 +37,7 @@ ValueFormat<XyzEntry> XyzFormat(double most) {
 ValueFormat<std::vector<CapturedPose>> PosesFormat() {
   using P = CapturedPose;
   return ListOf(StructFormat<P>("a pose")
-                    .Required("position", &P::position, XyzFormat(kFarthestTrackM), "")
+                    .Required("position", &P::position, XyzFormat(kMaxTrackCoordinate_m), "")
                     .Required("rotation", &P::rotation, XyzFormat(1e4), "")
                     .Required("timestamp", &P::timestamp, Number(-1e15, 1e15), "")
                     .format(),
@@ -143,7 +143,7 @@ class CaptureReader {
       return std::nullopt;
     }
     ButtonEvent read{.name = name->text};
-    bool good = Integer<int>(0, kMostButtons).Read(*id, complaints_, read.id);
+    bool good = Integer<int>(0, kMaxButtons).Read(*id, complaints_, read.id);
     good &= Number(-1e15, 1e15).Read(*at, complaints_, read.at_ms);
     // Many recordings have lost their values: then there is none, or an empty one.
     const bool has_value =

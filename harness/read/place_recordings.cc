@@ -93,7 +93,7 @@ std::vector<physics::TimedFigure> Place(const RecordingEntry& entry, const BodyT
 }
 
 /// More would say the same again.
-constexpr std::size_t kMostOddities = 12;
+constexpr std::size_t kMaxOddities = 12;
 
 /// What is odd about how hips, hands and feet go, in metres.
 grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingEntry& entry,
@@ -113,7 +113,7 @@ grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingEntry
     for (const BodySample& sample : track.samples)
       point.samples.push_back({sample.t_s, {scale * sample.points[i]}, {}, sample.place});
     for (Diagnostic& found : CheckTrack(point, limits)) {
-      if (odd.size() == kMostOddities) return odd;
+      if (odd.size() == kMaxOddities) return odd;
       found.message = fmt::format("{}: {}", kWatchedPoints[i], found.message);
       odd.push_back(std::move(found));
     }
@@ -143,11 +143,12 @@ class RecordingReader {
     if (!HasRoom(entry, track.value->samples.size())) return;
     entry.poses = Place(entry, *track.value);
     for (std::size_t i = 0; i < entry.poses.size(); ++i) {
-      if (entry.poses[i].X_WH.p_m.norm() <= kFarthestM) continue;
-      return Refuse(entry, {grammar::DiagnosticAt(
-                               track.value->file, track.value->text, track.value->samples[i].place,
-                               fmt::format("here it is beyond {} m from the origin", kFarthestM),
-                               "start_at_m shifts the whole motion")});
+      if (entry.poses[i].X_WH.p_m.norm() <= kMaxDistance_m) continue;
+      return Refuse(entry,
+                    {grammar::DiagnosticAt(
+                        track.value->file, track.value->text, track.value->samples[i].place,
+                        fmt::format("here it is beyond {} m from the origin", kMaxDistance_m),
+                        "start_at_m shifts the whole motion")});
     }
   }
 
@@ -171,19 +172,19 @@ class RecordingReader {
     if (!HasRoom(entry, track.value->samples.size())) return;
     entry.figures = Place(entry, *track.value, person->value, scale);
     for (std::size_t i = 0; i < entry.figures.size(); ++i) {
-      if (entry.figures[i].figure.hips_W_m.norm() <= kFarthestM) continue;
+      if (entry.figures[i].figure.hips_W_m.norm() <= kMaxDistance_m) continue;
       return Refuse(entry, {grammar::DiagnosticAt(
                                track.value->file, track.value->text, track.value->samples[i].place,
-                               fmt::format("the hips are beyond {} m", kFarthestM),
+                               fmt::format("the hips are beyond {} m", kMaxDistance_m),
                                "in which units is the file? Say so with scale: metres per unit")});
     }
   }
 
   /// Nobody's legs are a third or three times as long as hers: those are other units.
   bool CheckScale(const RecordingEntry& entry, double legs_m, const PersonActor& person) {
-    constexpr double kMostRatio = 3;
+    constexpr double kMaxRatio = 3;
     const double hers_m = physics::LegLength(person.height_m), ratio = legs_m / hers_m;
-    if (ratio < kMostRatio && ratio > 1 / kMostRatio) return true;
+    if (ratio < kMaxRatio && ratio > 1 / kMaxRatio) return true;
     complaints_.Add(
         entry.scale->where,
         fmt::format("scale: the recorded legs would be {:.3g} m long, hers are {:.3g} m", legs_m,

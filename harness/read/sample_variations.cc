@@ -24,13 +24,13 @@ Random GeneratorFor(std::uint64_t seed, int trial, std::size_t variation) {
 }
 
 /// Chance may not leave the bounds that the reader has tried.
-constexpr double kMostDeviations = 3;
+constexpr double kMaxDeviations = 3;
 
 Draw DrawFrom(const VariationEntry& variation, Random& random) {
   if (variation.choose) return (*variation.choose)[random.Next() % variation.choose->size()];
   if (variation.normal) {
     double deviations = random.Normal(0, 1);
-    while (std::abs(deviations) > kMostDeviations) deviations = random.Normal(0, 1);
+    while (std::abs(deviations) > kMaxDeviations) deviations = random.Normal(0, 1);
     return (*variation.normal)[0] + deviations * (*variation.normal)[1];
   }
   const auto& between = variation.uniform ? variation.uniform
@@ -54,7 +54,7 @@ const YamlNode* FindField(const YamlNode& root, const std::string& path) {
 Bounds BoundsOf(const VariationEntry& variation) {
   if (variation.choose) return {"choose", {variation.choose->begin(), variation.choose->end()}};
   if (variation.normal) {
-    const double mean = (*variation.normal)[0], most = kMostDeviations * (*variation.normal)[1];
+    const double mean = (*variation.normal)[0], most = kMaxDeviations * (*variation.normal)[1];
     return {"normal", {mean - most, mean + most}};
   }
   const auto from = [](const char* key, const Eigen::Vector2d& range) {

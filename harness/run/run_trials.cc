@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kFailed = "failed";
 constexpr double kTimeLimit_s = 600;
-constexpr std::size_t kMostListed = 20;
+constexpr std::size_t kMaxListed = 20;
 
 /// What trials are drawn from; the file is looked at once, before the first of them.
 struct Nominal {
@@ -159,7 +159,7 @@ std::string TrialTable(const TrialReport& report, const std::string& command) {
   for (std::size_t i = names.size(); i-- > 1;) {
     for (const TrialResult& result : results) {
       if (result.outcome != names[i]) continue;
-      if (++listed > kMostListed) {
+      if (++listed > kMaxListed) {
         ++more;
         continue;
       }

@@ -20,8 +20,8 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kFarthestM = 1e4;
-constexpr double kFastest = 1e4;
+constexpr double kMaxPosition_m = 1e4;
+constexpr double kMaxVelocity = 1e4;
 constexpr std::int64_t kLatestTick = 1'000'000'000'000;
 constexpr std::size_t kMaxMembers = 10'000;
 constexpr std::size_t kMaxFeelers = 1000;
@@ -91,8 +91,8 @@ ValueFormat<std::string> Name() {
 ValueFormat<std::string> ClassName() {
   return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'");
 }
-ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
-ValueFormat<Eigen::Vector3d> Velocity() { return Vector<3>(-kFastest, kFastest); }
+ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kMaxPosition_m, kMaxPosition_m); }
+ValueFormat<Eigen::Vector3d> Velocity() { return Vector<3>(-kMaxVelocity, kMaxVelocity); }
 
 ValueFormat<HeaderEntry> HeaderFormat() {
   using M = MemberEntry;
@@ -110,7 +110,7 @@ ValueFormat<HeaderEntry> HeaderFormat() {
           .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxKinds), "")
           .Optional("hand", &M::hand, Flag(), "")
           .Optional("centre_m", &M::centre_m, Position(), "")
-          .Required("size_m", &M::size_m, Vector<3>(0, kFarthestM), "")
+          .Required("size_m", &M::size_m, Vector<3>(0, kMaxPosition_m), "")
           .Optional("mass_kg", &M::mass_kg, Number(0, 1e6), "")
           .Optional("strength_n", &M::strength_n, Number(0, 1e6), "")
           .Optional("part_of", &M::part_of, Name(), "")
@@ -148,7 +148,7 @@ ValueFormat<LineEntry> LineFormat() {
           .Optional("trigger", &H::trigger, Number(0, 1), "")
           .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
           .Optional("feelers_m", &H::feelers_m,
-                    ListOf(Vector<4>(-kFarthestM, kFarthestM), 1, kMaxFeelers), "")
+                    ListOf(Vector<4>(-kMaxPosition_m, kMaxPosition_m), 1, kMaxFeelers), "")
           .Optional("style", &H::style, Name(), "")
           .format();
   using T = TouchEntry;

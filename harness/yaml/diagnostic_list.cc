@@ -18,12 +18,12 @@ void Complaints::Add(Where where, std::string message, std::string hint) {
 
 void Complaints::AddUnknownName(Where where, std::string message, const std::string& name,
                                 const std::vector<std::string>& candidates) {
-  constexpr std::size_t kMostListed = 20;
+  constexpr std::size_t kMaxListed = 20;
   const std::string near = grammar::NearestName(name, candidates);
   std::string hint;
   if (!near.empty()) {
     hint = fmt::format("did you mean '{}'?", near);
-  } else if (!candidates.empty() && candidates.size() <= kMostListed) {
+  } else if (!candidates.empty() && candidates.size() <= kMaxListed) {
     hint = fmt::format("known: {}", fmt::join(candidates, ", "));
   }
   Add(where, std::move(message), std::move(hint));
