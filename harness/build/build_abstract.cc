@@ -27,7 +27,7 @@ Eigen::Quaterniond LookingAlong(const Eigen::Vector3d& way) {
 
 }  // namespace
 
-void MakeAbstract(const EntityEntry& entity, physics::Body& body) {
+void MakeAbstract(const EntityYaml& entity, physics::Body& body) {
   body.abstract = AbstractOf(entity);
   body.fixed = true;
   physics::Shape shape = physics::Sphere{kPointRadius_m};

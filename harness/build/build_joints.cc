@@ -15,7 +15,7 @@ using physics::JointKind;
 class Relation {
  public:
   /// `to_itself`: what is wrong with a ring of them, "is part of itself".
-  Relation(const ScenarioEntry& entry, std::string to_itself, Complaints& complaints)
+  Relation(const ScenarioYaml& entry, std::string to_itself, Complaints& complaints)
       : to_itself_(std::move(to_itself)),
         complaints_(complaints),
         target_(entry.entities.size(), grammar::kNoEntity) {
@@ -59,11 +59,11 @@ class Relation {
 struct Written {
   const char* key;
   JointKind kind;
-  const JointEntry* joint;  ///< null for fixed_to
+  const JointYaml* joint;  ///< null for fixed_to
   const Located<std::string>* to;
 };
 
-std::optional<Written> JointOf(const EntityEntry& entity) {
+std::optional<Written> JointOf(const EntityYaml& entity) {
   if (entity.fixed_to) return Written{"fixed_to", JointKind::kFixed, nullptr, &*entity.fixed_to};
   if (const auto& slider = entity.slider)
     return Written{"slider", JointKind::kSlider, &slider->value, &slider->value.to};
@@ -77,7 +77,7 @@ std::optional<Written> JointOf(const EntityEntry& entity) {
 physics::Joint MakeJoint(const Written& written) {
   physics::Joint joint{.kind = written.kind};
   if (!written.joint) return joint;
-  const JointEntry& entry = *written.joint;
+  const JointYaml& entry = *written.joint;
   const double scale = written.kind == JointKind::kHinge ? physics::kRadPerDeg : 1;
   joint.pivot_W_m = entry.at_m;
   joint.axis_W = entry.axis.normalized();
@@ -92,11 +92,11 @@ physics::Joint MakeJoint(const Written& written) {
 
 }  // namespace
 
-std::vector<physics::Joint> BuildJoints(const ScenarioEntry& entry, Complaints& complaints) {
+std::vector<physics::Joint> BuildJoints(const ScenarioYaml& entry, Complaints& complaints) {
   std::vector<physics::Joint> joints;
   Relation hangs_on(entry, "hangs on itself", complaints);
   for (std::size_t i = 0; i < entry.entities.size(); ++i) {
-    const EntityEntry& entity = entry.entities[i].value;
+    const EntityYaml& entity = entry.entities[i].value;
     const auto written = JointOf(entity);
     if (!written || !hangs_on.Add(i, written->key, *written->to)) continue;
     const auto base = static_cast<std::size_t>(hangs_on.target(i));
@@ -118,7 +118,7 @@ std::vector<physics::Joint> BuildJoints(const ScenarioEntry& entry, Complaints& 
   return joints;
 }
 
-std::vector<int> PartsOf(const ScenarioEntry& entry, Complaints& complaints) {
+std::vector<int> PartsOf(const ScenarioYaml& entry, Complaints& complaints) {
   Relation part_of(entry, "is part of itself", complaints);
   for (std::size_t i = 0; i < entry.entities.size(); ++i) {
     if (const auto& whole = entry.entities[i].value.part_of) part_of.Add(i, "part_of", *whole);

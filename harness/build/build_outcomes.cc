@@ -22,7 +22,7 @@ class ConditionBuilder {
     for (const physics::Body& body : scene.bodies) names_.push_back(body.name);
   }
 
-  std::optional<Outcome::Condition> Build(const ConditionEntry& wanted) const {
+  std::optional<Outcome::Condition> Build(const ConditionYaml& wanted) const {
     Outcome::Condition condition{.wanted = wanted};
     condition.body = Find("entity", wanted.entity, wanted.where);
     if (condition.body < 0) return std::nullopt;
@@ -67,7 +67,7 @@ class ConditionBuilder {
 
 }  // namespace
 
-std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionEntry>>>& entries,
+std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionYaml>>>& entries,
                                    const physics::Scene& scene, const physics::Script& script,
                                    Complaints& complaints) {
   const ConditionBuilder builder(scene, script, complaints);
@@ -80,7 +80,7 @@ std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<Condition
                      "choose another name");
     Outcome& outcome = outcomes.emplace_back();
     outcome.name = entry.name;
-    for (const ConditionEntry& wanted : entry.value) {
+    for (const ConditionYaml& wanted : entry.value) {
       if (auto condition = builder.Build(wanted))
         outcome.conditions.push_back(std::move(*condition));
     }

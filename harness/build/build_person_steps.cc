@@ -10,42 +10,42 @@ namespace prehend::harness {
 namespace {
 
 struct PersonStepMaker {
-  const Named<StepEntry>& step;
+  const Named<StepYaml>& step;
   const physics::Person& person;
   const physics::Scene& scene;
   Complaints& complaints;
 
-  physics::PersonStep operator()(const WaitEntry& e) const {
+  physics::PersonStep operator()(const WaitYaml& e) const {
     return {0, physics::WaitStep{}, e.wait_s};
   }
-  physics::PersonStep operator()(const LookAtEntry& e) const {
+  physics::PersonStep operator()(const LookAtYaml& e) const {
     CheckSeen(e.look_at);
     return {0, physics::LookAtStep{e.look_at.value}, e.over_s};
   }
-  physics::PersonStep operator()(const LookAtPointEntry& e) const {
+  physics::PersonStep operator()(const LookAtPointYaml& e) const {
     return {0, physics::LookAtStep{e.look_at_m}, e.over_s};
   }
-  physics::PersonStep operator()(const EyesEntry& e) const {
+  physics::PersonStep operator()(const EyesYaml& e) const {
     return {0, physics::EyesStep{e.eyes}, e.over_s};
   }
-  physics::PersonStep operator()(const WalkEntry& e) const {
+  physics::PersonStep operator()(const WalkYaml& e) const {
     return {0, physics::WalkStep{e.walk_to_m}, e.over_s};
   }
-  physics::PersonStep operator()(const TurnEntry& e) const {
+  physics::PersonStep operator()(const TurnYaml& e) const {
     return {0, physics::TurnStep{e.turn_to_deg * physics::kRadPerDeg}, e.over_s};
   }
-  physics::PersonStep operator()(const LeanEntry& e) const {
+  physics::PersonStep operator()(const LeanYaml& e) const {
     return {0, physics::LeanStep{e.lean_deg * physics::kRadPerDeg}, e.over_s};
   }
-  physics::PersonStep operator()(const SwayEntry& e) const {
+  physics::PersonStep operator()(const SwayYaml& e) const {
     CheckBody(e.sway_by_m.where, "sway_by_m");
     return {0, physics::SwayStep{e.sway_by_m.value}, e.over_s};
   }
-  physics::PersonStep operator()(const MoveLimbEntry& e) const {
+  physics::PersonStep operator()(const MoveLimbYaml& e) const {
     CheckFree(e.move_limb);
     return {0, physics::MoveLimbStep{e.move_limb.value, e.to_m, e.most_n}, e.over_s};
   }
-  physics::PersonStep operator()(const RecordingEntry& e) const {
+  physics::PersonStep operator()(const RecordingYaml& e) const {
     if (!e.style.value.empty())
       complaints.Add(e.style.where, "style: a person's recording moves her head, no hand");
     if (!e.figures.empty()) {
@@ -55,8 +55,8 @@ struct PersonStepMaker {
     const double over_s = e.poses.empty() ? 0 : e.poses.back().t_s;
     return {0, physics::HeadPosesStep{e.poses}, over_s};
   }
-  template <class HandEntry>
-  physics::PersonStep operator()(const HandEntry&) const {
+  template <class HandYaml>
+  physics::PersonStep operator()(const HandYaml&) const {
     complaints.Add(
         step.name_where, fmt::format("'{}' is a person, and this step is for hands", step.name),
         "persons look, walk, turn, lean, move a limb; their hands are actors of their own");
@@ -112,7 +112,7 @@ struct PersonStepMaker {
 
 }  // namespace
 
-physics::PersonStep MakePersonStep(const Named<StepEntry>& step, int person,
+physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,
                                    const physics::Scene& scene, Complaints& complaints) {
   const physics::Person& who = scene.persons[static_cast<std::size_t>(person)];
   physics::PersonStep made = std::visit(PersonStepMaker{step, who, scene, complaints}, step.value);

@@ -14,15 +14,15 @@ namespace {
 
 class PersonBuilder {
  public:
-  PersonBuilder(const ScenarioEntry& entry, physics::Scene& scene, Complaints& complaints)
+  PersonBuilder(const ScenarioYaml& entry, physics::Scene& scene, Complaints& complaints)
       : scene_(scene), complaints_(complaints) {
     for (const auto& hand : entry.hands) hands_.push_back(hand.name);
     for (const auto& entity : entry.entities) taken_.insert(entity.name);
     for (const auto& actor : entry.actors) taken_.insert(actor.name);
   }
 
-  void Add(const Named<PersonActor>& actor) {
-    const PersonActor& written = actor.value;
+  void Add(const Named<PersonActorYaml>& actor) {
+    const PersonActorYaml& written = actor.value;
     physics::Person person{
         .name = actor.name,
         .head = static_cast<int>(scene_.bodies.size()),
@@ -73,7 +73,7 @@ class PersonBuilder {
 
 }  // namespace
 
-void AddPersons(const ScenarioEntry& entry, physics::Scene& scene, Complaints& complaints) {
+void AddPersons(const ScenarioYaml& entry, physics::Scene& scene, Complaints& complaints) {
   PersonBuilder builder(entry, scene, complaints);
   for (const auto& actor : entry.persons) builder.Add(actor);
 }

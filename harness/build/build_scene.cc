@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 constexpr double kDefaultSphereRollingFriction =
     0.006;  // a ball on a table stops within a metre (docs/physics.md)
 
-physics::PlacedShape ShapeOf(const PartEntry& part) {
+physics::PlacedShape ShapeOf(const PartYaml& part) {
   const physics::Pose X_BS{part.at_m, physics::FromRollPitchYaw(part.rpy_deg)};
   if (part.sphere) return {*part.sphere, X_BS};
   if (part.cylinder) return {*part.cylinder, X_BS};
@@ -29,27 +29,27 @@ physics::PlacedShape ShapeOf(const PartEntry& part) {
   return {part.box.value_or(physics::Box{}), X_BS};
 }
 
-std::vector<physics::PlacedShape> ShapesOf(const EntityEntry& entity) {
+std::vector<physics::PlacedShape> ShapesOf(const EntityYaml& entity) {
   if (entity.grains) return {};
   if (entity.tray) return physics::ShapesOf(*entity.tray);
   if (entity.mug) return physics::ShapesOf(*entity.mug);
   if (entity.bowl) return physics::ShapesOf(*entity.bowl);
   if (entity.shelf) return physics::ShapesOf(*entity.shelf);
   if (entity.parts.empty()) {
-    return {ShapeOf(PartEntry{.box = entity.box,
-                              .sphere = entity.sphere,
-                              .cylinder = entity.cylinder,
-                              .capsule = entity.capsule,
-                              .hull = entity.hull})};
+    return {ShapeOf(PartYaml{.box = entity.box,
+                             .sphere = entity.sphere,
+                             .cylinder = entity.cylinder,
+                             .capsule = entity.capsule,
+                             .hull = entity.hull})};
   }
   std::vector<physics::PlacedShape> shapes;
-  for (const PartEntry& part : entity.parts) shapes.push_back(ShapeOf(part));
+  for (const PartYaml& part : entity.parts) shapes.push_back(ShapeOf(part));
   return shapes;
 }
 
 /// Everything but the place.
-physics::Body MakeBody(const Named<EntityEntry>& named) {
-  const EntityEntry& entity = named.value;
+physics::Body MakeBody(const Named<EntityYaml>& named) {
+  const EntityYaml& entity = named.value;
   physics::Body body;
   body.name = named.name;
   body.shapes = ShapesOf(entity);
@@ -99,7 +99,7 @@ physics::Pose Above(physics::Pose X_WB) {
 /// Places every body after the one it stands on.
 class Stacking {
  public:
-  Stacking(const ScenarioEntry& entry, Complaints& complaints)
+  Stacking(const ScenarioYaml& entry, Complaints& complaints)
       : entry_(entry), complaints_(complaints) {
     for (const auto& named : entry.entities) {
       index_[named.name] = bodies.size();
@@ -119,7 +119,7 @@ class Stacking {
       next = SupportOf(*next);
     }
     if (next && progress_[*next] == Progress::kBegun) {
-      const EntityEntry& entity = entry_.entities[above.back()].value;
+      const EntityYaml& entity = entry_.entities[above.back()].value;
       const auto& below = entity.in ? entity.in : entity.on;
       complaints_.Add(below->where, fmt::format("on: '{}' stands, directly or not, on itself",
                                                 entry_.entities[*next].name));
@@ -139,7 +139,7 @@ class Stacking {
   enum class Progress { kWaiting, kBegun, kDone };
 
   std::optional<std::size_t> SupportOf(std::size_t i) {
-    const EntityEntry& entity = entry_.entities[i].value;
+    const EntityYaml& entity = entry_.entities[i].value;
     const auto& below = entity.in ? entity.in : entity.on;
     if (!below) return std::nullopt;
     const char* key = entity.in ? "in" : "on";
@@ -168,7 +168,7 @@ class Stacking {
   }
 
   void PlaceInVessel(std::size_t i) {
-    const EntityEntry& entity = entry_.entities[i].value;
+    const EntityYaml& entity = entry_.entities[i].value;
     physics::Body& body = bodies[i];
     const physics::Body* vessel = Placed(entity.in);
     if (!vessel || !entity.grains) return;  // was complained about
@@ -184,7 +184,7 @@ class Stacking {
     }
     const std::uint64_t seed =
         physics::Random(entry_.world.seed ^ physics::Random(i).Next()).Next();
-    const GrainsEntry& grains = *entity.grains;
+    const GrainsYaml& grains = *entity.grains;
     for (const Vector3d& p_B_m :
          physics::FillVessel(*vessel, grains.radius_m, grains.count, seed)) {
       body.grains->p_WG_m.push_back(vessel->X_WB * p_B_m);
@@ -201,7 +201,7 @@ class Stacking {
   }
 
   void PlaceOnSupport(std::size_t i) {
-    const EntityEntry& entity = entry_.entities[i].value;
+    const EntityYaml& entity = entry_.entities[i].value;
     physics::Body& body = bodies[i];
     const std::vector<double>& at = entity.at_m.value;
     if (at.size() < 2) return;  // was complained about
@@ -220,7 +220,7 @@ class Stacking {
     }
   }
 
-  const ScenarioEntry& entry_;
+  const ScenarioYaml& entry_;
   Complaints& complaints_;
   std::map<std::string, std::size_t> index_;
   std::vector<std::string> names_;
@@ -237,13 +237,13 @@ void Override(const PidOverride& given, physics::PidGains& gains) {
 
 }  // namespace
 
-std::vector<physics::Body> PlaceBodies(const ScenarioEntry& entry, Complaints& complaints) {
+std::vector<physics::Body> PlaceBodies(const ScenarioYaml& entry, Complaints& complaints) {
   Stacking stacking(entry, complaints);
   for (std::size_t i = 0; i < entry.entities.size(); ++i) stacking.Place(i);
   return std::move(stacking.bodies);
 }
 
-physics::Hand PlaceHand(const Named<HandActor>& actor, physics::HandModel model, int rate_hz,
+physics::Hand PlaceHand(const Named<HandActorYaml>& actor, physics::HandModel model, int rate_hz,
                         Complaints& complaints) {
   if (actor.value.gains) {
     Override(actor.value.gains->value.translation, model.translation);

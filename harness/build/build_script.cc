@@ -32,7 +32,7 @@ int IndexOf(const std::string& name, const std::vector<std::string>& names) {
   return found == names.end() ? -1 : static_cast<int>(found - names.begin());
 }
 
-physics::TimedPose TimedPoseOf(const PoseEntry& pose) {
+physics::TimedPose TimedPoseOf(const PoseYaml& pose) {
   physics::TimedPose timed;
   timed.t_s = pose.t_s;
   timed.X_WH = PoseOf(pose);
@@ -45,10 +45,10 @@ struct StepMaker {
   const std::vector<std::string>& entities;
   const physics::Scene& scene;
   const physics::HandModel* model;  ///< null when the hand is not known
-  const Named<StepEntry>& written;
+  const Named<StepYaml>& written;
   Complaints& complaints;
 
-  physics::Step operator()(const ReachEntry& e) const {
+  physics::Step operator()(const ReachYaml& e) const {
     CheckEntity("reach", e.reach);
     const Where where =
         e.style.where.place.line > 0 ? e.style.where : e.reach.where;  // the default has no place
@@ -59,44 +59,44 @@ struct StepMaker {
     if (e.point_m) reach.point_m = e.point_m->value;
     return {0, std::move(reach), e.over_s};
   }
-  physics::Step operator()(const CloseEntry& e) const {
+  physics::Step operator()(const CloseYaml& e) const {
     return {0, physics::TriggerStep{e.close_to}, e.over_s};
   }
-  physics::Step operator()(const OpenEntry& e) const {
+  physics::Step operator()(const OpenYaml& e) const {
     return {0, physics::TriggerStep{e.open_to}, e.over_s};
   }
-  physics::Step operator()(const LiftEntry& e) const {
+  physics::Step operator()(const LiftYaml& e) const {
     return {0, physics::MoveStep{{0, 0, e.lift_by_m}}, e.over_s};
   }
-  physics::Step operator()(const MoveEntry& e) const {
+  physics::Step operator()(const MoveYaml& e) const {
     return {0, physics::MoveStep{e.move_by_m.value}, e.over_s};
   }
-  physics::Step operator()(const CarryEntry& e) const {
+  physics::Step operator()(const CarryYaml& e) const {
     return {0, physics::CarryStep{e.carry_to_m.value}, e.over_s};
   }
-  physics::Step operator()(const PlaceEntry& e) const {
+  physics::Step operator()(const PlaceYaml& e) const {
     CheckEntity("place_on", e.place_on);
     return {0, physics::PlaceStep{e.place_on.value}, e.over_s};
   }
-  physics::Step operator()(const RetreatEntry& e) const {
+  physics::Step operator()(const RetreatYaml& e) const {
     return {0, physics::RetreatStep{e.retreat_by_m}, e.over_s};
   }
-  physics::Step operator()(const FollowJointEntry& e) const {
+  physics::Step operator()(const FollowJointYaml& e) const {
     CheckEntity("follow_joint", e.follow_joint);
     CheckJoint(e.follow_joint);
     return {0, physics::FollowJointStep{e.follow_joint.value, e.to}, e.over_s};
   }
-  physics::Step operator()(const WaitEntry& e) const { return {0, physics::WaitStep{}, e.wait_s}; }
-  physics::Step operator()(const PosesEntry& e) const {
+  physics::Step operator()(const WaitYaml& e) const { return {0, physics::WaitStep{}, e.wait_s}; }
+  physics::Step operator()(const PosesYaml& e) const {
     physics::PosesStep step;
-    for (const PoseEntry& pose : e.poses) step.poses.push_back(TimedPoseOf(pose));
+    for (const PoseYaml& pose : e.poses) step.poses.push_back(TimedPoseOf(pose));
     return Follow(std::move(step), e.style);
   }
-  physics::Step operator()(const RecordingEntry& e) const {
+  physics::Step operator()(const RecordingYaml& e) const {
     return Follow(physics::PosesStep{e.poses}, e.style);
   }
-  template <class PersonEntry>
-  physics::Step operator()(const PersonEntry&) const {
+  template <class PersonYaml>
+  physics::Step operator()(const PersonYaml&) const {
     complaints.Add(written.name_where,
                    fmt::format("'{}' is a hand, and this step is for persons", written.name),
                    "hands reach, close, move; persons look, walk, lean");
@@ -122,7 +122,7 @@ struct StepMaker {
   }
 
   /// A point to grasp has to be on the thing or in it.
-  void CheckPoint(const ReachEntry& e) const {
+  void CheckPoint(const ReachYaml& e) const {
     const auto found = std::find(entities.begin(), entities.end(), e.reach.value);
     if (!e.point_m || found == entities.end()) return;
     const auto index = static_cast<std::size_t>(found - entities.begin());
@@ -166,7 +166,7 @@ struct StepMaker {
     return nullptr;
   }
 
-  void CheckApproach(const ReachEntry& e, const physics::GraspStyle& chosen) const {
+  void CheckApproach(const ReachYaml& e, const physics::GraspStyle& chosen) const {
     const bool above_missing = e.from == physics::Approach::kAbove && !chosen.above;
     const bool side_missing = e.from == physics::Approach::kSide && !chosen.side;
     if (above_missing || side_missing) {
@@ -185,13 +185,12 @@ double DurationOf(const physics::Beat& beat) {
 }
 
 /// Limits that concern the script as a whole, at the beat where they are passed.
-void CheckLength(const ScenarioEntry& entry, const physics::Script& script,
-                 Complaints& complaints) {
+void CheckLength(const ScenarioYaml& entry, const physics::Script& script, Complaints& complaints) {
   double total_s = script.settle_s;
   std::size_t poses = 0;
   for (std::size_t i = 0; i < script.beats.size(); ++i) {
-    for (const Named<StepEntry>& step : entry.script[i]) {
-      if (const auto* given = std::get_if<PosesEntry>(&step.value)) poses += given->poses.size();
+    for (const Named<StepYaml>& step : entry.script[i]) {
+      if (const auto* given = std::get_if<PosesYaml>(&step.value)) poses += given->poses.size();
     }
     total_s += DurationOf(script.beats[i]);
     const Where where = entry.script[i].front().name_where;
@@ -211,33 +210,33 @@ struct HandSoFar {
 };
 
 /// Steps about the held thing need a hand that may hold something.
-void CheckOrder(const std::vector<BeatEntry>& script, Complaints& complaints) {
+void CheckOrder(const std::vector<StageYaml>& script, Complaints& complaints) {
   std::map<std::string, HandSoFar> hands;
-  const auto check_holds = [&](const std::string& key, const Named<StepEntry>& step,
+  const auto check_holds = [&](const std::string& key, const Named<StepYaml>& step,
                                const Where& where) {
     const HandSoFar& hand = hands[step.name];
     if (!hand.reached.empty() || hand.closed) return;
     complaints.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
                    "it has neither reached for something nor closed before");
   };
-  for (const BeatEntry& beat : script) {
-    for (const Named<StepEntry>& step : beat) {
+  for (const StageYaml& beat : script) {
+    for (const Named<StepYaml>& step : beat) {
       HandSoFar& hand = hands[step.name];
-      if (const auto* reach = std::get_if<ReachEntry>(&step.value))
+      if (const auto* reach = std::get_if<ReachYaml>(&step.value))
         hand.reached = reach->reach.value;
-      if (const auto* close = std::get_if<CloseEntry>(&step.value))
+      if (const auto* close = std::get_if<CloseYaml>(&step.value))
         hand.closed |= close->close_to > 0;
-      if (const auto* poses = std::get_if<PosesEntry>(&step.value)) {
-        for (const PoseEntry& pose : poses->poses) hand.closed |= pose.trigger.value_or(0) > 0;
+      if (const auto* poses = std::get_if<PosesYaml>(&step.value)) {
+        for (const PoseYaml& pose : poses->poses) hand.closed |= pose.trigger.value_or(0) > 0;
       }
-      if (const auto* recording = std::get_if<RecordingEntry>(&step.value)) {
+      if (const auto* recording = std::get_if<RecordingYaml>(&step.value)) {
         for (const physics::TimedPose& pose : recording->poses)
           hand.closed |= pose.trigger.value_or(0) > 0;
       }
-      if (const auto* carry = std::get_if<CarryEntry>(&step.value)) {
+      if (const auto* carry = std::get_if<CarryYaml>(&step.value)) {
         check_holds("carry_to_m", step, carry->where);
       }
-      if (const auto* place = std::get_if<PlaceEntry>(&step.value)) {
+      if (const auto* place = std::get_if<PlaceYaml>(&step.value)) {
         check_holds("place_on", step, place->where);
         if (place->place_on.value == hand.reached) {
           complaints.Add(place->place_on.where,
@@ -256,7 +255,7 @@ double DurationOf(const physics::Script& script) {
   return total_s;
 }
 
-physics::Pose PoseOf(const PoseEntry& pose) {
+physics::Pose PoseOf(const PoseYaml& pose) {
   physics::Pose X_WH{pose.at_m};
   if (pose.rpy_deg) X_WH.q = physics::FromRollPitchYaw(*pose.rpy_deg);
   if (const auto& q = pose.quat_wxyz)
@@ -264,15 +263,15 @@ physics::Pose PoseOf(const PoseEntry& pose) {
   return X_WH;
 }
 
-physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene,
+physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
                             Complaints& complaints) {
   const std::vector<std::string> entities = NamesOf(entry.entities), hands = NamesOf(entry.hands),
                                  persons = NamesOf(entry.persons);
   physics::Script script;
   script.settle_s = entry.settle_s;
-  for (const BeatEntry& beat_entry : entry.script) {
+  for (const StageYaml& beat_entry : entry.script) {
     physics::Beat& beat = script.beats.emplace_back();
-    for (const Named<StepEntry>& named : beat_entry) {
+    for (const Named<StepYaml>& named : beat_entry) {
       const int hand = IndexOf(named.name, hands), person = IndexOf(named.name, persons);
       if (person >= 0) {
         beat.person_steps.push_back(MakePersonStep(named, person, scene, complaints));

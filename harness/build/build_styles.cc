@@ -9,28 +9,28 @@
 namespace prehend::harness {
 namespace {
 
-bool HasJaw(const DigitEntry& digit) { return digit.jaw.has_value(); }
-bool HasPhalanges(const DigitEntry& digit) { return !HasJaw(digit); }
-std::size_t JointsOf(const DigitEntry& digit) { return HasJaw(digit) ? 1 : digit.phalanges.size(); }
+bool HasJaw(const DigitYaml& digit) { return digit.jaw.has_value(); }
+bool HasPhalanges(const DigitYaml& digit) { return !HasJaw(digit); }
+std::size_t JointsOf(const DigitYaml& digit) { return HasJaw(digit) ? 1 : digit.phalanges.size(); }
 
 class StyleBuilder {
  public:
-  StyleBuilder(const std::vector<Named<DigitEntry>>& digits, Complaints& complaints)
+  StyleBuilder(const std::vector<Named<DigitYaml>>& digits, Complaints& complaints)
       : digits_(digits), complaints_(complaints) {}
 
-  physics::GraspStyle BuildStyle(const Named<StyleEntry>& style);
+  physics::GraspStyle BuildStyle(const Named<StyleYaml>& style);
 
  private:
-  using Concerned = bool (*)(const DigitEntry&);
+  using Concerned = bool (*)(const DigitYaml&);
   std::vector<std::vector<double>> JointNumbers(const Located<PerDigit>& numbers,
                                                 bool one_is_enough, Concerned concerned);
-  std::vector<std::vector<double>> FramesOf(const Named<StyleEntry>& style);
+  std::vector<std::vector<double>> FramesOf(const Named<StyleYaml>& style);
   /// Complains about joints that are to go where their limits do not let them.
   void CheckRanges(const Located<PerDigit>& frame, const char* unit);
   /// False after complaining about a digit that the hand does not have.
   bool CheckDigitNames(const Located<PerDigit>& numbers);
 
-  const std::vector<Named<DigitEntry>>& digits_;
+  const std::vector<Named<DigitYaml>>& digits_;
   Complaints& complaints_;
 };
 
@@ -87,12 +87,12 @@ std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDig
 
 void StyleBuilder::CheckRanges(const Located<PerDigit>& frame, const char* unit) {
   for (const auto& [name, name_where, targets] : frame.value) {
-    const auto digit = std::ranges::find(digits_, name, &Named<DigitEntry>::name);
+    const auto digit = std::ranges::find(digits_, name, &Named<DigitYaml>::name);
     if (digit == digits_.end() || targets.value.size() != JointsOf(digit->value)) continue;
     for (std::size_t i = 0; i < targets.value.size(); ++i) {
       const bool is_jaw = HasJaw(digit->value);
-      const LinkEntry& link =
-          is_jaw ? static_cast<const LinkEntry&>(*digit->value.jaw) : digit->value.phalanges[i];
+      const LinkYaml& link =
+          is_jaw ? static_cast<const LinkYaml&>(*digit->value.jaw) : digit->value.phalanges[i];
       const Eigen::Vector2d& range = link.range.value;
       const double target = targets.value[i].value;
       if (target >= range[0] && target <= range[1]) continue;
@@ -106,7 +106,7 @@ void StyleBuilder::CheckRanges(const Located<PerDigit>& frame, const char* unit)
 }
 
 /// From open to closed, one number per link; empty after complaining.
-std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleEntry>& style) {
+std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleYaml>& style) {
   const auto& angles = style.value.frames_deg;
   const auto& ways = style.value.frames_m;
   const auto any = [&](Concerned of) {
@@ -142,7 +142,7 @@ std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleEntry>&
   return frames;
 }
 
-physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleEntry>& style) {
+physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleYaml>& style) {
   physics::GraspStyle built{.name = style.name,
                             .frames = FramesOf(style),
                             .grip_axis = style.value.grip.axis,
@@ -150,7 +150,7 @@ physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleEntry>& style) {
                             .opening_m = style.value.grip.opening_m,
                             .above = style.value.above,
                             .side = style.value.side};
-  const auto all = [](const DigitEntry&) { return true; };
+  const auto all = [](const DigitYaml&) { return true; };
   for (const auto& effort : JointNumbers(style.value.effort, true, all))
     built.effort.insert(built.effort.end(), effort.begin(), effort.end());
   return built;
@@ -158,8 +158,8 @@ physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleEntry>& style) {
 
 }  // namespace
 
-void AddStyles(const std::vector<Named<DigitEntry>>& digits,
-               const std::vector<Named<StyleEntry>>& styles, SameName rule, Complaints& complaints,
+void AddStyles(const std::vector<Named<DigitYaml>>& digits,
+               const std::vector<Named<StyleYaml>>& styles, SameName rule, Complaints& complaints,
                std::vector<physics::GraspStyle>& to) {
   StyleBuilder builder(digits, complaints);
   for (const auto& style : styles) {

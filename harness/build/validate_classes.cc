@@ -12,14 +12,14 @@ namespace prehend::harness {
 namespace {
 
 /// The class that this one is a kind of; nullptr when that is not said.
-const Named<Located<std::string>>* KindOf(const ScenarioEntry& entry,
+const Named<Located<std::string>>* KindOf(const ScenarioYaml& entry,
                                           const std::string& class_name) {
   const auto found =
       std::ranges::find(entry.classes, class_name, &Named<Located<std::string>>::name);
   return found == entry.classes.end() ? nullptr : &*found;
 }
 
-bool IsKindOfItself(const ScenarioEntry& entry, const Named<Located<std::string>>& kind) {
+bool IsKindOfItself(const ScenarioYaml& entry, const Named<Located<std::string>>& kind) {
   const Named<Located<std::string>>* next = &kind;
   for (std::size_t steps = 0; next && steps <= entry.classes.size(); ++steps) {
     if (next->value.value == kind.name) return true;
@@ -30,7 +30,7 @@ bool IsKindOfItself(const ScenarioEntry& entry, const Named<Located<std::string>
 
 }  // namespace
 
-void CheckKinds(const ScenarioEntry& entry, Complaints& complaints) {
+void CheckKinds(const ScenarioYaml& entry, Complaints& complaints) {
   std::vector<std::string> used;  // classes that something is of
   for (const auto& entity : entry.entities) used.push_back(entity.value.class_name.value);
   for (const auto& kind : entry.classes) used.push_back(kind.value.value);

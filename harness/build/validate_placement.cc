@@ -117,7 +117,7 @@ void Complain(const Occupant& later, const Occupant& earlier, double depth_m,
 }
 
 /// Of a body's place. After the entities come the parts of the persons.
-Where WhereOf(const ScenarioEntry& entry, const physics::Scene& scene, std::size_t body) {
+Where WhereOf(const ScenarioYaml& entry, const physics::Scene& scene, std::size_t body) {
   if (body < entry.entities.size()) return PlaceOf(entry.entities[body].value);
   Where where;
   for (std::size_t i = 0; i < scene.persons.size(); ++i) {
@@ -129,7 +129,7 @@ Where WhereOf(const ScenarioEntry& entry, const physics::Scene& scene, std::size
 
 }  // namespace
 
-void CheckDistances(const ScenarioEntry& entry, const physics::Scene& scene,
+void CheckDistances(const ScenarioYaml& entry, const physics::Scene& scene,
                     Complaints& complaints) {
   const auto check = [&](Where where, const Eigen::Vector3d& p_W_m) {
     if (p_W_m.norm() <= physics::kMaxDistance_m) return;
@@ -144,8 +144,7 @@ void CheckDistances(const ScenarioEntry& entry, const physics::Scene& scene,
   for (const auto& hand : entry.hands) check(hand.value.at_m.where, hand.value.at_m.value);
 }
 
-void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene,
-                   Complaints& complaints) {
+void CheckOverlaps(const ScenarioYaml& entry, const physics::Scene& scene, Complaints& complaints) {
   std::vector<Occupant> occupants;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     occupants.push_back(OccupantOf(scene.bodies[i], WhereOf(entry, scene, i)));

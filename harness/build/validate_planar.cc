@@ -20,7 +20,7 @@ constexpr double kOnPlane_m = 1e-6;
 constexpr const char* kZeroY = "in a planar world y is 0";
 
 /// The places of the joint that an entity hangs on.
-Where JointPlace(const EntityEntry& entity) {
+Where JointPlace(const EntityYaml& entity) {
   if (entity.slider) return entity.slider->where;
   if (entity.hinge) return entity.hinge->where;
   return entity.ball_joint ? entity.ball_joint->where : entity.where;
@@ -36,21 +36,21 @@ struct StepCheck {
   const physics::Hand& hand;
   Complaints& complaints;
 
-  void operator()(const ReachEntry& e) const {
+  void operator()(const ReachYaml& e) const {
     CheckWay("offset_m", e.offset_m.value.y(), e.offset_m.where);
     for (const physics::Body& body : scene.bodies) {
       if (e.point_m && body.name == e.reach.value)
         CheckWay("point_m", (body.X_WB * e.point_m->value).y(), e.point_m->where);
     }
   }
-  void operator()(const MoveEntry& e) const {
+  void operator()(const MoveYaml& e) const {
     CheckWay("move_by_m", e.move_by_m.value.y(), e.move_by_m.where);
   }
-  void operator()(const CarryEntry& e) const {
+  void operator()(const CarryYaml& e) const {
     CheckWay("carry_to_m", e.carry_to_m.value.y(), e.carry_to_m.where);
   }
-  void operator()(const PosesEntry& e) const {
-    for (const PoseEntry& pose : e.poses) {
+  void operator()(const PosesYaml& e) const {
+    for (const PoseYaml& pose : e.poses) {
       CheckWay("at_m", pose.at_m.y(), pose.where);
       const Eigen::Vector3d y = PoseOf(pose).q * Eigen::Vector3d::UnitY();
       if ((y - hand.X_WH.q * Eigen::Vector3d::UnitY()).norm() > kOnPlane_m)
@@ -58,7 +58,7 @@ struct StepCheck {
                        "a hand turns about y only: rpy_deg: [0, pitch, 0]");
     }
   }
-  void operator()(const RecordingEntry& e) const {
+  void operator()(const RecordingYaml& e) const {
     complaints.Add(e.recording.where, "a recorded motion does not stay in the plane y = 0",
                    "write its poses as a step of way-points: poses: [..]");
   }
@@ -72,7 +72,7 @@ struct StepCheck {
   }
 };
 
-void CheckBodies(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints) {
+void CheckBodies(const ScenarioYaml& entry, const physics::Scene& scene, Complaints& complaints) {
   for (std::size_t i = 0; i < entry.entities.size(); ++i) {
     const physics::Body& body = scene.bodies[i];
     const std::string why = physics::WhyNotPlanar(body);
@@ -86,7 +86,7 @@ void CheckBodies(const ScenarioEntry& entry, const physics::Scene& scene, Compla
   }
 }
 
-void CheckJoints(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints) {
+void CheckJoints(const ScenarioYaml& entry, const physics::Scene& scene, Complaints& complaints) {
   for (const physics::Joint& joint : scene.joints) {
     const std::string why = physics::WhyNotPlanar(joint);
     if (why.empty()) continue;
@@ -98,7 +98,8 @@ void CheckJoints(const ScenarioEntry& entry, const physics::Scene& scene, Compla
   }
 }
 
-void CheckHand(const Named<HandActor>& actor, const physics::Hand& hand, Complaints& complaints) {
+void CheckHand(const Named<HandActorYaml>& actor, const physics::Hand& hand,
+               Complaints& complaints) {
   if (const std::string why = physics::WhyNotPlanar(hand.model); !why.empty())
     complaints.Add(actor.value.hand.where,
                    fmt::format("hand '{}' does not fit a planar world: {}", hand.model.name, why),
@@ -114,7 +115,7 @@ void CheckHand(const Named<HandActor>& actor, const physics::Hand& hand, Complai
 
 }  // namespace
 
-void CheckPlanar(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints) {
+void CheckPlanar(const ScenarioYaml& entry, const physics::Scene& scene, Complaints& complaints) {
   CheckBodies(entry, scene, complaints);
   CheckJoints(entry, scene, complaints);
   std::map<std::string, const physics::Hand*> hands;
@@ -122,12 +123,12 @@ void CheckPlanar(const ScenarioEntry& entry, const physics::Scene& scene, Compla
     CheckHand(entry.hands[i], scene.hands[i], complaints);
     hands[entry.hands[i].name] = &scene.hands[i];
   }
-  for (const Named<PersonActor>& person : entry.persons)
+  for (const Named<PersonActorYaml>& person : entry.persons)
     complaints.Add(person.name_where,
                    fmt::format("'{}' is a person, and a planar world has none", person.name),
                    "play it without 'planar: true' and in the engine bullet");
-  for (const BeatEntry& beat : entry.script) {
-    for (const Named<StepEntry>& step : beat) {
+  for (const StageYaml& beat : entry.script) {
+    for (const Named<StepYaml>& step : beat) {
       const auto hand = hands.find(step.name);
       if (hand != hands.end()) std::visit(StepCheck{scene, *hand->second, complaints}, step.value);
     }

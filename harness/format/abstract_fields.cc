@@ -15,8 +15,8 @@ constexpr double kMinSize_m = 0.001, kMaxSize_m = 100;
 
 }  // namespace
 
-ValueFormat<RegionEntry> RegionFormat() {
-  using R = RegionEntry;
+ValueFormat<RegionYaml> RegionFormat() {
+  using R = RegionYaml;
   return StructFormat<R>("a region")
       .Optional("size_m", &R::size_m, Vector<3>(kMinSize_m, kMaxSize_m),
                 "Full edge lengths [x, y, z] of a box.")
@@ -25,16 +25,16 @@ ValueFormat<RegionEntry> RegionFormat() {
       .format();
 }
 
-ValueFormat<GazeTargetEntry> GazeTargetFormat() {
-  using G = GazeTargetEntry;
+ValueFormat<GazeTargetYaml> GazeTargetFormat() {
+  using G = GazeTargetYaml;
   return StructFormat<G>("a gaze target")
       .Optional("radius_m", &G::radius_m, Number(kMinSize_m, 10),
                 "Radius of the ball that is looked at.")
       .format();
 }
 
-ValueFormat<CameraEntry> CameraFormat() {
-  using C = CameraEntry;
+ValueFormat<CameraYaml> CameraFormat() {
+  using C = CameraYaml;
   return StructFormat<C>("a camera")
       .Required("toward_m", &C::toward_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "A point in the middle of its picture, in the world.")
@@ -42,9 +42,9 @@ ValueFormat<CameraEntry> CameraFormat() {
       .format();
 }
 
-ValueFormat<LightEntry> LightFormat() { return StructFormat<LightEntry>("a light").format(); }
+ValueFormat<LightYaml> LightFormat() { return StructFormat<LightYaml>("a light").format(); }
 
-void CheckAbstract(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
+void CheckAbstract(const YamlNode& node, const EntityYaml& entity, Complaints& complaints) {
   const Abstract abstract = AbstractOf(entity);
   if (abstract == Abstract::kNot) return;
   const std::string noun = NounOf(abstract);

@@ -70,8 +70,8 @@ ValueFormat<physics::TrackerSettings> TrackingFormat() {
 /// What hands and persons have in common.
 ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kMaxDistance_m, kMaxDistance_m); }
 
-ValueFormat<HandActor> HandActorFormat() {
-  using A = HandActor;
+ValueFormat<HandActorYaml> HandActorFormat() {
+  using A = HandActorYaml;
   return StructFormat<A>("actor")
       .NamedByKey()
       .Required("hand", &A::hand,
@@ -95,8 +95,8 @@ ValueFormat<HandActor> HandActorFormat() {
       .format();
 }
 
-ValueFormat<PersonActor> PersonActorFormat() {
-  using P = PersonActor;
+ValueFormat<PersonActorYaml> PersonActorFormat() {
+  using P = PersonActorYaml;
   return StructFormat<P>("actor")
       .NamedByKey()
       .Required("person", &P::person,
@@ -119,17 +119,16 @@ ValueFormat<physics::Eyes> EyesFormat() {
   return Choice<physics::Eyes>({{"lead", physics::Eyes::kLead}, {"ahead", physics::Eyes::kAhead}});
 }
 
-ValueFormat<ActorEntry> ActorFormat() {
-  return ByKey<ActorEntry>("an actor",
-                           {{"hand", AsAlternative<ActorEntry>(HandActorFormat())},
-                            {"person", AsAlternative<ActorEntry>(PersonActorFormat())}});
+ValueFormat<ActorYaml> ActorFormat() {
+  return ByKey<ActorYaml>("an actor", {{"hand", AsAlternative<ActorYaml>(HandActorFormat())},
+                                       {"person", AsAlternative<ActorYaml>(PersonActorFormat())}});
 }
 
-void SortActors(ScenarioEntry& entry) {
-  for (const Named<ActorEntry>& actor : entry.actors) {
-    if (const auto* hand = std::get_if<HandActor>(&actor.value))
+void SortActors(ScenarioYaml& entry) {
+  for (const Named<ActorYaml>& actor : entry.actors) {
+    if (const auto* hand = std::get_if<HandActorYaml>(&actor.value))
       entry.hands.push_back({actor.name, actor.name_where, *hand});
-    if (const auto* person = std::get_if<PersonActor>(&actor.value))
+    if (const auto* person = std::get_if<PersonActorYaml>(&actor.value))
       entry.persons.push_back({actor.name, actor.name_where, *person});
   }
 }

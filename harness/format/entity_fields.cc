@@ -19,7 +19,7 @@ constexpr double kMaxSlide_m = 10;
 constexpr double kMaxTurn_deg = 170;  // at half a turn the two ways could not be told apart
 
 /// A joint's range is [least, most] and holds 0, where it was placed.
-void CheckRange(const YamlNode&, const JointEntry& joint, Complaints& complaints) {
+void CheckRange(const YamlNode&, const JointYaml& joint, Complaints& complaints) {
   const Eigen::Vector2d& range = joint.range.value;
   if (range[0] <= 0 && range[1] >= 0 && range[0] < range[1]) return;
   complaints.Add(joint.range.where,
@@ -28,22 +28,22 @@ void CheckRange(const YamlNode&, const JointEntry& joint, Complaints& complaints
                              range[0], range[1]));
 }
 
-StructFormat<JointEntry> JointRecord(const std::string& noun) {
-  using J = JointEntry;
+StructFormat<JointYaml> JointRecord(const std::string& noun) {
+  using J = JointYaml;
   return StructFormat<J>(noun).Required("to", &J::to, Identifier(), "The entity that it hangs on.");
 }
 
 ValueFormat<Eigen::Vector3d> Axis() { return Vector<3>(-1, 1); }
 
-void CheckAxis(const YamlNode& node, const JointEntry& joint, Complaints& complaints) {
+void CheckAxis(const YamlNode& node, const JointYaml& joint, Complaints& complaints) {
   if (joint.axis.norm() > 1e-6) return;
   complaints.Add(node.Find("axis")->where, "axis: expected a direction other than [0, 0, 0]");
 }
 
 /// A rest without a spring would do nothing; one of no stiffness is somebody's choice.
-std::function<void(const YamlNode&, const JointEntry&, Complaints&)> SpringPullsTo(
+std::function<void(const YamlNode&, const JointYaml&, Complaints&)> SpringPullsTo(
     const char* rest, const char* spring) {
-  return [rest, spring](const YamlNode& node, const JointEntry&, Complaints& complaints) {
+  return [rest, spring](const YamlNode& node, const JointYaml&, Complaints& complaints) {
     const YamlNode* given = node.Find(rest);
     if (!given || node.Find(spring)) return;
     complaints.Add(given->key_where, fmt::format("{}: there is no spring that pulls to it", rest),
@@ -51,8 +51,8 @@ std::function<void(const YamlNode&, const JointEntry&, Complaints&)> SpringPulls
   };
 }
 
-ValueFormat<JointEntry> SliderFormat() {
-  using J = JointEntry;
+ValueFormat<JointYaml> SliderFormat() {
+  using J = JointYaml;
   return JointRecord("a slider")
       .Required("axis", &J::axis, Axis(),
                 "The direction in which it opens, in the world, as placed.")
@@ -71,8 +71,8 @@ ValueFormat<JointEntry> SliderFormat() {
       .format();
 }
 
-ValueFormat<JointEntry> HingeFormat() {
-  using J = JointEntry;
+ValueFormat<JointYaml> HingeFormat() {
+  using J = JointYaml;
   return JointRecord("a hinge")
       .Required("at_m", &J::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "A point of its axis, in the world, as placed.")
@@ -94,14 +94,14 @@ ValueFormat<JointEntry> HingeFormat() {
       .format();
 }
 
-ValueFormat<JointEntry> BallJointFormat() {
+ValueFormat<JointYaml> BallJointFormat() {
   return JointRecord("a ball joint")
-      .Required("at_m", &JointEntry::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+      .Required("at_m", &JointYaml::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "The point about which it turns any way, in the world, as placed.")
       .format();
 }
 
-void CheckClass(const EntityEntry& entity, Complaints& complaints) {
+void CheckClass(const EntityYaml& entity, Complaints& complaints) {
   if (!IsBuiltInClass(entity.class_name.value)) return;
   complaints.Add(entity.class_name.where,
                  "class: '" + entity.class_name.value + "' is built in and given anyway",
@@ -109,7 +109,7 @@ void CheckClass(const EntityEntry& entity, Complaints& complaints) {
 }
 
 /// What hangs on a joint moves, and what is fixed to something has its surface.
-void CheckJoint(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
+void CheckJoint(const YamlNode& node, const EntityYaml& entity, Complaints& complaints) {
   const std::string title = "entity '" + node.key + "'";
   for (const char* key : {"fixed_to", "slider", "hinge", "ball_joint"}) {
     const YamlNode* joint = node.Find(key);
@@ -131,7 +131,7 @@ void CheckJoint(const YamlNode& node, const EntityEntry& entity, Complaints& com
 }
 
 /// Grains lie in a vessel, and nothing else does. They are many: what one thing has, they have not.
-void CheckGrains(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
+void CheckGrains(const YamlNode& node, const EntityYaml& entity, Complaints& complaints) {
   const std::string title = "entity '" + node.key + "'";
   if (entity.in && !entity.grains)
     complaints.Add(entity.in->where, "in: only grains are put into something",
@@ -148,7 +148,7 @@ void CheckGrains(const YamlNode& node, const EntityEntry& entity, Complaints& co
   }
 }
 
-void CheckEntity(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
+void CheckEntity(const YamlNode& node, const EntityYaml& entity, Complaints& complaints) {
   CheckClass(entity, complaints);
   CheckJoint(node, entity, complaints);
   CheckGrains(node, entity, complaints);
@@ -176,8 +176,8 @@ void CheckEntity(const YamlNode& node, const EntityEntry& entity, Complaints& co
 
 }  // namespace
 
-ValueFormat<EntityEntry> EntityFormat() {
-  using E = EntityEntry;
+ValueFormat<EntityYaml> EntityFormat() {
+  using E = EntityYaml;
   return StructFormat<E>("entity")
       .NamedByKey()
       .Optional("class", &E::class_name,

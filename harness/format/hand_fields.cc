@@ -81,8 +81,8 @@ void CheckAcross(const YamlNode& node, const char* key, const Vector3d& directio
                  hint);
 }
 
-ValueFormat<PalmEntry> PalmFormat() {
-  using P = PalmEntry;
+ValueFormat<PalmYaml> PalmFormat() {
+  using P = PalmYaml;
   return StructFormat<P>("the palm")
       .Optional("size_m", &P::size_m, Vector<3>(0.005, 0.5),
                 "Full edge lengths of its box [x, y, z].")
@@ -136,7 +136,7 @@ ValueFormat<JointDriver> DriverFormat() {
 
 /// A member that a phalanx or a jaw has as a link.
 template <class Link, class Member>
-Member Link::*Of(Member LinkEntry::*member) {
+Member Link::*Of(Member LinkYaml::*member) {
   return member;
 }
 
@@ -145,24 +145,24 @@ template <class Link>
 StructFormat<Link> LinkRecord(StructFormat<Link> record, const char* strength, double strongest,
                               const char* range, double farthest) {
   return record
-      .Required("length_m", Of<Link>(&LinkEntry::length_m), PartLength(),
+      .Required("length_m", Of<Link>(&LinkYaml::length_m), PartLength(),
                 "From its joint to the next one.")
-      .Required("half_width_m", Of<Link>(&LinkEntry::half_width_m), PartLength(),
+      .Required("half_width_m", Of<Link>(&LinkYaml::half_width_m), PartLength(),
                 "Half of its size across.")
-      .Required("half_thickness_m", Of<Link>(&LinkEntry::half_thickness_m), PartLength(),
+      .Required("half_thickness_m", Of<Link>(&LinkYaml::half_thickness_m), PartLength(),
                 "Half of its size from back to pad.")
-      .Required("mass_kg", Of<Link>(&LinkEntry::mass_kg), PartMass(), "Mass.")
-      .Required(strength, Of<Link>(&LinkEntry::strength), Number(0, strongest),
+      .Required("mass_kg", Of<Link>(&LinkYaml::mass_kg), PartMass(), "Mass.")
+      .Required(strength, Of<Link>(&LinkYaml::strength), Number(0, strongest),
                 "Largest torque or force of its joint at effort 1.")
-      .Required(range, Of<Link>(&LinkEntry::range), Vector<2>(-farthest, farthest),
+      .Required(range, Of<Link>(&LinkYaml::range), Vector<2>(-farthest, farthest),
                 "Joint limits [least, most].")
       .Check([key = std::string(range)](const YamlNode&, const Link& link, Complaints& complaints) {
         CheckLeastMost(key, link.range.value, link.range.where, complaints);
       });
 }
 
-ValueFormat<PhalanxEntry> PhalanxFormat() {
-  using P = PhalanxEntry;
+ValueFormat<PhalanxYaml> PhalanxFormat() {
+  using P = PhalanxYaml;
   StructFormat<P> record("a phalanx");
   record.Required("name", &P::name, Identifier(), "Its name after the digit's: index_proximal.")
       .Optional("joint_axis", &P::joint_axis, Direction(),
@@ -170,15 +170,15 @@ ValueFormat<PhalanxEntry> PhalanxFormat() {
   return LinkRecord(record, "strength_nm", 100, "range_deg", 180).format();
 }
 
-ValueFormat<JawEntry> JawFormat() {
-  StructFormat<JawEntry> record("a jaw");
-  record.Required("slides", &JawEntry::slides, Direction(),
+ValueFormat<JawYaml> JawFormat() {
+  StructFormat<JawYaml> record("a jaw");
+  record.Required("slides", &JawYaml::slides, Direction(),
                   "In H: the way it slides; positive values close.");
   return LinkRecord(record, "strength_n", 1000, "range_m", 0.5).format();
 }
 
 /// A joint at the last part that turns it about its own length neither opens nor closes anything.
-void CheckLastJoint(const YamlNode& node, const DigitEntry& digit, Complaints& complaints) {
+void CheckLastJoint(const YamlNode& node, const DigitYaml& digit, Complaints& complaints) {
   constexpr double kMinAngle_deg = 1;
   if (digit.phalanges.empty()) return;
   if (DegreesBetween(digit.phalanges.back().joint_axis, digit.direction) >= kMinAngle_deg) return;
@@ -191,8 +191,8 @@ void CheckLastJoint(const YamlNode& node, const DigitEntry& digit, Complaints& c
                  axis ? "" : "without joint_axis it is [0, 1, 0]");
 }
 
-ValueFormat<DigitEntry> DigitFormat() {
-  using D = DigitEntry;
+ValueFormat<DigitYaml> DigitFormat() {
+  using D = DigitYaml;
   return StructFormat<D>("digit")
       .NamedByKey()
       .Required("sensor_set", &D::sensor_set, Identifier(),
@@ -208,8 +208,8 @@ ValueFormat<DigitEntry> DigitFormat() {
       .format();
 }
 
-ValueFormat<GripEntry> GripFormat() {
-  using G = GripEntry;
+ValueFormat<GripYaml> GripFormat() {
+  using G = GripYaml;
   return StructFormat<G>("the grip")
       .Required("axis", &G::axis, Direction(),
                 "In H: from the stiff side (the post) to the force-limited side.")
@@ -235,7 +235,7 @@ StructFormat<GraspApproach> ApproachRecord(const std::string& noun) {
 
 /// The grip closes across the way of arrival, and what is up is across it, too: else no turn of the
 /// hand suits.
-void CheckApproaches(const YamlNode& node, const StyleEntry& style, Complaints& complaints) {
+void CheckApproaches(const YamlNode& node, const StyleYaml& style, Complaints& complaints) {
   const auto check_toward = [&](const char* key, const GraspApproach& approach) {
     CheckAcross(*node.Find(key), "toward", approach.toward, "grip.axis", style.grip.axis,
                 complaints, "the hand arrives along toward and closes along grip.axis");
@@ -247,8 +247,8 @@ void CheckApproaches(const YamlNode& node, const StyleEntry& style, Complaints& 
               "the hand arrives level, along toward, with up towards the sky");
 }
 
-ValueFormat<StyleEntry> StyleFormat() {
-  using S = StyleEntry;
+ValueFormat<StyleYaml> StyleFormat() {
+  using S = StyleYaml;
   return StructFormat<S>("style")
       .NamedByKey()
       .Required("grip", &S::grip, GripFormat(), "Where the object is held.")
@@ -276,21 +276,21 @@ ValueFormat<StyleEntry> StyleFormat() {
       .format();
 }
 
-ValueFormat<std::vector<Named<StyleEntry>>> StylesFormat() {
+ValueFormat<std::vector<Named<StyleYaml>>> StylesFormat() {
   return MapOf(Identifier(), StyleFormat(), 1, 64);
 }
 
-ValueFormat<GainsEntry> GainsFormat() {
-  return StructFormat<GainsEntry>("the gains")
-      .Required("translation", &GainsEntry::translation, TranslationFormat(),
+ValueFormat<GainsYaml> GainsFormat() {
+  return StructFormat<GainsYaml>("the gains")
+      .Required("translation", &GainsYaml::translation, TranslationFormat(),
                 "How the palm follows a position.")
-      .Required("rotation", &GainsEntry::rotation, RotationFormat(),
+      .Required("rotation", &GainsYaml::rotation, RotationFormat(),
                 "How the palm follows an orientation.")
       .format();
 }
 
-ValueFormat<HandEntry> BuildHandFormat() {
-  using H = HandEntry;
+ValueFormat<HandYaml> BuildHandFormat() {
+  using H = HandYaml;
   return StructFormat<H>("the hand")
       .Required("hand", &H::name, Identifier(), "Its name: that of the file without '.hand.yaml'.")
       .Required("sensor_sets", &H::sensor_sets, DifferentNames(16), "Groups of contact sensors.")
@@ -315,37 +315,37 @@ ValueFormat<HandEntry> BuildHandFormat() {
       .format();
 }
 
-ValueFormat<GraspsEntry> BuildGraspsFormat() {
-  return StructFormat<GraspsEntry>("the grasps")
-      .Required("grasps", &GraspsEntry::name, Identifier(),
+ValueFormat<GraspsYaml> BuildGraspsFormat() {
+  return StructFormat<GraspsYaml>("the grasps")
+      .Required("grasps", &GraspsYaml::name, Identifier(),
                 "Their name: that of the file without '.grasps.yaml'.")
-      .Required("styles", &GraspsEntry::styles, StylesFormat(), "Grasps, by name.")
+      .Required("styles", &GraspsYaml::styles, StylesFormat(), "Grasps, by name.")
       .format();
 }
 
-ValueFormat<MirrorEntry> BuildMirrorFormat() {
-  return StructFormat<MirrorEntry>("the hand")
-      .Required("hand", &MirrorEntry::name, Identifier(),
+ValueFormat<MirrorYaml> BuildMirrorFormat() {
+  return StructFormat<MirrorYaml>("the hand")
+      .Required("hand", &MirrorYaml::name, Identifier(),
                 "Its name: that of the file without '.hand.yaml'.")
-      .Required("mirror_of", &MirrorEntry::mirror_of, Identifier(),
+      .Required("mirror_of", &MirrorYaml::mirror_of, Identifier(),
                 "The hand in the same folder that it mirrors.")
       .format();
 }
 
 }  // namespace
 
-const ValueFormat<HandEntry>& HandFormat() {
-  static const ValueFormat<HandEntry> format = BuildHandFormat();
+const ValueFormat<HandYaml>& HandFormat() {
+  static const ValueFormat<HandYaml> format = BuildHandFormat();
   return format;
 }
 
-const ValueFormat<GraspsEntry>& GraspsFormat() {
-  static const ValueFormat<GraspsEntry> format = BuildGraspsFormat();
+const ValueFormat<GraspsYaml>& GraspsFormat() {
+  static const ValueFormat<GraspsYaml> format = BuildGraspsFormat();
   return format;
 }
 
-const ValueFormat<MirrorEntry>& MirrorFormat() {
-  static const ValueFormat<MirrorEntry> format = BuildMirrorFormat();
+const ValueFormat<MirrorYaml>& MirrorFormat() {
+  static const ValueFormat<MirrorYaml> format = BuildMirrorFormat();
   return format;
 }
 

@@ -10,8 +10,8 @@
 namespace prehend::harness {
 namespace {
 
-ValueFormat<WorldEntry> WorldFormat() {
-  using W = WorldEntry;
+ValueFormat<WorldYaml> WorldFormat() {
+  using W = WorldYaml;
   using physics::Engine;
   return StructFormat<W>("the world")
       .Optional("engine", &W::engine,
@@ -57,7 +57,7 @@ ValueFormat<std::string> ClassName() {
   return Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'");
 }
 
-/// A moment is an event's boundary or a time; PictureEntry keeps both as text.
+/// A moment is an event's boundary or a time; PictureYaml keeps both as text.
 ValueFormat<std::string> MomentFormat() {
   const auto seconds = Number(0, kMaxDuration_s);
   const auto boundary =
@@ -73,18 +73,18 @@ ValueFormat<std::string> MomentFormat() {
       });
 }
 
-ValueFormat<PictureEntry> PictureFormat() {
-  return StructFormat<PictureEntry>("a picture")
-      .Required("at", &PictureEntry::at, MomentFormat(),
+ValueFormat<PictureYaml> PictureFormat() {
+  return StructFormat<PictureYaml>("a picture")
+      .Required("at", &PictureYaml::at, MomentFormat(),
                 "When: an event's 'begin' or 'end', or seconds.")
       .Optional(
-          "camera", &PictureEntry::camera, Identifier(),
+          "camera", &PictureYaml::camera, Identifier(),
           "From where: front, left, right, top, three_quarter, or an entity that is a camera.")
       .format();
 }
 
-ValueFormat<ScenarioEntry> BuildScenarioFormat() {
-  using S = ScenarioEntry;
+ValueFormat<ScenarioYaml> BuildScenarioFormat() {
+  using S = ScenarioYaml;
   return StructFormat<S>("the scenario")
       .Required("scenario", &S::name, Identifier(), "Its name: that of the file without '.yaml'.")
       .Required("shows", &S::shows, Text(), "One sentence: what happens and what it proves.")
@@ -113,8 +113,8 @@ ValueFormat<ScenarioEntry> BuildScenarioFormat() {
 
 }  // namespace
 
-const ValueFormat<ScenarioEntry>& ScenarioFormat() {
-  static const ValueFormat<ScenarioEntry> format = BuildScenarioFormat();
+const ValueFormat<ScenarioYaml>& ScenarioFormat() {
+  static const ValueFormat<ScenarioYaml> format = BuildScenarioFormat();
   return format;
 }
 

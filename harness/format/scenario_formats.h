@@ -16,7 +16,7 @@
 namespace prehend::harness {
 
 // harness/format/entity_fields.cc: shape, material, and what it hangs on.
-ValueFormat<EntityEntry> EntityFormat();
+ValueFormat<EntityYaml> EntityFormat();
 
 // harness/format/shape_fields.cc
 ValueFormat<physics::Box> BoxFormat();
@@ -28,27 +28,27 @@ ValueFormat<physics::Mug> MugFormat();
 ValueFormat<physics::Bowl> BowlFormat();
 ValueFormat<physics::Shelf> ShelfFormat();
 ValueFormat<physics::Hull> HullFormat();
-ValueFormat<GrainsEntry> GrainsFormat();
-ValueFormat<PartEntry> PartFormat();
+ValueFormat<GrainsYaml> GrainsFormat();
+ValueFormat<PartYaml> PartFormat();
 
 // harness/format/abstract_fields.cc: what has a place but no matter.
-ValueFormat<RegionEntry> RegionFormat();
-ValueFormat<GazeTargetEntry> GazeTargetFormat();
-ValueFormat<CameraEntry> CameraFormat();
-ValueFormat<LightEntry> LightFormat();
+ValueFormat<RegionYaml> RegionFormat();
+ValueFormat<GazeTargetYaml> GazeTargetFormat();
+ValueFormat<CameraYaml> CameraFormat();
+ValueFormat<LightYaml> LightFormat();
 
 /// Complains about what only matter has: a mass, a surface, joints, something that it stands on.
-void CheckAbstract(const YamlNode& node, const EntityEntry& entity, Complaints& complaints);
+void CheckAbstract(const YamlNode& node, const EntityYaml& entity, Complaints& complaints);
 
 // harness/format/actor_fields.cc
-ValueFormat<ActorEntry> ActorFormat();
+ValueFormat<ActorYaml> ActorFormat();
 ValueFormat<physics::Eyes> EyesFormat();
 
 // harness/format/step_fields.cc: each step is told by its action key.
-ValueFormat<StepEntry> StepFormat();
+ValueFormat<StepYaml> StepFormat();
 
 // harness/format/trial_fields.cc
-ValueFormat<VariationEntry> VariationFormat();
-ValueFormat<std::vector<ConditionEntry>> OutcomeFormat();
+ValueFormat<VariationYaml> VariationFormat();
+ValueFormat<std::vector<ConditionYaml>> OutcomeFormat();
 
 }  // namespace prehend::harness

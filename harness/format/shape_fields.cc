@@ -147,8 +147,8 @@ ValueFormat<physics::Shelf> ShelfFormat() {
       .format();
 }
 
-ValueFormat<GrainsEntry> GrainsFormat() {
-  using G = GrainsEntry;
+ValueFormat<GrainsYaml> GrainsFormat() {
+  using G = GrainsYaml;
   constexpr int kMaxGrains = 500;
   constexpr double kMinGrainRadius_m = 0.002, kMaxGrainRadius_m = 0.05;
   return StructFormat<G>("grains")
@@ -158,8 +158,8 @@ ValueFormat<GrainsEntry> GrainsFormat() {
       .format();
 }
 
-ValueFormat<PartEntry> PartFormat() {
-  using P = PartEntry;
+ValueFormat<PartYaml> PartFormat() {
+  using P = PartYaml;
   return StructFormat<P>("a part")
       .Optional("box", &P::box, BoxFormat(), "Its shape: a box.")
       .Optional("sphere", &P::sphere, SphereFormat(), "Its shape: a sphere.")

@@ -23,18 +23,18 @@ const std::string kStyleDoc = "The grasp style that the hand takes; default: it 
 
 /// A record with one number, list or name and a duration; most steps are of this kind.
 template <class Entry, class M, class F>
-ValueFormat<StepEntry> TimedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
-                                 const std::string& doc) {
-  return AsAlternative<StepEntry>(StructFormat<Entry>("a " + key + " step")
-                                      .Required(key, member, std::move(format), doc)
-                                      .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
-                                      .format());
+ValueFormat<StepYaml> TimedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
+                                const std::string& doc) {
+  return AsAlternative<StepYaml>(StructFormat<Entry>("a " + key + " step")
+                                     .Required(key, member, std::move(format), doc)
+                                     .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
+                                     .format());
 }
 
-ValueFormat<StepEntry> ReachFormat() {
-  using R = ReachEntry;
+ValueFormat<StepYaml> ReachFormat() {
+  using R = ReachYaml;
   using physics::Approach;
-  return AsAlternative<StepEntry>(
+  return AsAlternative<StepYaml>(
       StructFormat<R>("a reach step")
           .Required("reach", &R::reach, Identifier(),
                     "The entity to move the hand to, ready to close around it.")
@@ -52,9 +52,9 @@ ValueFormat<StepEntry> ReachFormat() {
           .format());
 }
 
-ValueFormat<StepEntry> FollowJointFormat() {
-  using F = FollowJointEntry;
-  return AsAlternative<StepEntry>(
+ValueFormat<StepYaml> FollowJointFormat() {
+  using F = FollowJointYaml;
+  return AsAlternative<StepYaml>(
       StructFormat<F>("a follow_joint step")
           .Required("follow_joint", &F::follow_joint, Identifier(),
                     "The entity on a slider or hinge whose way the hand goes, with what it holds.")
@@ -64,15 +64,15 @@ ValueFormat<StepEntry> FollowJointFormat() {
           .format());
 }
 
-ValueFormat<StepEntry> WaitFormat() {
-  return AsAlternative<StepEntry>(
-      StructFormat<WaitEntry>("a wait step")
-          .Required("wait_s", &WaitEntry::wait_s, Duration(), "Hold still for this long.")
+ValueFormat<StepYaml> WaitFormat() {
+  return AsAlternative<StepYaml>(
+      StructFormat<WaitYaml>("a wait step")
+          .Required("wait_s", &WaitYaml::wait_s, Duration(), "Hold still for this long.")
           .format());
 }
 
-ValueFormat<PoseEntry> PoseFormat() {
-  using P = PoseEntry;
+ValueFormat<PoseYaml> PoseFormat() {
+  using P = PoseYaml;
   return StructFormat<P>("a pose")
       .Required("t_s", &P::t_s, Number(0, kMaxDuration_s),
                 "When, since the start of the step; increasing.")
@@ -87,14 +87,14 @@ ValueFormat<PoseEntry> PoseFormat() {
       .format();
 }
 
-ValueFormat<StepEntry> PosesFormat() {
-  return AsAlternative<StepEntry>(
-      StructFormat<PosesEntry>("a poses step")
-          .Required("poses", &PosesEntry::poses, ListOf(PoseFormat(), 1, kMaxPoses),
+ValueFormat<StepYaml> PosesFormat() {
+  return AsAlternative<StepYaml>(
+      StructFormat<PosesYaml>("a poses step")
+          .Required("poses", &PosesYaml::poses, ListOf(PoseFormat(), 1, kMaxPoses),
                     "Way-points of the tracked target, as a tracker would give them; the last one "
                     "ends the step.")
-          .Optional("style", &PosesEntry::style, Identifier(), kStyleDoc)
-          .Check([](const YamlNode& node, const PosesEntry& step, Complaints& complaints) {
+          .Optional("style", &PosesYaml::style, Identifier(), kStyleDoc)
+          .Check([](const YamlNode& node, const PosesYaml& step, Complaints& complaints) {
             for (std::size_t i = 1; i < step.poses.size(); ++i) {
               const double before_s = step.poses[i - 1].t_s, t_s = step.poses[i].t_s;
               if (t_s > before_s) continue;
@@ -109,7 +109,7 @@ ValueFormat<StepEntry> PosesFormat() {
 }
 
 /// What belongs to another kind of file.
-void CheckKindOfRecording(const YamlNode& node, const RecordingEntry& entry,
+void CheckKindOfRecording(const YamlNode& node, const RecordingYaml& entry,
                           Complaints& complaints) {
   const bool body = entry.recording.value.ends_with(".bvh");
   const auto refuse = [&](const char* key, const char* why) {
@@ -121,10 +121,10 @@ void CheckKindOfRecording(const YamlNode& node, const RecordingEntry& entry,
     refuse(key, "a BVH file moves a whole body, no hand");
 }
 
-ValueFormat<StepEntry> RecordingFormat() {
-  using R = RecordingEntry;
+ValueFormat<StepYaml> RecordingFormat() {
+  using R = RecordingYaml;
   const auto seconds = Number(0, kMaxDuration_s);
-  return AsAlternative<StepEntry>(
+  return AsAlternative<StepYaml>(
       StructFormat<R>("a recording step")
           .Required("recording", &R::recording,
                     Word("[A-Za-z0-9_./-]+\\.(csv|json|bvh)", "a .csv, .json or .bvh file", 255),
@@ -157,10 +157,10 @@ ValueFormat<StepEntry> RecordingFormat() {
           .format());
 }
 
-ValueFormat<StepEntry> MoveLimbFormat() {
-  using M = MoveLimbEntry;
+ValueFormat<StepYaml> MoveLimbFormat() {
+  using M = MoveLimbYaml;
   using physics::LimbEnd;
-  return AsAlternative<StepEntry>(
+  return AsAlternative<StepYaml>(
       StructFormat<M>("a move_limb step")
           .Required("move_limb", &M::move_limb,
                     Choice<LimbEnd>({{"right_elbow", LimbEnd::kRightElbow},
@@ -180,48 +180,47 @@ ValueFormat<StepEntry> MoveLimbFormat() {
 
 }  // namespace
 
-ValueFormat<StepEntry> StepFormat() {
+ValueFormat<StepYaml> StepFormat() {
   const auto grip = Number(0, 1);
-  return ByKey<StepEntry>(
+  return ByKey<StepYaml>(
       "a step",
       {{"reach", ReachFormat()},
-       {"close_to", TimedStep("close_to", &CloseEntry::close_to, grip,
+       {"close_to", TimedStep("close_to", &CloseYaml::close_to, grip,
                               "Grip: 0 open, 1 closed with full effort.")},
-       {"open_to", TimedStep("open_to", &OpenEntry::open_to, grip,
-                             "Grip: 0 open, 1 closed with full effort.")},
-       {"lift_by_m", TimedStep("lift_by_m", &LiftEntry::lift_by_m, Number(-kMaxMove_m, kMaxMove_m),
+       {"open_to",
+        TimedStep("open_to", &OpenYaml::open_to, grip, "Grip: 0 open, 1 closed with full effort.")},
+       {"lift_by_m", TimedStep("lift_by_m", &LiftYaml::lift_by_m, Number(-kMaxMove_m, kMaxMove_m),
                                "Straight up by this much; negative is down.")},
        {"move_by_m",
-        TimedStep("move_by_m", &MoveEntry::move_by_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
+        TimedStep("move_by_m", &MoveYaml::move_by_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
                   "Straight by [x, y, z], world axes.")},
        {"carry_to_m",
-        TimedStep("carry_to_m", &CarryEntry::carry_to_m, Vector<2>(-kMaxDistance_m, kMaxDistance_m),
+        TimedStep("carry_to_m", &CarryYaml::carry_to_m, Vector<2>(-kMaxDistance_m, kMaxDistance_m),
                   "The held object's centre goes to this [x, y], height kept.")},
-       {"place_on", TimedStep("place_on", &PlaceEntry::place_on, Identifier(),
+       {"place_on", TimedStep("place_on", &PlaceYaml::place_on, Identifier(),
                               "Lower until the held object stands on this entity.")},
-       {"retreat_by_m",
-        TimedStep("retreat_by_m", &RetreatEntry::retreat_by_m, Number(0, kMaxMove_m),
-                  "Back by this much, along the way the hand came.")},
+       {"retreat_by_m", TimedStep("retreat_by_m", &RetreatYaml::retreat_by_m, Number(0, kMaxMove_m),
+                                  "Back by this much, along the way the hand came.")},
        {"follow_joint", FollowJointFormat()},
        {"wait_s", WaitFormat()},
        {"poses", PosesFormat()},
        {"recording", RecordingFormat()},
-       {"look_at", TimedStep("look_at", &LookAtEntry::look_at, Identifier(),
+       {"look_at", TimedStep("look_at", &LookAtYaml::look_at, Identifier(),
                              "The entity or hand that a person looks at from now on.")},
-       {"look_at_m", TimedStep("look_at_m", &LookAtPointEntry::look_at_m,
+       {"look_at_m", TimedStep("look_at_m", &LookAtPointYaml::look_at_m,
                                Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                                "The place that a person looks at from now on.")},
-       {"eyes", TimedStep("eyes", &EyesEntry::eyes, EyesFormat(),
+       {"eyes", TimedStep("eyes", &EyesYaml::eyes, EyesFormat(),
                           "A person's eyes lead her hands again, or look ahead.")},
        {"walk_to_m",
-        TimedStep("walk_to_m", &WalkEntry::walk_to_m, Vector<2>(-kMaxDistance_m, kMaxDistance_m),
+        TimedStep("walk_to_m", &WalkYaml::walk_to_m, Vector<2>(-kMaxDistance_m, kMaxDistance_m),
                   "The place between a person's feet goes to this [x, y].")},
-       {"turn_to_deg", TimedStep("turn_to_deg", &TurnEntry::turn_to_deg, Number(-360, 360),
+       {"turn_to_deg", TimedStep("turn_to_deg", &TurnYaml::turn_to_deg, Number(-360, 360),
                                  "A person turns to this yaw.")},
-       {"lean_deg", TimedStep("lean_deg", &LeanEntry::lean_deg, Number(-30, 90),
+       {"lean_deg", TimedStep("lean_deg", &LeanYaml::lean_deg, Number(-30, 90),
                               "A person's trunk leans forwards by this.")},
        {"sway_by_m",
-        TimedStep("sway_by_m", &SwayEntry::sway_by_m, Vector<2>(-kMaxSway_m, kMaxSway_m),
+        TimedStep("sway_by_m", &SwayYaml::sway_by_m, Vector<2>(-kMaxSway_m, kMaxSway_m),
                   "A person's hips go this far [ahead, left] of over her feet.")},
        {"move_limb", MoveLimbFormat()}});
 }

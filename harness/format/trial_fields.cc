@@ -28,7 +28,7 @@ ValueFormat<std::string> Value() {
 }
 
 /// What can never hold, or always does.
-void CheckCondition(const YamlNode& node, const ConditionEntry& wanted, Complaints& complaints) {
+void CheckCondition(const YamlNode& node, const ConditionYaml& wanted, Complaints& complaints) {
   const auto complain = [&](const char* key, const std::string& message) {
     complaints.Add(node.Find(key)->where, std::string(key) + ": " + message);
   };
@@ -49,8 +49,8 @@ void CheckCondition(const YamlNode& node, const ConditionEntry& wanted, Complain
     complaints.Add(node.where, "a condition: it always holds", "say what, as above_m: 0.9");
 }
 
-ValueFormat<ConditionEntry> ConditionFormat() {
-  using C = ConditionEntry;
+ValueFormat<ConditionYaml> ConditionFormat() {
+  using C = ConditionYaml;
   const auto height = Number(-kMaxDistance_m, kMaxDistance_m);
   const auto angle = Number(0, 180);
   const auto fraction = Number(0, 1);
@@ -81,8 +81,8 @@ ValueFormat<ConditionEntry> ConditionFormat() {
 
 }  // namespace
 
-ValueFormat<VariationEntry> VariationFormat() {
-  using V = VariationEntry;
+ValueFormat<VariationYaml> VariationFormat() {
+  using V = VariationYaml;
   const auto range = Vector<2>(-kMaxNumber, kMaxNumber);
   return StructFormat<V>("a variation")
       .Required(
@@ -115,8 +115,6 @@ ValueFormat<VariationEntry> VariationFormat() {
       .format();
 }
 
-ValueFormat<std::vector<ConditionEntry>> OutcomeFormat() {
-  return ListOf(ConditionFormat(), 1, 32);
-}
+ValueFormat<std::vector<ConditionYaml>> OutcomeFormat() { return ListOf(ConditionFormat(), 1, 32); }
 
 }  // namespace prehend::harness

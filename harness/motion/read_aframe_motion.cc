@@ -17,20 +17,20 @@ constexpr double kSPerMs = 1e-3;
 constexpr int kMaxButtons = 1000;
 constexpr std::string_view kButtonEvents[] = {"buttonchanged", "buttondown", "buttonup"};
 
-struct XyzEntry {
+struct XyzYaml {
   double x = 0, y = 0, z = 0;
 };
 struct CapturedPose {
   Where where;
-  XyzEntry position, rotation;
+  XyzYaml position, rotation;
   Located<double> timestamp;
 };
 
-ValueFormat<XyzEntry> XyzFormat(double most) {
-  return StructFormat<XyzEntry>("a vector")
-      .Required("x", &XyzEntry::x, Number(-most, most), "")
-      .Required("y", &XyzEntry::y, Number(-most, most), "")
-      .Required("z", &XyzEntry::z, Number(-most, most), "")
+ValueFormat<XyzYaml> XyzFormat(double most) {
+  return StructFormat<XyzYaml>("a vector")
+      .Required("x", &XyzYaml::x, Number(-most, most), "")
+      .Required("y", &XyzYaml::y, Number(-most, most), "")
+      .Required("z", &XyzYaml::z, Number(-most, most), "")
       .format();
 }
 

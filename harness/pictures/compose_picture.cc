@@ -283,7 +283,7 @@ render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& pi
 }  // namespace
 
 render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
-                               const PictureEntry& entry) {
+                               const PictureYaml& entry) {
   const FoundTime moment = FindEventTime(entry.at.value, run);
   render::Picture picture;
   picture.scene = &scenario.scene;

@@ -14,7 +14,7 @@ namespace {
 
 /// Draws one entry; returns an error text or "".
 std::string DrawOne(render::Painter& painter, const Scenario& scenario, const RunResult& run,
-                    const PictureEntry& entry, const std::string& file,
+                    const PictureYaml& entry, const std::string& file,
                     std::vector<WrittenPicture>& written) {
   if (!painter.error().empty()) return painter.error();
   if (run.recording.empty()) return "the run recorded nothing to draw";
@@ -58,7 +58,7 @@ PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
   return result;
 }
 
-PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureEntry& entry,
+PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureYaml& entry,
                           const std::string& file) {
   PictureResult result;
   render::Painter painter;

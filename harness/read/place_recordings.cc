@@ -21,9 +21,9 @@ using grammar::Diagnostic;
 
 constexpr int kUsualButton = 1;
 
-bool IsCapture(const RecordingEntry& entry) { return entry.recording.value.ends_with(".json"); }
+bool IsCapture(const RecordingYaml& entry) { return entry.recording.value.ends_with(".json"); }
 
-ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingEntry& entry) {
+ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingYaml& entry) {
   if (!IsCapture(entry)) return ReadMotionCsv(path);
   return ReadMotionCapture(
       path, {entry.device->value, entry.button.value_or(Located<int>{kUsualButton, {}}).value,
@@ -32,7 +32,7 @@ ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingEntry&
 
 /// Only the samples from from_s to to_s, with times since from_s.
 template <class Track>
-bool Cut(const RecordingEntry& entry, Track& track, Complaints& complaints) {
+bool Cut(const RecordingYaml& entry, Track& track, Complaints& complaints) {
   auto& samples = track.samples;
   const double last_s = samples.back().t_s;
   const double to_s = entry.to_s ? entry.to_s->value : last_s;
@@ -57,7 +57,7 @@ bool Cut(const RecordingEntry& entry, Track& track, Complaints& complaints) {
 }
 
 /// The palm in the world, at every sample.
-std::vector<physics::TimedPose> Place(const RecordingEntry& entry, const MotionTrack& track) {
+std::vector<physics::TimedPose> Place(const RecordingYaml& entry, const MotionTrack& track) {
   const physics::Pose X_DH{entry.palm_m, physics::FromRollPitchYaw(entry.palm_rpy_deg)};
   const physics::Pose first = track.samples.front().X_RD * X_DH;
   physics::Pose X_WR{Eigen::Vector3d::Zero(), physics::FromRollPitchYaw({0, 0, entry.yaw_deg})};
@@ -70,8 +70,8 @@ std::vector<physics::TimedPose> Place(const RecordingEntry& entry, const MotionT
 
 /// The person in the world, at every frame: as tall as she is, and where she stands lowest, her
 /// ankle is as high as when she stands.
-std::vector<physics::TimedFigure> Place(const RecordingEntry& entry, const BodyTrack& track,
-                                        const PersonActor& person, double scale) {
+std::vector<physics::TimedFigure> Place(const RecordingYaml& entry, const BodyTrack& track,
+                                        const PersonActorYaml& person, double scale) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const BodySample& sample : track.samples)
     lowest =
@@ -96,7 +96,7 @@ std::vector<physics::TimedFigure> Place(const RecordingEntry& entry, const BodyT
 constexpr std::size_t kMaxOddities = 12;
 
 /// What is odd about how hips, hands and feet go, in metres.
-grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingEntry& entry,
+grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingYaml& entry,
                                     double scale) {
   const double frame_s = track.samples[1].t_s - track.samples[0].t_s;
   if (frame_s > entry.most_gap_s) {
@@ -123,7 +123,8 @@ grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingEntry
 
 class RecordingReader {
  public:
-  RecordingReader(const std::string& scenario_file, const std::vector<Named<PersonActor>>& persons,
+  RecordingReader(const std::string& scenario_file,
+                  const std::vector<Named<PersonActorYaml>>& persons,
                   const ScenarioLibrary& library, Complaints& complaints,
                   grammar::Diagnostics& in_recordings)
       : persons_(persons),
@@ -132,7 +133,7 @@ class RecordingReader {
         complaints_(complaints),
         in_recordings_(in_recordings) {}
 
-  void Fill(const std::string& actor, RecordingEntry& entry) {
+  void Fill(const std::string& actor, RecordingYaml& entry) {
     if (entry.recording.value.ends_with(".bvh")) return FillBody(actor, entry);
     if (!CheckKind(entry)) return;
     ReadResult<MotionTrack> track = ReadTrack(PathOf(entry), entry);
@@ -153,7 +154,7 @@ class RecordingReader {
   }
 
  private:
-  void FillBody(const std::string& actor, RecordingEntry& entry) {
+  void FillBody(const std::string& actor, RecordingYaml& entry) {
     const auto person = std::find_if(persons_.begin(), persons_.end(),
                                      [&](const auto& p) { return p.name == actor; });
     if (person == persons_.end()) {
@@ -181,7 +182,7 @@ class RecordingReader {
   }
 
   /// Nobody's legs are a third or three times as long as hers: those are other units.
-  bool CheckScale(const RecordingEntry& entry, double legs_m, const PersonActor& person) {
+  bool CheckScale(const RecordingYaml& entry, double legs_m, const PersonActorYaml& person) {
     constexpr double kMaxRatio = 3;
     const double hers_m = physics::LegLength(person.height_m), ratio = legs_m / hers_m;
     if (ratio < kMaxRatio && ratio > 1 / kMaxRatio) return true;
@@ -195,14 +196,14 @@ class RecordingReader {
     return false;
   }
 
-  std::string PathOf(const RecordingEntry& entry) const {
+  std::string PathOf(const RecordingYaml& entry) const {
     const std::string path = (std::filesystem::path(folder_) / entry.recording.value).string();
     if (library_.reads_recording) library_.reads_recording(path);
     return path;
   }
 
   /// Keeps the warnings; false when there are errors.
-  bool Accept(const RecordingEntry& entry, grammar::Diagnostics odd) {
+  bool Accept(const RecordingYaml& entry, grammar::Diagnostics odd) {
     const bool refused =
         std::any_of(odd.begin(), odd.end(), [](const Diagnostic& d) { return !d.is_warning; });
     if (refused)
@@ -213,7 +214,7 @@ class RecordingReader {
   }
 
   /// The same file may be played often, but not without end.
-  bool HasRoom(const RecordingEntry& entry, std::size_t samples) {
+  bool HasRoom(const RecordingYaml& entry, std::size_t samples) {
     samples_ += samples;
     if (samples_ <= kMaxTrackSamples) return true;
     complaints_.Add(entry.recording.where,
@@ -222,7 +223,7 @@ class RecordingReader {
   }
 
   /// "left or right", as far as the file can be read.
-  std::string NamesOfDevices(const RecordingEntry& entry) const {
+  std::string NamesOfDevices(const RecordingYaml& entry) const {
     const ReadResult<YamlDocument> file = ReadYamlFile(PathOf(entry));
     if (!file.value || file.value->root.children.empty()) return "right";
     std::vector<std::string> names;
@@ -232,7 +233,7 @@ class RecordingReader {
 
   /// A button that is asked for has to be pressed; that the usual one is not, while others are, is
   /// odd.
-  bool CheckButton(const RecordingEntry& entry, const MotionTrack& track) {
+  bool CheckButton(const RecordingYaml& entry, const MotionTrack& track) {
     if (!IsCapture(entry) || (!entry.button && track.buttons.empty())) return true;
     const int wanted = entry.button.value_or(Located<int>{kUsualButton, {}}).value;
     if (track.buttons.contains(wanted)) return true;
@@ -252,7 +253,7 @@ class RecordingReader {
     return true;
   }
 
-  bool CheckKind(const RecordingEntry& entry) {
+  bool CheckKind(const RecordingYaml& entry) {
     const bool capture = IsCapture(entry);
     if (capture && !entry.device) {
       complaints_.Add(entry.recording.where,
@@ -267,13 +268,13 @@ class RecordingReader {
     return capture || (!entry.device && !entry.button);
   }
 
-  void Refuse(const RecordingEntry& entry, grammar::Diagnostics diagnostics) {
+  void Refuse(const RecordingYaml& entry, grammar::Diagnostics diagnostics) {
     complaints_.Add(entry.recording.where, fmt::format("recording: '{}' cannot be used, see below",
                                                        entry.recording.value));
     in_recordings_.insert(in_recordings_.end(), diagnostics.begin(), diagnostics.end());
   }
 
-  const std::vector<Named<PersonActor>>& persons_;
+  const std::vector<Named<PersonActorYaml>>& persons_;
   std::string folder_;
   std::size_t samples_ = 0;  ///< of all recordings so far
   const ScenarioLibrary& library_;
@@ -283,13 +284,13 @@ class RecordingReader {
 
 }  // namespace
 
-void ReadRecordings(const std::string& scenario_file, ScenarioEntry& entry,
+void ReadRecordings(const std::string& scenario_file, ScenarioYaml& entry,
                     const ScenarioLibrary& library, Complaints& complaints,
                     grammar::Diagnostics& in_recordings) {
   RecordingReader reader(scenario_file, entry.persons, library, complaints, in_recordings);
-  for (BeatEntry& beat : entry.script) {
-    for (Named<StepEntry>& step : beat) {
-      if (auto* recording = std::get_if<RecordingEntry>(&step.value))
+  for (StageYaml& beat : entry.script) {
+    for (Named<StepYaml>& step : beat) {
+      if (auto* recording = std::get_if<RecordingYaml>(&step.value))
         reader.Fill(step.name, *recording);
     }
   }

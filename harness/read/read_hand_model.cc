@@ -25,7 +25,7 @@ constexpr const char* kGraspsEnding = ".grasps.yaml";
 /// Turns an entry into a model and complains about names and counts that do not fit together.
 class HandBuilder {
  public:
-  HandBuilder(const HandEntry& entry, Complaints& complaints)
+  HandBuilder(const HandYaml& entry, Complaints& complaints)
       : entry_(entry), complaints_(complaints) {}
 
   HandModel Build() {
@@ -49,8 +49,8 @@ class HandBuilder {
 
  private:
   int SensorSet(const Located<std::string>& name);
-  void AddDigit(const Named<DigitEntry>& digit, std::vector<physics::HandLink>& links);
-  const HandEntry& entry_;
+  void AddDigit(const Named<DigitYaml>& digit, std::vector<physics::HandLink>& links);
+  const HandYaml& entry_;
   Complaints& complaints_;
 };
 
@@ -65,7 +65,7 @@ int HandBuilder::SensorSet(const Located<std::string>& name) {
 }
 
 /// Everything but its name, its place and its joint's axis.
-physics::HandLink LinkOf(const LinkEntry& link, double joint_unit, int sensor_set) {
+physics::HandLink LinkOf(const LinkYaml& link, double joint_unit, int sensor_set) {
   return {.length_m = link.length_m,
           .half_width_m = link.half_width_m,
           .half_thickness_m = link.half_thickness_m,
@@ -76,7 +76,7 @@ physics::HandLink LinkOf(const LinkEntry& link, double joint_unit, int sensor_se
           .sensor_set = sensor_set};
 }
 
-void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::HandLink>& links) {
+void HandBuilder::AddDigit(const Named<DigitYaml>& digit, std::vector<physics::HandLink>& links) {
   const int sensor_set = SensorSet(digit.value.sensor_set);
   Eigen::Vector3d pivot_m = digit.value.base_m;
   int parent = -1;
@@ -94,7 +94,7 @@ void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::
     parent = static_cast<int>(links.size()) - 1;
     pivot_m += digit.value.direction * links.back().length_m;
   };
-  for (const PhalanxEntry& phalanx : digit.value.phalanges)
+  for (const PhalanxYaml& phalanx : digit.value.phalanges)
     add(LinkOf(phalanx, physics::kRadPerDeg, sensor_set), digit.name + "_" + phalanx.name.value,
         phalanx.name.where, phalanx.joint_axis);
   if (!digit.value.jaw) return;
@@ -148,7 +148,7 @@ class HandReader {
   }
   ReadResult<HandModel> ReadHand(const std::string& path, const YamlDocument& document);
   ReadResult<HandModel> ReadMirror(const std::string& path, const YamlDocument& document);
-  Diagnostics AddGrasps(const std::string& path, const HandEntry& hand, SameName same_name,
+  Diagnostics AddGrasps(const std::string& path, const HandYaml& hand, SameName same_name,
                         HandModel& model);
 
   const std::vector<std::string>& more_grasps_;
@@ -156,12 +156,12 @@ class HandReader {
 };
 
 /// The styles of a grasp file. Returns what is wrong in it.
-Diagnostics HandReader::AddGrasps(const std::string& path, const HandEntry& hand,
-                                  SameName same_name, HandModel& model) {
+Diagnostics HandReader::AddGrasps(const std::string& path, const HandYaml& hand, SameName same_name,
+                                  HandModel& model) {
   ReadResult<YamlDocument> document = ReadFile(path);
   if (!document.value) return std::move(document.diagnostics);
   Complaints complaints(*document.value);
-  GraspsEntry entry;
+  GraspsYaml entry;
   if (GraspsFormat().Read(document.value->root, complaints, entry)) {
     CheckName(path, kGraspsEnding, "grasps", entry.name, complaints);
     AddStyles(hand.digits, entry.styles, same_name, complaints, model.styles);
@@ -171,7 +171,7 @@ Diagnostics HandReader::AddGrasps(const std::string& path, const HandEntry& hand
 
 ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDocument& document) {
   Complaints complaints(document);
-  HandEntry entry;
+  HandYaml entry;
   if (!HandFormat().Read(document.root, complaints, entry))
     return {std::nullopt, complaints.Sorted()};
   CheckName(path, kHandEnding, "hand", entry.name, complaints);
@@ -199,7 +199,7 @@ ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDo
 ReadResult<HandModel> HandReader::ReadMirror(const std::string& path,
                                              const YamlDocument& document) {
   Complaints complaints(document);
-  MirrorEntry entry;
+  MirrorYaml entry;
   if (!MirrorFormat().Read(document.root, complaints, entry))
     return {std::nullopt, complaints.Sorted()};
   CheckName(path, kHandEnding, "hand", entry.name, complaints);

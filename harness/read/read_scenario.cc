@@ -32,7 +32,7 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void CheckNames(const std::string& file, const ScenarioEntry& entry, const ScenarioLibrary& library,
+void CheckNames(const std::string& file, const ScenarioYaml& entry, const ScenarioLibrary& library,
                 Complaints& complaints) {
   const std::string stem = path(file).stem().string();
   if (!entry.name.value.empty() && entry.name.value != stem) {
@@ -57,7 +57,7 @@ void CheckNames(const std::string& file, const ScenarioEntry& entry, const Scena
 
 /// The actor's model, or an empty one after complaining; what is wrong in a hand's file goes to
 /// `in_hand_files`.
-physics::HandModel FindHand(const std::string& file, const HandActor& actor,
+physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
                             const ScenarioLibrary& library, Complaints& complaints,
                             Diagnostics& in_hand_files) {
   const Located<std::string>& hand = actor.hand;
@@ -122,7 +122,7 @@ ReadResult<Scenario> AllOf(const Complaints& complaints, const Diagnostics& in_o
 ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& document,
                              const ScenarioLibrary& library) {
   Complaints complaints(document);
-  ScenarioEntry entry;
+  ScenarioYaml entry;
   const bool well_formed = ScenarioFormat().Read(document.root, complaints, entry);
   SortActors(entry);
   CheckNames(file, entry, library, complaints);
@@ -176,7 +176,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   for (const auto& kind : entry.classes) scenario.kinds.push_back({kind.name, kind.value.value});
   scenario.variations = std::move(entry.vary);
   scenario.pictures = std::move(entry.pictures);
-  for (const PictureEntry& picture : scenario.pictures) {
+  for (const PictureYaml& picture : scenario.pictures) {
     const std::string& camera = picture.camera.value;
     if (WhyNoCamera(scenario, camera))
       complaints.AddUnknownName(picture.camera.where,

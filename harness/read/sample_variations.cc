@@ -26,7 +26,7 @@ Random GeneratorFor(std::uint64_t seed, int trial, std::size_t variation) {
 /// Chance may not leave the bounds that the reader has tried.
 constexpr double kMaxDeviations = 3;
 
-Draw DrawFrom(const VariationEntry& variation, Random& random) {
+Draw DrawFrom(const VariationYaml& variation, Random& random) {
   if (variation.choose) return (*variation.choose)[random.Next() % variation.choose->size()];
   if (variation.normal) {
     double deviations = random.Normal(0, 1);
@@ -51,7 +51,7 @@ const YamlNode* FindField(const YamlNode& root, const std::string& path) {
   return node;
 }
 
-Bounds BoundsOf(const VariationEntry& variation) {
+Bounds BoundsOf(const VariationYaml& variation) {
   if (variation.choose) return {"choose", {variation.choose->begin(), variation.choose->end()}};
   if (variation.normal) {
     const double mean = (*variation.normal)[0], most = kMaxDeviations * (*variation.normal)[1];
@@ -64,7 +64,7 @@ Bounds BoundsOf(const VariationEntry& variation) {
   return variation.plus ? from("plus", *variation.plus) : from("times", *variation.times);
 }
 
-std::string SettingOf(const YamlDocument& document, const VariationEntry& variation,
+std::string SettingOf(const YamlDocument& document, const VariationYaml& variation,
                       const std::string& field, const Draw& draw) {
   if (const auto* text = std::get_if<std::string>(&draw)) return field + "=" + *text;
   const YamlNode* node = FindField(document.root, field);
@@ -78,8 +78,8 @@ std::string SettingOf(const YamlDocument& document, const VariationEntry& variat
 }
 
 std::vector<std::string> DrawTrial(const YamlDocument& document,
-                                   const std::vector<VariationEntry>& variations,
-                                   std::uint64_t seed, int trial) {
+                                   const std::vector<VariationYaml>& variations, std::uint64_t seed,
+                                   int trial) {
   std::vector<std::string> settings;
   for (std::size_t i = 0; i < variations.size(); ++i) {
     Random random = GeneratorFor(seed, trial, i);

@@ -41,7 +41,7 @@ bool IsAboutThePath(const grammar::Diagnostic& wrong, const std::string& setting
 }
 
 /// Nobody can put a drawn number in quotes.
-std::string HintFor(const grammar::Diagnostic& wrong, const VariationEntry& variation) {
+std::string HintFor(const grammar::Diagnostic& wrong, const VariationYaml& variation) {
   const bool wants_text = wrong.hint.starts_with("put it in quotes");
   return wants_text && !variation.choose ? "to draw texts: choose: [...]" : wrong.hint;
 }
@@ -51,7 +51,7 @@ class DrawChecker {
   DrawChecker(const YamlDocument& document, const Reader& read)
       : document_(document), read_(read), complaints_(document) {}
 
-  void Check(const VariationEntry& variation, std::size_t index) {
+  void Check(const VariationYaml& variation, std::size_t index) {
     const Bounds bounds = BoundsOf(variation);
     const YamlNode& written = *NodeOf(document_, index).Find(bounds.key);
     for (std::size_t bound = 0; bound < bounds.draws.size(); ++bound) {
@@ -84,7 +84,7 @@ class DrawChecker {
 
 }  // namespace
 
-void CheckVariedFields(const YamlDocument& document, const std::vector<VariationEntry>& variations,
+void CheckVariedFields(const YamlDocument& document, const std::vector<VariationYaml>& variations,
                        Complaints& complaints) {
   std::set<std::string> varied;
   YamlDocument tried = document;
@@ -115,7 +115,7 @@ void CheckVariedFields(const YamlDocument& document, const std::vector<Variation
 }
 
 grammar::Diagnostics CheckDraws(const YamlDocument& document,
-                                const std::vector<VariationEntry>& variations, const Reader& read) {
+                                const std::vector<VariationYaml>& variations, const Reader& read) {
   DrawChecker checker(document, read);
   for (std::size_t i = 0; i < variations.size(); ++i) checker.Check(variations[i], i);
   return checker.Sorted();

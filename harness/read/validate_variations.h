@@ -13,7 +13,7 @@ namespace prehend::harness {
 
 /// Complains about fields that lead nowhere, that are varied twice, or that are no numbers where
 /// numbers are varied.
-void CheckVariedFields(const YamlDocument& document, const std::vector<VariationEntry>& variations,
+void CheckVariedFields(const YamlDocument& document, const std::vector<VariationYaml>& variations,
                        Complaints& complaints);
 
 /// What the reader says of a scenario: nothing, if it can be read.
@@ -23,6 +23,6 @@ using Reader = std::function<grammar::Diagnostics(const YamlDocument&)>;
 /// that cannot be read. What the command line sets is not varied, and so not looked at.
 /// CheckVariedFields() found nothing.
 grammar::Diagnostics CheckDraws(const YamlDocument& document,
-                                const std::vector<VariationEntry>& variations, const Reader& read);
+                                const std::vector<VariationYaml>& variations, const Reader& read);
 
 }  // namespace prehend::harness

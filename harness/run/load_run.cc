@@ -52,7 +52,7 @@ Settings Split(const std::vector<std::string>& settings,
 /// The scenario's own grammar must have the events that pictures ask for.
 grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Program& program) {
   grammar::Diagnostics diagnostics;
-  for (const PictureEntry& picture : scenario.pictures) {
+  for (const PictureYaml& picture : scenario.pictures) {
     const auto problem = WhyNoEventTime(picture.at.value, program);
     if (!problem) continue;
     const bool in_file = picture.at.where.source == 0;
@@ -73,7 +73,7 @@ std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
       request.settings, [](const auto& set) { return set.starts_with("grammar="); });
   if (!document.value || is_set) return "";
   const YamlNode* node = document.value->root.Find("grammar");
-  const std::string name = node ? node->text : ScenarioEntry{}.grammar.value;
+  const std::string name = node ? node->text : ScenarioYaml{}.grammar.value;
   return std::ranges::count(ProjectLibrary(root).grammars, name) > 0 ? name : "";
 }
 

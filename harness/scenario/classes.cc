@@ -44,10 +44,10 @@ bool IsBuiltInClass(const std::string& name) {
 }
 
 std::vector<std::string> WithKinds(const std::string& class_name,
-                                   const std::vector<KindEntry>& kinds) {
+                                   const std::vector<BaseClass>& kinds) {
   std::vector<std::string> all = {class_name};
   while (all.size() <= kinds.size()) {
-    const auto found = std::ranges::find(kinds, all.back(), &KindEntry::name);
+    const auto found = std::ranges::find(kinds, all.back(), &BaseClass::name);
     if (found == kinds.end()) break;
     all.push_back(found->of);
   }

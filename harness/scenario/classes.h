@@ -15,7 +15,7 @@ bool IsBuiltInClass(const std::string& name);
 
 /// A class and its base classes, the most special first.
 std::vector<std::string> WithKinds(const std::string& class_name,
-                                   const std::vector<KindEntry>& kinds);
+                                   const std::vector<BaseClass>& kinds);
 
 /// All classes of a body of the scenario, most special first: its own and their base classes, then
 /// the built-in ones.

@@ -60,7 +60,7 @@ struct LookEntry {
   double joint_position = 0, joint_fraction = 0;
   std::optional<Located<std::string>> gazes_at;
 };
-struct HandEntry {
+struct HandYaml {
   double trigger = 0;
   std::optional<Eigen::Vector3d> ahead;
   std::vector<Eigen::Vector4d> feelers_m;
@@ -77,7 +77,7 @@ struct TouchEntry {
 struct FrameEntry {
   Located<std::int64_t> tick;
   std::vector<Named<LookEntry>> looks;
-  std::vector<Named<HandEntry>> hands;
+  std::vector<Named<HandYaml>> hands;
   std::vector<TouchEntry> touches;
 };
 struct EndEntry {
@@ -141,7 +141,7 @@ ValueFormat<LineEntry> LineFormat() {
           .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
           .Optional("gazes_at", &L::gazes_at, Name(), "")
           .format();
-  using H = HandEntry;
+  using H = HandYaml;
   const ValueFormat<H> hand =
       StructFormat<H>("hand")
           .NamedByKey()
@@ -319,7 +319,7 @@ class EpisodeReader {
         now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, complaints);
       }
     }
-    for (const Named<HandEntry>& hand : entry.hands) TakeHand(hand, complaints);
+    for (const Named<HandYaml>& hand : entry.hands) TakeHand(hand, complaints);
     now_.touches.clear();
     for (const TouchEntry& touch : entry.touches) TakeTouch(touch, complaints);
     std::sort(now_.touches.begin(), now_.touches.end(), [](const auto& a, const auto& b) {
@@ -351,7 +351,7 @@ class EpisodeReader {
     if (entry.w_rad_per_s) look.w_WB_rad_per_s = *entry.w_rad_per_s;
   }
 
-  void TakeHand(const Named<HandEntry>& named, Complaints& complaints) {
+  void TakeHand(const Named<HandYaml>& named, Complaints& complaints) {
     const int entity = IndexOf(named.name, named.name_where, complaints);
     if (entity == grammar::kNoEntity) return;
     const auto found = std::find(hands_.begin(), hands_.end(), entity);
@@ -359,7 +359,7 @@ class EpisodeReader {
       return complaints.Add(named.name_where, fmt::format("'{}' is no hand", named.name),
                             "its entity has no 'hand: true'");
     const auto slot = static_cast<std::size_t>(found - hands_.begin());
-    const HandEntry& entry = named.value;
+    const HandYaml& entry = named.value;
     const grammar::EntitySample& look = now_.entities[static_cast<std::size_t>(entity)];
     grammar::HandSample& hand = now_.hands[slot];
     hand.trigger = entry.trigger;
