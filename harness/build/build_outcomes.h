@@ -17,6 +17,6 @@ namespace prehend::harness {
 /// moments after the end.
 std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionYaml>>>& entries,
                                    const physics::Scene& scene, const physics::Script& script,
-                                   Complaints& complaints);
+                                   DiagnosticList& errors);
 
 }  // namespace prehend::harness

@@ -13,7 +13,7 @@ struct PersonStepMaker {
   const Named<StepYaml>& step;
   const physics::Person& person;
   const physics::Scene& scene;
-  Complaints& complaints;
+  DiagnosticList& errors;
 
   physics::PersonStep operator()(const WaitYaml& e) const {
     return {0, physics::WaitStep{}, e.wait_s};
@@ -47,7 +47,7 @@ struct PersonStepMaker {
   }
   physics::PersonStep operator()(const RecordingYaml& e) const {
     if (!e.style.value.empty())
-      complaints.Add(e.style.where, "style: a person's recording moves her head, no hand");
+      errors.Add(e.style.where, "style: a person's recording moves her head, no hand");
     if (!e.figures.empty()) {
       CheckBody(e.recording.where, "recording");
       return {0, physics::BodyPosesStep{e.figures}, e.figures.back().t_s};
@@ -57,9 +57,9 @@ struct PersonStepMaker {
   }
   template <class HandYaml>
   physics::PersonStep operator()(const HandYaml&) const {
-    complaints.Add(
-        step.name_where, fmt::format("'{}' is a person, and this step is for hands", step.name),
-        "persons look, walk, turn, lean, move a limb; their hands are actors of their own");
+    errors.Add(step.name_where,
+               fmt::format("'{}' is a person, and this step is for hands", step.name),
+               "persons look, walk, turn, lean, move a limb; their hands are actors of their own");
     return {};
   }
 
@@ -76,23 +76,22 @@ struct PersonStepMaker {
   void CheckSeen(const Located<std::string>& name) const {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
       if (scene.bodies[i].name == name.value && IsHers(i))
-        return complaints.Add(
-            name.where, fmt::format("look_at: '{}' cannot look at herself", person.name),
-            "she looks at things, hands and other persons, or at a point: look_at_m");
+        return errors.Add(name.where,
+                          fmt::format("look_at: '{}' cannot look at herself", person.name),
+                          "she looks at things, hands and other persons, or at a point: look_at_m");
     }
     std::vector<std::string> names;
     for (const physics::Body& body : scene.bodies) names.push_back(body.name);
     for (const physics::Hand& hand : scene.hands) names.push_back(hand.name);
     if (std::find(names.begin(), names.end(), name.value) != names.end()) return;
-    complaints.AddUnknownName(name.where,
-                              fmt::format("look_at: no entity is called '{}'", name.value),
-                              name.value, names);
+    errors.AddUnknownName(name.where, fmt::format("look_at: no entity is called '{}'", name.value),
+                          name.value, names);
   }
 
   bool CheckBody(const Where& where, const char* key) const {
     if (!person.has_body)
-      complaints.Add(where, fmt::format("{}: '{}' is only a head", key, person.name),
-                     "write 'person: body'");
+      errors.Add(where, fmt::format("{}: '{}' is only a head", key, person.name),
+                 "write 'person: body'");
     return person.has_body;
   }
 
@@ -103,19 +102,19 @@ struct PersonStepMaker {
     const bool left = limb.value == LimbEnd::kLeftElbow || limb.value == LimbEnd::kLeftWrist;
     const int hand = right ? person.right_hand : left ? person.left_hand : -1;
     if (hand < 0) return;
-    complaints.Add(limb.where,
-                   fmt::format("move_limb: this arm follows the hand '{}'",
-                               scene.hands[static_cast<std::size_t>(hand)].name),
-                   "move the hand instead");
+    errors.Add(limb.where,
+               fmt::format("move_limb: this arm follows the hand '{}'",
+                           scene.hands[static_cast<std::size_t>(hand)].name),
+               "move the hand instead");
   }
 };
 
 }  // namespace
 
 physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,
-                                   const physics::Scene& scene, Complaints& complaints) {
+                                   const physics::Scene& scene, DiagnosticList& errors) {
   const physics::Person& who = scene.persons[static_cast<std::size_t>(person)];
-  physics::PersonStep made = std::visit(PersonStepMaker{step, who, scene, complaints}, step.value);
+  physics::PersonStep made = std::visit(PersonStepMaker{step, who, scene, errors}, step.value);
   made.person = person;
   return made;
 }

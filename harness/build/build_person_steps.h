@@ -11,6 +11,6 @@ namespace prehend::harness {
 /// Complains about a step that is for hands, about things to look at that are not there, and about
 /// limbs that are not free to go.
 physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,
-                                   const physics::Scene& scene, Complaints& complaints);
+                                   const physics::Scene& scene, DiagnosticList& errors);
 
 }  // namespace prehend::harness

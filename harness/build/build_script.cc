@@ -46,7 +46,7 @@ struct StepMaker {
   const physics::Scene& scene;
   const physics::HandModel* model;  ///< null when the hand is not known
   const Named<StepYaml>& written;
-  Complaints& complaints;
+  DiagnosticList& errors;
 
   physics::Step operator()(const ReachYaml& e) const {
     CheckEntity("reach", e.reach);
@@ -97,9 +97,9 @@ struct StepMaker {
   }
   template <class PersonYaml>
   physics::Step operator()(const PersonYaml&) const {
-    complaints.Add(written.name_where,
-                   fmt::format("'{}' is a hand, and this step is for persons", written.name),
-                   "hands reach, close, move; persons look, walk, lean");
+    errors.Add(written.name_where,
+               fmt::format("'{}' is a hand, and this step is for persons", written.name),
+               "hands reach, close, move; persons look, walk, lean");
     return {};
   }
 
@@ -111,14 +111,12 @@ struct StepMaker {
       const auto index = static_cast<std::size_t>(found - entities.begin());
       const std::string what = index < scene.bodies.size() ? WhyNoThing(scene.bodies[index]) : "";
       if (!what.empty())
-        complaints.Add(
-            name.where, fmt::format("{}: '{}' is {}, and no thing", key, name.value, what),
-            what == "grains" ? "name the vessel that they are in" : "nothing touches it");
+        errors.Add(name.where, fmt::format("{}: '{}' is {}, and no thing", key, name.value, what),
+                   what == "grains" ? "name the vessel that they are in" : "nothing touches it");
       return;
     }
-    complaints.AddUnknownName(name.where,
-                              fmt::format("{}: no entity is called '{}'", key, name.value),
-                              name.value, entities);
+    errors.AddUnknownName(name.where, fmt::format("{}: no entity is called '{}'", key, name.value),
+                          name.value, entities);
   }
 
   /// A point to grasp has to be on the thing or in it.
@@ -129,10 +127,10 @@ struct StepMaker {
     if (index >= scene.bodies.size() || scene.bodies[index].shapes.empty()) return;
     const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
     if (away_m <= kMaxOutside_m) return;
-    complaints.Add(e.point_m->where,
-                   fmt::format("point_m: the point is {:.1f} mm outside of '{}', more than {:g} mm",
-                               1000 * away_m, *found, 1000 * kMaxOutside_m),
-                   "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
+    errors.Add(e.point_m->where,
+               fmt::format("point_m: the point is {:.1f} mm outside of '{}', more than {:g} mm",
+                           1000 * away_m, *found, 1000 * kMaxOutside_m),
+               "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
   }
 
   void CheckJoint(const Located<std::string>& name) const {
@@ -142,9 +140,9 @@ struct StepMaker {
     if (joint >= 0 &&
         scene.joints[static_cast<std::size_t>(joint)].kind != physics::JointKind::kBall)
       return;
-    complaints.Add(name.where,
-                   fmt::format("follow_joint: '{}' hangs on no slider or hinge", name.value),
-                   "give it one, or move the hand by 'move_by_m'");
+    errors.Add(name.where,
+               fmt::format("follow_joint: '{}' hangs on no slider or hinge", name.value),
+               "give it one, or move the hand by 'move_by_m'");
   }
 
   physics::Step Follow(physics::PosesStep step, const Located<std::string>& style) const {
@@ -161,7 +159,7 @@ struct StepMaker {
     if (style >= 0) return &model->styles[static_cast<std::size_t>(style)];
     std::vector<std::string> known;
     for (const auto& candidate : model->styles) known.push_back(candidate.name);
-    complaints.AddUnknownName(
+    errors.AddUnknownName(
         where, fmt::format("style: hand '{}' has no style '{}'", model->name, name), name, known);
     return nullptr;
   }
@@ -170,8 +168,8 @@ struct StepMaker {
     const bool above_missing = e.from == physics::Approach::kAbove && !chosen.above;
     const bool side_missing = e.from == physics::Approach::kSide && !chosen.side;
     if (above_missing || side_missing) {
-      complaints.Add(e.reach.where, fmt::format("style '{}' does not grasp from {}", chosen.name,
-                                                above_missing ? "above" : "the side"));
+      errors.Add(e.reach.where, fmt::format("style '{}' does not grasp from {}", chosen.name,
+                                            above_missing ? "above" : "the side"));
     }
   }
 };
@@ -185,7 +183,7 @@ double DurationOf(const physics::Beat& beat) {
 }
 
 /// Limits that concern the script as a whole, at the beat where they are passed.
-void CheckLength(const ScenarioYaml& entry, const physics::Script& script, Complaints& complaints) {
+void CheckLength(const ScenarioYaml& entry, const physics::Script& script, DiagnosticList& errors) {
   double total_s = script.settle_s;
   std::size_t poses = 0;
   for (std::size_t i = 0; i < script.beats.size(); ++i) {
@@ -195,11 +193,11 @@ void CheckLength(const ScenarioYaml& entry, const physics::Script& script, Compl
     total_s += DurationOf(script.beats[i]);
     const Where where = entry.script[i].front().name_where;
     if (total_s > kMaxDuration_s) {
-      return complaints.Add(
-          where, fmt::format("the script takes more than {} s up to here", kMaxDuration_s));
+      return errors.Add(where,
+                        fmt::format("the script takes more than {} s up to here", kMaxDuration_s));
     }
     if (poses > kMaxPoses)
-      return complaints.Add(where, fmt::format("more than {} poses up to here", kMaxPoses));
+      return errors.Add(where, fmt::format("more than {} poses up to here", kMaxPoses));
   }
 }
 
@@ -210,14 +208,14 @@ struct HandSoFar {
 };
 
 /// Steps about the held thing need a hand that may hold something.
-void CheckOrder(const std::vector<StageYaml>& script, Complaints& complaints) {
+void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
   std::map<std::string, HandSoFar> hands;
   const auto check_holds = [&](const std::string& key, const Named<StepYaml>& step,
                                const Where& where) {
     const HandSoFar& hand = hands[step.name];
     if (!hand.reached.empty() || hand.closed) return;
-    complaints.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
-                   "it has neither reached for something nor closed before");
+    errors.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
+               "it has neither reached for something nor closed before");
   };
   for (const StageYaml& beat : script) {
     for (const Named<StepYaml>& step : beat) {
@@ -239,8 +237,8 @@ void CheckOrder(const std::vector<StageYaml>& script, Complaints& complaints) {
       if (const auto* place = std::get_if<PlaceYaml>(&step.value)) {
         check_holds("place_on", step, place->where);
         if (place->place_on.value == hand.reached) {
-          complaints.Add(place->place_on.where,
-                         fmt::format("place_on: {} holds '{}' itself", step.name, hand.reached));
+          errors.Add(place->place_on.where,
+                     fmt::format("place_on: {} holds '{}' itself", step.name, hand.reached));
         }
       }
     }
@@ -264,7 +262,7 @@ physics::Pose PoseOf(const PoseYaml& pose) {
 }
 
 physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
-                            Complaints& complaints) {
+                            DiagnosticList& errors) {
   const std::vector<std::string> entities = NamesOf(entry.entities), hands = NamesOf(entry.hands),
                                  persons = NamesOf(entry.persons);
   physics::Script script;
@@ -274,25 +272,24 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
     for (const Named<StepYaml>& named : beat_entry) {
       const int hand = IndexOf(named.name, hands), person = IndexOf(named.name, persons);
       if (person >= 0) {
-        beat.person_steps.push_back(MakePersonStep(named, person, scene, complaints));
+        beat.person_steps.push_back(MakePersonStep(named, person, scene, errors));
         continue;
       }
       if (hand < 0) {
-        complaints.AddUnknownName(named.name_where,
-                                  fmt::format("no actor is called '{}'", named.name), named.name,
-                                  NamesOf(entry.actors));
+        errors.AddUnknownName(named.name_where, fmt::format("no actor is called '{}'", named.name),
+                              named.name, NamesOf(entry.actors));
       }
       const bool known = hand >= 0 && hand < static_cast<int>(scene.hands.size());
       const physics::HandModel* model =
           known ? &scene.hands[static_cast<std::size_t>(hand)].model : nullptr;
       physics::Step step =
-          std::visit(StepMaker{entities, scene, model, named, complaints}, named.value);
+          std::visit(StepMaker{entities, scene, model, named, errors}, named.value);
       step.hand = hand;
       beat.steps.push_back(std::move(step));
     }
   }
-  CheckOrder(entry.script, complaints);
-  CheckLength(entry, script, complaints);
+  CheckOrder(entry.script, errors);
+  CheckLength(entry, script, errors);
   return script;
 }
 

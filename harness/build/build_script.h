@@ -13,7 +13,7 @@ namespace prehend::harness {
 /// about a script that is too long. `scene` has the hands and persons of `entry`, in that order;
 /// hands without styles are not checked for theirs.
 physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
-                            Complaints& complaints);
+                            DiagnosticList& errors);
 
 /// How long the script takes, with what is simulated after it.
 double DurationOf(const physics::Script& script);

@@ -15,8 +15,8 @@ std::size_t JointsOf(const DigitYaml& digit) { return HasJaw(digit) ? 1 : digit.
 
 class StyleBuilder {
  public:
-  StyleBuilder(const std::vector<Named<DigitYaml>>& digits, Complaints& complaints)
-      : digits_(digits), complaints_(complaints) {}
+  StyleBuilder(const std::vector<Named<DigitYaml>>& digits, DiagnosticList& errors)
+      : digits_(digits), errors_(errors) {}
 
   physics::GraspStyle BuildStyle(const Named<StyleYaml>& style);
 
@@ -31,7 +31,7 @@ class StyleBuilder {
   bool CheckDigitNames(const Located<PerDigit>& numbers);
 
   const std::vector<Named<DigitYaml>>& digits_;
-  Complaints& complaints_;
+  DiagnosticList& errors_;
 };
 
 bool StyleBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
@@ -41,8 +41,8 @@ bool StyleBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
   for (const auto& given : numbers.value) {
     if (std::find(names.begin(), names.end(), given.name) != names.end()) continue;
     good = false;
-    complaints_.AddUnknownName(
-        given.name_where, fmt::format("the hand has no digit '{}'", given.name), given.name, names);
+    errors_.AddUnknownName(given.name_where, fmt::format("the hand has no digit '{}'", given.name),
+                           given.name, names);
   }
   return good;
 }
@@ -60,14 +60,14 @@ std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDig
                      [&](const auto& candidate) { return candidate.name == digit.name; });
     if (!concerned(digit.value)) {
       if (given != numbers.value.end())
-        complaints_.Add(
+        errors_.Add(
             given->name_where,
             fmt::format("{}: phalanges belong into frames_deg, jaws into frames_m", digit.name));
       continue;
     }
     if (given == numbers.value.end()) {
       if (names_are_right)
-        complaints_.Add(numbers.where, fmt::format("there is nothing for digit '{}'", digit.name));
+        errors_.Add(numbers.where, fmt::format("there is nothing for digit '{}'", digit.name));
       continue;
     }
     const std::size_t joints = JointsOf(digit.value);
@@ -75,9 +75,9 @@ std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDig
     for (const Located<double>& number : given->value.value) values.push_back(number.value);
     if (values.size() == 1 && one_is_enough) values.resize(joints, values.front());
     if (values.size() != joints) {
-      complaints_.Add(given->value.where,
-                      fmt::format("{}: expected {} {}, one for each joint, found {}", digit.name,
-                                  joints, joints == 1 ? "number" : "numbers", values.size()));
+      errors_.Add(given->value.where,
+                  fmt::format("{}: expected {} {}, one for each joint, found {}", digit.name,
+                              joints, joints == 1 ? "number" : "numbers", values.size()));
     }
     values.resize(joints);
     all[i] = std::move(values);
@@ -97,10 +97,9 @@ void StyleBuilder::CheckRanges(const Located<PerDigit>& frame, const char* unit)
       const double target = targets.value[i].value;
       if (target >= range[0] && target <= range[1]) continue;
       const std::string part = is_jaw ? name : name + "_" + digit->value.phalanges[i].name.value;
-      complaints_.Add(
-          targets.value[i].where,
-          fmt::format("{}: expected {} to {} {}, the range of the joint of '{}', found {}", name,
-                      range[0], range[1], unit, part, target));
+      errors_.Add(targets.value[i].where,
+                  fmt::format("{}: expected {} to {} {}, the range of the joint of '{}', found {}",
+                              name, range[0], range[1], unit, part, target));
     }
   }
 }
@@ -114,13 +113,13 @@ std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleYaml>& 
                        [&](const auto& digit) { return of(digit.value); });
   };
   const auto missing = [&](const char* key) {
-    complaints_.Add(style.name_where, fmt::format("style '{}' has no '{}'", style.name, key));
+    errors_.Add(style.name_where, fmt::format("style '{}' has no '{}'", style.name, key));
   };
   if (angles.empty() && any(HasPhalanges)) missing("frames_deg");
   if (ways.empty() && any(HasJaw)) missing("frames_m");
   if (!angles.empty() && !ways.empty() && angles.size() != ways.size()) {
-    complaints_.Add(ways.front().where, fmt::format("frames_m: {} frames, but frames_deg has {}",
-                                                    ways.size(), angles.size()));
+    errors_.Add(ways.front().where, fmt::format("frames_m: {} frames, but frames_deg has {}",
+                                                ways.size(), angles.size()));
     return {};
   }
   std::vector<std::vector<double>> frames(std::max(angles.size(), ways.size()));
@@ -159,9 +158,9 @@ physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleYaml>& style) {
 }  // namespace
 
 void AddStyles(const std::vector<Named<DigitYaml>>& digits,
-               const std::vector<Named<StyleYaml>>& styles, SameName rule, Complaints& complaints,
+               const std::vector<Named<StyleYaml>>& styles, SameName rule, DiagnosticList& errors,
                std::vector<physics::GraspStyle>& to) {
-  StyleBuilder builder(digits, complaints);
+  StyleBuilder builder(digits, errors);
   for (const auto& style : styles) {
     physics::GraspStyle built = builder.BuildStyle(style);
     const auto same_name = std::ranges::find(to, style.name, &physics::GraspStyle::name);
@@ -170,8 +169,8 @@ void AddStyles(const std::vector<Named<DigitYaml>>& digits,
     } else if (rule == SameName::kTakesItsPlace) {
       *same_name = std::move(built);
     } else {
-      complaints.Add(style.name_where, fmt::format("the hand has a style '{}' already", style.name),
-                     "one of its files gives it; only `grasps` of a scenario replace styles");
+      errors.Add(style.name_where, fmt::format("the hand has a style '{}' already", style.name),
+                 "one of its files gives it; only `grasps` of a scenario replace styles");
     }
   }
 }

@@ -14,7 +14,7 @@ enum class SameName { kIsRefused, kTakesItsPlace };
 
 /// Of a hand with these digits.
 void AddStyles(const std::vector<Named<DigitYaml>>& digits,
-               const std::vector<Named<StyleYaml>>& styles, SameName rule, Complaints& complaints,
+               const std::vector<Named<StyleYaml>>& styles, SameName rule, DiagnosticList& errors,
                std::vector<physics::GraspStyle>& to);
 
 }  // namespace prehend::harness

@@ -30,7 +30,7 @@ bool IsKindOfItself(const ScenarioYaml& entry, const Named<Located<std::string>>
 
 }  // namespace
 
-void CheckKinds(const ScenarioYaml& entry, Complaints& complaints) {
+void CheckKinds(const ScenarioYaml& entry, DiagnosticList& errors) {
   std::vector<std::string> used;  // classes that something is of
   for (const auto& entity : entry.entities) used.push_back(entity.value.class_name.value);
   for (const auto& kind : entry.classes) used.push_back(kind.value.value);
@@ -38,16 +38,16 @@ void CheckKinds(const ScenarioYaml& entry, Complaints& complaints) {
     for (const auto& [name, where] :
          {std::pair{kind.name, kind.name_where}, std::pair{kind.value.value, kind.value.where}}) {
       if (IsBuiltInClass(name))
-        complaints.Add(where, fmt::format("classes: '{}' is built in and given anyway", name),
-                       "kinds are classes of your own: 'Cup: Container'");
+        errors.Add(where, fmt::format("classes: '{}' is built in and given anyway", name),
+                   "kinds are classes of your own: 'Cup: Container'");
     }
     if (std::ranges::find(used, kind.name) == used.end())
-      complaints.AddUnknownName(kind.name_where,
-                                fmt::format("classes: no entity is of the class '{}'", kind.name),
-                                kind.name, used);
+      errors.AddUnknownName(kind.name_where,
+                            fmt::format("classes: no entity is of the class '{}'", kind.name),
+                            kind.name, used);
     if (IsKindOfItself(entry, kind))
-      complaints.Add(kind.value.where,
-                     fmt::format("classes: '{}' is, directly or not, a kind of itself", kind.name));
+      errors.Add(kind.value.where,
+                 fmt::format("classes: '{}' is, directly or not, a kind of itself", kind.name));
   }
 }
 

@@ -44,7 +44,7 @@ ValueFormat<CameraYaml> CameraFormat() {
 
 ValueFormat<LightYaml> LightFormat() { return StructFormat<LightYaml>("a light").format(); }
 
-void CheckAbstract(const YamlNode& node, const EntityYaml& entity, Complaints& complaints) {
+void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
   const Abstract abstract = AbstractOf(entity);
   if (abstract == Abstract::kNot) return;
   const std::string noun = NounOf(abstract);
@@ -52,23 +52,23 @@ void CheckAbstract(const YamlNode& node, const EntityYaml& entity, Complaints& c
        {"fixed", "mass_kg", "friction", "rolling_friction", "restitution", "linear_damping_per_s",
         "angular_damping_per_s", "fixed_to", "slider", "hinge", "ball_joint", "on", "in"}) {
     if (const YamlNode* given = node.Find(key))
-      complaints.Add(given->key_where, std::string(key) + ": " + noun +
-                                           " has none; it is no matter, and stays where it is");
+      errors.Add(given->key_where, std::string(key) + ": " + noun +
+                                       " has none; it is no matter, and stays where it is");
   }
   for (const char* key : {"rpy_deg", "yaw_deg"}) {
     const YamlNode* given = abstract == Abstract::kRegion ? nullptr : node.Find(key);
     if (given)
-      complaints.Add(given->key_where, std::string(key) + ": " + noun + " is not turned",
-                     abstract == Abstract::kCamera ? "it looks toward_m" : "");
+      errors.Add(given->key_where, std::string(key) + ": " + noun + " is not turned",
+                 abstract == Abstract::kCamera ? "it looks toward_m" : "");
   }
   if (entity.camera && std::ranges::find(CameraWords(), node.key) != CameraWords().end())
-    complaints.Add(node.key_where, "'" + node.key + "' is a camera that every scenario has",
-                   "call it otherwise");
+    errors.Add(node.key_where, "'" + node.key + "' is a camera that every scenario has",
+               "call it otherwise");
   if (entity.camera && entity.at_m.value.size() == 3) {
     const Eigen::Vector3d at_m(entity.at_m.value[0], entity.at_m.value[1], entity.at_m.value[2]);
     if ((entity.camera->toward_m.value - at_m).norm() < kMinSize_m)
-      complaints.Add(entity.camera->toward_m.where, "toward_m: the camera stands there",
-                     "a point that it looks at");
+      errors.Add(entity.camera->toward_m.where, "toward_m: the camera stands there",
+                 "a point that it looks at");
   }
 }
 

@@ -37,14 +37,14 @@ ValueFormat<GainsOverride> GainsFormat() {
 }
 
 /// What would need more losses than there are looks.
-void CheckLosses(const YamlNode& node, const physics::TrackerSettings& t, Complaints& complaints) {
+void CheckLosses(const YamlNode& node, const physics::TrackerSettings& t, DiagnosticList& errors) {
   if (t.dropped_run_s <= 0) return;
   const double run_looks = std::max(1.0, t.dropped_run_s * t.tracker_hz);
   const double least_looks = t.dropped_share / (1 - t.dropped_share);
   if (run_looks >= least_looks) return;
-  complaints.Add(node.Find("dropped_run_s")->where,
-                 fmt::format("dropped_run_s: a share of {} needs losses of at least {:.3f} s",
-                             t.dropped_share, least_looks / t.tracker_hz));
+  errors.Add(node.Find("dropped_run_s")->where,
+             fmt::format("dropped_run_s: a share of {} needs losses of at least {:.3f} s",
+                         t.dropped_share, least_looks / t.tracker_hz));
 }
 
 ValueFormat<physics::TrackerSettings> TrackingFormat() {

@@ -19,13 +19,13 @@ constexpr double kMaxSlide_m = 10;
 constexpr double kMaxTurn_deg = 170;  // at half a turn the two ways could not be told apart
 
 /// A joint's range is [least, most] and holds 0, where it was placed.
-void CheckRange(const YamlNode&, const JointYaml& joint, Complaints& complaints) {
+void CheckRange(const YamlNode&, const JointYaml& joint, DiagnosticList& errors) {
   const Eigen::Vector2d& range = joint.range.value;
   if (range[0] <= 0 && range[1] >= 0 && range[0] < range[1]) return;
-  complaints.Add(joint.range.where,
-                 fmt::format("expected a range [least, most] with 0, where it is placed, between "
-                             "or at them, found [{}, {}]",
-                             range[0], range[1]));
+  errors.Add(joint.range.where,
+             fmt::format("expected a range [least, most] with 0, where it is placed, between "
+                         "or at them, found [{}, {}]",
+                         range[0], range[1]));
 }
 
 StructFormat<JointYaml> JointRecord(const std::string& noun) {
@@ -35,19 +35,19 @@ StructFormat<JointYaml> JointRecord(const std::string& noun) {
 
 ValueFormat<Eigen::Vector3d> Axis() { return Vector<3>(-1, 1); }
 
-void CheckAxis(const YamlNode& node, const JointYaml& joint, Complaints& complaints) {
+void CheckAxis(const YamlNode& node, const JointYaml& joint, DiagnosticList& errors) {
   if (joint.axis.norm() > 1e-6) return;
-  complaints.Add(node.Find("axis")->where, "axis: expected a direction other than [0, 0, 0]");
+  errors.Add(node.Find("axis")->where, "axis: expected a direction other than [0, 0, 0]");
 }
 
 /// A rest without a spring would do nothing; one of no stiffness is somebody's choice.
-std::function<void(const YamlNode&, const JointYaml&, Complaints&)> SpringPullsTo(
+std::function<void(const YamlNode&, const JointYaml&, DiagnosticList&)> SpringPullsTo(
     const char* rest, const char* spring) {
-  return [rest, spring](const YamlNode& node, const JointYaml&, Complaints& complaints) {
+  return [rest, spring](const YamlNode& node, const JointYaml&, DiagnosticList& errors) {
     const YamlNode* given = node.Find(rest);
     if (!given || node.Find(spring)) return;
-    complaints.Add(given->key_where, fmt::format("{}: there is no spring that pulls to it", rest),
-                   fmt::format("give it {}", spring));
+    errors.Add(given->key_where, fmt::format("{}: there is no spring that pulls to it", rest),
+               fmt::format("give it {}", spring));
   };
 }
 
@@ -101,21 +101,21 @@ ValueFormat<JointYaml> BallJointFormat() {
       .format();
 }
 
-void CheckClass(const EntityYaml& entity, Complaints& complaints) {
+void CheckClass(const EntityYaml& entity, DiagnosticList& errors) {
   if (!IsBuiltInClass(entity.class_name.value)) return;
-  complaints.Add(entity.class_name.where,
-                 "class: '" + entity.class_name.value + "' is built in and given anyway",
-                 "name what the thing is, for example Cup");
+  errors.Add(entity.class_name.where,
+             "class: '" + entity.class_name.value + "' is built in and given anyway",
+             "name what the thing is, for example Cup");
 }
 
 /// What hangs on a joint moves, and what is fixed to something has its surface.
-void CheckJoint(const YamlNode& node, const EntityYaml& entity, Complaints& complaints) {
+void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
   const std::string title = "entity '" + node.key + "'";
   for (const char* key : {"fixed_to", "slider", "hinge", "ball_joint"}) {
     const YamlNode* joint = node.Find(key);
     if (joint && entity.fixed) {
-      complaints.Add(joint->key_where, title + " is fixed: it cannot hang on a joint",
-                     "remove fixed or " + std::string(key));
+      errors.Add(joint->key_where, title + " is fixed: it cannot hang on a joint",
+                 "remove fixed or " + std::string(key));
     }
   }
   if (!entity.fixed_to) return;
@@ -123,54 +123,53 @@ void CheckJoint(const YamlNode& node, const EntityYaml& entity, Complaints& comp
                           "angular_damping_per_s"}) {
     const YamlNode* surface = node.Find(key);
     if (surface) {
-      complaints.Add(surface->key_where,
-                     std::string(key) + ": what is fixed to something has its surface",
-                     "give it to '" + entity.fixed_to->value + "'");
+      errors.Add(surface->key_where,
+                 std::string(key) + ": what is fixed to something has its surface",
+                 "give it to '" + entity.fixed_to->value + "'");
     }
   }
 }
 
 /// Grains lie in a vessel, and nothing else does. They are many: what one thing has, they have not.
-void CheckGrains(const YamlNode& node, const EntityYaml& entity, Complaints& complaints) {
+void CheckGrains(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
   const std::string title = "entity '" + node.key + "'";
   if (entity.in && !entity.grains)
-    complaints.Add(entity.in->where, "in: only grains are put into something",
-                   "for a thing: 'on', with at_m: [x, y]");
+    errors.Add(entity.in->where, "in: only grains are put into something",
+               "for a thing: 'on', with at_m: [x, y]");
   if (!entity.grains) return;
   if (!entity.in)
-    complaints.Add(node.key_where, title + " is grains: it needs the key 'in'",
-                   "the vessel that they fill");
+    errors.Add(node.key_where, title + " is grains: it needs the key 'in'",
+               "the vessel that they fill");
   for (const char* key : {"fixed", "part_of", "fixed_to", "slider", "hinge", "ball_joint", "on",
                           "at_m", "rpy_deg", "yaw_deg"}) {
     if (const YamlNode* given = node.Find(key))
-      complaints.Add(given->key_where,
-                     std::string(key) + ": grains have none; they lie loose in their vessel");
+      errors.Add(given->key_where,
+                 std::string(key) + ": grains have none; they lie loose in their vessel");
   }
 }
 
-void CheckEntity(const YamlNode& node, const EntityYaml& entity, Complaints& complaints) {
-  CheckClass(entity, complaints);
-  CheckJoint(node, entity, complaints);
-  CheckGrains(node, entity, complaints);
-  CheckAbstract(node, entity, complaints);
+void CheckEntity(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
+  CheckClass(entity, errors);
+  CheckJoint(node, entity, errors);
+  CheckGrains(node, entity, errors);
+  CheckAbstract(node, entity, errors);
   const bool abstract = AbstractOf(entity) != physics::Abstract::kNot;
   const std::string title = "entity '" + node.key + "'";
   if (entity.fixed && entity.mass_kg) {
-    complaints.Add(entity.mass_kg->where, title + " is fixed: it cannot have a mass",
-                   "remove fixed or mass_kg");
+    errors.Add(entity.mass_kg->where, title + " is fixed: it cannot have a mass",
+               "remove fixed or mass_kg");
   }
   if (!entity.fixed && !entity.mass_kg && !abstract) {
-    complaints.Add(node.key_where, title + " can move: it needs the key 'mass_kg'",
-                   "or 'fixed: true'");
+    errors.Add(node.key_where, title + " can move: it needs the key 'mass_kg'", "or 'fixed: true'");
   }
   const std::size_t wanted = entity.on && !abstract ? 2 : 3;
   if (!entity.in && !entity.grains && entity.at_m.value.size() != wanted) {
-    complaints.Add(entity.at_m.where,
-                   wanted == 2 ? "at_m: with 'on' expected [x, y], found 3 numbers"
-                               : "at_m: expected [x, y, z], the centre, found 2 numbers",
-                   wanted == 2 ? "z follows from the top of the support"
-                   : abstract  ? ""
-                               : "or [x, y] together with 'on: SUPPORT'");
+    errors.Add(entity.at_m.where,
+               wanted == 2 ? "at_m: with 'on' expected [x, y], found 3 numbers"
+                           : "at_m: expected [x, y, z], the centre, found 2 numbers",
+               wanted == 2 ? "z follows from the top of the support"
+               : abstract  ? ""
+                           : "or [x, y] together with 'on: SUPPORT'");
   }
 }
 

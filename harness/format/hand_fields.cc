@@ -27,10 +27,10 @@ ValueFormat<Vector3d> Direction() {
   const auto vector = Vector<3>(-1, 1);
   return ValueFormat<Vector3d>(
              vector.schema(),
-             [vector](const YamlNode& node, Complaints& complaints, Vector3d& value) {
-               if (!vector.Read(node, complaints, value)) return false;
+             [vector](const YamlNode& node, DiagnosticList& errors, Vector3d& value) {
+               if (!vector.Read(node, errors, value)) return false;
                if (value.norm() < 1e-6)
-                 return ComplainWanted(node, complaints, "a direction other than [0, 0, 0]");
+                 return ReportExpected(node, errors, "a direction other than [0, 0, 0]");
                value.normalize();
                return true;
              })
@@ -46,14 +46,14 @@ ValueFormat<std::vector<std::string>> DifferentNames(std::size_t most) {
   const auto list = ListOf(Identifier(), 1, most);
   return ValueFormat<std::vector<std::string>>(
       list.schema(),
-      [list](const YamlNode& node, Complaints& complaints, std::vector<std::string>& names) {
-        if (!list.Read(node, complaints, names)) return false;
+      [list](const YamlNode& node, DiagnosticList& errors, std::vector<std::string>& names) {
+        if (!list.Read(node, errors, names)) return false;
         bool good = true;
         for (std::size_t i = 0; i < names.size(); ++i) {
           const auto here = names.begin() + static_cast<std::ptrdiff_t>(i);
           if (std::find(names.begin(), here, *here) == here) continue;
-          complaints.Add(node.children[i].where,
-                         fmt::format("{}: '{}' is given twice", node.key, *here));
+          errors.Add(node.children[i].where,
+                     fmt::format("{}: '{}' is given twice", node.key, *here));
           good = false;
         }
         return good;
@@ -69,16 +69,16 @@ double DegreesBetween(const Vector3d& a, const Vector3d& b) {
 
 /// Complains unless `direction`, which `key` of the node gives, is across another one.
 void CheckAcross(const YamlNode& node, const char* key, const Vector3d& direction,
-                 const std::string& other_key, const Vector3d& other, Complaints& complaints,
+                 const std::string& other_key, const Vector3d& other, DiagnosticList& errors,
                  const std::string& hint) {
   constexpr double kMaxOff_deg = 1;  // two written digits
   const double degrees = DegreesBetween(direction, other);
   if (90 - degrees <= kMaxOff_deg) return;
-  complaints.Add(node.Find(key)->where,
-                 fmt::format("{}: expected a direction at right angles to {}, found one at {:.3g} "
-                             "degrees to it",
-                             key, other_key, degrees),
-                 hint);
+  errors.Add(node.Find(key)->where,
+             fmt::format("{}: expected a direction at right angles to {}, found one at {:.3g} "
+                         "degrees to it",
+                         key, other_key, degrees),
+             hint);
 }
 
 ValueFormat<PalmYaml> PalmFormat() {
@@ -156,8 +156,8 @@ StructFormat<Link> LinkRecord(StructFormat<Link> record, const char* strength, d
                 "Largest torque or force of its joint at effort 1.")
       .Required(range, Of<Link>(&LinkYaml::range), Vector<2>(-farthest, farthest),
                 "Joint limits [least, most].")
-      .Check([key = std::string(range)](const YamlNode&, const Link& link, Complaints& complaints) {
-        CheckLeastMost(key, link.range.value, link.range.where, complaints);
+      .Check([key = std::string(range)](const YamlNode&, const Link& link, DiagnosticList& errors) {
+        CheckLeastMost(key, link.range.value, link.range.where, errors);
       });
 }
 
@@ -178,17 +178,17 @@ ValueFormat<JawYaml> JawFormat() {
 }
 
 /// A joint at the last part that turns it about its own length neither opens nor closes anything.
-void CheckLastJoint(const YamlNode& node, const DigitYaml& digit, Complaints& complaints) {
+void CheckLastJoint(const YamlNode& node, const DigitYaml& digit, DiagnosticList& errors) {
   constexpr double kMinAngle_deg = 1;
   if (digit.phalanges.empty()) return;
   if (DegreesBetween(digit.phalanges.back().joint_axis, digit.direction) >= kMinAngle_deg) return;
   const YamlNode& last = node.Find("phalanges")->children.back();
   const YamlNode* axis = last.Find("joint_axis");
-  complaints.Add(axis ? axis->where : last.where,
-                 fmt::format("joint_axis: expected an axis across the direction of digit '{}', "
-                             "found one along it: the joint would move nothing",
-                             node.key),
-                 axis ? "" : "without joint_axis it is [0, 1, 0]");
+  errors.Add(axis ? axis->where : last.where,
+             fmt::format("joint_axis: expected an axis across the direction of digit '{}', "
+                         "found one along it: the joint would move nothing",
+                         node.key),
+             axis ? "" : "without joint_axis it is [0, 1, 0]");
 }
 
 ValueFormat<DigitYaml> DigitFormat() {
@@ -235,15 +235,15 @@ StructFormat<GraspApproach> ApproachRecord(const std::string& noun) {
 
 /// The grip closes across the way of arrival, and what is up is across it, too: else no turn of the
 /// hand suits.
-void CheckApproaches(const YamlNode& node, const StyleYaml& style, Complaints& complaints) {
+void CheckApproaches(const YamlNode& node, const StyleYaml& style, DiagnosticList& errors) {
   const auto check_toward = [&](const char* key, const GraspApproach& approach) {
-    CheckAcross(*node.Find(key), "toward", approach.toward, "grip.axis", style.grip.axis,
-                complaints, "the hand arrives along toward and closes along grip.axis");
+    CheckAcross(*node.Find(key), "toward", approach.toward, "grip.axis", style.grip.axis, errors,
+                "the hand arrives along toward and closes along grip.axis");
   };
   if (style.above) check_toward("above", *style.above);
   if (!style.side) return;
   check_toward("side", *style.side);
-  CheckAcross(*node.Find("side"), "up", style.side->up, "toward", style.side->toward, complaints,
+  CheckAcross(*node.Find("side"), "up", style.side->up, "toward", style.side->toward, errors,
               "the hand arrives level, along toward, with up towards the sky");
 }
 
@@ -267,10 +267,10 @@ ValueFormat<StyleYaml> StyleFormat() {
                 "Joint angles from open to closed: for each digit one number for each joint.")
       .Optional("frames_m", &S::frames_m, ListOf(WithPlace(PerDigitFormat(-0.5, 0.5)), 2, 16),
                 "Where jaws stand from open to closed: for each jaw one number.")
-      .Check([](const YamlNode& node, const S& style, Complaints& complaints) {
+      .Check([](const YamlNode& node, const S& style, DiagnosticList& errors) {
         if (style.above || style.side) return;
-        complaints.Add(node.key_where, "style '" + node.key + "' has no approach",
-                       "give 'above', 'side' or both");
+        errors.Add(node.key_where, "style '" + node.key + "' has no approach",
+                   "give 'above', 'side' or both");
       })
       .Check(CheckApproaches)
       .format();
@@ -307,10 +307,10 @@ ValueFormat<HandYaml> BuildHandFormat() {
       .Optional("grasps", &H::grasps, ListOf(WithPlace(Identifier()), 1, 16),
                 "Grasp files in the same folder, by name, without '.grasps.yaml'.")
       .Optional("styles", &H::styles, StylesFormat(), "Grasps, by name.")
-      .Check([](const YamlNode& node, const H& hand, Complaints& complaints) {
+      .Check([](const YamlNode& node, const H& hand, DiagnosticList& errors) {
         if (hand.grasps.empty() && hand.styles.empty())
-          complaints.Add(node.where, "the hand has no style of grasp",
-                         "give 'grasps', 'styles' or both");
+          errors.Add(node.where, "the hand has no style of grasp",
+                     "give 'grasps', 'styles' or both");
       })
       .format();
 }

@@ -30,19 +30,19 @@ ValueFormat<WorldYaml> WorldFormat() {
                 "nothing, so its normal does not say what is held from below.")
       .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
                 "Seed of all randomness.")
-      .Check([](const YamlNode&, const W& world, Complaints& complaints) {
+      .Check([](const YamlNode&, const W& world, DiagnosticList& errors) {
         if (world.engine != Engine::kBox2d || !world.planar || world.planar->value) return;
-        complaints.Add(world.planar->where, "planar: engine box2d knows nothing but the plane",
-                       "planar: true, or engine: bullet");
+        errors.Add(world.planar->where, "planar: engine box2d knows nothing but the plane",
+                   "planar: true, or engine: bullet");
       })
-      .Check([](const YamlNode& node, const W& world, Complaints& complaints) {
+      .Check([](const YamlNode& node, const W& world, DiagnosticList& errors) {
         if (world.sensing_hz <= world.rate_hz) return;
         const std::string sensing = std::to_string(world.sensing_hz),
                           rate = std::to_string(world.rate_hz);
         if (const YamlNode* written = node.Find("sensing_hz")) {
-          complaints.Add(written->where, "sensing_hz " + sensing + " is above rate_hz " + rate);
+          errors.Add(written->where, "sensing_hz " + sensing + " is above rate_hz " + rate);
         } else {
-          complaints.Add(
+          errors.Add(
               node.Find("rate_hz")->where,
               "rate_hz " + rate + " is below sensing_hz, which is " + sensing + " unless given",
               "add sensing_hz: " + rate);
@@ -64,12 +64,12 @@ ValueFormat<std::string> MomentFormat() {
       Word("[a-z][a-z0-9_]*\\.(begin|end)", "a time in seconds, or an event like 'reaching.begin'");
   return ValueFormat<std::string>(
       {{"anyOf", {seconds.schema(), boundary.schema()}}},
-      [=](const YamlNode& node, Complaints& complaints, std::string& moment) {
+      [=](const YamlNode& node, DiagnosticList& errors, std::string& moment) {
         double time_s = 0;
         const bool is_time = node.kind == YamlNode::Kind::kScalar && MeaningOf(node).number;
-        if (!is_time) return boundary.Read(node, complaints, moment);
+        if (!is_time) return boundary.Read(node, errors, moment);
         moment = node.text;
-        return seconds.Read(node, complaints, time_s);
+        return seconds.Read(node, errors, time_s);
       });
 }
 

@@ -38,7 +38,7 @@ ValueFormat<CameraYaml> CameraFormat();
 ValueFormat<LightYaml> LightFormat();
 
 /// Complains about what only matter has: a mass, a surface, joints, something that it stands on.
-void CheckAbstract(const YamlNode& node, const EntityYaml& entity, Complaints& complaints);
+void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors);
 
 // harness/format/actor_fields.cc
 ValueFormat<ActorYaml> ActorFormat();

@@ -27,12 +27,12 @@ ValueFormat<Round> RoundFormat(const std::string& noun, const std::string& lengt
 }
 
 /// Complains about walls that leave no room inside. `narrow_m`: the narrowest way across.
-void CheckWall(const YamlNode& node, double wall_m, double narrow_m, Complaints& complaints) {
+void CheckWall(const YamlNode& node, double wall_m, double narrow_m, DiagnosticList& errors) {
   if (2 * wall_m < narrow_m) return;
   const YamlNode* wall = node.Find("wall_m");
-  complaints.Add(wall ? wall->where : node.where,
-                 fmt::format("wall_m: walls of {} leave no room inside", wall_m),
-                 "walls are thinner than half of the narrowest side");
+  errors.Add(wall ? wall->where : node.where,
+             fmt::format("wall_m: walls of {} leave no room inside", wall_m),
+             "walls are thinner than half of the narrowest side");
 }
 
 }  // namespace
@@ -70,9 +70,9 @@ ValueFormat<physics::Hull> HullFormat() {
           .format();
   return ValueFormat<physics::Hull>(
       written.schema(),
-      [written](const YamlNode& node, Complaints& complaints, physics::Hull& hull) {
+      [written](const YamlNode& node, DiagnosticList& errors, physics::Hull& hull) {
         Points points;
-        if (!written.Read(node, complaints, points)) return false;
+        if (!written.Read(node, errors, points)) return false;
         physics::MadeHull made = physics::MakeHull(points.points_m);
         if (made.hull) {
           hull = std::move(*made.hull);
@@ -81,7 +81,7 @@ ValueFormat<physics::Hull> HullFormat() {
         const YamlNode& list = *node.Find("points_m");
         const YamlNode& wrong =
             made.point < 0 ? list : list.children[static_cast<std::size_t>(made.point)];
-        complaints.Add(wrong.where, "points_m: " + made.problem, made.remedy);
+        errors.Add(wrong.where, "points_m: " + made.problem, made.remedy);
         return false;
       });
 }
@@ -91,9 +91,9 @@ ValueFormat<physics::Tray> TrayFormat() {
   return StructFormat<T>("a tray")
       .Required("size_m", &T::size_m, Size(), "Outer edge lengths [x, y, z].")
       .Optional("wall_m", &T::wall_m, Length(), "Thickness of floor and walls.")
-      .Check([](const YamlNode& node, const T& tray, Complaints& complaints) {
+      .Check([](const YamlNode& node, const T& tray, DiagnosticList& errors) {
         const Eigen::Vector3d& size = tray.size_m;
-        CheckWall(node, tray.wall_m, std::min({size.x(), size.y(), 2 * size.z()}), complaints);
+        CheckWall(node, tray.wall_m, std::min({size.x(), size.y(), 2 * size.z()}), errors);
       })
       .format();
 }
@@ -106,11 +106,11 @@ ValueFormat<physics::Mug> MugFormat() {
       .Optional("wall_m", &M::wall_m, Length(), "Thickness of floor and wall.")
       .Optional("handle_m", &M::handle_m, Number(0, kMaxSize_m),
                 "How far its handle stands out to +x; 0: it has none.")
-      .Check([](const YamlNode& node, const M& mug, Complaints& complaints) {
-        CheckWall(node, mug.wall_m, 2 * std::min(mug.radius_m, mug.height_m), complaints);
+      .Check([](const YamlNode& node, const M& mug, DiagnosticList& errors) {
+        CheckWall(node, mug.wall_m, 2 * std::min(mug.radius_m, mug.height_m), errors);
         constexpr double kMinHandle_m = 0.011;  // its bar is 10 mm thick
         if (mug.handle_m > 0 && mug.handle_m < kMinHandle_m) {
-          complaints.Add(
+          errors.Add(
               node.Find("handle_m")->where,
               fmt::format("handle_m: expected 0, or at least 0.011, found {}", mug.handle_m));
         }
@@ -125,8 +125,8 @@ ValueFormat<physics::Bowl> BowlFormat() {
                 "Outer radius at the rim; the foot has half of it.")
       .Required("height_m", &B::height_m, Length(), "Height.")
       .Optional("wall_m", &B::wall_m, Length(), "Thickness of floor and wall.")
-      .Check([](const YamlNode& node, const B& bowl, Complaints& complaints) {
-        CheckWall(node, bowl.wall_m, std::min(bowl.radius_m, 2 * bowl.height_m), complaints);
+      .Check([](const YamlNode& node, const B& bowl, DiagnosticList& errors) {
+        CheckWall(node, bowl.wall_m, std::min(bowl.radius_m, 2 * bowl.height_m), errors);
       })
       .format();
 }
@@ -139,10 +139,10 @@ ValueFormat<physics::Shelf> ShelfFormat() {
                 "How many, at even distances, with the lowest and the highest.")
       .Optional("wall_m", &S::wall_m, Length(), "Thickness of boards, sides and back.")
       .Optional("back", &S::back, Flag(), "False: open to +x, too.")
-      .Check([](const YamlNode& node, const S& shelf, Complaints& complaints) {
+      .Check([](const YamlNode& node, const S& shelf, DiagnosticList& errors) {
         const Eigen::Vector3d& size = shelf.size_m;
         CheckWall(node, shelf.wall_m,
-                  std::min({2 * size.x(), size.y(), 2 * size.z() / shelf.boards}), complaints);
+                  std::min({2 * size.x(), size.y(), 2 * size.z() / shelf.boards}), errors);
       })
       .format();
 }

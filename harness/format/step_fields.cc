@@ -94,15 +94,15 @@ ValueFormat<StepYaml> PosesFormat() {
                     "Way-points of the tracked target, as a tracker would give them; the last one "
                     "ends the step.")
           .Optional("style", &PosesYaml::style, Identifier(), kStyleDoc)
-          .Check([](const YamlNode& node, const PosesYaml& step, Complaints& complaints) {
+          .Check([](const YamlNode& node, const PosesYaml& step, DiagnosticList& errors) {
             for (std::size_t i = 1; i < step.poses.size(); ++i) {
               const double before_s = step.poses[i - 1].t_s, t_s = step.poses[i].t_s;
               if (t_s > before_s) continue;
-              complaints.Add(node.Find("poses")->children[i].Find("t_s")->where,
-                             fmt::format("t_s: expected more than {}, when the pose before is, "
-                                         "found {}",
-                                         before_s, t_s),
-                             "t_s counts from the beginning of the step, not from the pose before");
+              errors.Add(node.Find("poses")->children[i].Find("t_s")->where,
+                         fmt::format("t_s: expected more than {}, when the pose before is, "
+                                     "found {}",
+                                     before_s, t_s),
+                         "t_s counts from the beginning of the step, not from the pose before");
             }
           })
           .format());
@@ -110,11 +110,11 @@ ValueFormat<StepYaml> PosesFormat() {
 
 /// What belongs to another kind of file.
 void CheckKindOfRecording(const YamlNode& node, const RecordingYaml& entry,
-                          Complaints& complaints) {
+                          DiagnosticList& errors) {
   const bool body = entry.recording.value.ends_with(".bvh");
   const auto refuse = [&](const char* key, const char* why) {
     if (const YamlNode* found = node.Find(key))
-      complaints.Add(found->key_where, fmt::format("{}: {}", key, why));
+      errors.Add(found->key_where, fmt::format("{}: {}", key, why));
   };
   if (!body) return refuse("scale", "only a BVH file has units of its own");
   for (const char* key : {"device", "button", "press_s", "style", "palm_m", "palm_rpy_deg"})

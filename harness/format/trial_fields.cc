@@ -18,35 +18,35 @@ ValueFormat<std::string> Value() {
   const ValueFormat<std::string> text = Text();
   return ValueFormat<std::string>(
       {{"type", {"string", "number", "boolean"}}},
-      [text](const YamlNode& node, Complaints& complaints, std::string& value) {
+      [text](const YamlNode& node, DiagnosticList& errors, std::string& value) {
         const bool plain = node.kind == YamlNode::Kind::kScalar &&
                            (NumberOf(node) || node.text == "true" || node.text == "false");
-        if (!plain) return text.Read(node, complaints, value);
+        if (!plain) return text.Read(node, errors, value);
         value = node.text;
         return true;
       });
 }
 
 /// What can never hold, or always does.
-void CheckCondition(const YamlNode& node, const ConditionYaml& wanted, Complaints& complaints) {
-  const auto complain = [&](const char* key, const std::string& message) {
-    complaints.Add(node.Find(key)->where, std::string(key) + ": " + message);
+void CheckCondition(const YamlNode& node, const ConditionYaml& wanted, DiagnosticList& errors) {
+  const auto report = [&](const char* key, const std::string& message) {
+    errors.Add(node.Find(key)->where, std::string(key) + ": " + message);
   };
   const auto nothing_between = [&](const char* above, const std::optional<double>& least,
                                    const char* below, const std::optional<double>& most) {
     if (least && most && *least >= *most)
-      complain(below, fmt::format("nothing is between '{}' and '{}'", above, below));
+      report(below, fmt::format("nothing is between '{}' and '{}'", above, below));
   };
   nothing_between("above_m", wanted.above_m, "below_m", wanted.below_m);
   nothing_between("tilt_above_deg", wanted.tilt_above_deg, "tilt_below_deg", wanted.tilt_below_deg);
   nothing_between("joint_above", wanted.joint_above, "joint_below", wanted.joint_below);
-  if (node.Find("within_m") && !wanted.near_m) complain("within_m", "there is no 'near_m'");
-  if (node.Find("share") && !wanted.inside) complain("share", "there is no 'inside'");
+  if (node.Find("within_m") && !wanted.near_m) report("within_m", "there is no 'near_m'");
+  if (node.Find("share") && !wanted.inside) report("share", "there is no 'inside'");
   const auto says_nothing = [](const YamlNode& field) {
     return field.key == "entity" || field.key == "at_s";
   };
   if (std::ranges::all_of(node.children, says_nothing))
-    complaints.Add(node.where, "a condition: it always holds", "say what, as above_m: 0.9");
+    errors.Add(node.where, "a condition: it always holds", "say what, as above_m: 0.9");
 }
 
 ValueFormat<ConditionYaml> ConditionFormat() {
@@ -96,21 +96,20 @@ ValueFormat<VariationYaml> VariationFormat() {
       .Optional("times", &V::times, range, "What is written, times anything between [least, most].")
       .Optional("choose", &V::choose, ListOf(Value(), 1, 64), "One of these values.")
       .ExactlyOneOf({"uniform", "normal", "plus", "times", "choose"})
-      .Check([](const YamlNode& node, const V& variation, Complaints& complaints) {
+      .Check([](const YamlNode& node, const V& variation, DiagnosticList& errors) {
         for (const char* key : {"uniform", "plus", "times"}) {
           const YamlNode* written = node.Find(key);
           if (!written) continue;
           const auto& given = variation.uniform ? variation.uniform
                               : variation.plus  ? variation.plus
                                                 : variation.times;
-          if ((*given)[0] != (*given)[1]) CheckLeastMost(key, *given, written->where, complaints);
+          if ((*given)[0] != (*given)[1]) CheckLeastMost(key, *given, written->where, errors);
         }
         if (variation.normal && (*variation.normal)[1] < 0)
-          complaints.Add(
-              node.Find("normal")->where,
-              fmt::format("normal: expected [mean, deviation], and no deviation below 0, "
-                          "found [{}, {}]",
-                          (*variation.normal)[0], (*variation.normal)[1]));
+          errors.Add(node.Find("normal")->where,
+                     fmt::format("normal: expected [mean, deviation], and no deviation below 0, "
+                                 "found [{}, {}]",
+                                 (*variation.normal)[0], (*variation.normal)[1]));
       })
       .format();
 }

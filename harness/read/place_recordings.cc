@@ -32,27 +32,27 @@ ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingYaml& 
 
 /// Only the samples from from_s to to_s, with times since from_s.
 template <class Track>
-bool Cut(const RecordingYaml& entry, Track& track, Complaints& complaints) {
+bool Cut(const RecordingYaml& entry, Track& track, DiagnosticList& errors) {
   auto& samples = track.samples;
   const double last_s = samples.back().t_s;
   const double to_s = entry.to_s ? entry.to_s->value : last_s;
   constexpr double kRounded_s = 0.005;  // as lengths are written
   if (to_s > last_s + kRounded_s) {
-    complaints.Add(entry.to_s->where,
-                   fmt::format("to_s: expected at most {:.3f}, the length of the "
-                               "recording, found {}",
-                               last_s, to_s),
-                   "without to_s it is played to its end");
+    errors.Add(entry.to_s->where,
+               fmt::format("to_s: expected at most {:.3f}, the length of the "
+                           "recording, found {}",
+                           last_s, to_s),
+               "without to_s it is played to its end");
     return false;
   }
   std::erase_if(samples, [&](const auto& s) { return s.t_s < entry.from_s.value || s.t_s > to_s; });
   for (auto& sample : samples) sample.t_s -= entry.from_s.value;
   if (samples.size() >= 2) return true;
   const Where where = entry.to_s ? entry.to_s->where : entry.from_s.where;
-  complaints.Add(where,
-                 fmt::format("between {} and {} s the recording has {} of at least 2 samples",
-                             entry.from_s.value, to_s, samples.size()),
-                 fmt::format("it takes {:.3f} s", last_s));
+  errors.Add(where,
+             fmt::format("between {} and {} s the recording has {} of at least 2 samples",
+                         entry.from_s.value, to_s, samples.size()),
+             fmt::format("it takes {:.3f} s", last_s));
   return false;
 }
 
@@ -125,12 +125,12 @@ class RecordingReader {
  public:
   RecordingReader(const std::string& scenario_file,
                   const std::vector<Named<PersonActorYaml>>& persons,
-                  const ScenarioLibrary& library, Complaints& complaints,
+                  const ScenarioLibrary& library, DiagnosticList& errors,
                   grammar::Diagnostics& in_recordings)
       : persons_(persons),
         folder_(std::filesystem::path(scenario_file).parent_path().string()),
         library_(library),
-        complaints_(complaints),
+        errors_(errors),
         in_recordings_(in_recordings) {}
 
   void Fill(const std::string& actor, RecordingYaml& entry) {
@@ -139,7 +139,7 @@ class RecordingReader {
     ReadResult<MotionTrack> track = ReadTrack(PathOf(entry), entry);
     if (!track.value) return Refuse(entry, std::move(track.diagnostics));
     if (!CheckButton(entry, *track.value)) return;
-    if (!Cut(entry, *track.value, complaints_)) return;
+    if (!Cut(entry, *track.value, errors_)) return;
     if (!Accept(entry, CheckTrack(*track.value, {entry.most_gap_s, entry.most_jump_m}))) return;
     if (!HasRoom(entry, track.value->samples.size())) return;
     entry.poses = Place(entry, *track.value);
@@ -158,13 +158,12 @@ class RecordingReader {
     const auto person = std::find_if(persons_.begin(), persons_.end(),
                                      [&](const auto& p) { return p.name == actor; });
     if (person == persons_.end()) {
-      return complaints_.Add(entry.recording.where,
-                             "recording: a BVH file moves a whole body, no hand",
-                             "give this step to a person; hands follow .csv and .json files");
+      return errors_.Add(entry.recording.where, "recording: a BVH file moves a whole body, no hand",
+                         "give this step to a person; hands follow .csv and .json files");
     }
     ReadResult<BodyTrack> track = ReadBodyTrack(PathOf(entry));
     if (!track.value) return Refuse(entry, std::move(track.diagnostics));
-    if (!Cut(entry, *track.value, complaints_)) return;
+    if (!Cut(entry, *track.value, errors_)) return;
     const double scale = entry.scale
                              ? entry.scale->value
                              : physics::LegLength(person->value.height_m) / track.value->leg_units;
@@ -186,13 +185,12 @@ class RecordingReader {
     constexpr double kMaxRatio = 3;
     const double hers_m = physics::LegLength(person.height_m), ratio = legs_m / hers_m;
     if (ratio < kMaxRatio && ratio > 1 / kMaxRatio) return true;
-    complaints_.Add(
-        entry.scale->where,
-        fmt::format("scale: the recorded legs would be {:.3g} m long, hers are {:.3g} m", legs_m,
-                    hers_m),
-        fmt::format("metres per unit of the file: perhaps {:.3g}; without scale, legs "
-                    "are as long as hers",
-                    entry.scale->value / ratio));
+    errors_.Add(entry.scale->where,
+                fmt::format("scale: the recorded legs would be {:.3g} m long, hers are {:.3g} m",
+                            legs_m, hers_m),
+                fmt::format("metres per unit of the file: perhaps {:.3g}; without scale, legs "
+                            "are as long as hers",
+                            entry.scale->value / ratio));
     return false;
   }
 
@@ -217,8 +215,8 @@ class RecordingReader {
   bool HasRoom(const RecordingYaml& entry, std::size_t samples) {
     samples_ += samples;
     if (samples_ <= kMaxTrackSamples) return true;
-    complaints_.Add(entry.recording.where,
-                    fmt::format("recording: more than {} samples up to here", kMaxTrackSamples));
+    errors_.Add(entry.recording.where,
+                fmt::format("recording: more than {} samples up to here", kMaxTrackSamples));
     return false;
   }
 
@@ -243,7 +241,7 @@ class RecordingReader {
     const std::string message =
         fmt::format("button {} of '{}' is never pressed", wanted, entry.device->value);
     if (entry.button) {
-      complaints_.Add(entry.button->where, "button: " + message, pressed);
+      errors_.Add(entry.button->where, "button: " + message, pressed);
       return false;
     }
     Diagnostic odd = grammar::DiagnosticAt(track.file, "", {}, message + ", so the grip stays open",
@@ -256,21 +254,20 @@ class RecordingReader {
   bool CheckKind(const RecordingYaml& entry) {
     const bool capture = IsCapture(entry);
     if (capture && !entry.device) {
-      complaints_.Add(entry.recording.where,
-                      "recording: which device of the .json file is followed?",
-                      "add device: " + NamesOfDevices(entry));
+      errors_.Add(entry.recording.where, "recording: which device of the .json file is followed?",
+                  "add device: " + NamesOfDevices(entry));
       return false;
     }
     if (!capture && entry.device)
-      complaints_.Add(entry.device->where, "device: a CSV file has only one");
+      errors_.Add(entry.device->where, "device: a CSV file has only one");
     if (!capture && entry.button)
-      complaints_.Add(entry.button->where, "button: a CSV file has a trigger, no buttons");
+      errors_.Add(entry.button->where, "button: a CSV file has a trigger, no buttons");
     return capture || (!entry.device && !entry.button);
   }
 
   void Refuse(const RecordingYaml& entry, grammar::Diagnostics diagnostics) {
-    complaints_.Add(entry.recording.where, fmt::format("recording: '{}' cannot be used, see below",
-                                                       entry.recording.value));
+    errors_.Add(entry.recording.where,
+                fmt::format("recording: '{}' cannot be used, see below", entry.recording.value));
     in_recordings_.insert(in_recordings_.end(), diagnostics.begin(), diagnostics.end());
   }
 
@@ -278,16 +275,16 @@ class RecordingReader {
   std::string folder_;
   std::size_t samples_ = 0;  ///< of all recordings so far
   const ScenarioLibrary& library_;
-  Complaints& complaints_;
+  DiagnosticList& errors_;
   grammar::Diagnostics& in_recordings_;
 };
 
 }  // namespace
 
 void ReadRecordings(const std::string& scenario_file, ScenarioYaml& entry,
-                    const ScenarioLibrary& library, Complaints& complaints,
+                    const ScenarioLibrary& library, DiagnosticList& errors,
                     grammar::Diagnostics& in_recordings) {
-  RecordingReader reader(scenario_file, entry.persons, library, complaints, in_recordings);
+  RecordingReader reader(scenario_file, entry.persons, library, errors, in_recordings);
   for (StageYaml& beat : entry.script) {
     for (Named<StepYaml>& step : beat) {
       if (auto* recording = std::get_if<RecordingYaml>(&step.value))

@@ -15,7 +15,7 @@ namespace prehend::harness {
 /// of `scenario_file`. Complains about steps that don't fit their recording. What is wrong in a
 /// recording, and warnings about it, go to `in_recordings`.
 void ReadRecordings(const std::string& scenario_file, ScenarioYaml& entry,
-                    const ScenarioLibrary& library, Complaints& complaints,
+                    const ScenarioLibrary& library, DiagnosticList& errors,
                     grammar::Diagnostics& in_recordings);
 
 }  // namespace prehend::harness

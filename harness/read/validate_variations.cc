@@ -49,7 +49,7 @@ std::string HintFor(const grammar::Diagnostic& wrong, const VariationYaml& varia
 class DrawChecker {
  public:
   DrawChecker(const YamlDocument& document, const Reader& read)
-      : document_(document), read_(read), complaints_(document) {}
+      : document_(document), read_(read), errors_(document) {}
 
   void Check(const VariationYaml& variation, std::size_t index) {
     const Bounds bounds = BoundsOf(variation);
@@ -68,24 +68,24 @@ class DrawChecker {
       if (wrong.empty()) continue;
       const Where where = IsAboutThePath(wrong.front(), setting) ? PlaceOfField(document_, index, 0)
                                                                  : written.children[bound].where;
-      complaints_.Add(where, fmt::format("with {}: {}", setting, wrong.front().message),
-                      HintFor(wrong.front(), variation));
+      errors_.Add(where, fmt::format("with {}: {}", setting, wrong.front().message),
+                  HintFor(wrong.front(), variation));
       return;
     }
   }
 
-  grammar::Diagnostics Sorted() const { return complaints_.Sorted(); }
+  grammar::Diagnostics Sorted() const { return errors_.Sorted(); }
 
  private:
   const YamlDocument& document_;
   const Reader& read_;
-  Complaints complaints_;
+  DiagnosticList errors_;
 };
 
 }  // namespace
 
 void CheckVariedFields(const YamlDocument& document, const std::vector<VariationYaml>& variations,
-                       Complaints& complaints) {
+                       DiagnosticList& errors) {
   std::set<std::string> varied;
   YamlDocument tried = document;
   for (std::size_t i = 0; i < variations.size(); ++i) {
@@ -94,21 +94,21 @@ void CheckVariedFields(const YamlDocument& document, const std::vector<Variation
       const std::string& field = variations[i].fields[k];
       const Where where = PlaceOfField(document, i, k);
       if (field == "vary" || field.starts_with("vary.")) {
-        complaints.Add(where, "fields: what is varied cannot be varied itself");
+        errors.Add(where, "fields: what is varied cannot be varied itself");
         continue;
       }
       if (!varied.insert(CanonicalPath(document.root, field)).second)
-        complaints.Add(where, fmt::format("fields: '{}' is varied twice", field),
-                       "give it one distribution");
+        errors.Add(where, fmt::format("fields: '{}' is varied twice", field),
+                   "give it one distribution");
       const YamlNode* node = FindField(document.root, field);
       const grammar::Diagnostics nowhere =
           ApplyOverride(field + "=0", ScenarioFormat().schema(), tried);
       if (!nowhere.empty() || (relative && !node)) {
         const std::string hint =
             nowhere.empty() ? "plus and times need a number that is written" : nowhere.front().hint;
-        complaints.Add(where, fmt::format("fields: the scenario has no '{}'", field), hint);
+        errors.Add(where, fmt::format("fields: the scenario has no '{}'", field), hint);
       } else if (relative && !NumberOf(*node)) {
-        complaints.Add(where, fmt::format("fields: '{}' is no number", field));
+        errors.Add(where, fmt::format("fields: '{}' is no number", field));
       }
     }
   }

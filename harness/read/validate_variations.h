@@ -14,7 +14,7 @@ namespace prehend::harness {
 /// Complains about fields that lead nowhere, that are varied twice, or that are no numbers where
 /// numbers are varied.
 void CheckVariedFields(const YamlDocument& document, const std::vector<VariationYaml>& variations,
-                       Complaints& complaints);
+                       DiagnosticList& errors);
 
 /// What the reader says of a scenario: nothing, if it can be read.
 using Reader = std::function<grammar::Diagnostics(const YamlDocument&)>;

@@ -33,13 +33,13 @@ Settings Split(const std::vector<std::string>& settings,
   for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
     const std::string name = setting.substr(0, equals);
-    const auto complain = [&](const char* message, const std::string& hint) {
+    const auto report = [&](const char* message, const std::string& hint) {
       split.diagnostics.push_back(grammar::DiagnosticAt("--set", setting, {1, 1}, message, hint));
     };
     if (equals == std::string::npos || name.empty() || equals + 1 == setting.size()) {
-      complain("expected NAME=VALUE", "--set reach_radius=25cm, --set entities.milk.mass_kg=8");
+      report("expected NAME=VALUE", "--set reach_radius=25cm, --set entities.milk.mass_kg=8");
     } else if (!seen.insert(name).second) {
-      complain("the same name is set twice", "give each --set a name of its own");
+      report("the same name is set twice", "give each --set a name of its own");
     } else if (is_field(name)) {
       split.of_scenario.push_back(setting);
     } else {

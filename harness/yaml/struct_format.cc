@@ -26,26 +26,26 @@ std::string WithoutUnit(const std::string& key) {
 }
 
 /// Returns the known key that was probably meant, or "".
-std::string ComplainUnknownKey(const YamlNode& child, const std::string& title,
-                               const std::vector<std::string>& known, Complaints& complaints) {
+std::string ReportUnknownKey(const YamlNode& child, const std::string& title,
+                             const std::vector<std::string>& known, DiagnosticList& errors) {
   const std::string message = fmt::format("unknown key '{}' in {}", child.key, title);
   const auto same_stem = std::find_if(known.begin(), known.end(), [&](const std::string& key) {
     return WithoutUnit(key) == WithoutUnit(child.key);
   });
   if (same_stem != known.end()) {
-    complaints.Add(child.key_where, message, fmt::format("did you mean '{}'?", *same_stem));
+    errors.Add(child.key_where, message, fmt::format("did you mean '{}'?", *same_stem));
     return *same_stem;
   }
   if (const std::string remedy = LookAlikeRemedy(child.key); !remedy.empty()) {
-    complaints.Add(child.key_where, message, remedy);
+    errors.Add(child.key_where, message, remedy);
     return "";
   }
   const bool is_number = child.key.find_first_not_of("0123456789") == std::string::npos;
   if (is_number && child.kind == YamlNode::Kind::kNull) {
-    complaints.Add(child.key_where, message, "decimals have a point: 0.5");
+    errors.Add(child.key_where, message, "decimals have a point: 0.5");
     return "";
   }
-  complaints.AddUnknownName(child.key_where, message, child.key, known);
+  errors.AddUnknownName(child.key_where, message, child.key, known);
   return grammar::NearestName(child.key, known);
 }
 
@@ -68,9 +68,9 @@ Json Requires(const std::vector<std::string>& keys) { return {{"required", keys}
 
 /// The index of the one key of `cases` that is in the mapping; nothing after complaining.
 std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& noun,
-                                    const std::vector<std::string>& cases, Complaints& complaints) {
+                                    const std::vector<std::string>& cases, DiagnosticList& errors) {
   if (node.kind != YamlNode::Kind::kMapping) {
-    ComplainWanted(node, complaints, fmt::format("a mapping with the fields of {}", noun));
+    ReportExpected(node, errors, fmt::format("a mapping with the fields of {}", noun));
     return std::nullopt;
   }
   const auto present = KeysPresent(node, cases);
@@ -79,13 +79,12 @@ std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& nou
                                     cases.begin());
   }
   if (present.size() > 1) {
-    complaints.Add(
-        node.Find(present[1])->key_where,
-        fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
+    errors.Add(node.Find(present[1])->key_where,
+               fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
     return std::nullopt;
   }
   const std::string first = node.children.empty() ? "" : node.children[0].key;
-  complaints.AddUnknownName(
+  errors.AddUnknownName(
       node.children.empty() ? node.where : node.children[0].key_where,
       fmt::format("{} needs one of the keys {}", noun, fmt::join(cases, ", ")), first,
       grammar::NearestName(first, cases).empty() ? std::vector<std::string>{} : cases);
@@ -112,17 +111,17 @@ void StructRules::Add(std::string_view key, bool required, std::ptrdiff_t offset
                     .read = format.read});
 }
 
-bool StructRules::Read(const YamlNode& node, Complaints& complaints, void* value) const {
+bool StructRules::Read(const YamlNode& node, DiagnosticList& errors, void* value) const {
   char* const bytes = static_cast<char*>(value);
   if (where_offset) *reinterpret_cast<Where*>(bytes + *where_offset) = node.where;
-  bool good = CheckKeys(node, complaints);
+  bool good = CheckKeys(node, errors);
   if (node.kind != YamlNode::Kind::kMapping) return good;
   for (const Field& field : fields) {
     const YamlNode* child = node.Find(field.key);
-    if (child) good &= field.read_member(field.read, *child, complaints, bytes + field.offset);
+    if (child) good &= field.read_member(field.read, *child, errors, bytes + field.offset);
   }
   if (good) {
-    for (const Check& check : checks) check(node, value, complaints);
+    for (const Check& check : checks) check(node, value, errors);
   }
   return good;
 }
@@ -156,9 +155,9 @@ Json StructRules::Schema() const {
   return schema;
 }
 
-bool StructRules::CheckKeys(const YamlNode& node, Complaints& complaints) const {
+bool StructRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const {
   if (node.kind != YamlNode::Kind::kMapping) {
-    return ComplainWanted(node, complaints,
+    return ReportExpected(node, errors,
                           fmt::format("a mapping with the fields of {}", TitleOf(node)));
   }
   std::vector<std::string> known;
@@ -167,27 +166,27 @@ bool StructRules::CheckKeys(const YamlNode& node, Complaints& complaints) const 
   std::set<std::string> meant;  // but misspelt: not to be called missing, too
   for (const YamlNode& child : node.children) {
     if (std::find(known.begin(), known.end(), child.key) != known.end()) continue;
-    meant.insert(ComplainUnknownKey(child, TitleOf(node), known, complaints));
+    meant.insert(ReportUnknownKey(child, TitleOf(node), known, errors));
     good = false;
   }
   for (const Field& field : fields) {
     if (!field.required || node.Find(field.key) || meant.contains(field.key)) continue;
-    complaints.Add(HeadOf(node), fmt::format("{} needs the key '{}'", TitleOf(node), field.key));
+    errors.Add(HeadOf(node), fmt::format("{} needs the key '{}'", TitleOf(node), field.key));
     good = false;
   }
   for (const auto& keys : exactly_one) {
     const bool misspelt =
         std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return meant.contains(key); });
     if (misspelt || !KeysPresent(node, keys).empty()) continue;
-    complaints.Add(HeadOf(node), fmt::format("{} needs one of the keys {}", TitleOf(node),
-                                             fmt::join(keys, ", ")));
+    errors.Add(HeadOf(node),
+               fmt::format("{} needs one of the keys {}", TitleOf(node), fmt::join(keys, ", ")));
     good = false;
   }
   for (const auto* groups : {&exactly_one, &at_most_one}) {
     for (const auto& keys : *groups) {
       const auto present = KeysPresent(node, keys);
       if (present.size() < 2) continue;
-      complaints.Add(
+      errors.Add(
           node.Find(present[1])->key_where,
           fmt::format("{} cannot have both '{}' and '{}'", TitleOf(node), present[0], present[1]));
       good = false;
@@ -199,8 +198,8 @@ bool StructRules::CheckKeys(const YamlNode& node, Complaints& complaints) const 
 ErasedFormat FormatOf(const StructRules& rules) {
   return {.schema = rules.Schema(),
           .read = [shared = std::make_shared<const StructRules>(rules)](
-                      const YamlNode& node, Complaints& complaints, void* value) {
-            return shared->Read(node, complaints, value);
+                      const YamlNode& node, DiagnosticList& errors, void* value) {
+            return shared->Read(node, errors, value);
           }};
 }
 
@@ -216,9 +215,9 @@ ErasedFormat ErasedByKey(const std::string& noun,
   }
   return {.schema = {{"oneOf", std::move(one_of)}},
           .read = [noun, keys = std::move(keys), readers = std::move(readers)](
-                      const YamlNode& node, Complaints& complaints, void* value) {
-            const auto found = FindCase(node, noun, keys, complaints);
-            return found && readers[*found](node, complaints, value);
+                      const YamlNode& node, DiagnosticList& errors, void* value) {
+            const auto found = FindCase(node, noun, keys, errors);
+            return found && readers[*found](node, errors, value);
           }};
 }
 

@@ -22,7 +22,7 @@ namespace prehend::harness {
 
 /// Reads a value with `read` and stores it in the member, if it is one.
 using MemberReader = bool (*)(const ErasedFormat::Read& read, const YamlNode& node,
-                              Complaints& complaints, void* member);
+                              DiagnosticList& errors, void* member);
 
 /// One row of the table.
 struct Field {
@@ -36,7 +36,7 @@ struct Field {
 
 /// The table of a struct, without its type: `value` points to one.
 struct StructRules {
-  using Check = std::function<void(const YamlNode&, const void* value, Complaints&)>;
+  using Check = std::function<void(const YamlNode&, const void* value, DiagnosticList&)>;
 
   // Compiled once, not for each struct.
   explicit StructRules(std::string called);
@@ -54,7 +54,7 @@ struct StructRules {
   /// `initial` is what the member is without the key, or null when that is not shown.
   void Add(std::string_view key, bool required, std::ptrdiff_t offset, MemberReader read_member,
            const ErasedFormat& format, std::string_view doc, const void* initial);
-  bool Read(const YamlNode& node, Complaints& complaints, void* value) const;
+  bool Read(const YamlNode& node, DiagnosticList& errors, void* value) const;
   Json Schema() const;
 
  private:
@@ -62,7 +62,7 @@ struct StructRules {
   std::string TitleOf(const YamlNode& node) const;
   /// Complains when the node is no mapping, and about unknown and missing keys. False after
   /// complaining.
-  bool CheckKeys(const YamlNode& node, Complaints& complaints) const;
+  bool CheckKeys(const YamlNode& node, DiagnosticList& errors) const;
 };
 
 /// The format that these rules describe.
@@ -81,16 +81,16 @@ struct MemberOf {
     member = Located<F>{std::move(read), node.where};
   }
 
-  static bool Read(const ErasedFormat::Read& reader, const YamlNode& node, Complaints& complaints,
+  static bool Read(const ErasedFormat::Read& reader, const YamlNode& node, DiagnosticList& errors,
                    void* member) {
     M& stored = *static_cast<M*>(member);
     if constexpr (std::is_same_v<M, F>) {
       F read = stored;  // keeps what an inner struct does not mention
-      if (!reader(node, complaints, &read)) return false;
+      if (!reader(node, errors, &read)) return false;
       stored = std::move(read);
     } else {
       F read{};
-      if (!reader(node, complaints, &read)) return false;
+      if (!reader(node, errors, &read)) return false;
       Store(std::move(read), node, stored);
     }
     return true;
@@ -113,7 +113,7 @@ class StructFormat {
       rules_.where_offset = OffsetOf(defaults_.where);
   }
 
-  /// Complaints call it by its key: "entity 'milk'" for noun "entity".
+  /// DiagnosticList call it by its key: "entity 'milk'" for noun "entity".
   StructFormat& NamedByKey() {
     rules_.named_by_key = true;
     return *this;
@@ -138,12 +138,12 @@ class StructFormat {
     return *this;
   }
   /// A rule across fields, checked when all of them are well-formed. The node is the mapping, the
-  /// rule void(const YamlNode&, const T&, Complaints&).
+  /// rule void(const YamlNode&, const T&, DiagnosticList&).
   template <class Rule>
   StructFormat& Check(Rule rule) {
     rules_.checks.push_back(
-        [rule = std::move(rule)](const YamlNode& node, const void* value, Complaints& complaints) {
-          rule(node, *static_cast<const T*>(value), complaints);
+        [rule = std::move(rule)](const YamlNode& node, const void* value, DiagnosticList& errors) {
+          rule(node, *static_cast<const T*>(value), errors);
         });
     return *this;
   }
@@ -187,9 +187,9 @@ template <class V, class A>
 ValueFormat<V> AsAlternative(const ValueFormat<A>& format) {
   return ValueFormat<V>({.schema = format.schema(),
                          .read = [read = format.erased().read](
-                                     const YamlNode& node, Complaints& complaints, void* value) {
+                                     const YamlNode& node, DiagnosticList& errors, void* value) {
                            A alternative{};
-                           if (!read(node, complaints, &alternative)) return false;
+                           if (!read(node, errors, &alternative)) return false;
                            *static_cast<V*>(value) = std::move(alternative);
                            return true;
                          }});

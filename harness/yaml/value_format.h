@@ -13,8 +13,8 @@
 //   }
 //
 // Members may be T, std::optional<T>, Located<T> (remembers its place, for checks across fields;
-// see Complaints) or std::optional<Located<T>>. A struct with a member `Where where` learns its own
-// place. Tested by tests/harness/yaml/struct_format_test.cc
+// see DiagnosticList) or std::optional<Located<T>>. A struct with a member `Where where` learns its
+// own place. Tested by tests/harness/yaml/struct_format_test.cc
 #pragma once
 
 #include <Eigen/Core>
@@ -36,7 +36,7 @@ using Json = nlohmann::ordered_json;
 /// made of these, so that only a few lines are compiled anew for each type.
 struct ErasedFormat {
   /// False, after complaining, when the node is not such a value; then the value means nothing.
-  using Read = std::function<bool(const YamlNode&, Complaints&, void* value)>;
+  using Read = std::function<bool(const YamlNode&, DiagnosticList&, void* value)>;
   /// How a value is written, for defaults in the schema.
   using Show = std::function<Json(const void* value)>;
 
@@ -65,18 +65,18 @@ template <class T>
 class ValueFormat : public FormatHolder {
  public:
   using FormatHolder::FormatHolder;
-  /// `read` is bool(const YamlNode&, Complaints&, T&).
+  /// `read` is bool(const YamlNode&, DiagnosticList&, T&).
   template <class Reader>
   ValueFormat(Json schema, Reader read)
       : FormatHolder({.schema = std::move(schema),
-                      .read = [read = std::move(read)](const YamlNode& node, Complaints& complaints,
+                      .read = [read = std::move(read)](const YamlNode& node, DiagnosticList& errors,
                                                        void* value) {
-                        return read(node, complaints, *static_cast<T*>(value));
+                        return read(node, errors, *static_cast<T*>(value));
                       }}) {}
 
   /// False, after complaining, when the node is not such a value; then the value means nothing.
-  bool Read(const YamlNode& node, Complaints& complaints, T& value) const {
-    return erased_.read(node, complaints, &value);
+  bool Read(const YamlNode& node, DiagnosticList& errors, T& value) const {
+    return erased_.read(node, errors, &value);
   }
   /// The same, with values shown as `other` shows them.
   ValueFormat ShownAs(const ValueFormat& other) && {
@@ -94,7 +94,7 @@ struct Named {
 };
 
 /// Complains "KEY: expected WANTED, found ..." and, about an ambiguous scalar, why. Returns false.
-bool ComplainWanted(const YamlNode& node, Complaints& complaints, const std::string& wanted);
+bool ReportExpected(const YamlNode& node, DiagnosticList& errors, const std::string& wanted);
 
 /// A finite number, bounds included. Units belong into the key.
 ValueFormat<double> Number(double lowest, double highest);
@@ -115,7 +115,7 @@ ValueFormat<Eigen::Vector4d> UnitQuaternion();
 
 /// Complains "KEY: expected [least, most], found ..." unless the first of the two is smaller.
 void CheckLeastMost(const std::string& key, const Eigen::Vector2d& range, Where where,
-                    Complaints& complaints);
+                    DiagnosticList& errors);
 
 /// A whole number within the bounds, read into an integer type of any width.
 struct IntegerAccess {
@@ -197,11 +197,11 @@ template <class T>
 ValueFormat<Located<T>> WithPlace(const ValueFormat<T>& format) {
   return ValueFormat<Located<T>>(
       {.schema = format.schema(),
-       .read = [read = format.erased().read](const YamlNode& node, Complaints& complaints,
+       .read = [read = format.erased().read](const YamlNode& node, DiagnosticList& errors,
                                              void* value) {
          auto* located = static_cast<Located<T>*>(value);
          located->where = node.where;
-         return read(node, complaints, &located->value);
+         return read(node, errors, &located->value);
        }});
 }
 

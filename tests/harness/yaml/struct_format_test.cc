@@ -50,10 +50,10 @@ ValueFormat<Wheel> WheelFormat() {
 ReadResult<Wheel> ReadWheel(const std::string& text) {
   auto document = ParseYaml("probe.yaml", text);
   EXPECT_TRUE(document.value) << grammar::Format(document.diagnostics);
-  Complaints complaints(*document.value);
+  DiagnosticList errors(*document.value);
   Wheel wheel;
-  WheelFormat().Read(document.value->root, complaints, wheel);
-  if (!complaints.empty()) return {std::nullopt, complaints.Sorted()};
+  WheelFormat().Read(document.value->root, errors, wheel);
+  if (!errors.empty()) return {std::nullopt, errors.Sorted()};
   return {std::move(wheel), {}};
 }
 
