@@ -19,10 +19,12 @@ physics::Hand PlaceHand(const Named<HandActorYaml>& actor, physics::HandModel mo
                         DiagnosticList& errors);
 
 /// Complains about things, persons and hands out of the world: a run would end in its first tick.
-void CheckDistances(const ScenarioYaml& entry, const physics::Scene& scene, DiagnosticList& errors);
+void ValidateDistances(const ScenarioYaml& entry, const physics::Scene& scene,
+                       DiagnosticList& errors);
 
 /// Complains about things that stand in each other by more than a millimetre: bodies, and hands
 /// that start in one.
-void CheckOverlaps(const ScenarioYaml& entry, const physics::Scene& scene, DiagnosticList& errors);
+void ValidatePlacement(const ScenarioYaml& entry, const physics::Scene& scene,
+                       DiagnosticList& errors);
 
 }  // namespace prehend::harness

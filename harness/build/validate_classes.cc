@@ -30,14 +30,14 @@ bool IsKindOfItself(const ScenarioYaml& entry, const Named<Located<std::string>>
 
 }  // namespace
 
-void CheckKinds(const ScenarioYaml& entry, DiagnosticList& errors) {
+void ValidateClasses(const ScenarioYaml& entry, DiagnosticList& errors) {
   std::vector<std::string> used;  // classes that something is of
   for (const auto& entity : entry.entities) used.push_back(entity.value.class_name.value);
   for (const auto& kind : entry.classes) used.push_back(kind.value.value);
   for (const auto& kind : entry.classes) {
     for (const auto& [name, where] :
          {std::pair{kind.name, kind.name_where}, std::pair{kind.value.value, kind.value.where}}) {
-      if (IsBuiltInClass(name))
+      if (IsScenarioBuiltinClass(name))
         errors.Add(where, fmt::format("classes: '{}' is built in and given anyway", name),
                    "kinds are classes of your own: 'Cup: Container'");
     }

@@ -127,8 +127,8 @@ Where WhereOf(const ScenarioYaml& entry, const physics::Scene& scene, std::size_
 
 }  // namespace
 
-void CheckDistances(const ScenarioYaml& entry, const physics::Scene& scene,
-                    DiagnosticList& errors) {
+void ValidateDistances(const ScenarioYaml& entry, const physics::Scene& scene,
+                       DiagnosticList& errors) {
   const auto check = [&](Where where, const Eigen::Vector3d& p_W_m) {
     if (p_W_m.norm() <= physics::kMaxDistance_m) return;
     errors.Add(where,
@@ -142,7 +142,8 @@ void CheckDistances(const ScenarioYaml& entry, const physics::Scene& scene,
   for (const auto& hand : entry.hands) check(hand.value.at_m.where, hand.value.at_m.value);
 }
 
-void CheckOverlaps(const ScenarioYaml& entry, const physics::Scene& scene, DiagnosticList& errors) {
+void ValidatePlacement(const ScenarioYaml& entry, const physics::Scene& scene,
+                       DiagnosticList& errors) {
   std::vector<Occupant> occupants;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     occupants.push_back(OccupantOf(scene.bodies[i], WhereOf(entry, scene, i)));

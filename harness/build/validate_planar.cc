@@ -113,7 +113,8 @@ void CheckHand(const Named<HandActorYaml>& actor, const physics::Hand& hand,
 
 }  // namespace
 
-void CheckPlanar(const ScenarioYaml& entry, const physics::Scene& scene, DiagnosticList& errors) {
+void ValidatePlanar(const ScenarioYaml& entry, const physics::Scene& scene,
+                    DiagnosticList& errors) {
   CheckBodies(entry, scene, errors);
   CheckJoints(entry, scene, errors);
   std::map<std::string, const physics::Hand*> hands;

@@ -102,7 +102,7 @@ ValueFormat<JointYaml> BallJointFormat() {
 }
 
 void CheckClass(const EntityYaml& entity, DiagnosticList& errors) {
-  if (!IsBuiltInClass(entity.class_name.value)) return;
+  if (!IsScenarioBuiltinClass(entity.class_name.value)) return;
   errors.Add(entity.class_name.where,
              "class: '" + entity.class_name.value + "' is built in and given anyway",
              "name what the thing is, for example Cup");

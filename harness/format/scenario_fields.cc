@@ -51,7 +51,7 @@ ValueFormat<WorldYaml> WorldFormat() {
       .format();
 }
 
-constexpr std::size_t kMaxKinds = 100;
+constexpr std::size_t kMaxClasses = 100;
 
 ValueFormat<std::string> ClassName() {
   return Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'");
@@ -94,7 +94,7 @@ ValueFormat<ScenarioYaml> BuildScenarioFormat() {
       .Optional("world", &S::world, WorldFormat(), "Engine, rates and seed.")
       .Required("entities", &S::entities, MapOf(Identifier(), EntityFormat(), 1, kMaxEntities),
                 "The things in the world, by name.")
-      .Optional("classes", &S::classes, MapOf(ClassName(), WithPlace(ClassName()), 0, kMaxKinds),
+      .Optional("classes", &S::classes, MapOf(ClassName(), WithPlace(ClassName()), 0, kMaxClasses),
                 "Classes, and the class that each is a kind of: {Cup: Container}.")
       .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors),
                 "The hands, by name.")

@@ -155,11 +155,11 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   AddPersons(entry, scene, errors);
   scenario.script = BuildScript(entry, scene, errors);
   scenario.outcomes = BuildOutcomes(entry.outcomes, scene, scenario.script, errors);
-  CheckKinds(entry, errors);
-  CheckVariedFields(document, entry.vary, errors);
-  if (scene.world.planar) CheckPlanar(entry, scene, errors);
-  if (errors.empty()) CheckDistances(entry, scene, errors);
-  if (errors.empty()) CheckOverlaps(entry, scene, errors);
+  ValidateClasses(entry, errors);
+  ValidateVariations(document, entry.vary, errors);
+  if (scene.world.planar) ValidatePlanar(entry, scene, errors);
+  if (errors.empty()) ValidateDistances(entry, scene, errors);
+  if (errors.empty()) ValidatePlacement(entry, scene, errors);
   if (!errors.empty()) return AllOf(errors, in_other_files);
 
   scenario.name = entry.name.value;

@@ -26,7 +26,7 @@ Random GeneratorFor(std::uint64_t seed, int trial, std::size_t variation) {
 /// Chance may not leave the bounds that the reader has tried.
 constexpr double kMaxDeviations = 3;
 
-Draw DrawFrom(const VariationYaml& variation, Random& random) {
+Draw SampleFrom(const VariationYaml& variation, Random& random) {
   if (variation.choose) return (*variation.choose)[random.Next() % variation.choose->size()];
   if (variation.normal) {
     double deviations = random.Normal(0, 1);
@@ -77,13 +77,13 @@ std::string SettingOf(const YamlDocument& document, const VariationYaml& variati
   return fmt::format("{}={:.6f}", field, value);
 }
 
-std::vector<std::string> DrawTrial(const YamlDocument& document,
-                                   const std::vector<VariationYaml>& variations, std::uint64_t seed,
-                                   int trial) {
+std::vector<std::string> SampleTrial(const YamlDocument& document,
+                                     const std::vector<VariationYaml>& variations,
+                                     std::uint64_t seed, int trial) {
   std::vector<std::string> settings;
   for (std::size_t i = 0; i < variations.size(); ++i) {
     Random random = GeneratorFor(seed, trial, i);
-    const Draw draw = DrawFrom(variations[i], random);
+    const Draw draw = SampleFrom(variations[i], random);
     for (const std::string& field : variations[i].fields)
       settings.push_back(SettingOf(document, variations[i], field, draw));
   }

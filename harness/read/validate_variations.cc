@@ -61,7 +61,7 @@ class DrawChecker {
         if (IsSetOnCommandLine(document_, field)) continue;
         setting = SettingOf(document_, variation, field, bounds.draws[bound]);
         (void)ApplyOverride(setting, ScenarioFormat().schema(),
-                            varied);  // CheckVariedFields() has tried the path
+                            varied);  // ValidateVariations() has tried the path
       }
       if (setting.empty()) return;
       const grammar::Diagnostics wrong = read_(varied);
@@ -84,8 +84,8 @@ class DrawChecker {
 
 }  // namespace
 
-void CheckVariedFields(const YamlDocument& document, const std::vector<VariationYaml>& variations,
-                       DiagnosticList& errors) {
+void ValidateVariations(const YamlDocument& document, const std::vector<VariationYaml>& variations,
+                        DiagnosticList& errors) {
   std::set<std::string> varied;
   YamlDocument tried = document;
   for (std::size_t i = 0; i < variations.size(); ++i) {

@@ -26,7 +26,7 @@ constexpr std::int64_t kLatestTick = 1'000'000'000'000;
 constexpr std::size_t kMaxMembers = 10'000;
 constexpr std::size_t kMaxFeelers = 1000;
 constexpr std::size_t kMaxSets = 32;
-constexpr std::size_t kMaxKinds = 100;
+constexpr std::size_t kMaxClasses = 100;
 
 struct MemberEntry {
   std::string class_name = "Object";
@@ -107,7 +107,7 @@ ValueFormat<HeaderEntry> HeaderFormat() {
           .Optional("abstract", &M::abstract, Choice({"Region", "GazeTarget", "Camera", "Light"}),
                     "")
           .Optional("round", &M::round, Flag(), "")
-          .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxKinds), "")
+          .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxClasses), "")
           .Optional("hand", &M::hand, Flag(), "")
           .Optional("centre_m", &M::centre_m, Position(), "")
           .Required("size_m", &M::size_m, Vector<3>(0, kMaxPosition_m), "")
