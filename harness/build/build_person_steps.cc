@@ -43,7 +43,7 @@ struct PersonStepMaker {
   }
   physics::PersonStep operator()(const MoveLimbYaml& e) const {
     CheckFree(e.move_limb);
-    return {0, physics::MoveLimbStep{e.move_limb.value, e.to_m, e.most_n}, e.over_s};
+    return {0, physics::MoveLimbStep{e.move_limb.value, e.to_m, e.max_force_n}, e.over_s};
   }
   physics::PersonStep operator()(const RecordingYaml& e) const {
     if (!e.style.value.empty())

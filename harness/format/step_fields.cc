@@ -149,10 +149,12 @@ ValueFormat<StepYaml> RecordingFormat() {
                     "How the palm is turned against the device.")
           .Optional("join_s", &R::join_s, Number(0, 60),
                     "Time to get from where the target is to where the recording starts.")
-          .Optional("most_gap_s", &R::most_gap_s, Number(0, 60), "Longer gaps are refused.")
-          .Optional("most_jump_m", &R::most_jump_m, Number(0, 100), "Larger jumps are refused.")
+          .Optional("max_gap_s", &R::max_gap_s, Number(0, 60), "Longer gaps are refused.")
+          .Optional("max_jump_m", &R::max_jump_m, Number(0, 100), "Larger jumps are refused.")
           .Optional("scale", &R::scale, Number(1e-4, 100),
                     "Metres per unit of a BVH file; default: so that its legs are as long as hers.")
+          .Renamed("most_gap_s", "max_gap_s")
+          .Renamed("most_jump_m", "max_jump_m")
           .Check(CheckKindOfRecording)
           .format());
 }
@@ -172,9 +174,10 @@ ValueFormat<StepYaml> MoveLimbFormat() {
                     "Which part of a person goes there; the rest of the limb follows.")
           .Optional("to_m", &M::to_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                     "World coordinates; without it the limb goes back to where it hangs or stands.")
-          .Optional("most_n", &M::most_n, Number(1, 10000),
+          .Optional("max_force_n", &M::max_force_n, Number(1, 10000),
                     "The limb yields: it slows down so that it pushes with no more than this.")
           .Optional("over_s", &M::over_s, Duration(), kOverDoc)
+          .Renamed("most_n", "max_force_n")
           .format());
 }
 

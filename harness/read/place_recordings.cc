@@ -99,14 +99,14 @@ constexpr std::size_t kMaxOddities = 12;
 grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingYaml& entry,
                                     double scale) {
   const double frame_s = track.samples[1].t_s - track.samples[0].t_s;
-  if (frame_s > entry.most_gap_s) {
+  if (frame_s > entry.max_gap_s) {
     return {grammar::DiagnosticAt(
         track.file, track.text, track.samples[1].place,
         fmt::format("gap: frames are {:.3f} s apart; at most {} s are bridged", frame_s,
-                    entry.most_gap_s),
-        "raise most_gap_s")};
+                    entry.max_gap_s),
+        "raise max_gap_s")};
   }
-  const TrackLimits limits{std::numeric_limits<double>::infinity(), entry.most_jump_m};
+  const TrackLimits limits{std::numeric_limits<double>::infinity(), entry.max_jump_m};
   grammar::Diagnostics odd;
   for (std::size_t i = 0; i < kWatchedPoints.size(); ++i) {
     MotionTrack point{.samples = {}, .file = track.file, .text = track.text};
@@ -140,7 +140,7 @@ class RecordingReader {
     if (!track.value) return Refuse(entry, std::move(track.diagnostics));
     if (!CheckButton(entry, *track.value)) return;
     if (!Cut(entry, *track.value, errors_)) return;
-    if (!Accept(entry, CheckTrack(*track.value, {entry.most_gap_s, entry.most_jump_m}))) return;
+    if (!Accept(entry, CheckTrack(*track.value, {entry.max_gap_s, entry.max_jump_m}))) return;
     if (!HasRoom(entry, track.value->samples.size())) return;
     entry.poses = Place(entry, *track.value);
     for (std::size_t i = 0; i < entry.poses.size(); ++i) {

@@ -50,7 +50,7 @@ TEST(PersonsTest, StepsAreUnderstood) {
                                    "anna: {eyes: lead}\n  - anna: {walk_to_m: [-0.8, 0]}\n"
                                    "  - anna: {turn_to_deg: 90}\n  - anna: {lean_deg: 20}\n  - "
                                    "anna: {move_limb: left_foot, to_m: [-0.5, 0.1, 0.3]}\n"
-                                   "  - anna: {move_limb: left_foot, most_n: 30}\n  - anna: "
+                                   "  - anna: {move_limb: left_foot, max_force_n: 30}\n  - anna: "
                                    "{sway_by_m: [0.1, -0.2]}\n  - anna: {wait_s: 0.1}"));
   ASSERT_TRUE(read.value) << Brief(read.diagnostics);
   EXPECT_EQ(read.value->script.beats[0].person_steps.size(), 1u);
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Files, PersonsRefused, testing::Values(
     Bad{"no_limbs", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foot}", "12:23: move_limb: 'anna' is only a head | write 'person: body'\n"},
     Bad{"no_hips", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {sway_by_m: [0, 0.1]}", "12:23: sway_by_m: 'anna' is only a head | write 'person: body'\n"},
     Bad{"sway_too_far", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {sway_by_m: [0, 0.5]}", "12:27: sway_by_m[1]: expected a number from -0.4 to 0.4, found '0.5'\n"},
-    Bad{"weak", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foot, most_n: 0}", "12:43: most_n: expected a number from 1 to 10000, found '0'\n"},
+    Bad{"weak", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foot, max_force_n: 0}", "12:48: max_force_n: expected a number from 1 to 10000, found '0'\n"},
     Bad{"limb", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foo}", "12:23: move_limb: expected one of right_elbow, left_elbow, right_wrist, left_wrist, right_foot, left_foot, found 'right_foo' | did you mean 'right_foot'?\n"},
     Bad{"arm_of_a_hand", "{person: body, at_m: [-0.9, 0, 0], right_hand: right_hand}", "anna: {move_limb: right_elbow, to_m: [0, 0, 1]}", "12:23: move_limb: this arm follows the hand 'right_hand' | move the hand instead\n"}),
     [](const auto& test) { return test.param.name; });

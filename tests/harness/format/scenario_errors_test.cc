@@ -178,6 +178,11 @@ const Case kCases[] = {
        "12:33: a step has one of 'close_to' and 'open_to', not both\n"},
       {"key_of_another_step", "close_to: 1.0", "close_to: 1.0, style: wrap", kRefuses,
        "12:33: unknown key 'style' in a close_to step | known: close_to, over_s\n"},
+      {"renamed_key_of_a_limb", "close_to: 1.0", "move_limb: right_elbow, to_m: [0, 0, 1], most_n: 40", kRefuses,
+       "12:59: unknown key 'most_n' in a move_limb step | it is called 'max_force_n' now\n"},
+      {"renamed_keys_of_a_recording", "close_to: 1.0", "recording: a.csv, most_gap_s: 0.1, most_jump_m: 0.2", kRefuses,
+       "12:36: unknown key 'most_gap_s' in a recording step | it is called 'max_gap_s' now\n"
+       "12:53: unknown key 'most_jump_m' in a recording step | it is called 'max_jump_m' now\n"},
       {"duration_zero", "over_s: 0.8", "over_s: 0", kRefuses,
        "11:52: over_s: expected a number from 0.01 to 600, found '0'\n"},
       {"place_on_unknown", "close_to: 1.0", "place_on: shelf", kAccepts,
@@ -249,6 +254,17 @@ TEST(ScenarioErrors, AreShownWithLineAndCaret) {
       "    milk: {box: {size_m: [0.07, 0.07, 0.20]}, mass_g: 400, on: table, at_m: [0.2, 0.1]}\n"
       "                                              ^\n"
       "  hint: did you mean 'mass_kg'?\n");
+}
+
+TEST(ScenarioErrors, ARenamedKeyIsShownWithItsNewName) {
+  const auto read = ReadScenarioText(
+      "probe.yaml", ProbeWith("close_to: 1.0", "move_limb: right_elbow, most_n: 40"), {},
+      ProbeLibrary());
+  EXPECT_EQ(grammar::Format(read.diagnostics),
+            "probe.yaml:12:42: error: unknown key 'most_n' in a move_limb step\n"
+            "    - right_hand: {move_limb: right_elbow, most_n: 40}\n"
+            "                                           ^\n"
+            "  hint: it is called 'max_force_n' now\n");
 }
 
 TEST(ScenarioErrors, AllOfAFileAreCollected) {

@@ -198,10 +198,10 @@ TEST(CheckTrackTest, GapsAndJumpsAreToldAndLimited) {
   EXPECT_EQ(DiagnosticList(strict),
             "m.csv:22:1: gap: no sample for 0.160 s before this one, at 0.350 s; at most 0.1 s are "
             "bridged | cut the "
-            "recording with from_s and to_s, or raise most_gap_s\n"
+            "recording with from_s and to_s, or raise max_gap_s\n"
             "m.csv:27:1: jump: 0.090 m within 0.010 s, at 0.400 s; at most 0.05 m are followed | "
             "cut the recording with "
-            "from_s and to_s, or raise most_jump_m\n");
+            "from_s and to_s, or raise max_jump_m\n");
   for (const auto& diagnostic : strict) EXPECT_FALSE(diagnostic.is_warning);
 }
 

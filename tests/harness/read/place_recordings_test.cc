@@ -126,13 +126,13 @@ TEST_F(RecordedInputTest, OddRecordingsAreUsedWithAWarning) {
   EXPECT_EQ(read.value->warnings[0].message,
             "gap: no sample for 0.200 s before this one, at 0.220 s; it is bridged");
   EXPECT_TRUE(read.value->warnings[0].is_warning);
-  EXPECT_EQ(ErrorsAbout("recording: gap.csv, most_gap_s: 0.1"),
+  EXPECT_EQ(ErrorsAbout("recording: gap.csv, max_gap_s: 0.1"),
             "probe.yaml:11:29: recording: 'gap.csv' cannot be used, see below\n"
             "gap.csv:5:1: gap: no sample for 0.200 s before this one, at 0.220 s; at most 0.1 s "
             "are bridged | cut the "
-            "recording with from_s and to_s, or raise most_gap_s\n");
+            "recording with from_s and to_s, or raise max_gap_s\n");
   // What is cut off does not matter.
-  EXPECT_TRUE(Read("recording: gap.csv, most_gap_s: 0.1, to_s: 0.02").value);
+  EXPECT_TRUE(Read("recording: gap.csv, max_gap_s: 0.1, to_s: 0.02").value);
 }
 
 TEST_F(RecordedInputTest, TheTriggerHasToBeAButtonThatIsPressed) {
@@ -203,7 +203,7 @@ class RecordedBodyTest : public RecordedInputTest {
 };
 
 TEST_F(RecordedBodyTest, IsScaledToHerLegsAndStandsOnHerFloor) {
-  const auto figures = Figures("recording: sticks.bvh, join_s: 0.3, most_jump_m: 9");
+  const auto figures = Figures("recording: sticks.bvh, join_s: 0.3, max_jump_m: 9");
   ASSERT_EQ(figures.size(), 3u);
   EXPECT_NEAR(figures[1].t_s, 0.5, 1e-12);
   // Her legs are 0.491 of 2 m, the file's 80: so 50 is 0.6138 m; x of the file is our y.
@@ -217,7 +217,7 @@ TEST_F(RecordedBodyTest, IsScaledToHerLegsAndStandsOnHerFloor) {
 TEST_F(RecordedBodyTest, ScalePlaceAndYawAreTheScenarios) {
   const auto figures = Figures(
       "recording: sticks.bvh, scale: 0.01, start_at_m: [1, 2, 0.5], yaw_deg: 90, join_s: 0, "
-      "most_jump_m: 9");
+      "max_jump_m: 9");
   ASSERT_EQ(figures.size(), 3u);
   EXPECT_NEAR(figures[0].figure.hips_W_m.x(), 1, 1e-9);
   EXPECT_NEAR(figures[2].figure.hips_W_m.y(), 3, 1e-9);
@@ -236,10 +236,9 @@ TEST_F(RecordedBodyTest, Refuses) {
   EXPECT_NE(
       Refused("recording: line.csv, scale: 1").find("scale: only a BVH file has units of its own"),
       std::string::npos);
-  EXPECT_NE(
-      Refused("recording: sticks.bvh, most_gap_s: 0.1")
-          .find("gap: frames are 0.200 s apart; at most 0.1 s are bridged | raise most_gap_s"),
-      std::string::npos);
+  EXPECT_NE(Refused("recording: sticks.bvh, max_gap_s: 0.1")
+                .find("gap: frames are 0.200 s apart; at most 0.1 s are bridged | raise max_gap_s"),
+            std::string::npos);
   EXPECT_NE(Refused("recording: sticks.bvh, scale: 0.035")
                 .find("hips: jump: 1.759 m within 0.200 s, at 0.200 s; at most 0.1 m"),
             std::string::npos);
@@ -248,7 +247,7 @@ TEST_F(RecordedBodyTest, Refuses) {
                       "unit of the file: "
                       "perhaps 0.0123; without scale, legs are as long as hers"),
             std::string::npos);
-  EXPECT_NE(Refused("recording: sticks.bvh, start_at_m: [19.5, 0, 0], most_jump_m: 9")
+  EXPECT_NE(Refused("recording: sticks.bvh, start_at_m: [19.5, 0, 0], max_jump_m: 9")
                 .find("the hips are beyond 20 m"),
             std::string::npos);
 }
