@@ -9,6 +9,7 @@
 
 #include "harness/library_paths.h"
 #include "harness/prepare_run.h"
+#include "harness/project_paths.h"
 #include "harness/run_output.h"
 #include "harness/run_scenario.h"
 #include "harness/speed/four_rules.h"

@@ -7,6 +7,7 @@
 
 #include "harness/library_paths.h"
 #include "harness/prepare_run.h"
+#include "harness/project_paths.h"
 #include "harness/run_scenario.h"
 
 namespace prehend::harness {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The signals and tests that every grammar knows: names, arguments, units. Their meaning is in
-// evaluate.cc and, for users, in docs/grammar-language.md; a test compares the two lists. Tested by
-// tests/grammar/signals_test.cc
+// grammar/evaluate.cc and, for users, in docs/grammar-language.md; a test compares the two lists.
+// Tested by tests/grammar/signals_test.cc
 #pragma once
 
 #include <limits>

@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compile() of grammar/monitor.h for those who know which grammars there are.
-// Tested by tests/grammar/compile_test.cc
+// From a grammar's text to a program, or to diagnostics. Tested by tests/grammar/compile_test.cc
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "grammar/monitor.h"
+#include "grammar/diagnostic.h"
+#include "grammar/source.h"
 
 namespace prehend::grammar {
 
-/// `known`: names that `use NAME` could ask for, to suggest one of them. `use "PATH"` asks the
-/// includer for a path as seen from the file of the grammar, like it; it ends with ".grammar".
+struct Program;  // grammar/program.h
+
+struct CompileResult {
+  std::shared_ptr<const Program> program;  ///< null when there are errors
+  Diagnostics diagnostics;
+  Diagnostics warnings;  ///< what is allowed and yet looks like a mistake
+};
+
+CompileResult Compile(const GrammarText& grammar, const Includer& includer,
+                      const Overrides& overrides = {});
+
+/// The same for callers that know the names that `use NAME` could ask for: `known`, from which
+/// diagnostics suggest the nearest. `use "PATH"` asks the includer for a path relative to the file
+/// of the grammar; it ends with ".grammar".
 CompileResult Compile(const GrammarText& grammar, const Includer& includer,
                       const Overrides& overrides, const std::vector<std::string>& known);
 

@@ -59,8 +59,8 @@ class Waits {
       if (const Settled* whole = SettledBy(rule.references[rule.first]))
         settled_[index] = Settled{whole->edge, WaitOf(rule, whole->edge)};
     }
-    // The truth at a frame may have to wait for more than the end's decision: see engine_events.cc,
-    // UpdateKnown.
+    // The truth at a frame may have to wait for more than the end's decision: see
+    // grammar/engine_events.cc, UpdateKnown.
     Wait& truth = truth_[index];
     truth = end;
     if (settling) Include(truth, WaitOf(rule, std::nullopt));

@@ -10,8 +10,8 @@
 // nothing but a change can decide otherwise: what it asks about wakes it. What time alone changes
 // is either an alarm (the end of a gap, the shortest duration) or, where a value moves by itself
 // (Evaluator::restless), keeps the lane awake. So a frame costs as much as changes in it. Data
-// structures: lanes.h (state per binding), history.h (the frames that some lane may still ask for).
-// Tested by tests/grammar/monitor_test.cc and the corpus in tests/grammar/corpus/
+// structures: grammar/lanes.h (state per binding), grammar/history.h (the frames that some lane may
+// still ask for). Tested by tests/grammar/monitor_test.cc and the corpus in tests/grammar/corpus/
 #pragma once
 
 #include <memory>
@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "grammar/evaluate.h"
+#include "grammar/event.h"
 #include "grammar/fate.h"
 #include "grammar/history.h"
 #include "grammar/lanes.h"
@@ -39,8 +40,8 @@ class Engine {
   void Finish(Tick end, std::vector<Event>& out);
   int lanes_in_use() const { return lanes_.in_use(); }
 
-  // For hindsight.h. From now on nothing is forgotten, and what becomes of each run is noted.
-  // Before the first frame.
+  // For grammar/hindsight.h. From now on nothing is forgotten, and what becomes of each run is
+  // noted. Before the first frame.
   void Remember(Fates& fates) {
     fates_ = &fates;
     recalls_touches_ = keeps_touches_ = true;
@@ -70,7 +71,7 @@ class Engine {
     int lane = kNone;
   };
 
-  // What a frame says (engine_frames.cc).
+  // What a frame says (grammar/engine_frames.cc).
   std::string_view WhyNoTick(Tick tick) const;
   std::string_view WhyNotWatchable(const Frame& frame);
   std::string_view WhyNotWatchable(const FrameChanges& changes);

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 
-#include "grammar/parser.h"
-
 namespace prehend::grammar {
 
 using ast::Expr;

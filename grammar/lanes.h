@@ -6,7 +6,7 @@
 // lane knows who asks about it (its watchers), and each entity which lanes look at it. A lane
 // exists from when its guard first held, or when somebody first asked, until nothing about it is
 // true, open, undecided or within the remembered past. Its place is used again. Tested by
-// tests/grammar/monitor_test.cc and tests/grammar/restless_test.cc
+// tests/grammar/monitor_test.cc and tests/grammar/changes_test.cc
 #pragma once
 
 #include <algorithm>

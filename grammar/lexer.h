@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "grammar/diagnostic.h"
-#include "grammar/monitor.h"
+#include "grammar/source.h"
 
 namespace prehend::grammar {
 

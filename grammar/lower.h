@@ -16,6 +16,7 @@
 #include "grammar/classes.h"
 #include "grammar/program.h"
 #include "grammar/ranges.h"
+#include "grammar/source.h"
 
 namespace prehend::grammar {
 

@@ -4,10 +4,10 @@
 // docs/grammar-language.md. Tested by tests/grammar/parser_test.cc
 #pragma once
 
-#include <string_view>
+#include <optional>
 
 #include "grammar/ast.h"
-#include "grammar/monitor.h"
+#include "grammar/source.h"
 
 namespace prehend::grammar {
 
@@ -15,8 +15,5 @@ ast::File Parse(const GrammarText& grammar, Diagnostics& diagnostics);
 
 /// A value as on the right of `param x =`: "25 cm". Errors are reported at their place in `text`.
 std::optional<Quantity> ParseQuantity(const GrammarText& text, Diagnostics& diagnostics);
-
-/// Words that cannot name a role, a parameter or a rule.
-bool IsReserved(std::string_view word);
 
 }  // namespace prehend::grammar

@@ -11,7 +11,7 @@
 
 #include "grammar/allen.h"
 #include "grammar/diagnostic.h"
-#include "grammar/monitor.h"
+#include "grammar/event.h"
 #include "grammar/quantity.h"
 #include "grammar/thresholds.h"
 

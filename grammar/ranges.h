@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Between what and what the numbers of a program can lie at all, and what that says about
 // comparisons: one that is never or always true is a mistake of whoever wrote it. What single
-// signals can be stands in the table of builtins.cc. Tested by tests/grammar/ranges_test.cc
+// signals can be stands in the table of grammar/builtins.cc. Tested by tests/grammar/ranges_test.cc
 #pragma once
 
 #include <string>

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <tuple>
 
-#include "grammar/program.h"
-
 namespace prehend::grammar {
 
 std::string NamedEvent::Label() const {
@@ -20,40 +18,11 @@ std::string NamedEvent::Label() const {
   return label + ")";
 }
 
-Timeline NameEvents(const Program& program, const Cast& cast, const std::vector<Event>& events) {
-  Timeline timeline{.ticks_per_second = cast.ticks_per_second, .events = {}};
-  timeline.events.reserve(events.size());
-  for (const Event& event : events) {
-    const Rule& rule = program.events[event.rule];
-    NamedEvent named{.event = rule.name,
-                     .roles = {},
-                     .interval = event.interval,
-                     .decided = event.decided,
-                     .open_end = event.open_end};
-    for (std::size_t i = 0; i < rule.roles.size(); ++i) {
-      named.roles.push_back({rule.roles[i].name, cast.entities[event.roles[i]].name});
-    }
-    if (event.style >= 0 && event.style < static_cast<int>(cast.styles.size())) {
-      named.roles.push_back({"style", cast.styles[event.style]});
-    }
-    for (std::size_t i = 0; i < rule.attributes.size(); ++i) {
-      const RuleAttribute& attribute = rule.attributes[i];
-      const std::string unit =
-          attribute.dimension == kPlain ? "" : DimensionText(attribute.dimension);
-      named.values.push_back({attribute.name, event.attributes[i], unit});
-    }
-    timeline.events.push_back(std::move(named));
-  }
-  Sort(timeline);
-  return timeline;
+bool ComesBefore(const NamedEvent& a, const NamedEvent& b) {
+  return std::tie(a.interval.begin, a.interval.end, a.event, a.roles) <
+         std::tie(b.interval.begin, b.interval.end, b.event, b.roles);
 }
 
-void Sort(Timeline& timeline) {
-  const auto key = [](const NamedEvent& e) {
-    return std::tie(e.interval.begin, e.interval.end, e.event, e.roles);
-  };
-  std::stable_sort(timeline.events.begin(), timeline.events.end(),
-                   [&](const NamedEvent& a, const NamedEvent& b) { return key(a) < key(b); });
-}
+void Sort(Timeline& timeline) { std::ranges::stable_sort(timeline.events, ComesBefore); }
 
 }  // namespace prehend::grammar

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "grammar/frame.h"
-#include "grammar/monitor.h"
 
 namespace prehend::grammar {
 
@@ -42,8 +41,8 @@ struct Timeline {
   std::vector<NamedEvent> events;  ///< sorted by (begin, end, event, roles)
 };
 
-/// Gives monitor events their names and sorts them.
-Timeline NameEvents(const Program& program, const Cast& cast, const std::vector<Event>& events);
+/// The canonical order of timelines: (begin, end, event, roles).
+bool ComesBefore(const NamedEvent& a, const NamedEvent& b);
 
 /// Sorts into the canonical order.
 void Sort(Timeline& timeline);

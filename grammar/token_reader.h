@@ -11,6 +11,9 @@
 
 namespace prehend::grammar {
 
+/// Words that cannot name a role, a parameter or a rule.
+bool IsReserved(std::string_view word);
+
 /// Thrown inside the parser only: unwinds to the next item after the complaint was written down.
 struct ParseStop {};
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/scenario_fields_test.cc and actor_errors_test.cc
-#include "harness/actor_fields.h"
-
+// Tested by tests/harness/scenario_fields_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "harness/farthest.h"
+#include "harness/limits.h"
 #include "harness/record.h"
+#include "harness/scenario_formats.h"
 
 namespace prehend::harness {
 namespace {
@@ -38,7 +37,7 @@ Format<GainsOverride> GainsFormat() {
 }
 
 /// What would need more losses than there are looks.
-void CheckLosses(const YamlNode& node, const physics::Tracking& t, Complaints& complaints) {
+void CheckLosses(const YamlNode& node, const physics::TrackerSettings& t, Complaints& complaints) {
   if (t.dropped_run_s <= 0) return;
   const double run_looks = std::max(1.0, t.dropped_run_s * t.tracker_hz);
   const double least_looks = t.dropped_share / (1 - t.dropped_share);
@@ -48,8 +47,8 @@ void CheckLosses(const YamlNode& node, const physics::Tracking& t, Complaints& c
                              t.dropped_share, least_looks / t.tracker_hz));
 }
 
-Format<physics::Tracking> TrackingFormat() {
-  using T = physics::Tracking;
+Format<physics::TrackerSettings> TrackingFormat() {
+  using T = physics::TrackerSettings;
   return Record<T>("the tracking")
       .Optional("tracker_hz", &T::tracker_hz, Integer<int>(1, 4800),
                 "Looks of the tracker per second, at most rate_hz.")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See blame.h. Tested by tests/harness/blame_test.cc
+// See harness/blame.h. Tested by tests/harness/blame_test.cc
 #include "harness/blame.h"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kAgreed = "as when this last agreed with its golden";
 
-/// "scenarios/slide/x.yaml" and the like, "the program", and what the command line asks for. A
+/// "scenarios/slide/NAME.yaml" and the like, "the program", and what the command line asks for. A
 /// grammar that the command line put in another's place did not change, nor did the one that it
 /// replaces.
 std::vector<std::string> WhatChanged(const CheckRecord& last_agreed, const Suspect& now,

@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
-#include <numbers>
 
 namespace prehend::harness {
 namespace {
@@ -160,7 +159,6 @@ class TrackMaker {
 
   /// All joints at a frame. Channels that move replace the offset along their axis.
   std::vector<JointPose> PosesAt(std::size_t frame) const {
-    constexpr double kRadPerDeg = std::numbers::pi / 180;
     const std::vector<double>& row = bvh_.rows[frame];
     std::vector<JointPose> poses;
     for (const BvhJoint& joint : bvh_.joints) {
@@ -172,7 +170,7 @@ class TrackMaker {
         const double value = row[joint.first_value + i];
         const int axis = joint.channels[i].axis;
         if (joint.channels[i].turns) {
-          turn = turn * Eigen::AngleAxisd(value * kRadPerDeg, Vector3d::Unit(axis));
+          turn = turn * Eigen::AngleAxisd(value * physics::kRadPerDeg, Vector3d::Unit(axis));
         } else {
           offset[axis] = value;
         }

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 namespace prehend::harness {
 namespace {
@@ -79,7 +78,7 @@ physics::Joint MakeJoint(const Written& written) {
   physics::Joint joint{.kind = written.kind};
   if (!written.joint) return joint;
   const JointEntry& entry = *written.joint;
-  const double scale = written.kind == JointKind::kHinge ? std::numbers::pi / 180 : 1;
+  const double scale = written.kind == JointKind::kHinge ? physics::kRadPerDeg : 1;
   joint.pivot_W_m = entry.at_m;
   joint.axis_W = entry.axis.normalized();
   joint.lower = entry.range.value[0] * scale;

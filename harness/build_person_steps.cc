@@ -5,12 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 namespace prehend::harness {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180;
 
 struct PersonStepMaker {
   const Named<StepEntry>& step;
@@ -35,10 +32,10 @@ struct PersonStepMaker {
     return {0, physics::WalkStep{e.walk_to_m}, e.over_s};
   }
   physics::PersonStep operator()(const TurnEntry& e) const {
-    return {0, physics::TurnStep{e.turn_to_deg * kRadPerDeg}, e.over_s};
+    return {0, physics::TurnStep{e.turn_to_deg * physics::kRadPerDeg}, e.over_s};
   }
   physics::PersonStep operator()(const LeanEntry& e) const {
-    return {0, physics::LeanStep{e.lean_deg * kRadPerDeg}, e.over_s};
+    return {0, physics::LeanStep{e.lean_deg * physics::kRadPerDeg}, e.over_s};
   }
   physics::PersonStep operator()(const SwayEntry& e) const {
     CheckBody(e.sway_by_m.where, "sway_by_m");

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <set>
 
-#include "harness/build_scene.h"
 #include "physics/skeleton.h"
 
 namespace prehend::harness {
@@ -24,12 +23,13 @@ class PersonBuilder {
 
   void Add(const Named<PersonActor>& actor) {
     const PersonActor& written = actor.value;
-    physics::Person person{.name = actor.name,
-                           .head = static_cast<int>(scene_.bodies.size()),
-                           .has_body = written.person == PersonKind::kBody,
-                           .height_m = written.height_m,
-                           .X_WS = {written.at_m.value, FromRollPitchYaw({0, 0, written.yaw_deg})},
-                           .eyes = written.eyes};
+    physics::Person person{
+        .name = actor.name,
+        .head = static_cast<int>(scene_.bodies.size()),
+        .has_body = written.person == PersonKind::kBody,
+        .height_m = written.height_m,
+        .X_WS = {written.at_m.value, physics::FromRollPitchYaw({0, 0, written.yaw_deg})},
+        .eyes = written.eyes};
     if (written.right_hand) person.right_hand = FindHand("right_hand", *written.right_hand);
     if (written.left_hand) person.left_hand = FindHand("left_hand", *written.left_hand);
     AddParts(person, actor.name_where);

@@ -6,9 +6,8 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 
-#include "harness/abstract_fields.h"
+#include "harness/build_abstract.h"
 #include "physics/fill_vessel.h"
 #include "physics/geometry.h"
 #include "physics/random.h"
@@ -22,7 +21,7 @@ constexpr double kDefaultSphereRollingFriction =
     0.006;  // a ball on a table stops within a metre (docs/physics.md)
 
 physics::PlacedShape ShapeOf(const PartEntry& part) {
-  const physics::Pose X_BS{part.at_m, FromRollPitchYaw(part.rpy_deg)};
+  const physics::Pose X_BS{part.at_m, physics::FromRollPitchYaw(part.rpy_deg)};
   if (part.sphere) return {*part.sphere, X_BS};
   if (part.cylinder) return {*part.cylinder, X_BS};
   if (part.capsule) return {*part.capsule, X_BS};
@@ -65,8 +64,8 @@ physics::Body MakeBody(const Named<EntityEntry>& named) {
   body.restitution = entity.restitution;
   body.linear_damping_per_s = entity.linear_damping_per_s;
   body.angular_damping_per_s = entity.angular_damping_per_s;
-  if (entity.rpy_deg) body.X_WB.q = FromRollPitchYaw(*entity.rpy_deg);
-  if (entity.yaw_deg) body.X_WB.q = FromRollPitchYaw({0, 0, *entity.yaw_deg});
+  if (entity.rpy_deg) body.X_WB.q = physics::FromRollPitchYaw(*entity.rpy_deg);
+  if (entity.yaw_deg) body.X_WB.q = physics::FromRollPitchYaw({0, 0, *entity.yaw_deg});
   if (AbstractOf(entity) != physics::Abstract::kNot) MakeAbstract(entity, body);
   return body;
 }
@@ -238,13 +237,6 @@ void Override(const PidOverride& given, physics::PidGains& gains) {
 
 }  // namespace
 
-Eigen::Quaterniond FromRollPitchYaw(const Vector3d& rpy_deg) {
-  const Vector3d rad = rpy_deg * std::numbers::pi / 180;
-  return Eigen::AngleAxisd(rad.z(), Vector3d::UnitZ()) *
-         Eigen::AngleAxisd(rad.y(), Vector3d::UnitY()) *
-         Eigen::AngleAxisd(rad.x(), Vector3d::UnitX());
-}
-
 std::vector<physics::Body> PlaceBodies(const ScenarioEntry& entry, Complaints& complaints) {
   Stacking stacking(entry, complaints);
   for (std::size_t i = 0; i < entry.entities.size(); ++i) stacking.Place(i);
@@ -261,10 +253,11 @@ physics::Hand PlaceHand(const Named<HandActor>& actor, physics::HandModel model,
     complaints.Add(actor.value.gains ? actor.value.gains->where : actor.value.hand.where,
                    fmt::format("actor '{}' cannot be stable: {}", actor.name, unstable));
   }
-  physics::Hand hand{.name = actor.name,
-                     .model = std::move(model),
-                     .X_WH = {actor.value.at_m.value, FromRollPitchYaw(actor.value.rpy_deg)},
-                     .tracking = {}};
+  physics::Hand hand{
+      .name = actor.name,
+      .model = std::move(model),
+      .X_WH = {actor.value.at_m.value, physics::FromRollPitchYaw(actor.value.rpy_deg)},
+      .tracking = {}};
   if (const auto& tracking = actor.value.tracking) {
     hand.tracking = tracking->value;
     if (tracking->value.tracker_hz > rate_hz) {

@@ -26,7 +26,4 @@ void CheckDistances(const ScenarioEntry& entry, const physics::Scene& scene,
 /// that start in one.
 void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints);
 
-/// Turns about the world's x, then y, then z axis.
-Eigen::Quaterniond FromRollPitchYaw(const Eigen::Vector3d& rpy_deg);
-
 }  // namespace prehend::harness

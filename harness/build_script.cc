@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <map>
 
-#include "harness/abstract_fields.h"
+#include "harness/build_abstract.h"
 #include "harness/build_person_steps.h"
-#include "harness/build_scene.h"
+#include "harness/limits.h"
 #include "harness/scenario_fields.h"
 #include "physics/geometry.h"
 #include "physics/joint.h"
@@ -258,7 +258,7 @@ double DurationOf(const physics::Script& script) {
 
 physics::Pose PoseOf(const PoseEntry& pose) {
   physics::Pose X_WH{pose.at_m};
-  if (pose.rpy_deg) X_WH.q = FromRollPitchYaw(*pose.rpy_deg);
+  if (pose.rpy_deg) X_WH.q = physics::FromRollPitchYaw(*pose.rpy_deg);
   if (const auto& q = pose.quat_wxyz)
     X_WH.q = Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]).normalized();
   return X_WH;

@@ -5,12 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 namespace prehend::harness {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180;
 
 bool HasJaw(const DigitEntry& digit) { return digit.jaw.has_value(); }
 bool HasPhalanges(const DigitEntry& digit) { return !HasJaw(digit); }
@@ -138,7 +135,7 @@ std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleEntry>&
       CheckRanges(ways[i], "m");
     }
     for (std::size_t k = 0; k < turned.size(); ++k) {
-      for (const double angle : turned[k]) frames[i].push_back(angle * kRadPerDeg);
+      for (const double angle : turned[k]) frames[i].push_back(angle * physics::kRadPerDeg);
       frames[i].insert(frames[i].end(), slid[k].begin(), slid[k].end());
     }
   }

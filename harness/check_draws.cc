@@ -9,6 +9,7 @@
 
 #include "harness/scenario_fields.h"
 #include "harness/vary.h"
+#include "harness/yaml_scalar.h"
 
 namespace prehend::harness {
 namespace {

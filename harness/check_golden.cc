@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See check_golden.h. Tested by tests/house/golden_workflow_test.cc
+// See harness/check_golden.h. Tested by tests/house/golden_workflow_test.cc
 #include "harness/check_golden.h"
 
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 
 #include "grammar/frame.h"
 #include "grammar/program.h"
+#include "harness/cast.h"
 #include "harness/event_text.h"
 #include "harness/golden_files.h"
 #include "harness/library_paths.h"

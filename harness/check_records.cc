@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See check_records.h. What is damaged or of another version counts as not there. Tested by
+// See harness/check_records.h. What is damaged or of another version counts as not there. Tested by
 // tests/harness/check_records_test.cc
 #include "harness/check_records.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See check_scenario.h. Tested by tests/house/command_line_test.cc
+// See harness/check_scenario.h. Tested by tests/house/command_line_test.cc
 #include "harness/check_scenario.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,6 @@
 #include "harness/facts_around.h"
 #include "harness/golden_files.h"
 #include "harness/invariants.h"
-#include "harness/oracle_notes.h"
 #include "harness/orphans.h"
 #include "harness/physics_trace.h"
 #include "harness/pictures.h"
@@ -137,21 +136,17 @@ std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& prog
   return latency;
 }
 
-void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, const RunResult& plain,
-                     ScenarioVerdict& verdict) {
+void JudgeInvariants(const PreparedRun& prepared, const RunResult& run, ScenarioVerdict& verdict) {
   const WorldEntry& world = prepared.scenario.world;
-  EpisodeFacts facts{.end = plain.ticks + 1};
+  EpisodeFacts facts{.end = run.ticks + 1};
   facts.ticks_per_frame = DefaultTolerance(world.rate_hz, world.sensing_hz) / 2;
   facts.latency = LatencyByEvent(*prepared.program);
   // A grammar without phases, as that of pouring, cannot cover a grasp with them.
   if (facts.latency.contains("transporting")) facts.movable = MovableEntities(prepared.scenario);
-  Violations violations =
-      CheckSameTimeline(watched.timeline, watched.state_hash, plain.timeline, plain.state_hash);
-  for (Violation& violation : CheckInvariants(plain.timeline, facts))
-    violations.push_back(std::move(violation));
+  const Violations violations = CheckInvariants(run.timeline, facts);
   std::string details;
   for (const Violation& violation : violations) {
-    details += "violated: " + Text(violation, plain.timeline.ticks_per_second) + "\n";
+    details += "violated: " + Text(violation, run.timeline.ticks_per_second) + "\n";
   }
   if (!violations.empty()) Fail(verdict, ExitCode::kDiffers, "invariant violated", details);
 }
@@ -172,14 +167,14 @@ std::vector<BoundaryRoom> Boundaries(const Comparison& comparison) {
 }
 
 /// Remembers how a run that agreed moved, for the blame of later ones.
-void LeaveTrace(const CheckRequest& request, const Scenario& scenario, const RunResult& watched) {
+void LeaveTrace(const CheckRequest& request, const Scenario& scenario, const RunResult& run) {
   if (request.is_trial) return;
   // Losing it only costs the blame of the next difference its answer.
   (void)WriteTrace(CheckRecords(request.root).TracePath(request.id),
-                   TraceOf(scenario.scene, watched.recording));
+                   TraceOf(scenario.scene, run.recording));
 }
 
-std::string Blame(const CheckRequest& request, const Scenario& scenario, const RunResult& watched,
+std::string Blame(const CheckRequest& request, const Scenario& scenario, const RunResult& run,
                   const FileHashes& inputs) {
   const CheckRecords records(request.root);
   return BlameText(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
@@ -187,16 +182,16 @@ std::string Blame(const CheckRequest& request, const Scenario& scenario, const R
                     .inputs = inputs,
                     .options = OptionsOf(request.run),
                     .other_grammar = !request.run.grammar.empty(),
-                    .trace = TraceOf(scenario.scene, watched.recording),
-                    .ticks_per_second = static_cast<double>(watched.timeline.ticks_per_second)},
+                    .trace = TraceOf(scenario.scene, run.recording),
+                    .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)},
                    request.root);
 }
 
 /// There is nothing to compare with.
 void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending,
-                        const std::string& objections, ScenarioVerdict& verdict) {
+                        const std::string& differs_from_truth, ScenarioVerdict& verdict) {
   LeavePending(request, pending);
-  verdict.details += objections;
+  verdict.details += differs_from_truth;
   if (verdict.verdict != Verdict::kPassed) return;
   verdict.verdict = Verdict::kPending;
   verdict.exit_code = ExitCode::kPending;
@@ -205,12 +200,11 @@ void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending,
 }
 
 /// What differs, with the facts around the first of it, and whose doing it is.
-void TellDifferences(const CheckRequest& request, const PreparedRun& prepared,
-                     const RunResult& watched, const Comparison& comparison,
-                     ScenarioVerdict& verdict) {
-  verdict.blame = Blame(request, prepared.scenario, watched, verdict.inputs);
+void TellDifferences(const CheckRequest& request, const PreparedRun& prepared, const RunResult& run,
+                     const Comparison& comparison, ScenarioVerdict& verdict) {
+  verdict.blame = Blame(request, prepared.scenario, run, verdict.inputs);
   const std::string facts =
-      FactsAround(prepared.scenario, watched.recording, *comparison.FirstDivergence());
+      FactsAround(prepared.scenario, run.recording, *comparison.FirstDivergence());
   verdict.differences = DifferencesJson(comparison, ExplainCommand(request.id, request.run));
   verdict.relations = RelationsJson(comparison);
   const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
@@ -221,9 +215,8 @@ void TellDifferences(const CheckRequest& request, const PreparedRun& prepared,
        DifferenceText(comparison, ExplainCommand(request.id, request.run), facts) + verdict.blame);
 }
 
-/// Compares the plain run; the watched one has the recording.
 void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared,
-                        const RunResult& watched, const RunResult& run, ScenarioVerdict& verdict) {
+                        const RunResult& run, ScenarioVerdict& verdict) {
   const ReadResult<Golden> golden = request.has_golden
                                         ? GoldenFiles(request.root).ReadGoldenOf(request.id)
                                         : ReadResult<Golden>{};
@@ -236,18 +229,24 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
       Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
               run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
   verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1);
-  const Derivation derivation = Derive(prepared.scenario, *prepared.program, watched);
+  const OracleComparison truth = CompareWithOracle(prepared.scenario, *prepared.program, run);
   const Golden pending =
-      PendingGolden(golden.value, run.timeline, request.id, prepared.scenario.grammar, derivation);
-  const std::vector<Objection> objections = Objections(golden.value, pending);
-  if (!golden.value) return JudgeWithoutGolden(request, pending, Text(objections), verdict);
+      PendingGolden(golden.value, run.timeline, request.id, prepared.scenario.grammar, truth);
+  if (!golden.value) return JudgeWithoutGolden(request, pending, GroundTruthText(truth), verdict);
+  const int accepted = AcceptedDiffering(golden.value->derived);
+  const bool truth_is_accepted = truth.Differing() == accepted;
   verdict.headroom = HeadroomText(comparison);
   verdict.boundaries = Boundaries(comparison);
-  if (comparison.Agrees() && objections.empty())
+  if (comparison.Agrees() && truth_is_accepted)
     return GoldenFiles(request.root).RemovePending(request.id);
   LeavePending(request, pending);
-  if (!comparison.Agrees()) TellDifferences(request, prepared, watched, comparison, verdict);
-  if (!objections.empty()) Fail(verdict, ExitCode::kDiffers, Summary(objections), Text(objections));
+  if (!comparison.Agrees()) TellDifferences(request, prepared, run, comparison, verdict);
+  if (!truth_is_accepted) {
+    Fail(verdict, ExitCode::kDiffers,
+         DifferingText(truth.Differing()) +
+             (accepted > 0 ? fmt::format(", the golden says {}", accepted) : ""),
+         GroundTruthText(truth));
+  }
 }
 
 std::vector<std::string> FilesOfGolden(const CheckRequest& request) {
@@ -303,29 +302,26 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   const Scenario& scenario = prepared.value->scenario;
   verdict.shows = scenario.shows;
 
-  RunOptions how;
+  RunOptions how{.record = true};
   if (request.last_tick)
     how.watch = [&](const grammar::Frame& frame) { request.last_tick->store(frame.tick); };
-  RunOptions how_watched = how;
-  how_watched.record = true;
-  const RunResult watched = RunScenario(scenario, prepared.value->program, how_watched);
-  Draw(request, scenario, watched, verdict);
-  const RunResult plain = RunScenario(scenario, prepared.value->program, how);
-  verdict.state_hash = HashText(plain.state_hash);
-  verdict.ticks = plain.ticks;
+  const RunResult run = RunScenario(scenario, prepared.value->program, how);
+  Draw(request, scenario, run, verdict);
+  verdict.state_hash = HashText(run.state_hash);
+  verdict.ticks = run.ticks;
 
-  if (plain.status.kind != physics::RunStatus::Kind::kCompleted) {
-    Fail(verdict, ExitCode::kFailure, "the simulation failed", StatusText(plain) + "\n");
+  if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
+    Fail(verdict, ExitCode::kFailure, "the simulation failed", StatusText(run) + "\n");
     verdict.command = "prehend run " + ShellWord(request.id) + ChangesText(request.run);
     return verdict;
   }
-  JudgeInvariants(*prepared.value, watched, plain, verdict);
-  JudgeAgainstGolden(request, *prepared.value, watched, plain, verdict);
-  JudgeOtherEngine(request, *prepared.value, plain, verdict);
+  JudgeInvariants(*prepared.value, run, verdict);
+  JudgeAgainstGolden(request, *prepared.value, run, verdict);
+  JudgeOtherEngine(request, *prepared.value, run, verdict);
   JudgePictures(request, scenario, verdict);
   if (verdict.verdict == Verdict::kPending && request.has_golden && AsItsFileSays(request))
     verdict.command = "prehend review " + ShellWord(request.id);
-  if (verdict.verdict == Verdict::kPassed) LeaveTrace(request, scenario, watched);
+  if (verdict.verdict == Verdict::kPassed) LeaveTrace(request, scenario, run);
   return verdict;
 }
 

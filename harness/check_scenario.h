@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One scenario against its golden and the invariants: run it twice (watched with recording and
-// pictures, and plain), compare, judge. What differs or has no golden leaves a pending golden
-// behind. Tested by tests/house/command_line_test.cc
+// One scenario against its golden and the invariants: play it once, draw it, compare, judge. What
+// differs or has no golden leaves a pending golden behind. Tested by tests/house/command_line_test.cc
 #pragma once
 
 #include <string>

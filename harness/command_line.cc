@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See command_line.h. Tested by tests/house/command_line_test.cc
+// See harness/command_line.h. Tested by tests/house/command_line_test.cc
 #include "harness/command_line.h"
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include <regex>
 
 #include "harness/commands/command.h"
+#include "harness/project_paths.h"
 #include "harness/shell_word.h"
 
 namespace prehend::harness {

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs events. Within one label, maximal intervals don't overlap, so an order-preserving alignment
-// (Needleman and Wunsch 1970) finds the largest and then closest set of partners. Tested by
+// Names what became of each event, once the matcher has paired those of equal label. Tested by
 // tests/harness/compare_test.cc
 #include "harness/compare.h"
 
 #include <algorithm>
 #include <cstdlib>
-#include <map>
 #include <tuple>
 
-#include "harness/changed_relations.h"
 #include "harness/event_text.h"
+#include "harness/oracle/agreement.h"
 
 namespace prehend::harness {
 namespace {
@@ -27,57 +25,13 @@ constexpr double kMinSharedSpan = 0.5;
 
 Tick Overlap(Interval a, Interval b) { return std::min(a.end, b.end) - std::max(a.begin, b.begin); }
 
-bool AtTheSameTime(Interval a, Interval b) {
-  const Tick span = std::max(a.end, b.end) - std::min(a.begin, b.begin);
-  return static_cast<double>(Overlap(a, b)) >= kMinSharedSpan * static_cast<double>(span);
-}
-
 Tick Distance(Interval a, Interval b) {
   return std::abs(a.begin - b.begin) + std::abs(a.end - b.end);
 }
 
-/// Quality of a set of pairs: first how many, then how close.
-struct Quality {
-  int pairs = 0;
-  Tick distance = 0;
-  bool BetterThan(const Quality& other) const {
-    return pairs != other.pairs ? pairs > other.pairs : distance < other.distance;
-  }
-};
-
-using IndexPair = std::pair<std::size_t, std::size_t>;
-
-/// The best order-preserving pairs of two lists sorted by time.
-std::vector<IndexPair> Align(const std::vector<Interval>& expected,
-                             const std::vector<Interval>& actual, Tick max_gap) {
-  const std::size_t rows = expected.size();
-  const std::size_t columns = actual.size();
-  const auto may_pair = [&](std::size_t i, std::size_t j) {
-    return Overlap(expected[i], actual[j]) > -max_gap;
-  };
-  const auto extended = [&](Quality quality, std::size_t i, std::size_t j) {
-    return Quality{quality.pairs + 1, quality.distance + Distance(expected[i], actual[j])};
-  };
-  // best[i][j]: of the events from i and from j on.
-  std::vector<std::vector<Quality>> best(rows + 1, std::vector<Quality>(columns + 1));
-  const auto better = [](Quality a, Quality b) { return b.BetterThan(a) ? b : a; };
-  for (std::size_t i = rows; i-- > 0;) {
-    for (std::size_t j = columns; j-- > 0;) {
-      best[i][j] = better(best[i + 1][j], best[i][j + 1]);
-      if (may_pair(i, j)) best[i][j] = better(extended(best[i + 1][j + 1], i, j), best[i][j]);
-    }
-  }
-  std::vector<IndexPair> pairs;
-  for (std::size_t i = 0, j = 0; i < rows && j < columns;) {
-    if (may_pair(i, j) && !best[i][j].BetterThan(extended(best[i + 1][j + 1], i, j))) {
-      pairs.push_back({i++, j++});
-    } else if (!best[i][j].BetterThan(best[i + 1][j])) {
-      ++i;
-    } else {
-      ++j;
-    }
-  }
-  return pairs;
+bool AtTheSameTime(Interval a, Interval b) {
+  const Tick span = std::max(a.end, b.end) - std::min(a.begin, b.begin);
+  return static_cast<double>(Overlap(a, b)) >= kMinSharedSpan * static_cast<double>(span);
 }
 
 /// "object: milk -> cup" for every role, attribute or ending that differs.
@@ -111,17 +65,6 @@ std::vector<std::string> Changes(const NamedEvent& expected, const NamedEvent& a
   return changes;
 }
 
-/// How many roles (attributes aside) differ; and whether at least one is the same.
-std::pair<int, bool> RoleDifference(const NamedEvent& expected, const NamedEvent& actual) {
-  int different = 0;
-  bool some_equal = false;
-  for (const auto& role : expected.roles) {
-    if (IsAttribute(role)) continue;
-    (RoleValue(actual, role.name) == role.value ? some_equal = true : ++different != 0);
-  }
-  return {different, some_equal};
-}
-
 bool SameRoles(const NamedEvent& a, const NamedEvent& b) {
   const auto roles = [](const NamedEvent& event) {
     std::vector<grammar::Role> kept = event.roles;
@@ -132,86 +75,83 @@ bool SameRoles(const NamedEvent& a, const NamedEvent& b) {
   return roles(a) == roles(b);
 }
 
-/// How unlike two events of the same time are: the number of roles that differ, more than any such
-/// number when it is another event of the same roles; nothing when they have nothing in common.
+/// How unlike two events of the same time are: the number of roles that differ, attributes aside;
+/// more than any such number if it is another event of the same roles; nothing if they have nothing
+/// in common.
 std::optional<int> Unlikeness(const NamedEvent& expected, const NamedEvent& actual) {
   constexpr int kOtherEvent = 1000;
   if (expected.event != actual.event)
     return SameRoles(expected, actual) ? std::optional(kOtherEvent) : std::nullopt;
-  const auto [different, some_equal] = RoleDifference(expected, actual);
+  int different = 0;
+  bool some_equal = false;
+  for (const auto& role : expected.roles) {
+    if (IsAttribute(role)) continue;
+    const bool equal = RoleValue(actual, role.name) == role.value;
+    if (equal) some_equal = true;
+    if (!equal) ++different;
+  }
   return some_equal ? std::optional(different) : std::nullopt;
+}
+
+std::vector<Headroom> HeadroomOf(const std::vector<Pairing>& pairings) {
+  std::vector<Headroom> headroom;
+  for (const Pairing& pairing : pairings) {
+    if (pairing.agreement != LineVerdict::kMatched) continue;
+    const std::string label = pairing.event().Label();
+    headroom.push_back({"begin of " + label, pairing.begin_offset, pairing.tolerance});
+    headroom.push_back({"end of " + label, pairing.end_offset, pairing.tolerance});
+  }
+  return headroom;
 }
 
 class Pairer {
  public:
   Pairer(const Golden& golden, const grammar::Timeline& actual, Tick default_tolerance)
-      : actual_(actual.events),
+      : golden_(golden),
+        actual_(actual.events),
+        expected_taken_(golden.events.size()),
+        actual_taken_(actual.events.size()),
         default_tolerance_(default_tolerance),
         ticks_per_second_(actual.ticks_per_second) {
     for (const GoldenEvent& line : golden.events) {
-      expected_.push_back(line);
-      Interval& interval = expected_.back().event.interval;
-      interval = {Converted(interval.begin, golden.ticks_per_second),
-                  Converted(interval.end, golden.ticks_per_second)};
+      NamedEvent& event = expected_.emplace_back(line.event);
+      event.interval = {Converted(event.interval.begin), Converted(event.interval.end)};
     }
-    for (const GoldenEvent& line : expected_) expected_taken_.push_back(!line.IsExpected());
-    actual_taken_.resize(actual_.size());
   }
 
   Comparison Pair() {
     PairEqualLabels();
     PairAcrossLabels();
     for (std::size_t i = 0; i < expected_.size(); ++i) {
-      if (expected_taken_[i]) continue;
-      AddAlone(LineVerdict::kMissing, expected_[i].event);
-      comparison_.pairings.back().golden_line = i;
+      if (!expected_taken_[i]) AddOnlyExpected(LineVerdict::kMissing, i);
     }
     for (std::size_t j = 0; j < actual_.size(); ++j) {
-      if (!actual_taken_[j]) AddAlone(LineVerdict::kExtra, actual_[j]);
+      if (!actual_taken_[j]) AddOnlyActual(LineVerdict::kExtra, j);
     }
     std::stable_sort(
         comparison_.pairings.begin(), comparison_.pairings.end(),
         [](const Pairing& a, const Pairing& b) { return ComesBefore(a.event(), b.event()); });
     comparison_.ticks_per_second = ticks_per_second_;
     comparison_.relations = ChangedRelations(comparison_.pairings);
-    for (const Pairing& pairing : comparison_.pairings) {
-      if (pairing.agreement != LineVerdict::kMatched) continue;
-      NoteHeadroom("begin of ", pairing, pairing.begin_offset);
-      NoteHeadroom("end of ", pairing, pairing.end_offset);
-    }
+    comparison_.headroom = HeadroomOf(comparison_.pairings);
     return std::move(comparison_);
   }
 
  private:
-  Tick Converted(Tick tick, Tick from_ticks_per_second) const {
-    return TickAt(static_cast<double>(tick) / static_cast<double>(from_ticks_per_second),
+  /// A tick of the golden in those of the actual timeline.
+  Tick Converted(Tick tick) const {
+    return TickAt(static_cast<double>(tick) / static_cast<double>(golden_.ticks_per_second),
                   ticks_per_second_);
   }
 
   void PairEqualLabels() {
-    struct Group {
-      std::vector<std::size_t> expected, actual;
-    };
-    std::map<std::string, Group> groups;
-    for (std::size_t i = 0; i < expected_.size(); ++i) {
-      if (!expected_taken_[i]) groups[expected_[i].event.Label()].expected.push_back(i);
-    }
-    for (std::size_t j = 0; j < actual_.size(); ++j) groups[actual_[j].Label()].actual.push_back(j);
-    for (const auto& [label, group] : groups) {
+    const MatchPolicy policy{.max_gap = TickAt(kMaxGapBetweenPartners_s, ticks_per_second_)};
+    for (const LabelMatches& label : MatchEvents(expected_, actual_, policy)) {
       const std::size_t first_pair = comparison_.pairings.size();
-      std::vector<Interval> expected, actual;
-      for (const std::size_t i : group.expected) expected.push_back(expected_[i].event.interval);
-      for (const std::size_t j : group.actual) actual.push_back(actual_[j].interval);
-      const Tick max_gap = TickAt(kMaxGapBetweenPartners_s, ticks_per_second_);
-      for (const auto& [i, j] : Align(expected, actual, max_gap))
-        AddPair(group.expected[i], group.actual[j]);
+      for (const auto& [i, j] : label.pairs) AddPair(i, j);
       const std::size_t end_of_pairs = comparison_.pairings.size();
-      for (const std::size_t j : group.actual) {
-        if (!actual_taken_[j]) AddFragment(j, first_pair, end_of_pairs);
-      }
-      for (const std::size_t i : group.expected) {
-        if (!expected_taken_[i]) AddMerged(i, first_pair, end_of_pairs);
-      }
+      for (const std::size_t j : label.only_actual) AddFragment(j, first_pair, end_of_pairs);
+      for (const std::size_t i : label.only_expected) AddMerged(i, first_pair, end_of_pairs);
     }
   }
 
@@ -220,8 +160,7 @@ class Pairer {
     const Interval interval = actual_[j].interval;
     for (std::size_t pair = first_pair; pair < end_of_pairs; ++pair) {
       if (Overlap(comparison_.pairings[pair].expected->interval, interval) <= 0) continue;
-      AddAlone(LineVerdict::kFragmented, actual_[j]);
-      actual_taken_[j] = true;
+      AddOnlyActual(LineVerdict::kFragmented, j);
       return AddPiece(comparison_.pairings[pair], LineVerdict::kFragmented,
                       comparison_.pairings[pair].actual->interval, interval);
     }
@@ -229,12 +168,10 @@ class Pairer {
 
   /// An expected event that overlaps the recognised one of a pair of its label is merged into it.
   void AddMerged(std::size_t i, std::size_t first_pair, std::size_t end_of_pairs) {
-    const Interval interval = expected_[i].event.interval;
+    const Interval interval = expected_[i].interval;
     for (std::size_t pair = first_pair; pair < end_of_pairs; ++pair) {
       if (Overlap(comparison_.pairings[pair].actual->interval, interval) <= 0) continue;
-      AddAlone(LineVerdict::kMerged, expected_[i].event);
-      comparison_.pairings.back().golden_line = i;
-      expected_taken_[i] = true;
+      AddOnlyExpected(LineVerdict::kMerged, i);
       return AddPiece(comparison_.pairings[pair], LineVerdict::kMerged,
                       comparison_.pairings[pair].expected->interval, interval);
     }
@@ -253,10 +190,9 @@ class Pairer {
     for (std::size_t i = 0; i < expected_.size(); ++i) {
       for (std::size_t j = 0; j < actual_.size(); ++j) {
         if (expected_taken_[i] || actual_taken_[j]) continue;
-        const NamedEvent& expected = expected_[i].event;
-        const std::optional<int> unlike = Unlikeness(expected, actual_[j]);
-        if (!unlike || !AtTheSameTime(expected.interval, actual_[j].interval)) continue;
-        candidates.emplace_back(*unlike, Distance(expected.interval, actual_[j].interval), i, j);
+        const Interval a = expected_[i].interval, b = actual_[j].interval;
+        const std::optional<int> unlike = Unlikeness(expected_[i], actual_[j]);
+        if (unlike && AtTheSameTime(a, b)) candidates.emplace_back(*unlike, Distance(a, b), i, j);
       }
     }
     std::sort(candidates.begin(), candidates.end());
@@ -266,41 +202,45 @@ class Pairer {
   }
 
   void AddPair(std::size_t i, std::size_t j) {
-    const GoldenEvent& line = expected_[i];
-    const NamedEvent& actual = actual_[j];
+    const NamedEvent &expected = expected_[i], &actual = actual_[j];
     Pairing pairing{.agreement = LineVerdict::kMatched,
-                    .expected = line.event,
+                    .expected = expected,
                     .actual = actual,
-                    .golden_line = i};
-    pairing.begin_offset = actual.interval.begin - line.event.interval.begin;
-    pairing.end_offset = actual.interval.end - line.event.interval.end;
-    pairing.tolerance =
-        line.tolerance_ms ? *line.tolerance_ms * ticks_per_second_ / 1000 : default_tolerance_;
-    pairing.changes = Changes(line.event, actual);
-    if (line.event.event != actual.event) {
+                    .golden_line = i,
+                    .begin_offset = actual.interval.begin - expected.interval.begin,
+                    .end_offset = actual.interval.end - expected.interval.end,
+                    .tolerance = ToleranceOf(golden_.events[i]),
+                    .changes = Changes(expected, actual),
+                    .pieces = {}};
+    const Tick off = std::max(std::abs(pairing.begin_offset), std::abs(pairing.end_offset));
+    if (expected.event != actual.event) {
       pairing.agreement = LineVerdict::kRelabelled;
     } else if (!pairing.changes.empty()) {
       pairing.agreement = LineVerdict::kChanged;
-    } else if (std::max(std::abs(pairing.begin_offset), std::abs(pairing.end_offset)) >
-               pairing.tolerance) {
+    } else if (off > pairing.tolerance) {
       pairing.agreement = LineVerdict::kShifted;
     }
     expected_taken_[i] = actual_taken_[j] = true;
     comparison_.pairings.push_back(std::move(pairing));
   }
 
-  void NoteHeadroom(const char* boundary, const Pairing& pairing, Tick offset) {
-    comparison_.headroom.push_back({boundary + pairing.event().Label(), offset, pairing.tolerance});
+  Tick ToleranceOf(const GoldenEvent& line) const {
+    return line.tolerance_ms ? *line.tolerance_ms * ticks_per_second_ / 1000 : default_tolerance_;
   }
 
-  void AddAlone(LineVerdict agreement, const NamedEvent& event) {
-    Pairing pairing{.agreement = agreement, .expected = {}, .actual = {}};
-    const bool of_golden = agreement == LineVerdict::kMissing || agreement == LineVerdict::kMerged;
-    (of_golden ? pairing.expected : pairing.actual) = event;
-    comparison_.pairings.push_back(std::move(pairing));
+  void AddOnlyExpected(LineVerdict agreement, std::size_t i) {
+    expected_taken_[i] = true;
+    comparison_.pairings.push_back(
+        {.agreement = agreement, .expected = expected_[i], .actual = {}, .golden_line = i});
   }
 
-  std::vector<GoldenEvent> expected_;  ///< in the ticks of the actual timeline
+  void AddOnlyActual(LineVerdict agreement, std::size_t j) {
+    actual_taken_[j] = true;
+    comparison_.pairings.push_back({.agreement = agreement, .expected = {}, .actual = actual_[j]});
+  }
+
+  const Golden& golden_;
+  std::vector<NamedEvent> expected_;  ///< of the golden, in the ticks of the actual timeline
   const std::vector<NamedEvent>& actual_;
   std::vector<bool> expected_taken_, actual_taken_;
   Tick default_tolerance_;

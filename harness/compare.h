@@ -83,6 +83,10 @@ struct Comparison {
       const;  ///< first divergence first; pieces are told of by one
 };
 
+/// Of every two pairs that share their entities and of which at least one differs. Two boundaries
+/// count as equal when they are no further apart than the tolerance.
+std::vector<RelationChange> ChangedRelations(const std::vector<Pairing>& pairings);
+
 /// Compares in the ticks of `actual`; `default_tolerance` (ticks) is for golden lines without their
 /// own.
 Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
@@ -111,5 +115,10 @@ nlohmann::ordered_json RelationsJson(const Comparison& comparison);
 
 /// One line: "headroom: 4.2 of 8.3 ms are left at begin of reaching(right_hand, milk)", or "".
 std::string HeadroomText(const Comparison& comparison);
+
+/// Where events lie to each other otherwise than the golden says: of every two pairs that share
+/// their entities and of which at least one differs. Two boundaries count as equal when they are no
+/// further apart than the tolerance.
+std::vector<RelationChange> ChangedRelations(const std::vector<Pairing>& pairings);
 
 }  // namespace prehend::harness

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recorded run becomes a render::Picture: which moment, which ghosts, which colours, which rows
-// in the strip. Tested by tests/harness/pictures_test.cc
+// in the strip. Tested by tests/house/acceptance_test.cc
 #pragma once
 
 #include "harness/pictures.h"

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// See content_hash.h. Tested by tests/harness/check_record_test.cc
+// See harness/content_hash.h. Tested by tests/harness/content_hash_test.cc
 #include "harness/content_hash.h"
 
 #include <fmt/format.h>
 #include <link.h>
 #include <sys/stat.h>
+#include <xxhash.h>
 
-#include <cstdint>
 #include <fstream>
 #include <sstream>
 
 namespace prehend::harness {
 namespace {
 
-/// For dl_iterate_phdr: "path size seconds" of one library. Its bytes would be far too many.
+/// For dl_iterate_phdr: adds "path size seconds" of one library. Its bytes would take too long.
 int AddLibrary(dl_phdr_info* info, std::size_t, void* text) {
   struct stat status {};
   if (info->dlpi_name && *info->dlpi_name && stat(info->dlpi_name, &status) == 0) {
@@ -26,9 +26,7 @@ int AddLibrary(dl_phdr_info* info, std::size_t, void* text) {
 }  // namespace
 
 std::string ContentHash(std::string_view bytes) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
 }
 
 std::string FileHash(const std::string& path) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a file holds, and which program runs, as short texts: equal texts mean that nothing changed.
-// Tested by tests/harness/check_record_test.cc
+// The content of a file and the identity of the running program as short texts: equal texts mean
+// that nothing changed. (The hash of a physical state is another one: physics/state_hash.h.)
+// Tested by tests/harness/content_hash_test.cc
 #pragma once
 
 #include <map>
@@ -10,20 +11,19 @@
 
 namespace prehend::harness {
 
-/// FNV-1a of 64 bit, 16 hexadecimal digits. Protects against mistakes, not against attackers.
+/// XXH3 of 64 bits as 16 hexadecimal digits. Protects against mistakes, not against attackers.
 std::string ContentHash(std::string_view bytes);
 
-/// Hash of a file that is not there or cannot be read.
+/// The hash of a file that does not exist or cannot be read.
 inline constexpr const char* kNoFile = "none";
 
-/// Of a file's bytes, or kNoFile.
+/// The hash of a file's bytes, or kNoFile.
 std::string FileHash(const std::string& path);
 
 using FileHashes = std::map<std::string, std::string>;  ///< path -> FileHash(path)
 FileHashes HashFiles(const std::vector<std::string>& paths);
 
-/// Of the running program: its own bytes, and size and date of the libraries that it is linked
-/// with.
+/// The hash of the running program: of its bytes, and of size and date of each shared library.
 std::string ProgramHash();
 
 }  // namespace prehend::harness

@@ -1,34 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a timeline follows from the definitions: what the physical oracle says about the same run.
-// Goes into the provenance of a golden. Tested by tests/harness/derivation_test.cc
+// A run against the physical oracle's view of it: which recognised events follow from the
+// definitions. A golden's header keeps the count. Tested by tests/harness/derivation_test.cc
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "harness/oracle/agreement.h"
 #include "harness/run_scenario.h"
 
 namespace prehend::harness {
 
-/// Lines that begin so are written by the program and renewed with every acceptance; others are
-/// people's.
+/// The program writes the lines of a golden that begin so and renews them with every acceptance;
+/// people write the others.
 inline constexpr const char* kOracleLine = "oracle: ";
 
-/// An event that the run and the oracle see otherwise: a recognised one, or one that is the
-/// oracle's alone.
-struct OracleNote {
-  grammar::NamedEvent event;
-  std::string text;  ///< GoldenEvent::oracle
-};
-
-struct Derivation {
-  bool agrees = false;  ///< no event missing or extra, every boundary within two sensing frames
-  std::vector<std::string> lines;  ///< each begins with kOracleLine
-  std::vector<OracleNote> notes;   ///< of every event that differs
-  grammar::Tick tolerance = 0;     ///< those two frames
-};
-
-/// What the definitions and a grammar both speak of.
+/// What both the definitions and a grammar have events for.
 struct Judged {
   grammar::Timeline truth, found;
 };
@@ -36,12 +23,41 @@ struct Judged {
 Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
                       const RunResult& run);
 
-/// The run must have been recorded. Events that the oracle has no definition for are not judged,
-/// and counted.
-Derivation Derive(const Scenario& scenario, const grammar::Program& program, const RunResult& run);
+/// How far a run agrees with the ground truth.
+struct OracleComparison {
+  Agreement agreement;
+  grammar::Tick tolerance = 0;  ///< two sensing frames; a boundary further off differs
+  int judged = 0;               ///< recognised events of kinds that the definitions have
+  int not_judged = 0;           ///< recognised events of other kinds
+
+  /// Recognised events that follow, with both boundaries within the tolerance.
+  int Following() const;
+  /// Events that do not follow, and events that follow but are not recognised.
+  int Differing() const;
+};
+
+/// The run must have been recorded.
+OracleComparison CompareWithOracle(const Scenario& scenario, const grammar::Program& program,
+                                   const RunResult& run);
+
+/// "oracle: 12 of 12 events follow from the definitions of docs/events.md, boundaries at most 0.0
+/// ms off"
+std::string OracleLine(const OracleComparison& compared);
+
+/// One line per event that differs:
+/// "ground truth: reaching(right_hand, cup) begins 183.3 ms earlier than recognised; its end agrees
+/// (recognised 1.2000..2.0000 s)"
+std::string GroundTruthText(const OracleComparison& compared);
+
+/// "no event differs from the ground truth", "1 event differs ..", "2 events differ .."
+std::string DifferingText(int differing);
+
+/// How many events differ according to the line of a golden that OracleLine() wrote; none without
+/// such a line.
+int AcceptedDiffering(const std::vector<std::string>& derived);
 
 /// People's lines, then the oracle's.
 std::vector<std::string> RenewedDerivation(const std::vector<std::string>& lines,
-                                           const Derivation& derivation);
+                                           const std::string& oracle_line);
 
 }  // namespace prehend::harness

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario_fields_test.cc
-#include "harness/entity_fields.h"
-
 #include <fmt/format.h>
 
 #include <functional>
 
-#include "harness/abstract_fields.h"
-#include "harness/farthest.h"
-#include "harness/kinds.h"
+#include "harness/classes.h"
+#include "harness/limits.h"
 #include "harness/record.h"
 #include "harness/scenario_fields.h"
-#include "harness/shape_fields.h"
+#include "harness/scenario_formats.h"
 
 namespace prehend::harness {
 namespace {

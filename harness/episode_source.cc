@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// See episode_source.h. Tested by tests/house/explain_command_test.cc
+// See harness/episode_source.h. Tested by tests/house/explain_command_test.cc
 #include "harness/episode_source.h"
 
 #include <filesystem>
 #include <fstream>
 #include <utility>
 
+#include "harness/cast.h"
 #include "harness/episode_file.h"
 #include "harness/load_grammar.h"
 #include "harness/prepare_run.h"

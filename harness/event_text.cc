@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// See event_text.h. Tested by tests/harness/golden_test.cc
+// See harness/event_text.h. Tested by tests/harness/golden_test.cc
 #include "harness/event_text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace prehend::harness {
 
@@ -50,11 +49,6 @@ const std::string& RoleValue(const NamedEvent& event, std::string_view role) {
   const auto found = std::find_if(event.roles.begin(), event.roles.end(),
                                   [&](const Role& candidate) { return candidate.name == role; });
   return found == event.roles.end() ? kNone : found->value;
-}
-
-bool ComesBefore(const NamedEvent& a, const NamedEvent& b) {
-  return std::tie(a.interval.begin, a.interval.end, a.event, a.roles) <
-         std::tie(b.interval.begin, b.interval.end, b.event, b.roles);
 }
 
 std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>>& rows) {

@@ -35,9 +35,6 @@ std::string RoleText(const grammar::NamedEvent& event, std::size_t column);
 /// The value of a role or attribute, or "".
 const std::string& RoleValue(const grammar::NamedEvent& event, std::string_view role);
 
-/// The canonical order of timelines: (begin, end, event, roles).
-bool ComesBefore(const grammar::NamedEvent& a, const grammar::NamedEvent& b);
-
 /// Rows of cells as lines with aligned columns, two blanks apart, no trailing blanks.
 std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>>& rows);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See facts_around.h. Tested by tests/harness/facts_around_test.cc
+// See harness/facts_around.h. Tested by tests/harness/facts_around_test.cc
 #include "harness/facts_around.h"
 
 #include <fmt/format.h>
@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "harness/cast.h"
 #include "harness/event_text.h"
 #include "harness/sensing.h"
 

@@ -66,7 +66,7 @@ std::optional<std::string> StringOf(const YamlNode& node, Complaints& complaints
   return std::nullopt;
 }
 
-std::optional<ScalarMeaning> NumberOf(const YamlNode& node) {
+std::optional<ScalarMeaning> NumericMeaning(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kScalar) return std::nullopt;
   ScalarMeaning meaning = MeaningOf(node);
   if (!meaning.number) return std::nullopt;
@@ -148,7 +148,7 @@ Format<double> Number(double lowest, double highest) {
   return {.schema = {{"type", "number"}, {"minimum", lowest}, {"maximum", highest}},
           .read =
               [=](const YamlNode& node, Complaints& complaints, double& value) {
-                const auto meaning = NumberOf(node);
+                const auto meaning = NumericMeaning(node);
                 if (!meaning || !(*meaning->number >= lowest && *meaning->number <= highest)) {
                   return ComplainNumberWanted(node, complaints, wanted);
                 }
@@ -163,7 +163,7 @@ Format<std::int64_t> Integer64(std::int64_t lowest, std::int64_t highest) {
   return {.schema = {{"type", "integer"}, {"minimum", lowest}, {"maximum", highest}},
           .read =
               [=](const YamlNode& node, Complaints& complaints, std::int64_t& value) {
-                const auto meaning = NumberOf(node);
+                const auto meaning = NumericMeaning(node);
                 constexpr double kExactInDouble = 9007199254740992.0;  // 2^53
                 if (!meaning || !meaning->integer || std::abs(*meaning->number) > kExactInDouble) {
                   return ComplainWanted(node, complaints, wanted);

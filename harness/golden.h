@@ -15,17 +15,13 @@
 //   grasping      5.1000  6.2000  hand=right_hand  object=milk    force~12.5N  accepted=2
 //
 // NAME~NUMBER is a value of the event, which agrees within 5 % or 0.001; accepted=2 says that this
-// line is as the second of the accepted lines made it (otherwise the first);
-// oracle=none because "..", or oracle=+29.2/+0.0ms because "..", that the physical oracle sees no
-// such event, or other boundaries, and why the line is right nevertheless; oracle=only because
-// "..", that only the oracle sees this event: nobody expects it to be recognised. Tested by
+// line is as the second of the accepted lines made it (otherwise the first). Tested by
 // tests/harness/golden_test.cc
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "grammar/timeline.h"
@@ -33,27 +29,16 @@
 
 namespace prehend::harness {
 
-/// What `oracle` of a line says when the event is the oracle's alone, or not the oracle's.
-inline constexpr const char* kOnlyOracle = "only";
-inline constexpr const char* kNotOfOracle = "none";
-
 struct GoldenEvent {
   grammar::NamedEvent event;          ///< `decided` is not part of a golden: 0
   std::optional<int> tolerance_ms;    ///< instead of the default of two sensing frames
   std::string because;                ///< why this line needs it; never empty beside a tolerance
-  std::string oracle;                 ///< how it differs from the physical oracle's; or empty
-  std::string oracle_because;         ///< why it is right nevertheless; never empty beside `oracle`
   std::vector<std::string> comments;  ///< lines above it, without "# "
   int accepted = 1;  ///< which acceptance made it so, from 1; one more than there are: the next
-  std::string as_written;  ///< the line in the file it was read from; emptied by who changes it
+  std::string as_written;  ///< the line in the file it was read from; emptied when it is changed
   int line = 0;            ///< of that file, from 1; neither of the two is compared
-  bool IsExpected() const { return oracle != kOnlyOracle; }
   friend bool operator==(const GoldenEvent& a, const GoldenEvent& b);
 };
-
-/// How much later, in ms, the begin and end of a line with the note "+29.2/-4.2ms" are than the
-/// oracle's; nothing of another note.
-std::optional<std::pair<double, double>> NoteOffsets_ms(std::string_view note);
 
 struct Acceptance {
   std::string date;  ///< YYYY-MM-DD
@@ -81,7 +66,7 @@ ReadResult<Golden> ReadGolden(std::string_view file, std::string_view text);
 /// canonical.
 std::string WriteGolden(const Golden& golden);
 
-/// The events that it expects, alone.
+/// Its events, alone.
 grammar::Timeline ToTimeline(const Golden& golden);
 
 }  // namespace prehend::harness

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See golden_files.h. Tested by tests/harness/golden_files_test.cc
+// See harness/golden_files.h. Tested by tests/harness/golden_files_test.cc
 #include "harness/golden_files.h"
 
 #include <algorithm>

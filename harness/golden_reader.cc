@@ -44,14 +44,6 @@ std::optional<Number> ParseNumber(std::string_view text) {
   return value;
 }
 
-/// "+29.2"
-std::optional<double> ParseSigned(std::string_view text) {
-  if (!text.starts_with('+') && !text.starts_with('-')) return std::nullopt;
-  const auto size = ParseNumber<double>(text.substr(1));
-  if (!size || !std::isfinite(*size) || *size < 0) return std::nullopt;
-  return text.front() == '-' ? -*size : *size;
-}
-
 class GoldenReader {
  public:
   GoldenReader(std::string_view file, std::string_view text) : file_(file), text_(text) {}
@@ -188,7 +180,7 @@ class GoldenReader {
   }
 
   bool ReadRolesAndFlags(GoldenEvent& line) {
-    std::string explained;          // what a reason that comes now belongs to
+    bool may_explain = false;       // a tolerance stands before it, without its reason yet
     std::set<std::string> written;  // each of them once; a value may be called like a role
     for (SkipBlanks(); !AtEnd(); SkipBlanks()) {
       const std::size_t word_column = column_;
@@ -201,7 +193,10 @@ class GoldenReader {
       if (key == "open_end") {
         line.event.open_end = true;
       } else if (key == "because") {
-        if (!ReadReason(line, std::exchange(explained, ""), word_column)) return false;
+        if (!std::exchange(may_explain, false))
+          return FailAt(word_column,
+                        "'because' gives the reason of a tolerance, but none stands before it");
+        if (!ReadReason(line)) return false;
       } else if (is_value) {
         if (!ReadValue(line, key, word_column)) return false;
       } else if (AtEnd() || line_[column_] != '=') {
@@ -209,10 +204,11 @@ class GoldenReader {
                     "ROLE=NAME without blanks, or open_end");
       } else if (++column_; key == "tolerance") {
         if (!ReadTolerance(line)) return false;
-        explained = key;
+        may_explain = true;
       } else if (key == "oracle") {
-        if (!ReadOracle(line)) return false;
-        explained = key;
+        return FailAt(word_column, "a line no longer says how it differs from the physical oracle",
+                      "remove 'oracle=' and its reason; the header counts the events that follow "
+                      "from the definitions");
       } else if (key == "accepted") {
         if (!ReadAcceptedBy(line)) return false;
       } else if (!ReadRole(line, key, word_column)) {
@@ -222,10 +218,6 @@ class GoldenReader {
     if (line.event.roles.empty()) return Fail("an event needs at least one role=value");
     if (line.tolerance_ms && line.because.empty()) {
       return Fail("a tolerance needs a reason", "tolerance=20ms because \"the reason\"");
-    }
-    if (!line.oracle.empty() && line.oracle_because.empty()) {
-      return Fail("what differs from the oracle needs a reason",
-                  "oracle=none because \"the reason\"");
     }
     return true;
   }
@@ -277,31 +269,11 @@ class GoldenReader {
     return true;
   }
 
-  /// "none", "only", or how much later begin and end are than the oracle's: "+29.2/-4.2ms".
-  bool ReadOracle(GoldenEvent& line) {
-    const std::size_t value_column = column_;
-    const std::string_view word = Word();
-    if (word != kNotOfOracle && word != kOnlyOracle && !NoteOffsets_ms(word)) {
-      return FailAt(value_column,
-                    "expected how it differs from the oracle's event: none, only, or its begin and "
-                    "end like +29.2/-4.2ms");
-    }
-    line.oracle = word;
-    return true;
-  }
-
-  /// `explained`: the word before it.
-  bool ReadReason(GoldenEvent& line, const std::string& explained, std::size_t word_column) {
-    if (explained.empty()) {
-      return FailAt(word_column,
-                    "'because' gives the reason of a tolerance or of what differs from the oracle, "
-                    "but there is none before it");
-    }
+  bool ReadReason(GoldenEvent& line) {
     SkipBlanks();
     const std::size_t reason_column = column_;
-    std::string& reason = explained == "oracle" ? line.oracle_because : line.because;
-    if (!ReadQuoted(reason)) return false;
-    return !reason.empty() || FailAt(reason_column, "the reason is empty");
+    if (!ReadQuoted(line.because)) return false;
+    return !line.because.empty() || FailAt(reason_column, "the reason is empty");
   }
 
   bool ReadName(std::string& name, std::string_view wanted) {
@@ -404,16 +376,6 @@ class GoldenReader {
 };
 
 }  // namespace
-
-std::optional<std::pair<double, double>> NoteOffsets_ms(std::string_view note) {
-  if (!note.ends_with("ms")) return std::nullopt;
-  note.remove_suffix(2);
-  const std::size_t slash = note.find('/');
-  if (slash == std::string_view::npos) return std::nullopt;
-  const auto begin = ParseSigned(note.substr(0, slash)), end = ParseSigned(note.substr(slash + 1));
-  if (!begin || !end) return std::nullopt;
-  return std::pair(*begin, *end);
-}
 
 ReadResult<Golden> ReadGolden(std::string_view file, std::string_view text) {
   grammar::Diagnostics not_text = CheckText(std::string(file), text);

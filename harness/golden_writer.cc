@@ -39,8 +39,6 @@ std::vector<std::string> TableLines(const Golden& golden) {
     for (const grammar::NamedValue& value : line.event.values)
       add(fmt::format("{}~{:.4g}{}", value.name, value.value, value.unit));
     if (line.accepted > 1) add(fmt::format("accepted={}", line.accepted));
-    if (!line.oracle.empty())
-      add(fmt::format("oracle={} because {}", line.oracle, Quoted(line.oracle_because)));
     if (line.tolerance_ms)
       add(fmt::format("tolerance={}ms because {}", *line.tolerance_ms, Quoted(line.because)));
     rows.push_back(std::move(cells));
@@ -58,8 +56,7 @@ bool operator==(const GoldenEvent& a, const GoldenEvent& b) {
   return a.event.event == b.event.event && a.event.roles == b.event.roles &&
          a.event.interval == b.event.interval && a.event.values == b.event.values &&
          a.event.open_end == b.event.open_end && a.tolerance_ms == b.tolerance_ms &&
-         a.because == b.because && a.oracle == b.oracle && a.oracle_because == b.oracle_because &&
-         a.comments == b.comments && a.accepted == b.accepted;
+         a.because == b.because && a.comments == b.comments && a.accepted == b.accepted;
 }
 
 std::string WriteGolden(const Golden& golden) {
@@ -84,9 +81,7 @@ std::string WriteGolden(const Golden& golden) {
 
 grammar::Timeline ToTimeline(const Golden& golden) {
   grammar::Timeline timeline{.ticks_per_second = golden.ticks_per_second, .events = {}};
-  for (const GoldenEvent& line : golden.events) {
-    if (line.IsExpected()) timeline.events.push_back(line.event);
-  }
+  for (const GoldenEvent& line : golden.events) timeline.events.push_back(line.event);
   return timeline;
 }
 

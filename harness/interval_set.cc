@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See interval_set.h. Tested by tests/harness/invariants_test.cc
+// See harness/interval_set.h. Tested by tests/harness/invariants_test.cc
 #include "harness/interval_set.h"
 
 #include <algorithm>

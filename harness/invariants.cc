@@ -243,8 +243,6 @@ constexpr std::array kInvariants = {
               "every event is decided at or after its end, within its rule's bound", CheckLatency},
 };
 
-constexpr std::string_view kSameTimeline = "watching_changes_nothing";
-
 }  // namespace
 
 std::span<const Invariant> Invariants() { return kInvariants; }
@@ -254,22 +252,6 @@ Violations CheckInvariants(const Timeline& timeline, const EpisodeFacts& facts) 
   for (const Invariant& invariant : kInvariants)
     invariant.check(timeline, facts, invariant.name, violations);
   return violations;
-}
-
-Violations CheckSameTimeline(const Timeline& recorded, std::uint64_t recorded_hash,
-                             const Timeline& plain, std::uint64_t plain_hash) {
-  if (recorded_hash != plain_hash)
-    return {{kSameTimeline, 0, "the state hash differs with and without recording"}};
-  const auto same = [](const NamedEvent& a, const NamedEvent& b) {
-    return a.Label() == b.Label() && a.roles == b.roles && a.interval == b.interval &&
-           a.decided == b.decided;
-  };
-  const auto [a, b] = std::mismatch(recorded.events.begin(), recorded.events.end(),
-                                    plain.events.begin(), plain.events.end(), same);
-  if (a == recorded.events.end() && b == plain.events.end()) return {};
-  const NamedEvent& first = a != recorded.events.end() ? *a : *b;
-  return {
-      {kSameTimeline, first.interval.begin, first.Label() + " differs with and without recording"}};
 }
 
 std::string Text(const Violation& violation, Tick ticks_per_second) {

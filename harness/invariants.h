@@ -5,7 +5,6 @@
 // tests/harness/invariants_test.cc
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <set>
 #include <span>
@@ -42,15 +41,11 @@ struct Invariant {
                 Violations& violations);
 };
 
-/// All that can be seen in one timeline. The seventh compares two runs: CheckSameTimeline().
+/// All of them.
 std::span<const Invariant> Invariants();
 
 /// Runs every checker; violations in the order of the table, then of time.
 Violations CheckInvariants(const grammar::Timeline& timeline, const EpisodeFacts& facts);
-
-/// Recording and pictures must not change what is recognised (nor what happens: the state hashes).
-Violations CheckSameTimeline(const grammar::Timeline& recorded, std::uint64_t recorded_hash,
-                             const grammar::Timeline& plain, std::uint64_t plain_hash);
 
 /// "phases_cover_the_grasp at 1.2000 s: ..."
 std::string Text(const Violation& violation, grammar::Tick ticks_per_second);

@@ -45,7 +45,7 @@ ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& r
               .hint = {}}}};
   }
   const grammar::Tick end = run.ticks + 1;
-  const grammar::Timeline truth = TrueTimeline(scenario, run.recording, end);
+  const grammar::Timeline truth = TrueTimeline(scenario.scene, run.recording, end);
   std::vector<score::JudgedEpisode> episodes;
   for (const std::string& name : request.grammars) {
     const grammar::CompileResult compiled = LoadGrammar(request.root, name);

@@ -1,36 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// See junit.h. Tested by tests/harness/junit_test.cc
+// See harness/junit.h. Tested by tests/harness/junit_test.cc
 #include "harness/junit.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "harness/timeline_svg.h"
+#include "harness/markup.h"
 
 namespace prehend::harness {
 namespace {
 
-/// For attributes and content; what XML 1.0 cannot hold is left out.
-std::string EscapeXml(std::string_view text) {
-  std::string allowed;
-  std::ranges::copy_if(text, std::back_inserter(allowed),
-                       [](unsigned char c) { return c >= 0x20 || c == '\n' || c == '\t'; });
-  return EscapeHtml(allowed);
-}
+// The element of a case that tells its outcome; a pass has none.
+constexpr const char* kPassed = "";
+constexpr const char* kSkipped = "skipped";
+constexpr const char* kFailure = "failure";
+constexpr const char* kError = "error";
 
-/// What a case came to: "failure", "error", "skipped", or "" for a pass.
-std::string_view Element(const ScenarioVerdict& verdict) {
-  if (verdict.verdict == Verdict::kPassed) return "";
-  if (verdict.verdict == Verdict::kUnchanged) return "skipped";
+const char* Element(const ScenarioVerdict& verdict) {
+  if (verdict.verdict == Verdict::kPassed) return kPassed;
+  if (verdict.verdict == Verdict::kUnchanged) return kSkipped;
   const bool broken =
       verdict.exit_code == ExitCode::kFailure || verdict.exit_code == ExitCode::kBadInput;
-  return broken ? "error" : "failure";
+  return broken ? kError : kFailure;
 }
 
 /// "0.0042..0.3021 s", or "nothing".
@@ -69,50 +65,59 @@ std::string Message(const ScenarioVerdict& verdict) {
   return text;
 }
 
-std::string Outcome(const ScenarioVerdict& verdict) {
-  const std::string_view element = Element(verdict);
-  if (element.empty()) return "";
-  if (element == "skipped") return "      <skipped message=\"nothing changed since it passed\"/>\n";
-  return fmt::format("      <{0} type=\"{1}\" message=\"{2}\">{3}{4}: {5}\n</{0}>\n", element,
-                     Name(verdict.verdict), EscapeXml(Message(verdict)), EscapeXml(verdict.details),
-                     CommandLabel(verdict), EscapeXml(verdict.command));
+void AddOutcome(pugi::xml_node test_case, const ScenarioVerdict& verdict) {
+  const char* const element = Element(verdict);
+  if (element == kPassed) return;
+  if (element == kSkipped) {
+    AddElement(test_case, element, {{"message", "nothing changed since it passed"}});
+    return;
+  }
+  AddElement(test_case, element,
+             {{"type", std::string(Name(verdict.verdict))}, {"message", Message(verdict)}},
+             fmt::format("{}{}: {}\n", verdict.details, CommandLabel(verdict), verdict.command));
 }
 
-std::string Case(const ScenarioVerdict& verdict) {
+void AddCase(pugi::xml_node suite, const ScenarioVerdict& verdict) {
   const std::size_t slash = verdict.scenario.rfind('/');
-  const std::string skill =
-      slash == std::string::npos ? "scenarios" : verdict.scenario.substr(0, slash);
-  const std::string name =
-      slash == std::string::npos ? verdict.scenario : verdict.scenario.substr(slash + 1);
-  std::string xml =
-      fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">\n{}",
-                  EscapeXml(skill), EscapeXml(name), verdict.seconds, Outcome(verdict));
-  if (!verdict.headroom.empty())
-    xml += fmt::format("      <system-out>{}</system-out>\n", EscapeXml(verdict.headroom));
-  return xml + "    </testcase>\n";
+  const bool has_skill = slash != std::string::npos;
+  const pugi::xml_node test_case =
+      AddElement(suite, "testcase",
+                 {{"classname", has_skill ? verdict.scenario.substr(0, slash) : "scenarios"},
+                  {"name", has_skill ? verdict.scenario.substr(slash + 1) : verdict.scenario},
+                  {"time", fmt::format("{:.3f}", verdict.seconds)}});
+  AddOutcome(test_case, verdict);
+  if (!verdict.headroom.empty()) AddElement(test_case, "system-out", {}, verdict.headroom);
 }
 
 }  // namespace
 
 std::string JunitXml(const std::vector<ScenarioVerdict>& verdicts) {
   double seconds = 0;
-  std::string cases;
-  for (const ScenarioVerdict& verdict : verdicts) {
-    seconds += verdict.seconds;
-    cases += Case(verdict);
-  }
-  const auto count = [&](std::string_view element) {
-    return std::ranges::count_if(
-        verdicts, [&](const ScenarioVerdict& verdict) { return Element(verdict) == element; });
+  for (const ScenarioVerdict& verdict : verdicts) seconds += verdict.seconds;
+  const auto count = [&](const char* element) {
+    return std::to_string(std::ranges::count(verdicts, element, Element));
   };
-  const std::string totals = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\"",
-                                         verdicts.size(), count("failure"), count("error"));
-  return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<testsuites name=\"prehend\" {0} time=\"{1:.3f}\">\n"
-      "  <testsuite name=\"prehend check\" {0} skipped=\"{2}\" time=\"{1:.3f}\">\n"
-      "{3}  </testsuite>\n</testsuites>\n",
-      totals, seconds, count("skipped"), cases);
+  const std::string tests = std::to_string(verdicts.size()), time = fmt::format("{:.3f}", seconds);
+
+  pugi::xml_document document;
+  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  declaration.append_attribute("version").set_value("1.0");
+  declaration.append_attribute("encoding").set_value("UTF-8");
+  const pugi::xml_node suites = AddElement(document, "testsuites",
+                                           {{"name", "prehend"},
+                                            {"tests", tests},
+                                            {"failures", count(kFailure)},
+                                            {"errors", count(kError)},
+                                            {"time", time}});
+  const pugi::xml_node suite = AddElement(suites, "testsuite",
+                                          {{"name", "prehend check"},
+                                           {"tests", tests},
+                                           {"failures", count(kFailure)},
+                                           {"errors", count(kError)},
+                                           {"skipped", count(kSkipped)},
+                                           {"time", time}});
+  for (const ScenarioVerdict& verdict : verdicts) AddCase(suite, verdict);
+  return ToText(document, Layout::kIndented);
 }
 
 }  // namespace prehend::harness

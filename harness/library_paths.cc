@@ -6,34 +6,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <map>
-#include <memory>
 #include <tuple>
 
-#include "harness/read_hand_model.h"
+#include "grammar/diagnostic.h"
+#include "harness/project_paths.h"
 
 namespace prehend::harness {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kGrammarEnding = ".grammar";
-constexpr const char* kHandEnding = ".hand.yaml";
 constexpr const char* kGraspsEnding = ".grasps.yaml";
 constexpr const char* kScenarioEnding = ".yaml";
-
-fs::path GrammarFolder(const fs::path& root) { return root / "grammar" / "library"; }
-fs::path HandFolder(const fs::path& root) { return root / "physics" / "library"; }
-
-std::optional<std::string> RootAbove(fs::path folder) {
-  std::error_code error;
-  for (;; folder = folder.parent_path()) {
-    if (fs::is_directory(GrammarFolder(folder), error)) return folder.string();
-    if (folder == folder.parent_path()) return std::nullopt;
-  }
-}
 
 /// The shortest of the names that contain a part; "" when none does, or when the part is of nearly
 /// all names.
@@ -58,17 +43,6 @@ std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scena
 }
 
 }  // namespace
-
-std::optional<std::string> FindProjectRoot() {
-  std::error_code error;
-  if (const char* home = std::getenv("PREHEND_HOME"); home && *home) {
-    return fs::is_directory(GrammarFolder(home), error) ? std::optional<std::string>(home)
-                                                        : std::nullopt;
-  }
-  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  if (auto root = RootAbove(executable.parent_path())) return root;
-  return RootAbove(fs::current_path(error));
-}
 
 std::vector<ScenarioFile> ListScenarios(const std::string& root) {
   const fs::path folder = fs::path(root) / "scenarios";
@@ -129,52 +103,6 @@ std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const st
   std::string near = grammar::NearestName(name, names);
   if (near.empty()) near = ShortestWith(name, names);
   return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
-}
-
-std::vector<std::string> NamesIn(const std::string& folder, std::string_view ending) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const fs::directory_entry& file : fs::directory_iterator(folder, error)) {
-    const std::string name = file.path().filename().string();
-    if (name.ends_with(ending)) names.push_back(name.substr(0, name.size() - ending.size()));
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::string GrammarPath(const std::string& root, const std::string& name) {
-  return (GrammarFolder(root) / (name + kGrammarEnding)).string();
-}
-
-std::string HandPath(const std::string& root, const std::string& name) {
-  return (HandFolder(root) / (name + kHandEnding)).string();
-}
-
-ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>* files) {
-  // Most scenarios have the same hand; its files are read once.
-  struct Known {
-    std::vector<std::string> files;
-    ReadResult<physics::HandModel> hand;
-  };
-  const auto known = std::make_shared<std::map<std::string, Known>>();
-  return {.grammars = NamesIn(GrammarFolder(root), kGrammarEnding),
-          .hands = NamesIn(HandFolder(root), kHandEnding),
-          .read_hand =
-              [root, files, known](const std::string& name_or_path,
-                                   const std::vector<std::string>& grasps) {
-                const bool is_path = name_or_path.ends_with(kScenarioEnding);
-                const std::string path = is_path ? name_or_path : HandPath(root, name_or_path);
-                if (is_path || !grasps.empty()) return ReadHandModel(path, grasps, files);
-                const auto [found, is_new] = known->try_emplace(path);
-                Known& hand = found->second;
-                if (is_new) hand.hand = ReadHandModel(path, {}, &hand.files);
-                if (files) files->insert(files->end(), hand.files.begin(), hand.files.end());
-                return hand.hand;
-              },
-          .reads_recording =
-              [files](const std::string& path) {
-                if (files) files->push_back(path);
-              }};
 }
 
 }  // namespace prehend::harness

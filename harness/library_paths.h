@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where things are: the project's root, the scenarios by name, the grammars and hands of the
-// libraries. Tested by tests/harness/library_paths_test.cc
+// Finds scenarios by name. Tested by tests/harness/library_paths_test.cc
 #pragma once
 
 #include <optional>
@@ -8,13 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/read_scenario.h"
-
 namespace prehend::harness {
-
-/// The folder that holds grammar/library, scenarios/, ...: $PREHEND_HOME if that is set, else the
-/// nearest such ancestor of the executable, or of the working directory.
-std::optional<std::string> FindProjectRoot();
 
 /// The folder of scenarios/ whose files are not scenarios, but show what the reader refuses.
 inline constexpr std::string_view kShowsErrors = "invalid";
@@ -46,16 +39,5 @@ std::string IdOf(const ScenarioFile& file);
 /// "did you mean 'milk_carton_wrap'?", or which skills share the name, or "". For when
 /// FindScenario() found nothing.
 std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);
-
-/// What the files in `folder` with this ending are called without it, sorted.
-std::vector<std::string> NamesIn(const std::string& folder, std::string_view ending);
-
-/// root/grammar/library/NAME.grammar and root/physics/library/NAME.hand.yaml.
-std::string GrammarPath(const std::string& root, const std::string& name);
-std::string HandPath(const std::string& root, const std::string& name);
-
-/// Grammars and hands of the project. `files` gets the path of every hand that is read, and must
-/// live as long.
-ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>* files = nullptr);
 
 }  // namespace prehend::harness

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See load_grammar.h. Tested by tests/house/command_line_test.cc
+// See harness/load_grammar.h. Tested by tests/house/command_line_test.cc
 #include "harness/load_grammar.h"
 
 #include <fmt/format.h>
@@ -12,6 +12,8 @@
 #include "grammar/compile.h"
 #include "grammar/program.h"
 #include "harness/library_paths.h"
+#include "harness/project_library.h"
+#include "harness/project_paths.h"
 #include "harness/text_file.h"
 
 namespace prehend::harness {

@@ -2,7 +2,7 @@
 // YAML as a tree in which every key and value knows where it stands. A strict subset: one document
 // of plain mappings, sequences and scalars. What makes YAML ambiguous or dangerous is refused with
 // its place: duplicate keys, `<<` merges, anchors and aliases, tags, several documents, tabs, deep
-// nesting. What the scalars mean is decided by harness/field_table.h. Tested by
+// nesting. What the scalars mean is decided by harness/format.h. Tested by
 // tests/harness/located_yaml_test.cc
 #pragma once
 
@@ -10,24 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "harness/located.h"
 #include "harness/read_result.h"
 
 namespace prehend::harness {
 
 inline constexpr int kMaxYamlDepth = 64;
-
-/// A place in one of a document's sources.
-struct Where {
-  int source = 0;  ///< index into YamlDocument::sources
-  grammar::Place place;
-};
-
-/// A value that knows where it was written.
-template <class T>
-struct Located {
-  T value{};
-  Where where;
-};
 
 struct YamlNode {
   enum class Kind { kNull, kScalar, kSequence, kMapping };

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "harness/motion_track.h"
 #include "harness/record.h"
@@ -48,11 +47,11 @@ Format<std::vector<CapturedPose>> PosesFormat() {
 /// From A-Frame's axes (x right, y up, z back) to ours (x ahead, y left, z up), of the world and of
 /// devices alike.
 physics::Pose ToOurAxes(const CapturedPose& pose) {
-  constexpr double kRadPerDeg = std::numbers::pi / 180;
   using Eigen::AngleAxisd, Eigen::Vector3d;
-  const Eigen::Quaterniond q = AngleAxisd(pose.rotation.y * kRadPerDeg, Vector3d::UnitY()) *
-                               AngleAxisd(pose.rotation.x * kRadPerDeg, Vector3d::UnitX()) *
-                               AngleAxisd(pose.rotation.z * kRadPerDeg, Vector3d::UnitZ());
+  const Eigen::Quaterniond q =
+      AngleAxisd(pose.rotation.y * physics::kRadPerDeg, Vector3d::UnitY()) *
+      AngleAxisd(pose.rotation.x * physics::kRadPerDeg, Vector3d::UnitX()) *
+      AngleAxisd(pose.rotation.z * physics::kRadPerDeg, Vector3d::UnitZ());
   return {{-pose.position.z, -pose.position.x, pose.position.y},
           Eigen::Quaterniond(q.w(), -q.z(), -q.x(), q.y())};
 }

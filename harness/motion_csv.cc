@@ -10,7 +10,6 @@
 #include <numbers>
 #include <string_view>
 
-#include "harness/build_scene.h"
 #include "harness/motion_track.h"
 #include "harness/text_file.h"
 
@@ -226,7 +225,7 @@ class CsvReader {
                         q.norm()));
       sample.X_RD.q = q.normalized();
     } else {
-      sample.X_RD.q = FromRollPitchYaw({row["roll"], row["pitch"], row["yaw"]});
+      sample.X_RD.q = physics::FromRollPitchYaw({row["roll"], row["pitch"], row["yaw"]});
     }
     if (const auto trigger = row.find("trigger"); trigger != row.end()) {
       if (trigger->second < 0 || trigger->second > 1)

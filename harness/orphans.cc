@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See orphans.h. Tested by tests/harness/golden_files_test.cc
+// See harness/orphans.h. Tested by tests/harness/golden_files_test.cc
 #include "harness/orphans.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The phases of a manipulation as they are pictured: which events colour a hand's path, and how.
 // Colours follow Haidu & Beetz (arXiv 2011.13689), figures 1 and 6.
-// Tested by tests/harness/pictures_test.cc
+// Tested by tests/house/acceptance_test.cc
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See physics_trace.h. The file: "trace 1", the number of entities, their names one a line, then a
-// line for each tick with its number and the hashes. Tested by tests/harness/physics_trace_test.cc
+// See harness/physics_trace.h. The file: "trace 1", the number of entities, their names one a line,
+// then a line for each tick with its number and the hashes. Tested by
+// tests/harness/physics_trace_test.cc
 #include "harness/physics_trace.h"
 
 #include <fmt/format.h>

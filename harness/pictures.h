@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of a recorded run: what the scenario asks for, composed from the recording and its
-// timeline. Built with the render room (pictures_with_render.cc) or without it
-// (pictures_without_render.cc). Tested by tests/harness/pictures_test.cc
+// timeline. Built with the render room (harness/pictures_with_render.cc) or without it
+// (harness/pictures_without_render.cc). Tested by tests/house/acceptance_test.cc
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See prepare_run.h. Tested by tests/house/command_line_test.cc
+// See harness/prepare_run.h. Tested by tests/house/command_line_test.cc
 #include "harness/prepare_run.h"
 
 #include <algorithm>
@@ -7,9 +7,12 @@
 #include <iterator>
 
 #include "grammar/program.h"
+#include "harness/cast.h"
 #include "harness/library_paths.h"
 #include "harness/load_grammar.h"
 #include "harness/moment.h"
+#include "harness/project_library.h"
+#include "harness/read_scenario.h"
 #include "harness/scenario_fields.h"
 #include "harness/text_file.h"
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <variant>
 
+#include "harness/classes.h"
 #include "harness/episode_file.h"
 #include "harness/record.h"
 #include "harness/text_file.h"

@@ -6,12 +6,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numbers>
 #include <set>
 
 #include "harness/build_styles.h"
 #include "harness/hand_fields.h"
-#include "harness/library_paths.h"
+#include "harness/project_paths.h"
 #include "harness/record.h"
 
 namespace prehend::harness {
@@ -21,8 +20,6 @@ namespace fs = std::filesystem;
 using grammar::Diagnostics;
 using physics::HandModel;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180;
-constexpr const char* kHandEnding = ".hand.yaml";
 constexpr const char* kGraspsEnding = ".grasps.yaml";
 
 /// Turns an entry into a model and complains about names and counts that do not fit together.
@@ -98,7 +95,7 @@ void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::
     pivot_m += digit.value.direction * links.back().length_m;
   };
   for (const PhalanxEntry& phalanx : digit.value.phalanges)
-    add(LinkOf(phalanx, kRadPerDeg, sensor_set), digit.name + "_" + phalanx.name.value,
+    add(LinkOf(phalanx, physics::kRadPerDeg, sensor_set), digit.name + "_" + phalanx.name.value,
         phalanx.name.where, phalanx.joint_axis);
   if (!digit.value.jaw) return;
   add(LinkOf(*digit.value.jaw, 1, sensor_set), digit.name, digit.name_where,

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "harness/build_joints.h"
+#include "harness/build_outcomes.h"
 #include "harness/build_persons.h"
 #include "harness/build_scene.h"
 #include "harness/build_script.h"
@@ -18,8 +19,8 @@
 #include "harness/kinds.h"
 #include "harness/recorded_input.h"
 #include "harness/scenario_fields.h"
+#include "harness/scenario_formats.h"
 #include "harness/text_file.h"
-#include "harness/trial_fields.h"
 
 namespace prehend::harness {
 namespace {

@@ -10,8 +10,7 @@
 #include <limits>
 
 #include "harness/body_track.h"
-#include "harness/build_scene.h"
-#include "harness/farthest.h"
+#include "harness/limits.h"
 #include "harness/motion_track.h"
 #include "physics/skeleton.h"
 
@@ -59,9 +58,9 @@ bool Cut(const RecordingEntry& entry, Track& track, Complaints& complaints) {
 
 /// The palm in the world, at every sample.
 std::vector<physics::TimedPose> Place(const RecordingEntry& entry, const MotionTrack& track) {
-  const physics::Pose X_DH{entry.palm_m, FromRollPitchYaw(entry.palm_rpy_deg)};
+  const physics::Pose X_DH{entry.palm_m, physics::FromRollPitchYaw(entry.palm_rpy_deg)};
   const physics::Pose first = track.samples.front().X_RD * X_DH;
-  physics::Pose X_WR{Eigen::Vector3d::Zero(), FromRollPitchYaw({0, 0, entry.yaw_deg})};
+  physics::Pose X_WR{Eigen::Vector3d::Zero(), physics::FromRollPitchYaw({0, 0, entry.yaw_deg})};
   if (entry.start_at_m) X_WR.p_m = *entry.start_at_m - X_WR * first.p_m;
   std::vector<physics::TimedPose> poses;
   for (const TrackSample& sample : track.samples)
@@ -78,7 +77,7 @@ std::vector<physics::TimedFigure> Place(const RecordingEntry& entry, const BodyT
     lowest =
         std::min({lowest, sample.points[kRightAnklePoint].z(), sample.points[kLeftAnklePoint].z()});
   const double floor_m = entry.start_at_m ? entry.start_at_m->z() : person.at_m.value.z();
-  const Eigen::Quaterniond yaw = FromRollPitchYaw({0, 0, entry.yaw_deg});
+  const Eigen::Quaterniond yaw = physics::FromRollPitchYaw({0, 0, entry.yaw_deg});
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
   if (entry.start_at_m)
     shift_m = *entry.start_at_m - yaw * (scale * track.samples.front().figure.hips_W_m);

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "harness/complaints.h"
-#include "harness/read_scenario.h"
 #include "harness/scenario_entries.h"
+#include "harness/scenario_library.h"
 
 namespace prehend::harness {
 

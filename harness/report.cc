@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// See report.h. Tested by tests/harness/report_test.cc
+// See harness/report.h. Tested by tests/harness/report_test.cc
 #include "harness/report.h"
 
 #include <fmt/format.h>
 
+#include <string>
+#include <string_view>
+
+#include "harness/markup.h"
 #include "harness/phases.h"
-#include "harness/timeline_svg.h"
 
 namespace prehend::harness {
 namespace {
 
+// Without <, > and &, which HTML would not unescape here.
 constexpr std::string_view kStyle = R"(
 :root { color-scheme: light dark; --ink: #1d2329; --soft: #66707a; --line: #d9dee3; --paper: #fbfbfa; --card: #ffffff;
   --passed: #1f7a3d; --failed: #b3261e; --pending: #9a6700; }
@@ -37,73 +41,101 @@ figure { margin: .8rem 0 0; } figure img { max-width: 100%; border-radius: 6px; 
   border-radius: 2px; margin-right: .35em; }
 )";
 
-std::string SummaryText(const Tally& tally) {
-  std::string text =
-      fmt::format("<span class=\"passed\">{} passed</span>, <span class=\"{}\">{} failed</span>",
-                  tally.passed, tally.failed > 0 ? "failed" : "soft", tally.failed);
-  if (tally.pending > 0)
-    text += fmt::format(", <span class=\"pending\">{} pending</span>", tally.pending);
-  if (tally.unchanged > 0)
-    text += fmt::format(", <span class=\"unchanged\">{} unchanged</span>", tally.unchanged);
-  return text;
+constexpr const char* kNewLine = "\n";  // between blocks, where a browser shows none
+
+void AddSummary(pugi::xml_node body, const Tally& tally) {
+  const pugi::xml_node line = AddElement(body, "p", {{"class", "verdict"}});
+  const auto add = [&](int count, const char* verdict, const std::string& style) {
+    AddElement(line, "span", {{"class", style}}, fmt::format("{} {}", count, verdict));
+  };
+  add(tally.passed, "passed", "passed");
+  AddText(line, ", ");
+  add(tally.failed, "failed", tally.failed > 0 ? "failed" : "soft");
+  if (tally.pending > 0) {
+    AddText(line, ", ");
+    add(tally.pending, "pending", "pending");
+  }
+  if (tally.unchanged > 0) {
+    AddText(line, ", ");
+    add(tally.unchanged, "unchanged", "unchanged");
+  }
 }
 
-std::string Legend() {
-  std::string legend = "<p class=\"legend soft\">";
+void AddLegend(pugi::xml_node body) {
+  const pugi::xml_node legend = AddElement(body, "p", {{"class", "legend soft"}});
   for (const Phase& phase : kPhases) {
-    legend += fmt::format("<span><i style=\"background:#{:06x}\"></i>{}</span>", phase.color,
-                          phase.event);
+    const pugi::xml_node entry = AddElement(legend, "span");
+    AddElement(entry, "i", {{"style", fmt::format("background:#{:06x}", phase.color)}}, "");
+    AddText(entry, phase.event);
   }
-  return legend + "<br>In every row the golden is above (pale), what was recognised below.</p>\n";
+  AddElement(legend, "br");
+  AddText(legend, "In every row, the golden is above (pale) and the recognised event below.");
 }
 
-std::string TableRow(const ScenarioVerdict& verdict) {
-  return fmt::format(
-      "<tr><td class=\"verdict {0}\">{0}</td><td><a href=\"#{1}\">{1}</a><br><span "
-      "class=\"soft\">{2}</span></td>"
-      "<td>{3}</td><td class=\"number\">{4:.2f} s</td></tr>\n",
-      Name(verdict.verdict), EscapeHtml(verdict.scenario), EscapeHtml(verdict.shows),
-      EscapeHtml(verdict.reason.empty() ? verdict.headroom : verdict.reason), verdict.seconds);
+void AddTableRow(pugi::xml_node table, const ScenarioVerdict& verdict) {
+  const std::string name(Name(verdict.verdict));
+  const pugi::xml_node row = AddElement(table, "tr");
+  AddElement(row, "td", {{"class", "verdict " + name}}, name);
+  const pugi::xml_node scenario = AddElement(row, "td");
+  AddElement(scenario, "a", {{"href", "#" + verdict.scenario}}, verdict.scenario);
+  AddElement(scenario, "br");
+  AddElement(scenario, "span", {{"class", "soft"}}, verdict.shows);
+  AddElement(row, "td", {}, verdict.reason.empty() ? verdict.headroom : verdict.reason);
+  AddElement(row, "td", {{"class", "number"}}, fmt::format("{:.2f} s", verdict.seconds));
+  AddText(table, kNewLine);
 }
 
-std::string Section(const ScenarioVerdict& verdict) {
-  std::string html = fmt::format(
-      "<section id=\"{0}\">\n<h2><span class=\"{1}\">{1}</span> {0}</h2>\n<div "
-      "class=\"soft\">{2}</div>\n",
-      EscapeHtml(verdict.scenario), Name(verdict.verdict), EscapeHtml(verdict.shows));
-  if (!verdict.reason.empty())
-    html +=
-        fmt::format("<p class=\"{}\">{}</p>\n", Name(verdict.verdict), EscapeHtml(verdict.reason));
-  if (!verdict.details.empty()) html += fmt::format("<pre>{}</pre>\n", EscapeHtml(verdict.details));
-  html += verdict.timeline_svg;
-  if (!verdict.headroom.empty())
-    html += fmt::format("<div class=\"soft\">{}</div>\n", EscapeHtml(verdict.headroom));
-  for (const ReportedPicture& picture : verdict.pictures) {
-    html += fmt::format(
-        "<figure><img loading=\"lazy\" src=\"{}\" "
-        "alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
-        EscapeHtml(picture.file), EscapeHtml(picture.caption), EscapeHtml(picture.caption));
-  }
-  return html + fmt::format("<pre>{}</pre>\n</section>\n", EscapeHtml(verdict.command));
+void AddPicture(pugi::xml_node section, const ReportedPicture& picture) {
+  const pugi::xml_node figure = AddElement(section, "figure");
+  AddElement(figure, "img", {{"loading", "lazy"}, {"src", picture.file}, {"alt", picture.caption}});
+  AddElement(figure, "figcaption", {}, picture.caption);
+}
+
+void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict) {
+  const std::string name(Name(verdict.verdict));
+  const pugi::xml_node section = AddElement(body, "section", {{"id", verdict.scenario}});
+  const pugi::xml_node title = AddElement(section, "h2");
+  AddElement(title, "span", {{"class", name}}, name);
+  AddText(title, " " + verdict.scenario);
+  AddElement(section, "div", {{"class", "soft"}}, verdict.shows);
+  if (!verdict.reason.empty()) AddElement(section, "p", {{"class", name}}, verdict.reason);
+  if (!verdict.details.empty()) AddElement(section, "pre", {}, verdict.details);
+  AddMarkup(section, verdict.timeline_svg);
+  if (!verdict.headroom.empty()) AddElement(section, "div", {{"class", "soft"}}, verdict.headroom);
+  for (const ReportedPicture& picture : verdict.pictures) AddPicture(section, picture);
+  AddElement(section, "pre", {}, verdict.command);
+  AddText(body, kNewLine);
+}
+
+void AddHead(pugi::xml_node html) {
+  const pugi::xml_node head = AddElement(html, "head");
+  AddElement(head, "meta", {{"charset", "utf-8"}});
+  AddElement(head, "meta",
+             {{"name", "viewport"}, {"content", "width=device-width, initial-scale=1"}});
+  AddElement(head, "title", {}, "prehend: regression suite");
+  AddElement(head, "style", {}, kStyle);
 }
 
 }  // namespace
 
 std::string ReportHtml(const std::vector<ScenarioVerdict>& verdicts) {
-  std::string html = fmt::format(
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>prehend: "
-      "regression suite</title>\n"
-      "<style>{}</style>\n</head>\n<body>\n<h1>Regression suite</h1>\n<p "
-      "class=\"verdict\">{}</p>\n{}",
-      kStyle, SummaryText(Count(verdicts)), Legend());
-  html +=
-      "<table>\n<tr><th>verdict</th><th>scenario</th><th></th><th "
-      "class=\"number\">time</th></tr>\n";
-  for (const ScenarioVerdict& verdict : verdicts) html += TableRow(verdict);
-  html += "</table>\n";
-  for (const ScenarioVerdict& verdict : verdicts) html += Section(verdict);
-  return html + "</body>\n</html>\n";
+  pugi::xml_document document;
+  document.append_child(pugi::node_doctype).set_value("html");
+  const pugi::xml_node html = AddElement(document, "html", {{"lang", "en"}});
+  AddHead(html);
+  const pugi::xml_node body = AddElement(html, "body");
+  AddElement(body, "h1", {}, "Regression suite");
+  AddSummary(body, Count(verdicts));
+  AddLegend(body);
+  const pugi::xml_node table = AddElement(body, "table");
+  const pugi::xml_node head = AddElement(table, "tr");
+  for (const char* title : {"verdict", "scenario", ""}) AddElement(head, "th", {}, title);
+  AddElement(head, "th", {{"class", "number"}}, "time");
+  AddText(table, kNewLine);
+  for (const ScenarioVerdict& verdict : verdicts) AddTableRow(table, verdict);
+  AddText(body, kNewLine);
+  for (const ScenarioVerdict& verdict : verdicts) AddSection(body, verdict);
+  return ToText(document, Layout::kAsItIs) + "\n";
 }
 
 }  // namespace prehend::harness

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See run_output.h. Tested by tests/harness/run_output_test.cc
+// See harness/run_output.h. Tested by tests/harness/run_output_test.cc
 #include "harness/run_output.h"
 
 #include <fmt/format.h>

@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "grammar/name_events.h"
+#include "harness/cast.h"
 #include "harness/outcome.h"
 #include "harness/sensing.h"
 

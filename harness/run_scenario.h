@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One scenario, simulated and watched: the main loop. The result is a value.
-// Tested by tests/harness/run_scenario_test.cc
+// Tested by tests/harness/one_hash_test.cc
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See run_suite.h. Tested by tests/house/runner_test.cc
+// See harness/run_suite.h. Tested by tests/house/runner_test.cc
 #include "harness/run_suite.h"
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include "harness/check_records.h"
 #include "harness/check_scenario.h"
 #include "harness/shared_ticks.h"
+#include "harness/text_file.h"
 
 namespace prehend::harness {
 namespace {
@@ -121,10 +122,11 @@ class Suite {
       verdict.scenario = Id(scenario);
       verdict.exit_code = ExitCode::kFailure;
       verdict.reason =
-          fmt::format("its process ended: {}, {}", result.reason,
+          fmt::format("its process ended: {}, {}", ReadableText(result.reason),
                       last_tick == SharedTicks::kNone ? std::string("before the first tick")
                                                       : fmt::format("last tick {}", last_tick));
-      if (!result.said.empty()) verdict.details = "it said:\n" + result.said;
+      if (!result.stderr_tail.empty())
+        verdict.details = "its standard error:\n" + ReadableText(result.stderr_tail);
       verdict.ticks = std::max<std::int64_t>(0, last_tick);
       verdict.command = RepeatCommand(verdict.scenario, request_.changes) + HowText();
     }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "grammar/frame.h"
-#include "harness/located_yaml.h"
+#include "harness/located.h"
 #include "harness/trials.h"
 #include "physics/scene.h"
 #include "physics/script.h"
@@ -66,8 +66,5 @@ std::vector<std::string> CamerasOf(const Scenario& scenario);
 
 /// Why no picture can be made from this camera, or nothing.
 std::optional<std::string> WhyNoCamera(const Scenario& scenario, const std::string& camera);
-
-/// Who can be bound to roles: the scene's bodies first (same index), then its hands.
-grammar::Cast MakeCast(const Scenario& scenario);
 
 }  // namespace prehend::harness

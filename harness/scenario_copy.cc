@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See scenario_copy.h. Only the values that change are written anew, at the places where they
-// stand. Tested by tests/house/command_line_test.cc
+// See harness/scenario_copy.h. Only the values that change are written anew, at the places where
+// they stand. Tested by tests/house/command_line_test.cc
 #include "harness/scenario_copy.h"
 
 #include <functional>

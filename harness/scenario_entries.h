@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scenario as it is written, before names are resolved and places computed.
 // harness/scenario_fields.cc says how each field is called and bounded; harness/build_scene.h and
-// build_script.h make bodies, hands and steps of it.
+// harness/build_script.h make bodies, hands and steps of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -105,6 +105,24 @@ inline physics::Abstract AbstractOf(const EntityEntry& entity) {
                               : kNot;
 }
 
+/// "a region", and so on; "" for what is not abstract.
+inline const char* NounOf(physics::Abstract abstract) {
+  using physics::Abstract;
+  switch (abstract) {
+    case Abstract::kNot:
+      return "";
+    case Abstract::kRegion:
+      return "a region";
+    case Abstract::kGazeTarget:
+      return "a gaze target";
+    case Abstract::kCamera:
+      return "a camera";
+    case Abstract::kLight:
+      return "a light";
+  }
+  return "";
+}
+
 /// Where it is said where it is.
 inline const Where& PlaceOf(const EntityEntry& entity) {
   return entity.in ? entity.in->where : entity.at_m.where;
@@ -126,7 +144,7 @@ struct HandActor {
   Located<Eigen::Vector3d> at_m;
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
   std::optional<Located<GainsOverride>> gains;
-  std::optional<Located<physics::Tracking>> tracking;
+  std::optional<Located<physics::TrackerSettings>> tracking;
 };
 
 enum class PersonKind { kHead, kBody };

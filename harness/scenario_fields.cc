@@ -2,11 +2,9 @@
 // Tested by tests/harness/scenario_fields_test.cc
 #include "harness/scenario_fields.h"
 
-#include "harness/actor_fields.h"
-#include "harness/entity_fields.h"
+#include "harness/limits.h"
 #include "harness/record.h"
-#include "harness/step_fields.h"
-#include "harness/trial_fields.h"
+#include "harness/scenario_formats.h"
 #include "harness/yaml_scalar.h"
 
 namespace prehend::harness {

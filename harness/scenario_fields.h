@@ -10,14 +10,6 @@
 
 namespace prehend::harness {
 
-/// Limits on the size of a scenario, so that a slip of the pen does not cost an hour.
-inline constexpr std::size_t kMaxEntities = 10'000;
-inline constexpr std::size_t kMaxActors = 16;
-inline constexpr std::size_t kMaxBeats = 1'000;
-inline constexpr std::size_t kMaxPoses = 10'000;  ///< in all steps together
-inline constexpr std::size_t kMaxPictures = 32;
-inline constexpr double kMaxDurationS = 3'600;
-
 /// Built once: its schemas take longer to build than most scenarios take to read.
 const Format<ScenarioEntry>& ScenarioFormat();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See select_scenarios.h. Tested by tests/house/command_line_test.cc
+// See harness/select_scenarios.h. Tested by tests/house/command_line_test.cc
 #include "harness/select_scenarios.h"
 
 #include <fnmatch.h>
@@ -9,6 +9,9 @@
 #include <filesystem>
 #include <iterator>
 #include <tuple>
+
+#include "harness/project_library.h"
+#include "harness/read_scenario.h"
 
 namespace prehend::harness {
 namespace {

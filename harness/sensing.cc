@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "harness/cast.h"
+
 namespace prehend::harness {
 
 namespace {
@@ -79,16 +81,6 @@ bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
 }
 
 }  // namespace
-
-std::vector<std::string> StyleNames(const physics::Scene& scene) {
-  std::vector<std::string> names;
-  for (const physics::Hand& hand : scene.hands) {
-    for (const physics::GraspStyle& style : hand.model.styles) {
-      if (std::ranges::find(names, style.name) == names.end()) names.push_back(style.name);
-    }
-  }
-  return names;
-}
 
 Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
     : rate_hz_(scene.world.rate_hz),

@@ -17,10 +17,6 @@
 
 namespace prehend::harness {
 
-/// The grasp styles of all hands, each name once, in the order of the hands: what
-/// grammar::HandLook::style indexes, while a snapshot counts in its own hand's list.
-std::vector<std::string> StyleNames(const physics::Scene& scene);
-
 class Sensing {
  public:
   /// Entities are the scene's bodies, then its hands (as in MakeCast). `sensing_hz` <= the scene's

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario_fields_test.cc
-#include "harness/shape_fields.h"
-
 #include <fmt/format.h>
 
 #include "harness/record.h"
+#include "harness/scenario_formats.h"
 
 namespace prehend::harness {
 namespace {

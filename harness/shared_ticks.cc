@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See shared_ticks.h. Tested by tests/harness/worker_pool_test.cc
+// See harness/shared_ticks.h. Tested by tests/harness/worker_pool_test.cc
 #include "harness/shared_ticks.h"
 
 #include <sys/mman.h>

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario_fields_test.cc
-#include "harness/step_fields.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "harness/actor_fields.h"
-#include "harness/farthest.h"
+#include "harness/limits.h"
 #include "harness/record.h"
 #include "harness/scenario_fields.h"
+#include "harness/scenario_formats.h"
 
 namespace prehend::harness {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/text_file_test.cc
+// See harness/text_file.h. Tested by tests/harness/text_file_test.cc
 #include "harness/text_file.h"
 
 #include <fmt/format.h>
@@ -45,7 +45,7 @@ bool IsControl(char c) {
   return (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F;
 }
 
-/// The line is left out of these complaints: printing it could garble a terminal.
+/// Without the line itself: printing it could garble a terminal.
 Diagnostic NotText(const std::string& file, std::string_view text, std::size_t offset,
                    std::string message) {
   const auto before = text.substr(0, offset);
@@ -69,7 +69,7 @@ std::string WithUnixLineEnds(std::string text) {
   return out;
 }
 
-/// Why the file at `path` cannot be read as text, judged without opening it; empty when it can.
+/// Why the file at `path` cannot be read as text, found without opening it; empty when it can.
 std::string WhyNotReadable(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -89,6 +89,17 @@ std::string WhyNotReadable(const std::string& path) {
 }
 
 }  // namespace
+
+std::string ReadableText(std::string_view bytes) {
+  std::string text;
+  text.reserve(bytes.size());
+  while (!bytes.empty()) {
+    const std::size_t length = IsControl(bytes[0]) ? 0 : Utf8Length(bytes);
+    text += length > 0 ? bytes.substr(0, length) : std::string_view("\uFFFD");
+    bytes.remove_prefix(std::max<std::size_t>(1, length));
+  }
+  return text;
+}
 
 Diagnostics CheckText(const std::string& file, std::string_view text) {
   if (text.empty())

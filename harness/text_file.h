@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a small text file that a person wrote, and refuses everything that is not one.
+// Reads a small text file that a person wrote, and refuses anything else.
 // Tested by tests/harness/text_file_test.cc
 #pragma once
 
@@ -14,12 +14,16 @@ namespace prehend::harness {
 /// Enough for 10,000 entities on a line each; a larger file is a mistake and would only cost time.
 inline constexpr std::uintmax_t kMaxTextFileBytes = 4u << 20;
 
-/// The text, with a byte order mark dropped and CR LF turned into LF. Complains about a missing,
-/// unreadable or oversized file (by its size, without reading it), a directory or device, and about
-/// what CheckText() refuses.
+/// The text, without a byte order mark and with CR LF turned into LF. Reports a file that is
+/// missing, unreadable or too large (by its size, without reading it), a directory or device, and
+/// what CheckText() reports.
 ReadResult<std::string> ReadTextFile(const std::string& path);
 
-/// Complains when the text is empty, is not UTF-8, or holds control characters (a binary file).
+/// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file).
 grammar::Diagnostics CheckText(const std::string& file, std::string_view text);
+
+/// Bytes from elsewhere (the output of a process) as text: each byte that CheckText() would report
+/// becomes U+FFFD. XML 1.0 and JSON can carry the result.
+std::string ReadableText(std::string_view bytes);
 
 }  // namespace prehend::harness

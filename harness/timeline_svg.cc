@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See timeline_svg.h. Colours are those of the pictures (harness/phases.h). Tested by
+// See harness/timeline_svg.h. Colours are those of the pictures (harness/phases.h). Tested by
 // tests/harness/report_test.cc
 #include "harness/timeline_svg.h"
 
@@ -10,6 +10,7 @@
 #include <map>
 
 #include "harness/event_text.h"
+#include "harness/markup.h"
 #include "harness/phases.h"
 
 namespace prehend::harness {
@@ -53,12 +54,15 @@ class Drawing {
 
   std::string Draw() {
     const double height = kAxisHeight + kRowHeight * static_cast<double>(rows_.size()) + kMargin;
-    svg_ = fmt::format("<svg class=\"timeline\" viewBox=\"0 0 {:g} {:g}\" role=\"img\">\n",
-                       kLabelWidth + kChartWidth + 2 * kMargin, height);
+    svg_ = AddElement(
+        document_, "svg",
+        {{"class", "timeline"},
+         {"viewBox", fmt::format("0 0 {:g} {:g}", kLabelWidth + kChartWidth + 2 * kMargin, height)},
+         {"role", "img"}});
     DrawAxis(height);
     for (std::size_t i = 0; i < rows_.size(); ++i)
       DrawRow(rows_[i], kAxisHeight + kRowHeight * static_cast<double>(i));
-    return svg_ + "</svg>\n";
+    return ToText(document_, Layout::kAsItIs);
   }
 
  private:
@@ -80,11 +84,20 @@ class Drawing {
       }
     }
     for (int i = 0; i * step_s <= end_s; ++i) {
-      const double x = X(TickAt(i * step_s, comparison_.ticks_per_second));
-      svg_ += fmt::format(
-          "<line class=\"grid\" x1=\"{0:.1f}\" y1=\"{1:g}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\"/>"
-          "<text class=\"axis\" x=\"{0:.1f}\" y=\"{3:g}\" text-anchor=\"middle\">{4:g} s</text>\n",
-          x, kAxisHeight - 4, height - kMargin, kAxisHeight - 8, i * step_s);
+      const std::string x =
+          fmt::format("{:.1f}", X(TickAt(i * step_s, comparison_.ticks_per_second)));
+      AddElement(svg_, "line",
+                 {{"class", "grid"},
+                  {"x1", x},
+                  {"y1", fmt::format("{:g}", kAxisHeight - 4)},
+                  {"x2", x},
+                  {"y2", fmt::format("{:.1f}", height - kMargin)}});
+      AddElement(svg_, "text",
+                 {{"class", "axis"},
+                  {"x", x},
+                  {"y", fmt::format("{:g}", kAxisHeight - 8)},
+                  {"text-anchor", "middle"}},
+                 fmt::format("{:g} s", i * step_s));
     }
   }
 
@@ -92,9 +105,12 @@ class Drawing {
     const bool agrees = std::all_of(
         row.pairings.begin(), row.pairings.end(),
         [](const Pairing* pairing) { return pairing->agreement == LineVerdict::kMatched; });
-    svg_ +=
-        fmt::format("<text class=\"{}\" x=\"{:g}\" y=\"{:g}\" text-anchor=\"end\">{}</text>\n",
-                    agrees ? "row" : "row differs", kLabelWidth - 8, y + 17, EscapeHtml(row.label));
+    AddElement(svg_, "text",
+               {{"class", agrees ? "row" : "row differs"},
+                {"x", fmt::format("{:g}", kLabelWidth - 8)},
+                {"y", fmt::format("{:g}", y + 17)},
+                {"text-anchor", "end"}},
+               row.label);
     for (const Pairing* pairing : row.pairings) {
       if (pairing->expected) DrawBar("golden", *pairing->expected, y + 4, *pairing);
       if (pairing->actual) DrawBar("actual", *pairing->actual, y + 5 + kBarHeight, *pairing);
@@ -105,48 +121,31 @@ class Drawing {
     const double x = X(event.interval.begin);
     const double width = std::max(kNarrowestBar, X(event.interval.end) - x);
     const bool agrees = pairing.agreement == LineVerdict::kMatched;
-    svg_ += fmt::format(
-        "<rect class=\"{}{}\" x=\"{:.2f}\" y=\"{:g}\" width=\"{:.2f}\" height=\"{:g}\" "
-        "fill=\"#{:06x}\"><title>{}</title></rect>\n",
-        side, agrees ? "" : " differs", x, y, width, kBarHeight, EventColor(event.event),
-        EscapeHtml(fmt::format("{} {}, {}: {}", side, event.Label(),
-                               IntervalText(event.interval, comparison_.ticks_per_second),
-                               Name(pairing.agreement))));
+    const pugi::xml_node bar =
+        AddElement(svg_, "rect",
+                   {{"class", std::string(side) + (agrees ? "" : " differs")},
+                    {"x", fmt::format("{:.2f}", x)},
+                    {"y", fmt::format("{:g}", y)},
+                    {"width", fmt::format("{:.2f}", width)},
+                    {"height", fmt::format("{:g}", kBarHeight)},
+                    {"fill", fmt::format("#{:06x}", EventColor(event.event))}});
+    AddElement(bar, "title", {},
+               fmt::format("{} {}, {}: {}", side, event.Label(),
+                           IntervalText(event.interval, comparison_.ticks_per_second),
+                           Name(pairing.agreement)));
   }
 
   const Comparison& comparison_;
   Tick end_;
   std::vector<Row> rows_;
-  std::string svg_;
+  pugi::xml_document document_;
+  pugi::xml_node svg_;
 };
 
 }  // namespace
 
 std::string TimelineSvg(const Comparison& comparison, Tick end) {
   return Drawing(comparison, end).Draw();
-}
-
-std::string EscapeHtml(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
 }
 
 }  // namespace prehend::harness

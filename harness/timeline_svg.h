@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A comparison as a picture for web pages: one row per event and roles, the golden's interval above
-// the recognised one. Tested by tests/harness/report_test.cc
+// A comparison as a picture for web pages: one row per event and roles, with the interval of the
+// golden above the recognised one. Tested by tests/harness/report_test.cc
 #pragma once
 
 #include <string>
@@ -11,8 +11,5 @@ namespace prehend::harness {
 
 /// An <svg> element. `end` is the episode's end in the comparison's ticks.
 std::string TimelineSvg(const Comparison& comparison, grammar::Tick end);
-
-/// Text with <, >, & and quotes made harmless.
-std::string EscapeHtml(std::string_view text);
 
 }  // namespace prehend::harness

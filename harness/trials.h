@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scenario says about trials: `vary:`, what differs from one to the next, and `outcomes:`,
-// how one can end. Their YAML face is in harness/trial_fields.h. Tested by
-// tests/harness/vary_test.cc and outcome_test.cc
+// how one can end. Their YAML face is in harness/trial_fields.cc. Tested by
+// tests/harness/vary_test.cc and tests/harness/outcome_test.cc
 #pragma once
 
 #include <Eigen/Core>
@@ -9,12 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "harness/located_yaml.h"
+#include "harness/located.h"
 
 namespace prehend::harness {
-
-inline constexpr std::size_t kMaxVariations = 64;
-inline constexpr std::size_t kMaxOutcomes = 16;
 
 /// One draw for all its fields; exactly one distribution is given.
 struct VariationEntry {

@@ -13,8 +13,6 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kLargest = 1e6;
-
 using physics::Random;
 
 /// Every variation of every trial has a generator of its own: adding one leaves the others as they
@@ -51,12 +49,6 @@ const YamlNode* FindField(const YamlNode& root, const std::string& path) {
     begin = end + 1;
   }
   return node;
-}
-
-std::optional<double> NumberOf(const YamlNode& node) {
-  if (node.kind != YamlNode::Kind::kScalar) return std::nullopt;
-  const auto number = MeaningOf(node).number;
-  return number && std::abs(*number) <= kLargest ? number : std::nullopt;
 }
 
 Bounds BoundsOf(const VariationEntry& variation) {

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "harness/located_yaml.h"
 #include "harness/trials.h"
 
 namespace prehend::harness {
@@ -35,8 +36,5 @@ std::string SettingOf(const YamlDocument& document, const VariationEntry& variat
 
 /// What a path like "entities.milk.mass_kg" leads to; null when it leads nowhere.
 const YamlNode* FindField(const YamlNode& root, const std::string& path);
-
-/// The number that is written there, if it is one.
-std::optional<double> NumberOf(const YamlNode& node);
 
 }  // namespace prehend::harness

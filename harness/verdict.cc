@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See verdict.h. Tested by tests/harness/verdict_test.cc
+// See harness/verdict.h. Tested by tests/harness/verdict_test.cc
 #include "harness/verdict.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One fork and one pipe per job; the parent polls the pipes and kills who is late. The end of a job
-// is the end of its pipe. Tested by tests/harness/worker_pool_test.cc
+// One fork and one pipe per job. The parent polls the pipes and kills a child that is late. A job
+// has ended when its pipe has. Tested by tests/harness/worker_pool_test.cc
 #include "harness/worker_pool.h"
 
 #include <fmt/format.h>
@@ -22,20 +22,18 @@
 #include <new>
 #include <system_error>
 
-#include "harness/refused_memory.h"
-
 namespace prehend::harness {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
 // Exit statuses of a child whose job did not return.
-constexpr int kJobThrew = 70;
-constexpr int kJobOutOfMemory = kMemoryWasRefused;
-constexpr int kNoMemoryToStart = 72;
+constexpr int kExceptionExit = 70;
+constexpr int kOutOfMemoryExit = 71;
+constexpr int kTooLittleMemoryExit = 72;
 
-/// As much of what a worker that failed wrote to standard error is told.
-constexpr off_t kMostSaid_bytes = 4000;
+/// Of the standard error of a failed worker, at most this much is kept.
+constexpr off_t kMaxStderrTail_bytes = 4000;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -50,7 +48,7 @@ void WriteAll(int file, std::string_view text) {
   }
 }
 
-/// Private memory of this process, what RLIMIT_DATA is about: "VmData:   1234 kB"; 0 if the system
+/// Private memory of this process, which RLIMIT_DATA limits: "VmData:   1234 kB"; 0 if the system
 /// does not say.
 std::uint64_t PrivateMemory_bytes() {
   std::ifstream status("/proc/self/status");
@@ -68,38 +66,38 @@ bool IsLackOfMemory(const std::system_error& problem) {
          problem.code() == std::errc::resource_unavailable_try_again;
 }
 
-/// "crashed (segmentation fault, signal 11)". SIGKILL is the system's, too, when the machine has no
-/// memory left.
+/// "crashed (segmentation fault, signal 11)". The system also sends SIGKILL, when the machine has
+/// no memory left.
 std::string SignalText(int signal) {
   switch (signal) {
     case SIGSEGV:
       return "crashed (segmentation fault, signal 11)";
     case SIGABRT:
-      return "gave up (abort, signal 6)";
+      return "aborted (signal 6)";
     case SIGFPE:
-      return "crashed (arithmetic that has no result, signal 8)";
+      return "crashed (arithmetic error, signal 8)";
     case SIGBUS:
       return "crashed (bus error, signal 7)";
     case SIGILL:
-      return "crashed (an instruction that this machine lacks, signal 4)";
+      return "crashed (illegal instruction, signal 4)";
     case SIGKILL:
-      return "was killed (signal 9: by somebody, or by the system for want of memory)";
+      return "was killed (signal 9: by a user, or by the system because memory ran out)";
     case SIGTERM:
-      return "was asked to end (signal 15)";
+      return "was terminated (signal 15)";
     case SIGXCPU:
-      return "used up its processor time (signal 24)";
+      return "exceeded its processor time (signal 24)";
     default:
       return fmt::format("ended by signal {} ({})", signal, strsignal(signal));
   }
 }
 
-/// The child's life. Leaves by _exit: the parent's buffers and destructors are not the child's to
-/// run.
+/// What the child does. It leaves by _exit, because the buffers and destructors are the parent's.
 [[noreturn]] void Work(const WorkerJob& job, const WorkerLimits& limits, int pipe) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would read what an orphan finds out
-  ExitWhenMemoryIsRefused();
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would read the result of an orphan
+  // Also where an exception could not pass: in a destructor, or through a library in C.
+  std::set_new_handler([] { _exit(kOutOfMemoryExit); });
   if (limits.memory_limit_bytes > 0) {
-    if (PrivateMemory_bytes() > limits.memory_limit_bytes) _exit(kNoMemoryToStart);
+    if (PrivateMemory_bytes() > limits.memory_limit_bytes) _exit(kTooLittleMemoryExit);
     const rlimit limit{limits.memory_limit_bytes, limits.memory_limit_bytes};
     setrlimit(RLIMIT_DATA, &limit);
   }
@@ -108,14 +106,14 @@ std::string SignalText(int signal) {
   try {
     WriteAll(pipe, job());
   } catch (const std::bad_alloc&) {
-    _exit(kJobOutOfMemory);
+    _exit(kOutOfMemoryExit);
   } catch (const std::system_error& problem) {
-    if (IsLackOfMemory(problem)) _exit(kJobOutOfMemory);
+    if (IsLackOfMemory(problem)) _exit(kOutOfMemoryExit);
     WriteAll(pipe, problem.what());
-    _exit(kJobThrew);
+    _exit(kExceptionExit);
   } catch (const std::exception& problem) {
     WriteAll(pipe, problem.what());
-    _exit(kJobThrew);
+    _exit(kExceptionExit);
   }
   _exit(0);
 }
@@ -124,7 +122,7 @@ struct Worker {
   std::size_t job = 0;
   pid_t process = 0;
   int pipe = -1;
-  int said = -1;  ///< a file without name, its standard error
+  int standard_error = -1;  ///< a file without a name
   Clock::time_point start;
   bool killed = false;
   std::string output;
@@ -154,24 +152,24 @@ class Pool {
     if (pipe(ends) != 0)
       return Report(job, {.reason = "no pipe for the worker: " + std::string(std::strerror(errno))},
                     done);
-    const int said = memfd_create("said by a worker", MFD_CLOEXEC);
+    const int standard_error = memfd_create("standard error of a worker", MFD_CLOEXEC);
     const pid_t process = fork();
     if (process == 0) {
       close(ends[0]);
-      dup2(said, STDERR_FILENO);
+      dup2(standard_error, STDERR_FILENO);
       Work(jobs_[job], limits_, ends[1]);
     }
     close(ends[1]);
     if (process < 0) {
       close(ends[0]);
-      close(said);
+      close(standard_error);
       return Report(
           job, {.reason = "no process for the worker: " + std::string(std::strerror(errno))}, done);
     }
     workers_.push_back({.job = job,
                         .process = process,
                         .pipe = ends[0],
-                        .said = said,
+                        .standard_error = standard_error,
                         .start = Clock::now(),
                         .killed = false,
                         .output = {}});
@@ -217,44 +215,51 @@ class Pool {
     WorkerResult result{.finished = WIFEXITED(status) && WEXITSTATUS(status) == 0};
     result.seconds = SecondsSince(worker.start);
     result.peak_memory_kib = usage.ru_maxrss;
-    const std::string said = WhatItSaid(worker);
+    std::string stderr_tail = StderrTail(worker);
     if (result.finished) {
       result.output = std::move(worker.output);
-      std::cerr << said;
+      std::cerr << stderr_tail;
     } else {
-      result.reason = EndReason(worker, status);
-      // When memory ran out, all that libraries say are consequences.
-      if (!WIFEXITED(status) || WEXITSTATUS(status) != kJobOutOfMemory) result.said = said;
+      result.reason = EndReason(worker, status, result.peak_memory_kib);
+      // Once memory has run out, messages of libraries are only consequences.
+      const bool out_of_memory = WIFEXITED(status) && WEXITSTATUS(status) == kOutOfMemoryExit;
+      if (!out_of_memory) result.stderr_tail = std::move(stderr_tail);
     }
     Report(worker.job, std::move(result), done);
   }
 
-  /// The end of it, which is what a crash is about.
-  static std::string WhatItSaid(const Worker& worker) {
-    const off_t size = std::max<off_t>(0, lseek(worker.said, 0, SEEK_END));
-    std::string said(static_cast<std::size_t>(std::min(size, kMostSaid_bytes)), '\0');
+  /// The end, because a crash is explained there.
+  static std::string StderrTail(const Worker& worker) {
+    const int file = worker.standard_error;
+    const off_t size = std::max<off_t>(0, lseek(file, 0, SEEK_END));
+    std::string tail(static_cast<std::size_t>(std::min(size, kMaxStderrTail_bytes)), '\0');
     const ssize_t count =
-        pread(worker.said, said.data(), said.size(), size - static_cast<off_t>(said.size()));
-    said.resize(static_cast<std::size_t>(std::max<ssize_t>(0, count)));
-    close(worker.said);
-    return said;
+        pread(file, tail.data(), tail.size(), size - static_cast<off_t>(tail.size()));
+    tail.resize(static_cast<std::size_t>(std::max<ssize_t>(0, count)));
+    close(file);
+    return tail;
   }
 
-  std::string EndReason(const Worker& worker, int status) const {
+  std::string EndReason(const Worker& worker, int status, std::int64_t peak_memory_kib) const {
     if (worker.killed) return fmt::format("no end after {:g} s", limits_.time_limit_s);
-    if (WIFSIGNALED(status)) return SignalText(WTERMSIG(status));
-    if (WEXITSTATUS(status) == kJobOutOfMemory) {
-      return limits_.memory_limit_bytes == 0 ? "no memory is left"
-                                             : fmt::format("it needs more memory than {} MB",
-                                                           limits_.memory_limit_bytes / kMegabyte);
+    const std::uint64_t limit_mb = limits_.memory_limit_bytes / kMegabyte;
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+    if (code == kOutOfMemoryExit) {
+      return limit_mb == 0 ? "no memory is left"
+                           : fmt::format("it needs more memory than {} MB", limit_mb);
     }
-    if (WEXITSTATUS(status) == kNoMemoryToStart) {
+    if (code == kTooLittleMemoryExit) {
       return fmt::format("{} MB of memory are too little for it to start, which takes {:.0f} MB",
-                         limits_.memory_limit_bytes / kMegabyte,
+                         limit_mb,
                          std::ceil(static_cast<double>(PrivateMemory_bytes()) / kMegabyte));
     }
-    if (WEXITSTATUS(status) == kJobThrew) return "exception: " + worker.output;
-    return fmt::format("exit status {}", WEXITSTATUS(status));
+    if (code == kExceptionExit) return "exception: " + worker.output;
+    // A library in C that gets no memory aborts, exits or uses a null pointer: the peak shows it.
+    const std::string end =
+        WIFSIGNALED(status) ? SignalText(WTERMSIG(status)) : fmt::format("exit status {}", code);
+    if (limit_mb == 0) return end;
+    return fmt::format("{} at {} MB of memory, limit {} MB", end,
+                       peak_memory_kib * 1024 / std::int64_t{kMegabyte}, limit_mb);
   }
 
   void Report(std::size_t job, WorkerResult result, const Done& done) {

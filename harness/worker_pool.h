@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs jobs in processes of their own, several at a time: a crash, a hang or a memory blow-up of
-// one is its result and leaves the others alone. Needs a caller without threads. Tested by
-// tests/harness/worker_pool_test.cc
+// Runs each job in a process of its own, several at a time. A crash, a hang or a memory blow-up is
+// the result of that job; the other jobs are not affected. The caller must not have threads. Tested
+// by tests/harness/worker_pool_test.cc
 #pragma once
 
 #include <cstdint>
@@ -22,19 +22,23 @@ struct WorkerLimits {
 struct WorkerResult {
   bool finished = false;  ///< false: crashed, killed, out of time or memory
   std::string output;     ///< what the job returned; empty unless finished
-  std::string reason;     ///< "crashed (segmentation fault, signal 11)", "no end after 60 s", "it
-                          ///< needs more memory than 1000 MB"; empty when finished
-  std::string
-      said;  ///< the end of what a job that failed wrote to standard error; not when memory ran out
+  /// Empty when finished, else "no end after 60 s", "it needs more memory than 1000 MB",
+  /// "crashed (segmentation fault, signal 11) at 998 MB of memory, limit 1000 MB", ..
+  std::string reason;
+  std::string stderr_tail;  ///< of a job that failed, unless memory ran out
   double seconds = 0;
   std::int64_t peak_memory_kib = 0;
 };
 
-/// Runs in the child; what it returns travels to the parent.
+/// Runs in the child. What it returns is sent to the parent.
 using WorkerJob = std::function<std::string()>;
 
-/// Results in the order of the jobs, which also start in this order. `done` is told each one as it
-/// comes, in the parent.
+/// The results, in the order of the jobs, which is also the order in which they start. The parent
+/// calls `done` for each job as it ends.
+///
+/// A job ends as out of memory when `new` fails, wherever that is. When a library in C is refused
+/// memory, the job ends as that library ends it (a signal, an exit status), and the reason names
+/// the peak and the limit.
 std::vector<WorkerResult> RunInWorkers(
     const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
     const std::function<void(std::size_t job, const WorkerResult&)>& done = {});

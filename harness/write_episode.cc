@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "harness/classes.h"
 #include "harness/episode_file.h"
-#include "harness/kinds.h"
 
 namespace prehend::harness {
 namespace {

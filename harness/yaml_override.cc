@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/located_yaml.h"
+#include "harness/project_paths.h"
 
 namespace prehend::harness {
 namespace {

@@ -139,6 +139,12 @@ ScalarMeaning MeaningOf(const YamlNode& node) {
   return meaning;
 }
 
+std::optional<double> NumberOf(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kScalar) return std::nullopt;
+  const auto number = MeaningOf(node).number;
+  return number && std::abs(*number) <= kMaxNumber ? number : std::nullopt;
+}
+
 std::string Describe(const YamlNode& node) {
   switch (node.kind) {
     case YamlNode::Kind::kNull:

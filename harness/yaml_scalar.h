@@ -12,6 +12,9 @@
 
 namespace prehend::harness {
 
+/// The largest magnitude that `vary:` and `--set` may write.
+inline constexpr double kMaxNumber = 1e6;
+
 /// Exactly one of: a number, true/false, a string, or ambiguous (with the reason).
 struct ScalarMeaning {
   std::optional<double> number;
@@ -24,6 +27,9 @@ struct ScalarMeaning {
 
 /// The node is a scalar.
 ScalarMeaning MeaningOf(const YamlNode& node);
+
+/// The number that is written there, if it is one and no larger than kMaxNumber.
+std::optional<double> NumberOf(const YamlNode& node);
 
 /// How to call a node in a complaint: "'heavy'", "a list", "a mapping", "nothing".
 std::string Describe(const YamlNode& node);

@@ -12,7 +12,7 @@ namespace {
 constexpr int kShiftAlongAxis = 0;
 constexpr int kTurnAboutAxis = 3;
 
-/// How firmly what is beyond a limit is restored per tick, as everywhere (bullet_world.cc).
+/// How firmly what is beyond a limit is restored per tick, as everywhere (physics/bullet_world.cc).
 constexpr double kStopErrorReduction = 0.2;
 /// The way that is left to a limit may be gone within the tick, as the gap of a contact. With less,
 /// Bullet brakes what is fast before it arrives: a drawer of 1.4 m/s for the last 15 mm.

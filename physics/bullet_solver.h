@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's solver of multibodies, made faster for hands; bullet_rigid_rows.h does so for what is
-// rigid. Same rows, same order, same arithmetic, hence the same bits wherever nothing bounces; but
-// each row is first written out flat, with the few elements of its Jacobian that are not zero (a
-// joint motor has one, a finger's contact ten of 22), rows whose impulse does not change touch
-// nothing, and velocities reach the multibody once per step. Tested by
+// Bullet's solver of multibodies, made faster for hands; physics/bullet_rigid_rows.h does so for
+// what is rigid. Same rows, same order, same arithmetic, hence the same bits wherever nothing
+// bounces; but each row is first written out flat, with the few elements of its Jacobian that are
+// not zero (a joint motor has one, a finger's contact ten of 22), rows whose impulse does not
+// change touch nothing, and velocities reach the multibody once per step. Tested by
 // tests/physics/bullet_solver_test.cc
 #pragma once
 

@@ -5,8 +5,9 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
-#include "physics/pose.h"
+#include "physics/trajectory.h"
 
 namespace prehend::physics {
 
@@ -38,6 +39,20 @@ Figure Mix(const Figure& a, const Figure& b, double share);
 struct TimedFigure {
   double t_s = 0;  ///< since the step's start, increasing
   Figure figure;
+};
+
+/// A motion through figures, passed without stopping: the hips on the monotone cubic of
+/// WaypointTrajectory(), the ways turning evenly between neighbours.
+class FigureTrack {
+ public:
+  /// Starts with `from` unless the first figure is at time 0. At least one figure.
+  FigureTrack(const Figure& from, std::vector<TimedFigure> figures);
+  /// Before the first: as it starts. After the last: as it ends.
+  Figure At(double t_s) const;
+
+ private:
+  std::vector<TimedFigure> figures_;
+  Trajectory hips_;
 };
 
 }  // namespace prehend::physics

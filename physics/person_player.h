@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/figure_track.h"
+#include "physics/figure.h"
 #include "physics/gaze.h"
 #include "physics/skeleton.h"
 #include "physics/trajectory.h"

@@ -13,7 +13,6 @@
 #include "physics/hand_model.h"
 #include "physics/hull.h"
 #include "physics/pose.h"
-#include "physics/tracking.h"
 
 namespace prehend::physics {
 
@@ -96,13 +95,26 @@ struct Joint {
   double rest = 0;      ///< where the spring pulls to
 };
 
+/// What an imperfect tracker does to a hand's motion (class Tracker). The default is what a good
+/// headset delivers: 90 samples per second, without errors.
+struct TrackerSettings {
+  int tracker_hz = 90;       ///< samples per second, at most the world's rate
+  double latency_s = 0;      ///< from a sample to its arrival
+  double jitter_mm = 0;      ///< standard deviation of each coordinate of a sample
+  double jitter_deg = 0;     ///< standard deviation of each component of its rotation vector
+  double dropped_share = 0;  ///< share of lost samples in the long run
+  double dropped_run_s = 0;  ///< mean length of a loss; 0: losses are independent
+  double tremor_mm = 0;      ///< amplitude along each axis; part of the hand's true motion
+  double tremor_hz = 10;     ///< physiological tremor: 8-12 Hz (Elble & Koller 1990)
+};
+
 /// A hand that takes part: the model says how it is built, the pose where the tracked target
 /// starts.
 struct Hand {
   std::string name;
   HandModel model;
   Pose X_WH;
-  std::optional<Tracking> tracking =
+  std::optional<TrackerSettings> tracking =
       std::nullopt;  ///< none: the tracked target is where the script wants it
 };
 

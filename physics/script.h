@@ -13,6 +13,7 @@
 #include "physics/figure.h"
 #include "physics/pose.h"
 #include "physics/scene.h"
+#include "physics/trajectory.h"
 
 namespace prehend::physics {
 
@@ -47,11 +48,6 @@ struct FollowJointStep {  ///< the target goes the way that the entity's joint l
   double to = 1;  ///< until the joint stands at this fraction of its range
 };
 struct WaitStep {};
-struct TimedPose {
-  double t_s = 0;  ///< since the step's start, increasing
-  Pose X_WH;
-  std::optional<double> trigger;
-};
 struct PosesStep {  ///< raw 6D way-points
   std::vector<TimedPose> poses;
   std::string style = {};  ///< the hand takes this grasp style; empty: it keeps its own

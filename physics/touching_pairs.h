@@ -3,7 +3,7 @@
 // momentum passed between them, wherever they were before and after it: a bounce is over within
 // one. Once they touch, they do until they have not pushed for a few ticks, because a resting
 // contact's impulse flickers. Between two that rest nothing changes, and it costs no time. Tested
-// by tests/physics/world_test.cc, bounce_test.cc
+// by tests/physics/world_test.cc, tests/physics/bounce_test.cc
 #pragma once
 
 #include <map>

@@ -22,18 +22,18 @@ Eigen::Quaterniond Turn(const Eigen::Vector3d& rotation_vector) {
 }
 
 /// How many looks are due until this tick; on integers, so that any rate works without drift.
-std::int64_t LooksUntil(std::int64_t tick, const Tracking& tracking, int rate_hz) {
-  return tick * tracking.tracker_hz / rate_hz;
+std::int64_t LooksUntil(std::int64_t tick, const TrackerSettings& settings, int rate_hz) {
+  return tick * settings.tracker_hz / rate_hz;
 }
 
 }  // namespace
 
-Tracker::Tracker(const Tracking& tracking, int rate_hz, std::uint64_t seed,
+Tracker::Tracker(const TrackerSettings& settings, int rate_hz, std::uint64_t seed,
                  const TargetState& start)
-    : tracking_(tracking),
+    : settings_(settings),
       rate_hz_(rate_hz),
-      latency_ticks_(std::llround(tracking.latency_s * rate_hz)),
-      approach_ticks_((rate_hz + tracking.tracker_hz - 1) / tracking.tracker_hz),
+      latency_ticks_(std::llround(settings.latency_s * rate_hz)),
+      approach_ticks_((rate_hz + settings.tracker_hz - 1) / settings.tracker_hz),
       random_(seed),
       from_(start),
       to_(start),
@@ -43,7 +43,7 @@ Tracker::Tracker(const Tracking& tracking, int rate_hz, std::uint64_t seed,
 
 TargetState Tracker::Follow(const TargetState& truth) {
   ++tick_;
-  if (LooksUntil(tick_, tracking_, rate_hz_) > LooksUntil(tick_ - 1, tracking_, rate_hz_)) {
+  if (LooksUntil(tick_, settings_, rate_hz_) > LooksUntil(tick_ - 1, settings_, rate_hz_)) {
     // A look is made also when it is lost: losses must not change the noise of the others.
     const Look look = LookAt(truth);
     if (!IsDropped()) under_way_.push_back(look);
@@ -68,24 +68,24 @@ TargetState Tracker::Follow(const TargetState& truth) {
 }
 
 Tracker::Look Tracker::LookAt(const TargetState& truth) {
-  constexpr double kMPerMm = 0.001, kRadPerDeg = std::numbers::pi / 180;
+  constexpr double kMPerMm = 0.001;
   const double turn_rad =
-      2 * std::numbers::pi * tracking_.tremor_hz * static_cast<double>(tick_) / rate_hz_;
+      2 * std::numbers::pi * settings_.tremor_hz * static_cast<double>(tick_) / rate_hz_;
   Look look{.arrives_tick = tick_ + latency_ticks_, .X_WH = truth.X_WH, .trigger = truth.trigger};
   for (int axis = 0; axis < 3; ++axis)
     look.X_WH.p_m[axis] +=
-        tracking_.tremor_mm * kMPerMm * std::sin(turn_rad + tremor_phase_rad_[axis]);
-  look.X_WH.p_m += Noise(tracking_.jitter_mm * kMPerMm, random_);
+        settings_.tremor_mm * kMPerMm * std::sin(turn_rad + tremor_phase_rad_[axis]);
+  look.X_WH.p_m += Noise(settings_.jitter_mm * kMPerMm, random_);
   look.X_WH.q =
-      (Turn(Noise(tracking_.jitter_deg * kRadPerDeg, random_)) * truth.X_WH.q).normalized();
+      (Turn(Noise(settings_.jitter_deg * kRadPerDeg, random_)) * truth.X_WH.q).normalized();
   return look;
 }
 
 bool Tracker::IsDropped() {
-  const double share = tracking_.dropped_share;
-  const double run_looks = std::max(1.0, tracking_.dropped_run_s * tracking_.tracker_hz);
+  const double share = settings_.dropped_share;
+  const double run_looks = std::max(1.0, settings_.dropped_run_s * settings_.tracker_hz);
   const double chance = random_.Share();
-  if (tracking_.dropped_run_s <= 0) return chance < share;
+  if (settings_.dropped_run_s <= 0) return chance < share;
   losing_ = losing_ ? chance >= 1 / run_looks : chance < share / ((1 - share) * run_looks);
   return losing_;
 }

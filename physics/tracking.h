@@ -10,26 +10,16 @@
 #include <deque>
 
 #include "physics/random.h"
-#include "physics/target.h"
+#include "physics/scene.h"
+#include "physics/trajectory.h"
 
 namespace prehend::physics {
-
-/// The default is what a good headset delivers: 90 looks a second, nothing wrong with them.
-struct Tracking {
-  int tracker_hz = 90;       ///< looks per second, at most the world's rate
-  double latency_s = 0;      ///< from a look to its arrival
-  double jitter_mm = 0;      ///< standard deviation of each coordinate of a look
-  double jitter_deg = 0;     ///< standard deviation of each component of its rotation vector
-  double dropped_share = 0;  ///< of the looks, in the long run
-  double dropped_run_s = 0;  ///< mean length of a loss; 0: every look is lost for itself
-  double tremor_mm = 0;      ///< amplitude along each axis; part of the hand's true motion
-  double tremor_hz = 10;     ///< physiological tremor: 8-12 Hz (Elble & Koller 1990)
-};
 
 class Tracker {
  public:
   /// The target rests at `start` before the first look arrives.
-  Tracker(const Tracking& tracking, int rate_hz, std::uint64_t seed, const TargetState& start);
+  Tracker(const TrackerSettings& settings, int rate_hz, std::uint64_t seed,
+          const TargetState& start);
 
   /// The tracked target of the next tick, in which the true one is `truth`. To be called once a
   /// tick.
@@ -46,7 +36,7 @@ class Tracker {
   bool IsDropped();
   void StartToward(const Look& look);
 
-  Tracking tracking_;
+  TrackerSettings settings_;
   int rate_hz_;
   std::int64_t latency_ticks_;
   std::int64_t approach_ticks_;  ///< that a look is approached for

@@ -1,18 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the tracked target goes: a chain of smooth segments in position, orientation and trigger,
-// with velocities. Position follows a cubic Bezier curve, orientation a slerp, the trigger a
-// straight line. A scripted motion runs with minimum-jerk timing (Flash & Hogan 1985) from rest to
-// rest. Way-points are passed without stopping, on the monotone cubic through them (Fritsch &
-// Butland 1984), which never overshoots a hold. Tested by tests/physics/trajectory_test.cc
+// The tracked target of a hand, which its PIDs follow, and where it goes: a chain of smooth
+// segments in position, orientation and trigger, with velocities. Position follows a cubic Bezier
+// curve, orientation a slerp, the trigger a straight line. A scripted motion runs with minimum-jerk
+// timing (Flash & Hogan 1985) from rest to rest. Way-points are passed without stopping, on the
+// monotone cubic through them (Fritsch & Butland 1984), which never overshoots a hold. Tested by
+// tests/physics/trajectory_test.cc
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
-#include "physics/script.h"
-#include "physics/target.h"
+#include "physics/pose.h"
 
 namespace prehend::physics {
+
+/// The tracked target at one moment. Velocities are in world axes, of the target's origin.
+struct TargetState {
+  Pose X_WH;
+  Eigen::Vector3d v_m_per_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d w_rad_per_s = Eigen::Vector3d::Zero();
+  double trigger = 0;
+};
+
+struct TimedPose {
+  double t_s = 0;  ///< since the step's start, increasing
+  Pose X_WH;
+  std::optional<double> trigger;
+};
 
 struct Segment {
   double duration_s = 0;

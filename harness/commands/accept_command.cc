@@ -15,14 +15,13 @@
 #include "harness/cross_engine.h"
 #include "harness/derivation.h"
 #include "harness/golden_files.h"
-#include "harness/oracle_notes.h"
 #include "harness/physics_trace.h"
 #include "harness/run_output.h"
 
 namespace prehend::harness {
 namespace {
 
-constexpr std::size_t kFingerprintDigits = 8;
+constexpr std::size_t kFingerprintDigits = 16;
 
 void Declare(CLI::App& options) {
   options.add_option("scenario", "a name or skill/name")->required()->expected(1);
@@ -34,14 +33,6 @@ void Declare(CLI::App& options) {
                   "how it follows from the definitions, one line each; what the physical oracle "
                   "says is added")
       ->type_name("TEXT")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  options
-      .add_option("--against-the-oracle",
-                  "why an event is right that the physical oracle objects to: "
-                  "\"sliding(right_hand, cup): it "
-                  "jerks\"; without the event for all of them")
-      ->type_name("[EVENT(ROLES): ]TEXT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   options.add_option("--reviewed", "what 'prehend review' printed: accept that, and nothing else")
@@ -57,8 +48,8 @@ std::string NoFingerprint(const std::string& typed) {
                       typed.find_first_not_of("0123456789abcdef") == std::string::npos;
   if (is_one) return "";
   return "--reviewed: '" + typed +
-         "' is no fingerprint; 'prehend review' prints it, 8 digits from 0-9 and a-f, like "
-         "3fa90c11";
+         "' is no fingerprint; 'prehend review' prints it, 16 digits from 0-9 and a-f, like "
+         "3fa90c11d27e5b60";
 }
 
 /// "" or why the command line alone is enough to refuse.
@@ -67,11 +58,11 @@ std::string Refusal(const CLI::App& options, const CommandContext& context) {
   if (ValueOf(options, "--reason").find_first_not_of(" \t") == std::string::npos) {
     return "accepting needs a reason: --reason \"why this is right\"";
   }
-  for (const char* name : {"--derived", "--reviewed", "--against-the-oracle"}) {
+  for (const char* name : {"--derived", "--reviewed"}) {
     if (IsGiven(options, "--pictures") && IsGiven(options, name))
       return std::string(name) + " is about events, and --pictures accepts pictures only";
   }
-  for (const char* name : {"--reason", "--derived", "--against-the-oracle"}) {
+  for (const char* name : {"--reason", "--derived"}) {
     for (const std::string& text : ValuesOf(options, name)) {
       if (text.find_first_of("\n\r") != std::string::npos)
         return std::string(name) + " takes a single line";
@@ -89,8 +80,9 @@ struct Played {
   RunResult run;
 };
 
-/// What will change, before it does, and what speaks against it.
-void ShowDifference(const Played& played, const Golden& pending, const CommandContext& context) {
+/// What will change, before it does, and where it differs from the ground truth.
+void ShowDifference(const Played& played, const OracleComparison& truth,
+                    const CommandContext& context) {
   if (!played.old) {
     context.out << "new golden:\n" << RunTable(played.run);
   } else {
@@ -99,7 +91,7 @@ void ShowDifference(const Played& played, const Golden& pending, const CommandCo
                                           DefaultTolerance(world.rate_hz, world.sensing_hz)),
                                   ExplainCommand(played.id, {}));
   }
-  context.out << Text(Objections(played.old, pending));
+  context.out << GroundTruthText(truth);
 }
 
 /// The next blame compares with what was accepted now.
@@ -133,14 +125,13 @@ std::string NotWhatWasShown(const CLI::App& options, const CommandContext& conte
 
 /// Shows what is there now instead, and lets it wait for the next acceptance.
 ExitCode Refuse(const CommandContext& context, const Played& played, const Golden& pending,
-                ExitCode code, const std::string& why) {
-  ShowDifference(played, pending, context);
+                const OracleComparison& truth, const std::string& why) {
+  ShowDifference(played, truth, context);
   const std::string problem = GoldenFiles(context.root).WritePending(pending);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
-  return Complain(context, code,
+  return Complain(context, ExitCode::kDiffers,
                   why + " (shown above); nothing was accepted\n  if that is right: " +
-                      AcceptCommandLine(played.id, Fingerprint(pending),
-                                        WantsReason(Objections(played.old, pending))));
+                      AcceptCommandLine(played.id, Fingerprint(pending)));
 }
 
 ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
@@ -178,28 +169,23 @@ ExitCode AcceptEvents(const CLI::App& options, const CommandContext& context,
                       const Played& played) {
   const auto& [id, old, prepared, inputs, run] = played;
   const GoldenFiles files(context.root);
-  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  const OracleComparison truth = CompareWithOracle(prepared.scenario, *prepared.program, run);
   Proposal proposal{.scenario = id,
                     .grammar = prepared.scenario.grammar,
                     .derived = ValuesOf(options, "--derived"),
                     .acceptance = Acceptance{context.today, ValueOf(options, "--reason")},
-                    .notes = derivation.notes,
-                    .tolerance = derivation.tolerance};
+                    .tolerance = truth.tolerance};
   const bool from_people = !proposal.derived.empty();
   if (!from_people && old) proposal.derived = old->derived;
-  proposal.derived = RenewedDerivation(proposal.derived, derivation);
+  proposal.derived = RenewedDerivation(proposal.derived, OracleLine(truth));
   const bool tells_derivation = from_people && (!old || old->derived != proposal.derived);
-  const Golden pending =
-      PendingGolden(old, run.timeline, id, prepared.scenario.grammar, derivation);
+  const Golden pending = PendingGolden(old, run.timeline, id, prepared.scenario.grammar, truth);
   if (old && *old == pending && !tells_derivation) return NothingToAccept(context, played);
   const std::string why_not = NotWhatWasShown(options, context, pending);
-  if (!why_not.empty()) return Refuse(context, played, pending, ExitCode::kDiffers, why_not);
-  Golden golden = ProposeGolden(old, run.timeline, proposal);
-  const std::string objection = GiveReasons(ValuesOf(options, "--against-the-oracle"), golden);
-  if (!objection.empty()) return Refuse(context, played, pending, ExitCode::kBadInput, objection);
-  ShowDifference(played, pending, context);
-  for (const std::string& line : derivation.lines) context.out << line << "\n";
-  const std::string problem = files.WriteAccepted(golden);
+  if (!why_not.empty()) return Refuse(context, played, pending, truth, why_not);
+  ShowDifference(played, truth, context);
+  context.out << OracleLine(truth) << "\n";
+  const std::string problem = files.WriteAccepted(ProposeGolden(old, run.timeline, proposal));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   LeaveBaseline(context, played);
   context.out << "accepted: " << files.GoldenPath(id).string() << "\n";
@@ -257,7 +243,7 @@ Command AcceptCommand() {
       .summary = "Make what a scenario yields now its golden, with a reason",
       .examples =
           "prehend accept milk_carton_wrap --reason \"first golden, checked against the picture\"\n"
-          "prehend accept milk_carton_wrap --reviewed 3fa90c11 --reason \"the grasp ends "
+          "prehend accept milk_carton_wrap --reviewed 3fa90c11d27e5b60 --reason \"the grasp ends "
           "earlier\"\n"
           "prehend accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the "
           "hand's first motion\"\n"

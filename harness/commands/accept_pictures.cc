@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See accept_pictures.h. Tested by tests/house/golden_workflow_test.cc
+// See harness/commands/accept_pictures.h. Tested by tests/house/golden_workflow_test.cc
 #include "harness/commands/accept_pictures.h"
 
 #include <algorithm>

@@ -96,7 +96,8 @@ void Declare(CLI::App& options) {
   options.add_option("--report", "folder for index.html and pictures; otherwise build/report")
       ->type_name("DIR")
       ->expected(1);
-  options.add_option("--junit", "write the verdicts as JUnit XML, too")
+  options
+      .add_option("--junit", "also write the verdicts as JUnit XML; -: print that instead of text")
       ->type_name("FILE")
       ->expected(1);
   DeclareFlag(options, "--no-pictures", "do not draw");
@@ -197,6 +198,11 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     return Complain(context, ExitCode::kBadInput,
                     "--changed is about scenarios as their files say: not with --grammar or --set");
   }
+  const std::string junit = ValueOf(options, "--junit");
+  if (junit == "-" && IsGiven(options, "--json")) {
+    return Complain(context, ExitCode::kBadInput,
+                    "--junit - and --json contradict each other: both are printed");
+  }
   std::string problem;
   auto selection = SelectScenarios(ValuesOf(options, "names"), ValuesOf(options, "--filter"),
                                    context.root, problem);
@@ -209,7 +215,6 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
   const SuiteRequest request = RequestFrom(options, context, std::move(*selection));
   const std::string page = (fs::path(request.report_folder) / "index.html").string();
-  const std::string junit = ValueOf(options, "--junit");
   // Verdicts take long; what cannot be written is found before.
   problem = WhyNotWritable(page);
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--report: " + problem);
@@ -226,7 +231,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 
   if (IsGiven(options, "--json")) {
     context.out << SummaryJson(verdicts, page).dump(2) << "\n";
-  } else {
+  } else if (junit != "-") {
     const bool as_files_say = !IsGiven(options, "--grammar") && !IsGiven(options, "--set");
     PrintText(verdicts, as_files_say, page, context);
   }

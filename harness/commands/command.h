@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A command of `prehend`: what it is called, what it accepts, what it does. Each stands in a file
-// of its own and is listed in command_line.cc. Results go to `out`, diagnostics to `err`. Tested by
-// tests/house/command_line_test.cc
+// of its own and is listed in harness/command_line.cc. Results go to `out`, diagnostics to `err`.
+// Tested by tests/house/command_line_test.cc
 #pragma once
 
 #include <optional>

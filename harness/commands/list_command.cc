@@ -8,6 +8,8 @@
 
 #include "harness/commands/command.h"
 #include "harness/event_text.h"
+#include "harness/project_library.h"
+#include "harness/read_scenario.h"
 
 namespace prehend::harness {
 namespace {

@@ -6,6 +6,8 @@
 #include <regex>
 
 #include "harness/commands/command.h"
+#include "harness/project_library.h"
+#include "harness/read_scenario.h"
 #include "harness/scenario_copy.h"
 #include "harness/text_file.h"
 #include "harness/whole_file.h"

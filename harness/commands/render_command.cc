@@ -75,7 +75,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
 
   if (IsGiven(options, "--output")) {
-    const std::string why = WholeFile(ValueOf(options, "--output")).problem();
+    const std::string output = ValueOf(options, "--output");
+    const std::string why = output == "-" ? "found '-', wanted a file; pictures are not printed"
+                                          : AtomicFile(output).problem();
     if (!why.empty()) return Complain(context, ExitCode::kBadInput, "--output: " + why);
   }
 

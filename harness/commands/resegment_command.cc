@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "grammar/name_events.h"
 #include "grammar/program.h"
 #include "harness/commands/command.h"
 #include "harness/commands/warn.h"

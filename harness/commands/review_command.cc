@@ -16,8 +16,9 @@
 #include "harness/cross_engine.h"
 #include "harness/event_text.h"
 #include "harness/golden_files.h"
-#include "harness/oracle_notes.h"
 #include "harness/orphans.h"
+#include "harness/project_library.h"
+#include "harness/read_scenario.h"
 #include "harness/select_scenarios.h"
 #include "harness/shell_word.h"
 
@@ -32,7 +33,6 @@ struct Review {
   std::string kind;  ///< "new", "changed", "same", "engines", "picture", "unreadable", "orphan"
   std::string text;  ///< events of a new one, differences, complaints; several lines or empty
   std::string fingerprint = {};  ///< of what is shown; with it `accept` takes nothing else
-  bool wants_reason = false;     ///< for what the physical oracle objects to
   std::vector<std::string> files =
       {};  ///< of a picture: golden, new, difference; of an orphan: what to remove
 };
@@ -50,11 +50,19 @@ std::string EventLines(const Golden& golden) {
   for (const GoldenEvent& line : golden.events)
     role_columns = std::max(role_columns, line.event.roles.size());
   for (const GoldenEvent& line : golden.events) {
-    if (line.IsExpected())
-      rows.push_back(EventCells(line.event, golden.ticks_per_second, role_columns));
+    rows.push_back(EventCells(line.event, golden.ticks_per_second, role_columns));
   }
   std::string text;
   for (const std::string& line : AlignColumns(rows)) text += line + "\n";
+  return text;
+}
+
+/// How it follows from the definitions, where the golden says something else.
+std::string DerivationLines(const Golden& pending, const std::vector<std::string>& before) {
+  std::string text;
+  for (const std::string& line : pending.derived) {
+    if (std::ranges::count(before, line) == 0) text += line + "\n";
+  }
   return text;
 }
 
@@ -68,18 +76,17 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
       Format(pending.diagnostics) + Format(golden.diagnostics) + Format(scenario.diagnostics);
   if (!pending.value || !scenario.value || !golden.diagnostics.empty()) return review;
   review.fingerprint = Fingerprint(*pending.value);
-  const std::vector<Objection> objections = Objections(golden.value, *pending.value);
-  review.wants_reason = WantsReason(objections);
   if (!golden.value) {
     review.kind = "new";
-    review.text = EventLines(*pending.value) + Text(objections);
+    review.text = EventLines(*pending.value) + DerivationLines(*pending.value, {});
     return review;
   }
   const WorldEntry& world = scenario.value->world;
   const Comparison comparison = Compare(*golden.value, ToTimeline(*pending.value),
                                         DefaultTolerance(world.rate_hz, world.sensing_hz));
-  review.kind = comparison.Agrees() && objections.empty() ? "same" : "changed";
-  review.text = DifferenceText(comparison, ExplainCommand(review.id, {})) + Text(objections);
+  const std::string derivation = DerivationLines(*pending.value, golden.value->derived);
+  review.kind = comparison.Agrees() && derivation.empty() ? "same" : "changed";
+  review.text = DifferenceText(comparison, ExplainCommand(review.id, {})) + derivation;
   return review;
 }
 
@@ -117,7 +124,7 @@ void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pendi
   const std::size_t asked = scenario.value->pictures.size();
   for (const fs::path& picture : UnaskedPictures(IdOf(file), asked, root))
     reviews.push_back(
-        {IdOf(file), "orphan", UnaskedText(picture, asked) + "\n", "", false, {picture.string()}});
+        {IdOf(file), "orphan", UnaskedText(picture, asked) + "\n", "", {picture.string()}});
 }
 
 /// Nothing after a complaint.
@@ -141,7 +148,6 @@ std::optional<std::vector<Review>> Reviews(const CLI::App& options, const Comman
                        "orphan",
                        "pending, but there is no such scenario: remove " + file + "\n",
                        "",
-                       false,
                        {file}});
   }
   for (const Orphan& orphan : selection ? selection->orphans : std::vector<Orphan>()) {
@@ -160,7 +166,7 @@ std::string NextStep(const Review& review, bool engines_differ) {
     return fmt::format("if right: prehend accept {} --pictures --reason \"...\"",
                        ShellWord(review.id));
   if (review.kind != "new" && review.kind != "changed") return "";
-  return "if right: " + AcceptCommandLine(review.id, review.fingerprint, review.wants_reason);
+  return "if right: " + AcceptCommandLine(review.id, review.fingerprint);
 }
 
 void Print(const std::vector<Review>& reviews, const CommandContext& context) {
@@ -191,7 +197,6 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
       list.push_back({{"scenario", review.id},
                       {"kind", review.kind},
                       {"fingerprint", review.fingerprint},
-                      {"wants_reason", review.wants_reason},
                       {"files", review.files},
                       {"text", review.text}});
     context.out << nlohmann::ordered_json{{"pending", list}}.dump(2) << "\n";

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "harness/cast.h"
 #include "harness/commands/command.h"
 #include "harness/commands/warn.h"
 #include "harness/episode_file.h"
@@ -38,7 +39,10 @@ void Declare(CLI::App& options) {
       ->expected(1)
       ->check(CLI::Range(1, 256));
   DeclareFlag(options, "--json", "one JSON object instead of a table");
-  options.add_option("--record", "write the episode to FILE, for 'prehend resegment'")
+  options
+      .add_option("--record",
+                  "write the episode to FILE, for 'prehend resegment'; -: print it, instead of the "
+                  "table")
       ->type_name("FILE")
       ->expected(1);
   DeclareFlag(options, "--measure", "say where the time went, and the peak memory");
@@ -91,13 +95,20 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
       context.err << "drawn: " << varied.value->settings[i] << "\n";
     request = std::move(*varied.value);
   }
+  const bool record_is_output = ValueOf(options, "--record") == "-";
+  for (const char* of_output : {"--json", "--measure"}) {
+    if (record_is_output && IsGiven(options, of_output))
+      return Complain(
+          context, ExitCode::kBadInput,
+          fmt::format("--record - and {} contradict each other: both are printed", of_output));
+  }
   const ReadResult<PreparedRun> prepared = PrepareRun(request, context.root);
   if (!prepared.value) return Complain(context, prepared.diagnostics);
   Warn(context, prepared.value->warnings);
 
   const bool measure = IsGiven(options, "--measure");
   RunOptions how{.judge = !prepared.value->scenario.outcomes.empty(), .measure = measure};
-  std::optional<WholeFile> record;
+  std::optional<AtomicFile> record;
   std::optional<EpisodeWriter> recorder;
   if (IsGiven(options, "--record")) {
     record.emplace(ValueOf(options, "--record"));
@@ -120,7 +131,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     OrderedJson json = RunJson(prepared.value->scenario, run);
     if (measure) json["measured"] = MeasurementJson(Measure(run));
     context.out << json.dump(2) << "\n";
-  } else {
+  } else if (!record_is_output) {
     context.out << RunTable(run);
     if (measure) context.out << MeasurementText(Measure(run));
   }

@@ -14,6 +14,7 @@
 #include "harness/judge_episode.h"
 #include "harness/load_grammar.h"
 #include "harness/oracle/oracle.h"
+#include "harness/project_paths.h"
 #include "harness/score/score_json.h"
 #include "harness/select_scenarios.h"
 #include "harness/timeline_json.h"

@@ -19,7 +19,7 @@ void Declare(CLI::App& options) {
   options.add_option("scenario", "a name, skill/name or a file; or a recording")
       ->required()
       ->expected(1);
-  options.add_option("-o,--output", "the file to write, .csv or .json; otherwise CSV is printed")
+  options.add_option("-o,--output", "the file to write, .csv or .json; - or nothing: print CSV")
       ->type_name("FILE")
       ->expected(1);
   options
@@ -48,7 +48,8 @@ std::string WhyNotKnown(const std::vector<std::string>& only, const grammar::Pro
 }
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  const std::string output = ValueOf(options, "--output");
+  std::string output = ValueOf(options, "--output");
+  if (output == "-") output.clear();
   const bool as_json = IsGiven(options, "--json") || output.ends_with(".json");
   if (!output.empty() && !output.ends_with(".json") && !output.ends_with(".csv")) {
     return Complain(
@@ -66,7 +67,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (!unknown.empty()) return Complain(context, ExitCode::kBadInput, unknown);
 
   // What cannot be written is refused before the episode is played.
-  std::optional<WholeFile> file;
+  std::optional<AtomicFile> file;
   if (!output.empty()) file.emplace(output);
   if (file && !file->problem().empty())
     return Complain(context, ExitCode::kBadInput, "--output: " + file->problem());

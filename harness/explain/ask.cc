@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See ask.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/ask.h. Tested by tests/harness/explain_test.cc
 #include "harness/explain/ask.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See bindings.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/bindings.h. Tested by tests/harness/explain_test.cc
 #include "harness/explain/bindings.h"
 
 #include <algorithm>

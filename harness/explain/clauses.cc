@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See clauses.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/clauses.h. Tested by tests/harness/explain_test.cc
 #include "harness/explain/clauses.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See explain.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/explain.h. Tested by tests/harness/explain_test.cc
 #include "harness/explain/explain.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See tracks.h. Tested by tests/harness/tracks_test.cc
+// See harness/explain/tracks.h. Tested by tests/harness/tracks_test.cc
 #include "harness/explain/tracks.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See watch.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/watch.h. Tested by tests/harness/explain_test.cc
 #include "harness/explain/watch.h"
 
 #include <fmt/format.h>

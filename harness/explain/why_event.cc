@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See why_event.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/why_event.h. Tested by tests/harness/explain_test.cc
 #include "harness/explain/why_event.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See why_missing.h. Runs that were given up, and the choice of what to blame.
+// See harness/explain/why_missing.h. Runs that were given up, and the choice of what to blame.
 // Tested by tests/harness/explain_test.cc
 #include "harness/explain/why_missing.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See wording.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/wording.h. Tested by tests/harness/explain_test.cc
 #include "harness/explain/wording.h"
 
 #include <fmt/format.h>

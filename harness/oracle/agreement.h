@@ -1,14 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a timeline agrees with the true one: which events match and by how much their boundaries
-// are off. Tested by tests/harness/agreement_test.cc
+// The matcher of two timelines: which event of the one is which of the other. Goldens, scores and
+// the comparison with the physical oracle all use it; what may be the same event is their policy.
+// Tested by tests/harness/agreement_test.cc
 #pragma once
 
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grammar/timeline.h"
 
 namespace prehend::harness {
+
+/// Two events of one label may be the same one if they lie less than `max_gap` apart (0: if they
+/// overlap), or if both of their boundaries are at most `collar` apart. In ticks.
+struct MatchPolicy {
+  grammar::Tick max_gap = 0;
+  grammar::Tick collar = 0;
+};
+
+/// The events of one label (name and roles; attributes are not compared), as indices into the two
+/// lists, all in the order of time.
+struct LabelMatches {
+  std::string label;                                       ///< "reaching(right_hand, milk)"
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;  ///< expected, actual
+  std::vector<std::size_t> only_expected, only_actual;     ///< left without a partner
+};
+
+/// Pairs the events of each label so that as many as possible have a partner, and of all ways to do
+/// that the one whose boundaries are the closest in sum. Partners are in the same order on both
+/// sides. Both lists are in the order of time; events of one label do not overlap within a list.
+/// Sorted by label.
+std::vector<LabelMatches> MatchEvents(std::span<const grammar::NamedEvent> expected,
+                                      std::span<const grammar::NamedEvent> actual,
+                                      const MatchPolicy& policy);
 
 struct Match {
   grammar::NamedEvent truth, found;
@@ -38,9 +64,8 @@ struct Agreement {
   grammar::Tick largest_offset() const;
 };
 
-/// Pairs events with the same label (event and roles; attributes are not compared), each at most
-/// once, the closest first. Two can be a pair if their intervals overlap, or if both boundaries are
-/// at most `collar` apart: short events may miss each other altogether and still be the same.
+/// How well a timeline agrees with the true one. Events match if they overlap or lie within the
+/// collar: short ones may miss each other altogether and still be the same.
 Agreement Agree(const grammar::Timeline& truth, const grammar::Timeline& found,
                 grammar::Tick collar);
 

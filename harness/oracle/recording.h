@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/oracle/oracle.h"
+#include "harness/oracle/settings.h"
 #include "harness/oracle/spans.h"
 #include "physics/scene.h"
 #include "physics/snapshot.h"

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "harness/cast.h"
 #include "harness/prepare_run.h"
 #include "harness/run_scenario.h"
 #include "harness/sensing.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grammar/program.h"
+#include "harness/cast.h"
 #include "harness/speed/stopwatch.h"
 
 namespace prehend::harness {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "harness/library_paths.h"
+#include "harness/project_library.h"
 #include "harness/read_scenario.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

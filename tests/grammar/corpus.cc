@@ -10,6 +10,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "grammar/name_events.h"
 #include "grammar/program.h"
 
 namespace prehend::grammar::testing {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deadlines, attributes, definitions and sensor sets on frames written by hand; reference_test.cc
-// has the meaning of the forms on many streams.
+// Deadlines, attributes, definitions and sensor sets on frames written by hand;
+// tests/grammar/reference_test.cc has the meaning of the forms on many streams.
 #include "tests/grammar/scene.h"
 
 namespace prehend::grammar {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <new>
 
+#include "grammar/name_events.h"
 #include "tests/grammar/corpus.h"
 #include "tests/grammar/scene.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "grammar/name_events.h"
 #include "grammar/timeline.h"
 
 #include <gtest/gtest.h>

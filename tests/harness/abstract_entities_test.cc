@@ -3,8 +3,9 @@
 // no sense.
 #include <gtest/gtest.h>
 
-#include "harness/abstract_fields.h"
+#include "harness/cast.h"
 #include "harness/read_scenario.h"
+#include "harness/scenario_formats.h"
 #include "physics/geometry.h"
 #include "tests/harness/scenario_fixture.h"
 

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person wrote into a golden survives the next acceptance, and what the oracle objects to is
-// answered.
+// What a person wrote into a golden survives the next acceptance, and the count of events that
+// follow from the definitions is renewed when it is not true any more.
 #include "harness/accept_golden.h"
 
 #include <gtest/gtest.h>
-
-#include "harness/compare.h"
-#include "harness/oracle_notes.h"
 
 namespace prehend::harness {
 namespace {
@@ -28,6 +25,8 @@ grasping   1.5000   3.0000  hand=hand  object=cup
 # below
 )";
 
+using Lines = std::vector<std::string>;
+
 Golden Old() { return ReadGolden("old", kOld).value.value(); }
 
 grammar::Timeline Recognised(std::vector<grammar::NamedEvent> events) {
@@ -48,8 +47,7 @@ TEST(ProposeGolden, KeepsWhatPeopleWrote) {
                     {.scenario = "slide/x",
                      .grammar = "pick_and_place",
                      .derived = {},
-                     .acceptance = Acceptance{"2026-02-01", "no fixation any more"},
-                     .notes = {}});
+                     .acceptance = Acceptance{"2026-02-01", "no fixation any more"}});
   EXPECT_EQ(WriteGolden(golden), R"(# scenario: slide/x
 # grammar: pick_and_place
 # derived: from the script
@@ -81,7 +79,6 @@ TEST(ProposeGolden, LinesThatAgreeStayByteForByte) {
                           .grammar = "pick_and_place",
                           .derived = {},
                           .acceptance = Acceptance{"2026-02-01", "a longer grasp"},
-                          .notes = {},
                           .tolerance = 4};
   const Golden golden = ProposeGolden(ReadGolden("old", text).value, recognised, proposal);
   const std::string grasp = "grasping   1.5000   3.0000  hand=hand  object=cup\n";
@@ -107,7 +104,6 @@ TEST(ProposeGolden, AnotherTickRateWritesEveryLineAnew) {
                                        .grammar = "g",
                                        .derived = {},
                                        .acceptance = Acceptance{"2026-02-01", "slower"},
-                                       .notes = {},
                                        .tolerance = 2});
   EXPECT_EQ(golden.ticks_per_second, 240);
   EXPECT_EQ(golden.events[2].event.interval, (grammar::Interval{360, 720}));
@@ -116,109 +112,44 @@ TEST(ProposeGolden, AnotherTickRateWritesEveryLineAnew) {
 }
 
 TEST(ProposeGolden, StartsFromNothing) {
-  const Golden golden = ProposeGolden(std::nullopt, kShiftedWithoutFixation,
-                                      {.scenario = "slide/x",
-                                       .grammar = "g",
-                                       .derived = {"by eye"},
-                                       .acceptance = {},
-                                       .notes = {}});
+  const Golden golden = ProposeGolden(
+      std::nullopt, kShiftedWithoutFixation,
+      {.scenario = "slide/x", .grammar = "g", .derived = {"by eye"}, .acceptance = {}});
   EXPECT_EQ(golden.derived, std::vector<std::string>{"by eye"});
   EXPECT_TRUE(golden.accepted.empty());
   EXPECT_EQ(golden.events.size(), 2u);
   EXPECT_EQ(ReadGolden("x", WriteGolden(golden)).value, golden);
 }
 
-class WithOracle : public testing::Test {
- protected:
-  Golden Proposed(const std::optional<Golden>& old, std::vector<OracleNote> notes) const {
-    return PendingGolden(old, kShiftedWithoutFixation, "slide/x", "g",
-                         {.agrees = false, .lines = {}, .notes = std::move(notes), .tolerance = 4});
-  }
-  const grammar::NamedEvent grasp_ = kShiftedWithoutFixation.events[1];
-  const grammar::NamedEvent slide_ =
-      Recognised({{.event = "sliding", .interval = {600, 700}}}).events[0];
-};
-
-TEST_F(WithOracle, WhatItSeesOtherwiseWantsAReasonAndKeepsIt) {
-  Golden first = Proposed(std::nullopt, {{grasp_, "+20.8/-4.2ms"}});
-  EXPECT_EQ(first.events[0].oracle, "");
-  EXPECT_EQ(first.events[1].oracle, "+20.8/-4.2ms");
-  EXPECT_EQ(first.events[1].oracle_because, kReasonWanted);
-  EXPECT_EQ(ReadGolden("x", WriteGolden(first)).value, first);
-  EXPECT_EQ(GiveReasons({"it bounces"}, first), "");
-  EXPECT_EQ(first.events[1].oracle_because, "it bounces");
-  EXPECT_EQ(Proposed(first, {{grasp_, "+20.8/-4.2ms"}}), first);
-  EXPECT_EQ(Proposed(first, {{grasp_, "+25.0/+0.0ms"}}), first)
-      << "within two frames it is the same";
-  EXPECT_EQ(Proposed(first, {{grasp_, "+41.7/-4.2ms"}}).events[1].oracle_because, kReasonWanted)
-      << "that was another objection";
-  const Golden agrees = Proposed(first, {});
-  EXPECT_EQ(agrees.events[1].oracle, "");
-  EXPECT_EQ(Text(Objections(first, agrees)),
-            "the oracle agrees by now, and the note oracle=+20.8/-4.2ms is out of date: "
-            "grasping(hand, cup) 1.0417..3.0000 s\n");
-  EXPECT_TRUE(Objections(first, first).empty());
-}
-
-TEST_F(WithOracle, WhatOnlyItSeesHasALineThatExpectsNothing) {
-  Golden first = Proposed(std::nullopt, {{slide_, kOnlyOracle}});
-  ASSERT_EQ(first.events.size(), 3u);
-  EXPECT_EQ(first.events[2].event.event, "sliding");
-  EXPECT_FALSE(first.events[2].IsExpected());
-  EXPECT_EQ(Text(Objections(std::nullopt, first)),
-            "only the oracle sees this event: sliding(hand, cup) 1.2500..1.4583 s\n");
-  EXPECT_EQ(ToTimeline(first).events.size(), 2u);
-  EXPECT_TRUE(Compare(first, kShiftedWithoutFixation, 4).Agrees());
-  EXPECT_EQ(GiveReasons({"sliding(hand, cup): it is pushed"}, first), "");
-  EXPECT_EQ(ReadGolden("x", WriteGolden(first)).value, first);
-  auto a_frame_later = slide_;
-  a_frame_later.interval.begin += 2;
-  EXPECT_EQ(Proposed(first, {{a_frame_later, kOnlyOracle}}), first);
-  first.events[2].comments = {"why it slides"};
-  auto longer = slide_;
-  longer.interval.end += 100;
-  const Golden lengthened = Proposed(first, {{longer, kOnlyOracle}});
-  EXPECT_EQ(lengthened.events[2].comments, first.events[2].comments);
-  EXPECT_EQ(lengthened.closing_comments, first.closing_comments);
-  const Golden gone = Proposed(first, {});
-  EXPECT_EQ(gone.closing_comments.back(), "why it slides");
-  EXPECT_EQ(gone.events.size(), 2u);
-  EXPECT_EQ(Summary(Objections(first, gone)), "a note about the physical oracle is out of date");
-}
-
-TEST_F(WithOracle, EveryObjectionIsAnsweredOrNothingIs) {
-  const Golden pending = Proposed(std::nullopt, {{grasp_, kNotOfOracle}, {slide_, kOnlyOracle}});
-  const auto given = [&](const std::vector<std::string>& reasons) {
-    Golden golden = pending;
-    return GiveReasons(reasons, golden);
+TEST(PendingGolden, RenewsTheOracleLineWhenItsCountIsNotTrueAnyMore) {
+  Golden old = Old();
+  const auto derived = [&](const OracleComparison& truth) {
+    return PendingGolden(old, kShiftedWithoutFixation, "slide/x", "g", truth).derived;
   };
-  EXPECT_EQ(given({}), "the physical oracle objects to grasping(hand, cup), sliding(hand, cup)");
-  EXPECT_EQ(given({"sliding(hand, cup): why"}),
-            "the physical oracle objects to grasping(hand, cup)");
-  EXPECT_EQ(given({"sliding(hand, cup): why", "the others: so"}), "");
-  EXPECT_EQ(
-      given({"sliding(hand, mug): why"}),
-      "--against-the-oracle: the physical oracle does not object to sliding(hand, mug), but to "
-      "grasping(hand, cup), sliding(hand, cup)");
-  EXPECT_EQ(given({"a", "b"}), "--against-the-oracle gives two reasons for the same events");
-  EXPECT_EQ(given({" "}), "--against-the-oracle needs a reason");
-  Golden without = Proposed(std::nullopt, {});
-  EXPECT_EQ(GiveReasons({"why"}, without),
-            "--against-the-oracle: the physical oracle objects to nothing here");
-  EXPECT_EQ(Summary(Objections(std::nullopt, pending)), "the physical oracle objects to 2 events");
+  const OracleComparison agrees{.judged = 0}, one_differs{.judged = 1};
+  const std::string one =
+      "oracle: 0 of 1 events follow from the definitions of docs/events.md, "
+      "boundaries at most 0.0 ms off";
+  EXPECT_EQ(derived(agrees), Lines({"from the script"})) << "no line says that all follow";
+  EXPECT_EQ(derived(one_differs), Lines({"from the script", one}));
+  old.derived.push_back("oracle: 4 of 5 events follow from what was known then");
+  EXPECT_EQ(derived(one_differs), old.derived) << "one differs, as the golden says";
+  EXPECT_EQ(derived(agrees).size(), 2u);
+  EXPECT_NE(derived(agrees), old.derived);
 }
 
 TEST(Fingerprint, TellsEveryTickAndEveryOldGoldenApart) {
-  const Derivation none;
-  const Golden pending = PendingGolden(Old(), kShiftedWithoutFixation, "slide/x", "g", none);
+  const OracleComparison agrees;
+  const Golden pending = PendingGolden(Old(), kShiftedWithoutFixation, "slide/x", "g", agrees);
   EXPECT_EQ(Fingerprint(pending).size(), 8u);
   EXPECT_EQ(Fingerprint(pending), Fingerprint(ReadGolden("x", WriteGolden(pending)).value.value()));
   auto a_tick_later = kShiftedWithoutFixation;
   a_tick_later.events[0].interval.begin += 1;
-  EXPECT_NE(Fingerprint(PendingGolden(Old(), a_tick_later, "slide/x", "g", none)),
+  EXPECT_NE(Fingerprint(PendingGolden(Old(), a_tick_later, "slide/x", "g", agrees)),
             Fingerprint(pending));
-  EXPECT_NE(Fingerprint(PendingGolden(std::nullopt, kShiftedWithoutFixation, "slide/x", "g", none)),
-            Fingerprint(pending));
+  EXPECT_NE(
+      Fingerprint(PendingGolden(std::nullopt, kShiftedWithoutFixation, "slide/x", "g", agrees)),
+      Fingerprint(pending));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <numbers>
 
+#include "harness/cast.h"
 #include "harness/read_scenario.h"
 #include "physics/geometry.h"
 #include "tests/harness/scenario_fixture.h"

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/cast.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/library_paths.h"
+#include "harness/project_library.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::harness {

@@ -67,12 +67,5 @@ TEST_F(CheckRecordsTest, CostsComeBack) {
   EXPECT_EQ(records_.ReadCosts(), costs);
 }
 
-TEST(ContentHash, TellsBytesApart) {
-  EXPECT_EQ(ContentHash(""), "cbf29ce484222325");  // FNV-1a's published test vectors
-  EXPECT_EQ(ContentHash("foobar"), "85944171f73967e8");
-  EXPECT_EQ(FileHash("/no/such/file"), "none");
-  EXPECT_EQ(ProgramHash(), ProgramHash());
-}
-
 }  // namespace
 }  // namespace prehend::harness

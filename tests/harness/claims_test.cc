@@ -81,7 +81,7 @@ TEST(Claims, AreWhatComesOutOfTheScenarios) {
     const grammar::Tick tolerance =
         DefaultTolerance(play.scenario.world.rate_hz, play.scenario.world.sensing_hz);
     const grammar::Timeline truth =
-        Only(TrueTimeline(play.scenario, play.run.recording, play.end()), row.event);
+        Only(TrueTimeline(play.scenario.scene, play.run.recording, play.end()), row.event);
     const grammar::Timeline ours = Only(play.run.timeline, row.event);
     const grammar::Timeline theirs = Only(play.WatchedBy(original), row.event);
     EXPECT_EQ(DescribeDisagreement(Agree(truth, ours, tolerance), tolerance), "");

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "grammar/monitor.h"
+#include "grammar/name_events.h"
 #include "tests/harness/explain_stage.h"
 
 namespace prehend::harness::explain::testing {

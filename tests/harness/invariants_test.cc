@@ -131,19 +131,6 @@ TEST(Invariants, AHeldFixtureNeedsNoPhase) {
   EXPECT_TRUE(CheckInvariants(timeline, facts).empty());
 }
 
-TEST(Invariants, WatchingMustChangeNothing) {
-  EXPECT_TRUE(CheckSameTimeline(PickAndPlace(), 1, PickAndPlace(), 1).empty());
-  EXPECT_EQ(CheckSameTimeline(PickAndPlace(), 1, PickAndPlace(), 2).size(), 1u);
-  Timeline other = PickAndPlace();
-  other.events.pop_back();
-  const Violations violations = CheckSameTimeline(PickAndPlace(), 1, other, 1);
-  ASSERT_EQ(violations.size(), 1u);
-  EXPECT_EQ(violations[0].what, "supported_by(cup, table) differs with and without recording");
-  other = PickAndPlace();
-  other.events[3].decided += 1;
-  EXPECT_EQ(CheckSameTimeline(PickAndPlace(), 1, other, 1).size(), 1u);
-}
-
 TEST(IntervalSet, UnionWithoutCovers) {
   const IntervalSet set = Union({{10, 20}, {0, 5}, {20, 30}, {3, 4}, {7, 7}});
   EXPECT_EQ(set, (IntervalSet{{0, 5}, {10, 30}}));

@@ -14,7 +14,7 @@ TEST(Junit, HasEveryKindOfOutcome) {
   verdicts[0].seconds = 0.25;
   verdicts[1] = {.scenario = "slide/bad", .shows = {}, .verdict = Verdict::kFailed};
   verdicts[1].exit_code = ExitCode::kDiffers;
-  verdicts[1].reason = "\"1\" < 2 & 3\x1b";
+  verdicts[1].reason = "\"1\" < 2 & 3\x1b\xff";
   verdicts[1].details = "shifted a -> b\n";
   verdicts[1].command = "prehend check slide/bad";
   verdicts[1].seconds = 1;
@@ -30,7 +30,7 @@ TEST(Junit, HasEveryKindOfOutcome) {
       <system-out>headroom: 1 of 2 ms</system-out>
     </testcase>
     <testcase classname="slide" name="bad" time="1.000">
-      <failure type="failed" message="&quot;1&quot; &lt; 2 &amp; 3; first: shifted a -&gt; b">shifted a -&gt; b
+      <failure type="failed" message="&quot;1&quot; &lt; 2 &amp; 3��; first: shifted a -> b">shifted a -&gt; b
 again: prehend check slide/bad
 </failure>
     </testcase>
@@ -39,7 +39,7 @@ again: prehend check slide/bad
 </error>
     </testcase>
     <testcase classname="slide" name="old" time="0.000">
-      <skipped message="nothing changed since it passed"/>
+      <skipped message="nothing changed since it passed" />
     </testcase>
   </testsuite>
 </testsuites>
@@ -63,7 +63,7 @@ TEST(Junit, TheMessageTellsTheFirstDivergence) {
   EXPECT_NE(JunitXml({verdict}).find(
                 "message=\"2 of 3 events differ from the golden; first: changed supported_by(cup, "
                 "table): expected 0.5000..1.0000 s, recognised 0.5000..1.0000 s, begin +12.5 ms, "
-                "end +0.0 ms, end: of its own -&gt; of the episode\""),
+                "end +0.0 ms, end: of its own -> of the episode\""),
             std::string::npos)
       << JunitXml({verdict});
   verdict.differences = {{{"kind", "extra"},

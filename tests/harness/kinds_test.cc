@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/cast.h"
 #include "harness/read_scenario.h"
 #include "tests/harness/scenario_fixture.h"
 

@@ -8,6 +8,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "harness/project_library.h"
+#include "harness/project_paths.h"
+
 namespace prehend::harness {
 namespace {
 

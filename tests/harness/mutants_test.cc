@@ -10,6 +10,7 @@
 
 #include "harness/compare.h"
 #include "harness/golden_files.h"
+#include "harness/project_paths.h"
 #include "harness/text_file.h"
 #include "tests/harness/played_scenario.h"
 

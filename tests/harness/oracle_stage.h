@@ -53,17 +53,17 @@ class Stage {
 
   int AddBody(const std::string& name, const Eigen::Vector3d& size_m, const Eigen::Vector3d& p_m,
               bool fixed) {
-    scenario_.scene.bodies.push_back({.name = name,
-                                      .shapes = {{physics::Box{size_m}, {}}},
-                                      .fixed = fixed,
-                                      .mass_kg = fixed ? 0.0 : 0.2,
-                                      .X_WB = {p_m, Eigen::Quaterniond::Identity()}});
-    now_.bodies.push_back({.X_WB = scenario_.scene.bodies.back().X_WB});
+    scene_.bodies.push_back({.name = name,
+                             .shapes = {{physics::Box{size_m}, {}}},
+                             .fixed = fixed,
+                             .mass_kg = fixed ? 0.0 : 0.2,
+                             .X_WB = {p_m, Eigen::Quaterniond::Identity()}});
+    now_.bodies.push_back({.X_WB = scene_.bodies.back().X_WB});
     return static_cast<int>(now_.bodies.size()) - 1;
   }
 
   int AddHand(const std::string& name, const Eigen::Vector3d& p_m) {
-    scenario_.scene.hands.push_back({.name = name, .model = SmallHand()});
+    scene_.hands.push_back({.name = name, .model = SmallHand()});
     physics::HandState state;
     state.palm.X_WB.p_m = p_m;
     state.X_WL.resize(2);
@@ -109,7 +109,7 @@ class Stage {
   grammar::Tick now() const {
     return static_cast<grammar::Tick>(frames_.size()) * ticks_per_frame_;
   }
-  grammar::Timeline Truth() const { return TrueTimeline(scenario_, frames_, now()); }
+  grammar::Timeline Truth() const { return TrueTimeline(scene_, frames_, now()); }
 
   int table = 0, cup = 0;
   bool cup_on_table = true;
@@ -137,7 +137,7 @@ class Stage {
   }
 
   int ticks_per_frame_;
-  Scenario scenario_;
+  physics::Scene scene_;
   physics::Snapshot now_;
   std::vector<physics::Snapshot> frames_;
 };

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a good scenario becomes: bodies, hands, script, cast. What is wrong with bad ones:
-// scenario_errors_test.cc.
+// tests/harness/scenario_errors_test.cc.
 #include "harness/read_scenario.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "harness/cast.h"
+#include "harness/limits.h"
 #include "harness/scenario_fields.h"
 #include "tests/harness/scenario_fixture.h"
 

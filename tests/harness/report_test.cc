@@ -40,8 +40,9 @@ TEST(Report, HasVerdictsTimelinesPicturesDifferencesAndCommands) {
   const std::string html = ReportHtml(Verdicts());
   for (const char* part :
        {"1 passed", "1 failed", "1 pending", "href=\"#slide/good\"", "<section id=\"slide/bad\">",
-        "src=\"pictures/slide/good.png\"", "<svg></svg>", "shifted sliding(hand, cup)",
-        "prehend check slide/bad", "it &lt;slides&gt;", "headroom: 1 of 2 ms", "no golden yet"}) {
+        "src=\"pictures/slide/good.png\"", "<svg/>", "<i style=\"background:#",
+        "shifted sliding(hand, cup)", "prehend check slide/bad", "it &lt;slides&gt;",
+        "headroom: 1 of 2 ms", "no golden yet"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(html.find("<slides>"), std::string::npos);
@@ -67,6 +68,7 @@ TEST(TimelineSvg, DrawsTheGoldenAboveWhatWasRecognised) {
 
 TEST(TimelineSvg, AnEmptyTimelineIsAPictureToo) {
   const std::string svg = TimelineSvg(Comparison{}, 0);
+  EXPECT_TRUE(svg.starts_with("<svg class=\"timeline\"")) << svg;
   EXPECT_EQ(CountOf(svg, "</svg>"), 1);
   EXPECT_EQ(CountOf(svg, "<rect"), 0);
 }

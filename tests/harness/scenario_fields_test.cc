@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/library_paths.h"
+#include "harness/project_library.h"
 #include "harness/text_file.h"
 #include "tests/harness/python_validator.h"
 #include "tests/harness/scenario_fixture.h"

@@ -6,6 +6,8 @@
 
 #include <utility>
 
+#include "harness/cast.h"
+
 namespace prehend::harness {
 namespace {
 

@@ -89,5 +89,14 @@ TEST_F(TextFile, RefusesAnUnreadableFile) {
   EXPECT_EQ(complaint, "cannot be read: Permission denied");
 }
 
+TEST(ReadableText, KeepsTextAndReplacesWhatIsNone) {
+  EXPECT_EQ(ReadableText("tab\tand\nline, \u00e9 \U0001F590"), "tab\tand\nline, \u00e9 \U0001F590");
+  EXPECT_EQ(ReadableText(""), "");
+  EXPECT_EQ(ReadableText("\x1b[31m\r\n"), "\uFFFD[31m\uFFFD\n");
+  EXPECT_EQ(ReadableText(std::string_view("a\0b", 3)), "a\uFFFDb");
+  EXPECT_EQ(ReadableText("\xa9 tail of a cut \u00e9, head of one: \xc3"),
+            "\uFFFD tail of a cut \u00e9, head of one: \uFFFD");
+}
+
 }  // namespace
 }  // namespace prehend::harness

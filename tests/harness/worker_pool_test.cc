@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -81,8 +82,8 @@ TEST(WorkerPool, WhatAJobSaysBeforeItCrashesIsKept) {
     return Good();
   };
   const auto results = RunInWorkers({talks}, {});
-  EXPECT_EQ(results[0].reason, "gave up (abort, signal 6)");
-  EXPECT_EQ(results[0].said, "the sky is falling\n");
+  EXPECT_EQ(results[0].reason, "aborted (signal 6)");
+  EXPECT_EQ(results[0].stderr_tail, "the sky is falling\n");
 }
 
 std::string NameOf(const testing::TestParamInfo<Misbehaviour>& row) { return row.param.name; }
@@ -91,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
     Table, WorkerPoolMisbehaviour,
     testing::Values(
         Misbehaviour{"killed", [] { return raise(SIGKILL), Good(); },
-                     "was killed (signal 9: by somebody, or by the system for want of memory)"},
+                     "was killed (signal 9: by a user, or by the system because memory ran out)"},
         Misbehaviour{"recurses", [] { return raise(SIGSEGV), Good(); },
                      "crashed (segmentation fault, signal 11)"},
         Misbehaviour{"has_another_signal", [] { return raise(SIGUSR1), Good(); },
@@ -103,52 +104,66 @@ INSTANTIATE_TEST_SUITE_P(
     NameOf);
 
 #ifndef __SANITIZE_ADDRESS__  // its shadow memory alone is above any limit
+WorkerResult RunWithin(std::uint64_t limit_mb, const WorkerJob& job) {
+  const WorkerLimits limits{
+      .jobs = 1, .time_limit_s = 10, .memory_limit_bytes = limit_mb * kMegabyte};
+  return RunInWorkers({job}, limits).front();
+}
+
 TEST(WorkerPool, MemoryHasALimit) {
   const WorkerJob greedy = [] { return std::string(1'000'000'000, 'x'); };
   const auto results = RunInWorkers(
       {greedy, Good}, {.jobs = 1, .time_limit_s = 10, .memory_limit_bytes = 500'000'000});
   EXPECT_EQ(results[0].reason, "it needs more memory than 500 MB");
+  EXPECT_EQ(results[0].stderr_tail, "");
   EXPECT_TRUE(results[1].finished);
 }
 
-std::string EndOf(const WorkerJob& job, std::uint64_t limit_mb) {
-  const WorkerLimits limits{
-      .jobs = 1, .time_limit_s = 10, .memory_limit_bytes = limit_mb * kMegabyte};
-  const WorkerResult result = RunInWorkers({job}, limits).front();
-  EXPECT_EQ(result.said, "");
-  return result.finished ? "finished" : result.reason;
+TEST(WorkerPool, TheLimitHoldsWhereNoExceptionMayPass) {
+  const auto must_not_throw = []() noexcept { return std::string(1'000'000'000, 'x'); };
+  EXPECT_EQ(RunWithin(500, must_not_throw).reason, "it needs more memory than 500 MB");
 }
 
-// Libraries in C do not look, or abort; C++ cannot throw out of what must not throw.
-TEST(WorkerPool, WhoeverIsRefusedMemoryTheReasonIsTheSame) {
-  const char* const reason = "it needs more memory than 500 MB";
-  constexpr std::size_t kTooMuch = 1'000'000'000;
-  const auto use = [](void* memory) {
-    static_cast<volatile char*>(memory)[0] = 1;  // a crash for who did not look
-    std::free(memory);
+/// Takes memory as a library in C does, until there is none. Uses it, so that it counts.
+void* TakeAllMemory() {
+  constexpr std::size_t kPiece_bytes = 1'000'000;
+  for (;;) {
+    void* const piece = std::malloc(kPiece_bytes);
+    if (piece == nullptr) return piece;
+    std::memset(piece, 1, kPiece_bytes);
+  }
+}
+
+TEST(WorkerPool, ALibraryThatIsRefusedMemoryEndsNearTheLimit) {
+  const WorkerJob does_not_look = [] {
+    *static_cast<volatile char*>(TakeAllMemory()) = 1;
     return Good();
   };
-  EXPECT_EQ(EndOf([&] { return use(std::malloc(kTooMuch)); }, 500), reason);
-  EXPECT_EQ(EndOf([&] { return use(std::calloc(kTooMuch, 1)); }, 500), reason);
-  EXPECT_EQ(EndOf([&] { return use(std::realloc(std::malloc(1), kTooMuch)); }, 500), reason);
-  EXPECT_EQ(EndOf([&] { return use(std::aligned_alloc(64, kTooMuch - kTooMuch % 64)); }, 500),
-            reason);
-  EXPECT_EQ(EndOf(
-                [&] {
-                  void* memory = nullptr;
-                  return posix_memalign(&memory, 64, kTooMuch) == 0 ? use(memory) : Good();
-                },
-                500),
-            reason);
-  const auto must_not_throw = []() noexcept { return std::string(kTooMuch, 'x'); };
-  EXPECT_EQ(EndOf(must_not_throw, 500), reason);
-  EXPECT_EQ(EndOf([&] { return use(std::malloc(1000)); }, 500), "finished");
+  const WorkerJob aborts = [] {
+    if (TakeAllMemory() == nullptr) std::abort();
+    return Good();
+  };
+  const WorkerJob exits = [] {
+    if (TakeAllMemory() == nullptr) _exit(9);
+    return Good();
+  };
+  const auto reason_is = [](const WorkerJob& job, const std::string& end) {
+    const WorkerResult result = RunWithin(500, job);
+    const std::int64_t peak_mb = result.peak_memory_kib * 1024 / 1'000'000;
+    EXPECT_GT(peak_mb, 400);
+    EXPECT_LT(peak_mb, 600);
+    EXPECT_EQ(result.reason,
+              end + " at " + std::to_string(peak_mb) + " MB of memory, limit 500 MB");
+  };
+  reason_is(does_not_look, "crashed (segmentation fault, signal 11)");
+  reason_is(aborts, "aborted (signal 6)");
+  reason_is(exits, "exit status 9");
 }
 
 TEST(WorkerPool, WhatHasTooLittleMemoryToStartIsTold) {
   const std::vector<char> what_this_process_has_already(50'000'000, 'x');
   ASSERT_EQ(what_this_process_has_already.back(), 'x');
-  const std::string reason = EndOf(Good, 1);
+  const std::string reason = RunWithin(1, Good).reason;
   EXPECT_TRUE(reason.starts_with("1 MB of memory are too little for it to start, which takes "))
       << reason;
 }

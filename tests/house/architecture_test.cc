@@ -50,6 +50,8 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"JSON", std::regex("nlohmann/.*"), std::regex("(harness|tests|bench)/.*")},
       {"fmt", std::regex("fmt/.*"), std::regex("(harness|tests|bench)/.*")},
       {"CLI11", std::regex("CLI/.*"), std::regex("harness/.*")},
+      {"pugixml", std::regex("pugixml\\.hpp"), std::regex("(harness|tests)/.*")},
+      {"xxHash", std::regex("xxhash\\.h"), std::regex("harness/(.*/)?content_hash\\.cc")},
       {"OpenGL and OSMesa", std::regex("(GL/.*|GLES.*|EGL/.*)"), std::regex("render/.*")},
       {"libpng", std::regex("png\\.h"), std::regex("(render|tests/render)/.*")},
       {"stb", std::regex("stb/.*"), std::regex("render/.*")},

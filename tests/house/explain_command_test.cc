@@ -99,10 +99,13 @@ TEST(TracksCommand, WritesAWholeFileOrNothing) {
   const Said some = Prehend({"tracks", "milk_carton_wrap", "--only", "grasping", "--json"});
   ASSERT_EQ(some.exit_code, 0) << some.err;
   EXPECT_EQ(nlohmann::json::parse(some.out)["tracks"][0]["name"], "grasping(right_hand, milk)");
+  EXPECT_EQ(Prehend({"tracks", "milk_carton_wrap", "--only", "grasping", "--json", "-o", "-"}).out,
+            some.out);
 
   for (const std::vector<std::string>& slip :
        std::vector<std::vector<std::string>>{{"-o", "no/such/folder/milk.csv"},
                                              {"-o", folder.string() + "/milk.txt"},
+                                             {"-o", "/dev/stdout"},
                                              {"--only", "graping"},
                                              {"-o", "/x.csv", "--json"}}) {
     std::vector<std::string> arguments = {"tracks", "milk_carton_wrap"};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What bounces, against free flight: physics/bullet_bounces.h, bullet_impacts.h,
-// touching_pairs.h.
+// What bounces, against free flight: physics/bullet_bounces.h, physics/bullet_impacts.h,
+// physics/touching_pairs.h.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is Box2D's own: what it lacks and was given, tasks of the gripper, determinism, runs that go
-// wrong. What every engine does is in world_test.cc and joint_test.cc.
+// wrong. What every engine does is in tests/physics/world_test.cc and tests/physics/joint_test.cc.
 #include "physics/box2d_world.h"
 
 #include <gtest/gtest.h>

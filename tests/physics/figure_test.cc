@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figures: mixing, and going through them in time.
+
 #include "physics/figure.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "physics/figure_track.h"
 
 namespace prehend::physics {
 namespace {

@@ -21,8 +21,8 @@ TargetState Truth(std::int64_t tick) {
   return truth;
 }
 
-std::vector<TargetState> Follow(const Tracking& tracking, std::uint64_t seed = 7, int ticks = 960,
-                                bool rest = false) {
+std::vector<TargetState> Follow(const TrackerSettings& tracking, std::uint64_t seed = 7,
+                                int ticks = 960, bool rest = false) {
   Tracker tracker(tracking, kRate_hz, seed, Truth(0));
   std::vector<TargetState> followed;
   for (int tick = 1; tick <= ticks; ++tick)
@@ -90,7 +90,7 @@ TEST(TrackingTest, TremorHasItsAmplitudeAndFrequency) {
 struct Losses {
   double share = 0, run = 0;
 };
-Losses LossesOf(const Tracking& tracking) {
+Losses LossesOf(const TrackerSettings& tracking) {
   Tracker tracker(tracking, kRate_hz, 3, {});
   int lost = 0, runs = 0, looks = 48000;
   double before = 0;
@@ -119,8 +119,8 @@ TEST(TrackingTest, LossesHaveTheirShareAndLength) {
 }
 
 TEST(TrackingTest, LossesLeaveTheNoiseOfOtherLooksAlone) {
-  const Tracking noisy{.tracker_hz = kRate_hz, .jitter_mm = 2};
-  Tracking lossy = noisy;
+  const TrackerSettings noisy{.tracker_hz = kRate_hz, .jitter_mm = 2};
+  TrackerSettings lossy = noisy;
   lossy.dropped_share = 0.5;
   const auto all = Follow(noisy, 7, 200, true), some = Follow(lossy, 7, 200, true);
   int same = 0;
@@ -131,7 +131,7 @@ TEST(TrackingTest, LossesLeaveTheNoiseOfOtherLooksAlone) {
 }
 
 TEST(TrackingTest, TheSeedDecides) {
-  const Tracking noisy{.jitter_mm = 2};
+  const TrackerSettings noisy{.jitter_mm = 2};
   EXPECT_EQ(Follow(noisy, 1)[500].X_WH.p_m, Follow(noisy, 1)[500].X_WH.p_m);
   EXPECT_NE(Follow(noisy, 1)[500].X_WH.p_m, Follow(noisy, 2)[500].X_WH.p_m);
 }

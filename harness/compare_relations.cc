@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// See changed_relations.h. Boundaries jitter by a frame or two, and with them relations like
-// `meets`; so a relation has changed only when some boundary of one event went past one of the
-// other by more than the tolerance. Tested by tests/harness/compare_test.cc
-#include "harness/changed_relations.h"
-
+// How events lie to each other, where that differs from the golden. Boundaries jitter by a frame or
+// two, and with them relations like `meets`; so a relation has changed only if some boundary of one
+// event went past one of the other by more than the tolerance. Tested by
+// tests/harness/compare_test.cc
 #include <algorithm>
 #include <cstdlib>
 
 #include "grammar/allen.h"
+#include "harness/compare.h"
 #include "harness/event_text.h"
 
 namespace prehend::harness {
@@ -27,12 +27,12 @@ std::vector<std::string> Entities(const NamedEvent& event) {
   return entities;
 }
 
-/// Both sides are there, and in one piece each.
+/// Both sides exist, each in one piece.
 bool IsWholePair(const Pairing& pairing) {
   return pairing.expected && pairing.actual && pairing.pieces.empty();
 }
 
-/// Whether the order of two boundaries is another one, and clearly so in one of the two timelines.
+/// Whether two boundaries changed their order, and lie clearly apart in one of the timelines.
 bool Swapped(Tick expected_gap, Tick actual_gap, Tick tolerance) {
   const auto sign = [](Tick gap) { return (gap > 0) - (gap < 0); };
   return sign(expected_gap) != sign(actual_gap) &&

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of the scenario format, one function per kind of entry. Each file NAME_fields.cc
+// declares the keys of its part; scenario_fields.cc puts them together.
+// Tested by tests/harness/scenario_fields_test.cc, abstract_entities_test.cc, vary_test.cc and
+// outcome_test.cc
+#pragma once
+
+#include <vector>
+
+#include "harness/complaints.h"
+#include "harness/format.h"
+#include "harness/scenario_entries.h"
+#include "harness/trials.h"
+
+namespace prehend::harness {
+
+// entity_fields.cc: shape, material, and what it hangs on.
+Format<EntityEntry> EntityFormat();
+
+// shape_fields.cc
+Format<physics::Box> BoxFormat();
+Format<physics::Sphere> SphereFormat();
+Format<physics::Cylinder> CylinderFormat();
+Format<physics::Capsule> CapsuleFormat();
+Format<physics::Tray> TrayFormat();
+Format<physics::Mug> MugFormat();
+Format<physics::Bowl> BowlFormat();
+Format<physics::Shelf> ShelfFormat();
+Format<physics::Hull> HullFormat();
+Format<GrainsEntry> GrainsFormat();
+Format<PartEntry> PartFormat();
+
+// abstract_fields.cc: what has a place but no matter.
+Format<RegionEntry> RegionFormat();
+Format<GazeTargetEntry> GazeTargetFormat();
+Format<CameraEntry> CameraFormat();
+Format<LightEntry> LightFormat();
+
+/// Complains about what only matter has: a mass, a surface, joints, something that it stands on.
+void CheckAbstract(const YamlNode& node, const EntityEntry& entity, Complaints& complaints);
+
+// actor_fields.cc
+Format<ActorEntry> ActorFormat();
+Format<physics::Eyes> EyesFormat();
+
+// step_fields.cc: each step is told by its action key.
+Format<StepEntry> StepFormat();
+
+// trial_fields.cc
+Format<VariationEntry> VariationFormat();
+Format<std::vector<ConditionEntry>> OutcomeFormat();
+
+}  // namespace prehend::harness
