@@ -11,7 +11,9 @@
 
 #include "grammar/allen.h"
 #include "grammar/diagnostic.h"
+#include "grammar/drawing.h"
 #include "grammar/event.h"
+#include "grammar/law.h"
 #include "grammar/quantity.h"
 #include "grammar/thresholds.h"
 
@@ -199,6 +201,7 @@ struct Rule {
   double slack = 0;      ///< in the signal's unit
   int motion = kNone;    ///< node: how fast it moves; kNone: as fast as the signal falls
   double speed = 0;      ///< in the unit of the motion
+  double onset = 0;      ///< likewise: from which on a movement begins
   double idle_s = -1;    ///< negative: pausing is allowed
   double back_s = 0;
   std::vector<int> outside;  ///< references
@@ -211,6 +214,7 @@ struct Rule {
   int confirmed_within = kNone;  ///< reference
   int style_role = kNone;
   std::vector<RuleAttribute> attributes;  ///< at most kMaxAttributes
+  Drawing drawing;
 
   std::vector<Reference> references;
   std::vector<int> anchors;  ///< nodes whose values are kept from where an interval begins
@@ -276,6 +280,7 @@ struct Program {
   std::vector<Named> named_classes;      ///< all but the built-in ones
   Diagnostics warnings;                  ///< what Compile() warned of
   std::vector<ProgramParam> params;
+  std::vector<Law> laws;  ///< in the order of the files
   std::vector<Threshold>
       thresholds;  ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
   bool asks_touches =

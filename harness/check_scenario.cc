@@ -9,6 +9,7 @@
 
 #include "harness/accept_golden.h"
 #include "harness/blame.h"
+#include "harness/cast.h"
 #include "harness/check_records.h"
 #include "harness/compare.h"
 #include "harness/cross_engine.h"
@@ -141,14 +142,22 @@ void JudgeInvariants(const PreparedRun& prepared, const RunResult& run, Scenario
   EpisodeFacts facts{.end = run.ticks + 1};
   facts.ticks_per_frame = DefaultTolerance(world.rate_hz, world.sensing_hz) / 2;
   facts.latency = LatencyByEvent(*prepared.program);
-  // A grammar without phases, as that of pouring, cannot cover a grasp with them.
-  if (facts.latency.contains("transporting")) facts.movable = MovableEntities(prepared.scenario);
   const Violations violations = CheckInvariants(run.timeline, facts);
   std::string details;
   for (const Violation& violation : violations) {
     details += "violated: " + Text(violation, run.timeline.ticks_per_second) + "\n";
   }
   if (!violations.empty()) Fail(verdict, ExitCode::kDiffers, "invariant violated", details);
+}
+
+/// The laws of the scenario's own grammar.
+void JudgeLaws(const PreparedRun& prepared, const RunResult& run, ScenarioVerdict& verdict) {
+  std::string details;
+  for (const grammar::LawViolation& violation :
+       CheckLaws(*prepared.program, MakeCast(prepared.scenario), run.timeline))
+    details += "violated: " + Text(violation, run.timeline.ticks_per_second) + "\n";
+  if (!details.empty())
+    Fail(verdict, ExitCode::kDiffers, "a law of the grammar is violated", details);
 }
 
 void LeavePending(const CheckRequest& request, const Golden& pending) {
@@ -316,6 +325,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
     return verdict;
   }
   JudgeInvariants(*prepared.value, run, verdict);
+  JudgeLaws(*prepared.value, run, verdict);
   JudgeAgainstGolden(request, *prepared.value, run, verdict);
   JudgeOtherEngine(request, *prepared.value, run, verdict);
   JudgePictures(request, scenario, verdict);

@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "harness/classes.h"
+#include "harness/default_grammar.h"
 #include "harness/episode_file.h"
 #include "harness/record.h"
 #include "harness/text_file.h"
@@ -46,7 +47,7 @@ struct MemberEntry {
 struct HeaderEntry {
   int version = kEpisodeVersion;
   std::string episode;
-  std::string grammar = "pick_and_place";
+  std::string grammar = kDefaultGrammar;
   std::int64_t ticks_per_second = 0;
   std::vector<std::string> styles;
   std::vector<Named<MemberEntry>> entities;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "grammar/frame.h"
+#include "harness/default_grammar.h"
 #include "harness/located.h"
 #include "harness/trials.h"
 #include "physics/scene.h"
@@ -47,7 +48,7 @@ struct Scenario {
   std::string file;   ///< where it was read from
   std::string skill;  ///< the folder below scenarios/, or ""
   std::string shows;
-  std::string grammar = "pick_and_place";
+  std::string grammar = kDefaultGrammar;
   std::vector<std::string> tags;
   WorldEntry world;
   physics::Scene scene;

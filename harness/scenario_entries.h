@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "harness/default_grammar.h"
 #include "harness/format.h"
 #include "harness/scenario.h"
 #include "physics/compounds.h"
@@ -288,7 +289,7 @@ struct ScenarioEntry {
   Where where;
   Located<std::string> name;
   std::string shows;
-  Located<std::string> grammar{"pick_and_place", {}};
+  Located<std::string> grammar{kDefaultGrammar, {}};
   std::vector<std::string> tags;
   WorldEntry world;
   std::vector<Named<EntityEntry>> entities;

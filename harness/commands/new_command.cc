@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "harness/commands/command.h"
+#include "harness/default_grammar.h"
 #include "harness/project_library.h"
 #include "harness/read_scenario.h"
 #include "harness/scenario_copy.h"
@@ -15,7 +16,7 @@
 namespace prehend::harness {
 namespace {
 
-constexpr const char* kDefaultSkill = "pick_and_place";
+constexpr const char* kDefaultSkill = kDefaultGrammar;
 
 constexpr const char* kTemplate = R"(# yaml-language-server: $schema=../scenario.schema.json
 # Every key is explained in docs/scenario-format.md. Units are the last word of a key; z is up.

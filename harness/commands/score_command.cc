@@ -11,6 +11,7 @@
 #include "grammar/program.h"
 #include "harness/commands/command.h"
 #include "harness/commands/number_in.h"
+#include "harness/default_grammar.h"
 #include "harness/judge_episode.h"
 #include "harness/load_grammar.h"
 #include "harness/oracle/oracle.h"
@@ -169,7 +170,7 @@ void Print(const std::vector<score::Score>& scores, double collar_s, std::ostrea
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   std::vector<std::string> grammars = ValuesOf(options, "--grammar");
-  if (grammars.empty()) grammars = {"pick_and_place", "original_2020"};
+  if (grammars.empty()) grammars = {kDefaultGrammar, "original_2020"};
   const std::vector<std::string> events = NamesIn(ValuesOf(options, "--events"));
   if (const std::string unknown = UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);

@@ -13,14 +13,16 @@
 #include "harness/prepare_run.h"
 #include "harness/run_scenario.h"
 #include "harness/sensing.h"
+#include "harness/speed/four_automata.h"
 #include "harness/speed/four_rules.h"
 #include "harness/speed/sleepers.h"
 #include "harness/speed/stopwatch.h"
+#include "harness/speed/worlds.h"
 
 namespace prehend::harness {
 namespace {
 
-constexpr double kFrameRate_hz = 240;
+constexpr double kFrameRate_hz = kWorldRate_hz;
 constexpr int kRuns = 5;
 constexpr std::size_t kKeptSnapshots = 100;  // of 5,000 bodies 0.6 MB each
 
@@ -56,7 +58,7 @@ class Measuring {
     warm_up = Frames(warm_up);
     return Watch(fmt::format("four rules, {} object{}, each used every {} s", objects,
                              objects == 1 ? "" : "s", period_s),
-                 "object-rule-frame", 1.0 * kFourRules * objects,
+                 "object-rule-frame", 1.0 * FourRules::kCount * objects,
                  MakeStations(objects, Frames(frames) + warm_up, period_s), warm_up);
   }
 
@@ -64,7 +66,7 @@ class Measuring {
   SpeedFigure Dense(int objects, int every) const {
     return Watch(fmt::format("four rules, {} objects, a fact of each changes every {} frames",
                              objects, every),
-                 "object-rule-frame", 1.0 * kFourRules * objects,
+                 "object-rule-frame", 1.0 * FourRules::kCount * objects,
                  MakeFlicker(objects, Frames(4000), objects / every, Flicker::kFact), 1);
   }
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/interval_set.h. Tested by tests/harness/invariants_test.cc
-#include "harness/interval_set.h"
+// See grammar/interval_set.h. Tested by tests/grammar/interval_set_test.cc
+#include "grammar/interval_set.h"
 
 #include <algorithm>
 
-namespace prehend::harness {
-
-using grammar::Interval;
+namespace prehend::grammar {
 
 IntervalSet Union(std::vector<Interval> intervals) {
   std::sort(intervals.begin(), intervals.end(),
@@ -36,6 +34,4 @@ IntervalSet Without(Interval whole, const IntervalSet& parts) {
   return left;
 }
 
-bool Covers(const IntervalSet& set, Interval interval) { return Without(interval, set).empty(); }
-
-}  // namespace prehend::harness
+}  // namespace prehend::grammar
