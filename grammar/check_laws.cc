@@ -7,12 +7,12 @@
 #include <map>
 #include <tuple>
 
-#include "grammar/interval_set.h"
+#include "grammar/base/interval_set.h"
 
 namespace prehend::grammar {
 namespace {
 
-/// Who plays the law's roles, kNobody where a call leaves the role open.
+/// Who plays the law's roles, kNoEntity where a call leaves the role open.
 using Players = std::array<int, kMaxRoles>;
 
 struct Stretch {
@@ -27,12 +27,12 @@ struct Occurrences {
   Stretches stretches;
 };
 
-constexpr Players kOpen = {kNobody, kNobody, kNobody, kNobody};
+constexpr Players kOpen = {kNoEntity, kNoEntity, kNoEntity, kNoEntity};
 
 /// No role is played by one in the first and by another one in the second.
 bool Agree(const Players& a, const Players& b) {
   for (std::size_t role = 0; role < a.size(); ++role) {
-    if (a[role] != kNobody && b[role] != kNobody && a[role] != b[role]) return false;
+    if (a[role] != kNoEntity && b[role] != kNoEntity && a[role] != b[role]) return false;
   }
   return true;
 }
@@ -41,10 +41,10 @@ bool Agree(const Players& a, const Players& b) {
 bool Distinct(const Players& a, const Players& b) {
   Players all = a;
   for (std::size_t role = 0; role < all.size(); ++role) {
-    if (all[role] == kNobody) all[role] = b[role];
+    if (all[role] == kNoEntity) all[role] = b[role];
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i] != kNobody && std::count(all.begin(), all.end(), all[i]) > 1) return false;
+    if (all[i] != kNoEntity && std::count(all.begin(), all.end(), all[i]) > 1) return false;
   }
   return true;
 }
@@ -53,11 +53,11 @@ bool Overlap(const Interval& a, const Interval& b) { return a.begin < b.end && b
 
 class Checker {
  public:
-  Checker(const Program& program, const Cast& cast, const Timeline& timeline)
-      : program_(program), cast_(cast) {
+  Checker(const Program& program, const EntityTable& entity_table, const Timeline& timeline)
+      : program_(program), entity_table_(entity_table) {
     std::map<std::string, int, std::less<>> entities;
-    for (std::size_t i = 0; i < cast.entities.size(); ++i)
-      entities.emplace(cast.entities[i].name, static_cast<int>(i));
+    for (std::size_t i = 0; i < entity_table.entities.size(); ++i)
+      entities.emplace(entity_table.entities[i].name, static_cast<int>(i));
     for (const NamedEvent& event : timeline.events) {
       Happened happened{.interval = event.interval, .roles = kOpen};
       for (std::size_t i = 0; i < std::min(event.roles.size(), kOpen.size()); ++i) {
@@ -113,7 +113,7 @@ class Checker {
   }
 
   Stretches StretchesOf(const LawCall& call) const {
-    const Rule& rule = program_.events[call.rule];
+    const Rule& rule = program_.rules[call.rule];
     const auto found = happened_.find(rule.name);
     if (found == happened_.end()) return {};
     Stretches stretches;
@@ -138,9 +138,9 @@ class Checker {
   }
 
   bool IsA(int entity, const std::string& class_name) const {
-    if (entity == kNobody) return false;
+    if (entity == kNoEntity) return false;
     const std::vector<std::string>& classes =
-        cast_.entities[static_cast<std::size_t>(entity)].classes;
+        entity_table_.entities[static_cast<std::size_t>(entity)].classes;
     return std::find(classes.begin(), classes.end(), class_name) != classes.end();
   }
 
@@ -217,13 +217,14 @@ class Checker {
 
   /// "supported_by(milk, any)"
   std::string Text(const LawCall& call, const Players& players) const {
-    std::string text = program_.events[call.rule].name + "(";
+    std::string text = program_.rules[call.rule].name + "(";
     for (std::size_t i = 0; i < call.players.size(); ++i) {
       if (i > 0) text += ", ";
       const LawCall::Player& player = call.players[i];
-      const int entity = player.role < 0 ? kNobody : players[static_cast<std::size_t>(player.role)];
-      if (entity != kNobody) {
-        text += cast_.entities[static_cast<std::size_t>(entity)].name;
+      const int entity =
+          player.role < 0 ? kNoEntity : players[static_cast<std::size_t>(player.role)];
+      if (entity != kNoEntity) {
+        text += entity_table_.entities[static_cast<std::size_t>(entity)].name;
       } else {
         text += player.any_text;
       }
@@ -232,7 +233,7 @@ class Checker {
   }
 
   const Program& program_;
-  const Cast& cast_;
+  const EntityTable& entity_table_;
   std::map<std::string, std::vector<Happened>, std::less<>> happened_;  // by event
   const Law* law_ = nullptr;
   std::vector<LawViolation> violations_;
@@ -240,9 +241,9 @@ class Checker {
 
 }  // namespace
 
-std::vector<LawViolation> CheckLaws(const Program& program, const Cast& cast,
+std::vector<LawViolation> CheckLaws(const Program& program, const EntityTable& entity_table,
                                     const Timeline& timeline) {
-  return Checker(program, cast, timeline).Run();
+  return Checker(program, entity_table, timeline).Run();
 }
 
 }  // namespace prehend::grammar

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "grammar/program.h"
-#include "grammar/timeline.h"
+#include "grammar/base/timeline.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar {
 
@@ -19,9 +19,9 @@ struct LawViolation {
 };
 
 /// Where the events of one episode break laws of the program: in the order of the laws, then of
-/// time. The cast says of what classes the entities are. Time grows with the square of the number
-/// of events that a law names.
-std::vector<LawViolation> CheckLaws(const Program& program, const Cast& cast,
+/// time. The entity table says of what classes the entities are. Time grows with the square of the
+/// number of events that a law names.
+std::vector<LawViolation> CheckLaws(const Program& program, const EntityTable& entity_table,
                                     const Timeline& timeline);
 
 }  // namespace prehend::grammar

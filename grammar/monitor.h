@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "grammar/compile.h"
-#include "grammar/event.h"
-#include "grammar/frame.h"
+#include "grammar/base/event.h"
+#include "grammar/base/frame.h"
+#include "grammar/compile/compile.h"
 
 namespace prehend::grammar {
 
@@ -17,12 +17,12 @@ namespace prehend::grammar {
 class Monitor {
  public:
   /// Errors (e.g. more bindings than the limit) are reported by error().
-  Monitor(std::shared_ptr<const Program> program, Cast cast);
+  Monitor(std::shared_ptr<const Program> program, EntityTable entity_table);
   ~Monitor();
   Monitor(Monitor&&) noexcept;
   Monitor& operator=(Monitor&&) noexcept;
 
-  /// Empty, or why this program can't watch this cast.
+  /// Empty, or why this program can't watch this entity_table.
   const std::string& error() const;
 
   /// Looks at one frame and appends the events that became certain, ordered by (decided, begin,
@@ -36,7 +36,7 @@ class Monitor {
   void Finish(Tick end, std::vector<Event>& out);
 
   /// Bindings that take memory now, of all rules.
-  int lanes_in_use() const;
+  int instances_in_use() const;
 
  private:
   struct State;

@@ -2,17 +2,17 @@
 // The physical oracle: what truly happened in a recorded run, straight from the definitions in
 // docs/events.md. It looks at the complete recording, past and future, and shares nothing with the
 // grammar engine, its language or the sensing: goldens and grammars are judged by it, so it has to
-// be able to disagree with them. Tested by tests/harness/oracle_test.cc
+// be able to disagree with them. Tested by tests/harness/oracle/oracle_test.cc
 #pragma once
 
 #include <span>
 #include <string_view>
 
-#include "grammar/frame.h"
-#include "grammar/timeline.h"
+#include "grammar/base/frame.h"
+#include "grammar/base/timeline.h"
 #include "harness/oracle/settings.h"
-#include "physics/scene.h"
-#include "physics/snapshot.h"
+#include "physics/scene/scene.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::harness {
 

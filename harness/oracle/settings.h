@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers in the definitions of docs/events.md. Tested by tests/harness/oracle_test.cc
+// The numbers in the definitions of docs/events.md. Tested by tests/harness/oracle/oracle_test.cc
 #pragma once
 
 namespace prehend::harness {

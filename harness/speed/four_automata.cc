@@ -43,7 +43,7 @@ struct Automaton {
     if (stands && !supported) support_begin = now;
     if (supported && !stands && now - support_begin >= kSupportTicks) {
       support_ends = true;
-      out.Add(FourRules::kSupported, kNobody, object, {support_begin, now});
+      out.Add(FourRules::kSupported, kNoEntity, object, {support_begin, now});
     }
     supported = stands;
 
@@ -74,19 +74,19 @@ struct Automaton {
   void Finish(int hand, int object, Tick end, Recognised& out) const {
     if (grasping) out.Add(FourRules::kGrasping, hand, object, {grasp_begin, end});
     if (supported && end - support_begin >= kSupportTicks)
-      out.Add(FourRules::kSupported, kNobody, object, {support_begin, end});
+      out.Add(FourRules::kSupported, kNoEntity, object, {support_begin, end});
     if (waiting && end - touch_begin >= kUnansweredTicks)
       out.Add(FourRules::kUnanswered, hand, object, {touch_begin, end});
     if (lifting) out.Add(FourRules::kPickingUp, hand, object, {lift_begin, end});
   }
 
-  static constexpr int kNobody = grammar::kNobody;
+  static constexpr int kNoEntity = grammar::kNoEntity;
 };
 
 }  // namespace
 
 Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
-  const int objects = static_cast<int>(log.cast.entities.size() / 2);
+  const int objects = static_cast<int>(log.entity_table.entities.size() / 2);
   std::vector<Automaton> automata(static_cast<std::size_t>(objects));
   const auto of = [&](int entity) -> Automaton& {
     return automata[static_cast<std::size_t>(entity)];
@@ -103,7 +103,7 @@ Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
     const grammar::FrameChanges frame = log[i];
     for (const grammar::EntityChange& change : frame.entities)
       of(change.entity - objects).p_m = change.look.p_WB_m;
-    for (const grammar::HandLook& hand : frame.hands) of(hand.entity).trigger = hand.trigger;
+    for (const grammar::HandSample& hand : frame.hands) of(hand.entity).trigger = hand.trigger;
     for (const grammar::Touch& touch : frame.touches) {
       if (touch.a >= objects) {
         of(touch.a - objects).on_table = true;
@@ -113,8 +113,9 @@ Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
         of(touch.a).sets = touch.sensor_sets;
       }
     }
-    for (const grammar::Parting& parting : frame.partings) {
-      (parting.a >= objects ? of(parting.a - objects).on_table : of(parting.a).touched) = false;
+    for (const grammar::ContactEnd& contact_end : frame.contact_ends) {
+      (contact_end.a >= objects ? of(contact_end.a - objects).on_table
+                                : of(contact_end.a).touched) = false;
     }
     for (int k = 0; k < objects; ++k) of(k).Step(k, objects + k, frame.tick, recognised);
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The yardstick of the speed figures: the four rules as the automata that a careful programmer
-// would write by hand, looking at each object in each frame. Tested by tests/harness/speed_test.cc
+// would write by hand, looking at each object in each frame. Tested by
+// tests/harness/speed/workload_test.cc
 #pragma once
 
-#include "harness/speed/four_rules.h"
+#include "harness/speed/workload.h"
 
 namespace prehend::harness {
 

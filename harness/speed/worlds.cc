@@ -7,16 +7,17 @@
 namespace prehend::harness {
 namespace {
 
-grammar::Cast MakeCast(int objects) {
-  grammar::Cast cast{.ticks_per_second = kWorldRate_hz};
+grammar::EntityTable MakeEntityTable(int objects) {
+  grammar::EntityTable entity_table{.ticks_per_second = kWorldRate_hz};
   for (int i = 0; i < objects; ++i)
-    cast.entities.push_back({.name = "hand" + std::to_string(i), .classes = {"Hand", "Entity"}});
+    entity_table.entities.push_back(
+        {.name = "hand" + std::to_string(i), .classes = {"Hand", "Entity"}});
   for (int i = 0; i < objects; ++i) {
-    cast.entities.push_back(
+    entity_table.entities.push_back(
         {.name = "object" + std::to_string(i), .classes = {"Movable", "Thing", "Entity"}});
   }
-  cast.entities.push_back({.name = "table", .classes = {"Fixed", "Thing", "Entity"}});
-  return cast;
+  entity_table.entities.push_back({.name = "table", .classes = {"Fixed", "Thing", "Entity"}});
+  return entity_table;
 }
 
 // A hand that takes an object, holds it up and puts it back: when each step is due, in frames from
@@ -34,7 +35,7 @@ class Stations {
       : objects_(objects),
         period_(static_cast<int>(period_s * static_cast<double>(kWorldRate_hz))),
         random_(seed) {
-    log.cast = MakeCast(objects);
+    log.entity_table = MakeEntityTable(objects);
     visits_.resize(static_cast<std::size_t>(objects));
     // agenda_[frame % period]: who does something then; every visit is over before its period is.
     for (int i = 0; i < objects; ++i) {
@@ -86,7 +87,9 @@ class Stations {
   void Feel(int i, std::uint32_t sets) {
     log.Add(grammar::Touch{.a = i, .b = objects_ + i, .sensor_sets = sets});
   }
-  void Grip(int i, double trigger) { log.Add(grammar::HandLook{.entity = i, .trigger = trigger}); }
+  void Grip(int i, double trigger) {
+    log.Add(grammar::HandSample{.entity = i, .trigger = trigger});
+  }
 
   void Act(int i, int step) {
     const Visit& visit = visits_[static_cast<std::size_t>(i)];
@@ -96,12 +99,12 @@ class Stations {
       Feel(i, 7);
       Grip(i, 1);
     } else if (step == visit.lift) {
-      log.Add(grammar::Parting{objects_ + i, 2 * objects_});
+      log.Add(grammar::ContactEnd{objects_ + i, 2 * objects_});
     } else if (step == visit.release) {
       Feel(i, 1);
       Grip(i, 0);
     } else if (step == visit.leave) {
-      log.Add(grammar::Parting{i, objects_ + i});
+      log.Add(grammar::ContactEnd{i, objects_ + i});
     } else {
       const bool rises = step <= visit.lift + kRiseFrames;
       const int way = rises ? step - visit.lift : visit.lower + kRiseFrames - step;
@@ -134,13 +137,13 @@ ChangeLog MakeStations(int objects, int frames, double period_s, std::uint64_t s
 
 ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker) {
   ChangeLog log;
-  log.cast = MakeCast(objects);
+  log.entity_table = MakeEntityTable(objects);
   int next = 0;
   std::vector<bool> pressed(static_cast<std::size_t>(objects));
   for (int frame = 0; frame < frames; ++frame) {
     log.Begin(frame);
     for (int i = 0; frame == 0 && i < objects; ++i) {
-      log.Add(grammar::HandLook{.entity = i, .trigger = flicker == Flicker::kFact ? 0.0 : 1.0});
+      log.Add(grammar::HandSample{.entity = i, .trigger = flicker == Flicker::kFact ? 0.0 : 1.0});
       log.Add(grammar::Touch{.a = i, .b = objects + i, .sensor_sets = 1});
     }
     for (int k = 0; frame > 0 && k < per_frame; ++k, next = (next + 1) % objects) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Made-up worlds for the speed figures: what is new in each frame, and no physics.
-// Tested by tests/harness/speed_test.cc
+// Tested by tests/harness/speed/workload_test.cc
 #pragma once
 
 #include <cstdint>

@@ -19,9 +19,9 @@ NamedEvent OfHand(const std::string& event, Tick begin, Tick end) {
   return Event(event, {{"hand", "hand"}, {"object", "cup"}}, begin, end);
 }
 
-Cast SmallCast() {
+EntityTable SmallEntityTable() {
   const auto thing = [](const std::string& name, const std::string& moves) {
-    return CastMember{.name = name, .classes = {moves, "Thing", "Entity"}};
+    return EntityInfo{.name = name, .classes = {moves, "Thing", "Entity"}};
   };
   return {.entities = {{.name = "hand", .classes = {"Hand", "Entity"}},
                        {.name = "other_hand", .classes = {"Hand", "Entity"}},
@@ -34,7 +34,7 @@ Cast SmallCast() {
 std::string Violations(const Program& program, Timeline timeline) {
   Sort(timeline);
   std::string text;
-  for (const LawViolation& violation : CheckLaws(program, SmallCast(), timeline)) {
+  for (const LawViolation& violation : CheckLaws(program, SmallEntityTable(), timeline)) {
     text += violation.law->name + " " + std::to_string(violation.when.begin) + ".." +
             std::to_string(violation.when.end) + ": " + violation.what + "\n";
   }

@@ -36,9 +36,10 @@ std::vector<Row> Sorted(std::vector<Row> rows) {
 // A row "violated NAME" per law that is broken, drawn where it is.
 std::vector<Row> DrawViolations(const CorpusCase& drawn, const Program& program,
                                 const Timeline& timeline) {
-  const Cast cast{.ticks_per_second = kCorpusTicksPerSecond, .entities = drawn.cast};
+  const EntityTable entity_table{.ticks_per_second = kCorpusTicksPerSecond,
+                                 .entities = drawn.entity_table};
   Timeline violations{.ticks_per_second = kCorpusTicksPerSecond};
-  for (const LawViolation& violation : CheckLaws(program, cast, timeline))
+  for (const LawViolation& violation : CheckLaws(program, entity_table, timeline))
     violations.events.push_back(
         {.event = "violated " + violation.law->name, .interval = violation.when});
   std::vector<Row> rows = DrawEvents(drawn, violations);
@@ -56,7 +57,7 @@ int RunExamples(const std::string& page) {
     const CompileResult compiled = Compile({page, blocks[i]}, LibraryIncluder());
     EXPECT_TRUE(compiled.program) << Format(compiled.diagnostics);
     EXPECT_EQ(Format(compiled.warnings), "");
-    const bool is_drawn = i + 1 < blocks.size() && blocks[i + 1].starts_with("cast ");
+    const bool is_drawn = i + 1 < blocks.size() && blocks[i + 1].starts_with("entities ");
     EXPECT_TRUE(is_drawn) << "nothing is drawn below\n" << blocks[i];
     if (!compiled.program || !is_drawn) continue;
     const CorpusCase drawn = ReadCorpusText(page, "== example\n" + blocks[i + 1]).front();
