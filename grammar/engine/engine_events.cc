@@ -24,7 +24,7 @@ void Engine::Begin(RuleInstance& instance, FrameNumber frame) {
 
 // A hand that no frame has shown yet has no style.
 int Engine::StyleOfHand(int entity, FrameNumber frame) const {
-  const HandSample* hand = history_.Hand(entity, frame);
+  const HandAtFrame* hand = history_.Hand(entity, frame);
   return hand == nullptr ? kNoEntity : hand->look.style;
 }
 

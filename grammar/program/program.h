@@ -13,9 +13,11 @@
 #include "grammar/base/allen.h"
 #include "grammar/base/check.h"
 #include "grammar/base/diagnostic.h"
+#include "grammar/base/drawing.h"
 #include "grammar/base/event.h"
 #include "grammar/base/quantity.h"
 #include "grammar/base/source.h"
+#include "grammar/program/law.h"
 #include "grammar/program/thresholds.h"
 
 namespace prehend::grammar {
@@ -184,6 +186,7 @@ struct Approach {
   double slack = 0;    ///< how far it may recede, in the signal's unit
   int motion = kNone;  ///< node: the speed of the movement; kNone: as fast as the signal falls
   double speed = 0;    ///< slower is a pause; in the unit of the motion
+  double onset = 0;    ///< likewise: from this speed on a movement begins
   double idle_s = -1;  ///< a longer pause ends the way back; negative: pauses may last
 };
 
@@ -266,6 +269,7 @@ struct Rule {
   int confirmed_within = kNone;  ///< reference
   int style_role = kNone;
   std::vector<RuleAttribute> attributes;  ///< at most kMaxAttributes
+  Drawing drawing;
 
   std::vector<Reference> references;
   std::vector<int> anchors;  ///< nodes whose values are kept from where an interval begins
@@ -329,6 +333,7 @@ struct Program {
   std::vector<NameInSource> named_classes;  ///< all but the built-in ones
   Diagnostics warnings;                     ///< what Compile() warned of
   std::vector<ProgramParam> params;
+  std::vector<Law> laws;  ///< in the order of the files
   std::vector<Threshold>
       thresholds;  ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
   bool asks_touches =
