@@ -285,6 +285,15 @@ using StepYaml =
 /// One item of the script: what each named actor does at the same time.
 using StageYaml = std::vector<Named<StepYaml>>;
 
+struct WorldYaml {
+  physics::Engine engine = physics::Engine::kBullet;
+  std::optional<Located<bool>> planar;  ///< default: as the engine needs it
+  int rate_hz = physics::WorldSettings{}.rate_hz;
+  int sensing_hz = SensingSettings{}.sensing_hz;
+  double bearing_share = SensingSettings{}.bearing_share;
+  std::uint64_t seed = physics::WorldSettings{}.seed;
+};
+
 struct ScenarioYaml {
   Where where;
   Located<std::string> name;

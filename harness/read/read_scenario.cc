@@ -168,7 +168,8 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scenario.shows = entry.shows;
   scenario.grammar = entry.grammar.value;
   scenario.tags = std::move(entry.tags);
-  scenario.world = entry.world;
+  scenario.sensing = {.sensing_hz = entry.world.sensing_hz,
+                      .bearing_share = entry.world.bearing_share};
   for (const auto& entity : entry.entities)
     scenario.body_classes.push_back(entity.value.class_name.value);
   AddPersonClasses(scenario);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
+#include "harness/scenario/scenario.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 
@@ -19,11 +20,10 @@ namespace prehend::harness {
 
 class Sensing {
  public:
-  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). `sensing_hz` <= the
-  /// scene's rate. `bearing_share`: a point of contact counts for what is held from below only if
-  /// it carries this share of the pair's load; otherwise an idle corner with a skewed normal would
-  /// decide.
-  Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share);
+  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). A point of contact
+  /// counts for what is held from below only if it carries `bearing_share` of the pair's load;
+  /// otherwise an idle corner with a skewed normal would decide.
+  Sensing(const physics::Scene& scene, const SensingSettings& settings);
 
   /// Whether the snapshot of this tick is looked at: the ticks at which another 1/sensing_hz is
   /// full, on integers, so that any rate works without drift.

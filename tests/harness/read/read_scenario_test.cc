@@ -30,7 +30,7 @@ TEST(ReadScenario, TheProbe) {
   const Scenario scenario = Read(kProbe, {}, "some/scenarios/lift/probe.yaml");
   EXPECT_EQ(scenario.name, "probe");
   EXPECT_EQ(scenario.skill, "lift");
-  EXPECT_EQ(scenario.world.sensing_hz, 240);
+  EXPECT_EQ(scenario.sensing.sensing_hz, 240);
   ASSERT_EQ(scenario.scene.bodies.size(), 2u);
   const physics::Body& milk = scenario.scene.bodies[1];
   EXPECT_EQ(milk.name, "milk");
