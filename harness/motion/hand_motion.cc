@@ -36,9 +36,9 @@ class TrackChecker {
     const double usual_s = MedianInterval(track_.samples);
     if (usual_s > limits_.gap_s) {
       Add(track_.samples[1], false,
-          fmt::format("samples are usually {:.3f} s apart; at most {} s are bridged", usual_s,
-                      limits_.gap_s),
-          "are these times milliseconds, and called seconds? Else raise max_gap_s");
+          fmt::format("samples are typically {:.3f} s apart; gaps of at most {} s are bridged",
+                      usual_s, limits_.gap_s),
+          "milliseconds need a column t_ms; otherwise raise max_gap_s");
       return std::move(found_);
     }
     const double gap_s = std::max(kMinGap_s, kGapOfMedian * usual_s);

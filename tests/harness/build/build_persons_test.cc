@@ -75,11 +75,11 @@ INSTANTIATE_TEST_SUITE_P(Files, PersonsRefused, testing::Values(
     Bad{"kind", "{person: legs, at_m: [-0.9, 0, 0]}", "", "10:18: person: expected one of head, body, found 'legs'\n"},
     Bad{"hand", "{person: head, at_m: [-0.9, 0, 0], right_hand: left_hand}", "", "10:56: right_hand: no hand is called 'left_hand' | known: right_hand\n"},
     Bad{"one_hand_twice", "{person: head, at_m: [-0.9, 0, 0], right_hand: right_hand, left_hand: right_hand}", "", "10:79: left_hand: 'right_hand' is already on another arm\n"},
-    Bad{"in_the_milk", "{person: body, at_m: [0.15, 0.1, 0]}", "", "10:30: 'anna_abdomen' starts inside 'milk', 48 mm deep | let her stand elsewhere\n10:30: 'anna_pelvis' starts inside 'milk', 108 mm deep | let her stand elsewhere\n10:30: 'anna_right_thigh' starts inside 'milk', 25 mm deep | let her stand elsewhere\n10:30: 'anna_left_thigh' starts inside 'milk', 25 mm deep | let her stand elsewhere\n"},
-    Bad{"hand_step", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {close_to: 1}", "12:5: 'anna' is a person, and this step is for hands | persons look, walk, turn, lean, move a limb; their hands are actors of their own\n"},
-    Bad{"person_step", "{person: head, at_m: [-0.9, 0, 0]}", "right_hand: {lean_deg: 10}", "12:5: 'right_hand' is a hand, and this step is for persons | hands reach, close, move; persons look, walk, lean\n"},
+    Bad{"in_the_milk", "{person: body, at_m: [0.15, 0.1, 0]}", "", "10:30: 'anna_abdomen' starts inside 'milk', 48 mm deep | move the person\n10:30: 'anna_pelvis' starts inside 'milk', 108 mm deep | move the person\n10:30: 'anna_right_thigh' starts inside 'milk', 25 mm deep | move the person\n10:30: 'anna_left_thigh' starts inside 'milk', 25 mm deep | move the person\n"},
+    Bad{"hand_step", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {close_to: 1}", "12:5: 'anna' is a person; this step is for hands | persons look, walk, turn, lean, move a limb; their hands are actors of their own\n"},
+    Bad{"person_step", "{person: head, at_m: [-0.9, 0, 0]}", "right_hand: {lean_deg: 10}", "12:5: 'right_hand' is a hand; this step is for persons | hands reach, close, move; persons look, walk, lean\n"},
     Bad{"look_at_herself", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {look_at: anna_left_foot}",
-        "12:21: look_at: 'anna' cannot look at herself | she looks at things, hands and other persons, or at a point: look_at_m\n"},
+        "12:21: look_at: 'anna' cannot look at herself | name a thing, a hand or another person, or give a point with look_at_m\n"},
     Bad{"look_at", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {look_at: mlik}", "12:21: look_at: no entity is called 'mlik' | did you mean 'milk'?\n"},
     Bad{"no_limbs", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foot}", "12:23: move_limb: 'anna' is only a head | write 'person: body'\n"},
     Bad{"no_hips", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {sway_by_m: [0, 0.1]}", "12:23: sway_by_m: 'anna' is only a head | write 'person: body'\n"},
@@ -97,7 +97,7 @@ TEST(PersonsTest, NamesOfPartsMustBeFree) {
   std::string clash = text;
   clash.replace(clash.find("entities:\n"), 10, taken);
   EXPECT_EQ(ErrorsAbout(clash),
-            "11:3: 'anna_pelvis' is the name of a part of 'anna' and of something else\n");
+            "11:3: 'anna_pelvis' names both a part of 'anna' and something else\n");
 }
 
 std::string WithTracking(const std::string& tracking) {

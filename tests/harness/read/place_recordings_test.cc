@@ -102,15 +102,15 @@ TEST_F(RecordedInputTest, Refuses) {
   EXPECT_EQ(ErrorsAbout("recording: line.txt"),
             "probe.yaml:11:29: recording: expected a .csv, .json or .bvh file, found 'line.txt'\n");
   EXPECT_EQ(ErrorsAbout("recording: line.json"),
-            "probe.yaml:11:29: recording: which device of the .json file is followed? | add "
+            "probe.yaml:11:29: recording: a .json file needs the key 'device' | add "
             "device: right\n");
   EXPECT_EQ(ErrorsAbout("recording: line.csv, device: right"),
-            "probe.yaml:11:47: device: a CSV file has only one\n");
+            "probe.yaml:11:47: device: a CSV file has only one device\n");
   EXPECT_EQ(ErrorsAbout("recording: line.csv, button: 1"),
-            "probe.yaml:11:47: button: a CSV file has a trigger, no buttons\n");
+            "probe.yaml:11:47: button: a CSV file has a trigger but no buttons\n");
   EXPECT_EQ(ErrorsAbout("recording: line.csv, from_s: 1.9, to_s: 1.905"),
             "probe.yaml:11:58: between 1.9 and 1.905 s the recording has 1 of at least 2 samples "
-            "| it takes 2.000 s\n");
+            "| the recording lasts 2.000 s\n");
   EXPECT_EQ(
       ErrorsAbout("recording: line.csv, style: warp"),
       "probe.yaml:11:46: style: hand 'human_right' has no style 'warp' | did you mean 'wrap'?\n");
@@ -144,10 +144,11 @@ TEST_F(RecordedInputTest, TheTriggerHasToBeAButtonThatIsPressed) {
   };
   write(R"({"name": "buttondown", "detail": {"id": 2}, "timestamp": 5})");
   EXPECT_EQ(ErrorsAbout("recording: pad.json"),
-            "probe.yaml:11:29: recording: which device of the .json file is followed? | add "
+            "probe.yaml:11:29: recording: a .json file needs the key 'device' | add "
             "device: left or right\n");
   EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 3"),
-            "probe.yaml:11:62: button: button 3 of 'right' is never pressed | pressed are 2\n");
+            "probe.yaml:11:62: button: button 3 of 'right' is never pressed | the pressed buttons "
+            "are 2\n");
   EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 2"), "");
   const auto odd = Read("recording: pad.json, device: right");
   ASSERT_TRUE(odd.value && odd.value->warnings.size() == 1) << Brief(odd.diagnostics);
@@ -155,7 +156,8 @@ TEST_F(RecordedInputTest, TheTriggerHasToBeAButtonThatIsPressed) {
             "button 1 of 'right' is never pressed, so the grip stays open");
   write("");
   EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 2"),
-            "probe.yaml:11:62: button: button 2 of 'right' is never pressed | no button is\n");
+            "probe.yaml:11:62: button: button 2 of 'right' is never pressed | no button is ever "
+            "pressed\n");
   EXPECT_TRUE(Read("recording: pad.json, device: right").value->warnings.empty());
 }
 
@@ -226,12 +228,13 @@ TEST_F(RecordedBodyTest, ScalePlaceAndYawAreTheScenarios) {
 }
 
 TEST_F(RecordedBodyTest, Refuses) {
-  EXPECT_EQ(Refused("recording: sticks.bvh", "right_hand"),
-            "probe.yaml:12:29: recording: a BVH file moves a whole body, no hand | give this step "
-            "to a person; hands "
-            "follow .csv and .json files\n");
+  EXPECT_EQ(
+      Refused("recording: sticks.bvh", "right_hand"),
+      "probe.yaml:12:29: recording: a BVH file moves a whole body, not a hand | give this step "
+      "to a person; hands "
+      "follow .csv and .json files\n");
   EXPECT_NE(Refused("recording: sticks.bvh, palm_m: [0, 0, 0]")
-                .find("palm_m: a BVH file moves a whole body, no hand"),
+                .find("palm_m: a BVH file moves a whole body, not a hand"),
             std::string::npos);
   EXPECT_NE(
       Refused("recording: line.csv, scale: 1").find("scale: only a BVH file has units of its own"),
@@ -243,12 +246,11 @@ TEST_F(RecordedBodyTest, Refuses) {
                 .find("hips: jump: 1.759 m within 0.200 s, at 0.200 s; at most 0.1 m"),
             std::string::npos);
   EXPECT_NE(Refused("recording: sticks.bvh, scale: 1")
-                .find("scale: the recorded legs would be 80 m long, hers are 0.982 m | metres per "
-                      "unit of the file: "
-                      "perhaps 0.0123; without scale, legs are as long as hers"),
+                .find("scale: the recorded legs would be 80 m long, hers are 0.982 m | try 0.0123 "
+                      "metres per unit; without scale the motion is scaled to her legs"),
             std::string::npos);
   EXPECT_NE(Refused("recording: sticks.bvh, start_at_m: [19.5, 0, 0], max_jump_m: 9")
-                .find("the hips are beyond 20 m"),
+                .find("the hips are more than 20 m from the origin here"),
             std::string::npos);
 }
 

@@ -152,7 +152,7 @@ TEST(ReadScenario, LimitsOnTheWhole) {
   std::string beats;
   for (int i = 0; i < 7; ++i) beats += "  - right_hand: {wait_s: 600}\n";
   EXPECT_EQ(ErrorsAbout(ProbeWith("pictures:\n", beats + "pictures:\n")),
-            "18:5: the script takes more than 3600 s up to here\n");
+            "18:5: the script is longer than 3600 s at this point\n");
 
   std::string many;
   for (std::size_t i = 0; i <= kMaxBeats; ++i) many += "  - right_hand: {wait_s: 0.01}\n";
