@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How deep two shapes are in each other, to refuse scenes that would explode at the first tick.
-// Tested by tests/harness/build/penetration_test.cc
+// Penetration depth of two shapes, to refuse scenes that would explode at the first tick. Tested by
+// tests/harness/build/penetration_test.cc
 #pragma once
 
 #include "physics/scene/scene.h"

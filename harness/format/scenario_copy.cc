@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As every YAML reader takes it for a string: `on`, `no` or `null` need quotes.
+/// Quoted if some YAML reader would not read a string: `on`, `no`, `null`.
 std::string YamlWord(const std::string& value) {
   constexpr const char* kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// BVH files as they are: a hierarchy of joints, and rows of channel values at even times. What they
-// mean for a person is harness/motion/body_motion.h. Format: Meredith & Maddock, Motion Capture
-// File Formats Explained (2001). Tested by tests/harness/motion/read_bvh_test.cc
+// BVH files: a hierarchy of joints, and rows of channel values at even times.
+// harness/motion/body_motion.h makes a person's motion of them. Format: Meredith & Maddock, Motion
+// Capture File Formats Explained (2001). Tested by tests/harness/motion/read_bvh_test.cc
 #pragma once
 
 #include <Eigen/Core>
@@ -38,7 +38,7 @@ struct BvhFile {
   std::vector<std::vector<double>> rows;  ///< at least two
   std::vector<grammar::Place> places;     ///< of the rows
   std::string file;
-  std::string text;  ///< of the file, for complaints
+  std::string text;  ///< of the file, for messages
 };
 
 ReadResult<BvhFile> ReadBvh(const std::string& path);

@@ -74,7 +74,7 @@ std::vector<Cell> Cells(std::string_view line) {
   return cells;
 }
 
-/// What to do about a column that nobody knows.
+/// The hint for an unknown column.
 std::string ColumnRemedy(const std::string& name) {
   std::vector<std::string> names;
   for (const auto& [known, column] : KnownColumns()) names.push_back(known);
@@ -100,7 +100,7 @@ class CsvReader {
       ++line_;
       TakeLine(text.substr(begin, end - begin));
       begin = end + 1;
-      if (header_ && columns_.empty()) return;  // nothing makes sense without it
+      if (header_ && columns_.empty()) return;  // rows have no meaning without it
     }
     if (!diagnostics.empty()) return;
     if (track.samples.size() < 2)

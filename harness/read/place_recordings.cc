@@ -68,8 +68,8 @@ std::vector<physics::TimedPose> Place(const RecordingYaml& entry, const MotionTr
   return poses;
 }
 
-/// The person in the world, at every frame: as tall as she is, and where she stands lowest, her
-/// ankle is as high as when she stands.
+/// The person in the world, at every frame, with her own bone lengths. Her lowest ankle is as high
+/// above the floor as when she stands.
 std::vector<physics::TimedFigure> Place(const RecordingYaml& entry, const BodyTrack& track,
                                         const PersonActorYaml& person, double scale) {
   double lowest = std::numeric_limits<double>::infinity();
@@ -92,10 +92,10 @@ std::vector<physics::TimedFigure> Place(const RecordingYaml& entry, const BodyTr
   return figures;
 }
 
-/// More would say the same again.
+/// Further warnings would repeat the same.
 constexpr std::size_t kMaxOddities = 12;
 
-/// What is odd about how hips, hands and feet go, in metres.
+/// Reports gaps and jumps of hips, hands and feet, in metres.
 grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingYaml& entry,
                                     double scale) {
   const double frame_s = track.samples[1].t_s - track.samples[0].t_s;
@@ -184,7 +184,7 @@ class RecordingReader {
     }
   }
 
-  /// Nobody's legs are a third or three times as long as hers: those are other units.
+  /// Legs a third or three times as long as hers mean that the file has another unit.
   bool CheckScale(const RecordingYaml& entry, double legs_m, const PersonActorYaml& person) {
     constexpr double kMaxRatio = 3;
     const double hers_m = physics::LegLength(person.height_m), ratio = legs_m / hers_m;
@@ -215,7 +215,7 @@ class RecordingReader {
     return !refused;
   }
 
-  /// The same file may be played often, but not without end.
+  /// The same file may be played several times, up to a limit in all.
   bool HasRoom(const RecordingYaml& entry, std::size_t samples) {
     samples_ += samples;
     if (samples_ <= kMaxTrackSamples) return true;
@@ -224,7 +224,7 @@ class RecordingReader {
     return false;
   }
 
-  /// "left or right", as far as the file can be read.
+  /// The devices as a hint, "left or right"; "right" if the file cannot be read.
   std::string NamesOfDevices(const RecordingYaml& entry) const {
     const ReadResult<YamlDocument> file = ReadYamlFile(PathOf(entry));
     if (!file.value || file.value->root.children.empty()) return "right";
@@ -233,8 +233,8 @@ class RecordingReader {
     return fmt::format("{}", fmt::join(names, " or "));
   }
 
-  /// A button that is asked for has to be pressed; that the usual one is not, while others are, is
-  /// odd.
+  /// A button that the step names must be pressed in the recording. If the default button is never
+  /// pressed but others are, that is a warning.
   bool CheckButton(const RecordingYaml& entry, const MotionTrack& track) {
     if (!IsCapture(entry) || (!entry.button && track.buttons.empty())) return true;
     const int wanted = entry.button.value_or(Located<int>{kUsualButton, {}}).value;

@@ -22,7 +22,7 @@ using physics::HandModel;
 
 constexpr const char* kGraspsEnding = ".grasps.yaml";
 
-/// Turns an entry into a model and complains about names and counts that do not fit together.
+/// Turns a parsed hand file into a model; reports names and counts that do not fit together.
 class HandBuilder {
  public:
   HandBuilder(const HandYaml& entry, DiagnosticList& errors) : entry_(entry), errors_(errors) {}
@@ -63,7 +63,7 @@ int HandBuilder::SensorSet(const Located<std::string>& name) {
   return 0;
 }
 
-/// Everything but its name, its place and its joint's axis.
+/// Everything except its name, its position and its joint's axis.
 physics::HandLink LinkOf(const LinkYaml& link, double joint_unit, int sensor_set) {
   return {.length_m = link.length_m,
           .half_width_m = link.half_width_m,
@@ -113,7 +113,7 @@ void CheckName(const std::string& path, const char* ending, const char* key,
       "rename one of them");
 }
 
-/// The path of the file that a hand's file names, in its own folder; nothing after complaining.
+/// The path of a file that a hand file names, in the same folder; nothing after an error.
 std::optional<std::string> FindBeside(const std::string& path, const char* ending, const char* key,
                                       const Located<std::string>& name, DiagnosticList& errors) {
   const fs::path folder = fs::path(path).parent_path();
@@ -127,7 +127,7 @@ std::optional<std::string> FindBeside(const std::string& path, const char* endin
   return std::nullopt;
 }
 
-/// Reads a hand's files, and keeps account of them.
+/// Reads the files of a hand and records their paths.
 class HandReader {
  public:
   HandReader(const std::vector<std::string>& more_grasps, std::vector<std::string>* files)
@@ -154,7 +154,7 @@ class HandReader {
   std::vector<std::string>* files_;
 };
 
-/// The styles of a grasp file. Returns what is wrong in it.
+/// Appends the styles of a grasp file. Returns its errors.
 Diagnostics HandReader::AddGrasps(const std::string& path, const HandYaml& hand, SameName same_name,
                                   HandModel& model) {
   ReadResult<YamlDocument> document = ReadFile(path);

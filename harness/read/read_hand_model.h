@@ -11,9 +11,9 @@
 
 namespace prehend::harness {
 
-/// The styles of `more_grasps`, paths of grasp files, come after those of the hand; one of the same
-/// name as an earlier one takes its place. Of a mirror image they are written for the hand that it
-/// mirrors. `files` is told of every file that was looked at.
+/// The styles of `more_grasps`, paths of grasp files, come after those of the hand; a style
+/// replaces an earlier one of the same name. For a mirror image they are written for the original
+/// hand. The paths of all files that were read are appended to `files`.
 ReadResult<physics::HandModel> ReadHandModel(const std::string& path,
                                              const std::vector<std::string>& more_grasps = {},
                                              std::vector<std::string>* files = nullptr);

@@ -55,7 +55,7 @@ void CheckNames(const std::string& file, const ScenarioYaml& entry, const Scenar
   }
 }
 
-/// The actor's model, or an empty one after complaining; what is wrong in a hand's file goes to
+/// The actor's model, or an empty one after an error; errors inside a hand file go to
 /// `in_hand_files`.
 physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
                             const ScenarioLibrary& library, DiagnosticList& errors,
@@ -79,7 +79,8 @@ physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
   }
   auto model = library.read_hand(is_file ? beside(hand.value) : hand.value, grasps);
   if (model.value) return std::move(*model.value);
-  // Blamed is the file where something is wrong. What has no place could not be opened.
+  // The error names the file that is wrong. Diagnostics without a place mean that it could not be
+  // opened.
   const auto blame = [&](const char* key, const Located<std::string>& named, bool is_open) {
     errors.Add(named.where, fmt::format("{}: '{}' cannot be used, see below", key, named.value),
                is_open ? "" : "the path is relative to the scenario's folder");
@@ -100,7 +101,7 @@ std::string SkillOf(const std::string& file) {
   return folder.parent_path().filename() == "scenarios" ? folder.filename().string() : "";
 }
 
-/// A person is her head; her other parts are part of it.
+/// The head stands for the person; her other bodies are parts of it.
 void AddPersonClasses(Scenario& scenario) {
   for (std::size_t i = scenario.body_classes.size(); i < scenario.scene.bodies.size(); ++i) {
     const auto& persons = scenario.scene.persons;
@@ -128,7 +129,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   CheckNames(file, entry, library, errors);
   Diagnostics in_other_files;
   if (!well_formed) {
-    // Names can be looked up without the rest.
+    // Names can be checked even if other fields are malformed.
     for (const auto& actor : entry.hands) {
       if (!actor.value.hand.value.empty())
         FindHand(file, actor.value, library, errors, in_other_files);
@@ -173,7 +174,8 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   for (const auto& entity : entry.entities)
     scenario.body_classes.push_back(entity.value.class_name.value);
   AddPersonClasses(scenario);
-  for (const auto& kind : entry.classes) scenario.kinds.push_back({kind.name, kind.value.value});
+  for (const auto& kind : entry.classes)
+    scenario.base_classes.push_back({kind.name, kind.value.value});
   scenario.variations = std::move(entry.vary);
   scenario.pictures = std::move(entry.pictures);
   for (const PictureYaml& picture : scenario.pictures) {

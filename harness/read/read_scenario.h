@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a scenario: YAML -> entries -> bodies, hands and script, with every complaint at its place.
-// Tested by tests/harness/read/read_scenario_test.cc
+// Reads a scenario: YAML -> ScenarioYaml -> bodies, hands and script. Every error has its place in
+// the file. Tested by tests/harness/read/read_scenario_test.cc
 #pragma once
 
 #include <string>
@@ -13,12 +13,13 @@
 namespace prehend::harness {
 
 /// `overrides` are applied before anything is checked: "entities.milk.mass_kg=8". The scenario's
-/// name must be that of the file, its skill is the folder between `scenarios/` and the file.
+/// name must equal the file's; its skill is the folder between `scenarios/` and the file. On
+/// failure the diagnostics are sorted by place.
 ReadResult<Scenario> ReadScenario(const std::string& path,
                                   const std::vector<std::string>& overrides,
                                   const ScenarioLibrary& library);
 
-/// The same for a text that stands, or could stand, in `file`.
+/// The same for a text as if it were the content of `file`.
 ReadResult<Scenario> ReadScenarioText(const std::string& file, std::string text,
                                       const std::vector<std::string>& overrides,
                                       const ScenarioLibrary& library);

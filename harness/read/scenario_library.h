@@ -12,7 +12,7 @@
 
 namespace prehend::harness {
 
-/// What the names in a scenario may stand for. ProjectLibrary() in harness/run/project_library.h
+/// What the names in a scenario can refer to. ProjectLibrary() in harness/run/project_library.h
 /// makes the usual one.
 struct ScenarioLibrary {
   std::vector<std::string> grammars;
@@ -22,7 +22,7 @@ struct ScenarioLibrary {
   std::function<ReadResult<physics::HandModel>(const std::string& name_or_path,
                                                const std::vector<std::string>& grasps)>
       read_hand;
-  /// Told of every recording before it is read; may be empty.
+  /// Called with the path of each recording before it is read; may be empty.
   std::function<void(const std::string& path)> reads_recording = {};
 };
 

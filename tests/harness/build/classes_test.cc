@@ -9,7 +9,7 @@
 namespace prehend::harness {
 namespace {
 
-/// A mug on a table, and what the classes are kinds of, in line 6.
+/// A mug on a table, and the base classes in line 6.
 ReadResult<Scenario> Read(const std::string& classes) {
   return ReadScenarioText(
       "probe.yaml",
