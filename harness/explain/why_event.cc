@@ -28,7 +28,7 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr int kDeepest = 8;  // rules behind rules
+constexpr int kMaxDepth = 8;  // rules behind rules
 
 Reason Remark(std::string what, std::string how = {}) {
   return {.mark = Mark::kNote,
@@ -56,7 +56,7 @@ std::string EventReasons::Seconds(double seconds) const {
 
 Clauses::Follow EventReasons::FollowFrom(int depth) {
   return [this, depth](int instance, const CandidateOutcome& outcome, bool end) {
-    if (depth >= kDeepest) return Reasons{};
+    if (depth >= kMaxDepth) return Reasons{};
     return end ? End(instance, outcome, depth + 1) : Begin(instance, outcome, depth + 1);
   };
 }
@@ -82,7 +82,7 @@ Reasons EventReasons::Begin(int instance, const CandidateOutcome& outcome, int d
     case Form::kFromTo: {
       const Moment at{.instance = instance, .frame = begin, .begin = begin};
       Reasons reasons = Change(rule.As<FromToRule>().from, at, true, depth);
-      AddNew(Change(rule.As<FromToRule>().during, at, true, kDeepest), reasons);
+      AddNew(Change(rule.As<FromToRule>().during, at, true, kMaxDepth), reasons);
       return reasons;
     }
     case Form::kUntilSince:
@@ -130,7 +130,7 @@ Reasons EventReasons::End(int instance, const CandidateOutcome& outcome, int dep
       if (!ChooseParts(instance, outcome, parts)) return {};
       Reason last = Remark(Label(past_, parts.back()->instance), "ended");
       last.mark = Mark::kTurned;
-      if (depth < kDeepest) last.because = End(parts.back()->instance, *parts.back(), depth + 1);
+      if (depth < kMaxDepth) last.because = End(parts.back()->instance, *parts.back(), depth + 1);
       return {std::move(last)};
     }
   }
@@ -271,7 +271,7 @@ Reasons EventReasons::Parts(int instance, const CandidateOutcome& outcome, int d
                            IntervalText({part->span.begin.tick, part->span.end.tick},
                                         past_.entity_table().ticks_per_second));
     if (part == chosen.front()) reason.mark = Mark::kTurned;
-    if (part == chosen.front() && depth < kDeepest)
+    if (part == chosen.front() && depth < kMaxDepth)
       reason.because = Begin(part->instance, *part, depth + 1);
     reasons.push_back(std::move(reason));
   }
@@ -311,7 +311,7 @@ Reasons EventReasons::Waited(int instance, const CandidateOutcome& outcome, int 
   const Rule& rule = past_.RuleOf(instance);
   const Tick end = outcome.span.end.tick;
   Reasons reasons;
-  if (outcome.decided <= end || depth >= kDeepest) return reasons;
+  if (outcome.decided <= end || depth >= kMaxDepth) return reasons;
   const auto* holds = rule.If<WhileRule>();
   if (holds != nullptr && holds->bridging_s > 0 && !outcome.span.open_end) {
     reasons.push_back(
