@@ -61,7 +61,8 @@ void Engine::Wake(int index) {
   RuleInstance& instance = instances_[index];
   if (instance.awake || instance.rule == kNone) return;
   instance.awake = true;
-  instance.next = instance.approach_from = std::max<FrameNumber>(history_.now(), 0);
+  instance.next = std::max<FrameNumber>(history_.now(), 0);
+  if (auto* looks_back = instance.If<UntilSinceState>()) looks_back->approach_from = instance.next;
   if (!instance.open || (instance.certain && !instance.in_gap)) instance.known = instance.next;
   awake_[instance.rule].push_back(index);
 }
@@ -114,8 +115,16 @@ bool Engine::MomentMayCome(const RuleInstance& instance) const {
          Kleene::kFalse;
 }
 
-// The truth of this instance is another one than in the frame before.
+// This instance's truth value changed. What that means to an instance that rests and watches it:
+//
+//   its touch, measured   its interval begins or ends here, or nothing happens
+//   open                  it wakes, as it may end
+//   a moment may come     it wakes, unless its guard rests; if this is the guard, it may begin
+//   its guard has ended   it held up to the frame before, so it wakes for a moment that may still
+//                         come in this frame; unless the guard must hold at that moment, too
+//   else                  it rests on
 void Engine::NotifyWatchers(RuleInstance& instance) {
+  using Kind = Watcher::Kind;
   if (!instance.dependents_made) {
     scratch_.clear();
     instances_.MakeDependents(instance.index, scratch_);
@@ -123,18 +132,22 @@ void Engine::NotifyWatchers(RuleInstance& instance) {
   }
   for (const Watcher& watcher : instance.watchers) {
     RuleInstance& watching = instances_[watcher.instance];
+    const bool is_guard = watcher.kind == Kind::kGuard || watcher.kind == Kind::kBeginGuard;
     if (watcher.opened)
       watching.moment = instance.reported == Kleene::kUnknown ? kNever : history_.now();
     if (watching.awake) continue;
-    if (watcher.instant != nullptr) {
+    if (watcher.kind == Kind::kMeasured) {
       Measure(watching, watcher, instance);
     } else if (watching.open || MayBegin(watching)) {
-      if (watching.open || watcher.guarded || !instances_.GuardRests(watching))
+      if (watching.open || is_guard || !instances_.GuardRests(watching)) Wake(watcher.instance);
+    } else if (!instance.open && is_guard) {
+      const bool too_late =
+          watcher.kind == Kind::kBeginGuard && instance.reported == Kleene::kFalse;
+      if (too_late) {
+        RestOn(watching);
+      } else {
         Wake(watcher.instance);
-    } else if (!instance.open && watcher.guarded) {
-      // The guard has held up to the frame before; a moment here may still be told of.
-      watcher.guarded_begin&& instance.reported == Kleene::kFalse ? RestOn(watching)
-                                                                  : Wake(watcher.instance);
+      }
     }
   }
 }
@@ -185,7 +198,7 @@ bool Engine::MayRest(const RuleInstance& instance) {
     case Form::kRestOf:
       return true;
     case Form::kUntilSince:
-      return !rule.referenced || instance.approach_from > history_.now();
+      return !rule.referenced || instance.As<UntilSinceState>().approach_from > history_.now();
     case Form::kWhile:
     case Form::kAny:
       break;
@@ -281,7 +294,8 @@ bool Engine::CanBeFreed(const RuleInstance& instance) const {
   const auto depends = [&](const Watcher& watcher) {
     return RuleOf(instances_[watcher.instance]).form() != Form::kAny;
   };
-  return std::none_of(instance.parts.begin(), instance.parts.end(), remembers) &&
+  const auto* composition = instance.If<ComposeState>();
+  return (composition == nullptr || std::ranges::none_of(composition->parts, remembers)) &&
          !MayOverlap(instance) &&
          std::none_of(instance.watchers.begin(), instance.watchers.end(), depends);
 }

@@ -88,10 +88,10 @@ class Engine {
   void BeginTouch(RuleInstance& touching);
   void Part(int touching);
   void CloseTouch(RuleInstance& touching, Moment end);
-  void Keep(RuleInstance& touching, const Touch& touch, bool swapped);
-  void NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed);
+  void Keep(TouchingState& touching, const Touch& touch, bool swapped);
+  void NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed);
   void Measure(RuleInstance& instance, const Watcher& as, const RuleInstance& touch) {
-    if (IsMeasured(*as.instant, as.hand, touch, as.swapped) != instance.open) BeginOrEnd(instance);
+    if (IsMeasured(*as.measured, as.hand, touch, as.swapped) != instance.open) BeginOrEnd(instance);
   }
   void BeginOrEnd(RuleInstance& instance);
 
@@ -107,7 +107,7 @@ class Engine {
                   bool swapped) const {
     if (hand != kNoEntity && !part.grip.Fit(grips_[hand])) return false;
     if (!touch.open) return !part.must_touch && part.press[0].Fit(thresholds_.OfNoTouch());
-    return part.press[swapped ? 1 : 0].Fit(touch.beyond);
+    return part.press[swapped ? 1 : 0].Fit(touch.As<TouchingState>().crossed_thresholds);
   }
   bool SaysTheSame(const RuleInstance& instance) const;
   /// What begins with a moment does not begin at others. That moment may be told of later in this
@@ -204,9 +204,9 @@ class Engine {
   Evaluator evaluator_;
   std::vector<RuleTicks> rule_ticks_;
   Thresholds thresholds_;
-  bool recalls_touches_ = false;     // which thresholds they were beyond
+  bool recalls_touches_ = false;     // which thresholds they had crossed
   bool keeps_touches_ = false;       // and all that they measured
-  std::vector<ThresholdSet> grips_;  // by entity: what its grip is beyond now
+  std::vector<ThresholdSet> grips_;  // by entity: what its grip has crossed
   Tick longest_look_back_ = 0;
   std::vector<std::vector<int>> awake_;  // by rule
   std::vector<int> touching_;            // the pairs that touch now

@@ -65,8 +65,10 @@ bool Engine::LooksTheSame(RuleInstance& instance) {
     return false;
   const bool was_open = instance.open;
   if (!StepFrame(instance) || evaluator_.depends_on_time()) return false;
+  const auto* looks_back = instance.If<UntilSinceState>();
+  const bool ended_here = looks_back != nullptr && looks_back->last_end == now;
   return instance.open == was_open && settled() &&
-         (!instance.open || instance.begin.frame != now) && instance.last_end != now;
+         (!instance.open || instance.begin.frame != now) && !ended_here;
 }
 
 bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
@@ -85,7 +87,7 @@ bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
 
 bool Engine::StepAny(RuleInstance& instance, FrameNumber frame) {
   Kleene truth = Kleene::kFalse;
-  for (const int member : instance.members) {
+  for (const int member : instance.As<AnyState>().members) {
     truth = Or(truth, instances_.TruthAt(member, frame));
     if (truth == Kleene::kTrue) break;
   }
@@ -192,6 +194,7 @@ bool Engine::MeetDeadline(RuleInstance& instance, Moment now) {
 
 bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
   const auto& [until, since, approach, back_s] = RuleOf(instance).As<UntilSinceRule>();
+  auto& state = instance.As<UntilSinceState>();
   const Kleene ends = evaluator_.Truth(until, {instance, frame});
   if (ends == Kleene::kUnknown) return false;
   if (ends == Kleene::kTrue) {
@@ -206,14 +209,13 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
       instance.style = StyleAt(instance, begin);
       if (!Conclude(instance, {history_.At(begin), history_.At(frame)})) return false;
     }
-    instance.last_end = instance.approach_from = frame;
+    state.last_end = state.approach_from = frame;
   }
   if (!RuleOf(instance).referenced) return true;
-  if (evaluator_.Truth(since, {instance, frame}) == Kleene::kFalse)
-    instance.approach_from = frame + 1;
-  while (instance.approach_from < frame &&
-         evaluator_.TooFarApart(since, instance, instance.approach_from, frame)) {
-    ++instance.approach_from;
+  if (evaluator_.Truth(since, {instance, frame}) == Kleene::kFalse) state.approach_from = frame + 1;
+  while (state.approach_from < frame &&
+         evaluator_.TooFarApart(since, instance, state.approach_from, frame)) {
+    ++state.approach_from;
   }
   return true;
 }
@@ -232,12 +234,13 @@ WalkBack Engine::ApproachBegin(RuleInstance& instance, FrameNumber end) const {
   using Stop = WalkBack::Stop;
   const UntilSinceRule& rule = RuleOf(instance).As<UntilSinceRule>();
   const std::optional<Approach>& approach = rule.approach;
+  const FrameNumber last_end = instance.As<UntilSinceState>().last_end;
   const Tick end_tick = history_.At(end).tick;
   const FrameNumber back = history_.FirstNotBefore(end_tick - TicksOf(instance).back);
-  const FrameNumber earliest = std::max({back, instance.last_end, history_.first()});
-  const Stop at_earliest = earliest == instance.last_end && earliest > 0 ? Stop::kPreviousEnd
-                           : earliest == 0                               ? Stop::kFirstFrame
-                                                                         : Stop::kTooFarBack;
+  const FrameNumber earliest = std::max({back, last_end, history_.first()});
+  const Stop at_earliest = earliest == last_end && earliest > 0 ? Stop::kPreviousEnd
+                           : earliest == 0                      ? Stop::kFirstFrame
+                                                                : Stop::kTooFarBack;
   const WalkBack unknown{.begin = kNever};
   FrameNumber begin =
       end;  // the earliest frame of movement; if pauses do not count, the earliest frame

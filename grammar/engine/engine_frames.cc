@@ -184,14 +184,14 @@ void Engine::Look(const HandSample& hand) {
   const bool same_grip = before != nullptr && before->look.trigger == hand.trigger;
   const bool same_pose = before != nullptr && SamePose(hand, *before);
   if (same_grip && same_pose) return;
-  const ThresholdSet beyond = thresholds_.OfGrip(hand.trigger);
-  const ThresholdSet crossed =
-      before == nullptr ? ~ThresholdSet{0} : kAnyChange | (beyond ^ before->beyond);
-  history_.SetHand(hand, beyond);
-  grips_[hand.entity] = beyond;
+  const ThresholdSet crossed = thresholds_.OfGrip(hand.trigger);
+  const ThresholdSet changed =
+      before == nullptr ? ~ThresholdSet{0} : kAnyChange | (crossed ^ before->crossed_thresholds);
+  history_.SetHand(hand, crossed);
+  grips_[hand.entity] = crossed;
   for (const Watch& watch : instances_.GripWatchers(hand.entity)) {
     const RuleInstance& instance = instances_[watch.instance];
-    if (same_grip || instance.awake || (RuleOf(instance).watches_grips & crossed) == 0) continue;
+    if (same_grip || instance.awake || (RuleOf(instance).watches_grips & changed) == 0) continue;
     if (MayWake(instance) && !SaysTheSame(instance)) Wake(watch.instance);
   }
   WakeWatchers(instances_.PoseWatchers(hand.entity));
@@ -207,25 +207,30 @@ void Engine::ApplyContacts(std::span<const Touch> touches) {
             : instances_.Ensure(kTouchingRule, {touch.a, touch.b, kNoEntity, kNoEntity});
     if (index == kNone) continue;
     RuleInstance& instance = instances_[index];
-    if (instance.touched == now) continue;  // said twice
-    instance.touched = now;
+    auto& state = instance.As<TouchingState>();
+    if (state.touched == now) continue;  // said twice
+    state.touched = now;
     const bool swapped = instance.entities[0] != touch.a;
-    const ThresholdSet beyond = thresholds_.OfTouch(
+    const ThresholdSet crossed = thresholds_.OfTouch(
         swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b,
         touch.normal_force_n, touch.vertical_speed_m_per_s, touch.sensor_sets);
-    const ThresholdSet crossed = beyond ^ instance.beyond;
+    const ThresholdSet changed = crossed ^ state.crossed_thresholds;
     if (instance.open &&
-        (keeps_touches_ ? Same(touch, swapped, instance.touches.back()) : crossed == 0))
+        (keeps_touches_ ? Same(touch, swapped, state.touches.back()) : changed == 0))
       continue;
-    instance.beyond = beyond;
-    if (recalls_touches_) Keep(instance, touch, swapped);
-    instance.open ? NotifyOfThresholds(instance, crossed | kAnyChange) : BeginTouch(instance);
+    state.crossed_thresholds = crossed;
+    if (recalls_touches_) Keep(state, touch, swapped);
+    if (instance.open) {
+      NotifyOfThresholds(instance, changed | kAnyChange);
+    } else {
+      BeginTouch(instance);
+    }
   }
 }
 
-void Engine::Keep(RuleInstance& touching, const Touch& touch, bool swapped) {
-  ForgetSamples(touching.beyonds, history_.first_look());
-  touching.beyonds.PushBack() = {history_.now(), touching.beyond};
+void Engine::Keep(TouchingState& touching, const Touch& touch, bool swapped) {
+  ForgetSamples(touching.crossings, history_.first_look());
+  touching.crossings.PushBack() = {history_.now(), touching.crossed_thresholds};
   if (!keeps_touches_) return;
   ForgetSamples(touching.touches, history_.first_look());
   TouchSample& sample = touching.touches.PushBack();
@@ -240,19 +245,19 @@ void Engine::Keep(RuleInstance& touching, const Touch& touch, bool swapped) {
 void Engine::BeginTouch(RuleInstance& touching) {
   touching.open = touching.certain = true;
   touching.begin = history_.At(history_.now());
-  touching.touching_place = touching_.size();
+  touching.As<TouchingState>().place = touching_.size();
   touching_.push_back(touching.index);
   touching.reported = Kleene::kTrue;
   NotifyWatchers(touching);
 }
 
 // The two touch as before, but press otherwise: these thresholds were crossed.
-void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed) {
+void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed) {
   for (const Watcher& watcher : touch.watchers) {
-    if ((watcher.press & crossed) == 0) continue;
+    if ((watcher.thresholds & changed) == 0) continue;
     RuleInstance& watching = instances_[watcher.instance];
     if (watching.awake) continue;
-    if (watcher.instant != nullptr) {
+    if (watcher.kind == Watcher::Kind::kMeasured) {
       Measure(watching, watcher, touch);
     } else if (!SaysTheSame(watching) && MayWake(watching)) {
       Wake(watcher.instance);
@@ -279,10 +284,11 @@ void Engine::BeginOrEnd(RuleInstance& instance) {
 
 void Engine::Part(int touching) {
   RuleInstance& instance = instances_[touching];
-  if (instance.touched == history_.now()) return;
+  const auto& state = instance.As<TouchingState>();
+  if (state.touched == history_.now()) return;
   CloseTouch(instance, history_.At(history_.now()));
-  touching_[instance.touching_place] = touching_.back();
-  instances_[touching_.back()].touching_place = instance.touching_place;
+  touching_[state.place] = touching_.back();
+  instances_[touching_.back()].As<TouchingState>().place = state.place;
   touching_.pop_back();
   instance.reported = Kleene::kFalse;
   NotifyWatchers(instance);

@@ -282,7 +282,7 @@ Reasons Clauses::State(int node, const Moment& at, bool truth) {
 
 double Clauses::NearestMember(int any_instance, FrameNumber frame, int depth) {
   double nearest = 0;
-  for (const int member : past_.At(any_instance).members) {
+  for (const int member : past_.MembersOf(any_instance)) {
     const auto* holds = past_.RuleOf(member).If<grammar::WhileRule>();
     if (holds == nullptr) continue;
     nearest = std::max(nearest, 0.9 * Nearness(holds->condition,

@@ -214,7 +214,7 @@ Reasons EventReasons::BeginOrEndOfRest(int instance, FrameNumber frame, bool beg
 // The bindings that begin or end here; of several that hold, others go on.
 Reasons EventReasons::BeginOrEndOfAny(int instance, FrameNumber frame, bool end, int depth) {
   Reasons reasons;
-  std::vector<int> members = past_.At(instance).members;
+  std::vector<int> members = past_.MembersOf(instance);
   std::sort(members.begin(), members.end(),
             [&](int a, int b) { return past_.At(a).entities < past_.At(b).entities; });
   for (const int member : members) {
@@ -346,7 +346,7 @@ double EventReasons::LooksBack_s(int instance) {
 // time.
 Reasons EventReasons::WaitedFor(int instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  std::vector<int> targets = past_.At(instance).members;
+  std::vector<int> targets = past_.MembersOf(instance);
   for (std::size_t slot = 0; slot < rule.references.size() && rule.form() != Form::kAny; ++slot) {
     targets.push_back(past_.Referred(instance, static_cast<int>(slot)));
   }
