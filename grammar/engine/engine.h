@@ -150,9 +150,7 @@ class Engine {
   bool MeetDeadline(RuleInstance& instance, Moment now);
   bool StepUntil(RuleInstance& instance, FrameNumber frame);
 
-  WalkBack ApproachBegin(RuleInstance& instance, FrameNumber end) const;
-  std::optional<double> ApproachSpeed(RuleInstance& instance, FrameNumber frame, FrameNumber end,
-                                      double way) const;
+  WalkBack BeginOfWalk(RuleInstance& instance, FrameNumber end) const;
 
   // From a run to an event.
   [[nodiscard]] bool Open(RuleInstance& instance, FrameNumber frame);
