@@ -5,12 +5,10 @@
 #include <tuple>
 
 #include "grammar/engine/engine.h"
+#include "grammar/engine/frame_checks.h"
 
 namespace prehend::grammar {
 namespace {
-
-// Far enough from the limits of a Tick that times can be added and subtracted.
-constexpr Tick kLatestTick = 1'000'000'000'000'000;
 
 bool Same(const EntitySample& a, const EntitySample& b) {
   return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() &&
@@ -36,53 +34,14 @@ bool Same(const Touch& a, bool swapped, const TouchSample& b) {
 
 }  // namespace
 
-std::string_view Engine::WhyNoTick(Tick tick) const {
-  if (tick > kLatestTick || tick < -kLatestTick) return "a frame's tick is too large";
-  if (history_.now() >= 0 && tick <= history_.At(history_.now()).tick)
-    return "the frames are not in order of time";
-  return {};
-}
-
-std::string_view Engine::WhyNotWatchable(const Frame& frame) {
-  if (static_cast<int>(frame.entities.size()) != entity_count_)
-    return "a frame shows another number of entities than the entity table";
-  int last_hand = kNoEntity;
-  for (const HandSample& hand : frame.hands) {
-    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the entity table";
-    if (hand.entity <= last_hand)
-      return "a frame shows a hand twice, or its hands are not in the order of the entity table";
-    last_hand = hand.entity;
-  }
-  return WhyNoTouches(frame.touches);
-}
-
-std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) {
-  for (const EntityChange& change : changes.entities) {
-    if (!IsEntity(change.entity)) return "a frame shows somebody who is not in the entity table";
-  }
-  for (const HandSample& hand : changes.hands) {
-    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the entity table";
-  }
-  for (const ContactEnd& contact_end : changes.contact_ends) {
-    if (!IsEntity(contact_end.a) || !IsEntity(contact_end.b))
-      return "a frame shows a contact end of somebody not in the entity table";
-  }
-  return WhyNoTouches(changes.touches);
-}
-
-// Looks up their instances, too: one look-up does not wait for another one, as it would between
-// changes.
-std::string_view Engine::WhyNoTouches(std::span<const Touch> touches) {
-  pressed_.clear();
+// All at once: so one look-up does not wait for another one, as it would between changes.
+void Engine::LookUp(std::span<const Touch> touches) {
+  contacts_.clear();
   for (const Touch& touch : touches) {
-    if (touch.a < 0 || touch.a >= touch.b || touch.b >= entity_count_) {
-      return "a frame shows a touch of somebody not in the entity table";
-    }
     const int instance = instances_.FindTouch(touch.a, touch.b);
     if (instance != kNone) instances_.Fetch(instance);
-    pressed_.push_back(instance);
+    contacts_.push_back(instance);
   }
-  return {};
 }
 
 void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
@@ -114,18 +73,19 @@ void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
 template <typename AnyFrame>
 bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
   if (!error_.empty() || finishing_) return false;
-  std::string_view why_not = WhyNoTick(frame.tick);
-  if (why_not.empty()) why_not = WhyNotWatchable(frame);
+  std::string_view why_not = WhyNoTick(frame.tick, history_);
+  if (why_not.empty()) why_not = WhyNotWatchable(frame, entity_count_);
   if (!why_not.empty()) {
     error_ = why_not;
     return false;
   }
+  LookUp(frame.touches);
   out_ = &out;
   first_new_ = out.size();
   decided_ = frame.tick;
   history_.BeginFrame(frame.tick);
-  oldest_needed_ = oldest_look_needed_ = history_.now();
-  RingAlarms();
+  past_.BeginFrame(history_.now());
+  alarms_.Ring(decided_, [this](int instance) { Wake(instance); });
   return true;
 }
 
@@ -133,8 +93,10 @@ void Engine::EndFrame() {
   for (const int rule : program_->schedule) {
     if (!awake_[rule].empty()) StepRule(rule);
   }
-  ForgetThePast();
-  FreeInstances();
+  if (log_ == nullptr) {
+    past_.Forget(history_);
+    idle_.FreeOld();
+  }
   if (instances_.TooMany()) error_ = instances_.WhyTooMany();
   SortNewEvents();
 }
@@ -202,8 +164,8 @@ void Engine::ApplyContacts(std::span<const Touch> touches) {
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Touch& touch = touches[i];
     const int index =
-        pressed_[i] != kNone
-            ? pressed_[i]
+        contacts_[i] != kNone
+            ? contacts_[i]
             : instances_.Ensure(kTouchingRule, {touch.a, touch.b, kNoEntity, kNoEntity});
     if (index == kNone) continue;
     RuleInstance& instance = instances_[index];
