@@ -21,7 +21,7 @@ struct CheckRequest {
   bool is_trial = false;   ///< leave nothing behind: neither a pending golden nor a trace
   bool has_golden = true;  ///< or may have one; false: it is not of the project
   std::string program;     ///< ProgramHash(), for the blame
-  SharedTicks::Tick* last_tick = nullptr;  ///< told how far the run came; may be null
+  ProgressCounters::Tick* last_tick = nullptr;  ///< told how far the run came; may be null
 };
 
 /// Never fails: what goes wrong is the verdict.

@@ -36,7 +36,7 @@ class Suite {
 
   std::vector<ScenarioVerdict> Run(const SuiteProgress& progress) {
     const std::vector<Turn> turns = Turns();
-    SharedTicks last_ticks(turns.size());
+    ProgressCounters last_ticks(turns.size());
     std::vector<WorkerJob> jobs;
     for (std::size_t i = 0; i < turns.size(); ++i) jobs.push_back(Job(turns[i], last_ticks[i]));
     std::size_t done = 0;
@@ -97,7 +97,7 @@ class Suite {
     return turns;
   }
 
-  WorkerJob Job(const Turn& turn, SharedTicks::Tick& last_tick) const {
+  WorkerJob Job(const Turn& turn, ProgressCounters::Tick& last_tick) const {
     RunRequest run = request_.changes;
     run.scenario_file = scenarios_[turn.scenario].path;
     const CheckRequest check{
@@ -121,10 +121,10 @@ class Suite {
     } else {
       verdict.scenario = Id(scenario);
       verdict.exit_code = ExitCode::kFailure;
-      verdict.reason =
-          fmt::format("its process ended: {}, {}", ReadableText(result.reason),
-                      last_tick == SharedTicks::kNone ? std::string("before the first tick")
-                                                      : fmt::format("last tick {}", last_tick));
+      verdict.reason = fmt::format("its process ended: {}, {}", ReadableText(result.reason),
+                                   last_tick == ProgressCounters::kNone
+                                       ? std::string("before the first tick")
+                                       : fmt::format("last tick {}", last_tick));
       if (!result.stderr_tail.empty())
         verdict.details = "its standard error:\n" + ReadableText(result.stderr_tail);
       verdict.ticks = std::max<std::int64_t>(0, last_tick);

@@ -9,7 +9,7 @@
 
 namespace prehend::harness {
 
-SharedTicks::SharedTicks(std::size_t count) : count_(std::max<std::size_t>(1, count)) {
+ProgressCounters::ProgressCounters(std::size_t count) : count_(std::max<std::size_t>(1, count)) {
   static_assert(Tick::is_always_lock_free);  // otherwise it would not work between processes
   void* memory = mmap(nullptr, count_ * sizeof(Tick), PROT_READ | PROT_WRITE,
                       MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -18,6 +18,6 @@ SharedTicks::SharedTicks(std::size_t count) : count_(std::max<std::size_t>(1, co
   for (std::size_t i = 0; i < count_; ++i) new (&ticks_[i]) Tick(kNone);
 }
 
-SharedTicks::~SharedTicks() { munmap(ticks_, count_ * sizeof(Tick)); }
+ProgressCounters::~ProgressCounters() { munmap(ticks_, count_ * sizeof(Tick)); }
 
 }  // namespace prehend::harness

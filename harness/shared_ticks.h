@@ -10,16 +10,16 @@
 
 namespace prehend::harness {
 
-class SharedTicks {
+class ProgressCounters {
  public:
   using Tick = std::atomic<std::int64_t>;
   static constexpr std::int64_t kNone = -1;  ///< where each counter begins
 
   /// Throws std::bad_alloc when the system has no memory to share.
-  explicit SharedTicks(std::size_t count);
-  ~SharedTicks();
-  SharedTicks(const SharedTicks&) = delete;
-  SharedTicks& operator=(const SharedTicks&) = delete;
+  explicit ProgressCounters(std::size_t count);
+  ~ProgressCounters();
+  ProgressCounters(const ProgressCounters&) = delete;
+  ProgressCounters& operator=(const ProgressCounters&) = delete;
 
   Tick& operator[](std::size_t i) { return ticks_[i]; }
 

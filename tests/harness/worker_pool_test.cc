@@ -40,7 +40,7 @@ TEST(WorkerPool, WhatAJobChangesStaysInItsProcess) {
 }
 
 TEST(WorkerPool, TicksOutliveTheWorker) {
-  SharedTicks ticks(2);
+  ProgressCounters ticks(2);
   const auto job = [&](std::size_t i) {
     return [&ticks, i] {
       ticks[i] = 7;
@@ -51,7 +51,7 @@ TEST(WorkerPool, TicksOutliveTheWorker) {
   RunInWorkers({job(0), job(1)}, {.jobs = 2});
   EXPECT_EQ(ticks[0], 7);
   EXPECT_EQ(ticks[1], 7);
-  EXPECT_EQ(SharedTicks(1)[0], SharedTicks::kNone);
+  EXPECT_EQ(ProgressCounters(1)[0], ProgressCounters::kNone);
 }
 
 struct Misbehaviour {
