@@ -176,13 +176,11 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
   return ProposeGolden(old, recognised, proposal);
 }
 
-std::string Fingerprint(const Golden& pending) {
-  return ContentHash(WriteGolden(pending));
-}
+std::string Fingerprint(const Golden& pending) { return ContentHash(WriteGolden(pending)); }
 
 std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint,
                               bool wants_reason) {
-  return fmt::format("prehend accept {} --reviewed {} --reason \"...\"{}", ShellWord(scenario),
+  return fmt::format("prehend accept {} --reviewed {} --reason \"...\"{}", ShellQuoted(scenario),
                      fingerprint,
                      wants_reason ? " --against-the-oracle \"EVENT(ROLES): ...\"" : "");
 }

@@ -33,9 +33,9 @@ namespace fs = std::filesystem;
 /// The options of the command line that ask for these changes.
 std::vector<std::string> OptionsOf(const RunRequest& changes) {
   std::vector<std::string> options;
-  if (!changes.grammar.empty()) options.push_back("--grammar " + ShellWord(changes.grammar));
+  if (!changes.grammar.empty()) options.push_back("--grammar " + ShellQuoted(changes.grammar));
   for (const std::string& setting : changes.settings)
-    options.push_back("--set " + ShellWord(setting));
+    options.push_back("--set " + ShellQuoted(setting));
   return options;
 }
 
@@ -101,7 +101,7 @@ void JudgePictures(const CheckRequest& request, const Scenario& scenario,
   const std::string accept =
       AsItsFileSays(request)
           ? fmt::format("  accept it with: prehend accept {} --pictures --reason \"...\"\n",
-                        ShellWord(request.id))
+                        ShellQuoted(request.id))
           : "";
   for (const ReportedPicture& picture : verdict.pictures) {
     const fs::path drawn = fs::path(request.report_folder) / picture.file;
@@ -123,7 +123,7 @@ void JudgePictures(const CheckRequest& request, const Scenario& scenario,
        UnaskedPictures(request.id, scenario.pictures.size(), request.root)) {
     Fail(verdict, ExitCode::kDiffers, "a golden picture that the scenario does not ask for",
          UnaskedText(unasked, scenario.pictures.size()) + "\n  remove it, or: prehend accept " +
-             ShellWord(request.id) + " --pictures --reason \"...\"\n");
+             ShellQuoted(request.id) + " --pictures --reason \"...\"\n");
   }
 }
 
@@ -297,7 +297,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.inputs = HashFiles(files);
   if (!prepared.value) {
     Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(prepared.diagnostics));
-    verdict.command = "prehend validate " + ShellWord(request.id) + ChangesText(request.run);
+    verdict.command = "prehend validate " + ShellQuoted(request.id) + ChangesText(request.run);
     return verdict;
   }
   const Scenario& scenario = prepared.value->scenario;
@@ -316,7 +316,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
 
   if (plain.status.kind != physics::RunStatus::Kind::kCompleted) {
     Fail(verdict, ExitCode::kFailure, "the simulation failed", StatusText(plain) + "\n");
-    verdict.command = "prehend run " + ShellWord(request.id) + ChangesText(request.run);
+    verdict.command = "prehend run " + ShellQuoted(request.id) + ChangesText(request.run);
     return verdict;
   }
   JudgeInvariants(*prepared.value, watched, plain, verdict);
@@ -324,17 +324,17 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   JudgeOtherEngine(request, *prepared.value, plain, verdict);
   JudgePictures(request, scenario, verdict);
   if (verdict.verdict == Verdict::kPending && request.has_golden && AsItsFileSays(request))
-    verdict.command = "prehend review " + ShellWord(request.id);
+    verdict.command = "prehend review " + ShellQuoted(request.id);
   if (verdict.verdict == Verdict::kPassed) LeaveTrace(request, scenario, watched);
   return verdict;
 }
 
 std::string ExplainCommand(const std::string& id, const RunRequest& changes) {
-  return "prehend explain " + ShellWord(id) + ChangesText(changes);
+  return "prehend explain " + ShellQuoted(id) + ChangesText(changes);
 }
 
 std::string RepeatCommand(const std::string& id, const RunRequest& changes) {
-  return "prehend check " + ShellWord(id) + ChangesText(changes);
+  return "prehend check " + ShellQuoted(id) + ChangesText(changes);
 }
 
 }  // namespace prehend::harness

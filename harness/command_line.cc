@@ -38,7 +38,7 @@ std::string Today() {
 
 std::string CommandLineText(int argc, const char* const* argv) {
   std::string text = "prehend";
-  for (int i = 1; i < argc; ++i) text += " " + ShellWord(argv[i]);
+  for (int i = 1; i < argc; ++i) text += " " + ShellQuoted(argv[i]);
   return text;
 }
 
@@ -144,7 +144,7 @@ ExitCode Dispatch(const CLI::App& app, const std::vector<Command>& commands,
     return Complain(
         context, ExitCode::kBadInput,
         home && *home
-            ? "PREHEND_HOME is " + ShellWord(home) + ", which has no grammar/library"
+            ? "PREHEND_HOME is " + ShellQuoted(home) + ", which has no grammar/library"
             : std::string(
                   "the project's folder was not found (it has grammar/library); go there or "
                   "set PREHEND_HOME"));

@@ -82,7 +82,7 @@ std::string QuestionAbout(const Pairing& pairing, Tick ticks_per_second) {
     if (!IsAttribute(role)) question += " " + role.value;
   }
   question += " @" + SecondsText(begin, ticks_per_second) + "s";
-  return (pairing.actual ? "--event " : "--expected ") + ShellWord(question);
+  return (pairing.actual ? "--event " : "--expected ") + ShellQuoted(question);
 }
 
 std::string DifferenceText(const Comparison& comparison, std::string_view command,

@@ -4,7 +4,7 @@
 
 namespace prehend::harness {
 
-std::string ShellWord(std::string_view word) {
+std::string ShellQuoted(std::string_view word) {
   constexpr std::string_view kHarmless =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,@%+";
   if (!word.empty() && word.find_first_not_of(kHarmless) == word.npos) return std::string(word);

@@ -8,6 +8,6 @@
 namespace prehend::harness {
 
 /// A word as it can be pasted into a shell: in quotes when it needs them.
-std::string ShellWord(std::string_view word);
+std::string ShellQuoted(std::string_view word);
 
 }  // namespace prehend::harness

@@ -69,7 +69,7 @@ ExitCode AcceptPictures(const CommandContext& context, const std::string& reason
                     "what waited for acceptance is not what the scenario looks like now, " +
                         picture.file +
                         "; nothing was accepted\n  let that wait and look at it: prehend check " +
-                        ShellWord(id) + ", then prehend review " + ShellWord(id));
+                        ShellQuoted(id) + ", then prehend review " + ShellQuoted(id));
   }
   int changed = RemoveUnasked(context, id, scenario);
   for (const WrittenPicture& picture : drawn.pictures) {

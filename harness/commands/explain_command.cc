@@ -65,7 +65,7 @@ ExitCode ComplainOfNone(const CLI::App& options, grammar::Hindsight& past, const
   }
   message += fmt::format("\n  why not: {} --expected {}",
                          ExplainCommand(ValueOf(options, "scenario"), RequestOf(options, {})),
-                         ShellWord(typed));
+                         ShellQuoted(typed));
   return Complain(context, ExitCode::kNothing, message);
 }
 

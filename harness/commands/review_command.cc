@@ -158,7 +158,7 @@ std::string NextStep(const Review& review, bool engines_differ) {
     return kUntilEnginesAgree;
   if (review.kind == "picture")
     return fmt::format("if right: prehend accept {} --pictures --reason \"...\"",
-                       ShellWord(review.id));
+                       ShellQuoted(review.id));
   if (review.kind != "new" && review.kind != "changed") return "";
   return "if right: " + AcceptCommandLine(review.id, review.fingerprint, review.wants_reason);
 }

@@ -49,11 +49,11 @@ void Declare(CLI::App& options) {
 
 /// The command that shows one trial again, but for its number.
 std::string AgainCommand(const CLI::App& options) {
-  std::string command = "prehend run " + ShellWord(ValueOf(options, "scenario"));
+  std::string command = "prehend run " + ShellQuoted(ValueOf(options, "scenario"));
   if (IsGiven(options, "--grammar"))
-    command += " --grammar " + ShellWord(ValueOf(options, "--grammar"));
+    command += " --grammar " + ShellQuoted(ValueOf(options, "--grammar"));
   for (const std::string& setting : ValuesOf(options, "--set"))
-    command += " --set " + ShellWord(setting);
+    command += " --set " + ShellQuoted(setting);
   return command;
 }
 
