@@ -85,8 +85,8 @@ BENCHMARK(Dense<ByHand>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMillisecond)
 // All of pick_and_place on a simulated scene, from its recording: sensing and grammar, no physics.
 void RecordedCarton(benchmark::State& state) {
   const std::string root = FindProjectRoot().value_or(".");
-  const PreparedRun carton =
-      *PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root)
+  const LoadedRun carton =
+      *LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root)
            .value;
   const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
   std::size_t events = 0;

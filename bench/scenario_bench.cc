@@ -12,10 +12,9 @@
 namespace prehend::harness {
 namespace {
 
-PreparedRun Carton() {
+LoadedRun Carton() {
   const std::string root = FindProjectRoot().value_or(".");
-  return *PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"},
-                     root)
+  return *LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root)
               .value;
 }
 
@@ -25,7 +24,7 @@ void CountRealTime(benchmark::State& state, double simulated_s) {
 }
 
 void CartonPhysicsAlone(benchmark::State& state) {
-  const PreparedRun carton = Carton();
+  const LoadedRun carton = Carton();
   double simulated_s = 0;
   for (auto _ : state) {
     physics::Simulation simulation(carton.scenario.scene, carton.scenario.script);
@@ -39,7 +38,7 @@ void CartonPhysicsAlone(benchmark::State& state) {
 BENCHMARK(CartonPhysicsAlone)->Unit(benchmark::kMillisecond);
 
 void CartonWatched(benchmark::State& state) {
-  const PreparedRun carton = Carton();
+  const LoadedRun carton = Carton();
   double simulated_s = 0;
   for (auto _ : state) {
     const RunResult run = RunScenario(carton.scenario, carton.program, {.measure = true});

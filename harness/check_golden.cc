@@ -24,11 +24,8 @@ using Names = std::vector<std::string>;
 
 class GoldenChecker {
  public:
-  GoldenChecker(std::string_view file, std::string_view text, const PreparedRun& prepared)
-      : file_(file),
-        text_(text),
-        rules_(prepared.program->events),
-        cast_(MakeCast(prepared.scenario)) {
+  GoldenChecker(std::string_view file, std::string_view text, const LoadedRun& loaded)
+      : file_(file), text_(text), rules_(loaded.program->events), cast_(MakeCast(loaded.scenario)) {
     for (const grammar::Rule& rule : rules_) {
       if (rule.printed) events_.push_back(rule.name);
     }
@@ -137,15 +134,15 @@ std::string ScenarioOfGoldenAt(const std::string& path, const std::string& root)
 }  // namespace
 
 grammar::Diagnostics CheckGoldenFile(const std::string& path, const std::string& id,
-                                     const PreparedRun& prepared) {
+                                     const LoadedRun& loaded) {
   ReadResult<std::string> text = ReadTextFile(path);
   if (!text.value) return std::move(text.diagnostics);
   ReadResult<Golden> golden = ReadGolden(path, *text.value);
   if (!golden.value) return std::move(golden.diagnostics);
   grammar::Diagnostics other = OfAnotherScenario(path, *text.value, *golden.value, id);
   if (!other.empty()) return other;
-  GoldenChecker checker(path, *text.value, prepared);
-  checker.CheckGrammar(golden.value->grammar, prepared.scenario.grammar);
+  GoldenChecker checker(path, *text.value, loaded);
+  checker.CheckGrammar(golden.value->grammar, loaded.scenario.grammar);
   for (const GoldenEvent& line : golden.value->events) checker.CheckLine(line);
   return checker.Take();
 }
@@ -165,9 +162,8 @@ grammar::Diagnostics CheckGoldenAlone(const std::string& path, const std::string
     return {grammar::DiagnosticAt(path, *text.value, ScenarioLine(*text.value),
                                   "there is no scenario '" + id + "'", HintForScenario(all, id))};
   }
-  const ReadResult<PreparedRun> prepared =
-      PrepareRun({.scenario_file = scenario->path}, root, &inputs);
-  return prepared.value ? CheckGoldenFile(path, id, *prepared.value) : prepared.diagnostics;
+  const ReadResult<LoadedRun> loaded = LoadRun({.scenario_file = scenario->path}, root, &inputs);
+  return loaded.value ? CheckGoldenFile(path, id, *loaded.value) : loaded.diagnostics;
 }
 
 }  // namespace prehend::harness

@@ -11,9 +11,9 @@
 
 namespace prehend::harness {
 
-/// The golden of the scenario `id`, which was prepared as its file says.
+/// The golden of the scenario `id`, which was loaded as its file says.
 grammar::Diagnostics CheckGoldenFile(const std::string& path, const std::string& id,
-                                     const PreparedRun& prepared);
+                                     const LoadedRun& loaded);
 
 /// A file wherever it is: below golden/ it must be of the scenario that its place says, elsewhere
 /// of the one that it names. `inputs` gets every path that was looked at.

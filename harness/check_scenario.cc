@@ -137,14 +137,14 @@ std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& prog
   return latency;
 }
 
-void JudgeInvariants(const PreparedRun& prepared, const RunResult& watched, const RunResult& plain,
+void JudgeInvariants(const LoadedRun& loaded, const RunResult& watched, const RunResult& plain,
                      ScenarioVerdict& verdict) {
-  const WorldEntry& world = prepared.scenario.world;
+  const WorldEntry& world = loaded.scenario.world;
   EpisodeFacts facts{.end = plain.ticks + 1};
   facts.ticks_per_frame = DefaultTolerance(world.rate_hz, world.sensing_hz) / 2;
-  facts.latency = LatencyByEvent(*prepared.program);
+  facts.latency = LatencyByEvent(*loaded.program);
   // A grammar without phases, as that of pouring, cannot cover a grasp with them.
-  if (facts.latency.contains("transporting")) facts.movable = MovableEntities(prepared.scenario);
+  if (facts.latency.contains("transporting")) facts.movable = MovableEntities(loaded.scenario);
   Violations violations =
       CheckSameTimeline(watched.timeline, watched.state_hash, plain.timeline, plain.state_hash);
   for (Violation& violation : CheckInvariants(plain.timeline, facts))
@@ -205,12 +205,11 @@ void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending,
 }
 
 /// What differs, with the facts around the first of it, and whose doing it is.
-void TellDifferences(const CheckRequest& request, const PreparedRun& prepared,
-                     const RunResult& watched, const Comparison& comparison,
-                     ScenarioVerdict& verdict) {
-  verdict.blame = Blame(request, prepared.scenario, watched, verdict.inputs);
+void TellDifferences(const CheckRequest& request, const LoadedRun& loaded, const RunResult& watched,
+                     const Comparison& comparison, ScenarioVerdict& verdict) {
+  verdict.blame = Blame(request, loaded.scenario, watched, verdict.inputs);
   const std::string facts =
-      FactsAround(prepared.scenario, watched.recording, *comparison.FirstDivergence());
+      FactsAround(loaded.scenario, watched.recording, *comparison.FirstDivergence());
   verdict.differences = DifferencesJson(comparison, ExplainCommand(request.id, request.run));
   verdict.relations = RelationsJson(comparison);
   const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
@@ -222,7 +221,7 @@ void TellDifferences(const CheckRequest& request, const PreparedRun& prepared,
 }
 
 /// Compares the plain run; the watched one has the recording.
-void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared,
+void JudgeAgainstGolden(const CheckRequest& request, const LoadedRun& loaded,
                         const RunResult& watched, const RunResult& run, ScenarioVerdict& verdict) {
   const ReadResult<Golden> golden = request.has_golden
                                         ? GoldenFiles(request.root).ReadGoldenOf(request.id)
@@ -231,14 +230,14 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
     return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read",
                 Format(golden.diagnostics));
   }
-  const WorldEntry& world = prepared.scenario.world;
+  const WorldEntry& world = loaded.scenario.world;
   const Comparison comparison =
       Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
               run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
   verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1);
-  const Derivation derivation = Derive(prepared.scenario, *prepared.program, watched);
+  const Derivation derivation = Derive(loaded.scenario, *loaded.program, watched);
   const Golden pending =
-      PendingGolden(golden.value, run.timeline, request.id, prepared.scenario.grammar, derivation);
+      PendingGolden(golden.value, run.timeline, request.id, loaded.scenario.grammar, derivation);
   const std::vector<Objection> objections = Objections(golden.value, pending);
   if (!golden.value) return JudgeWithoutGolden(request, pending, Text(objections), verdict);
   verdict.headroom = HeadroomText(comparison);
@@ -246,7 +245,7 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
   if (comparison.Agrees() && objections.empty())
     return GoldenFiles(request.root).RemovePending(request.id);
   LeavePending(request, pending);
-  if (!comparison.Agrees()) TellDifferences(request, prepared, watched, comparison, verdict);
+  if (!comparison.Agrees()) TellDifferences(request, loaded, watched, comparison, verdict);
   if (!objections.empty()) Fail(verdict, ExitCode::kDiffers, Summary(objections), Text(objections));
 }
 
@@ -269,10 +268,10 @@ void AddPictures(const CheckRequest& request, const Scenario& scenario,
 }
 
 /// A planar scenario has the same events in both engines. How they differ waits for `review`.
-void JudgeOtherEngine(const CheckRequest& request, const PreparedRun& prepared,
-                      const RunResult& run, ScenarioVerdict& verdict) {
-  const auto compared = CompareEngines(prepared.scenario, prepared.program, run.timeline);
-  const std::string text = compared ? EngineDifferenceText(prepared.scenario, *compared,
+void JudgeOtherEngine(const CheckRequest& request, const LoadedRun& loaded, const RunResult& run,
+                      ScenarioVerdict& verdict) {
+  const auto compared = CompareEngines(loaded.scenario, loaded.program, run.timeline);
+  const std::string text = compared ? EngineDifferenceText(loaded.scenario, *compared,
                                                            ExplainCommand(request.id, request.run))
                                     : "";
   // Whether it could be written is only news to `review`; `accept` plays both engines itself.
@@ -292,15 +291,15 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.command = RepeatCommand(request.id, request.run);
   std::vector<std::string> files =
       request.has_golden ? FilesOfGolden(request) : std::vector<std::string>();
-  const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root, &files);
-  if (prepared.value && request.has_golden) AddPictures(request, prepared.value->scenario, files);
+  const ReadResult<LoadedRun> loaded = LoadRun(request.run, request.root, &files);
+  if (loaded.value && request.has_golden) AddPictures(request, loaded.value->scenario, files);
   verdict.inputs = HashFiles(files);
-  if (!prepared.value) {
-    Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(prepared.diagnostics));
+  if (!loaded.value) {
+    Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(loaded.diagnostics));
     verdict.command = "prehend validate " + ShellQuoted(request.id) + ChangesText(request.run);
     return verdict;
   }
-  const Scenario& scenario = prepared.value->scenario;
+  const Scenario& scenario = loaded.value->scenario;
   verdict.shows = scenario.shows;
 
   RunOptions how;
@@ -308,9 +307,9 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
     how.watch = [&](const grammar::Frame& frame) { request.last_tick->store(frame.tick); };
   RunOptions how_watched = how;
   how_watched.record = true;
-  const RunResult watched = RunScenario(scenario, prepared.value->program, how_watched);
+  const RunResult watched = RunScenario(scenario, loaded.value->program, how_watched);
   Draw(request, scenario, watched, verdict);
-  const RunResult plain = RunScenario(scenario, prepared.value->program, how);
+  const RunResult plain = RunScenario(scenario, loaded.value->program, how);
   verdict.state_hash = HashText(plain.state_hash);
   verdict.ticks = plain.ticks;
 
@@ -319,9 +318,9 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
     verdict.command = "prehend run " + ShellQuoted(request.id) + ChangesText(request.run);
     return verdict;
   }
-  JudgeInvariants(*prepared.value, watched, plain, verdict);
-  JudgeAgainstGolden(request, *prepared.value, watched, plain, verdict);
-  JudgeOtherEngine(request, *prepared.value, plain, verdict);
+  JudgeInvariants(*loaded.value, watched, plain, verdict);
+  JudgeAgainstGolden(request, *loaded.value, watched, plain, verdict);
+  JudgeOtherEngine(request, *loaded.value, plain, verdict);
   JudgePictures(request, scenario, verdict);
   if (verdict.verdict == Verdict::kPending && request.has_golden && AsItsFileSays(request))
     verdict.command = "prehend review " + ShellQuoted(request.id);

@@ -24,14 +24,14 @@ bool IsRecording(const std::string& typed) {
 ReadResult<EpisodeSource> OpenScenario(const std::string& file, const std::string& grammar,
                                        const std::vector<std::string>& settings,
                                        const std::string& root) {
-  ReadResult<PreparedRun> prepared = PrepareRun({file, grammar, settings}, root);
-  if (!prepared.value) return {std::nullopt, std::move(prepared.diagnostics)};
-  const Scenario& scenario = prepared.value->scenario;
+  ReadResult<LoadedRun> loaded = LoadRun({file, grammar, settings}, root);
+  if (!loaded.value) return {std::nullopt, std::move(loaded.diagnostics)};
+  const Scenario& scenario = loaded.value->scenario;
   EpisodeSource source{.name = scenario.name,
-                       .program = prepared.value->program,
+                       .program = loaded.value->program,
                        .cast = MakeCast(scenario),
                        .play = {}};
-  source.play = [run = std::move(*prepared.value)](const EpisodeSource::Watcher& watch) {
+  source.play = [run = std::move(*loaded.value)](const EpisodeSource::Watcher& watch) {
     const RunResult result = RunScenario(run.scenario, run.program, {.watch = watch});
     const bool completed = result.status.kind == physics::RunStatus::Kind::kCompleted;
     return EpisodeSource::Played{result.ticks + 1, completed ? "" : StatusText(result)};

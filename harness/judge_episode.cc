@@ -30,12 +30,12 @@ void KeepJudged(const std::vector<std::string>& wanted, score::JudgedEpisode& ep
 ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request,
                                                            bool& bad_input) {
   bad_input = true;
-  const ReadResult<PreparedRun> prepared = PrepareRun(
+  const ReadResult<LoadedRun> loaded = LoadRun(
       {.scenario_file = request.scenario_file, .grammar = request.grammars.front()}, request.root);
-  if (!prepared.value) return {std::nullopt, prepared.diagnostics};
+  if (!loaded.value) return {std::nullopt, loaded.diagnostics};
   bad_input = false;
-  const Scenario& scenario = prepared.value->scenario;
-  const RunResult run = RunScenario(scenario, prepared.value->program, {.record = true});
+  const Scenario& scenario = loaded.value->scenario;
+  const RunResult run = RunScenario(scenario, loaded.value->program, {.record = true});
   if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
     return {std::nullopt,
             {{.file = request.scenario_file,

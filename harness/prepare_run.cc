@@ -81,8 +81,8 @@ bool IsFieldOfScenario(const std::string& name) {
          ScenarioFormat().schema.at("properties").contains(name);
 }
 
-ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root,
-                                   std::vector<std::string>* files) {
+ReadResult<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                              std::vector<std::string>* files) {
   Settings settings = Split(request.settings, IsFieldOfScenario);
   if (!settings.diagnostics.empty()) return {std::nullopt, std::move(settings.diagnostics)};
   if (files) files->push_back(request.scenario_file);
@@ -107,7 +107,7 @@ ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string&
   grammar::Diagnostics warnings = scenario.value->warnings;
   std::ranges::move(Warnings(*compiled.program, MakeCast(*scenario.value)),
                     std::back_inserter(warnings));
-  return {PreparedRun{std::move(*scenario.value), std::move(compiled.program), std::move(warnings)},
+  return {LoadedRun{std::move(*scenario.value), std::move(compiled.program), std::move(warnings)},
           {}};
 }
 

@@ -21,7 +21,7 @@ struct RunRequest {
                                       ///< dot or is that of a field, else a parameter
 };
 
-struct PreparedRun {
+struct LoadedRun {
   Scenario scenario;  ///< its `grammar` is what the one that is used calls itself
   std::shared_ptr<const grammar::Program> program;
   grammar::Diagnostics
@@ -29,8 +29,8 @@ struct PreparedRun {
 };
 
 /// `files` gets every path that was looked at, also when the result is no run.
-ReadResult<PreparedRun> PrepareRun(const RunRequest& request, const std::string& root,
-                                   std::vector<std::string>* files = nullptr);
+ReadResult<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                              std::vector<std::string>* files = nullptr);
 
 /// Whether this name in a setting means a field of the scenario, and not a parameter of its
 /// grammar.

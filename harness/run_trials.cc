@@ -22,21 +22,21 @@ constexpr std::size_t kMostListed = 20;
 
 /// What trials are drawn from; the file is looked at once, before the first of them.
 struct Nominal {
-  PreparedRun run;
+  LoadedRun run;
   YamlDocument document;
 };
 
 ReadResult<Nominal> ReadNominal(const RunRequest& request, const std::string& root) {
-  ReadResult<PreparedRun> prepared = PrepareRun(request, root);
-  if (!prepared.value) return {std::nullopt, std::move(prepared.diagnostics)};
+  ReadResult<LoadedRun> loaded = LoadRun(request, root);
+  if (!loaded.value) return {std::nullopt, std::move(loaded.diagnostics)};
   ReadResult<YamlDocument> document = ReadYamlFile(request.scenario_file);
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
   for (const std::string& setting : request.settings) {
     if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
       (void)ApplyOverride(setting, ScenarioFormat().schema,
-                          *document.value);  // PrepareRun() has accepted it
+                          *document.value);  // LoadRun() has accepted it
   }
-  return {Nominal{std::move(*prepared.value), std::move(*document.value)}, {}};
+  return {Nominal{std::move(*loaded.value), std::move(*document.value)}, {}};
 }
 
 /// What the command line sets is not varied.
@@ -115,11 +115,11 @@ ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& 
   std::vector<WorkerJob> jobs;
   for (int trial = 1; trial <= settings.count; ++trial) {
     jobs.push_back([&, trial]() -> std::string {
-      const auto prepared = PrepareRun(WithDraws(request, *nominal.value, trial), root);
-      if (!prepared.value)
+      const auto loaded = LoadRun(WithDraws(request, *nominal.value, trial), root);
+      if (!loaded.value)
         return ToJson(
-            {trial, kFailed, "it cannot be read:\n" + grammar::Format(prepared.diagnostics)});
-      return ToJson(RunTrial(prepared.value->scenario, trial));
+            {trial, kFailed, "it cannot be read:\n" + grammar::Format(loaded.diagnostics)});
+      return ToJson(RunTrial(loaded.value->scenario, trial));
     });
   }
   int done = 0;

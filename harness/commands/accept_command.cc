@@ -84,7 +84,7 @@ std::string Refusal(const CLI::App& options, const CommandContext& context) {
 struct Played {
   std::string id;
   std::optional<Golden> old;
-  PreparedRun prepared;
+  LoadedRun loaded;
   std::vector<std::string> files;  ///< all that decided it
   RunResult run;
 };
@@ -94,7 +94,7 @@ void ShowDifference(const Played& played, const Golden& pending, const CommandCo
   if (!played.old) {
     context.out << "new golden:\n" << RunTable(played.run);
   } else {
-    const WorldEntry& world = played.prepared.scenario.world;
+    const WorldEntry& world = played.loaded.scenario.world;
     context.out << DifferenceText(Compare(*played.old, played.run.timeline,
                                           DefaultTolerance(world.rate_hz, world.sensing_hz)),
                                   ExplainCommand(played.id, {}));
@@ -111,7 +111,7 @@ void LeaveBaseline(const CommandContext& context, const Played& played) {
   // Losing it only costs the blame of the next difference its answer.
   (void)records.Write(record);
   (void)WriteTrace(records.TracePath(played.id),
-                   TraceOf(played.prepared.scenario.scene, played.run.recording));
+                   TraceOf(played.loaded.scenario.scene, played.run.recording));
 }
 
 /// "" or why it is not what a person was shown: by the fingerprint, or by the file that waits.
@@ -146,7 +146,7 @@ ExitCode Refuse(const CommandContext& context, const Played& played, const Golde
 ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
   GoldenFiles(context.root).RemovePending(played.id);
   LeaveBaseline(context, played);
-  const WorldEntry& world = played.prepared.scenario.world;
+  const WorldEntry& world = played.loaded.scenario.world;
   const std::string headroom = HeadroomText(
       Compare(*played.old, played.run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz)));
   context.out << "nothing to accept: the scenario agrees with "
@@ -160,8 +160,8 @@ ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
 std::optional<ExitCode> RefuseUnlessEnginesAgree(const CommandContext& context,
                                                  const Played& played) {
   const auto compared =
-      CompareEngines(played.prepared.scenario, played.prepared.program, played.run.timeline);
-  const std::string text = compared ? EngineDifferenceText(played.prepared.scenario, *compared,
+      CompareEngines(played.loaded.scenario, played.loaded.program, played.run.timeline);
+  const std::string text = compared ? EngineDifferenceText(played.loaded.scenario, *compared,
                                                            ExplainCommand(played.id, {}))
                                     : "";
   (void)GoldenFiles(context.root).WriteEngineDifference(played.id, text);
@@ -176,11 +176,11 @@ std::optional<ExitCode> RefuseUnlessEnginesAgree(const CommandContext& context,
 
 ExitCode AcceptEvents(const CLI::App& options, const CommandContext& context,
                       const Played& played) {
-  const auto& [id, old, prepared, inputs, run] = played;
+  const auto& [id, old, loaded, inputs, run] = played;
   const GoldenFiles files(context.root);
-  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  const Derivation derivation = Derive(loaded.scenario, *loaded.program, run);
   Proposal proposal{.scenario = id,
-                    .grammar = prepared.scenario.grammar,
+                    .grammar = loaded.scenario.grammar,
                     .derived = ValuesOf(options, "--derived"),
                     .acceptance = Acceptance{context.today, ValueOf(options, "--reason")},
                     .notes = derivation.notes,
@@ -189,8 +189,7 @@ ExitCode AcceptEvents(const CLI::App& options, const CommandContext& context,
   if (!from_people && old) proposal.derived = old->derived;
   proposal.derived = RenewedDerivation(proposal.derived, derivation);
   const bool tells_derivation = from_people && (!old || old->derived != proposal.derived);
-  const Golden pending =
-      PendingGolden(old, run.timeline, id, prepared.scenario.grammar, derivation);
+  const Golden pending = PendingGolden(old, run.timeline, id, loaded.scenario.grammar, derivation);
   if (old && *old == pending && !tells_derivation) return NothingToAccept(context, played);
   const std::string why_not = NotWhatWasShown(options, context, pending);
   if (!why_not.empty()) return Refuse(context, played, pending, ExitCode::kDiffers, why_not);
@@ -224,10 +223,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   Played played;
   played.id = ScenarioId(file->skill, file->name);
   played.files = {GoldenFiles(context.root).GoldenPath(played.id).string()};
-  ReadResult<PreparedRun> prepared =
-      PrepareRun({.scenario_file = file->path}, context.root, &played.files);
-  if (!prepared.value) return Complain(context, prepared.diagnostics);
-  played.prepared = std::move(*prepared.value);
+  ReadResult<LoadedRun> loaded =
+      LoadRun({.scenario_file = file->path}, context.root, &played.files);
+  if (!loaded.value) return Complain(context, loaded.diagnostics);
+  played.loaded = std::move(*loaded.value);
   ReadResult<Golden> old = GoldenFiles(context.root).ReadGoldenOf(played.id);
   if (!old.diagnostics.empty()) return Complain(context, old.diagnostics);
   played.old = std::move(old.value);
@@ -236,7 +235,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
                     "its events have no golden yet; accept them first, without --pictures");
   }
 
-  played.run = RunScenario(played.prepared.scenario, played.prepared.program, {.record = true});
+  played.run = RunScenario(played.loaded.scenario, played.loaded.program, {.record = true});
   if (played.run.status.kind != physics::RunStatus::Kind::kCompleted) {
     return Complain(context, ExitCode::kFailure,
                     "a run that did not complete is not accepted: " + StatusText(played.run));
@@ -245,8 +244,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     if (const auto refused = RefuseUnlessEnginesAgree(context, played)) return *refused;
     return AcceptEvents(options, context, played);
   }
-  return AcceptPictures(context, ValueOf(options, "--reason"), *played.old,
-                        played.prepared.scenario, played.run);
+  return AcceptPictures(context, ValueOf(options, "--reason"), *played.old, played.loaded.scenario,
+                        played.run);
 }
 
 }  // namespace

@@ -43,33 +43,33 @@ std::optional<PictureEntry> AskedPicture(const CLI::App& options, const Scenario
   return entry;
 }
 
-PictureResult Draw(const CLI::App& options, const ScenarioFile& file, const PreparedRun& prepared,
+PictureResult Draw(const CLI::App& options, const ScenarioFile& file, const LoadedRun& loaded,
                    const RunResult& run, const std::string& root) {
   const std::string output = ValueOf(options, "--output");
   if (!output.empty())
-    return DrawPicture(prepared.scenario, run, prepared.scenario.pictures.front(), output);
+    return DrawPicture(loaded.scenario, run, loaded.scenario.pictures.front(), output);
   const fs::path folder = fs::path(root) / "build" / "pictures" / file.skill;
   std::error_code error;
   fs::create_directories(folder, error);
-  return DrawPictures(prepared.scenario, run, folder.string());
+  return DrawPictures(loaded.scenario, run, folder.string());
 }
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const auto file = FindScenarioOrComplain(ValueOf(options, "scenario"), context);
   if (!file) return ExitCode::kNothing;
-  ReadResult<PreparedRun> prepared = PrepareRun(RequestOf(options, file->path), context.root);
-  if (!prepared.value) return Complain(context, prepared.diagnostics);
-  if (auto asked = AskedPicture(options, prepared.value->scenario)) {
-    const auto problem = WhyNoMoment(asked->at.value, *prepared.value->program);
+  ReadResult<LoadedRun> loaded = LoadRun(RequestOf(options, file->path), context.root);
+  if (!loaded.value) return Complain(context, loaded.diagnostics);
+  if (auto asked = AskedPicture(options, loaded.value->scenario)) {
+    const auto problem = WhyNoMoment(asked->at.value, *loaded.value->program);
     if (problem && IsGiven(options, "--at")) {
       return Complain(context, ExitCode::kBadInput,
                       "--at: " + problem->message + "; " + problem->hint);
     }
-    if (const auto why = WhyNoCamera(prepared.value->scenario, asked->camera.value))
+    if (const auto why = WhyNoCamera(loaded.value->scenario, asked->camera.value))
       return Complain(context, ExitCode::kBadInput, "--" + *why);
-    prepared.value->scenario.pictures = {std::move(*asked)};
+    loaded.value->scenario.pictures = {std::move(*asked)};
   }
-  if (prepared.value->scenario.pictures.empty()) {
+  if (loaded.value->scenario.pictures.empty()) {
     return Complain(context, ExitCode::kNothing,
                     "the scenario asks for no pictures; ask for one with --at");
   }
@@ -82,15 +82,15 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
 
   const RunResult run =
-      RunScenario(prepared.value->scenario, prepared.value->program, {.record = true});
-  const PictureResult drawn = Draw(options, *file, *prepared.value, run, context.root);
+      RunScenario(loaded.value->scenario, loaded.value->program, {.record = true});
+  const PictureResult drawn = Draw(options, *file, *loaded.value, run, context.root);
   for (const WrittenPicture& picture : drawn.pictures) {
     if (!picture.missed.empty())
       context.err << "prehend: warning: " << picture.file << ": " << picture.missed
                   << "; it shows the end\n";
   }
   if (IsGiven(options, "--json")) {
-    OrderedJson json = RunJson(prepared.value->scenario, run);
+    OrderedJson json = RunJson(loaded.value->scenario, run);
     json["pictures"] = OrderedJson::array();
     for (const WrittenPicture& picture : drawn.pictures) {
       json["pictures"].push_back({{"file", picture.file}, {"caption", picture.caption}});

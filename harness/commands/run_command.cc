@@ -101,25 +101,25 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
           context, ExitCode::kBadInput,
           fmt::format("--record - and {} contradict each other: both are printed", of_output));
   }
-  const ReadResult<PreparedRun> prepared = PrepareRun(request, context.root);
-  if (!prepared.value) return Complain(context, prepared.diagnostics);
-  Warn(context, prepared.value->warnings);
+  const ReadResult<LoadedRun> loaded = LoadRun(request, context.root);
+  if (!loaded.value) return Complain(context, loaded.diagnostics);
+  Warn(context, loaded.value->warnings);
 
   const bool measure = IsGiven(options, "--measure");
-  RunOptions how{.judge = !prepared.value->scenario.outcomes.empty(), .measure = measure};
+  RunOptions how{.judge = !loaded.value->scenario.outcomes.empty(), .measure = measure};
   std::optional<AtomicFile> record;
   std::optional<EpisodeWriter> recorder;
   if (IsGiven(options, "--record")) {
     record.emplace(ValueOf(options, "--record"));
     if (!record->problem().empty())
       return Complain(context, ExitCode::kBadInput, "--record: " + record->problem());
-    const Scenario& scenario = prepared.value->scenario;
+    const Scenario& scenario = loaded.value->scenario;
     recorder.emplace(record->stream(),
                      EpisodeHeader{scenario.name, scenario.grammar, MakeCast(scenario)});
     how.watch = [&](const grammar::Frame& frame) { recorder->Write(frame); };
   }
-  const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, how);
-  for (const std::string& note : NoteLines(prepared.value->scenario, run))
+  const RunResult run = RunScenario(loaded.value->scenario, loaded.value->program, how);
+  for (const std::string& note : NoteLines(loaded.value->scenario, run))
     context.err << note << "\n";
   std::string not_recorded;
   if (recorder) {
@@ -127,7 +127,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     not_recorded = record->Commit();
   }
   if (IsGiven(options, "--json")) {
-    OrderedJson json = RunJson(prepared.value->scenario, run);
+    OrderedJson json = RunJson(loaded.value->scenario, run);
     if (measure) json["measured"] = MeasurementJson(Measure(run));
     context.out << json.dump(2) << "\n";
   } else if (!record_is_output) {

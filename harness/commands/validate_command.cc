@@ -63,7 +63,7 @@ Validated ValidateGrammar(const std::string& name_or_path, const CLI::App& optio
 /// What is kept in golden/ for a scenario. Its events are those of the scenario's own grammar, not
 /// of another.
 void AddGolden(const ScenarioFile& file, const CLI::App& options,
-               const std::optional<PreparedRun>& prepared, const std::string& root,
+               const std::optional<LoadedRun>& loaded, const std::string& root,
                Validated& validated) {
   const GoldenFiles goldens(root);
   const std::string path = goldens.GoldenPath(IdOf(file)).string();
@@ -71,11 +71,11 @@ void AddGolden(const ScenarioFile& file, const CLI::App& options,
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
   const bool as_it_is = !IsGiven(options, "--grammar") && !IsGiven(options, "--set");
-  std::ranges::move(prepared && as_it_is ? CheckGoldenFile(path, IdOf(file), *prepared)
-                                         : goldens.ReadGoldenOf(IdOf(file)).diagnostics,
+  std::ranges::move(loaded && as_it_is ? CheckGoldenFile(path, IdOf(file), *loaded)
+                                       : goldens.ReadGoldenOf(IdOf(file)).diagnostics,
                     std::back_inserter(validated.diagnostics));
-  if (!prepared || !as_it_is) return;
-  const std::size_t asked = prepared->scenario.pictures.size();
+  if (!loaded || !as_it_is) return;
+  const std::size_t asked = loaded->scenario.pictures.size();
   for (const fs::path& picture : UnaskedPictures(IdOf(file), asked, root))
     validated.diagnostics.push_back(grammar::Diagnostic{.file = file.path,
                                                         .place = {},
@@ -109,11 +109,11 @@ std::optional<Validated> Validate(const std::string& typed, const CLI::App& opti
   const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return std::nullopt;
   Validated validated{.file = file->path};
-  ReadResult<PreparedRun> prepared =
-      PrepareRun(RequestOf(options, file->path), context.root, &validated.inputs);
-  validated.diagnostics = std::move(prepared.diagnostics);
-  if (file->in_project) AddGolden(*file, options, prepared.value, context.root, validated);
-  if (prepared.value) validated.warnings = std::move(prepared.value->warnings);
+  ReadResult<LoadedRun> loaded =
+      LoadRun(RequestOf(options, file->path), context.root, &validated.inputs);
+  validated.diagnostics = std::move(loaded.diagnostics);
+  if (file->in_project) AddGolden(*file, options, loaded.value, context.root, validated);
+  if (loaded.value) validated.warnings = std::move(loaded.value->warnings);
   return validated;
 }
 

@@ -140,7 +140,7 @@ double TimeWatching(const Scenario& scenario, std::shared_ptr<const grammar::Pro
 
 // One hand takes one carton: what physics costs, and what watching adds to it. Apart, so that the
 // clock of the processor, which is slow to read, is read twice only.
-SpeedFigure WatchCarton(const PreparedRun& carton, bool quick) {
+SpeedFigure WatchCarton(const LoadedRun& carton, bool quick) {
   SpeedFigure figure{.what = "pick_and_place on " + carton.scenario.name + ", sensing included",
                      .unit = "physics tick"};
   const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
@@ -193,8 +193,8 @@ SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool 
 }  // namespace
 
 ReadResult<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool quick) {
-  ReadResult<PreparedRun> carton =
-      PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root);
+  ReadResult<LoadedRun> carton =
+      LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root);
   if (!carton.value) return {.value = std::nullopt, .diagnostics = std::move(carton.diagnostics)};
   const Measuring measuring(quick);
   std::vector<SpeedFigure> figures = {

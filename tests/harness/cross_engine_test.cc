@@ -9,17 +9,17 @@
 namespace prehend::harness {
 namespace {
 
-PreparedRun Prepare(const std::string& scenario) {
+LoadedRun Prepare(const std::string& scenario) {
   const std::string root = PREHEND_SOURCE_DIR;
-  auto prepared = PrepareRun({.scenario_file = root + "/scenarios/" + scenario + ".yaml"}, root);
-  EXPECT_TRUE(prepared.value) << grammar::Format(prepared.diagnostics);
-  return *prepared.value;
+  auto loaded = LoadRun({.scenario_file = root + "/scenarios/" + scenario + ".yaml"}, root);
+  EXPECT_TRUE(loaded.value) << grammar::Format(loaded.diagnostics);
+  return *loaded.value;
 }
 
 TEST(CrossEngineTest, TheGripperDoesTheSameInBothEngines) {
-  const PreparedRun prepared = Prepare("planar/gripper_carries_box");
-  RunResult run = RunScenario(prepared.scenario, prepared.program);
-  const auto compared = CompareEngines(prepared.scenario, prepared.program, run.timeline);
+  const LoadedRun loaded = Prepare("planar/gripper_carries_box");
+  RunResult run = RunScenario(loaded.scenario, loaded.program);
+  const auto compared = CompareEngines(loaded.scenario, loaded.program, run.timeline);
   ASSERT_TRUE(compared);
   EXPECT_EQ(compared->other, physics::Engine::kBullet);
   EXPECT_NE(compared->run.state_hash, run.state_hash) << "another engine";
@@ -28,14 +28,14 @@ TEST(CrossEngineTest, TheGripperDoesTheSameInBothEngines) {
   ASSERT_GE(run.timeline.events.size(), 3u);
   run.timeline.events.pop_back();
   run.timeline.events.front().interval.begin += run.timeline.ticks_per_second / 10;
-  const auto differs = CompareEngines(prepared.scenario, prepared.program, run.timeline);
+  const auto differs = CompareEngines(loaded.scenario, loaded.program, run.timeline);
   EXPECT_EQ(differs->comparison.Count(LineVerdict::kExtra), 1);
   EXPECT_EQ(differs->comparison.Count(LineVerdict::kShifted), 1);
 }
 
 TEST(CrossEngineTest, ASpatialScenarioHasOneEngine) {
-  const PreparedRun prepared = Prepare("pick_and_place/milk_carton_wrap");
-  EXPECT_FALSE(CompareEngines(prepared.scenario, prepared.program, {}));
+  const LoadedRun loaded = Prepare("pick_and_place/milk_carton_wrap");
+  EXPECT_FALSE(CompareEngines(loaded.scenario, loaded.program, {}));
 }
 
 }  // namespace

@@ -17,21 +17,21 @@ class DerivationTest : public testing::Test {
   void SetUp() override {
     const RunRequest request{.scenario_file = PREHEND_SOURCE_DIR
                              "/scenarios/pick_and_place/milk_carton_wrap.yaml"};
-    auto read = PrepareRun(request, PREHEND_SOURCE_DIR);
+    auto read = LoadRun(request, PREHEND_SOURCE_DIR);
     ASSERT_TRUE(read.value) << grammar::Format(read.diagnostics);
-    prepared = std::move(*read.value);
-    run = RunScenario(prepared.scenario, prepared.program, {.record = true});
+    loaded = std::move(*read.value);
+    run = RunScenario(loaded.scenario, loaded.program, {.record = true});
   }
   grammar::NamedEvent& Find(const std::string& event) {
     return *std::ranges::find(run.timeline.events, event, &grammar::NamedEvent::event);
   }
 
-  PreparedRun prepared;
+  LoadedRun loaded;
   RunResult run;
 };
 
 TEST_F(DerivationTest, TheRunAsItWasFollows) {
-  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  const Derivation derivation = Derive(loaded.scenario, *loaded.program, run);
   EXPECT_TRUE(derivation.agrees) << derivation.lines.back();
   ASSERT_EQ(derivation.lines.size(), 1u);
   const std::string all = std::to_string(run.timeline.events.size());
@@ -42,7 +42,7 @@ TEST_F(DerivationTest, TheRunAsItWasFollows) {
 
 TEST_F(DerivationTest, AShiftedBoundaryDoesNot) {
   Find("picking_up").interval.begin += 20;
-  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  const Derivation derivation = Derive(loaded.scenario, *loaded.program, run);
   EXPECT_FALSE(derivation.agrees);
   ASSERT_EQ(derivation.notes.size(), 1u);
   EXPECT_EQ(derivation.notes[0].text, "+41.7/+0.0ms");
@@ -51,7 +51,7 @@ TEST_F(DerivationTest, AShiftedBoundaryDoesNot) {
 
 TEST_F(DerivationTest, AMissingAndAnInventedEventDoNot) {
   Find("transporting").event = "sliding";
-  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  const Derivation derivation = Derive(loaded.scenario, *loaded.program, run);
   EXPECT_FALSE(derivation.agrees);
   ASSERT_EQ(derivation.notes.size(), 2u);
   EXPECT_EQ(derivation.notes[0].text, kNotOfOracle);
@@ -62,7 +62,7 @@ TEST_F(DerivationTest, AMissingAndAnInventedEventDoNot) {
 
 TEST_F(DerivationTest, EventsWithoutADefinitionAreCountedNotJudged) {
   run.timeline.events.push_back({.event = "stirring", .roles = {}, .interval = {10, 20}});
-  const Derivation derivation = Derive(prepared.scenario, *prepared.program, run);
+  const Derivation derivation = Derive(loaded.scenario, *loaded.program, run);
   EXPECT_TRUE(derivation.agrees);
   EXPECT_NE(derivation.lines[0].find("(1 events of other kinds not judged)"), std::string::npos)
       << derivation.lines[0];

@@ -19,27 +19,27 @@ TEST(OneHash, WhateverRanBefore) {
   const char* typed = std::getenv("PREHEND_RUNS");
   const int runs = typed ? std::atoi(typed) : 30;
   const std::string root = PREHEND_SOURCE_DIR;
-  std::vector<PreparedRun> prepared;
+  std::vector<LoadedRun> loaded;
   for (const char* scenario :
        {"reach/two_candidates_one_grasped", "pick_and_place/milk_carton_wrap",
         "grasp/closing_beside_the_carton_is_no_grasp"}) {
-    auto one = PrepareRun({.scenario_file = root + "/scenarios/" + scenario + ".yaml",
-                           .grammar = {},
-                           .settings = {"settle_s=0", "script.0.right_hand.over_s=0.1"}},
-                          root);
+    auto one = LoadRun({.scenario_file = root + "/scenarios/" + scenario + ".yaml",
+                        .grammar = {},
+                        .settings = {"settle_s=0", "script.0.right_hand.over_s=0.1"}},
+                       root);
     ASSERT_TRUE(one.value) << Format(one.diagnostics);
     // Only the first beat: short enough to be run a thousand times, long enough to move a hand.
     one.value->scenario.script.beats.resize(1);
-    prepared.push_back(std::move(*one.value));
+    loaded.push_back(std::move(*one.value));
   }
   std::mt19937 random(1);
   std::map<std::string, std::set<std::uint64_t>> hashes;
   for (int i = 0; i < runs; ++i) {
-    const PreparedRun& run = prepared[random() % prepared.size()];
+    const LoadedRun& run = loaded[random() % loaded.size()];
     hashes[run.scenario.name].insert(RunScenario(run.scenario, run.program).state_hash);
   }
   for (const auto& [name, found] : hashes) EXPECT_EQ(found.size(), 1u) << name;
-  EXPECT_EQ(hashes.size(), prepared.size());
+  EXPECT_EQ(hashes.size(), loaded.size());
 }
 
 }  // namespace

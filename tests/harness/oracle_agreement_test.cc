@@ -57,15 +57,15 @@ void ExpectAgreement(const Scenario& scenario,
 
 TEST_P(OracleAgreement, WithinTwoFrames) {
   const RunRequest request{.scenario_file = GetParam().path};
-  const ReadResult<PreparedRun> prepared = PrepareRun(request, PREHEND_SOURCE_DIR);
-  ASSERT_TRUE(prepared.value) << grammar::Format(prepared.diagnostics);
-  const Scenario& scenario = prepared.value->scenario;
+  const ReadResult<LoadedRun> loaded = LoadRun(request, PREHEND_SOURCE_DIR);
+  ASSERT_TRUE(loaded.value) << grammar::Format(loaded.diagnostics);
+  const Scenario& scenario = loaded.value->scenario;
   const bool check_is_as_strict =
       DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz) <= kTolerance;
   if (check_is_as_strict)
-    ExpectNoNotes(GetParam(), *prepared.value->program);
+    ExpectNoNotes(GetParam(), *loaded.value->program);
   else
-    ExpectAgreement(scenario, prepared.value->program);
+    ExpectAgreement(scenario, loaded.value->program);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, OracleAgreement,

@@ -23,14 +23,14 @@ struct PlayedScenario {
 
 /// `id` is skill/name. A scenario that cannot be played is a failure of the test.
 inline PlayedScenario Play(const std::string& id) {
-  const ReadResult<PreparedRun> prepared =
-      PrepareRun({.scenario_file = std::string(PREHEND_SOURCE_DIR) + "/scenarios/" + id + ".yaml"},
-                 PREHEND_SOURCE_DIR);
-  EXPECT_TRUE(prepared.value) << grammar::Format(prepared.diagnostics);
-  if (!prepared.value) return {};
+  const ReadResult<LoadedRun> loaded =
+      LoadRun({.scenario_file = std::string(PREHEND_SOURCE_DIR) + "/scenarios/" + id + ".yaml"},
+              PREHEND_SOURCE_DIR);
+  EXPECT_TRUE(loaded.value) << grammar::Format(loaded.diagnostics);
+  if (!loaded.value) return {};
   PlayedScenario played{
-      prepared.value->scenario,
-      RunScenario(prepared.value->scenario, prepared.value->program, {.record = true})};
+      loaded.value->scenario,
+      RunScenario(loaded.value->scenario, loaded.value->program, {.record = true})};
   EXPECT_EQ(played.run.status.kind, physics::RunStatus::Kind::kCompleted)
       << id << ": " << played.run.status.reason;
   return played;
