@@ -280,7 +280,7 @@ render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& pi
 
 render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
                                const PictureEntry& entry) {
-  const Moment moment = FindMoment(entry.at.value, run);
+  const FoundTime moment = FindEventTime(entry.at.value, run);
   render::Picture picture;
   picture.scene = &scenario.scene;
   picture.snapshot = SnapshotAt(run, moment.tick);
@@ -298,7 +298,7 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
   picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
   picture.strip = ComposeStrip(scenario, run, moment.tick);
   picture.camera = ComposeCamera(scenario, picture, entry.camera.value);
-  const auto name = ParseMoment(entry.at.value);
+  const auto name = ParseEventTime(entry.at.value);
   std::string at = name && name->time_s ? "" : fmt::format("  ·  {}", entry.at.value);
   if (!moment.missed.empty()) at = fmt::format("  ·  {}; the end", moment.missed);
   picture.title =

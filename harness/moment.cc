@@ -10,28 +10,30 @@
 
 namespace prehend::harness {
 
-std::optional<MomentName> ParseMoment(const std::string& text) {
+std::optional<EventTime> ParseEventTime(const std::string& text) {
   double time_s = 0;
   const auto parsed = std::from_chars(text.data(), text.data() + text.size(), time_s);
   if (parsed.ec == std::errc() && parsed.ptr == text.data() + text.size()) {
     if (!std::isfinite(time_s) || time_s < 0) return std::nullopt;
-    return MomentName{.time_s = time_s, .event = {}};
+    return EventTime{.time_s = time_s, .event = {}};
   }
   for (const char* boundary : {".begin", ".end"}) {
     const std::size_t length = std::char_traits<char>::length(boundary);
     if (text.size() <= length || !text.ends_with(boundary)) continue;
-    return MomentName{.time_s = std::nullopt,
-                      .event = text.substr(0, text.size() - length),
-                      .end = boundary == std::string(".end")};
+    return EventTime{.time_s = std::nullopt,
+                     .event = text.substr(0, text.size() - length),
+                     .end = boundary == std::string(".end")};
   }
   return std::nullopt;
 }
 
-std::optional<MomentProblem> WhyNoMoment(const std::string& text, const grammar::Program& program) {
-  const auto moment = ParseMoment(text);
+std::optional<EventTimeProblem> WhyNoEventTime(const std::string& text,
+                                               const grammar::Program& program) {
+  const auto moment = ParseEventTime(text);
   if (!moment) {
-    return MomentProblem{fmt::format("'{}' is no moment", text),
-                         "write seconds, like 1.25, or an event's boundary, like reaching.begin"};
+    return EventTimeProblem{
+        fmt::format("'{}' is no moment", text),
+        "write seconds, like 1.25, or an event's boundary, like reaching.begin"};
   }
   if (moment->time_s) return std::nullopt;
   std::vector<std::string> events;
@@ -41,13 +43,14 @@ std::optional<MomentProblem> WhyNoMoment(const std::string& text, const grammar:
     events.push_back(rule.name);
   }
   const std::string near = grammar::NearestName(moment->event, events);
-  return MomentProblem{fmt::format("grammar '{}' has no event '{}'", program.name, moment->event),
-                       near.empty() ? fmt::format("known: {}", fmt::join(events, ", "))
-                                    : fmt::format("did you mean '{}'?", near)};
+  return EventTimeProblem{
+      fmt::format("grammar '{}' has no event '{}'", program.name, moment->event),
+      near.empty() ? fmt::format("known: {}", fmt::join(events, ", "))
+                   : fmt::format("did you mean '{}'?", near)};
 }
 
-Moment FindMoment(const std::string& text, const RunResult& run) {
-  const auto moment = ParseMoment(text);
+FoundTime FindEventTime(const std::string& text, const RunResult& run) {
+  const auto moment = ParseEventTime(text);
   if (!moment) return {run.ticks, fmt::format("'{}' is no moment", text)};
   if (moment->time_s) {
     const double ticks_per_s = static_cast<double>(run.timeline.ticks_per_second);

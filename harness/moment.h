@@ -12,28 +12,29 @@
 namespace prehend::harness {
 
 /// Either a time or an event's boundary.
-struct MomentName {
+struct EventTime {
   std::optional<double> time_s;
   std::string event;
   bool end = false;  ///< the event's end, not its begin
 };
 
 /// Nothing when the text is neither a time nor EVENT.begin nor EVENT.end.
-std::optional<MomentName> ParseMoment(const std::string& text);
+std::optional<EventTime> ParseEventTime(const std::string& text);
 
 /// What is wrong with asking for this moment of an episode that this grammar watches.
-struct MomentProblem {
+struct EventTimeProblem {
   std::string message;
   std::string hint;
 };
-std::optional<MomentProblem> WhyNoMoment(const std::string& text, const grammar::Program& program);
+std::optional<EventTimeProblem> WhyNoEventTime(const std::string& text,
+                                               const grammar::Program& program);
 
 /// The tick that the text names; the first such event counts. When it did not happen, or is later
 /// than the episode, the end of the run, and `missed` says why.
-struct Moment {
+struct FoundTime {
   grammar::Tick tick = 0;
   std::string missed;
 };
-Moment FindMoment(const std::string& text, const RunResult& run);
+FoundTime FindEventTime(const std::string& text, const RunResult& run);
 
 }  // namespace prehend::harness

@@ -22,7 +22,7 @@ std::string DrawOne(render::Painter& painter, const Scenario& scenario, const Ru
   const render::Image image = painter.Draw(picture);
   if (image.rgb.empty()) return painter.error();
   if (!render::WritePng(image, file)) return "cannot write " + file;
-  written.push_back({file, picture.title, FindMoment(entry.at.value, run).missed});
+  written.push_back({file, picture.title, FindEventTime(entry.at.value, run).missed});
   return "";
 }
 

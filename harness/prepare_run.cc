@@ -50,7 +50,7 @@ Settings Split(const std::vector<std::string>& settings,
 grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Program& program) {
   grammar::Diagnostics diagnostics;
   for (const PictureEntry& picture : scenario.pictures) {
-    const auto problem = WhyNoMoment(picture.at.value, program);
+    const auto problem = WhyNoEventTime(picture.at.value, program);
     if (!problem) continue;
     const bool in_file = picture.at.where.source == 0;
     const ReadResult<std::string> text =

@@ -60,7 +60,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   ReadResult<LoadedRun> loaded = LoadRun(RequestOf(options, file->path), context.root);
   if (!loaded.value) return Complain(context, loaded.diagnostics);
   if (auto asked = AskedPicture(options, loaded.value->scenario)) {
-    const auto problem = WhyNoMoment(asked->at.value, *loaded.value->program);
+    const auto problem = WhyNoEventTime(asked->at.value, *loaded.value->program);
     if (problem && IsGiven(options, "--at")) {
       return Complain(context, ExitCode::kBadInput,
                       "--at: " + problem->message + "; " + problem->hint);

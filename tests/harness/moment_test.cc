@@ -15,28 +15,28 @@ RunResult RunWithReach() {
 }
 
 TEST(Moment, IsATimeOrABoundary) {
-  EXPECT_EQ(ParseMoment("1.25")->time_s, 1.25);
-  EXPECT_EQ(ParseMoment("reaching.begin")->event, "reaching");
-  EXPECT_TRUE(ParseMoment("reaching.end")->end);
+  EXPECT_EQ(ParseEventTime("1.25")->time_s, 1.25);
+  EXPECT_EQ(ParseEventTime("reaching.begin")->event, "reaching");
+  EXPECT_TRUE(ParseEventTime("reaching.end")->end);
   for (const char* bad : {"", "reaching", ".begin", "reaching.middle", "-1", "nan", "1 s"}) {
-    EXPECT_FALSE(ParseMoment(bad)) << bad;
+    EXPECT_FALSE(ParseEventTime(bad)) << bad;
   }
 }
 
 TEST(Moment, IsFoundInTheEpisode) {
   const RunResult run = RunWithReach();
-  EXPECT_EQ(FindMoment("reaching.begin", run).tick, 100);
-  EXPECT_EQ(FindMoment("reaching.end", run).tick, 200);
-  EXPECT_EQ(FindMoment("1", run).tick, 480);
-  EXPECT_EQ(FindMoment("1", run).missed, "");
+  EXPECT_EQ(FindEventTime("reaching.begin", run).tick, 100);
+  EXPECT_EQ(FindEventTime("reaching.end", run).tick, 200);
+  EXPECT_EQ(FindEventTime("1", run).tick, 480);
+  EXPECT_EQ(FindEventTime("1", run).missed, "");
 }
 
 TEST(Moment, OneThatIsMissedIsTheEndAndSaysWhy) {
   const RunResult run = RunWithReach();
-  EXPECT_EQ(FindMoment("sliding.end", run).tick, 960);
-  EXPECT_EQ(FindMoment("sliding.end", run).missed, "sliding.end did not happen");
-  EXPECT_EQ(FindMoment("500", run).tick, 960);
-  EXPECT_EQ(FindMoment("500", run).missed, "500 s is after the end");
+  EXPECT_EQ(FindEventTime("sliding.end", run).tick, 960);
+  EXPECT_EQ(FindEventTime("sliding.end", run).missed, "sliding.end did not happen");
+  EXPECT_EQ(FindEventTime("500", run).tick, 960);
+  EXPECT_EQ(FindEventTime("500", run).missed, "500 s is after the end");
 }
 
 TEST(Moment, TheGrammarMustHaveTheEvent) {
@@ -44,13 +44,13 @@ TEST(Moment, TheGrammarMustHaveTheEvent) {
   program.name = "probe";
   program.events.push_back({.name = "reaching", .printed = true});
   program.events.push_back({.name = "hidden"});
-  EXPECT_FALSE(WhyNoMoment("reaching.begin", program));
-  EXPECT_FALSE(WhyNoMoment("3.5", program));
-  EXPECT_EQ(WhyNoMoment("reching.begin", program)->message,
+  EXPECT_FALSE(WhyNoEventTime("reaching.begin", program));
+  EXPECT_FALSE(WhyNoEventTime("3.5", program));
+  EXPECT_EQ(WhyNoEventTime("reching.begin", program)->message,
             "grammar 'probe' has no event 'reching'");
-  EXPECT_EQ(WhyNoMoment("reching.begin", program)->hint, "did you mean 'reaching'?");
-  EXPECT_TRUE(WhyNoMoment("hidden.begin", program));
-  EXPECT_EQ(WhyNoMoment("soon", program)->message, "'soon' is no moment");
+  EXPECT_EQ(WhyNoEventTime("reching.begin", program)->hint, "did you mean 'reaching'?");
+  EXPECT_TRUE(WhyNoEventTime("hidden.begin", program));
+  EXPECT_EQ(WhyNoEventTime("soon", program)->message, "'soon' is no moment");
 }
 
 }  // namespace
