@@ -13,7 +13,7 @@ namespace prehend::harness {
 namespace {
 
 /// Leaves what is judged, and counts what nobody knows the truth of.
-void KeepJudged(const std::vector<std::string>& wanted, score::JudgedEpisode& episode) {
+void KeepJudged(const std::vector<std::string>& wanted, score::EpisodeToScore& episode) {
   const auto is_left_out = [&](const grammar::NamedEvent& event) {
     return !OracleDefines(event.event) ||
            (!wanted.empty() && std::ranges::find(wanted, event.event) == wanted.end());
@@ -27,8 +27,8 @@ void KeepJudged(const std::vector<std::string>& wanted, score::JudgedEpisode& ep
 
 }  // namespace
 
-ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request,
-                                                           bool& bad_input) {
+ReadResult<std::vector<score::EpisodeToScore>> EpisodesToScore(const ScoreRequest& request,
+                                                               bool& bad_input) {
   bad_input = true;
   const ReadResult<LoadedRun> loaded = LoadRun(
       {.scenario_file = request.scenario_file, .grammar = request.grammars.front()}, request.root);
@@ -46,11 +46,11 @@ ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& r
   }
   const grammar::Tick end = run.ticks + 1;
   const grammar::Timeline truth = TrueTimeline(scenario, run.recording, end);
-  std::vector<score::JudgedEpisode> episodes;
+  std::vector<score::EpisodeToScore> episodes;
   for (const std::string& name : request.grammars) {
     const grammar::CompileResult compiled = LoadGrammar(request.root, name);
     if (!compiled.program) return {std::nullopt, compiled.diagnostics};
-    score::JudgedEpisode& episode = episodes.emplace_back();
+    score::EpisodeToScore& episode = episodes.emplace_back();
     episode = {.scenario = request.id,
                .ticks = end,
                .truth = truth,

@@ -11,7 +11,7 @@
 
 namespace prehend::harness {
 
-struct JudgeRequest {
+struct ScoreRequest {
   std::string scenario_file;
   std::string id;
   std::string root;
@@ -22,7 +22,7 @@ struct JudgeRequest {
 /// One judged episode per grammar, all with the same truth: a grammar that is silent about a kind
 /// of event, or misspells it, has missed what happened. Without value: what cannot be read
 /// (`bad_input`), or why the run did not complete.
-ReadResult<std::vector<score::JudgedEpisode>> JudgeEpisode(const JudgeRequest& request,
-                                                           bool& bad_input);
+ReadResult<std::vector<score::EpisodeToScore>> EpisodesToScore(const ScoreRequest& request,
+                                                               bool& bad_input);
 
 }  // namespace prehend::harness

@@ -23,7 +23,7 @@ namespace prehend::harness {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using score::JudgedEpisode;
+using score::EpisodeToScore;
 
 constexpr double kDefaultCollar_ms = 50;
 constexpr double kTimeLimit_s = 300;
@@ -62,13 +62,13 @@ void Declare(CLI::App& options) {
 
 /// What a worker sends: {"problem", "bad_input"} or {"episodes": [{"ticks", "truth", "found",
 /// "not_judged"}, ..]}, one per grammar.
-std::string Judged(const JudgeRequest& request) {
+std::string Judged(const ScoreRequest& request) {
   bool bad_input = false;
-  const auto episodes = JudgeEpisode(request, bad_input);
+  const auto episodes = EpisodesToScore(request, bad_input);
   if (!episodes.value)
     return Json{{"problem", Format(episodes.diagnostics)}, {"bad_input", bad_input}}.dump();
   Json sent = Json::array();
-  for (const JudgedEpisode& episode : *episodes.value) {
+  for (const EpisodeToScore& episode : *episodes.value) {
     sent.push_back({{"ticks", episode.ticks},
                     {"truth", TimelineJson(episode.truth)},
                     {"found", TimelineJson(episode.found)},
@@ -79,22 +79,22 @@ std::string Judged(const JudgeRequest& request) {
 
 /// Episodes by grammar; what could not be played is told on `context.err`, and `worst` says what
 /// kind it was.
-std::vector<std::vector<JudgedEpisode>> JudgeAll(const ScenarioSelection& selection,
-                                                 const std::vector<std::string>& grammars,
-                                                 const std::vector<std::string>& events,
-                                                 const CommandContext& context, ExitCode& worst) {
+std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selection,
+                                                  const std::vector<std::string>& grammars,
+                                                  const std::vector<std::string>& events,
+                                                  const CommandContext& context, ExitCode& worst) {
   std::vector<WorkerJob> jobs;
   std::vector<std::string> ids;
   for (const ScenarioFile& file : selection.scenarios) {
     ids.push_back(IdOf(file));
-    const JudgeRequest request{file.path, ids.back(), context.root, grammars, events};
+    const ScoreRequest request{file.path, ids.back(), context.root, grammars, events};
     jobs.push_back([request] { return Judged(request); });
   }
   const WorkerLimits limits{
       .jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency())),
       .time_limit_s = kTimeLimit_s};
   const std::vector<WorkerResult> results = RunInWorkers(jobs, limits);
-  std::vector<std::vector<JudgedEpisode>> by_grammar(grammars.size());
+  std::vector<std::vector<EpisodeToScore>> by_grammar(grammars.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Json sent = results[i].finished ? Json::parse(results[i].output)
                                           : Json{{"problem", results[i].reason + "\n"}};

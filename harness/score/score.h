@@ -15,7 +15,7 @@
 namespace prehend::harness::score {
 
 /// One episode as it truly was and as a grammar says it was.
-struct JudgedEpisode {
+struct EpisodeToScore {
   std::string scenario;
   grammar::Tick ticks = 0;
   grammar::Timeline truth;
@@ -60,7 +60,7 @@ struct Score {
 };
 
 /// Labels are events with their roles. `collar_s` is for the collar-based scores.
-Score ScoreOf(const std::string& grammar, const std::vector<JudgedEpisode>& episodes,
+Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
               double collar_s);
 
 /// A table for people: Ward's error row, boundary errors, F1@{10,25,50}, edit, frames, F at the

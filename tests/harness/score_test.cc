@@ -13,13 +13,13 @@ grammar::NamedEvent Event(const std::string& event, grammar::Tick begin, grammar
       .event = event, .roles = {{"object", "cup"}}, .interval = {begin, end}, .decided = decided};
 }
 
-JudgedEpisode Episode(std::vector<grammar::NamedEvent> truth,
-                      std::vector<grammar::NamedEvent> found, grammar::Tick per_s = 100) {
+EpisodeToScore Episode(std::vector<grammar::NamedEvent> truth,
+                       std::vector<grammar::NamedEvent> found, grammar::Tick per_s = 100) {
   return {"s/x", 1000, {per_s, std::move(truth)}, {per_s, std::move(found)}, {}};
 }
 
 TEST(ScoreOf, BoundaryErrorsAreSignedAndLatencyIsFromTheEnd) {
-  std::vector<JudgedEpisode> episodes;
+  std::vector<EpisodeToScore> episodes;
   for (int late = -4; late <= 1; ++late)
     episodes.push_back(
         Episode({Event("slide", 100, 300, 0)}, {Event("slide", 100 + late, 300, 300 - 5 * late)}));
@@ -33,7 +33,7 @@ TEST(ScoreOf, BoundaryErrorsAreSignedAndLatencyIsFromTheEnd) {
 }
 
 TEST(ScoreOf, WhatIsNotSaidIsMissed) {
-  std::vector<JudgedEpisode> episodes = {Episode(
+  std::vector<EpisodeToScore> episodes = {Episode(
       {Event("slide", 100, 300, 0), Event("hold", 50, 400, 0)}, {Event("hold", 50, 400, 400)})};
   episodes[0].not_judged["slidding"] = 3;
   Score score = ScoreOf("g", episodes, 0.05);
