@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// See harness/sensing.h. Tested by tests/harness/sensing_test.cc
 #include "harness/sensing.h"
 
 #include <algorithm>
@@ -11,15 +12,15 @@ namespace {
 constexpr int kFeelersPerLink = 3;
 constexpr int kPalmFeelersPerSide = 3;
 
-// A point counts for "what holds the object" only if it carries a share of the pair's load;
-// otherwise an idle corner point with a skewed normal would decide. Larger: support of rocking
-// objects is lost. Smaller: side contact with one stray point becomes support.
+// A contact point decides about support only if it carries at least this share of the pair's load;
+// otherwise an idle corner point with a skewed normal would decide. A larger share loses the
+// support of rocking objects; a smaller one takes a side contact with one stray point for support.
 constexpr double kLoadBearingShare = 0.05;
 
-// Of a touch that pushes no more, as after a bounce, all points count alike.
+// If a touch has no force, as after a bounce, all of its points count equally.
 constexpr double kJustPushed_n_s = 1e-12;
 
-/// Balls inscribed in the palm's box, in the hand's frame.
+/// Spheres inside the palm's box, in the hand's frame.
 std::vector<grammar::Feeler> PalmFeelers(const physics::HandModel& model) {
   const double radius = model.palm_size_m.z() / 2;
   const Eigen::Vector2d reach = model.palm_size_m.head<2>() / 2 - Eigen::Vector2d::Constant(radius);
@@ -34,7 +35,7 @@ std::vector<grammar::Feeler> PalmFeelers(const physics::HandModel& model) {
   return feelers;
 }
 
-/// Balls inscribed in every link's box, in that link's frame (x along the link).
+/// Spheres inside the box of each link, in that link's frame (x along the link).
 std::vector<grammar::Feeler> LinkFeelers(const physics::HandModel& model) {
   std::vector<grammar::Feeler> feelers;
   for (const physics::HandLink& link : model.links) {
@@ -46,7 +47,7 @@ std::vector<grammar::Feeler> LinkFeelers(const physics::HandModel& model) {
   return feelers;
 }
 
-/// For each style of the hand its index in `names`, which has them all.
+/// For each style of the hand, its index in `names`, which contains all of them.
 std::vector<int> StyleIndices(const physics::HandModel& model,
                               const std::vector<std::string>& names) {
   std::vector<int> indices;
@@ -63,7 +64,7 @@ grammar::EntityLook LookAt(const physics::BodyState& body) {
           .asleep = body.asleep};
 }
 
-/// No grammar can tell them apart.
+/// Whether no grammar can distinguish them.
 bool LookAlike(const grammar::EntityLook& a, const grammar::EntityLook& b) {
   return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() &&
          a.v_WB_m_per_s == b.v_WB_m_per_s && a.w_WB_rad_per_s == b.w_WB_rad_per_s &&
@@ -107,7 +108,7 @@ Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
 }
 
 grammar::FrameChanges Sensing::SenseChanges(const physics::Snapshot& snapshot) {
-  if (snapshot.tick <= tick_) tick_ = -1;  // an earlier moment: everybody may stand elsewhere
+  if (snapshot.tick <= tick_) tick_ = -1;  // an earlier tick: any body may have moved
   shown_.clear();
   SenseBodies(snapshot);
   SenseHands(snapshot);

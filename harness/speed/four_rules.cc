@@ -54,8 +54,8 @@ grammar::Cast MakeCast(int objects) {
   return cast;
 }
 
-// A hand that takes an object, holds it up and puts it back: when each step is due, in frames from
-// the touch.
+// A hand picks up an object, holds it and puts it back: the frame of each step, counted from the
+// touch.
 struct Visit {
   int grip = 0, lift = 0, lower = 0, release = 0, leave = 0;
 };
@@ -71,7 +71,7 @@ class Stations {
         random_(seed) {
     log.cast = MakeCast(objects);
     visits_.resize(static_cast<std::size_t>(objects));
-    // agenda_[frame % period]: who does something then; every visit is over before its period is.
+    // agenda_[frame % period]: which hands act then; a visit is shorter than its period.
     for (int i = 0; i < objects; ++i) {
       starts_.push_back(
           1 + static_cast<int>(random_() % static_cast<unsigned>(period_ - kLongestVisit)));
@@ -99,7 +99,7 @@ class Stations {
     const auto upto = [&](int most) {
       return 1 + static_cast<int>(random_() % static_cast<unsigned>(most));
     };
-    visit.grip = upto(180);  // now and then too late
+    visit.grip = upto(180);  // sometimes too late
     visit.lift = visit.grip + upto(20);
     visit.lower = visit.lift + kRiseFrames + upto(60);
     visit.release = visit.lower + kRiseFrames + upto(20);
@@ -161,7 +161,7 @@ class Stations {
 
 enum RuleNumber { kGrasping, kSupported, kUnanswered, kPickingUp };
 
-// The four rules for one object, looked at in each frame.
+// The four rules for one object, evaluated in each frame.
 struct Automaton {
   // Facts.
   double trigger = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules, the made-up worlds and the yardstick of the speed figures: four rules of the kind that
-// other monitors are measured with, as a grammar and as the automata that a careful programmer
-// would write by hand. Tested by tests/harness/speed_test.cc
+// The workload of the speed figures: four rules of the kind that other monitors are measured with,
+// made-up worlds, and as a baseline the same rules as hand-written automata. Tested by
+// tests/harness/speed_test.cc
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,21 @@ namespace prehend::harness {
 inline constexpr int kFourRules = 4;
 std::shared_ptr<const grammar::Program> CompileFourRules();
 
-/// At 240 frames per second, `objects` objects on a table, each with a hand of its own that takes
-/// it up and puts it down again once in `period_s`; in between both rest. Entities: hands, objects,
+/// At 240 frames per second, `objects` objects on a table, each with a hand of its own, which picks
+/// it up and puts it down once per `period_s`; in between, both rest. Entities: hands, objects,
 /// the table.
 ChangeLog MakeStations(int objects, int frames, double period_s, std::uint64_t seed = 1);
 
 /// Touches that flicker, `per_frame` a frame, one object after the other.
 enum class Flicker {
-  kPressure,  ///< from one sensor set to another one: no rule can tell
+  kPressure,  ///< from one sensor set to another one: no rule depends on it
   kFact,      ///< from one sensor set to two and back, by a hand that is open: `sensor_sets >= 2`
               ///< changes, nothing begins
   kGrasp,     ///< likewise, by a hand that is closed: each is the begin or the end of a grasp
 };
 ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker);
 
-/// What was recognised: order does not matter, everything else does.
+/// The recognised events, independent of their order.
 struct Recognised {
   std::uint64_t events = 0;
   std::uint64_t hash = 0;
@@ -40,12 +40,12 @@ struct Recognised {
 
 struct Watched {
   Recognised recognised;     ///< all of it
-  std::uint64_t events = 0;  ///< among them, those after the warm-up
-  double seconds = 0;        ///< that the frames after the warm-up took
+  std::uint64_t events = 0;  ///< of them, those after the warm-up
+  double seconds = 0;        ///< for the frames after the warm-up
 };
 
-/// Plays the log to a monitor, or to the automata by hand, which look at each object in each frame.
-/// The first frames are `warm_up`: what is new is bound, and memory is taken.
+/// Plays the log to a monitor, or to the hand-written automata, which read each object in each
+/// frame. During the first `warm_up` frames, new instances are bound and memory is allocated.
 Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::size_t warm_up = 0);
 Watched WatchByHand(const ChangeLog& log, std::size_t warm_up = 0);
 
