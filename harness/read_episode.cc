@@ -12,170 +12,26 @@
 #include <variant>
 
 #include "harness/episode_file.h"
-#include "harness/record.h"
+#include "harness/episode_format.h"
 #include "harness/text_file.h"
 
 namespace prehend::harness {
 namespace {
 
-constexpr double kFarthestM = 1e4;
-constexpr double kFastest = 1e4;
-constexpr std::int64_t kLatestTick = 1'000'000'000'000;
-constexpr std::size_t kMaxMembers = 10'000;
-constexpr std::size_t kMaxFeelers = 1000;
-constexpr std::size_t kMaxSets = 32;
-constexpr std::size_t kMaxKinds = 100;
-
-struct MemberEntry {
-  std::string class_name = "Object";
-  bool fixed = false;
-  bool jointed = false;
-  bool grains = false;
-  bool person = false;
-  bool hand = false;
-  bool round = false;
-  std::string abstract;            ///< which class of those that are Abstract; "": none
-  std::vector<std::string> kinds;  ///< what the class is a kind of
-  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
-  double mass_kg = 0, strength_n = 0;
-  std::optional<Located<std::string>> part_of;
-  std::vector<std::string> sensor_sets = {"fingers", "thumb", "palm"};
-};
-struct HeaderEntry {
-  int version = kEpisodeVersion;
-  std::string episode;
-  std::string grammar = "pick_and_place";
-  std::int64_t ticks_per_second = 0;
-  std::vector<std::string> styles;
-  std::vector<Named<MemberEntry>> entities;
-};
-struct LookEntry {
-  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
-  std::optional<Located<Eigen::Vector4d>> quat_wxyz;
-  std::optional<Eigen::Vector3d> v_m_per_s, w_rad_per_s;
-  bool asleep = false;
-  double joint_position = 0, joint_fraction = 0;
-  std::optional<Located<std::string>> gazes_at;
-};
-struct HandEntry {
-  double trigger = 0;
-  std::optional<Eigen::Vector3d> ahead;
-  std::vector<Eigen::Vector4d> feelers_m;
-  std::optional<Located<std::string>> style;
-};
-struct TouchEntry {
-  Located<std::string> a, b;
-  double up_on_a = 0;
-  std::optional<double> up_on_b;
-  double force_n = 0;
-  std::optional<double> vertical_speed_m_per_s;
-  std::vector<Located<std::string>> sensor_sets;
-};
-struct FrameEntry {
-  Located<std::int64_t> tick;
-  std::vector<Named<LookEntry>> looks;
-  std::vector<Named<HandEntry>> hands;
-  std::vector<TouchEntry> touches;
-};
-struct EndEntry {
-  Located<std::int64_t> end_tick;
-};
-using LineEntry = std::variant<FrameEntry, EndEntry>;
-
-Format<std::string> Name() { return Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'"); }
-Format<std::string> ClassName() { return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"); }
-Format<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
-Format<Eigen::Vector3d> Velocity() { return Vector<3>(-kFastest, kFastest); }
-
-Format<HeaderEntry> HeaderFormat() {
-  using M = MemberEntry;
-  const Format<M> member =
-      Record<M>("entity")
-          .NamedByKey()
-          .Optional("class", &M::class_name, ClassName(), "")
-          .Optional("fixed", &M::fixed, Flag(), "")
-          .Optional("jointed", &M::jointed, Flag(), "")
-          .Optional("person", &M::person, Flag(), "")
-          .Optional("grains", &M::grains, Flag(), "")
-          .Optional("abstract", &M::abstract, Choice({"Region", "GazeTarget", "Camera", "Light"}),
-                    "")
-          .Optional("round", &M::round, Flag(), "")
-          .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxKinds), "")
-          .Optional("hand", &M::hand, Flag(), "")
-          .Optional("centre_m", &M::centre_m, Position(), "")
-          .Required("size_m", &M::size_m, Vector<3>(0, kFarthestM), "")
-          .Optional("mass_kg", &M::mass_kg, Number(0, 1e6), "")
-          .Optional("strength_n", &M::strength_n, Number(0, 1e6), "")
-          .Optional("part_of", &M::part_of, Name(), "")
-          .Optional("sensor_sets", &M::sensor_sets, ListOf(Name(), 1, kMaxSets), "")
-          .format();
-  using H = HeaderEntry;
-  return Record<H>("the first line")
-      .Required("recording", &H::version, Integer<int>(kEpisodeVersion, kEpisodeVersion), "")
-      .Required("episode", &H::episode, Name(), "")
-      .Optional("grammar", &H::grammar, Name(), "")
-      .Required("ticks_per_second", &H::ticks_per_second, Integer64(1, 1'000'000), "")
-      .Optional("styles", &H::styles, ListOf(Name(), 0, 1000), "")
-      .Required("entities", &H::entities, MapOf(Name(), member, 1, kMaxMembers), "")
-      .format();
-}
-
-Format<LineEntry> LineFormat() {
-  using L = LookEntry;
-  const Format<L> look = Record<L>("look")
-                             .NamedByKey()
-                             .Required("at_m", &L::at_m, Position(), "")
-                             .Optional("quat_wxyz", &L::quat_wxyz, UnitQuaternion(), "")
-                             .Optional("v_m_per_s", &L::v_m_per_s, Velocity(), "")
-                             .Optional("w_rad_per_s", &L::w_rad_per_s, Velocity(), "")
-                             .Optional("asleep", &L::asleep, Flag(), "")
-                             .Optional("joint_position", &L::joint_position, Number(-1e4, 1e4), "")
-                             .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
-                             .Optional("gazes_at", &L::gazes_at, Name(), "")
-                             .format();
-  using H = HandEntry;
-  const Format<H> hand =
-      Record<H>("hand")
-          .NamedByKey()
-          .Optional("trigger", &H::trigger, Number(0, 1), "")
-          .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
-          .Optional("feelers_m", &H::feelers_m,
-                    ListOf(Vector<4>(-kFarthestM, kFarthestM), 1, kMaxFeelers), "")
-          .Optional("style", &H::style, Name(), "")
-          .format();
-  using T = TouchEntry;
-  const Format<T> touch =
-      Record<T>("a touch")
-          .Required("a", &T::a, Name(), "")
-          .Required("b", &T::b, Name(), "")
-          .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
-          .Optional("up_on_b", &T::up_on_b, Number(-1, 1), "")
-          .Optional("force_n", &T::force_n, Number(0, 1e9), "")
-          .Optional("vertical_speed_m_per_s", &T::vertical_speed_m_per_s, Number(0, 1e9), "")
-          .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
-          .format();
-  using F = FrameEntry;
-  const auto tick = Integer64(-kLatestTick, kLatestTick);
-  return ByKey<LineEntry>(
-      "a line",
-      {{"tick", AsAlternative<LineEntry>(
-                    Record<F>("a frame")
-                        .Required("tick", &F::tick, tick, "")
-                        .Optional("looks", &F::looks, MapOf(Name(), look, 0, kMaxMembers), "")
-                        .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
-                        .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
-                        .format())},
-       {"end_tick",
-        AsAlternative<LineEntry>(Record<EndEntry>("the last line")
-                                     .Required("end_tick", &EndEntry::end_tick, tick, "")
-                                     .format())}});
-}
+using episode::EndEntry;
+using episode::FrameEntry;
+using episode::HandEntry;
+using episode::HeaderEntry;
+using episode::LineEntry;
+using episode::LookEntry;
+using episode::MemberEntry;
+using episode::TouchEntry;
 
 /// Reads line after line into an episode; the first line that is wrong ends it.
 class EpisodeReader {
  public:
-  explicit EpisodeReader(std::string file) : file_(std::move(file)), line_format_(LineFormat()) {}
+  explicit EpisodeReader(std::string file)
+      : file_(std::move(file)), line_format_(episode::LineFormat()) {}
 
   grammar::Diagnostics diagnostics;
   Episode episode;
@@ -188,7 +44,7 @@ class EpisodeReader {
     Complaints complaints(*document.value);
     if (!header_) {
       HeaderEntry header;
-      if (HeaderFormat().read(document.value->root, complaints, header))
+      if (episode::HeaderFormat().read(document.value->root, complaints, header))
         TakeHeader(header, complaints);
       header_ = true;
     } else {
