@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads an episode line by line with the same field tables and complaints as a scenario: JSON is
-// YAML, too. Tested by tests/harness/episode_file_test.cc
+// Reads an episode line by line, with the field tables and error messages of scenario files: JSON
+// is valid YAML. Tested by tests/harness/episode_file_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ using episode::LookEntry;
 using episode::MemberEntry;
 using episode::TouchEntry;
 
-/// Reads line after line into an episode; the first line that is wrong ends it.
+/// Reads line after line into an episode. The first line with an error ends it.
 class EpisodeReader {
  public:
   explicit EpisodeReader(std::string file)
@@ -109,7 +109,7 @@ class EpisodeReader {
     now_.feelers.resize(hands_.size());
   }
 
-  /// Of what is no hand.
+  /// Classes of an entity that is not a hand.
   static std::vector<std::string> ClassesOf(const MemberEntry& m) {
     std::vector<std::string> classes = {m.class_name};
     classes.insert(classes.end(), m.kinds.begin(), m.kinds.end());
@@ -127,7 +127,7 @@ class EpisodeReader {
     return classes;
   }
 
-  /// The entity of this name, or kNobody after complaining.
+  /// The entity of this name; otherwise kNobody, and an error is reported.
   int IndexOf(const std::string& name, const Where& where, Complaints& complaints) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     if (found != names_.end()) return static_cast<int>(found - names_.begin());
@@ -179,7 +179,7 @@ class EpisodeReader {
       complaints.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
   }
 
-  /// Velocities that are not given are those from the previous look to this one.
+  /// Velocities that are not given are computed from the previous look and this one.
   static void TakeLook(const LookEntry& entry, double dt_s, grammar::EntityLook& look) {
     const grammar::EntityLook before = look;
     look.p_WB_m = entry.at_m;
@@ -205,7 +205,7 @@ class EpisodeReader {
     if (entity == grammar::kNobody) return;
     const auto found = std::find(hands_.begin(), hands_.end(), entity);
     if (found == hands_.end())
-      return complaints.Add(named.name_where, fmt::format("'{}' is no hand", named.name),
+      return complaints.Add(named.name_where, fmt::format("'{}' is not a hand", named.name),
                             "its entity has no 'hand: true'");
     const auto slot = static_cast<std::size_t>(found - hands_.begin());
     const HandEntry& entry = named.value;
@@ -252,12 +252,12 @@ class EpisodeReader {
         std::any_of(now_.touches.begin(), now_.touches.end(),
                     [&](const grammar::Touch& t) { return t.a == touch.a && t.b == touch.b; });
     if (twice)
-      return complaints.Add(entry.a.where, fmt::format("'{}' and '{}' are said to touch twice",
+      return complaints.Add(entry.a.where, fmt::format("the touch of '{}' and '{}' is given twice",
                                                        entry.a.value, entry.b.value));
     now_.touches.push_back(touch);
   }
 
-  /// Where the two touch is not known; the place of the one that the other bears is near it.
+  /// The contact point is not recorded. The position of the upper entity is close to it.
   double SpeedAtTheUpper(const grammar::Touch& touch) const {
     const grammar::EntityLook &a = now_.entities[static_cast<std::size_t>(touch.a)],
                               &b = now_.entities[static_cast<std::size_t>(touch.b)];
