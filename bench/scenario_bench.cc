@@ -5,9 +5,10 @@
 
 #include <string>
 
-#include "harness/library_paths.h"
-#include "harness/prepare_run.h"
-#include "harness/run_scenario.h"
+#include "harness/base/project_paths.h"
+#include "harness/run/find_scenario.h"
+#include "harness/run/load_run.h"
+#include "harness/run/run_scenario.h"
 
 namespace prehend::harness {
 namespace {

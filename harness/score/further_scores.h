@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scores from the literature that are not in the table, over the episodes in which an event is true
 // or found. Labels are events with their roles; each label is scored alone, because events of
-// different labels overlap. Tested by tests/harness/score_test.cc
+// different labels overlap. Tested by tests/harness/score/score_test.cc
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/score_test.cc
+// Tested by tests/harness/score/score_test.cc
 #include "harness/score/score.h"
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <functional>
 #include <set>
 
-#include "harness/oracle/agreement.h"
 #include "harness/score/labelled.h"
+#include "harness/timeline/match_events.h"
 
 namespace prehend::harness::score {
 namespace {

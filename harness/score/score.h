@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a grammar recognises events: its timelines against true ones, per kind and in total.
-// Tested by tests/harness/score_test.cc
+// Tested by tests/harness/score/score_test.cc
 #pragma once
 
 #include <map>
 #include <string>
 #include <vector>
 
-#include "grammar/timeline.h"
+#include "grammar/base/timeline.h"
 #include "harness/score/further_scores.h"
 #include "harness/score/overlap_metrics.h"
 #include "harness/score/ward.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is scored: labelled half-open intervals of integer ticks, true and predicted, of one
-// episode. Tested by tests/harness/score_metrics_test.cc
+// episode. Tested by tests/harness/score/score_metrics_test.cc
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "grammar/frame.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::harness::score {
 

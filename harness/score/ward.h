@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The error classes of Ward, Lukowicz & Gellersen 2011, "Performance metrics for activity
 // recognition", section 4. One kind of event at a time: the intervals in which it was true, and
-// those in which it was recognised. Tested by tests/harness/score_metrics_test.cc
+// those in which it was recognised. Tested by tests/harness/score/score_metrics_test.cc
 #pragma once
 
 #include <vector>
 
-#include "grammar/frame.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::harness::score {
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// How fast the monitor is on this machine: each figure is the best of several runs. Where there is
+// one, hand-written code for the same rules runs beside it; the ratio of the two can be compared
+// between machines. Tested by tests/harness/speed/workload_test.cc
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/base/read_result.h"
+
+namespace prehend::harness {
+
+struct SpeedFigure {
+  std::string what;
+  std::string unit;        ///< of one operation
+  double operations = 0;   ///< in one run
+  double seconds = 0;      ///< of one run
+  double by_hand_s = 0;    ///< of the hand-written automata, same run; 0: there are none
+  double events = 0;       ///< in one run
+  double simulated_s = 0;  ///< of one run; 0: the workload has no real time
+  double physics_s = 0;    ///< of the world in one run; 0: there is no world
+  std::uint64_t hash = 0;  ///< of the recognised events; 0: there are none
+  bool agrees = true;      ///< with the hand-written automata
+};
+
+/// Fails only if `root` lacks the scenario that is played. Takes seconds; with `quick` a fraction
+/// of one, for tests.
+ReadResult<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool quick);
+
+}  // namespace prehend::harness
