@@ -11,6 +11,7 @@
 #include "grammar/compile/analyze_dependencies.h"
 #include "grammar/compile/lower.h"
 #include "grammar/compile/lower_definition.h"
+#include "grammar/compile/lower_law.h"
 #include "grammar/language/parser.h"
 
 namespace prehend::grammar {
@@ -39,6 +40,7 @@ class Compiler {
     ApplyOverrides();
     CollectHeads();
     CollectDefines();
+    CheckLawHeads();
     if (diagnostics_.empty()) CheckDefines();
     if (diagnostics_.empty()) LowerAll();
     if (diagnostics_.empty()) Order();
@@ -164,8 +166,8 @@ class Compiler {
   void CollectHeads() {
     program_.rules.push_back({.name = "touching",
                               .roles = {{"a", "Entity"}, {"b", "Entity"}},
-                              .form = Form::kTouching,
-                              .symmetric = true});
+                              .symmetric = true,
+                              .of_form = TouchingRule()});
     for (const Source& source : sources_) {
       for (const Definition& definition : source.file.definitions) CollectHead(source, definition);
     }
@@ -196,28 +198,29 @@ class Compiler {
     Rule rule{.name = definition.name, .file = source.text.file, .place = definition.place};
     rule.printed = definition.is_event;
     rule.symmetric = definition.symmetric;
-    rule.form = FormOf(definition.form);  // others must know before it is lowered
-    CheckRoles(source, definition);
+    rule.of_form = FormOf(definition.form);  // others must know before it is lowered
+    CheckRoles(source, definition.roles);
+    CheckSymmetry(source, definition);
     for (const ast::Role& role : definition.roles)
       rule.roles.push_back({role.name, role.class_name});
     program_.rules.push_back(std::move(rule));
     definitions_.push_back({&source, &definition});
   }
 
-  static Form FormOf(Definition::Form form) {
+  static RuleForm FormOf(Definition::Form form) {
     switch (form) {
       case Definition::Form::kWhile:
-        return Form::kWhile;
+        return WhileRule();
       case Definition::Form::kFromTo:
-        return Form::kFromTo;
+        return FromToRule();
       case Definition::Form::kUntilSince:
-        return Form::kUntilSince;
+        return UntilSinceRule();
       case Definition::Form::kRestOf:
-        return Form::kRestOf;
+        return RestOfRule();
       case Definition::Form::kCompose:
         break;
     }
-    return Form::kCompose;
+    return ComposeRule();
   }
 
   static bool IsBuiltin(std::string_view name) {
@@ -257,6 +260,20 @@ class Compiler {
           continue;
         Complain(source, param.place, "'" + param.name + "' is defined twice",
                  FirstAt(define->second.text->file, define->second.define->place));
+      }
+    }
+  }
+
+  // Nothing refers to a law, so only another law's name is in its way.
+  void CheckLawHeads() {
+    std::map<std::string, std::string, std::less<>> laws;  // name -> where the first one is
+    for (const Source& source : sources_) {
+      for (const ast::Law& law : source.file.laws) {
+        const auto [first, is_new] =
+            laws.try_emplace(law.name, FirstAt(source.text.file, law.place));
+        if (!is_new)
+          Complain(source, law.place, "the law '" + law.name + "' is defined twice", first->second);
+        CheckRoles(source, law.roles);
       }
     }
   }
@@ -305,13 +322,12 @@ class Compiler {
     }
   }
 
-  void CheckRoles(const Source& source, const Definition& definition) {
-    if (definition.roles.size() > kMaxRoles) {
-      Complain(source, definition.roles[kMaxRoles].place,
-               "more than " + std::to_string(kMaxRoles) + " roles");
+  void CheckRoles(const Source& source, const std::vector<ast::Role>& roles) {
+    if (roles.size() > kMaxRoles) {
+      Complain(source, roles[kMaxRoles].place, "more than " + std::to_string(kMaxRoles) + " roles");
     }
     std::set<std::string> names;
-    for (const ast::Role& role : definition.roles) {
+    for (const ast::Role& role : roles) {
       if (!names.insert(role.name).second)
         Complain(source, role.place, "the role '" + role.name + "' is named twice");
       if (symbols_.IsParamIn(source.text.file, role.name)) {
@@ -320,6 +336,9 @@ class Compiler {
       }
       CheckClassName(source, role);
     }
+  }
+
+  void CheckSymmetry(const Source& source, const Definition& definition) {
     if (!definition.symmetric) return;
     if (definition.roles.size() < 2 ||
         definition.roles[0].class_name != definition.roles[1].class_name) {
@@ -346,6 +365,12 @@ class Compiler {
     for (std::size_t i = 0; i < definitions_.size(); ++i) {
       LowerDefinition(*definitions_[i].source, *definitions_[i].definition,
                       static_cast<int>(i) + 1);
+    }
+    for (const Source& source : sources_) {
+      for (const ast::Law& written : source.file.laws) {
+        std::optional<Law> law = LowerLaw(symbols_, source.text, written, diagnostics_);
+        if (law) program_.laws.push_back(std::move(*law));
+      }
     }
   }
 

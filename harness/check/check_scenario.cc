@@ -22,6 +22,7 @@
 #include "harness/pictures/pictures.h"
 #include "harness/run/run_scenario.h"
 #include "harness/run/run_text.h"
+#include "harness/sense/entity_table.h"
 #include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
@@ -137,18 +138,26 @@ std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& prog
 }
 
 void JudgeInvariants(const LoadedRun& loaded, const RunResult& run, ScenarioVerdict& verdict) {
-  const WorldEntry& world = loaded.scenario.world;
+  const WorldYaml& world = loaded.scenario.world;
   EpisodeFacts facts{.end = run.ticks + 1};
   facts.ticks_per_frame = DefaultTolerance(world.rate_hz, world.sensing_hz) / 2;
   facts.latency = LatencyByEvent(*loaded.program);
-  // A grammar without phases, as that of pouring, cannot cover a grasp with them.
-  if (facts.latency.contains("transporting")) facts.movable = MovableEntities(loaded.scenario);
   const Violations violations = CheckInvariants(run.timeline, facts);
   std::string details;
   for (const Violation& violation : violations) {
     details += "violated: " + Text(violation, run.timeline.ticks_per_second) + "\n";
   }
   if (!violations.empty()) Fail(verdict, ExitCode::kDiffers, "invariant violated", details);
+}
+
+/// The laws of the scenario's own grammar.
+void JudgeLaws(const LoadedRun& loaded, const RunResult& run, ScenarioVerdict& verdict) {
+  std::string details;
+  for (const grammar::LawViolation& violation :
+       CheckLaws(*loaded.program, MakeEntityTable(loaded.scenario), run.timeline))
+    details += "violated: " + Text(violation, run.timeline.ticks_per_second) + "\n";
+  if (!details.empty())
+    Fail(verdict, ExitCode::kDiffers, "a law of the grammar is violated", details);
 }
 
 void LeavePending(const CheckRequest& request, const Golden& pending) {
@@ -224,11 +233,11 @@ void JudgeAgainstGolden(const CheckRequest& request, const LoadedRun& loaded, co
     return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read",
                 Format(golden.diagnostics));
   }
-  const WorldEntry& world = loaded.scenario.world;
+  const WorldYaml& world = loaded.scenario.world;
   const Comparison comparison =
       Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
               run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
-  verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1);
+  verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1, run.drawings);
   const OracleComparison truth = CompareWithOracle(loaded.scenario, *loaded.program, run);
   const Golden pending =
       PendingGolden(golden.value, run.timeline, request.id, loaded.scenario.grammar, truth);
@@ -316,6 +325,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
     return verdict;
   }
   JudgeInvariants(*loaded.value, run, verdict);
+  JudgeLaws(*loaded.value, run, verdict);
   JudgeAgainstGolden(request, *loaded.value, run, verdict);
   JudgeOtherEngine(request, *loaded.value, run, verdict);
   JudgePictures(request, scenario, verdict);

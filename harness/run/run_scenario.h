@@ -13,6 +13,7 @@
 #include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
 #include "harness/scenario/scenario.h"
+#include "harness/timeline/event_drawings.h"
 #include "physics/simulation.h"
 
 namespace prehend::harness {
@@ -34,6 +35,7 @@ struct RunResult {
   grammar::Tick ticks = 0;
   std::uint64_t state_hash = 0;
   grammar::Timeline timeline;                ///< what was recognised up to where the run ended
+  EventDrawings drawings;                    ///< how the grammar wants its events drawn
   std::vector<physics::Snapshot> recording;  ///< empty unless asked for
   std::vector<physics::ScriptNote> notes;
   std::string outcome;  ///< empty unless judged

@@ -33,7 +33,7 @@ ReadResult<Nominal> ReadNominal(const RunRequest& request, const std::string& ro
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
   for (const std::string& setting : request.settings) {
     if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
-      (void)ApplyOverride(setting, ScenarioFormat().schema,
+      (void)ApplyOverride(setting, ScenarioFormat().schema(),
                           *document.value);  // LoadRun() has accepted it
   }
   return {Nominal{std::move(*loaded.value), std::move(*document.value)}, {}};
@@ -44,7 +44,7 @@ RunRequest WithDraws(const RunRequest& request, const Nominal& nominal, int tria
   const Scenario& scenario = nominal.run.scenario;
   RunRequest varied = request;
   for (std::string& drawn :
-       DrawTrial(nominal.document, scenario.variations, scenario.world.seed, trial)) {
+       SampleTrial(nominal.document, scenario.variations, scenario.world.seed, trial)) {
     const std::string field = drawn.substr(0, drawn.find('=') + 1);
     const bool set = std::ranges::any_of(
         request.settings, [&](const std::string& given) { return given.starts_with(field); });

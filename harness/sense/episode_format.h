@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lines of an episode file, as structs and their formats: docs/recording-format.md. The reader
-// is harness/sense/read_episode.cc. Tested by tests/harness/sense/episode_file_test.cc
+// is harness/sense/read_episode.cc. Tested by tests/harness/episode_file_test.cc
 #pragma once
 
 #include <Eigen/Core>
@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "harness/base/default_grammar.h"
 #include "harness/sense/episode_file.h"
 #include "harness/yaml/struct_format.h"
 
@@ -37,14 +38,14 @@ struct MemberEntry {
 struct HeaderEntry {
   int version = kEpisodeVersion;
   std::string episode;
-  std::string grammar = "pick_and_place";
+  std::string grammar = kDefaultGrammar;
   std::int64_t ticks_per_second = 0;
   std::vector<std::string> styles;
   std::vector<Named<MemberEntry>> entities;
 };
 
 /// How an entity is, in a frame.
-struct LookEntry {
+struct SampleEntry {
   Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
   std::optional<Located<Eigen::Vector4d>> quat_wxyz;
   std::optional<Eigen::Vector3d> v_m_per_s, w_rad_per_s;
@@ -74,7 +75,7 @@ struct TouchEntry {
 /// A frame: a line.
 struct FrameEntry {
   Located<std::int64_t> tick;
-  std::vector<Named<LookEntry>> looks;
+  std::vector<Named<SampleEntry>> looks;
   std::vector<Named<HandEntry>> hands;
   std::vector<TouchEntry> touches;
 };
@@ -86,7 +87,7 @@ struct EndEntry {
 
 using LineEntry = std::variant<FrameEntry, EndEntry>;
 
-Format<HeaderEntry> HeaderFormat();
-Format<LineEntry> LineFormat();
+ValueFormat<HeaderEntry> HeaderFormat();
+ValueFormat<LineEntry> LineFormat();
 
 }  // namespace prehend::harness::episode

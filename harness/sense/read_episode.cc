@@ -24,8 +24,8 @@ using episode::FrameEntry;
 using episode::HandEntry;
 using episode::HeaderEntry;
 using episode::LineEntry;
-using episode::LookEntry;
 using episode::MemberEntry;
+using episode::SampleEntry;
 using episode::TouchEntry;
 
 /// Reads line after line into an episode. The first line with an error ends it.
@@ -42,19 +42,19 @@ class EpisodeReader {
     if (text.find_first_not_of(" \r") == std::string::npos) return;
     auto document = ParseYaml(file_, text);
     if (!document.value) return Report(std::move(document.diagnostics));
-    Complaints complaints(*document.value);
+    DiagnosticList errors(*document.value);
     if (!header_) {
       HeaderEntry header;
-      if (episode::HeaderFormat().read(document.value->root, complaints, header))
-        TakeHeader(header, complaints);
+      if (episode::HeaderFormat().Read(document.value->root, errors, header))
+        TakeHeader(header, errors);
       header_ = true;
     } else {
       LineEntry line;
-      if (line_format_.read(document.value->root, complaints, line)) {
-        std::visit([&](const auto& entry) { Take(entry, complaints); }, line);
+      if (line_format_.Read(document.value->root, errors, line)) {
+        std::visit([&](const auto& entry) { Take(entry, errors); }, line);
       }
     }
-    if (!complaints.empty()) Report(complaints.Sorted());
+    if (!errors.empty()) Report(errors.Sorted());
   }
 
   void Finish() {
@@ -80,7 +80,7 @@ class EpisodeReader {
     diagnostics = std::move(found);
   }
 
-  void TakeHeader(const HeaderEntry& header, Complaints& complaints) {
+  void TakeHeader(const HeaderEntry& header, DiagnosticList& errors) {
     episode.header.episode = header.episode;
     episode.header.grammar = header.grammar;
     grammar::EntityTable& entity_table = episode.header.entity_table;
@@ -96,7 +96,7 @@ class EpisodeReader {
       member.round = m.round;
       member.mass_kg = m.mass_kg;
       member.strength_n = m.strength_n;
-      if (m.part_of) member.part_of = IndexOf(m.part_of->value, m.part_of->where, complaints);
+      if (m.part_of) member.part_of = IndexOf(m.part_of->value, m.part_of->where, errors);
       if (m.hand) {
         member.classes = {"Hand", "Entity"};
         member.sensor_sets = m.sensor_sets;
@@ -129,59 +129,58 @@ class EpisodeReader {
   }
 
   /// The entity of this name; otherwise kNoEntity, and an error is reported.
-  int IndexOf(const std::string& name, const Where& where, Complaints& complaints) const {
+  int IndexOf(const std::string& name, const Where& where, DiagnosticList& errors) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     if (found != names_.end()) return static_cast<int>(found - names_.begin());
-    complaints.AddUnknownName(where, fmt::format("no entity is called '{}'", name), name, names_);
+    errors.AddUnknownName(where, fmt::format("no entity is called '{}'", name), name, names_);
     return grammar::kNoEntity;
   }
 
-  void Take(const EndEntry& entry, Complaints& complaints) {
+  void Take(const EndEntry& entry, DiagnosticList& errors) {
     ended_ = true;
     episode.end_tick = entry.end_tick.value;
     if (!episode.frames.empty() && episode.end_tick <= episode.frames.back().tick) {
-      complaints.Add(
+      errors.Add(
           entry.end_tick.where,
           fmt::format("end_tick: expected more than {}, the tick of the last frame, found {}",
                       episode.frames.back().tick, episode.end_tick));
     }
   }
 
-  void Take(const FrameEntry& entry, Complaints& complaints) {
+  void Take(const FrameEntry& entry, DiagnosticList& errors) {
     const grammar::Tick before = now_.tick, tick = entry.tick.value;
     const bool first = episode.frames.empty();
-    if (ended_) return complaints.Add(entry.tick.where, "a frame after the line with 'end_tick'");
+    if (ended_) return errors.Add(entry.tick.where, "a frame after the line with 'end_tick'");
     if (!first && tick <= before) {
-      return complaints.Add(
-          entry.tick.where,
-          fmt::format("the ticks must increase: {} comes after {}", tick, before));
+      return errors.Add(entry.tick.where,
+                        fmt::format("the ticks must increase: {} comes after {}", tick, before));
     }
     const double dt_s = static_cast<double>(tick - before) /
                         static_cast<double>(episode.header.entity_table.ticks_per_second);
     now_.tick = tick;
     for (grammar::EntitySample& look : now_.entities)
       look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
-    for (const Named<LookEntry>& look : entry.looks) {
-      const int index = IndexOf(look.name, look.name_where, complaints);
+    for (const Named<SampleEntry>& look : entry.looks) {
+      const int index = IndexOf(look.name, look.name_where, errors);
       if (index == grammar::kNoEntity) continue;
       TakeSample(look.value, first ? 0 : dt_s, now_.entities[index]);
       if (const auto& gazes_at = look.value.gazes_at) {
-        now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, complaints);
+        now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, errors);
       }
     }
-    for (const Named<HandEntry>& hand : entry.hands) TakeHand(hand, complaints);
+    for (const Named<HandEntry>& hand : entry.hands) TakeHand(hand, errors);
     now_.touches.clear();
-    for (const TouchEntry& touch : entry.touches) TakeTouch(touch, complaints);
+    for (const TouchEntry& touch : entry.touches) TakeTouch(touch, errors);
     std::sort(now_.touches.begin(), now_.touches.end(), [](const auto& a, const auto& b) {
       return std::pair(a.a, a.b) < std::pair(b.a, b.b);
     });
     episode.frames.push_back(now_);
     if (episode.frames.size() > kMaxEpisodeFrames)
-      complaints.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
+      errors.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
   }
 
-  /// Velocities that are not given are computed from the previous look and this one.
-  static void TakeSample(const LookEntry& entry, double dt_s, grammar::EntitySample& look) {
+  /// Velocities that are not given are computed from the previous sample and this one.
+  static void TakeSample(const SampleEntry& entry, double dt_s, grammar::EntitySample& look) {
     const grammar::EntitySample before = look;
     look.p_WB_m = entry.at_m;
     if (entry.quat_wxyz) {
@@ -201,13 +200,13 @@ class EpisodeReader {
     if (entry.w_rad_per_s) look.w_WB_rad_per_s = *entry.w_rad_per_s;
   }
 
-  void TakeHand(const Named<HandEntry>& named, Complaints& complaints) {
-    const int entity = IndexOf(named.name, named.name_where, complaints);
+  void TakeHand(const Named<HandEntry>& named, DiagnosticList& errors) {
+    const int entity = IndexOf(named.name, named.name_where, errors);
     if (entity == grammar::kNoEntity) return;
     const auto found = std::find(hands_.begin(), hands_.end(), entity);
     if (found == hands_.end())
-      return complaints.Add(named.name_where, fmt::format("'{}' is not a hand", named.name),
-                            "its entity has no 'hand: true'");
+      return errors.Add(named.name_where, fmt::format("'{}' is not a hand", named.name),
+                        "its entity has no 'hand: true'");
     const auto slot = static_cast<std::size_t>(found - hands_.begin());
     const HandEntry& entry = named.value;
     const grammar::EntitySample& look = now_.entities[static_cast<std::size_t>(entity)];
@@ -219,9 +218,9 @@ class EpisodeReader {
       const std::vector<std::string>& styles = episode.header.entity_table.styles;
       const auto style = std::find(styles.begin(), styles.end(), entry.style->value);
       if (style == styles.end())
-        complaints.AddUnknownName(entry.style->where,
-                                  fmt::format("no style is called '{}'", entry.style->value),
-                                  entry.style->value, styles);
+        errors.AddUnknownName(entry.style->where,
+                              fmt::format("no style is called '{}'", entry.style->value),
+                              entry.style->value, styles);
       hand.style = static_cast<int>(style - styles.begin());
     }
     std::vector<grammar::CollisionSphere>& collision_spheres = now_.collision_spheres[slot];
@@ -231,12 +230,12 @@ class EpisodeReader {
     if (collision_spheres.empty()) collision_spheres.push_back({look.p_WB_m, 0});
   }
 
-  void TakeTouch(const TouchEntry& entry, Complaints& complaints) {
-    int a = IndexOf(entry.a.value, entry.a.where, complaints),
-        b = IndexOf(entry.b.value, entry.b.where, complaints);
+  void TakeTouch(const TouchEntry& entry, DiagnosticList& errors) {
+    int a = IndexOf(entry.a.value, entry.a.where, errors),
+        b = IndexOf(entry.b.value, entry.b.where, errors);
     if (a == grammar::kNoEntity || b == grammar::kNoEntity) return;
     if (a == b)
-      return complaints.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
+      return errors.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
     grammar::Touch touch{.a = a,
                          .b = b,
                          .up_on_a = entry.up_on_a,
@@ -244,7 +243,7 @@ class EpisodeReader {
                          .normal_force_n = entry.force_n};
     touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(SpeedAtTheUpper(touch));
     for (const Located<std::string>& set : entry.sensor_sets)
-      touch.sensor_sets |= SetBit(set, a, b, complaints);
+      touch.sensor_sets |= SetBit(set, a, b, errors);
     if (a > b) {
       std::swap(touch.a, touch.b);
       std::swap(touch.up_on_a, touch.up_on_b);
@@ -253,8 +252,8 @@ class EpisodeReader {
         std::any_of(now_.touches.begin(), now_.touches.end(),
                     [&](const grammar::Touch& t) { return t.a == touch.a && t.b == touch.b; });
     if (twice)
-      return complaints.Add(entry.a.where, fmt::format("the touch of '{}' and '{}' is given twice",
-                                                       entry.a.value, entry.b.value));
+      return errors.Add(entry.a.where, fmt::format("the touch of '{}' and '{}' is given twice",
+                                                   entry.a.value, entry.b.value));
     now_.touches.push_back(touch);
   }
 
@@ -266,19 +265,19 @@ class EpisodeReader {
   }
 
   std::uint32_t SetBit(const Located<std::string>& set, int a, int b,
-                       Complaints& complaints) const {
+                       DiagnosticList& errors) const {
     const std::vector<grammar::EntityInfo>& members = episode.header.entity_table.entities;
     const std::vector<std::string>& sets =
         !members[a].sensor_sets.empty() ? members[a].sensor_sets : members[b].sensor_sets;
     const auto found = std::find(sets.begin(), sets.end(), set.value);
     if (found != sets.end()) return std::uint32_t{1} << (found - sets.begin());
-    complaints.AddUnknownName(set.where, fmt::format("no sensor set is called '{}'", set.value),
-                              set.value, sets);
+    errors.AddUnknownName(set.where, fmt::format("no sensor set is called '{}'", set.value),
+                          set.value, sets);
     return 0;
   }
 
   std::string file_;
-  Format<LineEntry> line_format_;
+  ValueFormat<LineEntry> line_format_;
   int line_ = 0;
   bool header_ = false, ended_ = false;
   std::vector<std::string> names_;

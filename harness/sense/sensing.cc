@@ -14,11 +14,6 @@ namespace {
 constexpr int kFeelersPerLink = 3;
 constexpr int kPalmFeelersPerSide = 3;
 
-// A contact point decides about support only if it carries at least this share of the pair's load;
-// otherwise an idle corner point with a skewed normal would decide. A larger share loses the
-// support of rocking objects; a smaller one takes a side contact with one stray point for support.
-constexpr double kLoadBearingShare = 0.05;
-
 // If a touch has no force, as after a bounce, all of its points count equally.
 constexpr double kJustPushed_n_s = 1e-12;
 
@@ -83,9 +78,10 @@ bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
 
 }  // namespace
 
-Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
+Sensing::Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share)
     : rate_hz_(scene.world.rate_hz),
       sensing_hz_(sensing_hz),
+      bearing_share_(bearing_share),
       body_count_(static_cast<int>(scene.bodies.size())) {
   const std::vector<std::string> styles = StyleNames(scene);
   for (const physics::Hand& hand : scene.hands) {
@@ -225,7 +221,7 @@ void Sensing::ReadTouches(Points points, Touches& touches) {
       touch.sensor_sets |= points_[last].sensor_sets;
     }
     for (std::size_t i = first; i < last; ++i) {
-      if (points_[i].impulse_n_s < kLoadBearingShare * load) continue;
+      if (points_[i].impulse_n_s < bearing_share_ * load) continue;
       touch.up_on_a = std::max(touch.up_on_a, points_[i].up_on_a);
       touch.up_on_b = std::max(touch.up_on_b, -points_[i].up_on_a);
     }

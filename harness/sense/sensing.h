@@ -20,8 +20,10 @@ namespace prehend::harness {
 class Sensing {
  public:
   /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). `sensing_hz` must not
-  /// exceed the scene's rate.
-  Sensing(const physics::Scene& scene, int sensing_hz);
+  /// exceed the scene's rate. A contact point decides about support only if it carries at least
+  /// `bearing_share` of the pair's load; otherwise an idle corner point with a skewed normal would
+  /// decide.
+  Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share);
 
   /// Whether the snapshot of this tick is sensed: at each tick that completes another 1/sensing_hz.
   /// Computed on integers, so that any rate works without drift.
@@ -76,6 +78,7 @@ class Sensing {
 
   std::int64_t rate_hz_ = 480;
   std::int64_t sensing_hz_ = 240;
+  double bearing_share_ = 0;
   int body_count_ = 0;
   std::vector<int> heads_;    ///< for each person, the body that is its head
   std::vector<int> jointed_;  ///< for each joint, the body that it moves

@@ -19,7 +19,7 @@ bool IsHand(const grammar::EntityInfo& member) { return member.classes.front() =
 
 /// Classes of an entity that is not a hand: its own, its base classes, the built-in ones.
 void AddClasses(const std::vector<std::string>& classes, Json& json) {
-  const auto given = std::find_if(classes.begin() + 1, classes.end(), IsBuiltInClass);
+  const auto given = std::find_if(classes.begin() + 1, classes.end(), IsScenarioBuiltinClass);
   json["class"] = classes.front();
   if (given != classes.begin() + 1)
     json["kinds"] = std::vector<std::string>(classes.begin() + 1, given);

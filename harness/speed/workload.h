@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The workload of the speed figures: four rules of the kind that other monitors are measured with,
-// made-up worlds, and as a baseline the same rules as hand-written automata. Tested by
-// tests/harness/speed/workload_test.cc
+// Four rules of the kind that other monitors are measured with, as a grammar, and the events that
+// it recognises in a made-up world. harness/speed/four_automata.h has the same rules by hand.
+// Tested by tests/harness/speed/workload_test.cc
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,18 @@
 
 namespace prehend::harness {
 
-/// grasping; supported, for 0.1 s; unanswered: touched, and no grasp within 0.5 s; picking_up.
-inline constexpr int kFourRules = 4;
-std::shared_ptr<const grammar::Program> CompileFourRules();
-
-/// At 240 frames per second, `objects` objects on a table, each with a hand of its own, which picks
-/// it up and puts it down once per `period_s`; in between, both rest. Entities: hands, objects,
-/// the table.
-ChangeLog MakeStations(int objects, int frames, double period_s, std::uint64_t seed = 1);
-
-/// Touches that flicker, `per_frame` a frame, one object after the other.
-enum class Flicker {
-  kPressure,  ///< from one sensor set to another one: no rule depends on it
-  kFact,      ///< from one sensor set to two and back, by a hand that is open: `sensor_sets >= 2`
-              ///< changes, nothing begins
-  kGrasp,     ///< likewise, by a hand that is closed: each is the begin or the end of a grasp
+/// A grasp; a support of some duration; a touch of some duration without a grasp; a grasped object
+/// that leaves its support.
+struct FourRules {
+  enum Number { kGrasping, kSupported, kUnanswered, kPickingUp, kCount };
+  static constexpr double kGripOn = 0.3;  ///< of the commanded grip
+  static constexpr int kSides = 2;        ///< sensor sets that touch
+  static constexpr double kLevel = 0.5;   ///< cosine between a contact normal and up
+  static constexpr int kSupport_ms = 100;
+  static constexpr int kUnanswered_ms = 500;
+  static constexpr double kRegion_m = 0.09;
 };
-ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker);
+std::shared_ptr<const grammar::Program> CompileFourRules();
 
 /// The recognised events, independent of their order.
 struct Recognised {
@@ -44,9 +39,8 @@ struct Watched {
   double seconds = 0;        ///< for the frames after the warm-up
 };
 
-/// Plays the log to a monitor, or to the hand-written automata, which read each object in each
-/// frame. During the first `warm_up` frames, new instances are bound and memory is allocated.
+/// Plays a log of harness/speed/worlds.h to a monitor of the four rules. During the first `warm_up`
+/// frames, new instances are bound and memory is allocated.
 Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::size_t warm_up = 0);
-Watched WatchByHand(const ChangeLog& log, std::size_t warm_up = 0);
 
 }  // namespace prehend::harness

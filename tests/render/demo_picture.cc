@@ -93,8 +93,7 @@ physics::Snapshot At(const physics::Scene& scene, const Vector3f& hand_m, double
   physics::Snapshot snapshot;
   for (const physics::Body& body : scene.bodies) snapshot.bodies.push_back({.X_WB = body.X_WB});
   snapshot.hands.push_back(DemoHandState(scene.hands[0].model, GraspPose(hand_m), curl_rad));
-  if (held)
-    snapshot.bodies[1].X_WB.p_m = hand_m.cast<double>() + Vector3d(-0.055, 0.04, -0.02);
+  if (held) snapshot.bodies[1].X_WB.p_m = hand_m.cast<double>() + Vector3d(-0.055, 0.04, -0.02);
   return snapshot;
 }
 
@@ -137,8 +136,9 @@ physics::HandState DemoHandState(const physics::HandModel& model, const Pose& X_
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(curl_rad, link.joint_axis));
     X_WJ.push_back(X_WP * Pose{link.pivot_m, turn} *
                    Pose{-link.pivot_m, Eigen::Quaterniond::Identity()});
-    const Pose X_HL{link.pivot_m + link.direction * link.length_m / 2,
-                    Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitX(), link.direction)};
+    const Pose X_HL{
+        link.pivot_m + link.direction * link.length_m / 2,
+        RotationBetween(Eigen::Vector3f::UnitX(), link.direction.cast<float>()).cast<double>()};
     state.X_WL.push_back(X_WJ.back() * X_HL);
   }
   return state;
