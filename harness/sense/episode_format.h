@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lines of an episode file, as structs and their formats: docs/recording-format.md. The reader
-// is harness/sense/read_episode.cc. Tested by tests/harness/episode_file_test.cc
+// is harness/sense/read_episode.cc. Tested by tests/harness/sense/episode_file_test.cc
 #pragma once
 
 #include <Eigen/Core>

@@ -58,7 +58,7 @@ class Measuring {
     warm_up = Frames(warm_up);
     return Watch(fmt::format("four rules, {} object{}, each used every {} s", objects,
                              objects == 1 ? "" : "s", period_s),
-                 "object-rule-frame", 1.0 * FourRules::kCount * objects,
+                 "object-rule-frame", static_cast<double>(FourRules::kCount * objects),
                  MakeStations(objects, Frames(frames) + warm_up, period_s), warm_up);
   }
 
@@ -66,7 +66,7 @@ class Measuring {
   SpeedFigure Dense(int objects, int every) const {
     return Watch(fmt::format("four rules, {} objects, a fact of each changes every {} frames",
                              objects, every),
-                 "object-rule-frame", 1.0 * FourRules::kCount * objects,
+                 "object-rule-frame", static_cast<double>(FourRules::kCount * objects),
                  MakeFlicker(objects, Frames(4000), objects / every, Flicker::kFact), 1);
   }
 
