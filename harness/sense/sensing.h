@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
+#include "harness/scenario/scenario.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 
@@ -24,6 +25,10 @@ class Sensing {
   /// `bearing_share` of the pair's load; otherwise an idle corner point with a skewed normal would
   /// decide.
   Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share);
+  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). A point of contact
+  /// counts for what is held from below only if it carries `bearing_share` of the pair's load;
+  /// otherwise an idle corner with a skewed normal would decide.
+  Sensing(const physics::Scene& scene, const SensingSettings& settings);
 
   /// Whether the snapshot of this tick is sensed: at each tick that completes another 1/sensing_hz.
   /// Computed on integers, so that any rate works without drift.
