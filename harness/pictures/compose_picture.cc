@@ -19,7 +19,7 @@ using grammar::DrawnAs;
 constexpr double kSceneryFromM = 0.5;
 // Paths are thinned to this many points a second; more only costs triangles.
 constexpr double kPathPointsPerS = 60;
-constexpr std::size_t kMostRows = 6;  // of the strip; more would hide the picture
+constexpr std::size_t kMaxRows = 6;  // of the strip; more would hide the picture
 
 render::Color ColorOf(std::uint32_t rgb) {
   return {static_cast<float>(rgb >> 16 & 255) / 255, static_cast<float>(rgb >> 8 & 255) / 255,
@@ -227,13 +227,13 @@ render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& ru
         [&](const auto& e) { return FirstOf(run, e); });
   }
   for (const std::string& name : OtherEvents(run)) {
-    if (strip.rows.size() >= kMostRows) break;
+    if (strip.rows.size() >= kMaxRows) break;
     add_row(
         spoken(name), [&](const auto& e) { return e.event == name; },
         [&](const auto& e) { return e.roles.empty() ? spoken(name) : e.roles.back().value; });
   }
   for (const physics::Body& body : scenario.scene.bodies) {
-    if (body.fixed || body.kinematic || strip.rows.size() >= kMostRows) continue;
+    if (body.fixed || body.kinematic || strip.rows.size() >= kMaxRows) continue;
     add_row(
         body.name + " on",
         [&](const auto& e) {
@@ -280,7 +280,7 @@ render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& pi
 }  // namespace
 
 render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
-                               const PictureEntry& entry) {
+                               const PictureYaml& entry) {
   const FoundTime moment = FindEventTime(entry.at.value, run);
   render::Picture picture;
   picture.scene = &scenario.scene;
