@@ -98,10 +98,11 @@ ValueFormat<ScenarioYaml> BuildScenarioFormat() {
                 "Classes, and the class that each is a kind of: {Cup: Container}.")
       .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors),
                 "The hands, by name.")
-      .Optional("script", &S::script,
-                ListOf(MapOf(Identifier(), StepFormat(), 1, kMaxActors), 0, kMaxBeats),
-                "What the hands do: beats, one after another; in a beat one step per named actor.")
-      .Optional("settle_s", &S::settle_s, Number(0, 60), "Simulated on after the last beat.")
+      .Optional(
+          "script", &S::script,
+          ListOf(MapOf(Identifier(), StepFormat(), 1, kMaxActors), 0, kMaxBeats),
+          "What the actors do: stages, one after another; in a stage one step per named actor.")
+      .Optional("settle_s", &S::settle_s, Number(0, 60), "Simulated on after the last stage.")
       .Optional("vary", &S::vary, ListOf(VariationFormat(), 0, kMaxVariations),
                 "What differs from trial to trial of 'prehend run --trials'.")
       .Optional("outcomes", &S::outcomes, MapOf(Identifier(), OutcomeFormat(), 0, kMaxOutcomes),

@@ -101,9 +101,9 @@ PersonPlayer::PersonPlayer(const Scene& scene, const Script& script, int person)
     limbs_[static_cast<std::size_t>(limb)].end = RestOf(limb, person_, posture_).end;
 }
 
-void PersonPlayer::Begin(std::size_t beat, const Snapshot& now) {
-  leader_.Begin(beat, now);
-  for (const PersonStep& step : script_.beats[beat].person_steps) {
+void PersonPlayer::Begin(std::size_t stage, const Snapshot& now) {
+  leader_.Begin(stage, now);
+  for (const PersonStep& step : script_.stages[stage].person_steps) {
     if (step.person != index_) continue;
     head_.reset();
     if (body_) {

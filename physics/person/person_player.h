@@ -21,7 +21,7 @@ class PersonPlayer {
   PersonPlayer(const Scene& scene, const Script& script, int person);
 
   /// This stage of the script begins with the tick after `now`.
-  void Begin(std::size_t beat, const Snapshot& now);
+  void Begin(std::size_t stage, const Snapshot& now);
   /// Moves her parts for the tick after `now`.
   void Advance(const Snapshot& now, World& world);
   /// What she sees in a world that has stepped since her last Advance().

@@ -51,7 +51,7 @@ struct Played {
 Played Play(const Scene& scene, std::vector<PersonStep> steps, const std::string& part = "") {
   Script script;
   script.settle_s = 0.3;
-  for (PersonStep& step : steps) script.beats.push_back({.steps = {}, .person_steps = {step}});
+  for (PersonStep& step : steps) script.stages.push_back({.steps = {}, .person_steps = {step}});
   Simulation simulation(scene, script);
   Played played;
   const int touching = PartNamed(scene, part);
