@@ -153,7 +153,7 @@ TEST(PersonPlayerTest, ALimbThatMayYieldStillPushesWhatIsLight) {
 TEST(PersonPlayerTest, ARecordedFigureIsTakenAndLeft) {
   const Scene scene = Before({2, 2, 0.4});
   const Person& anna = scene.persons.front();
-  Posture kneeling = Standing(scene, anna);
+  BodyTargets kneeling = Standing(scene, anna);
   Figure figure = FigureOf(anna, kneeling);
   figure.hips_W_m += Vector3d(0.4, 0, -0.2);
   figure.ways_W[Figure::kThigh] = Vector3d(0.8, 0, -0.6);
