@@ -20,14 +20,10 @@ namespace prehend::harness {
 
 class Sensing {
  public:
-  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). `sensing_hz` must not
-  /// exceed the scene's rate. A contact point decides about support only if it carries at least
-  /// `bearing_share` of the pair's load; otherwise an idle corner point with a skewed normal would
-  /// decide.
-  Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share);
-  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). A point of contact
-  /// counts for what is held from below only if it carries `bearing_share` of the pair's load;
-  /// otherwise an idle corner with a skewed normal would decide.
+  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). The settings'
+  /// `sensing_hz` must not exceed the scene's rate. A contact point decides about support only if
+  /// it carries at least `bearing_share` of the pair's load; otherwise an idle corner point with a
+  /// skewed normal would decide.
   Sensing(const physics::Scene& scene, const SensingSettings& settings);
 
   /// Whether the snapshot of this tick is sensed: at each tick that completes another 1/sensing_hz.
