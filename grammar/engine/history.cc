@@ -8,7 +8,7 @@ namespace prehend::grammar {
 namespace {
 
 constexpr double kRounding = 1e-6;  // of a product of seconds and ticks per second
-constexpr double kMostTicks = 1e15;
+constexpr double kMaxTracedTicks = 1e15;
 
 }  // namespace
 
@@ -73,12 +73,12 @@ FrameNumber History::LastNotAfter(Tick tick) const {
 
 Tick History::AtMostTicks(double seconds) const {
   return static_cast<Tick>(
-      std::floor(std::min(seconds * ticks_per_second_, kMostTicks) + kRounding));
+      std::floor(std::min(seconds * ticks_per_second_, kMaxTracedTicks) + kRounding));
 }
 
 Tick History::AtLeastTicks(double seconds) const {
   return static_cast<Tick>(
-      std::ceil(std::min(seconds * ticks_per_second_, kMostTicks) - kRounding));
+      std::ceil(std::min(seconds * ticks_per_second_, kMaxTracedTicks) - kRounding));
 }
 
 }  // namespace prehend::grammar

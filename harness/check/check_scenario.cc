@@ -138,7 +138,7 @@ std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& prog
 }
 
 void JudgeInvariants(const LoadedRun& loaded, const RunResult& run, ScenarioVerdict& verdict) {
-  const WorldEntry& world = loaded.scenario.world;
+  const WorldYaml& world = loaded.scenario.world;
   EpisodeFacts facts{.end = run.ticks + 1};
   facts.ticks_per_frame = DefaultTolerance(world.rate_hz, world.sensing_hz) / 2;
   facts.latency = LatencyByEvent(*loaded.program);
@@ -233,7 +233,7 @@ void JudgeAgainstGolden(const CheckRequest& request, const LoadedRun& loaded, co
     return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read",
                 Format(golden.diagnostics));
   }
-  const WorldEntry& world = loaded.scenario.world;
+  const WorldYaml& world = loaded.scenario.world;
   const Comparison comparison =
       Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
               run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
