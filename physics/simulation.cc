@@ -83,7 +83,7 @@ std::vector<HandCommand> Simulation::State::Tracked(std::vector<HandCommand> com
 
 void Simulation::State::MovePersons() {
   for (PersonPlayer& person : persons) {
-    for (const std::size_t beat : player.begun()) person.Begin(beat, snapshot);
+    for (const std::size_t stage : player.begun()) person.Begin(stage, snapshot);
     person.Advance(snapshot, *world);
   }
 }

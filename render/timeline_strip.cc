@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layout of the strip: rows to lanes (first free lane), names inside the bar or above it, ticks at
-// round seconds.
+// Layout of the strip: every row is distributed to lanes (first free lane), names are inside or
+// above their bars, ticks are at round seconds.
 // Tested by tests/render/timeline_strip_test.cc
 #include "render/timeline_strip.h"
 
@@ -13,7 +13,7 @@
 namespace prehend::render {
 namespace {
 
-// Sizes at 720 rows, in pixels.
+// Sizes in pixels, for a picture of 720 pixel rows.
 constexpr float kMargin = 12;
 constexpr float kPadding = 10;
 constexpr float kBarHeight = 18;
@@ -39,7 +39,7 @@ bool IsVisible(const StripSegment& segment, const TimelineStrip& strip) {
          segment.begin_s <= strip.end_s;
 }
 
-// Each segment into the first lane that is free at its time; when all are taken, into the last.
+// Puts each segment into the first lane that is free at its time, or into the last lane if none is.
 std::vector<std::vector<StripSegment>> SplitIntoLanes(const StripRow& row,
                                                       const TimelineStrip& strip) {
   std::vector<StripSegment> segments;
@@ -60,8 +60,8 @@ std::vector<std::vector<StripSegment>> SplitIntoLanes(const StripRow& row,
   return lanes;
 }
 
-// The name inside if it fits, perhaps smaller; else above, as near to its bar as names above it
-// allow.
+// Places the name inside the bar if it fits, at a smaller size if necessary; otherwise above, as
+// near to the bar as other names allow.
 void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& axis, float scale,
                float* above_taken, StripBar* bar) {
   if (segment.label.empty()) return;
@@ -86,8 +86,7 @@ void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& ax
     return;
   }
   bar->name = font.Shortened(segment.label, small, bar->rect.width - 4 * scale);
-  if (bar->name.size() < 5)
-    return;  // an ellipsis has three bytes: a name of one letter tells nothing
+  if (bar->name.size() < 5) return;  // an ellipsis has three bytes; a name of one letter is useless
   bar->name_place = NamePlace::kInside;
   bar->name_size_px = small;
   bar->name_left = bar->rect.x + (bar->rect.width - font.Width(bar->name, small)) / 2;
@@ -118,7 +117,7 @@ float LaneHeight(const StripLane& lane, float scale) {
   return (kLanePitch + (HasNameAbove(lane) ? kNameHeight : 0)) * scale;
 }
 
-// Lanes from `top` down get their y; returns where the axis goes.
+// Sets the y of all lanes from `top` downwards; returns the y of the axis.
 float StackLanes(float top, float scale, const Font& font, std::vector<StripLane>* lanes) {
   float y = top;
   for (StripLane& lane : *lanes) {
@@ -126,7 +125,7 @@ float StackLanes(float top, float scale, const Font& font, std::vector<StripLane
     lane.track.y = bar_top;
     for (StripBar& bar : lane.bars) {
       bar.rect.y = bar_top;
-      // Letters without descenders look centred when the ascent is.
+      // Centres the ascent: letters without descenders then look centred.
       const float inside = bar_top + (bar.rect.height - 1.32f * font.Ascent(bar.name_size_px)) / 2;
       bar.name_top = bar.name_place == NamePlace::kAbove ? y + scale : inside;
     }
@@ -142,7 +141,7 @@ std::string Seconds(double t_s, double step_s) {
   return text;
 }
 
-// The smallest round step whose labels do not crowd.
+// The smallest round step with enough space between labels.
 double TickStep(const TimeAxis& axis, float scale) {
   const double shortest_s = 64 * scale / (axis.right - axis.left) * (axis.end_s - axis.begin_s);
   const double decade = std::pow(10, std::floor(std::log10(shortest_s)));

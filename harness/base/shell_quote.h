@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/program/command_line_test.cc
+// Quoting for shells. Tested by tests/harness/base/shell_quote_test.cc
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace prehend::harness {
 
-/// A word as it can be pasted into a shell: in quotes when it needs them.
+/// A word that can be pasted into a POSIX shell: in single quotes if it needs them.
 std::string ShellQuoted(std::string_view word);
 
 }  // namespace prehend::harness

@@ -17,8 +17,8 @@ class ConditionBuilder {
   ConditionBuilder(const physics::Scene& scene, const physics::Script& script,
                    DiagnosticList& errors)
       : scene_(scene), errors_(errors), end_s_(DurationOf(script)) {
-    // Every beat ends with a tick.
-    latest_s_ = end_s_ + static_cast<double>(script.beats.size() + 1) / scene.world.rate_hz;
+    // Every stage ends with a tick.
+    latest_s_ = end_s_ + static_cast<double>(script.stages.size() + 1) / scene.world.rate_hz;
     for (const physics::Body& body : scene.bodies) names_.push_back(body.name);
   }
 

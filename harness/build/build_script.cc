@@ -174,10 +174,10 @@ struct StepMaker {
   }
 };
 
-double DurationOf(const physics::Beat& beat) {
+double DurationOf(const physics::ScriptStage& stage) {
   double longest_s = 0;
-  for (const physics::Step& step : beat.steps) longest_s = std::max(longest_s, step.over_s);
-  for (const physics::PersonStep& step : beat.person_steps)
+  for (const physics::Step& step : stage.steps) longest_s = std::max(longest_s, step.over_s);
+  for (const physics::PersonStep& step : stage.person_steps)
     longest_s = std::max(longest_s, step.over_s);
   return longest_s;
 }
@@ -186,11 +186,11 @@ double DurationOf(const physics::Beat& beat) {
 void CheckLength(const ScenarioYaml& entry, const physics::Script& script, DiagnosticList& errors) {
   double total_s = script.settle_s;
   std::size_t poses = 0;
-  for (std::size_t i = 0; i < script.beats.size(); ++i) {
+  for (std::size_t i = 0; i < script.stages.size(); ++i) {
     for (const Named<StepYaml>& step : entry.script[i]) {
       if (const auto* given = std::get_if<PosesYaml>(&step.value)) poses += given->poses.size();
     }
-    total_s += DurationOf(script.beats[i]);
+    total_s += DurationOf(script.stages[i]);
     const Where where = entry.script[i].front().name_where;
     if (total_s > kMaxDuration_s) {
       return errors.Add(
@@ -217,8 +217,8 @@ void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
     errors.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
                "no step before this one reaches for something or closes the hand");
   };
-  for (const StageYaml& beat : script) {
-    for (const Named<StepYaml>& step : beat) {
+  for (const StageYaml& stage : script) {
+    for (const Named<StepYaml>& step : stage) {
       HandSoFar& hand = hands[step.name];
       if (const auto* reach = std::get_if<ReachYaml>(&step.value))
         hand.reached = reach->reach.value;
@@ -250,7 +250,7 @@ void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
 
 double DurationOf(const physics::Script& script) {
   double total_s = script.settle_s;
-  for (const physics::Beat& beat : script.beats) total_s += DurationOf(beat);
+  for (const physics::ScriptStage& stage : script.stages) total_s += DurationOf(stage);
   return total_s;
 }
 
@@ -269,11 +269,11 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
   physics::Script script;
   script.settle_s = entry.settle_s;
   for (const StageYaml& beat_entry : entry.script) {
-    physics::Beat& beat = script.beats.emplace_back();
+    physics::ScriptStage& stage = script.stages.emplace_back();
     for (const Named<StepYaml>& named : beat_entry) {
       const int hand = IndexOf(named.name, hands), person = IndexOf(named.name, persons);
       if (person >= 0) {
-        beat.person_steps.push_back(MakePersonStep(named, person, scene, errors));
+        stage.person_steps.push_back(MakePersonStep(named, person, scene, errors));
         continue;
       }
       if (hand < 0) {
@@ -286,7 +286,7 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
       physics::Step step =
           std::visit(StepMaker{entities, scene, model, named, errors}, named.value);
       step.hand = hand;
-      beat.steps.push_back(std::move(step));
+      stage.steps.push_back(std::move(step));
     }
   }
   CheckOrder(entry.script, errors);

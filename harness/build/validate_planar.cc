@@ -126,8 +126,8 @@ void ValidatePlanar(const ScenarioYaml& entry, const physics::Scene& scene,
     errors.Add(person.name_where,
                fmt::format("'{}' is a person; a planar world has no persons", person.name),
                "remove 'planar: true' and use engine: bullet");
-  for (const StageYaml& beat : entry.script) {
-    for (const Named<StepYaml>& step : beat) {
+  for (const StageYaml& stage : entry.script) {
+    for (const Named<StepYaml>& step : stage) {
       const auto hand = hands.find(step.name);
       if (hand != hands.end()) std::visit(StepCheck{scene, *hand->second, errors}, step.value);
     }

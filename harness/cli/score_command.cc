@@ -144,8 +144,8 @@ std::string UnknownEvent(const std::vector<std::string>& events) {
 }
 
 /// Of the judged events those that no rule of the grammar prints.
-std::vector<std::string> NotSpokenOf(const grammar::Program& program,
-                                     const std::vector<std::string>& events) {
+std::vector<std::string> NotCovered(const grammar::Program& program,
+                                    const std::vector<std::string>& events) {
   std::vector<std::string> silent;
   for (const std::string_view event : OracleEvents()) {
     const bool judged = events.empty() || std::ranges::find(events, event) != events.end();
@@ -171,11 +171,11 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const std::vector<std::string> events = NamesIn(ValuesOf(options, "--events"));
   if (const std::string unknown = UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);
-  std::vector<std::vector<std::string>> not_spoken_of;
+  std::vector<std::vector<std::string>> not_covered;
   for (const std::string& name : grammars) {
     const grammar::CompileResult compiled = LoadGrammar(context.root, name);
     if (!compiled.program) return Complain(context, compiled.diagnostics);
-    not_spoken_of.push_back(NotSpokenOf(*compiled.program, events));
+    not_covered.push_back(NotCovered(*compiled.program, events));
   }
   std::string problem;
   const auto selection = SelectScenarios(ValuesOf(options, "names"), ValuesOf(options, "--filter"),
@@ -190,7 +190,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   std::vector<score::Score> scores;
   for (std::size_t g = 0; g < grammars.size(); ++g) {
     scores.push_back(ScoreOf(grammars[g], by_grammar[g], collar_s));
-    scores.back().not_spoken_of = not_spoken_of[g];
+    scores.back().not_covered = not_covered[g];
   }
   if (IsGiven(options, "--json"))
     context.out << ScoresJson(scores, collar_s).dump(2) << "\n";

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/motion/hand_motion_test.cc
+// Reads the motion of a hand from CSV. Written here, although libcsv exists: the separators are the
+// small part; units in the heads and errors with line and column are the large one. Tested by
+// tests/harness/motion/hand_motion_test.cc
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -289,8 +289,8 @@ void ReadRecordings(const std::string& scenario_file, ScenarioYaml& entry,
                     const ScenarioLibrary& library, DiagnosticList& errors,
                     grammar::Diagnostics& in_recordings) {
   RecordingReader reader(scenario_file, entry.persons, library, errors, in_recordings);
-  for (StageYaml& beat : entry.script) {
-    for (Named<StepYaml>& step : beat) {
+  for (StageYaml& stage : entry.script) {
+    for (Named<StepYaml>& step : stage) {
       if (auto* recording = std::get_if<RecordingYaml>(&step.value))
         reader.Fill(step.name, *recording);
     }

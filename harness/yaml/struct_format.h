@@ -4,7 +4,8 @@
 //
 // A field is kept without the types of its struct and of its value: as an offset and a function
 // that reads a value into the member there. So a table of fields compiles to data, and the work is
-// done by one reader in struct_format.cc. Tested by tests/harness/yaml/struct_format_test.cc
+// done by one reader in harness/yaml/struct_format.cc. Tested by
+// tests/harness/yaml/struct_format_test.cc
 #pragma once
 
 #include <functional>

@@ -102,13 +102,13 @@ struct PersonStep {
   double over_s = 0.5;
 };
 
-struct Beat {
+struct ScriptStage {
   std::vector<Step> steps;                    ///< at most one per hand
   std::vector<PersonStep> person_steps = {};  ///< at most one per person
 };
 
 struct Script {
-  std::vector<Beat> beats;
+  std::vector<ScriptStage> stages;
   double settle_s = 0.5;  ///< simulated time after the last stage
 };
 

@@ -12,12 +12,12 @@ namespace {
 
 const char* const kHands = "  right_hand: {hand: human_right, at_m: [-0.2, -0.2, 1.05]}\n";
 
-/// The probe with this actor beside its hand, and these steps as first beat.
-std::string WithActor(const std::string& actor, const std::string& beat = "") {
+/// The probe with this actor beside its hand, and these steps as first stage.
+std::string WithActor(const std::string& actor, const std::string& stage = "") {
   std::string text = ProbeWith(kHands, kHands + ("  anna: " + actor + "\n"));
-  if (!beat.empty()) {
+  if (!stage.empty()) {
     const std::string script = "script:\n";
-    text.insert(text.find(script) + script.size(), "  - " + beat + "\n");
+    text.insert(text.find(script) + script.size(), "  - " + stage + "\n");
   }
   return text;
 }
@@ -53,19 +53,19 @@ TEST(PersonsTest, StepsAreUnderstood) {
                                    "  - anna: {move_limb: left_foot, max_force_n: 30}\n  - anna: "
                                    "{sway_by_m: [0.1, -0.2]}\n  - anna: {wait_s: 0.1}"));
   ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  EXPECT_EQ(read.value->script.beats[0].person_steps.size(), 1u);
-  EXPECT_TRUE(read.value->script.beats[0].steps.empty());
+  EXPECT_EQ(read.value->script.stages[0].person_steps.size(), 1u);
+  EXPECT_TRUE(read.value->script.stages[0].steps.empty());
 }
 
 struct Bad {
   const char* name;
   const char* actor;
-  const char* beat;
+  const char* stage;
   const char* errors;
 };
 class PersonsRefused : public testing::TestWithParam<Bad> {};
 TEST_P(PersonsRefused, WithTheirPlace) {
-  EXPECT_EQ(ErrorsAbout(WithActor(GetParam().actor, GetParam().beat)), GetParam().errors);
+  EXPECT_EQ(ErrorsAbout(WithActor(GetParam().actor, GetParam().stage)), GetParam().errors);
 }
 
 // clang-format off

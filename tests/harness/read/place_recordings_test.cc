@@ -49,7 +49,7 @@ class RecordedInputTest : public testing::Test {
     const auto read = Read(step);
     EXPECT_TRUE(read.value) << Brief(read.diagnostics);
     return read.value
-               ? std::get<physics::PosesStep>(read.value->script.beats[0].steps[0].action).poses
+               ? std::get<physics::PosesStep>(read.value->script.stages[0].steps[0].action).poses
                : std::vector<physics::TimedPose>{};
   }
 
@@ -85,7 +85,7 @@ TEST_F(RecordedInputTest, FollowsTheRecordingWithoutDriftAtAnyRate) {
         {"world.rate_hz=" + std::to_string(rate_hz)}, ProbeLibrary());
     ASSERT_TRUE(read.value) << Brief(read.diagnostics);
     const auto& poses =
-        std::get<physics::PosesStep>(read.value->script.beats[0].steps[0].action).poses;
+        std::get<physics::PosesStep>(read.value->script.stages[0].steps[0].action).poses;
     const physics::Trajectory motion = physics::WaypointTrajectory({}, poses);
     // In its last interval the motion comes to rest.
     for (int tick = rate_hz; tick < static_cast<int>(2.48 * rate_hz); ++tick) {
@@ -199,7 +199,7 @@ class RecordedBodyTest : public RecordedInputTest {
     const auto read = ReadBody(step);
     EXPECT_TRUE(read.value) << Brief(read.diagnostics);
     if (!read.value) return {};
-    return std::get<physics::BodyPosesStep>(read.value->script.beats[0].person_steps[0].action)
+    return std::get<physics::BodyPosesStep>(read.value->script.stages[0].person_steps[0].action)
         .figures;
   }
 };

@@ -51,7 +51,7 @@ struct Played {
 Played Play(const Scene& scene, std::vector<PersonStep> steps, const std::string& part = "") {
   Script script;
   script.settle_s = 0.3;
-  for (PersonStep& step : steps) script.beats.push_back({.steps = {}, .person_steps = {step}});
+  for (PersonStep& step : steps) script.stages.push_back({.steps = {}, .person_steps = {step}});
   Simulation simulation(scene, script);
   Played played;
   const int touching = PartNamed(scene, part);
@@ -153,7 +153,7 @@ TEST(PersonPlayerTest, ALimbThatMayYieldStillPushesWhatIsLight) {
 TEST(PersonPlayerTest, ARecordedFigureIsTakenAndLeft) {
   const Scene scene = Before({2, 2, 0.4});
   const Person& anna = scene.persons.front();
-  Posture kneeling = Standing(scene, anna);
+  BodyTargets kneeling = Standing(scene, anna);
   Figure figure = FigureOf(anna, kneeling);
   figure.hips_W_m += Vector3d(0.4, 0, -0.2);
   figure.ways_W[Figure::kThigh] = Vector3d(0.8, 0, -0.6);
