@@ -300,21 +300,21 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.command = RepeatCommand(request.id, request.run);
   std::vector<std::string> files =
       request.has_golden ? FilesOfGolden(request) : std::vector<std::string>();
-  const ReadResult<LoadedRun> loaded = LoadRun(request.run, request.root, &files);
-  if (loaded.value && request.has_golden) AddPictures(request, loaded.value->scenario, files);
+  const Result<LoadedRun> loaded = LoadRun(request.run, request.root, &files);
+  if (loaded && request.has_golden) AddPictures(request, loaded->scenario, files);
   verdict.inputs = HashFiles(files);
-  if (!loaded.value) {
-    Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(loaded.diagnostics));
+  if (!loaded) {
+    Fail(verdict, ExitCode::kBadInput, "cannot be read", Format(loaded.error()));
     verdict.command = "prehend validate " + ShellQuoted(request.id) + ChangesText(request.run);
     return verdict;
   }
-  const Scenario& scenario = loaded.value->scenario;
+  const Scenario& scenario = loaded->scenario;
   verdict.shows = scenario.shows;
 
   RunOptions how{.record = true};
   if (request.last_tick)
     how.watch = [&](const grammar::Frame& frame) { request.last_tick->store(frame.tick); };
-  const RunResult run = RunScenario(scenario, loaded.value->program, how);
+  const RunResult run = RunScenario(scenario, loaded->program, how);
   Draw(request, scenario, run, verdict);
   verdict.state_hash = HashText(run.state_hash);
   verdict.ticks = run.ticks;
@@ -324,10 +324,10 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
     verdict.command = "prehend run " + ShellQuoted(request.id) + ChangesText(request.run);
     return verdict;
   }
-  JudgeInvariants(*loaded.value, run, verdict);
-  JudgeLaws(*loaded.value, run, verdict);
-  JudgeAgainstGolden(request, *loaded.value, run, verdict);
-  JudgeOtherEngine(request, *loaded.value, run, verdict);
+  JudgeInvariants(*loaded, run, verdict);
+  JudgeLaws(*loaded, run, verdict);
+  JudgeAgainstGolden(request, *loaded, run, verdict);
+  JudgeOtherEngine(request, *loaded, run, verdict);
   JudgePictures(request, scenario, verdict);
   if (verdict.verdict == Verdict::kPending && request.has_golden && AsItsFileSays(request))
     verdict.command = "prehend review " + ShellQuoted(request.id);

@@ -212,10 +212,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   Played played;
   played.id = ScenarioId(file->skill, file->name);
   played.files = {GoldenFiles(context.root).GoldenPath(played.id).string()};
-  ReadResult<LoadedRun> loaded =
-      LoadRun({.scenario_file = file->path}, context.root, &played.files);
-  if (!loaded.value) return Complain(context, loaded.diagnostics);
-  played.loaded = std::move(*loaded.value);
+  Result<LoadedRun> loaded = LoadRun({.scenario_file = file->path}, context.root, &played.files);
+  if (!loaded) return Complain(context, loaded.error());
+  played.loaded = std::move(*loaded);
   ReadResult<Golden> old = GoldenFiles(context.root).ReadGoldenOf(played.id);
   if (!old.diagnostics.empty()) return Complain(context, old.diagnostics);
   played.old = std::move(old.value);

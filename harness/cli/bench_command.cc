@@ -61,14 +61,14 @@ OrderedJson Json(const SpeedFigure& f) {
 }
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  const ReadResult<std::vector<SpeedFigure>> measured =
+  const Result<std::vector<SpeedFigure>> measured =
       MeasureSpeed(context.root, IsGiven(options, "--quick"));
-  if (!measured.value) return Complain(context, measured.diagnostics);
+  if (!measured) return Complain(context, measured.error());
   std::vector<std::vector<std::string>> rows = {{"what", "takes", "per", "per_second",
                                                  "times_by_hand", "events/s", "times_real_time",
                                                  "of_physics", "result"}};
   OrderedJson list = OrderedJson::array();
-  for (const SpeedFigure& figure : *measured.value) {
+  for (const SpeedFigure& figure : *measured) {
     rows.push_back(Cells(figure));
     list.push_back(Json(figure));
   }
@@ -79,7 +79,7 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     context.out << "One core. times_by_hand: the same rules as automata written by hand, in the "
                    "same run.\n";
   }
-  const bool agrees = std::ranges::all_of(*measured.value, &SpeedFigure::agrees);
+  const bool agrees = std::ranges::all_of(*measured, &SpeedFigure::agrees);
   if (agrees) return ExitCode::kAgrees;
   return Complain(context, ExitCode::kDiffers,
                   "the grammar and the automata by hand recognise different events");

@@ -54,19 +54,21 @@ std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
   return ScenarioAt(scenarios, *path);
 }
 
-OpenedEpisode OpenEpisodeOrComplain(const CLI::App& options, const CommandContext& context) {
+tl::expected<EpisodeSource, ExitCode> OpenEpisodeOrComplain(const CLI::App& options,
+                                                            const CommandContext& context) {
   const std::string typed = ValueOf(options, "scenario");
   const RunRequest request = RequestOf(options, typed);
-  ReadResult<EpisodeSource> source;
+  const auto reported = [&](const grammar::Diagnostics& diagnostics) {
+    return Complain(context, diagnostics);
+  };
   if (IsRecording(typed)) {
-    source = OpenRecording(typed, request.grammar, request.settings, context.root);
-  } else {
-    const auto file = FindScenarioOrComplain(typed, context);
-    if (!file) return {std::nullopt, ExitCode::kNothing};
-    source = OpenScenario(file->path, request.grammar, request.settings, context.root);
+    return OpenRecording(typed, request.grammar, request.settings, context.root)
+        .map_error(reported);
   }
-  if (!source.value) return {std::nullopt, Complain(context, source.diagnostics)};
-  return {std::move(source.value), ExitCode::kAgrees};
+  const auto file = FindScenarioOrComplain(typed, context);
+  if (!file) return tl::unexpected(ExitCode::kNothing);
+  return OpenScenario(file->path, request.grammar, request.settings, context.root)
+      .map_error(reported);
 }
 
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message) {

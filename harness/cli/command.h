@@ -8,6 +8,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <tl/expected.hpp>
 #include <vector>
 
 #include "grammar/base/diagnostic.h"
@@ -74,12 +75,9 @@ std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
                                                    const CommandContext& context);
 
 /// The episode that was typed for `scenario`, a scenario or a recording, with the run options;
-/// otherwise says why not.
-struct OpenedEpisode {
-  std::optional<EpisodeSource> value;
-  ExitCode exit_code = ExitCode::kAgrees;
-};
-OpenedEpisode OpenEpisodeOrComplain(const CLI::App& options, const CommandContext& context);
+/// otherwise, after saying why not, the exit code.
+tl::expected<EpisodeSource, ExitCode> OpenEpisodeOrComplain(const CLI::App& options,
+                                                            const CommandContext& context);
 
 /// Prints to `err`, followed by the command line, and returns `code`.
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message);

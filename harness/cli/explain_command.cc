@@ -114,20 +114,20 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
                     "--event and --expected are two questions; ask one at a time");
   }
   const auto source = OpenEpisodeOrComplain(options, context);
-  if (!source.value) return source.exit_code;
+  if (!source) return source.error();
 
   Question question;
   for (const auto& [option, ask] :
        {std::pair{"--event", &question.event}, std::pair{"--expected", &question.expected}}) {
     if (!IsGiven(options, option)) continue;
-    const ReadResult<Ask> read = explain::ParseAsk(
-        option, ValueOf(options, option), *source.value->program, source.value->entity_table);
-    if (!read.value) return Complain(context, read.diagnostics);
-    *ask = *read.value;
+    const Result<Ask> read =
+        explain::ParseAsk(option, ValueOf(options, option), *source->program, source->entity_table);
+    if (!read) return Complain(context, read.error());
+    *ask = *read;
   }
-  const explain::Watched watched = explain::Watch(*source.value);
+  const explain::Watched watched = explain::Watch(*source);
   if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
-  const ExitCode code = Answer(options, context, source.value->name, question, *watched.past);
+  const ExitCode code = Answer(options, context, source->name, question, *watched.past);
   if (watched.failure.empty() || code != ExitCode::kAgrees) return code;
   return Complain(context, ExitCode::kFailure, watched.failure);
 }

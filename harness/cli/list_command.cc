@@ -24,9 +24,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   grammar::Diagnostics diagnostics;
   const ScenarioLibrary library = ProjectLibrary(context.root);
   for (const ScenarioFile& file : ListScenarios(context.root)) {
-    ReadResult<Scenario> read = ReadScenario(file.path, {}, library);
-    diagnostics.insert(diagnostics.end(), read.diagnostics.begin(), read.diagnostics.end());
-    const Scenario scenario = std::move(read.value).value_or(Scenario{.shows = "(cannot be read)"});
+    Result<Scenario> read = ReadScenario(file.path, {}, library);
+    diagnostics.insert(diagnostics.end(), read.error().begin(), read.error().end());
+    const Scenario scenario = std::move(read).value_or(Scenario{.shows = "(cannot be read)"});
     const std::string id = ScenarioId(file.skill, file.name);
     rows.push_back({id, scenario.shows, fmt::format("{}", fmt::join(scenario.tags, " "))});
     list.push_back({{"scenario", id},

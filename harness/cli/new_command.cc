@@ -74,20 +74,22 @@ struct Model {
 std::optional<std::string> Composed(const Model& model, const std::filesystem::path& path,
                                     const CommandContext& context) {
   const ScenarioLibrary library = ProjectLibrary(context.root);
-  const ReadResult<Scenario> as_it_is = ReadScenarioText(model.path, model.text, {}, library);
-  ReadResult<std::string> copy = as_it_is.value ? CopyOfScenario(model.path, model.text, path)
-                                                : ReadResult<std::string>{{}, as_it_is.diagnostics};
-  if (copy.value) {
-    const bool has_modeline = copy.value->find("yaml-language-server:") != std::string::npos;
-    if (!has_modeline) copy.value->insert(0, kModeline);
+  if (const auto as_it_is = ReadScenarioText(model.path, model.text, {}, library); !as_it_is) {
+    Complain(context, as_it_is.error());
+    return std::nullopt;
+  }
+  Result<std::string> copy = CopyOfScenario(model.path, model.text, path);
+  if (copy) {
+    const bool has_modeline = copy->find("yaml-language-server:") != std::string::npos;
+    if (!has_modeline) copy->insert(0, kModeline);
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);  // for paths that go through it
-    const ReadResult<Scenario> read = ReadScenarioText(path.string(), *copy.value, {}, library);
-    if (read.value) return copy.value;
+    const Result<Scenario> read = ReadScenarioText(path.string(), *copy, {}, library);
+    if (read) return *copy;
     std::filesystem::remove(path.parent_path(), error);  // only when it is empty
-    copy.diagnostics = read.diagnostics;
+    copy = tl::unexpected(read.error());
   }
-  Complain(context, copy.diagnostics);
+  Complain(context, copy.error());
   return std::nullopt;
 }
 
@@ -108,10 +110,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (IsGiven(options, "--like")) {
     const auto like = FindScenarioOrComplain(ValueOf(options, "--like"), context);
     if (!like) return ExitCode::kNothing;
-    ReadResult<std::string> read = ReadTextFile(like->path);
-    if (!read.value) return Complain(context, read.diagnostics);
+    Result<std::string> read = ReadTextFile(like->path);
+    if (!read) return Complain(context, read.error());
     model = {.path = like->path,
-             .text = std::move(*read.value),
+             .text = std::move(*read),
              .skill = like->skill.empty() ? kDefaultSkill : like->skill};
   }
   std::string skill = model.skill;

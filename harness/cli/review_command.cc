@@ -71,19 +71,19 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
   Review review{.id = ScenarioId(file.skill, file.name), .kind = "unreadable", .text = {}};
   const ReadResult<Golden> pending = files.ReadPendingOf(review.id);
   const ReadResult<Golden> golden = files.ReadGoldenOf(review.id);
-  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
+  const Result<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
   review.text =
-      Format(pending.diagnostics) + Format(golden.diagnostics) + Format(scenario.diagnostics);
-  if (!pending.value || !scenario.value || !golden.diagnostics.empty()) return review;
+      Format(pending.diagnostics) + Format(golden.diagnostics) + Format(ErrorsOf(scenario));
+  if (!pending.value || !scenario || !golden.diagnostics.empty()) return review;
   review.fingerprint = Fingerprint(*pending.value);
   if (!golden.value) {
     review.kind = "new";
     review.text = EventLines(*pending.value) + DerivationLines(*pending.value, {});
     return review;
   }
-  const Comparison comparison = Compare(
-      *golden.value, ToTimeline(*pending.value),
-      DefaultTolerance(scenario.value->scene.world.rate_hz, scenario.value->sensing.sensing_hz));
+  const Comparison comparison =
+      Compare(*golden.value, ToTimeline(*pending.value),
+              DefaultTolerance(scenario->scene.world.rate_hz, scenario->sensing.sensing_hz));
   const std::string derivation = DerivationLines(*pending.value, golden.value->derived);
   review.kind = comparison.Agrees() && derivation.empty() ? "same" : "changed";
   review.text = DifferenceText(comparison, ExplainCommand(review.id, {})) + derivation;
@@ -119,9 +119,9 @@ void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pendi
     if (picture.scenario == IdOf(file)) reviews.push_back(PictureReview(picture, root));
   }
   if (GoldenFiles(root).PicturesOf(IdOf(file)).empty()) return;
-  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
-  if (!scenario.value) return;
-  const std::size_t asked = scenario.value->pictures.size();
+  const Result<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
+  if (!scenario) return;
+  const std::size_t asked = scenario->pictures.size();
   for (const fs::path& picture : UnaskedPictures(IdOf(file), asked, root))
     reviews.push_back(
         {IdOf(file), "orphan", UnaskedText(picture, asked) + "\n", "", {picture.string()}});

@@ -69,11 +69,11 @@ ExitCode CountTrials(const CLI::App& options, const RunRequest& request,
       context.err << "\r\033[K[" << done << "/" << settings.count << "]" << std::flush;
   });
   if (context.progress) context.err << "\r\033[K" << std::flush;
-  if (!report.value) return Complain(context, report.diagnostics);
+  if (!report) return Complain(context, report.error());
   if (IsGiven(options, "--json")) {
-    context.out << TrialJson(*report.value).dump(2) << "\n";
+    context.out << TrialJson(*report).dump(2) << "\n";
   } else {
-    context.out << TrialTable(*report.value, AgainCommand(options));
+    context.out << TrialTable(*report, AgainCommand(options));
   }
   return ExitCode::kAgrees;
 }
@@ -90,10 +90,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (IsGiven(options, "--trials")) return CountTrials(options, request, context);
   if (IsGiven(options, "--trial")) {
     auto varied = RequestOfTrial(request, context.root, std::stoi(ValueOf(options, "--trial")));
-    if (!varied.value) return Complain(context, varied.diagnostics);
-    for (std::size_t i = request.settings.size(); i < varied.value->settings.size(); ++i)
-      context.err << "drawn: " << varied.value->settings[i] << "\n";
-    request = std::move(*varied.value);
+    if (!varied) return Complain(context, varied.error());
+    for (std::size_t i = request.settings.size(); i < varied->settings.size(); ++i)
+      context.err << "drawn: " << varied->settings[i] << "\n";
+    request = std::move(*varied);
   }
   const bool record_is_output = ValueOf(options, "--record") == "-";
   for (const char* of_output : {"--json", "--measure"}) {
@@ -102,33 +102,32 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
           context, ExitCode::kBadInput,
           fmt::format("--record - and {} contradict each other: both are printed", of_output));
   }
-  const ReadResult<LoadedRun> loaded = LoadRun(request, context.root);
-  if (!loaded.value) return Complain(context, loaded.diagnostics);
-  Warn(context, loaded.value->warnings);
+  const Result<LoadedRun> loaded = LoadRun(request, context.root);
+  if (!loaded) return Complain(context, loaded.error());
+  Warn(context, loaded->warnings);
 
   const bool measure = IsGiven(options, "--measure");
-  RunOptions how{.judge = !loaded.value->scenario.outcomes.empty(), .measure = measure};
+  RunOptions how{.judge = !loaded->scenario.outcomes.empty(), .measure = measure};
   std::optional<AtomicFile> record;
   std::optional<EpisodeWriter> recorder;
   if (IsGiven(options, "--record")) {
     record.emplace(ValueOf(options, "--record"));
     if (!record->problem().empty())
       return Complain(context, ExitCode::kBadInput, "--record: " + record->problem());
-    const Scenario& scenario = loaded.value->scenario;
+    const Scenario& scenario = loaded->scenario;
     recorder.emplace(record->stream(),
                      EpisodeHeader{scenario.name, scenario.grammar, MakeEntityTable(scenario)});
     how.watch = [&](const grammar::Frame& frame) { recorder->Write(frame); };
   }
-  const RunResult run = RunScenario(loaded.value->scenario, loaded.value->program, how);
-  for (const std::string& note : NoteLines(loaded.value->scenario, run))
-    context.err << note << "\n";
+  const RunResult run = RunScenario(loaded->scenario, loaded->program, how);
+  for (const std::string& note : NoteLines(loaded->scenario, run)) context.err << note << "\n";
   std::string not_recorded;
   if (recorder) {
     recorder->Finish(run.ticks + 1);
     not_recorded = record->Commit();
   }
   if (IsGiven(options, "--json")) {
-    OrderedJson json = RunJson(loaded.value->scenario, run);
+    OrderedJson json = RunJson(loaded->scenario, run);
     if (measure) json["measured"] = MeasurementJson(Measure(run));
     context.out << json.dump(2) << "\n";
   } else if (!record_is_output) {

@@ -61,10 +61,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     return Complain(context, ExitCode::kBadInput,
                     "--json and a file that ends with .csv contradict each other");
   }
-  const OpenedEpisode source = OpenEpisodeOrComplain(options, context);
-  if (!source.value) return source.exit_code;
+  const auto source = OpenEpisodeOrComplain(options, context);
+  if (!source) return source.error();
   const std::vector<std::string> only = ValuesOf(options, "--only");
-  const std::string unknown = WhyNotKnown(only, *source.value->program);
+  const std::string unknown = WhyNotKnown(only, *source->program);
   if (!unknown.empty()) return Complain(context, ExitCode::kBadInput, unknown);
 
   // What cannot be written is refused before the episode is played.
@@ -73,13 +73,13 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   if (file && !file->problem().empty())
     return Complain(context, ExitCode::kBadInput, "--output: " + file->problem());
 
-  const explain::Watched watched = explain::Watch(*source.value);
+  const explain::Watched watched = explain::Watch(*source);
   if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
   const explain::Tracks tracks = explain::CollectTracks(*watched.past, {only.begin(), only.end()});
   if (!tracks.problem.empty()) return Complain(context, ExitCode::kBadInput, tracks.problem);
   std::ostream& out = file ? file->stream() : context.out;
   if (as_json) {
-    explain::WriteJson(tracks, source.value->name, GrammarName(*source.value->program), out);
+    explain::WriteJson(tracks, source->name, GrammarName(*source->program), out);
   } else {
     explain::WriteCsv(tracks, out);
   }

@@ -47,13 +47,12 @@ void Declare(CLI::App& options) {
 Validated ValidateGrammar(const std::string& name_or_path, const CLI::App& options,
                           const std::string& root) {
   Validated validated{.file = GrammarFile(root, name_or_path)};
-  ReadResult<grammar::Overrides> settings = ParameterSettings(ValuesOf(options, "--set"));
-  if (!settings.value) {
-    validated.diagnostics = std::move(settings.diagnostics);
+  Result<grammar::Overrides> settings = ParameterSettings(ValuesOf(options, "--set"));
+  if (!settings) {
+    validated.diagnostics = std::move(settings.error());
     return validated;
   }
-  grammar::CompileResult compiled =
-      LoadGrammar(root, name_or_path, *settings.value, &validated.inputs);
+  grammar::CompileResult compiled = LoadGrammar(root, name_or_path, *settings, &validated.inputs);
   validated.diagnostics = std::move(compiled.diagnostics);
   if (compiled.program) validated.description = Text(Describe(*compiled.program));
   validated.warnings = std::move(compiled.warnings);
@@ -62,9 +61,8 @@ Validated ValidateGrammar(const std::string& name_or_path, const CLI::App& optio
 
 /// What is kept in golden/ for a scenario. Its events are those of the scenario's own grammar, not
 /// of another.
-void AddGolden(const ScenarioFile& file, const CLI::App& options,
-               const std::optional<LoadedRun>& loaded, const std::string& root,
-               Validated& validated) {
+void AddGolden(const ScenarioFile& file, const CLI::App& options, const Result<LoadedRun>& loaded,
+               const std::string& root, Validated& validated) {
   const GoldenFiles goldens(root);
   const std::string path = goldens.GoldenPath(IdOf(file)).string();
   validated.inputs.push_back(path);
@@ -109,11 +107,11 @@ std::optional<Validated> Validate(const std::string& typed, const CLI::App& opti
   const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return std::nullopt;
   Validated validated{.file = file->path};
-  ReadResult<LoadedRun> loaded =
+  Result<LoadedRun> loaded =
       LoadRun(RequestOf(options, file->path), context.root, &validated.inputs);
-  validated.diagnostics = std::move(loaded.diagnostics);
-  if (file->in_project) AddGolden(*file, options, loaded.value, context.root, validated);
-  if (loaded.value) validated.warnings = std::move(loaded.value->warnings);
+  validated.diagnostics = ErrorsOf(loaded);
+  if (file->in_project) AddGolden(*file, options, loaded, context.root, validated);
+  if (loaded) validated.warnings = std::move(loaded->warnings);
   return validated;
 }
 

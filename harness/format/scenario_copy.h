@@ -6,14 +6,14 @@
 #include <filesystem>
 #include <string>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
 /// `text` of the scenario `from`, changed for the file `to`: its name is that of the new file, and
 /// the paths of its recordings, hands and grasps are relative to the new folder. On failure: the
 /// errors of the YAML.
-ReadResult<std::string> CopyOfScenario(const std::filesystem::path& from, const std::string& text,
-                                       const std::filesystem::path& to);
+Result<std::string> CopyOfScenario(const std::filesystem::path& from, const std::string& text,
+                                   const std::filesystem::path& to);
 
 }  // namespace prehend::harness

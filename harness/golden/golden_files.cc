@@ -21,12 +21,11 @@ constexpr const char* kDifference = ".difference.png";
 ReadResult<Golden> ReadFrom(const fs::path& path, const std::string& scenario) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return {};
-  ReadResult<std::string> text = ReadTextFile(path.string());
-  if (!text.value) return {std::nullopt, std::move(text.diagnostics)};
-  ReadResult<Golden> golden = ReadGolden(path.string(), *text.value);
+  Result<std::string> text = ReadTextFile(path.string());
+  if (!text) return {std::nullopt, std::move(text.error())};
+  ReadResult<Golden> golden = ReadGolden(path.string(), *text);
   if (!golden.value) return golden;
-  grammar::Diagnostics other =
-      OfAnotherScenario(path.string(), *text.value, *golden.value, scenario);
+  grammar::Diagnostics other = OfAnotherScenario(path.string(), *text, *golden.value, scenario);
   if (!other.empty()) return {std::nullopt, std::move(other)};
   return golden;
 }
@@ -145,7 +144,7 @@ fs::path GoldenFiles::EngineDifferencePath(const std::string& scenario) const {
 }
 
 std::string GoldenFiles::ReadEngineDifference(const std::string& scenario) const {
-  return ReadTextFile(EngineDifferencePath(scenario).string()).value.value_or("");
+  return ReadTextFile(EngineDifferencePath(scenario).string()).value_or("");
 }
 
 std::string GoldenFiles::WriteEngineDifference(const std::string& scenario,

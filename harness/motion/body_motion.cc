@@ -237,13 +237,13 @@ class TrackMaker {
 
 }  // namespace
 
-ReadResult<BodyTrack> ReadBodyTrack(const std::string& path) {
-  ReadResult<BvhFile> bvh = ReadBvh(path);
-  if (!bvh.value) return {std::nullopt, std::move(bvh.diagnostics)};
-  TrackMaker maker(*bvh.value);
+Result<BodyTrack> ReadBodyTrack(const std::string& path) {
+  Result<BvhFile> bvh = ReadBvh(path);
+  if (!bvh) return tl::unexpected(std::move(bvh.error()));
+  TrackMaker maker(*bvh);
   maker.Make();
-  if (!maker.diagnostics.empty()) return {std::nullopt, std::move(maker.diagnostics)};
-  return {std::move(maker.track), {}};
+  if (!maker.diagnostics.empty()) return tl::unexpected(std::move(maker.diagnostics));
+  return std::move(maker.track);
 }
 
 }  // namespace prehend::harness

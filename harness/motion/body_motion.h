@@ -34,6 +34,6 @@ struct BodyTrack {
 
 /// BVH has y up. A person whose joints are all at 0 stands upright and usually looks along z; where
 /// she really looks follows from which hip is the left one.
-ReadResult<BodyTrack> ReadBodyTrack(const std::string& path);
+Result<BodyTrack> ReadBodyTrack(const std::string& path);
 
 }  // namespace prehend::harness

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 #include "physics/scene/pose.h"
 
 namespace prehend::harness {
@@ -34,7 +34,7 @@ struct MotionTrack {
 };
 
 /// Columns with their units in the header: `t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger`.
-ReadResult<MotionTrack> ReadMotionCsv(const std::string& path);
+Result<MotionTrack> ReadMotionCsv(const std::string& path);
 
 /// One device of a recording by aframe-motion-capture-components. A press of `button` without a
 /// value is a trigger that rises within `press_s`; a release falls as fast.
@@ -43,7 +43,7 @@ struct CapturedDevice {
   int button = 1;
   double press_s = 0.25;
 };
-ReadResult<MotionTrack> ReadMotionCapture(const std::string& path, const CapturedDevice& device);
+Result<MotionTrack> ReadMotionCapture(const std::string& path, const CapturedDevice& device);
 
 /// Gaps and jumps of the samples: errors if larger than the limits, else warnings; at most a dozen.
 struct TrackLimits {

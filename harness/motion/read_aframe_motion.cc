@@ -206,20 +206,20 @@ class CaptureReader {
 
 }  // namespace
 
-ReadResult<MotionTrack> ReadMotionCapture(const std::string& path, const CapturedDevice& device) {
-  ReadResult<YamlDocument> document = ReadYamlFile(path);
-  if (!document.value) {
-    for (grammar::Diagnostic& wrong : document.diagnostics) {
+Result<MotionTrack> ReadMotionCapture(const std::string& path, const CapturedDevice& device) {
+  Result<YamlDocument> document = ReadYamlFile(path);
+  if (!document) {
+    for (grammar::Diagnostic& wrong : document.error()) {
       if (const std::size_t at = wrong.message.find("YAML"); at != std::string::npos)
         wrong.message.replace(at, 4, "JSON");
     }
-    return {std::nullopt, std::move(document.diagnostics)};
+    return tl::unexpected(std::move(document.error()));
   }
-  CaptureReader reader(*document.value, device);
+  CaptureReader reader(*document, device);
   MotionTrack track = reader.Read();
   grammar::Diagnostics diagnostics = reader.diagnostics();
-  if (!diagnostics.empty()) return {std::nullopt, std::move(diagnostics)};
-  return {std::move(track), {}};
+  if (!diagnostics.empty()) return tl::unexpected(std::move(diagnostics));
+  return track;
 }
 
 }  // namespace prehend::harness

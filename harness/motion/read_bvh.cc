@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -272,13 +273,13 @@ class BvhReader {
 
 }  // namespace
 
-ReadResult<BvhFile> ReadBvh(const std::string& path) {
-  ReadResult<std::string> text = ReadTextFile(path);
-  if (!text.value) return {std::nullopt, std::move(text.diagnostics)};
-  BvhReader reader(path, std::move(*text.value));
+Result<BvhFile> ReadBvh(const std::string& path) {
+  Result<std::string> text = ReadTextFile(path);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  BvhReader reader(path, std::move(*text));
   reader.Read();
-  if (!reader.diagnostics.empty()) return {std::nullopt, std::move(reader.diagnostics)};
-  return {std::move(reader.bvh), {}};
+  if (!reader.diagnostics.empty()) return tl::unexpected(std::move(reader.diagnostics));
+  return std::move(reader.bvh);
 }
 
 }  // namespace prehend::harness

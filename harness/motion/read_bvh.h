@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
@@ -42,6 +42,6 @@ struct BvhFile {
   std::string text;  ///< of the file, for messages
 };
 
-ReadResult<BvhFile> ReadBvh(const std::string& path);
+Result<BvhFile> ReadBvh(const std::string& path);
 
 }  // namespace prehend::harness

@@ -250,13 +250,13 @@ class CsvReader {
 
 }  // namespace
 
-ReadResult<MotionTrack> ReadMotionCsv(const std::string& path) {
-  ReadResult<std::string> text = ReadTextFile(path);
-  if (!text.value) return {std::nullopt, std::move(text.diagnostics)};
-  CsvReader reader(path, std::move(*text.value));
+Result<MotionTrack> ReadMotionCsv(const std::string& path) {
+  Result<std::string> text = ReadTextFile(path);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  CsvReader reader(path, std::move(*text));
   reader.Read();
-  if (!reader.diagnostics.empty()) return {std::nullopt, std::move(reader.diagnostics)};
-  return {std::move(reader.track), {}};
+  if (!reader.diagnostics.empty()) return tl::unexpected(std::move(reader.diagnostics));
+  return std::move(reader.track);
 }
 
 }  // namespace prehend::harness

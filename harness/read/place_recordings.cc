@@ -23,7 +23,7 @@ constexpr int kUsualButton = 1;
 
 bool IsCapture(const RecordingYaml& entry) { return entry.recording.value.ends_with(".json"); }
 
-ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingYaml& entry) {
+Result<MotionTrack> ReadTrack(const std::string& path, const RecordingYaml& entry) {
   if (!IsCapture(entry)) return ReadMotionCsv(path);
   return ReadMotionCapture(
       path, {entry.device->value, entry.button.value_or(Located<int>{kUsualButton, {}}).value,
@@ -136,19 +136,19 @@ class RecordingReader {
   void Fill(const std::string& actor, RecordingYaml& entry) {
     if (entry.recording.value.ends_with(".bvh")) return FillBody(actor, entry);
     if (!CheckKind(entry)) return;
-    ReadResult<MotionTrack> track = ReadTrack(PathOf(entry), entry);
-    if (!track.value) return Refuse(entry, std::move(track.diagnostics));
-    if (!CheckButton(entry, *track.value)) return;
-    if (!Cut(entry, *track.value, errors_)) return;
-    if (!Accept(entry, CheckTrack(*track.value, {entry.max_gap_s, entry.max_jump_m}))) return;
-    if (!HasRoom(entry, track.value->samples.size())) return;
-    entry.poses = Place(entry, *track.value);
+    Result<MotionTrack> track = ReadTrack(PathOf(entry), entry);
+    if (!track) return Refuse(entry, std::move(track.error()));
+    if (!CheckButton(entry, *track)) return;
+    if (!Cut(entry, *track, errors_)) return;
+    if (!Accept(entry, CheckTrack(*track, {entry.max_gap_s, entry.max_jump_m}))) return;
+    if (!HasRoom(entry, track->samples.size())) return;
+    entry.poses = Place(entry, *track);
     for (std::size_t i = 0; i < entry.poses.size(); ++i) {
       if (entry.poses[i].X_WH.p_m.norm() <= kMaxDistance_m) continue;
       return Refuse(
           entry,
           {grammar::DiagnosticAt(
-              track.value->file, track.value->text, track.value->samples[i].place,
+              track->file, track->text, track->samples[i].place,
               fmt::format("the motion is more than {} m from the origin here", kMaxDistance_m),
               "start_at_m shifts the whole motion")});
     }
@@ -163,22 +163,22 @@ class RecordingReader {
                          "recording: a BVH file moves a whole body, not a hand",
                          "give this step to a person; hands follow .csv and .json files");
     }
-    ReadResult<BodyTrack> track = ReadBodyTrack(PathOf(entry));
-    if (!track.value) return Refuse(entry, std::move(track.diagnostics));
-    if (!Cut(entry, *track.value, errors_)) return;
+    Result<BodyTrack> track = ReadBodyTrack(PathOf(entry));
+    if (!track) return Refuse(entry, std::move(track.error()));
+    if (!Cut(entry, *track, errors_)) return;
     const double scale = entry.scale
                              ? entry.scale->value
-                             : physics::LegLength(person->value.height_m) / track.value->leg_units;
-    if (!CheckScale(entry, scale * track.value->leg_units, person->value)) return;
-    if (!Accept(entry, CheckBodyTrack(*track.value, entry, scale))) return;
-    if (!HasRoom(entry, track.value->samples.size())) return;
-    entry.figures = Place(entry, *track.value, person->value, scale);
+                             : physics::LegLength(person->value.height_m) / track->leg_units;
+    if (!CheckScale(entry, scale * track->leg_units, person->value)) return;
+    if (!Accept(entry, CheckBodyTrack(*track, entry, scale))) return;
+    if (!HasRoom(entry, track->samples.size())) return;
+    entry.figures = Place(entry, *track, person->value, scale);
     for (std::size_t i = 0; i < entry.figures.size(); ++i) {
       if (entry.figures[i].figure.hips_W_m.norm() <= kMaxDistance_m) continue;
       return Refuse(
           entry,
           {grammar::DiagnosticAt(
-              track.value->file, track.value->text, track.value->samples[i].place,
+              track->file, track->text, track->samples[i].place,
               fmt::format("the hips are more than {} m from the origin here", kMaxDistance_m),
               "give the file's unit with scale: metres per unit")});
     }
@@ -226,10 +226,10 @@ class RecordingReader {
 
   /// The devices as a hint, "left or right"; "right" if the file cannot be read.
   std::string NamesOfDevices(const RecordingYaml& entry) const {
-    const ReadResult<YamlDocument> file = ReadYamlFile(PathOf(entry));
-    if (!file.value || file.value->root.children.empty()) return "right";
+    const Result<YamlDocument> file = ReadYamlFile(PathOf(entry));
+    if (!file || file->root.children.empty()) return "right";
     std::vector<std::string> names;
-    for (const YamlNode& device : file.value->root.children) names.push_back(device.key);
+    for (const YamlNode& device : file->root.children) names.push_back(device.key);
     return fmt::format("{}", fmt::join(names, " or "));
   }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 #include "physics/scene/hand_model.h"
 
 namespace prehend::harness {
@@ -14,8 +14,8 @@ namespace prehend::harness {
 /// The styles of `more_grasps`, paths of grasp files, come after those of the hand; a style
 /// replaces an earlier one of the same name. For a mirror image they are written for the original
 /// hand. The paths of all files that were read are appended to `files`.
-ReadResult<physics::HandModel> ReadHandModel(const std::string& path,
-                                             const std::vector<std::string>& more_grasps = {},
-                                             std::vector<std::string>* files = nullptr);
+Result<physics::HandModel> ReadHandModel(const std::string& path,
+                                         const std::vector<std::string>& more_grasps = {},
+                                         std::vector<std::string>* files = nullptr);
 
 }  // namespace prehend::harness

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 #include "harness/read/scenario_library.h"
 #include "harness/scenario/scenario.h"
 
@@ -15,13 +15,12 @@ namespace prehend::harness {
 /// `overrides` are applied before anything is checked: "entities.milk.mass_kg=8". The scenario's
 /// name must equal the file's; its skill is the folder between `scenarios/` and the file. On
 /// failure the diagnostics are sorted by place.
-ReadResult<Scenario> ReadScenario(const std::string& path,
-                                  const std::vector<std::string>& overrides,
-                                  const ScenarioLibrary& library);
+Result<Scenario> ReadScenario(const std::string& path, const std::vector<std::string>& overrides,
+                              const ScenarioLibrary& library);
 
 /// The same for a text as if it were the content of `file`.
-ReadResult<Scenario> ReadScenarioText(const std::string& file, std::string text,
-                                      const std::vector<std::string>& overrides,
-                                      const ScenarioLibrary& library);
+Result<Scenario> ReadScenarioText(const std::string& file, std::string text,
+                                  const std::vector<std::string>& overrides,
+                                  const ScenarioLibrary& library);
 
 }  // namespace prehend::harness

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "grammar/monitor.h"
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 #include "harness/scenario/scenario.h"
 
 namespace prehend::harness {
@@ -28,15 +28,15 @@ struct LoadedRun {
 };
 
 /// `files` gets every path that was looked at, also when the result is no run.
-ReadResult<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
-                              std::vector<std::string>* files = nullptr);
+Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                          std::vector<std::string>* files = nullptr);
 
 /// Whether this name in a setting means a field of the scenario, and not a parameter of its
 /// grammar.
 bool IsFieldOfScenario(const std::string& name);
 
 /// "name=value" settings that can only mean parameters of a grammar.
-ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings);
+Result<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings);
 
 /// "skill/name": how goldens, reports and the command line call it.
 std::string ScenarioId(const std::string& skill, const std::string& name);

@@ -265,9 +265,9 @@ const YamlNode* YamlNode::Find(std::string_view name) const {
   return nullptr;
 }
 
-ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
-  if (auto bad = CheckText(file, text); !bad.empty()) return {std::nullopt, std::move(bad)};
-  if (auto bad = CheckTabs(file, text); !bad.empty()) return {std::nullopt, std::move(bad)};
+Result<YamlDocument> ParseYaml(const std::string& file, std::string text) {
+  if (auto bad = CheckText(file, text); !bad.empty()) return tl::unexpected(std::move(bad));
+  if (auto bad = CheckTabs(file, text); !bad.empty()) return tl::unexpected(std::move(bad));
   TreeBuilder builder(file, text);
   try {
     std::istringstream stream(text);
@@ -284,14 +284,14 @@ ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
     const auto [message, hint] = InPlainWords(error.msg, text, place);
     builder.Complain(place, message, hint);
   }
-  if (!builder.diagnostics.empty()) return {std::nullopt, std::move(builder.diagnostics)};
-  return {YamlDocument{{{file, std::move(text)}}, std::move(builder.root)}, {}};
+  if (!builder.diagnostics.empty()) return tl::unexpected(std::move(builder.diagnostics));
+  return YamlDocument{{{file, std::move(text)}}, std::move(builder.root)};
 }
 
-ReadResult<YamlDocument> ReadYamlFile(const std::string& path) {
+Result<YamlDocument> ReadYamlFile(const std::string& path) {
   auto text = ReadTextFile(path);
-  if (!text.value) return {std::nullopt, std::move(text.diagnostics)};
-  return ParseYaml(path, std::move(*text.value));
+  if (!text) return tl::unexpected(std::move(text.error()));
+  return ParseYaml(path, std::move(*text));
 }
 
 }  // namespace prehend::harness

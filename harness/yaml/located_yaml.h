@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "harness/base/located.h"
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
@@ -48,9 +48,9 @@ struct YamlDocument {
 };
 
 /// Parses `text` after CheckText(). On failure: diagnostics with places in `file`.
-ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text);
+Result<YamlDocument> ParseYaml(const std::string& file, std::string text);
 /// ReadTextFile() and ParseYaml().
-ReadResult<YamlDocument> ReadYamlFile(const std::string& path);
+Result<YamlDocument> ReadYamlFile(const std::string& path);
 
 /// Replaces (or adds) a value: `entities.milk.mass_kg=8`, `pictures.0.camera=left`. The value is
 /// YAML, too. The new node's place is in a source called `--set`. Returns an error if the path does

@@ -104,7 +104,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema,
     return report(0, "expected PATH=VALUE", "for example entities.milk.mass_kg=8");
   }
   auto parsed = ParseYaml("--set", assignment.substr(equals + 1));
-  if (!parsed.value) return std::move(parsed.diagnostics);
+  if (!parsed) return std::move(parsed.error());
 
   document.sources.push_back({"--set", assignment});
   const int source = static_cast<int>(document.sources.size()) - 1;
@@ -131,7 +131,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema,
     begin = end + 1;
   }
 
-  YamlNode value = std::move(parsed.value->root);
+  YamlNode value = std::move(parsed->root);
   value.key = node->key;
   Relocate(value, source, static_cast<int>(equals) + 1);
   value.key_where = {source, {1, 1}};

@@ -60,15 +60,15 @@ void ExpectAgreement(const Scenario& scenario,
 
 TEST_P(OracleAgreement, WithinTwoFrames) {
   const RunRequest request{.scenario_file = GetParam().path};
-  const ReadResult<LoadedRun> loaded = LoadRun(request, PREHEND_SOURCE_DIR);
-  ASSERT_TRUE(loaded.value) << grammar::Format(loaded.diagnostics);
-  const Scenario& scenario = loaded.value->scenario;
+  const Result<LoadedRun> loaded = LoadRun(request, PREHEND_SOURCE_DIR);
+  ASSERT_TRUE(loaded) << grammar::Format(loaded.error());
+  const Scenario& scenario = loaded->scenario;
   const bool check_is_as_strict =
       DefaultTolerance(scenario.scene.world.rate_hz, scenario.sensing.sensing_hz) <= kTolerance;
   if (check_is_as_strict)
-    ExpectAllToFollow(GetParam(), *loaded.value->program);
+    ExpectAllToFollow(GetParam(), *loaded->program);
   else
-    ExpectAgreement(scenario, loaded.value->program);
+    ExpectAgreement(scenario, loaded->program);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, OracleAgreement,

@@ -18,12 +18,12 @@ namespace {
 Scenario Read(const std::string& text, const std::vector<std::string>& overrides = {},
               const std::string& file = "probe.yaml") {
   auto read = ReadScenarioText(file, text, overrides, ProbeLibrary());
-  EXPECT_TRUE(read.value) << grammar::Format(read.diagnostics);
-  return read.value.value_or(Scenario{});
+  EXPECT_TRUE(read) << grammar::Format(ErrorsOf(read));
+  return read.value_or(Scenario{});
 }
 
 std::string ErrorsAbout(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return Brief(ReadScenarioText("probe.yaml", text, overrides, ProbeLibrary()).diagnostics);
+  return Brief(ErrorsOf(ReadScenarioText("probe.yaml", text, overrides, ProbeLibrary())));
 }
 
 TEST(ReadScenario, TheProbe) {
@@ -185,6 +185,12 @@ TEST(MakeEntityTable, BodiesFirstThenHands) {
   EXPECT_EQ(entity_table.entities[2].name, "right_hand");
   EXPECT_EQ(entity_table.entities[2].classes, (std::vector<std::string>{"Hand", "Entity"}));
   EXPECT_EQ(entity_table.styles, (std::vector<std::string>{"wrap", "pinch"}));
+}
+
+TEST(ReadScenario, ARecordingIsNamedAsOne) {
+  EXPECT_EQ(grammar::Format(ErrorsOf(ReadScenario("cup.jsonl", {}, ProbeLibrary()))),
+            "cup.jsonl: error: this is a recording, not a scenario\n"
+            "  hint: use `prehend resegment`, `prehend explain` or `prehend tracks`\n");
 }
 
 }  // namespace
