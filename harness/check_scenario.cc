@@ -54,6 +54,15 @@ void Fail(ScenarioVerdict& verdict, ExitCode code, const std::string& reason,
   verdict.reason = reason;
 }
 
+/// Says how far it came while it does.
+RunResult Play(const CheckRequest& request, const PreparedRun& prepared) {
+  ScenarioRun playing(prepared.scenario, prepared.program, {.record = true});
+  while (playing.Step()) {
+    if (request.last_tick) request.last_tick->store(playing.snapshot().tick);
+  }
+  return playing.Finish();
+}
+
 void Draw(const CheckRequest& request, const Scenario& scenario, const RunResult& run,
           ScenarioVerdict& verdict) {
   if (!request.pictures || !CanDrawPictures()) return;
@@ -302,10 +311,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   const Scenario& scenario = prepared.value->scenario;
   verdict.shows = scenario.shows;
 
-  RunOptions how{.record = true};
-  if (request.last_tick)
-    how.watch = [&](const grammar::Frame& frame) { request.last_tick->store(frame.tick); };
-  const RunResult run = RunScenario(scenario, prepared.value->program, how);
+  const RunResult run = Play(request, *prepared.value);
   Draw(request, scenario, run, verdict);
   verdict.state_hash = HashText(run.state_hash);
   verdict.ticks = run.ticks;

@@ -10,6 +10,7 @@
 #include "harness/commands/command.h"
 #include "harness/commands/warn.h"
 #include "harness/episode_file.h"
+#include "harness/outcome.h"
 #include "harness/run_output.h"
 #include "harness/run_trials.h"
 #include "harness/shell_word.h"
@@ -74,6 +75,22 @@ ExitCode CountTrials(const CLI::App& options, const RunRequest& request,
   return ExitCode::kAgrees;
 }
 
+/// Plays the scenario, writes what is sensed to `recorder` unless that is null, and judges the
+/// scenario's outcomes.
+RunResult Play(const PreparedRun& prepared, bool measure, EpisodeWriter* recorder) {
+  const Scenario& scenario = prepared.scenario;
+  OutcomeWatch outcomes(scenario.scene, scenario.outcomes);
+  ScenarioRun playing(scenario, prepared.program, {.measure = measure});
+  while (playing.Step()) {
+    outcomes.Look(playing.snapshot());
+    if (recorder && playing.sensed()) recorder->Write(playing.frame());
+  }
+  RunResult run = playing.Finish();
+  if (!scenario.outcomes.empty() && run.status.kind == physics::RunStatus::Kind::kCompleted)
+    run.outcome = outcomes.Judge(playing.snapshot());
+  return run;
+}
+
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const auto file = FindScenarioOrComplain(ValueOf(options, "scenario"), context);
   if (!file) return ExitCode::kNothing;
@@ -96,7 +113,6 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   Warn(context, prepared.value->warnings);
 
   const bool measure = IsGiven(options, "--measure");
-  RunOptions how{.judge = !prepared.value->scenario.outcomes.empty(), .measure = measure};
   std::optional<WholeFile> record;
   std::optional<EpisodeWriter> recorder;
   if (IsGiven(options, "--record")) {
@@ -106,9 +122,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     const Scenario& scenario = prepared.value->scenario;
     recorder.emplace(record->stream(),
                      EpisodeHeader{scenario.name, scenario.grammar, MakeCast(scenario)});
-    how.watch = [&](const grammar::Frame& frame) { recorder->Write(frame); };
   }
-  const RunResult run = RunScenario(prepared.value->scenario, prepared.value->program, how);
+  const RunResult run = Play(*prepared.value, measure, recorder ? &*recorder : nullptr);
   for (const std::string& note : NoteLines(prepared.value->scenario, run))
     context.err << note << "\n";
   std::string not_recorded;

@@ -11,6 +11,7 @@
 
 #include "harness/episode_file.h"
 #include "harness/library_paths.h"
+#include "harness/outcome.h"
 #include "harness/pictures.h"
 #include "harness/prepare_run.h"
 #include "harness/run_scenario.h"
@@ -34,11 +35,13 @@ class Watching : public testing::TestWithParam<int> {
     const Scenario& scenario = prepared.scenario;
     std::ostringstream episode;
     EpisodeWriter writer(episode, {scenario.name, scenario.grammar, MakeCast(scenario)});
-    RunOptions options{.record = true,
-                       .watch = [&](const grammar::Frame& frame) { writer.Write(frame); },
-                       .judge = !scenario.outcomes.empty(),
-                       .measure = true};
-    RunResult run = RunScenario(scenario, prepared.program, options);
+    OutcomeWatch outcomes(scenario.scene, scenario.outcomes);
+    ScenarioRun playing(scenario, prepared.program, {.record = true, .measure = true});
+    while (playing.Step()) {
+      outcomes.Look(playing.snapshot());
+      if (playing.sensed()) writer.Write(playing.frame());
+    }
+    RunResult run = playing.Finish();
     EXPECT_FALSE(run.recording.empty());
     EXPECT_FALSE(episode.str().empty());
     if (CanDrawPictures()) {
