@@ -22,7 +22,6 @@
 #include "harness/run_output.h"
 #include "harness/run_scenario.h"
 #include "harness/shell_word.h"
-#include "harness/timeline_svg.h"
 
 namespace prehend::harness {
 namespace {
@@ -166,15 +165,6 @@ void LeavePending(const CheckRequest& request, const Golden& pending) {
   (void)GoldenFiles(request.root).WritePending(pending);
 }
 
-std::vector<BoundaryRoom> Boundaries(const Comparison& comparison) {
-  std::vector<BoundaryRoom> boundaries;
-  for (const Headroom& room : comparison.headroom) {
-    boundaries.push_back({room.boundary, MillisecondsOf(room.offset, comparison.ticks_per_second),
-                          MillisecondsOf(room.tolerance, comparison.ticks_per_second)});
-  }
-  return boundaries;
-}
-
 /// Remembers how a run that agreed moved, for the blame of later ones.
 void LeaveTrace(const CheckRequest& request, const Scenario& scenario, const RunResult& run) {
   if (request.is_trial) return;
@@ -211,17 +201,15 @@ void JudgeWithoutGolden(const CheckRequest& request, const Golden& pending,
 /// What differs, with the facts around the first of it, and whose doing it is.
 void TellDifferences(const CheckRequest& request, const PreparedRun& prepared, const RunResult& run,
                      const Comparison& comparison, ScenarioVerdict& verdict) {
-  verdict.blame = Blame(request, prepared.scenario, run, verdict.inputs);
+  verdict.cause = Blame(request, prepared.scenario, run, verdict.inputs);
   const std::string facts =
       FactsAround(prepared.scenario, run.recording, *comparison.FirstDivergence());
-  verdict.differences = DifferencesJson(comparison, ExplainCommand(request.id, request.run));
-  verdict.relations = RelationsJson(comparison);
   const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
     return pairing.agreement != LineVerdict::kMatched;
   });
   Fail(verdict, ExitCode::kDiffers,
        fmt::format("{} of {} events differ from the golden", differing, comparison.pairings.size()),
-       DifferenceText(comparison, ExplainCommand(request.id, request.run), facts) + verdict.blame);
+       DifferenceText(comparison, ExplainCommand(request.id, request.run), facts) + verdict.cause);
 }
 
 void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared,
@@ -237,15 +225,14 @@ void JudgeAgainstGolden(const CheckRequest& request, const PreparedRun& prepared
   const Comparison comparison =
       Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
               run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
-  verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1);
+  verdict.comparison = comparison;
   const OracleComparison truth = CompareWithOracle(prepared.scenario, *prepared.program, run);
   const Golden pending =
       PendingGolden(golden.value, run.timeline, request.id, prepared.scenario.grammar, truth);
   if (!golden.value) return JudgeWithoutGolden(request, pending, GroundTruthText(truth), verdict);
   const int accepted = AcceptedDiffering(golden.value->derived);
   const bool truth_is_accepted = truth.Differing() == accepted;
-  verdict.headroom = HeadroomText(comparison);
-  verdict.boundaries = Boundaries(comparison);
+  verdict.has_golden = true;
   if (comparison.Agrees() && truth_is_accepted)
     return GoldenFiles(request.root).RemovePending(request.id);
   LeavePending(request, pending);
@@ -298,6 +285,7 @@ void JudgeOtherEngine(const CheckRequest& request, const PreparedRun& prepared,
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
   ScenarioVerdict verdict{.scenario = request.id, .shows = {}, .verdict = Verdict::kPassed};
   verdict.command = RepeatCommand(request.id, request.run);
+  verdict.explain = ExplainCommand(request.id, request.run);
   std::vector<std::string> files =
       request.has_golden ? FilesOfGolden(request) : std::vector<std::string>();
   const ReadResult<PreparedRun> prepared = PrepareRun(request.run, request.root, &files);

@@ -59,25 +59,27 @@ struct RelationChange {
   std::string expected, actual;  ///< names of Allen's relations
 };
 
-/// How near a boundary of a matched event comes to its tolerance.
-struct Headroom {
-  std::string boundary;  ///< "begin of reaching(right_hand, milk)"
-  grammar::Tick offset = 0;
+/// How far a boundary of a matched event is from the limit of its tolerance.
+struct Margin {
+  std::string label;  ///< "reaching(right_hand, milk)"
+  bool at_end = false;
+  grammar::Tick offset = 0;  ///< recognised - expected
   grammar::Tick tolerance = 0;
 
   grammar::Tick Left() const { return tolerance - std::abs(offset); }
+  std::string Boundary() const { return (at_end ? "end of " : "begin of ") + label; }
 };
 
 struct Comparison {
   grammar::Tick ticks_per_second = 480;
   std::vector<Pairing> pairings;  ///< in the order of time
   std::vector<RelationChange>
-      relations;  ///< between differing events and all others that share their roles
-  std::vector<Headroom> headroom;  ///< of every boundary of the matched events
+      relations;                ///< between differing events and all others that share their roles
+  std::vector<Margin> margins;  ///< of every boundary of the matched events
 
   bool Agrees() const;
   int Count(LineVerdict agreement) const;
-  const Headroom* Tightest() const;        ///< null without matched events
+  const Margin* Smallest() const;  ///< of those that are off; null when all boundaries are exact
   const Pairing* FirstDivergence() const;  ///< null when all agree
   std::vector<const Pairing*> Differing()
       const;  ///< first divergence first; pieces are told of by one
@@ -113,7 +115,8 @@ std::string QuestionAbout(const Pairing& pairing, grammar::Tick ticks_per_second
 nlohmann::ordered_json DifferencesJson(const Comparison& comparison, std::string_view command);
 nlohmann::ordered_json RelationsJson(const Comparison& comparison);
 
-/// One line: "headroom: 4.2 of 8.3 ms are left at begin of reaching(right_hand, milk)", or "".
-std::string HeadroomText(const Comparison& comparison);
+/// One line about the smallest margin, or "" without matched events:
+/// "margin: 4.2 of 8.3 ms left at begin of reaching(right_hand, milk)"
+std::string MarginText(const Comparison& comparison);
 
 }  // namespace prehend::harness

@@ -63,7 +63,7 @@ std::string TableRow(const ScenarioVerdict& verdict) {
       "class=\"soft\">{2}</span></td>"
       "<td>{3}</td><td class=\"number\">{4:.2f} s</td></tr>\n",
       Name(verdict.verdict), EscapeHtml(verdict.scenario), EscapeHtml(verdict.shows),
-      EscapeHtml(verdict.reason.empty() ? verdict.headroom : verdict.reason), verdict.seconds);
+      EscapeHtml(verdict.reason.empty() ? MarginText(verdict) : verdict.reason), verdict.seconds);
 }
 
 std::string Section(const ScenarioVerdict& verdict) {
@@ -75,9 +75,9 @@ std::string Section(const ScenarioVerdict& verdict) {
     html +=
         fmt::format("<p class=\"{}\">{}</p>\n", Name(verdict.verdict), EscapeHtml(verdict.reason));
   if (!verdict.details.empty()) html += fmt::format("<pre>{}</pre>\n", EscapeHtml(verdict.details));
-  html += verdict.timeline_svg;
-  if (!verdict.headroom.empty())
-    html += fmt::format("<div class=\"soft\">{}</div>\n", EscapeHtml(verdict.headroom));
+  if (verdict.comparison) html += TimelineSvg(*verdict.comparison, verdict.ticks + 1);
+  const std::string margin = MarginText(verdict);
+  if (!margin.empty()) html += fmt::format("<div class=\"soft\">{}</div>\n", EscapeHtml(margin));
   for (const ReportedPicture& picture : verdict.pictures) {
     html += fmt::format(
         "<figure><img loading=\"lazy\" src=\"{}\" "

@@ -109,14 +109,14 @@ class Suite {
         .has_golden = InProject(turn.scenario),
         .program = program_,
         .last_tick = &last_tick};
-    return [check] { return ToJson(CheckScenario(check)).dump(); };
+    return [check] { return Packed(CheckScenario(check)).dump(); };
   }
 
   ScenarioVerdict VerdictOf(std::size_t scenario, const WorkerResult& result,
                             std::int64_t last_tick) const {
     ScenarioVerdict verdict;
     if (result.finished) {
-      verdict = VerdictFromJson(nlohmann::ordered_json::parse(result.output));
+      verdict = UnpackedVerdict(nlohmann::json::parse(result.output));
     } else {
       verdict.scenario = Id(scenario);
       verdict.exit_code = ExitCode::kFailure;

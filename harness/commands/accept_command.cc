@@ -138,11 +138,11 @@ ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
   GoldenFiles(context.root).RemovePending(played.id);
   LeaveBaseline(context, played);
   const WorldEntry& world = played.prepared.scenario.world;
-  const std::string headroom = HeadroomText(
+  const std::string margin = MarginText(
       Compare(*played.old, played.run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz)));
   context.out << "nothing to accept: the scenario agrees with "
               << GoldenFiles(context.root).GoldenPath(played.id).string()
-              << (headroom.empty() ? "" : "; " + headroom) << "\n";
+              << (margin.empty() ? "" : "; " + margin) << "\n";
   return ExitCode::kAgrees;
 }
 

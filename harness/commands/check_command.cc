@@ -153,11 +153,20 @@ std::string Colored(Verdict verdict, bool colored) {
   return fmt::format("\033[{}m{}\033[0m", color, name);
 }
 
+std::string PendingText(int pending) {
+  return pending == 1
+             ? std::string("1 new scenario has no golden: review it, then accept it with a reason")
+             : fmt::format(
+                   "{} new scenarios have no golden: review each, then accept it with a "
+                   "reason",
+                   pending);
+}
+
 /// `as_files_say`: nothing was changed by the command line, so that what differs can be accepted.
 void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
                const std::string& page, const CommandContext& context) {
   for (const ScenarioVerdict& verdict : verdicts) {
-    const std::string& note = verdict.reason.empty() ? verdict.headroom : verdict.reason;
+    const std::string note = verdict.reason.empty() ? MarginText(verdict) : verdict.reason;
     context.out << fmt::format("{}  {}{}{}\n", Colored(verdict.verdict, context.colored),
                                verdict.scenario, note.empty() ? "" : "  ", note);
     if (verdict.exit_code == ExitCode::kAgrees) continue;
@@ -165,14 +174,12 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
     context.out << "    " << CommandLabel(verdict) << ": " << verdict.command << "\n";
   }
   const Tally tally = Count(verdicts);
-  const std::string least = LeastHeadroomText(verdicts);
-  if (!least.empty()) context.out << least << "\n";
+  const std::string smallest = SmallestMarginText(verdicts);
+  if (!smallest.empty()) context.out << smallest << "\n";
   context.out << "report: " << page << "\n";
-  const auto differs = [](const ScenarioVerdict& verdict) { return !verdict.differences.empty(); };
-  if (as_files_say && std::ranges::any_of(verdicts, differs))
-    context.out << "if what differs is right: prehend review says how to accept it\n";
-  if (tally.pending > 0)
-    context.out << fmt::format("{} pending: accept with a reason, or mend\n", tally.pending);
+  if (as_files_say && std::ranges::any_of(verdicts, &ScenarioVerdict::DiffersFromGolden))
+    context.out << "If the new behaviour is intended: prehend review\n";
+  if (tally.pending > 0) context.out << PendingText(tally.pending) << "\n";
   if (tally.unchanged > 0)
     context.out << fmt::format("{} unchanged since they passed, not run again\n", tally.unchanged);
   context.out << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);
@@ -183,9 +190,7 @@ nlohmann::ordered_json SummaryJson(const std::vector<ScenarioVerdict>& verdicts,
   const Tally tally = Count(verdicts);
   nlohmann::ordered_json scenarios = nlohmann::ordered_json::array();
   for (const ScenarioVerdict& verdict : verdicts) {
-    scenarios.push_back(ToJson(verdict));
-    scenarios.back().erase("timeline_svg");
-    scenarios.back().erase("picture_differences");  // they are among the details
+    scenarios.push_back(VerdictJson(verdict));
   }
   return {{"passed", tally.passed},       {"failed", tally.failed}, {"pending", tally.pending},
           {"unchanged", tally.unchanged}, {"report", page},         {"scenarios", scenarios}};

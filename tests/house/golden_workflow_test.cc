@@ -254,7 +254,7 @@ TEST_F(GoldenWorkflow, WhatMovedWithinTheToleranceIsNotWrittenUnseen) {
             golden.substr(golden.find(table)));
   const Said again = Do("accept carton_rests --reason again");
   EXPECT_TRUE(
-      SaysIn(again, "nothing to accept: .*; headroom: 6.2 of 8.3 ms are left at end of contact"))
+      SaysIn(again, "nothing to accept: .*; margin: 6.2 of 8.3 ms left at end of contact"))
       << again.out;
 }
 
