@@ -176,7 +176,7 @@ void LeaveTrace(const CheckRequest& request, const Scenario& scenario, const Run
 std::string Blame(const CheckRequest& request, const Scenario& scenario, const RunResult& run,
                   const FileHashes& inputs) {
   const CheckRecords records(request.root);
-  return BlameText(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
+  return CauseText(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
                    {.program = request.program,
                     .inputs = inputs,
                     .options = OptionsOf(request.run),

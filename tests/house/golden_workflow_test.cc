@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Differences as a person meets them: what differs, who is to blame, what waits for acceptance, and
-// what acceptance keeps.
+// Differences as a person meets them: what differs and why, what waits for acceptance, and what
+// acceptance keeps.
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <thread>
@@ -52,7 +52,7 @@ TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
       << orphans.out;
 }
 
-TEST_F(GoldenWorkflow, TheGrammarIsToBlameWhenNothingMovesOtherwise) {
+TEST_F(GoldenWorkflow, TheGrammarIsTheCauseWhenEverythingMovesAsBefore) {
   Accept();
   ASSERT_EQ(Do("check --no-pictures").exit_code, 0);
   const fs::path grammar = root_ / "grammar/library/pick_and_place.grammar";
@@ -62,12 +62,12 @@ TEST_F(GoldenWorkflow, TheGrammarIsToBlameWhenNothingMovesOtherwise) {
   EXPECT_EQ(said.exit_code, 1) << said.out << said.err;
   EXPECT_TRUE(
       SaysIn(said,
-             "blame: the grammar or the golden: everything moves as when this last agreed "
-             "with its golden; changed since then: grammar/library/pick_and_place.grammar\n"))
+             "cause: the grammar or the golden\\. Everything moves as in the last passing run\\. "
+             "Changed since: grammar/library/pick_and_place.grammar\n"))
       << said.out;
 }
 
-TEST_F(GoldenWorkflow, ThePhysicsIsToBlameFromTheTickItParts) {
+TEST_F(GoldenWorkflow, ThePhysicsIsTheCauseFromTheTickOfDivergence) {
   Accept();
   ASSERT_EQ(Do("check --no-pictures").exit_code, 0);
   WriteFile(Scenario(), Replaced(kCartonRests, "mass_kg: 0.3, on: table, at_m: [0.15, 0.15]",
@@ -75,14 +75,14 @@ TEST_F(GoldenWorkflow, ThePhysicsIsToBlameFromTheTickItParts) {
   const Said said = Do("check --no-pictures");
   EXPECT_EQ(said.exit_code, 1) << said.out << said.err;
   EXPECT_TRUE(SaysIn(said,
-                     "blame: physics: since 0\\.00\\d+ s \\(tick \\d\\) carton does not move as "
-                     "when this last agreed with its golden; changed since then: "
+                     "cause: physics\\. `carton` moves differently from the last passing run, "
+                     "first at 0\\.00\\d+ s \\(tick \\d\\)\\. Changed since: "
                      "scenarios/rest/carton_rests.yaml\n"))
       << said.out;
   EXPECT_TRUE(SaysIn(said, "\n      facts at [0-9.]+ s \\(tick \\d+\\):\n")) << said.out;
 }
 
-TEST_F(GoldenWorkflow, WhatWasAcceptedIsWhatTheNextBlameComparesWith) {
+TEST_F(GoldenWorkflow, TheCauseIsFoundAgainstWhatWasAccepted) {
   Accept();
   ASSERT_EQ(Do("check --no-pictures").exit_code, 0);
   WriteFile(Scenario(), Replaced(kCartonRests, "mass_kg: 0.3, on: table, at_m: [0.15, 0.15]",
@@ -90,12 +90,11 @@ TEST_F(GoldenWorkflow, WhatWasAcceptedIsWhatTheNextBlameComparesWith) {
   Accept();
   WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.1 0.2 hand=right_hand object=carton\n");
   EXPECT_TRUE(SaysIn(Do("check --no-pictures"),
-                     "blame: the grammar or the golden: everything moves as when this last agreed "
-                     "with its golden; "
-                     "changed since then: golden/rest/carton_rests.timeline\n"));
+                     "cause: the grammar or the golden\\. Everything moves as in the last passing "
+                     "run\\. Changed since: golden/rest/carton_rests.timeline\n"));
   EXPECT_TRUE(
       SaysIn(Do("check --no-pictures --grammar original_2020"),
-             "changed since then: golden/rest/carton_rests.timeline, --grammar original_2020\n"));
+             "Changed since: golden/rest/carton_rests.timeline, --grammar original_2020\n"));
 }
 
 TEST_F(GoldenWorkflow, WhatWasAcceptedIsStillChecked) {
@@ -104,12 +103,12 @@ TEST_F(GoldenWorkflow, WhatWasAcceptedIsStillChecked) {
   EXPECT_TRUE(SaysIn(Do("check --changed --no-pictures"), "1 unchanged"));
 }
 
-TEST_F(GoldenWorkflow, WithoutARunThatAgreedTheBlameIsUnknown) {
+TEST_F(GoldenWorkflow, WithoutARunThatPassedTheCauseIsUnknown) {
   Accept();
   fs::remove_all(root_ / "build/check");
   WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.1 0.2 hand=right_hand object=carton\n");
   EXPECT_TRUE(SaysIn(Do("check --no-pictures"),
-                     "blame: unknown, this scenario has not agreed with its golden"));
+                     "cause: unknown\\. This scenario has not passed here yet\\.\n"));
 }
 
 TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
@@ -253,8 +252,7 @@ TEST_F(GoldenWorkflow, WhatMovedWithinTheToleranceIsNotWrittenUnseen) {
   EXPECT_EQ(ReadFile(Golden()).substr(ReadFile(Golden()).find(table)),
             golden.substr(golden.find(table)));
   const Said again = Do("accept carton_rests --reason again");
-  EXPECT_TRUE(
-      SaysIn(again, "nothing to accept: .*; margin: 6.2 of 8.3 ms left at end of contact"))
+  EXPECT_TRUE(SaysIn(again, "nothing to accept: .*; margin: 6.2 of 8.3 ms left at end of contact"))
       << again.out;
 }
 
