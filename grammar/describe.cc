@@ -187,7 +187,8 @@ GrammarDescription Describe(const Program& program) {
     const Rule& rule = program.events[i];
     description.history_s = std::max(description.history_s, rule.back_s + rule.looks_around_s);
     if (rule.form == Form::kTouching || rule.hidden) continue;
-    description.rules.push_back({.head = Head(rule),
+    description.rules.push_back({.name = rule.name,
+                                 .head = Head(rule),
                                  .printed = rule.printed,
                                  .latency = waits.OfEnd(static_cast<int>(i)),
                                  .watched = Watched(program, rule),

@@ -19,6 +19,7 @@ struct Wait {
 };
 
 struct RuleDescription {
+  std::string name;  ///< "grasping"
   std::string head;  ///< "event grasping(hand: Hand, object: Thing)"
   bool printed = false;
   Wait latency;  ///< from an interval's end to its decision, besides a frame for each of the waits

@@ -140,4 +140,8 @@ std::string AcceptCommandLine(const std::string& scenario, const std::string& fi
                      fingerprint);
 }
 
+std::string AcceptPicturesCommand(const std::string& scenario) {
+  return fmt::format("prehend accept {} --pictures --reason \"...\"", ShellWord(scenario));
+}
+
 }  // namespace prehend::harness

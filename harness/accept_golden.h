@@ -41,4 +41,7 @@ std::string Fingerprint(const Golden& pending);
 /// The command that accepts the pending golden with this fingerprint and nothing else.
 std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint);
 
+/// The command that accepts the pictures of a scenario.
+std::string AcceptPicturesCommand(const std::string& scenario);
+
 }  // namespace prehend::harness

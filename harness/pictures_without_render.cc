@@ -18,7 +18,7 @@ PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureEntry&
   return NoRenderRoom();
 }
 
-std::string PictureDifference(const std::string&, const std::string&) { return ""; }
+PictureDifference ComparePicture(const std::string&, const std::string&) { return {}; }
 
 bool WritePictureDifference(const std::string&, const std::string&, const std::string&) {
   return false;

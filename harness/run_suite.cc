@@ -105,8 +105,8 @@ class Suite {
         .root = request_.root,
         .report_folder = request_.report_folder,
         .pictures = request_.pictures && turn.repetition == 0,
-        .is_trial = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
-        .has_golden = InProject(turn.scenario),
+        .leave_nothing_behind = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
+        .in_project = InProject(turn.scenario),
         .program = program_,
         .last_tick = &last_tick};
     return [check] { return Packed(CheckScenario(check)).dump(); };

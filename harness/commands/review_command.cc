@@ -161,8 +161,7 @@ std::string NextStep(const Review& review, bool engines_differ) {
   if (review.kind == "engines" || (engines_differ && !review.fingerprint.empty()))
     return kUntilEnginesAgree;
   if (review.kind == "picture")
-    return fmt::format("if right: prehend accept {} --pictures --reason \"...\"",
-                       ShellWord(review.id));
+    return "if right: " + AcceptPicturesCommand(review.id);
   if (review.kind != "new" && review.kind != "changed") return "";
   return "if right: " + AcceptCommandLine(review.id, review.fingerprint);
 }
