@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See check_records.h. What is damaged or of another version counts as not there. Tested by
+// See check_records.h. A record that is damaged or of another version is ignored. Tested by
 // tests/harness/check_records_test.cc
 #include "harness/check_records.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Discarded when there is no such file or it is no JSON.
+/// Discarded when the file does not exist or is not JSON.
 Json ReadJson(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) return Json(Json::value_t::discarded);

@@ -71,8 +71,8 @@ std::string_view Name(LineVerdict agreement) {
   return "";
 }
 
-// Why it is as it is, or why it is missing. Of what is in pieces the first one is asked about,
-// whose end is where it broke.
+// Asks why an event is as it is, or why it is missing; of a fragmented event about the first
+// fragment, which ends where the event broke.
 std::string QuestionAbout(const Pairing& pairing, Tick ticks_per_second) {
   const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
   const bool in_pieces = pairing.agreement == LineVerdict::kFragmented && !pairing.pieces.empty();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A planar scenario in the other engine: what is recognised does not depend on who computed the
-// physics. Tested by tests/harness/cross_engine_test.cc
+// A planar scenario in the other engine: what is recognised does not depend on the engine that
+// computed the physics. Tested by tests/harness/cross_engine_test.cc
 #pragma once
 
 #include <memory>
@@ -12,13 +12,13 @@
 
 namespace prehend::harness {
 
-/// Boundaries may differ by this much between engines: they place contacts and share out friction
+/// Boundaries may differ by this much between engines, which place contacts and distribute friction
 /// differently.
 inline constexpr double kEngineTolerance_s = 0.05;
 
-/// What to say of a scenario that differs between them.
+/// Said of a scenario that differs between them.
 inline constexpr const char* kUntilEnginesAgree =
-    "nothing is accepted of it until both engines agree: change the scenario, or mend what differs";
+    "it cannot be accepted until both engines agree: change the scenario, or fix what differs";
 
 /// As the scenario format calls it.
 const char* NameOf(physics::Engine engine);
@@ -34,11 +34,11 @@ std::optional<EngineComparison> CompareEngines(const Scenario& scenario,
                                                std::shared_ptr<const grammar::Program> program,
                                                const grammar::Timeline& timeline);
 
-/// Whether the other engine's run came to its end with the same events.
+/// Whether the other engine's run completed with the same events.
 bool Agrees(const EngineComparison& compared);
 
-/// In which events the other engine differs and how far, or why it did not come to its end; "" when
-/// they agree. `explain` is the command that asks about the scenario's events.
+/// In which events the other engine differs and how far, or why its run failed; "" when they agree.
+/// `explain` is the command that asks about the scenario's events.
 std::string EngineDifferenceText(const Scenario& scenario, const EngineComparison& compared,
                                  const std::string& explain);
 

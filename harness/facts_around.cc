@@ -19,7 +19,7 @@ namespace {
 using grammar::Interval;
 using grammar::Tick;
 
-/// Touches that begin, end or last this near are told.
+/// Touches within this time are listed.
 constexpr double kAround_s = 0.1;
 constexpr std::size_t kMostTouches = 8;
 
@@ -28,7 +28,7 @@ struct Touching {
   Interval interval;
 };
 
-/// Of what was expected and of what was recognised instead.
+/// Entities of the expected and of the recognised event.
 std::set<int> Participants(const Pairing& difference, const grammar::Cast& cast) {
   std::set<int> ids;
   for (const std::optional<grammar::NamedEvent>* side :
@@ -43,7 +43,7 @@ std::set<int> Participants(const Pairing& difference, const grammar::Cast& cast)
   return ids;
 }
 
-/// Every unbroken touch of a participant that meets the window, by its begin.
+/// Every touch without a gap of a participant that overlaps the window, in the order of begins.
 std::vector<Touching> TouchesIn(Interval window, const std::set<int>& participants,
                                 std::span<const physics::Snapshot> recording, Sensing& sensing) {
   std::map<std::pair<int, int>, Touching> open;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What could be observed where a difference begins: where the participants of both its sides are,
-// how fast they move, and who touches them. Shown beside the first difference. Tested by
-// tests/harness/facts_around_test.cc
+// What was sensed where a difference begins: position, speed and contacts of the participants of
+// both sides. Shown with the first difference. Tested by tests/harness/facts_around_test.cc
 #pragma once
 
 #include <span>
@@ -13,7 +12,8 @@
 
 namespace prehend::harness {
 
-/// Lines indented by two blanks; "" without a recording. Touches are raw: nothing is bridged.
+/// Lines indented by two blanks; "" without a recording. Contacts are as sensed: no gap is
+/// tolerated.
 std::string FactsAround(const Scenario& scenario, std::span<const physics::Snapshot> recording,
                         const Pairing& difference);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is kept in golden/ and belongs to nothing: timelines and pictures of scenarios that are
-// gone, and pictures that their scenario no longer asks for. Tested by
+// Files in golden/ that no scenario refers to: timelines and pictures of scenarios that do not
+// exist, and pictures that their scenario does not ask for. Tested by
 // tests/harness/golden_files_test.cc
 #pragma once
 
@@ -13,7 +13,7 @@
 namespace prehend::harness {
 
 struct Orphan {
-  std::string scenario;  ///< skill/name of the one that is not there
+  std::string scenario;  ///< skill/name of the one that does not exist
   std::vector<std::filesystem::path> files;
 };
 

@@ -70,7 +70,7 @@ class Suite {
     return verdict;
   }
 
-  /// Who runs, in which order. Who is not known to be fast goes first.
+  /// The runs in their order: slowest first. A scenario that was never timed counts as slow.
   std::vector<Turn> Turns() {
     std::vector<Turn> turns;
     for (std::size_t i = 0; i < scenarios_.size(); ++i) {
@@ -124,7 +124,8 @@ class Suite {
           fmt::format("its process ended: {}, {}", result.reason,
                       last_tick == SharedTicks::kNone ? std::string("before the first tick")
                                                       : fmt::format("last tick {}", last_tick));
-      if (!result.said.empty()) verdict.details = "it said:\n" + result.said;
+      if (!result.stderr_tail.empty())
+        verdict.details = "its standard error ends with:\n" + result.stderr_tail;
       verdict.ticks = std::max<std::int64_t>(0, last_tick);
       verdict.command = RepeatCommand(verdict.scenario, request_.changes) + HowText();
     }
@@ -147,8 +148,8 @@ class Suite {
       const ScenarioVerdict& merged = verdicts.back();
       if (merged.verdict == Verdict::kUnchanged || Changed() || !InProject(i)) continue;
       costs_[merged.scenario] = merged.seconds;
-      // Who can't write below build/ only loses time; the report, which is written there, too,
-      // complains.
+      // Without its record the next check takes longer; if build/ cannot be written, the report,
+      // which is in it, too, is an error.
       if (merged.verdict == Verdict::kPassed) {
         (void)records_.Write(
             {.program = program_, .pictures = request_.pictures, .verdict = merged});

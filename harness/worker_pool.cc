@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One fork and one pipe per job; the parent polls the pipes and kills who is late. The end of a job
-// is the end of its pipe. Tested by tests/harness/worker_pool_test.cc
+// One fork and one pipe per job; the parent polls the pipes and kills jobs that are late. The end
+// of a job is the end of its pipe. Tested by tests/harness/worker_pool_test.cc
 #include "harness/worker_pool.h"
 
 #include <fmt/format.h>
@@ -34,8 +34,8 @@ constexpr int kJobThrew = 70;
 constexpr int kJobOutOfMemory = kMemoryWasRefused;
 constexpr int kNoMemoryToStart = 72;
 
-/// As much of what a worker that failed wrote to standard error is told.
-constexpr off_t kMostSaid_bytes = 4000;
+/// At most so much of the standard error of a worker that failed is reported.
+constexpr off_t kMaxStderrTail_bytes = 4000;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -68,24 +68,24 @@ bool IsLackOfMemory(const std::system_error& problem) {
          problem.code() == std::errc::resource_unavailable_try_again;
 }
 
-/// "crashed (segmentation fault, signal 11)". SIGKILL is the system's, too, when the machine has no
-/// memory left.
+/// "crashed (segmentation fault, signal 11)". The system, too, sends SIGKILL when the machine runs
+/// out of memory.
 std::string SignalText(int signal) {
   switch (signal) {
     case SIGSEGV:
       return "crashed (segmentation fault, signal 11)";
     case SIGABRT:
-      return "gave up (abort, signal 6)";
+      return "aborted (signal 6)";
     case SIGFPE:
-      return "crashed (arithmetic that has no result, signal 8)";
+      return "crashed (arithmetic error, signal 8)";
     case SIGBUS:
       return "crashed (bus error, signal 7)";
     case SIGILL:
-      return "crashed (an instruction that this machine lacks, signal 4)";
+      return "crashed (illegal instruction, signal 4)";
     case SIGKILL:
-      return "was killed (signal 9: by somebody, or by the system for want of memory)";
+      return "was killed (signal 9), possibly because the system ran out of memory";
     case SIGTERM:
-      return "was asked to end (signal 15)";
+      return "was terminated (signal 15)";
     case SIGXCPU:
       return "used up its processor time (signal 24)";
     default:
@@ -93,10 +93,10 @@ std::string SignalText(int signal) {
   }
 }
 
-/// The child's life. Leaves by _exit: the parent's buffers and destructors are not the child's to
-/// run.
+/// Runs the job in the child. Ends with _exit: the parent's buffers and destructors must not be run
+/// in the child.
 [[noreturn]] void Work(const WorkerJob& job, const WorkerLimits& limits, int pipe) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would read what an orphan finds out
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // without its parent, the result has no reader
   ExitWhenMemoryIsRefused();
   if (limits.memory_limit_bytes > 0) {
     if (PrivateMemory_bytes() > limits.memory_limit_bytes) _exit(kNoMemoryToStart);
@@ -124,7 +124,7 @@ struct Worker {
   std::size_t job = 0;
   pid_t process = 0;
   int pipe = -1;
-  int said = -1;  ///< a file without name, its standard error
+  int stderr_file = -1;  ///< a file without a name
   Clock::time_point start;
   bool killed = false;
   std::string output;
@@ -154,24 +154,24 @@ class Pool {
     if (pipe(ends) != 0)
       return Report(job, {.reason = "no pipe for the worker: " + std::string(std::strerror(errno))},
                     done);
-    const int said = memfd_create("said by a worker", MFD_CLOEXEC);
+    const int stderr_file = memfd_create("stderr of a worker", MFD_CLOEXEC);
     const pid_t process = fork();
     if (process == 0) {
       close(ends[0]);
-      dup2(said, STDERR_FILENO);
+      dup2(stderr_file, STDERR_FILENO);
       Work(jobs_[job], limits_, ends[1]);
     }
     close(ends[1]);
     if (process < 0) {
       close(ends[0]);
-      close(said);
+      close(stderr_file);
       return Report(
           job, {.reason = "no process for the worker: " + std::string(std::strerror(errno))}, done);
     }
     workers_.push_back({.job = job,
                         .process = process,
                         .pipe = ends[0],
-                        .said = said,
+                        .stderr_file = stderr_file,
                         .start = Clock::now(),
                         .killed = false,
                         .output = {}});
@@ -217,27 +217,28 @@ class Pool {
     WorkerResult result{.finished = WIFEXITED(status) && WEXITSTATUS(status) == 0};
     result.seconds = SecondsSince(worker.start);
     result.peak_memory_kib = usage.ru_maxrss;
-    const std::string said = WhatItSaid(worker);
+    const std::string stderr_tail = StderrTail(worker);
     if (result.finished) {
       result.output = std::move(worker.output);
-      std::cerr << said;
+      std::cerr << stderr_tail;
     } else {
       result.reason = EndReason(worker, status);
-      // When memory ran out, all that libraries say are consequences.
-      if (!WIFEXITED(status) || WEXITSTATUS(status) != kJobOutOfMemory) result.said = said;
+      // When memory ran out, messages of libraries are only consequences.
+      if (!WIFEXITED(status) || WEXITSTATUS(status) != kJobOutOfMemory)
+        result.stderr_tail = stderr_tail;
     }
     Report(worker.job, std::move(result), done);
   }
 
-  /// The end of it, which is what a crash is about.
-  static std::string WhatItSaid(const Worker& worker) {
-    const off_t size = std::max<off_t>(0, lseek(worker.said, 0, SEEK_END));
-    std::string said(static_cast<std::size_t>(std::min(size, kMostSaid_bytes)), '\0');
+  /// The end, because a crash is reported last.
+  static std::string StderrTail(const Worker& worker) {
+    const off_t size = std::max<off_t>(0, lseek(worker.stderr_file, 0, SEEK_END));
+    std::string tail(static_cast<std::size_t>(std::min(size, kMaxStderrTail_bytes)), '\0');
     const ssize_t count =
-        pread(worker.said, said.data(), said.size(), size - static_cast<off_t>(said.size()));
-    said.resize(static_cast<std::size_t>(std::max<ssize_t>(0, count)));
-    close(worker.said);
-    return said;
+        pread(worker.stderr_file, tail.data(), tail.size(), size - static_cast<off_t>(tail.size()));
+    tail.resize(static_cast<std::size_t>(std::max<ssize_t>(0, count)));
+    close(worker.stderr_file);
+    return tail;
   }
 
   std::string EndReason(const Worker& worker, int status) const {

@@ -20,12 +20,12 @@ struct WorkerLimits {
 };
 
 struct WorkerResult {
-  bool finished = false;  ///< false: crashed, killed, out of time or memory
-  std::string output;     ///< what the job returned; empty unless finished
-  std::string reason;     ///< "crashed (segmentation fault, signal 11)", "no end after 60 s", "it
-                          ///< needs more memory than 1000 MB"; empty when finished
-  std::string
-      said;  ///< the end of what a job that failed wrote to standard error; not when memory ran out
+  bool finished = false;    ///< false: crashed, killed, out of time or memory
+  std::string output;       ///< what the job returned; empty unless finished
+  std::string reason;       ///< "crashed (segmentation fault, signal 11)", "no end after 60 s", "it
+                            ///< needs more memory than 1000 MB"; empty when finished
+  std::string stderr_tail;  ///< the end of what a job that failed wrote to standard error; empty
+                            ///< if memory ran out
   double seconds = 0;
   std::int64_t peak_memory_kib = 0;
 };
@@ -33,8 +33,8 @@ struct WorkerResult {
 /// Runs in the child; what it returns travels to the parent.
 using WorkerJob = std::function<std::string()>;
 
-/// Results in the order of the jobs, which also start in this order. `done` is told each one as it
-/// comes, in the parent.
+/// Results in the order of the jobs, which also start in this order. `done` is called in the parent
+/// with each result as it comes.
 std::vector<WorkerResult> RunInWorkers(
     const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
     const std::function<void(std::size_t job, const WorkerResult&)>& done = {});

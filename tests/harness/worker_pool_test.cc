@@ -81,8 +81,8 @@ TEST(WorkerPool, WhatAJobSaysBeforeItCrashesIsKept) {
     return Good();
   };
   const auto results = RunInWorkers({talks}, {});
-  EXPECT_EQ(results[0].reason, "gave up (abort, signal 6)");
-  EXPECT_EQ(results[0].said, "the sky is falling\n");
+  EXPECT_EQ(results[0].reason, "aborted (signal 6)");
+  EXPECT_EQ(results[0].stderr_tail, "the sky is falling\n");
 }
 
 std::string NameOf(const testing::TestParamInfo<Misbehaviour>& row) { return row.param.name; }
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
     Table, WorkerPoolMisbehaviour,
     testing::Values(
         Misbehaviour{"killed", [] { return raise(SIGKILL), Good(); },
-                     "was killed (signal 9: by somebody, or by the system for want of memory)"},
+                     "was killed (signal 9), possibly because the system ran out of memory"},
         Misbehaviour{"recurses", [] { return raise(SIGSEGV), Good(); },
                      "crashed (segmentation fault, signal 11)"},
         Misbehaviour{"has_another_signal", [] { return raise(SIGUSR1), Good(); },
@@ -115,7 +115,7 @@ std::string EndOf(const WorkerJob& job, std::uint64_t limit_mb) {
   const WorkerLimits limits{
       .jobs = 1, .time_limit_s = 10, .memory_limit_bytes = limit_mb * kMegabyte};
   const WorkerResult result = RunInWorkers({job}, limits).front();
-  EXPECT_EQ(result.said, "");
+  EXPECT_EQ(result.stderr_tail, "");
   return result.finished ? "finished" : result.reason;
 }
 

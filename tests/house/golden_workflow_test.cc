@@ -226,7 +226,7 @@ TEST_F(GoldenWorkflow, WhatAGoldenNamesMustExist) {
   says("b=table", "", file + ":7:1: error: 'contact' has a role 'b', which is missing here\n");
   says("# grammar: pick_and_place", "# grammar: contact",
        file +
-           ":2:12: error: this golden is of the grammar 'contact', but the scenario is watched by "
+           ":2:12: error: this golden is of the grammar 'contact', but the scenario uses "
            "'pick_and_place'\n");
   says(
       "# scenario: rest/carton_rests", "# scenario: rest/carton",
