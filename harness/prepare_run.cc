@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See prepare_run.h. Tested by tests/house/command_line_test.cc
+// See prepare_run.h. Tested by tests/harness/prepare_run_test.cc
 #include "harness/prepare_run.h"
 
 #include <algorithm>

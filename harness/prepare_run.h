@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything a run needs, from files: the scenario and its compiled grammar, with what the command
-// line changes. Tested by tests/house/command_line_test.cc
+// line changes. Tested by tests/harness/prepare_run_test.cc
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See select_scenarios.h. Tested by tests/house/command_line_test.cc
+// See select_scenarios.h. Tested by tests/harness/select_scenarios_test.cc
 #include "harness/select_scenarios.h"
 
 #include <fnmatch.h>

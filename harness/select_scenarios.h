@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which scenarios a check plays. Tested by tests/house/command_line_test.cc
+// Which scenarios a check plays. Tested by tests/harness/select_scenarios_test.cc
 #pragma once
 
 #include <optional>
