@@ -109,14 +109,18 @@ class Suite {
         .in_project = InProject(turn.scenario),
         .program = program_,
         .last_tick = &last_tick};
-    return [check] { return Packed(CheckScenario(check)).dump(); };
+    // CBOR, since JSON has no infinite numbers and refuses bytes that are no UTF-8.
+    return [check] {
+      const std::vector<std::uint8_t> bytes = nlohmann::json::to_cbor(Packed(CheckScenario(check)));
+      return std::string(bytes.begin(), bytes.end());
+    };
   }
 
   ScenarioVerdict VerdictOf(std::size_t scenario, const WorkerResult& result,
                             std::int64_t last_tick) const {
     ScenarioVerdict verdict;
     if (result.finished) {
-      verdict = UnpackedVerdict(nlohmann::json::parse(result.output));
+      verdict = UnpackedVerdict(nlohmann::json::from_cbor(result.output));
     } else {
       verdict.scenario = Id(scenario);
       verdict.exit_code = ExitCode::kFailure;

@@ -17,6 +17,9 @@ namespace fs = std::filesystem;
 class SelectScenariosTest : public testing::Test {
  protected:
   SelectScenariosTest() {
+    fs::create_directories(root_);
+    for (const char* library : {"grammar", "physics"})
+      fs::create_directory_symlink(fs::path(PREHEND_SOURCE_DIR) / library, root_ / library);
     Write("slide/cup_slides", "smoke");
     Write("slide/mug_slides", "quick");
     Write("reach/cup_is_reached", "smoke");
