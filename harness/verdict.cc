@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -113,24 +114,21 @@ Tally Count(const std::vector<ScenarioVerdict>& verdicts) {
 }
 
 std::string SmallestMarginText(const std::vector<ScenarioVerdict>& verdicts) {
-  struct Margin {
-    double left_ms = 0, tolerance_ms = 0;
-    std::string where;
-  };
-  std::optional<Margin> smallest;
+  double smallest_ms = std::numeric_limits<double>::infinity();
+  std::string text;
   for (const ScenarioVerdict& verdict : verdicts) {
     if (!verdict.has_golden || !verdict.comparison) continue;
     const grammar::Tick ticks_per_second = verdict.comparison->ticks_per_second;
     for (const Margin& margin : verdict.comparison->margins) {
       const double left_ms = MillisecondsOf(margin.Left(), ticks_per_second);
-      if (margin.offset == 0 || (smallest && smallest->left_ms <= left_ms)) continue;
-      smallest = {left_ms, MillisecondsOf(margin.tolerance, ticks_per_second),
-                  margin.Boundary() + " of " + verdict.scenario};
+      if (margin.offset == 0 || left_ms >= smallest_ms) continue;
+      smallest_ms = left_ms;
+      text = fmt::format("smallest margin: {:.1f} of {:.1f} ms left at {} of {}", left_ms,
+                         MillisecondsOf(margin.tolerance, ticks_per_second), margin.Boundary(),
+                         verdict.scenario);
     }
   }
-  if (!smallest) return "";
-  return fmt::format("smallest margin: {:.1f} of {:.1f} ms left at {}", smallest->left_ms,
-                     smallest->tolerance_ms, smallest->where);
+  return text;
 }
 
 ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts) {

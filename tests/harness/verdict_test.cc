@@ -63,15 +63,15 @@ TEST(Verdict, IsPrintedWithTheDocumentedKeys) {
                                             "seconds", "peak_memory_kib", "inputs", "pictures"}));
   EXPECT_EQ(json["verdict"], "passed");
   EXPECT_EQ(json["headroom"], "margin: 6.0 of 10.0 ms left at end of sliding(hand, cup)");
-  EXPECT_EQ(json["boundaries"][1].dump(),
-            R"({"boundary":"end of sliding(hand, cup)","offset_ms":4.0,"tolerance_ms":10.0
-})");
+  const nlohmann::ordered_json end_of_slide = {
+      {"boundary", "end of sliding(hand, cup)"}, {"offset_ms", 4.0}, {"tolerance_ms", 10.0}};
+  EXPECT_EQ(json["boundaries"][1], end_of_slide);
   verdict.comparison = ComparedWith(20);
-verdict.verdict = Verdict::kFailed;
-EXPECT_EQ(VerdictJson(verdict)["differences"].size(), 1u);
-EXPECT_EQ(VerdictJson(verdict)["headroom"], "") << "what failed has no margin";
-verdict.has_golden = false;
-EXPECT_EQ(VerdictJson(verdict)["differences"].size(), 0u) << "nothing to compare with";
+  verdict.verdict = Verdict::kFailed;
+  EXPECT_EQ(VerdictJson(verdict)["differences"].size(), 1u);
+  EXPECT_EQ(VerdictJson(verdict)["headroom"], "") << "what failed has no margin";
+  verdict.has_golden = false;
+  EXPECT_EQ(VerdictJson(verdict)["differences"].size(), 0u) << "nothing to compare with";
 }
 
 struct Case {
