@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "grammar/program.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar {
 
@@ -34,7 +34,7 @@ struct GrammarDescription {
   std::vector<ProgramParam> params;
   double history_s = 0;              ///< how long poses are kept
   std::size_t bytes_per_pose = 0;    ///< kept per frame and entity that is awake
-  std::size_t bytes_per_feeler = 0;  ///< kept per frame and feeler of a hand
+  std::size_t bytes_per_feeler = 0;  ///< kept per frame and collision sphere of a hand
 };
 
 GrammarDescription Describe(const Program& program);

@@ -2,13 +2,13 @@
 // Tested by tests/physics/simulation_test.cc
 #include "physics/simulation.h"
 
-#include "physics/box2d_world.h"
-#include "physics/bullet_world.h"
-#include "physics/person_player.h"
-#include "physics/run_checks.h"
-#include "physics/script_player.h"
-#include "physics/state_hash.h"
-#include "physics/tracking.h"
+#include "physics/box2d/world.h"
+#include "physics/bullet/world.h"
+#include "physics/hand/script_player.h"
+#include "physics/motion/tracker.h"
+#include "physics/person/person_player.h"
+#include "physics/scene/run_limits.h"
+#include "physics/scene/state_hash.h"
 
 namespace prehend::physics {
 namespace {

@@ -7,10 +7,10 @@
 #include <memory>
 #include <string>
 
-#include "physics/scene.h"
-#include "physics/script.h"
-#include "physics/script_player.h"
-#include "physics/snapshot.h"
+#include "physics/hand/script_player.h"
+#include "physics/motion/script.h"
+#include "physics/scene/scene.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::physics {
 

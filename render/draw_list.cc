@@ -24,7 +24,7 @@ struct Overloaded : Ts... {
 };
 
 Affine3f ToAffine(const physics::Pose& pose) {
-  return Eigen::Translation3f(pose.p_m.cast<float>()) * pose.q.cast<float>();
+  return Eigen::Translation3f(pose.p_m.entity_table<float>()) * pose.q.entity_table<float>();
 }
 
 // A box whose outer half sizes are given; edges are rounded inwards.
@@ -36,7 +36,7 @@ void SetRoundedBox(const Vector3f& outer_half_m, float rounding_m, Item* item) {
 
 void SetShape(const physics::Shape& shape, Item* item, DrawList* list) {
   std::visit(Overloaded{[&](const physics::Box& box) {
-                          const Vector3f half = box.size_m.cast<float>() / 2;
+                          const Vector3f half = box.size_m.entity_table<float>() / 2;
                           SetRoundedBox(half, std::min(0.008f, 0.16f * half.minCoeff()), item);
                         },
                         [&](const physics::Sphere& sphere) {
@@ -122,7 +122,7 @@ void AddGrains(const physics::Grains& grains, const physics::Snapshot& snapshot,
 void AddHand(const physics::HandModel& model, const physics::HandState& state, const Look& look,
              std::vector<Item>* items, DrawList* list) {
   Item palm = MakeItem(ToAffine(state.palm.X_WB), look);
-  SetRoundedBox(model.palm_size_m.cast<float>() / 2, 0.012f, &palm);
+  SetRoundedBox(model.palm_size_m.entity_table<float>() / 2, 0.012f, &palm);
   AddItem(palm, items, list);
   for (std::size_t i = 0; i < std::min(model.links.size(), state.X_WL.size()); ++i) {
     const physics::HandLink& link = model.links[i];
@@ -221,15 +221,15 @@ void AddGhost(const Picture& picture, std::size_t number, DrawList* list) {
 
 void AddMarker(const Picture& picture, std::size_t number, DrawList* list) {
   const Marker& marker = picture.markers[number];
-  struct MarkerLook {
+  struct MarkerSample {
     const char* name;
     Color color;
     float alpha;
   };
-  static const MarkerLook kLooks[] = {{"contact", {1.0f, 0.83f, 0.0f}, 0.9f},
-                                      {"support", {0.18f, 0.80f, 0.25f}, 0.75f},
-                                      {"region", {0.42f, 0.66f, 1.0f}, 0.30f}};
-  const MarkerLook& look = kLooks[static_cast<int>(marker.kind)];
+  static const MarkerSample kLooks[] = {{"contact", {1.0f, 0.83f, 0.0f}, 0.9f},
+                                        {"support", {0.18f, 0.80f, 0.25f}, 0.75f},
+                                        {"region", {0.42f, 0.66f, 1.0f}, 0.30f}};
+  const MarkerSample& look = kLooks[static_cast<int>(marker.kind)];
   const std::string name = "marker:" + std::to_string(number) + ":" + look.name;
   if (!(marker.half_size_m.minCoeff() > 0)) return;
   const Affine3f X_WI = Eigen::Translation3f(marker.p_W_m) * Eigen::Scaling(marker.half_size_m);

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "physics/scene.h"
+#include "physics/scene/scene.h"
 
 namespace prehend::render {
 

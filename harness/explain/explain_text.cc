@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explanations for people: a tree of clauses, aligned; one line per event for all of them.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "harness/event_text.h"
 #include "harness/explain/explain.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 namespace {

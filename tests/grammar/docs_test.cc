@@ -38,7 +38,7 @@ TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
     const CompileResult compiled = Compile({"docs", blocks[i]}, LibraryIncluder());
     ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
     EXPECT_EQ(Format(compiled.warnings), "");
-    ASSERT_TRUE(i + 1 < blocks.size() && blocks[i + 1].starts_with("cast "))
+    ASSERT_TRUE(i + 1 < blocks.size() && blocks[i + 1].starts_with("entities "))
         << "nothing is drawn below\n"
         << blocks[i];
     const CorpusCase drawn = ReadCorpusText("docs", "== example\n" + blocks[i + 1]).front();

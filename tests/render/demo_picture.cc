@@ -31,7 +31,7 @@ physics::Body MakeBody(const std::string& name, const physics::Shape& shape, con
 Pose GraspPose(const Vector3f& p_m) {
   const Eigen::Quaterniond q =
       Eigen::AngleAxisd(2.4, Vector3d::UnitZ()) * Eigen::AngleAxisd(-1.45, Vector3d::UnitX());
-  return {p_m.cast<double>(), q};
+  return {p_m.entity_table<double>(), q};
 }
 
 std::vector<Vector3f> Curve(const Vector3f& a, const Vector3f& b, const Vector3f& c,
@@ -93,7 +93,8 @@ physics::Snapshot At(const physics::Scene& scene, const Vector3f& hand_m, double
   physics::Snapshot snapshot;
   for (const physics::Body& body : scene.bodies) snapshot.bodies.push_back({.X_WB = body.X_WB});
   snapshot.hands.push_back(DemoHandState(scene.hands[0].model, GraspPose(hand_m), curl_rad));
-  if (held) snapshot.bodies[1].X_WB.p_m = hand_m.cast<double>() + Vector3d(-0.055, 0.04, -0.02);
+  if (held)
+    snapshot.bodies[1].X_WB.p_m = hand_m.entity_table<double>() + Vector3d(-0.055, 0.04, -0.02);
   return snapshot;
 }
 

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/language/ast.h"
+
+namespace prehend::grammar::ast {
+namespace {
+
+std::string Joined(const std::vector<Expr>& args, const std::string& separator) {
+  std::string text;
+  for (const Expr& arg : args) text += (text.empty() ? "" : separator) + Dump(arg);
+  return text;
+}
+
+std::string DumpUntil(const Definition& d) {
+  std::string text = "until " + Dump(d.first) + " since " + Dump(d.second);
+  if (d.approach) {
+    text +=
+        " approaching " + Dump(d.approach->signal) + " receding at most " + Dump(d.approach->slack);
+    if (d.approach->speed) {
+      const std::string motion =
+          d.approach->motion ? "with " + Dump(*d.approach->motion) + " " : "";
+      text += ", " + motion + "slower than " + Dump(*d.approach->speed) + " at most " +
+              Dump(*d.approach->idle);
+    }
+  }
+  return text + " at most " + Dump(d.at_most_back) + " back";
+}
+
+std::string DumpCompose(const Definition& d) {
+  std::string text = "compose ";
+  for (const Part& part : d.parts)
+    text += (&part == &d.parts.front() ? "" : ", ") + part.label + ": " + Dump(part.call);
+  text += " where ";
+  for (const Relation& relation : d.relations) {
+    text += (&relation == &d.relations.front() ? "" : ", ") + relation.left + " ";
+    for (const std::string& name : relation.relations)
+      text += (&name == &relation.relations.front() ? "" : "|") + name;
+    text += " " + relation.right;
+  }
+  return text;
+}
+
+std::string DumpForm(const Definition& d) {
+  switch (d.form) {
+    case Definition::Form::kWhile:
+      return "while " + Dump(d.first) + (d.until ? " until " + Dump(*d.until) : "");
+    case Definition::Form::kFromTo: {
+      std::string text =
+          "from " + Dump(d.first) + (d.absence ? " without " : " to ") + Dump(d.second);
+      if (d.within) text += " within " + Dump(*d.within);
+      if (d.during) text += " during " + Dump(*d.during) + (d.or_drop ? " or drop" : "");
+      return text;
+    }
+    case Definition::Form::kUntilSince:
+      return DumpUntil(d);
+    case Definition::Form::kRestOf:
+      return "rest of " + Dump(d.first) + " outside " + Joined(d.outside, ", ");
+    case Definition::Form::kCompose:
+      return DumpCompose(d);
+  }
+  return {};
+}
+
+std::string DumpDefinition(const Definition& d) {
+  std::string text = d.symmetric ? "symmetric event " : d.is_event ? "event " : "condition ";
+  text += d.name + "(";
+  for (const Role& role : d.roles)
+    text += (&role == &d.roles.front() ? "" : ", ") + role.name + ": " + role.class_name;
+  text += ") " + DumpForm(d);
+  if (d.bridging) text += " bridging " + Dump(*d.bridging);
+  if (d.lasting) text += " lasting " + Dump(*d.lasting);
+  if (d.requirement) text += " requires " + Dump(*d.requirement);
+  if (d.confirmed)
+    text += " confirmed by " + Dump(d.confirmed->by) + " within " + Dump(d.confirmed->within);
+  if (d.style) text += " with style = style(" + Dump(*d.style) + ")";
+  for (const Attribute& attribute : d.attributes)
+    text += " with " + attribute.name + " = " + Dump(attribute.value);
+  return text + "\n";
+}
+
+std::string DumpDefine(const Define& define) {
+  std::string text = "define " + define.name + "(";
+  for (const Role& parameter : define.parameters) {
+    text += (&parameter == &define.parameters.front() ? "" : ", ") + parameter.name + ": " +
+            parameter.class_name;
+  }
+  return text + ") = " + Dump(define.body) + "\n";
+}
+
+}  // namespace
+
+std::string Dump(const Expr& expr) {
+  switch (expr.kind) {
+    case Expr::Kind::kQuantity:
+      return QuantityText(expr.quantity);
+    case Expr::Kind::kName:
+      return expr.text + (expr.args.empty() ? "" : " " + Dump(expr.args[0]));
+    case Expr::Kind::kText:
+      return '"' + expr.text + '"';
+    case Expr::Kind::kCall:
+      return expr.text + "(" + Joined(expr.args, ", ") + ")";
+    case Expr::Kind::kUnary:
+      return "(" + expr.text + (expr.text == "not" ? " " : "") + Dump(expr.args[0]) + ")";
+    case Expr::Kind::kBinary:
+    case Expr::Kind::kChain:
+      return "(" + Joined(expr.args, " " + expr.text + " ") + ")";
+    case Expr::Kind::kEdge:
+      return "(" + Dump(expr.args[0]) + " " + expr.text + ")";
+    case Expr::Kind::kAnchor:
+      return Dump(expr.args[0]) + "@" + expr.text;
+  }
+  return {};
+}
+
+std::string Dump(const File& file) {
+  std::string text = "grammar " + file.name + "\n";
+  for (const Use& use : file.uses)
+    text += "use " + (use.is_path ? '"' + use.name + '"' : use.name) + "\n";
+  for (const Param& param : file.params)
+    text += "param " + param.name + " = " + QuantityText(param.value) + "\n";
+  for (const Define& define : file.defines) text += DumpDefine(define);
+  for (const Definition& definition : file.definitions) text += DumpDefinition(definition);
+  return text;
+}
+
+}  // namespace prehend::grammar::ast

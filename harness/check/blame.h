@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Attributes a difference: did the physics diverge from the last passing run, did sensing, or did
+// the grammar? Tested by tests/harness/check/blame_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/check/last_pass.h"
+#include "harness/check/state_trace.h"
+
+namespace prehend::harness {
+
+/// How a run that differs moved, and what decided it.
+struct DifferingRun {
+  std::string program;  ///< ProgramHash()
+  FileHashes inputs;
+  std::vector<std::string> options;  ///< of its command line: "--grammar original_2020"
+  bool other_grammar = false;        ///< the command line chose the grammar
+  PhysicsTrace trace;
+  double ticks_per_second = 480;
+};
+
+/// One line with its line feed: "cause: physics. `cup` moves differently from the last passing run,
+/// first at 0.0042 s (tick 2). Changed since: ..". Paths are relative to `root`. The cause is
+/// unknown without a run that passed, or was accepted.
+std::string CauseText(const std::optional<CheckRecord>& last_pass,
+                      const std::optional<PhysicsTrace>& its_trace, const DifferingRun& now,
+                      const std::string& root);
+
+}  // namespace prehend::harness

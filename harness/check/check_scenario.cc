@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/check/check_scenario.h. Judges are functions of values (judge_*.h); files are written in Store()
+// only. Tested by tests/harness/check/check_scenario_test.cc
+#include "harness/check/check_scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "harness/base/shell_quote.h"
+#include "harness/check/accept_golden.h"
+#include "harness/check/blame.h"
+#include "harness/check/compare_engines.h"
+#include "harness/check/judge_golden.h"
+#include "harness/check/judge_invariants.h"
+#include "harness/check/judge_pictures.h"
+#include "harness/check/last_pass.h"
+#include "harness/check/state_trace.h"
+#include "harness/golden/golden_files.h"
+#include "harness/pictures/pictures.h"
+#include "harness/run/run_text.h"
+
+namespace prehend::harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The options of the command line that ask for these changes.
+std::vector<std::string> OptionsOf(const RunRequest& changes) {
+  std::vector<std::string> options;
+  if (!changes.grammar.empty()) options.push_back("--grammar " + ShellQuoted(changes.grammar));
+  for (const std::string& setting : changes.settings)
+    options.push_back("--set " + ShellQuoted(setting));
+  return options;
+}
+
+std::string Command(const char* name, const std::string& id, const RunRequest& changes) {
+  std::string command = fmt::format("prehend {} {}", name, ShellQuoted(id));
+  for (const std::string& option : OptionsOf(changes)) command += " " + option;
+  return command;
+}
+
+/// Whether nothing is changed by the command line, so that what differs can be accepted.
+bool AsItsFileSays(const CheckRequest& request) { return OptionsOf(request.run).empty(); }
+
+/// The goldens that decide the verdict of a scenario, whether they exist or not: one that appears
+/// changes the verdict. Of pictures those that it asks for and one more, which would be too many.
+std::vector<std::string> FilesOfGolden(const CheckRequest& request, const Scenario* scenario) {
+  if (!request.in_project) return {};
+  const GoldenFiles goldens(request.root);
+  std::vector<std::string> files = {goldens.GoldenPath(request.id).string()};
+  for (const KeptPicture& picture : goldens.PicturesOf(request.id))
+    files.push_back(picture.path.string());
+  for (std::size_t i = 1; scenario && i <= scenario->pictures.size() + 1; ++i) {
+    const std::string file = scenario->name + (i == 1 ? "" : "-" + std::to_string(i)) + ".png";
+    files.push_back(goldens.PicturePath(request.id, file).string());
+  }
+  return files;
+}
+
+/// Reports how far the run has come while it is going on.
+RunResult Play(const CheckRequest& request, const LoadedRun& loaded) {
+  ScenarioRun playing(loaded.scenario, loaded.program, {.record = true});
+  while (playing.Step()) {
+    if (request.last_tick) request.last_tick->store(playing.snapshot().tick);
+  }
+  return playing.Finish();
+}
+
+/// Draws into the folder of the report.
+Findings Draw(const CheckRequest& request, const CheckedRun& checked,
+              std::vector<ReportedPicture>& pictures) {
+  if (!request.pictures || !CanDrawPictures()) return {};
+  const Scenario& scenario = checked.loaded.scenario;
+  const fs::path folder = fs::path(request.report_folder) / "pictures" / scenario.skill;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  const PictureResult drawn = DrawPictures(scenario, checked.result, folder.string());
+  for (const WrittenPicture& picture : drawn.pictures) {
+    const fs::path file = fs::path(picture.file).lexically_relative(request.report_folder);
+    pictures.push_back({.file = file.generic_string(), .caption = picture.caption});
+  }
+  if (drawn.error.empty()) return {};
+  return {{.exit_code = ExitCode::kFailure,
+           .reason = "no picture",
+           .details = "no picture: " + drawn.error + "\n"}};
+}
+
+/// What is attributed to physics, sensing or grammar: the run against the last one that passed.
+std::string CauseOf(const CheckRequest& request, const CheckedRun& checked,
+                    const FileHashes& inputs) {
+  const CheckRecords records(request.root);
+  const RunResult& run = checked.result;
+  return CauseText(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
+                   {.program = request.program,
+                    .inputs = inputs,
+                    .options = OptionsOf(request.run),
+                    .other_grammar = !request.run.grammar.empty(),
+                    .trace = TraceOf(checked.loaded.scenario.scene, run.recording),
+                    .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)},
+                   request.root);
+}
+
+/// A planar scenario has the same events in both engines; `difference` is how they differ.
+Findings JudgeOtherEngine(const CheckedRun& checked, std::string& difference) {
+  const Scenario& scenario = checked.loaded.scenario;
+  const auto compared = CompareEngines(scenario, checked.loaded.program, checked.result.timeline);
+  if (compared) difference = EngineDifferenceText(scenario, *compared, checked.explain);
+  if (difference.empty()) return {};
+  const std::string engine = NameOf(compared->other);
+  if (compared->run.status.kind != physics::RunStatus::Kind::kCompleted)
+    return {{ExitCode::kFailure, "the simulation failed in " + engine, difference}};
+  return {{ExitCode::kDiffers, engine + " does not lead to the same events",
+           difference + kUntilEnginesAgree + "\n"}};
+}
+
+/// Everything that the judges say about a run.
+struct Judgement {
+  Findings findings;
+  std::optional<GoldenComparison> golden;  ///< empty if the golden cannot be read
+  std::string cause;                       ///< of differences from the golden
+  std::string engine_difference;
+  std::vector<PictureComparison> pictures;
+};
+
+void JudgeAgainstGolden(const CheckRequest& request, const CheckedRun& checked,
+                        const FileHashes& inputs, Judgement& judgement) {
+  std::optional<Golden> golden;
+  if (request.in_project) {
+    ReadResult<Golden> read = GoldenFiles(request.root).ReadGoldenOf(request.id);
+    if (!read.diagnostics.empty()) {
+      return judgement.findings.push_back(
+          {ExitCode::kBadInput, "the golden cannot be read", Format(read.diagnostics)});
+    }
+    golden = std::move(read.value);
+  }
+  judgement.golden = CompareWithGolden(golden, checked);
+  if (judgement.golden->Differs()) judgement.cause = CauseOf(request, checked, inputs);
+  Append(judgement.findings, JudgeGolden(*judgement.golden, checked, judgement.cause));
+}
+
+void JudgePictures(const CheckRequest& request, const CheckedRun& checked,
+                   const std::vector<ReportedPicture>& drawn, Judgement& judgement) {
+  if (!request.in_project) return;
+  std::vector<fs::path> files;
+  for (const ReportedPicture& picture : drawn)
+    files.push_back(fs::path(request.report_folder) / picture.file);
+  judgement.pictures =
+      ComparePictures(request.id, files, request.root, !request.leave_nothing_behind);
+  if (!AsItsFileSays(request)) return;
+  Append(judgement.findings,
+         JudgeUnrequestedPictures(request.id, checked.loaded.scenario.pictures.size(), request.root,
+                                  AcceptPicturesCommand(request.id)));
+}
+
+/// The only place of a check that writes below build/, pictures of the report aside. What cannot be
+/// written is reported by the command that needs it, or costs only the cause of a difference.
+void Store(const CheckRequest& request, const CheckedRun& checked, const Judgement& judgement,
+           bool passed) {
+  if (request.leave_nothing_behind) return;
+  const GoldenFiles files(request.root);
+  if (judgement.golden && judgement.golden->Holds()) files.RemovePending(request.id);
+  if (judgement.golden && !judgement.golden->Holds())
+    (void)files.WritePending(judgement.golden->pending);
+  (void)files.WriteEngineDifference(request.id, judgement.engine_difference);
+  StorePictures(request.id, judgement.pictures, request.root);
+  if (passed)
+    (void)WriteTrace(CheckRecords(request.root).TracePath(request.id),
+                     TraceOf(checked.loaded.scenario.scene, checked.result.recording));
+}
+
+/// The first finding decides; one that is wrong comes before a golden that does not exist yet.
+void Conclude(const Findings& findings, ScenarioVerdict& verdict) {
+  verdict.verdict = Verdict::kPassed;
+  for (const Finding& finding : findings) verdict.details += finding.details;
+  if (findings.empty()) return;
+  const auto wrong = std::ranges::find_if(
+      findings, [](const Finding& finding) { return finding.exit_code != ExitCode::kPending; });
+  const Finding& first = wrong == findings.end() ? findings.front() : *wrong;
+  verdict.verdict = wrong == findings.end() ? Verdict::kPending : Verdict::kFailed;
+  verdict.exit_code = first.exit_code;
+  verdict.reason = first.reason;
+}
+
+}  // namespace
+
+ScenarioVerdict CheckScenario(const CheckRequest& request) {
+  ScenarioVerdict verdict{.scenario = request.id, .shows = {}};
+  verdict.command = RepeatCommand(request.id, request.run);
+  verdict.explain = ExplainCommand(request.id, request.run);
+  std::vector<std::string> files;
+  ReadResult<LoadedRun> loaded = LoadRun(request.run, request.root, &files);
+  std::ranges::move(FilesOfGolden(request, loaded.value ? &loaded.value->scenario : nullptr),
+                    std::back_inserter(files));
+  verdict.inputs = HashFiles(files);
+  if (!loaded.value) {
+    Conclude({{ExitCode::kBadInput, "cannot be read", Format(loaded.diagnostics)}}, verdict);
+    verdict.command = Command("validate", request.id, request.run);
+    return verdict;
+  }
+
+  CheckedRun checked{.id = request.id,
+                     .in_project = request.in_project,
+                     .loaded = std::move(*loaded.value),
+                     .result = {},
+                     .explain = verdict.explain};
+  checked.result = Play(request, checked.loaded);
+  verdict.shows = checked.loaded.scenario.shows;
+  verdict.state_hash = HashText(checked.result.state_hash);
+  verdict.ticks = checked.result.ticks;
+  Judgement judgement{.findings = Draw(request, checked, verdict.pictures)};
+  if (checked.result.status.kind != physics::RunStatus::Kind::kCompleted) {
+    Append(judgement.findings,
+           {{ExitCode::kFailure, "the simulation failed", StatusText(checked.result) + "\n"}});
+    Conclude(judgement.findings, verdict);
+    verdict.command = Command("run", request.id, request.run);
+    return verdict;
+  }
+
+  Append(judgement.findings, JudgeInvariants(checked));
+  JudgeAgainstGolden(request, checked, verdict.inputs, judgement);
+  Append(judgement.findings, JudgeOtherEngine(checked, judgement.engine_difference));
+  JudgePictures(request, checked, verdict.pictures, judgement);
+
+  Conclude(judgement.findings, verdict);
+  Store(request, checked, judgement, verdict.verdict == Verdict::kPassed);
+  if (judgement.golden) {
+    verdict.comparison = std::move(judgement.golden->comparison);
+    verdict.has_golden = judgement.golden->has_golden;
+  }
+  verdict.cause = std::move(judgement.cause);
+  verdict.picture_differences = PictureDifferencesText(
+      judgement.pictures, AsItsFileSays(request) ? AcceptPicturesCommand(request.id) : "");
+  if (verdict.verdict == Verdict::kPending && request.in_project && AsItsFileSays(request))
+    verdict.command = Command("review", request.id, {});
+  return verdict;
+}
+
+std::string ExplainCommand(const std::string& id, const RunRequest& changes) {
+  return Command("explain", id, changes);
+}
+
+std::string RepeatCommand(const std::string& id, const RunRequest& changes) {
+  return Command("check", id, changes);
+}
+
+}  // namespace prehend::harness

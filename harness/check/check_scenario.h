@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The check of one scenario: play it once, draw it, judge it, then store what the next check and
+// `prehend review` need. Tested by tests/harness/check/check_scenario_test.cc
+#pragma once
+
+#include <string>
+
+#include "harness/check/verdict.h"
+#include "harness/process/progress_counters.h"
+#include "harness/run/load_run.h"
+
+namespace prehend::harness {
+
+struct CheckRequest {
+  RunRequest run;
+  std::string id;             ///< skill/name, or the path of a scenario outside the project
+  std::string root;           ///< the project's
+  std::string report_folder;  ///< pictures go to its folder `pictures`
+  bool pictures = true;
+  bool leave_nothing_behind = false;  ///< no pending golden, no trace; only the verdict
+  bool in_project = true;             ///< below scenarios/, so that it may have a golden
+  std::string program;                ///< ProgramHash(), to find the cause of differences
+  ProgressCounters::Tick* last_tick =
+      nullptr;  ///< gets the tick that the run has reached; may be null
+};
+
+/// Never fails: what goes wrong is the verdict.
+ScenarioVerdict CheckScenario(const CheckRequest& request);
+
+/// The command that asks about a scenario's events, with the grammar and settings of `changes`.
+std::string ExplainCommand(const std::string& id, const RunRequest& changes);
+
+/// The command that repeats a verdict.
+std::string RepeatCommand(const std::string& id, const RunRequest& changes);
+
+}  // namespace prehend::harness

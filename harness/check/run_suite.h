@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks many scenarios, each in its own process, several at a time: slowest first, repeated on
+// request, without those whose inputs have not changed. Tested by tests/program/runner_test.cc
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/check/select_scenarios.h"
+#include "harness/check/verdict.h"
+#include "harness/process/worker_pool.h"
+#include "harness/run/load_run.h"
+
+namespace prehend::harness {
+
+struct SuiteRequest {
+  ScenarioSelection selection;
+  RunRequest changes;  ///< its grammar and settings hold for every scenario
+  std::string root;
+  std::string report_folder;
+  bool pictures = true;
+  bool only_changed = false;  ///< skip what passed and depends on nothing that changed since
+  int repeat = 1;
+  std::optional<std::uint64_t> shuffle_seed;  ///< any order instead of the slowest first
+  WorkerLimits limits;
+};
+
+/// Called after each run: how many of how many are done, and the id of the scenario.
+using SuiteProgress = std::function<void(std::size_t done, std::size_t all, const std::string& id)>;
+
+/// One verdict per scenario in the order of the selection, then one per orphan.
+std::vector<ScenarioVerdict> RunSuite(const SuiteRequest& request, const SuiteProgress& progress);
+
+}  // namespace prehend::harness

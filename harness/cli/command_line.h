@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line: chooses the command, explains itself, turns slips of the pen into suggestions.
+// Tested by tests/program/command_line_test.cc
+#pragma once
+
+#include "harness/base/exit_code.h"
+
+namespace prehend::harness {
+
+/// All of `prehend`. Reads the environment: PREHEND_HOME, CI, NO_COLOR.
+ExitCode RunCommandLine(int argc, const char* const* argv);
+
+}  // namespace prehend::harness

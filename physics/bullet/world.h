@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The spatial engine: Bullet (double precision), sequential impulse, one thread. Settings:
+// docs/physics.md. Tested by tests/physics/world/world_test.cc
+#pragma once
+
+#include <memory>
+
+#include "physics/scene/scene.h"
+#include "physics/world/world.h"
+
+namespace prehend::physics {
+
+/// Every hand starts at its pose with the joints of `styles[hand]` fully open.
+std::unique_ptr<World> MakeBulletWorld(const Scene& scene, const std::vector<int>& styles);
+
+}  // namespace prehend::physics
