@@ -195,6 +195,7 @@ GrammarDescription Describe(const Program& program) {
                                  .bytes_per_binding = BytesPerBinding(rule),
                                  .bytes_per_interval = rule.referenced ? sizeof(Span) : 0});
   }
+  for (const Law& law : program.laws) description.laws.push_back({law.Head(), law.says});
   return description;
 }
 
@@ -209,6 +210,7 @@ std::string Text(const GrammarDescription& description) {
           ", and " + std::to_string(rule.bytes_per_interval) + " for each of its recent intervals";
     text += "\n";
   }
+  for (const LawDescription& law : description.laws) text += law.head + "\n    " + law.says + "\n";
   text += "\n";
   text += ParamsText(description.params);
   text += "\nmemory: poses of the last " + QuantityText({description.history_s, kSeconds}) + ", " +

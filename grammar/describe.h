@@ -28,9 +28,15 @@ struct RuleDescription {
   std::size_t bytes_per_interval = 0;  ///< kept for as long as poses are, if others ask for them
 };
 
+struct LawDescription {
+  std::string head;  ///< "law slides_are_supported(hand: Hand, object: Movable)"
+  std::string says;  ///< "sliding(hand, object) lies inside supported_by(object, any)"
+};
+
 struct GrammarDescription {
   std::string name;
   std::vector<RuleDescription> rules;  ///< in the order of the files; no hidden ones
+  std::vector<LawDescription> laws;
   std::vector<ProgramParam> params;
   double history_s = 0;              ///< how long poses are kept
   std::size_t bytes_per_pose = 0;    ///< kept per frame and entity that is awake

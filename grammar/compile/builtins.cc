@@ -153,9 +153,11 @@ std::span<const Builtin> Builtins() {
        Op::kTurnRate,
        T::kNumber,
        kRadiansPerSecond,
-       {A::kEntity, A::kEntity, A::kWindow},
-       "(a, b, window): how fast the direction in which a moves horizontally, as seen from b, "
-       "turns to the left"},
+       {A::kEntity, A::kEntity, A::kWindow, A::kLength},
+       "(a, b, window [, shortest]): how fast the direction in which a moves horizontally, as seen "
+       "from b, turns to the left; 0 where a way is shorter than 1 mm, or than `shortest`",
+       {},
+       0.001},
       {"tilt",
        Op::kTilt,
        T::kNumber,

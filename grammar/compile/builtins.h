@@ -47,6 +47,7 @@ struct Builtin {
   std::vector<Argument> arguments;
   std::string_view meaning;  ///< one line for listings
   Range range = {};          ///< of a number: what it can be at all
+  double left_out_m = 0;  ///< what the last argument is, a length, where it is left out; 0: never
 };
 
 std::span<const Builtin> Builtins();

@@ -11,6 +11,7 @@
 #include "grammar/compile/analyze_dependencies.h"
 #include "grammar/compile/lower.h"
 #include "grammar/compile/lower_definition.h"
+#include "grammar/compile/lower_law.h"
 #include "grammar/language/parser.h"
 
 namespace prehend::grammar {
@@ -39,6 +40,7 @@ class Compiler {
     ApplyOverrides();
     CollectHeads();
     CollectDefines();
+    CheckLawHeads();
     if (diagnostics_.empty()) CheckDefines();
     if (diagnostics_.empty()) LowerAll();
     if (diagnostics_.empty()) Order();
@@ -197,7 +199,8 @@ class Compiler {
     rule.printed = definition.is_event;
     rule.symmetric = definition.symmetric;
     rule.form = FormOf(definition.form);  // others must know before it is lowered
-    CheckRoles(source, definition);
+    CheckRoles(source, definition.roles);
+    CheckSymmetry(source, definition);
     for (const ast::Role& role : definition.roles)
       rule.roles.push_back({role.name, role.class_name});
     program_.rules.push_back(std::move(rule));
@@ -261,6 +264,20 @@ class Compiler {
     }
   }
 
+  // Nothing refers to a law, so only another law's name is in its way.
+  void CheckLawHeads() {
+    std::map<std::string, std::string, std::less<>> laws;  // name -> where the first one is
+    for (const Source& source : sources_) {
+      for (const ast::Law& law : source.file.laws) {
+        const auto [first, is_new] =
+            laws.try_emplace(law.name, FirstAt(source.text.file, law.place));
+        if (!is_new)
+          Complain(source, law.place, "the law '" + law.name + "' is defined twice", first->second);
+        CheckRoles(source, law.roles);
+      }
+    }
+  }
+
   bool IsLater(const std::string& file, const std::string& other) const {
     return symbols_.files.find(file)->second > symbols_.files.find(other)->second;
   }
@@ -305,13 +322,12 @@ class Compiler {
     }
   }
 
-  void CheckRoles(const Source& source, const Definition& definition) {
-    if (definition.roles.size() > kMaxRoles) {
-      Complain(source, definition.roles[kMaxRoles].place,
-               "more than " + std::to_string(kMaxRoles) + " roles");
+  void CheckRoles(const Source& source, const std::vector<ast::Role>& roles) {
+    if (roles.size() > kMaxRoles) {
+      Complain(source, roles[kMaxRoles].place, "more than " + std::to_string(kMaxRoles) + " roles");
     }
     std::set<std::string> names;
-    for (const ast::Role& role : definition.roles) {
+    for (const ast::Role& role : roles) {
       if (!names.insert(role.name).second)
         Complain(source, role.place, "the role '" + role.name + "' is named twice");
       if (symbols_.IsParamIn(source.text.file, role.name)) {
@@ -320,6 +336,9 @@ class Compiler {
       }
       CheckClassName(source, role);
     }
+  }
+
+  void CheckSymmetry(const Source& source, const Definition& definition) {
     if (!definition.symmetric) return;
     if (definition.roles.size() < 2 ||
         definition.roles[0].class_name != definition.roles[1].class_name) {
@@ -346,6 +365,12 @@ class Compiler {
     for (std::size_t i = 0; i < definitions_.size(); ++i) {
       LowerDefinition(*definitions_[i].source, *definitions_[i].definition,
                       static_cast<int>(i) + 1);
+    }
+    for (const Source& source : sources_) {
+      for (const ast::Law& written : source.file.laws) {
+        std::optional<Law> law = LowerLaw(symbols_, source.text, written, diagnostics_);
+        if (law) program_.laws.push_back(std::move(*law));
+      }
     }
   }
 

@@ -35,6 +35,13 @@ std::string Suggest(std::string_view name, const std::vector<std::string>& known
   return near.empty() ? std::string() : "did you mean " + Quoted(near) + "?";
 }
 
+std::string AllenNames() {
+  std::string text;
+  for (const std::string_view name : kAllenNames)
+    text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
 int NoteName(std::vector<NameInSource>& names, std::string_view name, const std::string& file,
              Place place) {
   const auto same = [&](const NameInSource& named) {

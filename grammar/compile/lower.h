@@ -64,6 +64,8 @@ bool IsOverInterval(std::string_view name);
 inline std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 /// "did you mean 'height'?", or nothing.
 std::string Suggest(std::string_view name, const std::vector<std::string>& known);
+/// "before, meets, ..": all thirteen.
+std::string AllenNames();
 
 class Lowering {
  public:

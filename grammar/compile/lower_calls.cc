@@ -346,10 +346,13 @@ Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
 }
 
 Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr) {
-  if (expr.args.size() != builtin.arguments.size()) {
+  const std::size_t most = builtin.arguments.size();
+  const std::size_t least = builtin.left_out_m > 0 ? most - 1 : most;
+  if (expr.args.size() < least || expr.args.size() > most) {
     return Bad(expr.place,
-               Quoted(builtin.name) + " takes " + std::to_string(builtin.arguments.size()) +
-                   " arguments, found " + std::to_string(expr.args.size()),
+               Quoted(builtin.name) + " takes " +
+                   (least < most ? std::to_string(least) + " or " : std::string()) +
+                   std::to_string(most) + " arguments, found " + std::to_string(expr.args.size()),
                std::string(builtin.name) + ": " + std::string(builtin.meaning));
   }
   Typed result{.type = builtin.type, .dimension = builtin.dimension};
@@ -365,6 +368,8 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
       return {.bad = true};
     }
   }
+  if (expr.args.size() < most)
+    node.args[next_node++] = NumberNode(builtin.left_out_m, kMetres, expr.place).node;
   attribute_ = in_attribute;
   if (node.op == Op::kRate) result.dimension = Quotient(result.dimension, kSeconds);
   if (!checking_ && LiesOnItself(node)) {

@@ -12,6 +12,9 @@ namespace {
 
 using ast::Definition;
 
+/// Where a grammar does not say `onset`: a tenth of the speed below which something pauses.
+constexpr double kPausePerOnset = 10;
+
 class DefinitionLowering {
  public:
   DefinitionLowering(Program& program, int index, const Definition& definition, Lowering& lowering)
@@ -186,11 +189,15 @@ class DefinitionLowering {
       speed = lowering_.Constant(*approach.speed, motion_dimension, "'slower than'");
       idle_s = lowering_.Constant(*approach.idle, kSeconds, "'slower than .. at most'");
     }
+    const double onset = approach.onset
+                             ? lowering_.Constant(*approach.onset, motion_dimension, "'onset'")
+                             : speed / kPausePerOnset;
     Rule& rule = Here();
     rule.approach = signal;
     rule.slack = slack;
     rule.motion = motion;
     rule.speed = speed;
+    rule.onset = onset;
     rule.idle_s = idle_s;
   }
 
@@ -228,7 +235,7 @@ class DefinitionLowering {
         const std::optional<Allen> allen = AllenNamed(name);
         if (!allen) {
           lowering_.Complain(relation.place, "'" + name + "' is none of Allen's relations",
-                             "they are " + JoinedAllenNames());
+                             "they are " + AllenNames());
           continue;
         }
         clause.relations |= Bit(*allen);
@@ -266,13 +273,6 @@ class DefinitionLowering {
                        "list the parts as they follow each other in time");
   }
 
-  static std::string JoinedAllenNames() {
-    std::string text;
-    for (const std::string_view name : kAllenNames)
-      text += (text.empty() ? "" : ", ") + std::string(name);
-    return text;
-  }
-
   void LowerModifiers() {
     if (d_.bridging) {
       if (d_.form != Definition::Form::kWhile) {
@@ -305,11 +305,29 @@ class DefinitionLowering {
       Here().confirmed_by = by;
       Here().confirmed_within = within;
     }
+    if (d_.drawn) CheckDrawn(*d_.drawn);
     if (d_.style) {
       const int role = lowering_.HandRole(*d_.style);
       Here().style_role = role;
     }
     LowerAttributes();
+  }
+
+  void CheckDrawn(const ast::Drawn& drawn) {
+    const std::vector<RuleRole>& roles = Here().roles;
+    const bool has_hand = std::any_of(
+        roles.begin(), roles.end(), [](const RuleRole& role) { return role.class_name == "Hand"; });
+    const DrawnAs as = drawn.drawing.as;
+    if (!d_.is_event) {
+      lowering_.Complain(drawn.place, "a condition is not drawn", "make it an event");
+    } else if ((as == DrawnAs::kPhase || as == DrawnAs::kGrasp) && !has_hand) {
+      lowering_.Complain(drawn.place, "this is drawn of a hand, and no role is a Hand",
+                         "a phase is what a hand does, a grasp what it holds");
+    } else if ((as == DrawnAs::kGrasp || as == DrawnAs::kSupport) && roles.size() < 2) {
+      lowering_.Complain(drawn.place, "this is drawn of two, and the event has one role",
+                         "a hand and what it holds, a thing and what it stands on");
+    }
+    Here().drawing = drawn.drawing;
   }
 
   // A form that can say how long an interval is at most must not be asked for longer ones.

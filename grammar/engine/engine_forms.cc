@@ -264,10 +264,9 @@ WalkBack Engine::ApproachBegin(RuleInstance& instance, FrameNumber end) const {
                history_.At(last_progress).tick - history_.At(frame).tick > TicksOf(instance).idle) {
       return {begin, Stop::kIdle, last_progress};
     }
-    // The slow start of a movement belongs to it, as long as it is a tenth of the speed that
-    // counts.
+    // The slow start of a movement belongs to it.
     const auto moves = [&](FrameNumber since) {
-      return *speed >= rule.speed || (since == frame + 1 && *speed > rule.speed / 10);
+      return *speed >= rule.speed || (since == frame + 1 && *speed > rule.onset);
     };
     if (*here > farthest && moves(turn)) turn = frame;
     if (rule.idle_s < 0 || moves(begin)) begin = frame;

@@ -448,12 +448,13 @@ std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) 
 // The angle between the way in the first and the way in the second half of the window, per time
 // between their middles.
 std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) const {
-  constexpr double kShortest_m = 0.001;  // less has no direction
   const std::optional<Window> window = WindowAround(view.frame, node.number);
   if (!window) return std::nullopt;
   const Vector2d before = WayOn(node, view, window->early, view.frame);
   const Vector2d after = WayOn(node, view, view.frame, window->late);
-  if (before.norm() < kShortest_m || after.norm() < kShortest_m) return 0;
+  const std::optional<double> shortest_m = Number(node.args[0], view);
+  if (!shortest_m) return std::nullopt;
+  if (before.norm() < *shortest_m || after.norm() < *shortest_m) return 0;  // it has no direction
   const double left_rad =
       std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
   return left_rad / (SecondsBetween(window->early, window->late) / 2);

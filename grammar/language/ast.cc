@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grammar/language/ast.h"
 
+#include <string_view>
+
 namespace prehend::grammar::ast {
 namespace {
 
@@ -20,6 +22,7 @@ std::string DumpUntil(const Definition& d) {
           d.approach->motion ? "with " + Dump(*d.approach->motion) + " " : "";
       text += ", " + motion + "slower than " + Dump(*d.approach->speed) + " at most " +
               Dump(*d.approach->idle);
+      if (d.approach->onset) text += ", onset " + Dump(*d.approach->onset);
     }
   }
   return text + " at most " + Dump(d.at_most_back) + " back";
@@ -60,12 +63,33 @@ std::string DumpForm(const Definition& d) {
   return {};
 }
 
+std::string DumpDrawing(const Drawing& drawing) {
+  std::string text;
+  if (drawing.as == DrawnAs::kPhase) text += " as phase";
+  if (drawing.as == DrawnAs::kGrasp) text += " as grasp";
+  if (drawing.as == DrawnAs::kSupport) text += " as support";
+  if (drawing.color) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    text += " \"#";
+    for (int shift = 20; shift >= 0; shift -= 4) text += kDigits[*drawing.color >> shift & 15];
+    text += '"';
+  }
+  if (drawing.as == DrawnAs::kNothing) text += " without row";
+  if (drawing.ghost == Ghost::kNone) text += " without ghost";
+  if (drawing.ghost == Ghost::kAtEnd) text += " with ghost at end";
+  return text;
+}
+
+std::string DumpHead(const std::string& name, const std::vector<Role>& roles) {
+  std::string text = name + "(";
+  for (const Role& role : roles)
+    text += (&role == &roles.front() ? "" : ", ") + role.name + ": " + role.class_name;
+  return text + ") ";
+}
+
 std::string DumpDefinition(const Definition& d) {
   std::string text = d.symmetric ? "symmetric event " : d.is_event ? "event " : "condition ";
-  text += d.name + "(";
-  for (const Role& role : d.roles)
-    text += (&role == &d.roles.front() ? "" : ", ") + role.name + ": " + role.class_name;
-  text += ") " + DumpForm(d);
+  text += DumpHead(d.name, d.roles) + DumpForm(d);
   if (d.bridging) text += " bridging " + Dump(*d.bridging);
   if (d.lasting) text += " lasting " + Dump(*d.lasting);
   if (d.requirement) text += " requires " + Dump(*d.requirement);
@@ -74,6 +98,7 @@ std::string DumpDefinition(const Definition& d) {
   if (d.style) text += " with style = style(" + Dump(*d.style) + ")";
   for (const Attribute& attribute : d.attributes)
     text += " with " + attribute.name + " = " + Dump(attribute.value);
+  if (d.drawn) text += " drawn" + DumpDrawing(d.drawn->drawing);
   return text + "\n";
 }
 
@@ -111,6 +136,21 @@ std::string Dump(const Expr& expr) {
   return {};
 }
 
+std::string Dump(const Law& law) {
+  const std::string subjects = Joined(law.subjects, ", ");
+  switch (law.form) {
+    case Law::Form::kCovered:
+      return "rest of " + subjects + " outside " + Joined(law.others, ", ") + " is empty";
+    case Law::Form::kApart:
+      return subjects + " do not overlap";
+    case Law::Form::kRelated:
+      break;
+  }
+  std::string relations;
+  for (const std::string& name : law.relations) relations += (relations.empty() ? "" : "|") + name;
+  return subjects + " " + relations + " " + Joined(law.others, " or ");
+}
+
 std::string Dump(const File& file) {
   std::string text = "grammar " + file.name + "\n";
   for (const Use& use : file.uses)
@@ -119,6 +159,8 @@ std::string Dump(const File& file) {
     text += "param " + param.name + " = " + QuantityText(param.value) + "\n";
   for (const Define& define : file.defines) text += DumpDefine(define);
   for (const Definition& definition : file.definitions) text += DumpDefinition(definition);
+  for (const Law& law : file.laws)
+    text += "law " + DumpHead(law.name, law.roles) + Dump(law) + "\n";
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grammar/base/diagnostic.h"
+#include "grammar/base/drawing.h"
 #include "grammar/base/quantity.h"
 
 namespace prehend::grammar::ast {
@@ -38,13 +39,15 @@ struct Role {
   Place place;
 };
 
-/// `approaching signal receding at most slack [, [with motion] slower than speed at most idle]`
+/// `approaching signal receding at most slack [, [with motion] slower than speed at most idle
+/// [, onset speed]]`
 struct Approach {
   Expr signal;
   Expr slack;
   std::optional<Expr> motion;
   std::optional<Expr> speed;
   std::optional<Expr> idle;
+  std::optional<Expr> onset;
 };
 
 /// `with name = value`
@@ -52,6 +55,12 @@ struct Attribute {
   std::string name;
   Place place;
   Expr value;
+};
+
+/// `drawn as phase "#D62728" with ghost at end`
+struct Drawn {
+  Place place;
+  Drawing drawing;
 };
 
 struct Confirmation {
@@ -102,6 +111,7 @@ struct Definition {
   std::optional<Confirmation> confirmed;
   std::optional<Expr> style;  ///< with style = style(hand)
   std::vector<Attribute> attributes;
+  std::optional<Drawn> drawn;
 };
 
 /// `define name(parameters) = body`. A parameter's class may also be a unit, `number` or
@@ -112,6 +122,23 @@ struct Define {
   std::vector<Role> parameters;
   std::vector<Dimension> dimensions;  ///< of the parameters that are numbers
   Expr body;
+};
+
+/// What must hold of the events of every episode.
+struct Law {
+  enum class Form {
+    kCovered,  ///< rest of E outside X, Y is empty
+    kRelated,  ///< E, F meets X or Y
+    kApart,    ///< E, F do not overlap
+  };
+  std::string name;
+  Place place;
+  std::vector<Role> roles;
+  Form form = Form::kCovered;
+  std::vector<Expr> subjects;          ///< events that it speaks about
+  std::vector<std::string> relations;  ///< kRelated: Allen's, or `lies inside` alone
+  Place relations_place;
+  std::vector<Expr> others;  ///< X, Y
 };
 
 struct Param {
@@ -132,9 +159,12 @@ struct File {
   std::vector<Param> params;
   std::vector<Define> defines;
   std::vector<Definition> definitions;
+  std::vector<Law> laws;
 };
 
 std::string Dump(const Expr& expr);
+/// What the law says, without its name and roles.
+std::string Dump(const Law& law);
 /// The whole file as fully bracketed text in SI units, one definition per line.
 std::string Dump(const File& file);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grammar/language/parser.h"
 
-#include "grammar/language/expression_parser.h"
+#include "grammar/language/law_parser.h"
 
 namespace prehend::grammar {
 namespace {
@@ -11,9 +11,9 @@ using ast::Expr;
 
 constexpr std::size_t kMaxDefinitions = 1000;
 
-class Parser : public ExpressionParser {
+class Parser : public LawParser {
  public:
-  using ExpressionParser::ExpressionParser;
+  using LawParser::LawParser;
 
   ast::File ParseFile() {
     ast::File file;
@@ -54,13 +54,15 @@ class Parser : public ExpressionParser {
       std::string name = ExpectName("a parameter's name");
       Expect("=");
       file.params.push_back({std::move(name), name_place, ParseSignedQuantity()});
-    } else if (At("define") || At("event") || At("condition") || At("symmetric")) {
-      if (file.definitions.size() + file.defines.size() == kMaxDefinitions) {
+    } else if (At("define") || At("event") || At("condition") || At("symmetric") || At("law")) {
+      if (file.definitions.size() + file.defines.size() + file.laws.size() == kMaxDefinitions) {
         SkipToEnd();
         FailAt(place, "more than " + std::to_string(kMaxDefinitions) + " definitions in one file");
       }
       if (Accept("define")) {
         file.defines.push_back(ParseDefine());
+      } else if (Accept("law")) {
+        file.laws.push_back(ParseLaw());
       } else {
         file.definitions.push_back(ParseDefinition());
       }
@@ -68,7 +70,7 @@ class Parser : public ExpressionParser {
       FailAt(place, "a second 'grammar' line",
              "one file holds one grammar; `use NAME` reads another one");
     } else {
-      Fail("expected 'use', 'param', 'define', 'condition' or 'event', found " + Found(),
+      Fail("expected 'use', 'param', 'define', 'condition', 'event' or 'law', found " + Found(),
            WordHint());
     }
   }
@@ -123,22 +125,12 @@ class Parser : public ExpressionParser {
     if (definition.is_event) Expect("event");
     definition.place = Peek().place;
     definition.name = ExpectName("the name of an event or condition");
-    ParseRoles(definition);
+    definition.roles =
+        ParseRoles("an event names who takes part: event grasping(hand: Hand, object: Thing)");
     ParseForm(definition);
     while (ParseModifier(definition)) {
     }
     return definition;
-  }
-
-  void ParseRoles(Definition& definition) {
-    Expect("(", "an event names who takes part: event grasping(hand: Hand, object: Thing)");
-    do {
-      const Place place = Peek().place;
-      std::string name = ExpectName("a role's name");
-      Expect(":", "every role has a class: object: Movable");
-      definition.roles.push_back({std::move(name), ExpectName("a class"), place});
-    } while (Accept(","));
-    Expect(")");
   }
 
   void ParseForm(Definition& definition) {
@@ -218,6 +210,11 @@ class Parser : public ExpressionParser {
     approach.speed = ParseSum();
     ExpectAtMost();
     approach.idle = ParseSum();
+    if (At(",") && At("onset", 1)) {
+      SkipOne();
+      SkipOne();
+      approach.onset = ParseSum();
+    }
     return approach;
   }
 
@@ -271,10 +268,64 @@ class Parser : public ExpressionParser {
       Once(definition.confirmed, std::move(confirmation), word);
     } else if (Accept("with")) {
       ParseAttribute(definition);
+    } else if (Accept("drawn")) {
+      Once(definition.drawn, ParseDrawn(word.place), word);
     } else {
       return false;
     }
     return true;
+  }
+
+  // `with name = value` may follow, so `with ghost` alone is not enough.
+  ast::Drawn ParseDrawn(Place place) {
+    ast::Drawn drawn{.place = place, .drawing = {}};
+    Drawing& drawing = drawn.drawing;
+    if (Accept("as")) drawing.as = ParseDrawnAs();
+    if (Peek().kind == Token::Kind::kText) drawing.color = ParseColor();
+    if (Accept("without")) {
+      const bool row = drawing.as == DrawnAs::kRow;
+      const bool ghost = drawing.as == DrawnAs::kPhase;
+      if (row && Accept("row")) {
+        drawing.as = DrawnAs::kNothing;
+      } else if (ghost && Accept("ghost")) {
+        drawing.ghost = Ghost::kNone;
+      } else {
+        Fail(std::string(row     ? "expected 'row'"
+                         : ghost ? "expected 'ghost'"
+                                 : "expected nothing after 'without'") +
+                 ", found " + Found(),
+             "a phase may be drawn without ghost, any other event without row");
+      }
+    } else if (At("with") && At("ghost", 1) && At("at", 2)) {
+      if (drawing.as != DrawnAs::kPhase)
+        Fail("only a phase has a ghost", "drawn as phase with ghost at end");
+      SkipOne();
+      SkipOne();
+      SkipOne();
+      if (Accept("end")) {
+        drawing.ghost = Ghost::kAtEnd;
+      } else {
+        Expect("begin", "a ghost stands where the event begins or where it ends");
+      }
+    }
+    return drawn;
+  }
+
+  DrawnAs ParseDrawnAs() {
+    if (Accept("phase")) return DrawnAs::kPhase;
+    if (Accept("grasp")) return DrawnAs::kGrasp;
+    if (Accept("support")) return DrawnAs::kSupport;
+    Fail("expected 'phase', 'grasp' or 'support', found " + Found(),
+         "any other event is drawn in a row of its own");
+  }
+
+  std::uint32_t ParseColor() {
+    const std::string& text = Peek().text;
+    const bool is_color = text.size() == 7 && text[0] == '#' &&
+                          text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+    if (!is_color)
+      Fail("expected a colour, found " + Found(), "red, green and blue in two digits: \"#D62728\"");
+    return static_cast<std::uint32_t>(std::stoul(Take().text.substr(1), nullptr, 16));
   }
 
   // `style` is a word of the language only because of `with style = style(hand)`.

@@ -7,14 +7,14 @@
 namespace prehend::grammar {
 namespace {
 
-constexpr std::array<std::string_view, 7> kItemWords = {"grammar",   "use",   "param",    "define",
-                                                        "condition", "event", "symmetric"};
-constexpr std::array<std::string_view, 33> kOtherWords = {
+constexpr std::array<std::string_view, 8> kItemWords = {"grammar",   "use",   "param",     "define",
+                                                        "condition", "event", "symmetric", "law"};
+constexpr std::array<std::string_view, 34> kOtherWords = {
     "while",    "from",        "to",       "during",    "until",   "since",   "at",
     "most",     "back",        "rest",     "of",        "outside", "compose", "where",
     "bridging", "lasting",     "requires", "confirmed", "by",      "within",  "with",
     "without",  "approaching", "receding", "slower",    "than",    "begins",  "ends",
-    "and",      "or",          "not",      "any",       "style"};
+    "and",      "or",          "not",      "any",       "style",   "drawn"};
 
 /// What people write who are used to other languages, and how it is said here.
 struct Habit {

@@ -11,9 +11,11 @@
 
 #include "grammar/base/allen.h"
 #include "grammar/base/diagnostic.h"
+#include "grammar/base/drawing.h"
 #include "grammar/base/event.h"
 #include "grammar/base/quantity.h"
 #include "grammar/base/source.h"
+#include "grammar/program/law.h"
 #include "grammar/program/thresholds.h"
 
 namespace prehend::grammar {
@@ -200,6 +202,7 @@ struct Rule {
   double slack = 0;      ///< in the signal's unit
   int motion = kNone;    ///< node: how fast it moves; kNone: as fast as the signal falls
   double speed = 0;      ///< in the unit of the motion
+  double onset = 0;      ///< likewise: from which on a movement begins
   double idle_s = -1;    ///< negative: pausing is allowed
   double back_s = 0;
   std::vector<int> outside;  ///< references
@@ -212,6 +215,7 @@ struct Rule {
   int confirmed_within = kNone;  ///< reference
   int style_role = kNone;
   std::vector<RuleAttribute> attributes;  ///< at most kMaxAttributes
+  Drawing drawing;
 
   std::vector<Reference> references;
   std::vector<int> anchors;  ///< nodes whose values are kept from where an interval begins
@@ -269,6 +273,7 @@ struct Program {
   std::vector<NameInSource> named_classes;  ///< all but the built-in ones
   Diagnostics warnings;                     ///< what Compile() warned of
   std::vector<ProgramParam> params;
+  std::vector<Law> laws;  ///< in the order of the files
   std::vector<Threshold>
       thresholds;  ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
   bool asks_touches =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/check_scenario.h. Judges are functions of values (judge_*.h); files are written in Store()
-// only. Tested by tests/harness/check/check_scenario_test.cc
+// See harness/check/check_scenario.h. Judges are functions of values (judge_*.h); files are written
+// in Store() only. Tested by tests/harness/check/check_scenario_test.cc
 #include "harness/check/check_scenario.h"
 
 #include <fmt/format.h>
@@ -219,6 +219,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   }
 
   Append(judgement.findings, JudgeInvariants(checked));
+  Append(judgement.findings, JudgeLaws(checked));
   JudgeAgainstGolden(request, checked, verdict.inputs, judgement);
   Append(judgement.findings, JudgeOtherEngine(checked, judgement.engine_difference));
   JudgePictures(request, checked, verdict.pictures, judgement);
@@ -228,6 +229,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   if (judgement.golden) {
     verdict.comparison = std::move(judgement.golden->comparison);
     verdict.has_golden = judgement.golden->has_golden;
+    verdict.drawings = checked.result.drawings;
   }
   verdict.cause = std::move(judgement.cause);
   verdict.picture_differences = PictureDifferencesText(

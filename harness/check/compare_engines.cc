@@ -9,7 +9,16 @@
 namespace prehend::harness {
 
 const char* NameOf(physics::Engine engine) {
-  return engine == physics::Engine::kBox2d ? "box2d" : "bullet";
+  using physics::Engine;
+  switch (engine) {
+    case Engine::kBox2d:
+      return "box2d";
+    case Engine::kBulletStock:
+      return "bullet_stock";
+    case Engine::kBullet:
+      break;
+  }
+  return "bullet";
 }
 
 std::optional<EngineComparison> CompareEngines(const Scenario& scenario,

@@ -2,9 +2,12 @@
 // See harness/check/judge_invariants.h. Tested by tests/harness/check/judge_invariants_test.cc
 #include "harness/check/judge_invariants.h"
 
+#include "grammar/check_laws.h"
 #include "grammar/describe.h"
 #include "harness/check/invariants.h"
 #include "harness/golden/compare.h"
+#include "harness/sense/entity_table.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
 namespace {
@@ -16,6 +19,11 @@ std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& prog
   return latency;
 }
 
+Findings ViolationFinding(const char* reason, std::string details) {
+  if (details.empty()) return {};
+  return {{.exit_code = ExitCode::kDiffers, .reason = reason, .details = std::move(details)}};
+}
+
 }  // namespace
 
 Findings JudgeInvariants(const CheckedRun& checked) {
@@ -24,15 +32,19 @@ Findings JudgeInvariants(const CheckedRun& checked) {
   EpisodeFacts facts{.end = run.ticks + 1};
   facts.ticks_per_frame = DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz) / 2;
   facts.latency = LatencyByEvent(*checked.loaded.program);
-  // A grammar without phases, as that of pouring, cannot cover a grasp with them.
-  if (facts.latency.contains("transporting")) facts.movable = MovableEntities(scenario);
   std::string details;
   for (const Violation& violation : CheckInvariants(run.timeline, facts))
     details += "violated: " + Text(violation, run.timeline.ticks_per_second) + "\n";
-  if (details.empty()) return {};
-  return {{.exit_code = ExitCode::kDiffers,
-           .reason = "invariant violated",
-           .details = std::move(details)}};
+  return ViolationFinding("invariant violated", std::move(details));
+}
+
+Findings JudgeLaws(const CheckedRun& checked) {
+  const grammar::Timeline& timeline = checked.result.timeline;
+  std::string details;
+  for (const grammar::LawViolation& violation :
+       CheckLaws(*checked.loaded.program, MakeEntityTable(checked.loaded.scenario), timeline))
+    details += "violated: " + Text(violation, timeline.ticks_per_second) + "\n";
+  return ViolationFinding("a law of the grammar is violated", std::move(details));
 }
 
 }  // namespace prehend::harness

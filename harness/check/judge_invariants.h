@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run against what must hold of every timeline. Tested by
+// A run against what must hold of every timeline, and the laws of its grammar. Tested by
 // tests/harness/check/judge_invariants_test.cc
 #pragma once
 
@@ -8,5 +8,7 @@
 namespace prehend::harness {
 
 Findings JudgeInvariants(const CheckedRun& checked);
+
+Findings JudgeLaws(const CheckedRun& checked);
 
 }  // namespace prehend::harness

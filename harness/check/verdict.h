@@ -12,6 +12,7 @@
 #include "harness/base/content_hash.h"
 #include "harness/base/exit_code.h"
 #include "harness/golden/compare.h"
+#include "harness/timeline/event_drawings.h"
 
 namespace prehend::harness {
 
@@ -40,6 +41,7 @@ struct ScenarioVerdict {
   std::string details;  ///< differences, violations, diagnostics; several lines or empty
   std::optional<Comparison> comparison;  ///< with the golden; without one every event is extra
   bool has_golden = false;               ///< there is one, and it could be read
+  EventDrawings drawings;                ///< how the grammar wants the comparison drawn
   std::string explain;                   ///< the command that asks about the scenario's events
   std::string cause;    ///< CauseText(): what the differences are attributed to; or empty
   std::string command;  ///< repeats the check; of what is pending, shows what to accept

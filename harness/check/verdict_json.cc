@@ -32,6 +32,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NamedEvent, event, roles, interval, decided, 
 
 namespace prehend::harness {
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EventDrawing, as, color, ghost, hand, first, last)
+
+inline void to_json(nlohmann::json& packed, const EventDrawings& drawings) {
+  packed = drawings.all();
+}
+inline void from_json(const nlohmann::json& packed, EventDrawings& drawings) {
+  drawings = EventDrawings(packed.get<EventDrawings::ByEvent>());
+}
+
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Pairing, agreement, expected, actual, golden_line, begin_offset,
                                    end_offset, tolerance, changes, pieces)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RelationChange, first, second, expected, actual)
@@ -39,9 +48,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Margin, label, at_end, offset, tolerance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, ticks_per_second, pairings, relations, margins)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
-                                   details, comparison, has_golden, explain, cause, command,
-                                   state_hash, ticks, seconds, peak_memory_kib, inputs, pictures,
-                                   picture_differences)
+                                   details, comparison, has_golden, drawings, explain, cause,
+                                   command, state_hash, ticks, seconds, peak_memory_kib, inputs,
+                                   pictures, picture_differences)
 
 namespace {
 

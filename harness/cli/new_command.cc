@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "harness/base/atomic_file.h"
+#include "harness/base/default_grammar.h"
 #include "harness/base/text_file.h"
 #include "harness/cli/command.h"
 #include "harness/format/scenario_copy.h"
@@ -15,7 +16,7 @@
 namespace prehend::harness {
 namespace {
 
-constexpr const char* kDefaultSkill = "pick_and_place";
+constexpr const char* kDefaultSkill = kDefaultGrammar;
 
 constexpr const char* kTemplate = R"(# yaml-language-server: $schema=../scenario.schema.json
 # Every key is explained in docs/scenario-format.md. Units are the last word of a key; z is up.

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "grammar/contents.h"
+#include "harness/base/default_grammar.h"
 #include "harness/base/project_paths.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/cli/command.h"
@@ -166,7 +167,7 @@ void Print(const std::vector<score::Score>& scores, double collar_s, std::ostrea
 
 ExitCode Run(const CLI::App& options, const CommandContext& context) {
   std::vector<std::string> grammars = ValuesOf(options, "--grammar");
-  if (grammars.empty()) grammars = {"pick_and_place", "original_2020"};
+  if (grammars.empty()) grammars = {kDefaultGrammar, "original_2020"};
   const std::vector<std::string> events = NamesIn(ValuesOf(options, "--events"));
   if (const std::string unknown = UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);

@@ -15,13 +15,19 @@ Format<WorldEntry> WorldFormat() {
   using physics::Engine;
   return Record<W>("the world")
       .Optional("engine", &W::engine,
-                Choice<Engine>({{"bullet", Engine::kBullet}, {"box2d", Engine::kBox2d}}),
-                "The physics engine; box2d is planar.")
+                Choice<Engine>({{"bullet", Engine::kBullet},
+                                {"box2d", Engine::kBox2d},
+                                {"bullet_stock", Engine::kBulletStock}}),
+                "The physics engine. box2d is planar; bullet_stock is Bullet without this "
+                "project's changes, to compare.")
       .Optional("planar", &W::planar, Flag(),
                 "Everything stays in the plane y = 0; always so with box2d, else not unless given.")
       .Optional("rate_hz", &W::rate_hz, Integer<int>(60, 4800), "Physics steps per second.")
       .Optional("sensing_hz", &W::sensing_hz, Integer<int>(1, 4800),
                 "Looks of the grammar per second, at most rate_hz.")
+      .Optional("bearing_share", &W::bearing_share, Number(0, 0.5),
+                "Of the load between two that touch: a point of contact with a smaller share bears "
+                "nothing, so its normal does not say what is held from below.")
       .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
                 "Seed of all randomness.")
       .Check([](const YamlNode&, const W& world, Complaints& complaints) {

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "harness/base/default_grammar.h"
 #include "harness/scenario/scenario.h"
 #include "harness/yaml/value_format.h"
 #include "physics/motion/script.h"
@@ -288,7 +289,7 @@ struct ScenarioEntry {
   Where where;
   Located<std::string> name;
   std::string shows;
-  Located<std::string> grammar{"pick_and_place", {}};
+  Located<std::string> grammar{kDefaultGrammar, {}};
   std::vector<std::string> tags;
   WorldEntry world;
   std::vector<Named<EntityEntry>> entities;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/golden/timeline_svg.h. Colours are those of the pictures
-// (harness/timeline/event_colors.h). Tested by tests/harness/report/report_test.cc
+// See harness/golden/timeline_svg.h. Tested by
+// tests/harness/report/report_test.cc
 #include "harness/golden/timeline_svg.h"
 
 #include <fmt/format.h>
@@ -10,7 +10,6 @@
 #include <map>
 
 #include "harness/base/markup.h"
-#include "harness/timeline/event_colors.h"
 #include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
@@ -49,8 +48,11 @@ std::vector<Row> RowsOf(const Comparison& comparison) {
 
 class Drawing {
  public:
-  Drawing(const Comparison& comparison, Tick end)
-      : comparison_(comparison), end_(std::max<Tick>(1, end)), rows_(RowsOf(comparison)) {}
+  Drawing(const Comparison& comparison, Tick end, const EventDrawings& drawings)
+      : comparison_(comparison),
+        end_(std::max<Tick>(1, end)),
+        drawings_(drawings),
+        rows_(RowsOf(comparison)) {}
 
   std::string Draw() {
     const double height = kAxisHeight + kRowHeight * static_cast<double>(rows_.size()) + kMargin;
@@ -128,7 +130,7 @@ class Drawing {
                     {"y", fmt::format("{:g}", y)},
                     {"width", fmt::format("{:.2f}", width)},
                     {"height", fmt::format("{:g}", kBarHeight)},
-                    {"fill", fmt::format("#{:06x}", EventColor(event.event))}});
+                    {"fill", fmt::format("#{:06x}", drawings_.Of(event.event).color)}});
     AddElement(bar, "title", {},
                fmt::format("{} {}, {}: {}", side, event.Label(),
                            IntervalText(event.interval, comparison_.ticks_per_second),
@@ -137,6 +139,7 @@ class Drawing {
 
   const Comparison& comparison_;
   Tick end_;
+  const EventDrawings& drawings_;
   std::vector<Row> rows_;
   pugi::xml_document document_;
   pugi::xml_node svg_;
@@ -144,8 +147,8 @@ class Drawing {
 
 }  // namespace
 
-std::string TimelineSvg(const Comparison& comparison, Tick end) {
-  return Drawing(comparison, end).Draw();
+std::string TimelineSvg(const Comparison& comparison, Tick end, const EventDrawings& drawings) {
+  return Drawing(comparison, end, drawings).Draw();
 }
 
 }  // namespace prehend::harness

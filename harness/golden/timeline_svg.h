@@ -6,10 +6,12 @@
 #include <string>
 
 #include "harness/golden/compare.h"
+#include "harness/timeline/event_drawings.h"
 
 namespace prehend::harness {
 
 /// An <svg> element. `end` is the episode's end in the comparison's ticks.
-std::string TimelineSvg(const Comparison& comparison, grammar::Tick end);
+std::string TimelineSvg(const Comparison& comparison, grammar::Tick end,
+                        const EventDrawings& drawings);
 
 }  // namespace prehend::harness

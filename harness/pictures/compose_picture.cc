@@ -7,11 +7,13 @@
 #include <set>
 
 #include "harness/run/event_time.h"
-#include "harness/timeline/event_colors.h"
+#include "harness/timeline/event_drawings.h"
 
 namespace prehend::harness {
 
 namespace {
+
+using grammar::DrawnAs;
 
 // Furniture larger than this is scenery: it does not decide what the camera frames.
 constexpr double kSceneryFromM = 0.5;
@@ -54,17 +56,23 @@ double Seconds(grammar::Tick tick, const RunResult& run) {
   return static_cast<double>(tick) / static_cast<double>(run.timeline.ticks_per_second);
 }
 
-const std::string* RoleValue(const grammar::NamedEvent& event, std::string_view role) {
-  for (const grammar::Role& r : event.roles) {
-    if (r.name == role) return &r.value;
-  }
-  return nullptr;
+render::Color ColorOf(const RunResult& run, const grammar::NamedEvent& event) {
+  return ColorOf(run.drawings.Of(event.event).color);
 }
 
-bool HasRoleValue(const grammar::NamedEvent& event, std::string_view role,
-                  const std::string& value) {
-  const std::string* found = RoleValue(event, role);
-  return found && *found == value;
+bool IsDrawnAs(const RunResult& run, const grammar::NamedEvent& event, grammar::DrawnAs as) {
+  return run.drawings.Of(event.event).as == as;
+}
+
+/// Whether the event is a phase or a grasp of this hand.
+bool IsOfHand(const RunResult& run, const grammar::NamedEvent& event, grammar::DrawnAs as,
+              const std::string& hand) {
+  return IsDrawnAs(run, event, as) && event.roles[run.drawings.Of(event.event).hand].value == hand;
+}
+
+/// What is held, or what stands on something.
+const std::string& FirstOf(const RunResult& run, const grammar::NamedEvent& event) {
+  return event.roles[run.drawings.Of(event.event).first].value;
 }
 
 bool Covers(const grammar::NamedEvent& event, grammar::Tick tick) {
@@ -88,8 +96,7 @@ int BodyNamed(const physics::Scene& scene, const std::string& name) {
 const grammar::NamedEvent* PhaseOf(const RunResult& run, const std::string& hand,
                                    grammar::Tick tick) {
   for (const grammar::NamedEvent& event : run.timeline.events) {
-    if (IsPhase(event.event) && Covers(event, tick) && HasRoleValue(event, "hand", hand))
-      return &event;
+    if (IsOfHand(run, event, DrawnAs::kPhase, hand) && Covers(event, tick)) return &event;
   }
   return nullptr;
 }
@@ -110,7 +117,7 @@ void AppendPath(const physics::Scene& scene, const RunResult& run, int hand,
     if (change) {
       if (!first) path.back().points_m.push_back(point);
       path.push_back({.points_per_s = kPathPointsPerS});
-      if (now) path.back().label = now->event, path.back().color = ColorOf(EventColor(now->event));
+      if (now) path.back().label = now->event, path.back().color = ColorOf(run, *now);
     }
     path.back().points_m.push_back(point);
     next_point_s = t_s + 1 / kPathPointsPerS;
@@ -124,31 +131,29 @@ std::vector<int> HeldBodies(const physics::Scene& scene, const RunResult& run,
                             const std::string& hand, grammar::Tick tick) {
   std::vector<int> held;
   for (const grammar::NamedEvent& event : run.timeline.events) {
-    if (event.event != "grasping" || !Covers(event, tick) || !HasRoleValue(event, "hand", hand))
-      continue;
-    const std::string* object = RoleValue(event, "object");
-    const int body = object ? BodyNamed(scene, *object) : -1;
+    if (!IsOfHand(run, event, DrawnAs::kGrasp, hand) || !Covers(event, tick)) continue;
+    const int body = BodyNamed(scene, FirstOf(run, event));
     if (body >= 0 && !scene.bodies[body].fixed) held.push_back(body);
   }
   return held;
 }
 
-/// A ghost of every hand where each of its phases begins, except at the moment pictured itself.
+/// A ghost of every hand where each of its phases says, except at the moment pictured itself.
 std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunResult& run,
                                          grammar::Tick moment) {
   std::vector<render::Ghost> ghosts;
   for (std::size_t h = 0; h < scene.hands.size(); ++h) {
     for (const grammar::NamedEvent& event : run.timeline.events) {
-      if (!IsPhase(event.event) || event.event == "fixation" ||
-          !HasRoleValue(event, "hand", scene.hands[h].name))
-        continue;
+      if (!IsOfHand(run, event, DrawnAs::kPhase, scene.hands[h].name)) continue;
+      const grammar::Ghost ghost = run.drawings.Of(event.event).ghost;
+      if (ghost == grammar::Ghost::kNone) continue;
       const grammar::Tick tick =
-          event.event == "putting_down" ? event.interval.end : event.interval.begin;
+          ghost == grammar::Ghost::kAtEnd ? event.interval.end : event.interval.begin;
       if (std::abs(Seconds(tick - moment, run)) < 0.15) continue;
       ghosts.push_back({.hand = static_cast<int>(h),
                         .bodies = HeldBodies(scene, run, scene.hands[h].name, tick),
                         .snapshot = SnapshotAt(run, tick),
-                        .tint = ColorOf(EventColor(event.event))});
+                        .tint = ColorOf(run, event)});
     }
   }
   return ghosts;
@@ -161,8 +166,8 @@ std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunRe
   std::vector<render::Marker> markers;
   std::set<std::pair<int, int>> seen;
   for (const grammar::NamedEvent& event : run.timeline.events) {
-    if (event.event != "supported_by" || !Covers(event, snapshot.tick)) continue;
-    const int body = BodyNamed(scenario.scene, *RoleValue(event, "object"));
+    if (!IsDrawnAs(run, event, DrawnAs::kSupport) || !Covers(event, snapshot.tick)) continue;
+    const int body = BodyNamed(scenario.scene, FirstOf(run, event));
     if (body < 0 || !seen.insert({body, 0}).second) continue;
     const physics::LocalBox box = physics::BoundingBox(scenario.scene.bodies[body]);
     const physics::Pose& X_WB = snapshot.bodies[body].X_WB;
@@ -181,15 +186,12 @@ std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunRe
   return markers;
 }
 
-/// Events that are neither drawn as rows of hands and supports nor everywhere all the time: those
-/// of grammars about something else. In the order in which they first happen.
-std::vector<std::string> OtherEvents(const grammar::Timeline& timeline) {
+/// Events with a row of their own, in the order in which they first happen.
+std::vector<std::string> OtherEvents(const RunResult& run) {
   std::vector<std::string> names;
-  for (const grammar::NamedEvent& event : timeline.events) {
-    const bool has_its_place = IsPhase(event.event) || event.event == "grasping" ||
-                               event.event == "supported_by" || event.event == "contact" ||
-                               event.event == "pick_and_place";
-    if (!has_its_place && std::ranges::find(names, event.event) == names.end())
+  for (const grammar::NamedEvent& event : run.timeline.events) {
+    if (IsDrawnAs(run, event, DrawnAs::kRow) &&
+        std::ranges::find(names, event.event) == names.end())
       names.push_back(event.event);
   }
   return names;
@@ -208,7 +210,7 @@ render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& ru
     for (const grammar::NamedEvent& event : run.timeline.events) {
       if (!wanted(event)) continue;
       row.segments.push_back({name(event), Seconds(event.interval.begin, run),
-                              Seconds(event.interval.end, run), ColorOf(EventColor(event.event))});
+                              Seconds(event.interval.end, run), ColorOf(run, event)});
     }
     if (!row.segments.empty()) strip.rows.push_back(std::move(row));
   };
@@ -220,14 +222,13 @@ render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& ru
   for (const physics::Hand& hand : scenario.scene.hands) {
     add_row(
         one_hand ? "phase" : hand.name,
-        [&](const auto& e) { return IsPhase(e.event) && HasRoleValue(e, "hand", hand.name); },
+        [&](const auto& e) { return IsOfHand(run, e, DrawnAs::kPhase, hand.name); },
         [&](const auto& e) { return spoken(e.event); });
     add_row(
-        "grasp",
-        [&](const auto& e) { return e.event == "grasping" && HasRoleValue(e, "hand", hand.name); },
-        [&](const auto& e) { return *RoleValue(e, "object"); });
+        "grasp", [&](const auto& e) { return IsOfHand(run, e, DrawnAs::kGrasp, hand.name); },
+        [&](const auto& e) { return FirstOf(run, e); });
   }
-  for (const std::string& name : OtherEvents(run.timeline)) {
+  for (const std::string& name : OtherEvents(run)) {
     if (strip.rows.size() >= kMostRows) break;
     add_row(
         spoken(name), [&](const auto& e) { return e.event == name; },
@@ -238,9 +239,9 @@ render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& ru
     add_row(
         body.name + " on",
         [&](const auto& e) {
-          return e.event == "supported_by" && HasRoleValue(e, "object", body.name);
+          return IsDrawnAs(run, e, DrawnAs::kSupport) && FirstOf(run, e) == body.name;
         },
-        [&](const auto& e) { return *RoleValue(e, "support"); });
+        [&](const auto& e) { return e.roles[run.drawings.Of(e.event).last].value; });
   }
   return strip;
 }

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "harness/base/markup.h"
-#include "harness/timeline/event_colors.h"
 
 namespace prehend::harness {
 namespace {
@@ -37,8 +36,6 @@ svg text.axis { fill: var(--soft); font-size: 11px; } svg text.differs { fill: v
 svg .grid { stroke: var(--line); } svg rect { rx: 2px; } svg rect.golden { opacity: .45; }
 svg rect.differs { stroke: var(--failed); stroke-width: 1.5; }
 figure { margin: .8rem 0 0; } figure img { max-width: 100%; border-radius: 6px; } figcaption { color: var(--soft); }
-.legend span { display: inline-block; margin-right: 1rem; } .legend i { display: inline-block; width: .8em; height: .8em;
-  border-radius: 2px; margin-right: .35em; }
 )";
 
 constexpr const char* kNewLine = "\n";  // between blocks, where a browser shows none
@@ -59,17 +56,6 @@ void AddSummary(pugi::xml_node body, const Tally& tally) {
     AddText(line, ", ");
     add(tally.unchanged, "unchanged", "unchanged");
   }
-}
-
-void AddLegend(pugi::xml_node body) {
-  const pugi::xml_node legend = AddElement(body, "p", {{"class", "legend soft"}});
-  for (const Phase& phase : kPhases) {
-    const pugi::xml_node entry = AddElement(legend, "span");
-    AddElement(entry, "i", {{"style", fmt::format("background:#{:06x}", phase.color)}}, "");
-    AddText(entry, phase.event);
-  }
-  AddElement(legend, "br");
-  AddText(legend, "In every row, the golden is above (pale) and the recognised event below.");
 }
 
 void AddTableRow(pugi::xml_node table, const ScenarioVerdict& verdict) {
@@ -101,7 +87,7 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict) {
   if (!verdict.reason.empty()) AddElement(section, "p", {{"class", name}}, verdict.reason);
   if (!verdict.details.empty()) AddElement(section, "pre", {}, verdict.details);
   if (verdict.comparison)
-    AddMarkup(section, TimelineSvg(*verdict.comparison, verdict.ticks + 1));
+    AddMarkup(section, TimelineSvg(*verdict.comparison, verdict.ticks + 1, verdict.drawings));
   const std::string margin = MarginText(verdict);
   if (!margin.empty()) AddElement(section, "div", {{"class", "soft"}}, margin);
   for (const ReportedPicture& picture : verdict.pictures) AddPicture(section, picture);
@@ -128,7 +114,8 @@ std::string ReportHtml(const std::vector<ScenarioVerdict>& verdicts) {
   const pugi::xml_node body = AddElement(html, "body");
   AddElement(body, "h1", {}, "Regression suite");
   AddSummary(body, Count(verdicts));
-  AddLegend(body);
+  AddElement(body, "p", {{"class", "soft"}},
+             "In every row, the golden is above (pale) and the recognised event below.");
   const pugi::xml_node table = AddElement(body, "table");
   const pugi::xml_node head = AddElement(table, "tr");
   for (const char* title : {"verdict", "scenario", ""}) AddElement(head, "th", {}, title);

@@ -124,13 +124,4 @@ std::string ScenarioId(const std::string& skill, const std::string& name) {
   return skill.empty() ? name : skill + "/" + name;
 }
 
-std::set<std::string> MovableEntities(const Scenario& scenario) {
-  std::set<std::string> movable;
-  const physics::Scene& scene = scenario.scene;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (physics::MovesFreely(scene, static_cast<int>(i))) movable.insert(scene.bodies[i].name);
-  }
-  return movable;
-}
-
 }  // namespace prehend::harness

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -41,8 +40,5 @@ ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>&
 
 /// "skill/name": how goldens, reports and the command line call it.
 std::string ScenarioId(const std::string& skill, const std::string& name);
-
-/// Names of the bodies that can lose their support.
-std::set<std::string> MovableEntities(const Scenario& scenario);
 
 }  // namespace prehend::harness

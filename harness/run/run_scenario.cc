@@ -50,13 +50,14 @@ struct ScenarioRun::State {
 ScenarioRun::ScenarioRun(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                          const RunOptions& options) {
   const grammar::EntityTable entity_table = MakeEntityTable(scenario);
-  state_.reset(new State{.simulation = {scenario.scene, scenario.script},
-                         .sensing = {scenario.scene, scenario.world.sensing_hz},
-                         .program = program,
-                         .entity_table = entity_table,
-                         .monitor = {program, entity_table},
-                         .clock = LapClock(options.measure),
-                         .record = options.record});
+  state_.reset(new State{
+      .simulation = {scenario.scene, scenario.script},
+      .sensing = {scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share},
+      .program = program,
+      .entity_table = entity_table,
+      .monitor = {program, entity_table},
+      .clock = LapClock(options.measure),
+      .record = options.record});
 }
 
 ScenarioRun::~ScenarioRun() = default;
@@ -99,6 +100,7 @@ RunResult ScenarioRun::Finish() {
   result.notes = run.simulation.notes();
   result.state_hash = run.simulation.state_hash();
   result.timeline = grammar::NameEvents(*run.program, run.entity_table, run.events);
+  result.drawings = EventDrawings(*run.program);
   run.clock.Lap(result.seconds.grammar);
   result.seconds.total = result.seconds.physics + result.seconds.sensing + result.seconds.grammar;
   return std::move(result);
@@ -114,7 +116,7 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
 
 grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
                             std::shared_ptr<const grammar::Program> program, grammar::Tick end) {
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz);
+  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
   const grammar::EntityTable entity_table = MakeEntityTable(scenario);
   grammar::Monitor monitor(program, entity_table);
   std::vector<grammar::Event> events;

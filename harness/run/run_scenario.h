@@ -12,6 +12,7 @@
 #include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
 #include "harness/scenario/scenario.h"
+#include "harness/timeline/event_drawings.h"
 #include "physics/simulation.h"
 
 namespace prehend::harness {
@@ -31,6 +32,7 @@ struct RunResult {
   grammar::Tick ticks = 0;
   std::uint64_t state_hash = 0;
   grammar::Timeline timeline;                ///< what was recognised up to the end of the run
+  EventDrawings drawings;                    ///< how the grammar wants its events drawn
   std::vector<physics::Snapshot> recording;  ///< empty unless asked for
   std::vector<physics::ScriptNote> notes;
   std::string outcome;  ///< of the scenario's outcomes; empty unless judged (outcome.h)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
+#include "harness/base/default_grammar.h"
 #include "harness/base/located.h"
 #include "harness/scenario/variations.h"
 #include "physics/motion/script.h"
@@ -22,6 +23,7 @@ struct WorldEntry {
   std::optional<Located<bool>> planar;  ///< default: as the engine needs it
   int rate_hz = 480;
   int sensing_hz = 240;
+  double bearing_share = 0.05;  ///< of the load of two that touch: a point with less bears nothing
   std::uint64_t seed = 1;
 };
 
@@ -47,7 +49,7 @@ struct Scenario {
   std::string file;   ///< where it was read from
   std::string skill;  ///< the folder below scenarios/, or ""
   std::string shows;
-  std::string grammar = "pick_and_place";
+  std::string grammar = kDefaultGrammar;
   std::vector<std::string> tags;
   WorldEntry world;
   physics::Scene scene;

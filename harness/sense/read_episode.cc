@@ -11,6 +11,7 @@
 #include <optional>
 #include <variant>
 
+#include "harness/base/default_grammar.h"
 #include "harness/base/text_file.h"
 #include "harness/scenario/classes.h"
 #include "harness/sense/episode_file.h"
@@ -46,7 +47,7 @@ struct MemberEntry {
 struct HeaderEntry {
   int version = kEpisodeVersion;
   std::string episode;
-  std::string grammar = "pick_and_place";
+  std::string grammar = kDefaultGrammar;
   std::int64_t ticks_per_second = 0;
   std::vector<std::string> styles;
   std::vector<Named<MemberEntry>> entities;

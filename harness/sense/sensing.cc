@@ -13,11 +13,6 @@ namespace {
 constexpr int kFeelersPerLink = 3;
 constexpr int kPalmFeelersPerSide = 3;
 
-// A point counts for "what holds the object" only if it carries a share of the pair's load;
-// otherwise an idle corner point with a skewed normal would decide. Larger: support of rocking
-// objects is lost. Smaller: side contact with one stray point becomes support.
-constexpr double kLoadBearingShare = 0.05;
-
 // Of a touch that pushes no more, as after a bounce, all points count alike.
 constexpr double kJustPushed_n_s = 1e-12;
 
@@ -82,9 +77,10 @@ bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
 
 }  // namespace
 
-Sensing::Sensing(const physics::Scene& scene, int sensing_hz)
+Sensing::Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share)
     : rate_hz_(scene.world.rate_hz),
       sensing_hz_(sensing_hz),
+      bearing_share_(bearing_share),
       body_count_(static_cast<int>(scene.bodies.size())) {
   const std::vector<std::string> styles = StyleNames(scene);
   for (const physics::Hand& hand : scene.hands) {
@@ -224,7 +220,7 @@ void Sensing::ReadTouches(Points points, Touches& touches) {
       touch.sensor_sets |= points_[last].sensor_sets;
     }
     for (std::size_t i = first; i < last; ++i) {
-      if (points_[i].impulse_n_s < kLoadBearingShare * load) continue;
+      if (points_[i].impulse_n_s < bearing_share_ * load) continue;
       touch.up_on_a = std::max(touch.up_on_a, points_[i].up_on_a);
       touch.up_on_b = std::max(touch.up_on_b, -points_[i].up_on_a);
     }

@@ -20,8 +20,10 @@ namespace prehend::harness {
 class Sensing {
  public:
   /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). `sensing_hz` <= the
-  /// scene's rate.
-  Sensing(const physics::Scene& scene, int sensing_hz);
+  /// scene's rate. `bearing_share`: a point of contact counts for what is held from below only if
+  /// it carries this share of the pair's load; otherwise an idle corner with a skewed normal would
+  /// decide.
+  Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share);
 
   /// Whether the snapshot of this tick is looked at: the ticks at which another 1/sensing_hz is
   /// full, on integers, so that any rate works without drift.
@@ -75,6 +77,7 @@ class Sensing {
 
   std::int64_t rate_hz_ = 480;
   std::int64_t sensing_hz_ = 240;
+  double bearing_share_ = 0;
   int body_count_ = 0;
   std::vector<int> heads_;    ///< for every person the body that is her head
   std::vector<int> jointed_;  ///< for every joint the body that hangs on it

@@ -13,14 +13,16 @@
 #include "harness/run/run_scenario.h"
 #include "harness/sense/entity_table.h"
 #include "harness/sense/sensing.h"
+#include "harness/speed/four_automata.h"
 #include "harness/speed/resting_boxes.h"
 #include "harness/speed/stopwatch.h"
 #include "harness/speed/workload.h"
+#include "harness/speed/worlds.h"
 
 namespace prehend::harness {
 namespace {
 
-constexpr double kFrameRate_hz = 240;
+constexpr double kFrameRate_hz = kWorldRate_hz;
 constexpr int kRuns = 5;
 constexpr std::size_t kKeptSnapshots = 100;  // of 5,000 bodies 0.6 MB each
 
@@ -56,7 +58,7 @@ class Measuring {
     warm_up = Frames(warm_up);
     return Watch(fmt::format("four rules, {} object{}, each used every {} s", objects,
                              objects == 1 ? "" : "s", period_s),
-                 "object-rule-frame", 1.0 * kFourRules * objects,
+                 "object-rule-frame", 1.0 * FourRules::kCount * objects,
                  MakeStations(objects, Frames(frames) + warm_up, period_s), warm_up);
   }
 
@@ -64,7 +66,7 @@ class Measuring {
   SpeedFigure Dense(int objects, int every) const {
     return Watch(fmt::format("four rules, {} objects, a fact of each changes every {} frames",
                              objects, every),
-                 "object-rule-frame", 1.0 * kFourRules * objects,
+                 "object-rule-frame", 1.0 * FourRules::kCount * objects,
                  MakeFlicker(objects, Frames(4000), objects / every, Flicker::kFact), 1);
   }
 
@@ -130,7 +132,7 @@ double TimePhysics(const Scenario& scenario) {
 /// What sensing and grammar make of snapshots that were taken before.
 double TimeWatching(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                     std::span<const physics::Snapshot> recording) {
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz);
+  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
   grammar::Monitor monitor(std::move(program), MakeEntityTable(scenario));
   std::vector<grammar::Event> events;
   const Stopwatch watch;
@@ -163,7 +165,7 @@ SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool 
   const int boxes = quick ? 50 : 5000, ticks = quick ? 20 : 400;
   const Scenario scenario = BoxesOnAFloor(boxes, kRate_hz);
   physics::Simulation simulation(scenario.scene, scenario.script);
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz);
+  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
   grammar::Monitor monitor(std::move(program), MakeEntityTable(scenario));
   std::vector<grammar::Event> events;
   while (simulation.snapshot().tick < kUntilAsleep_s * kRate_hz && simulation.Step())

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules, the made-up worlds and the yardstick of the speed figures: four rules of the kind that
-// other monitors are measured with, as a grammar and as the automata that a careful programmer
-// would write by hand. Tested by tests/harness/speed/workload_test.cc
+// Four rules of the kind that other monitors are measured with, as a grammar, and what came of
+// watching a world with them. four_automata.h has the same rules by hand. Tested by
+// tests/harness/speed/workload_test.cc
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,18 @@
 
 namespace prehend::harness {
 
-/// grasping; supported, for 0.1 s; unanswered: touched, and no grasp within 0.5 s; picking_up.
-inline constexpr int kFourRules = 4;
-std::shared_ptr<const grammar::Program> CompileFourRules();
-
-/// At 240 frames per second, `objects` objects on a table, each with a hand of its own that takes
-/// it up and puts it down again once in `period_s`; in between both rest. Entities: hands, objects,
-/// the table.
-ChangeLog MakeStations(int objects, int frames, double period_s, std::uint64_t seed = 1);
-
-/// Touches that flicker, `per_frame` a frame, one object after the other.
-enum class Flicker {
-  kPressure,  ///< from one sensor set to another one: no rule can tell
-  kFact,      ///< from one sensor set to two and back, by a hand that is open: `sensor_sets >= 2`
-              ///< changes, nothing begins
-  kGrasp,     ///< likewise, by a hand that is closed: each is the begin or the end of a grasp
+/// A grasp; a support, for a while; a touch without a grasp, for a while; a grasped thing that
+/// leaves its support.
+struct FourRules {
+  enum Number { kGrasping, kSupported, kUnanswered, kPickingUp, kCount };
+  static constexpr double kGripOn = 0.3;  ///< of the commanded grip
+  static constexpr int kSides = 2;        ///< sensor sets that touch
+  static constexpr double kLevel = 0.5;   ///< cosine between a contact normal and up
+  static constexpr int kSupport_ms = 100;
+  static constexpr int kUnanswered_ms = 500;
+  static constexpr double kRegion_m = 0.09;
 };
-ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker);
+std::shared_ptr<const grammar::Program> CompileFourRules();
 
 /// What was recognised: order does not matter, everything else does.
 struct Recognised {
@@ -44,9 +39,8 @@ struct Watched {
   double seconds = 0;        ///< that the frames after the warm-up took
 };
 
-/// Plays the log to a monitor, or to the automata by hand, which look at each object in each frame.
-/// The first frames are `warm_up`: what is new is bound, and memory is taken.
+/// Plays a log of worlds.h to a monitor of the four rules. The first frames are `warm_up`: what is
+/// new is bound, and memory is taken.
 Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::size_t warm_up = 0);
-Watched WatchByHand(const ChangeLog& log, std::size_t warm_up = 0);
 
 }  // namespace prehend::harness

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/box2d/world_test.cc
+// Mass and moment of inertia are those of the solid and are set from outside; fixtures have no
+// density. Tested by tests/physics/box2d/world_test.cc
 #include "physics/box2d/body.h"
 
 #include <algorithm>
@@ -13,8 +14,8 @@ namespace {
 /// Slower impacts do not bounce.
 constexpr double kRestitutionThreshold_m_per_s = 0.2;
 
-/// A rectangle with Box2D's skin inside it, so that sizes stay true. The skin of thin things is
-/// thinner.
+/// A rectangle whose Box2D skin lies inside, so that outer sizes are exact. Thin rectangles have a
+/// thinner skin.
 b2PolygonShape Rectangle(const Eigen::Vector2d& half, const b2Vec2& centre, double angle_rad) {
   const float skin = std::min(b2_polygonRadius, static_cast<float>(half.minCoeff()) / 2);
   b2PolygonShape rectangle;
@@ -57,7 +58,7 @@ void AddSection(const Shape& shape, const Pose& X_PS, const Surface& surface, b2
   const b2Vec2 centre = ToBox2d({outline.centre_m.x(), 0, outline.centre_m.y()});
   if (half.isZero()) return add(Circle(centre, radius));
   if (!round) return add(Rectangle(half, centre, outline.angle_rad));
-  // A capsule: Box2D has none, so it is a rectangle between two discs.
+  // Box2D has no capsule: a rectangle between two discs stands in for it.
   const b2Vec2 to_end(static_cast<float>(half.x() * std::cos(outline.angle_rad)),
                       static_cast<float>(half.x() * std::sin(outline.angle_rad)));
   add(Circle(centre - to_end, radius));
@@ -76,7 +77,7 @@ Box2dBody::Box2dBody(const std::vector<const Body*>& bodies,
   rigid_ = world.CreateBody(&def);
 
   const Pose X_PW{
-      {-root.X_WB.p_m.x(), 0, -root.X_WB.p_m.z()}};  // what is abstract may stand beside the plane
+      {-root.X_WB.p_m.x(), 0, -root.X_WB.p_m.z()}};  // an abstract body may be outside the plane
   for (const Body* body : bodies) X_PB_.push_back(X_PW * body->X_WB);
   if (root.abstract != Abstract::kNot) return;
   double mass_kg = 0, moment = 0;

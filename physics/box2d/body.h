@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies of a planar scene as Box2D bodies, made of the sections of their shapes. Only for
-// box2d_*.cc. Tested by tests/physics/box2d/world_test.cc
+// Bodies of a planar scene as Box2D bodies, made of the cross-sections of their shapes. Only for
+// physics/box2d. Tested by tests/physics/box2d/world_test.cc
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace prehend::physics {
 
-/// What a contact needs to know about a fixture beyond what Box2D keeps.
+/// Facts about a fixture that contacts need and Box2D does not keep.
 struct FixtureFacts {
   ContactSide side;
   double rolling_friction = 0;
@@ -19,7 +19,7 @@ struct FixtureFacts {
 /// A fixture's user data is its index here.
 using FixtureTable = std::vector<FixtureFacts>;
 
-/// What a fixture is made of.
+/// Material and collision group of a fixture.
 struct Surface {
   double friction = 0;
   double restitution = 0;
@@ -27,21 +27,22 @@ struct Surface {
   FixtureFacts facts;
 };
 
-/// Adds the section of a shape that stands at X_PS in the body's frame; has no mass.
+/// Adds the cross-section of a shape at X_PS in the body's frame, without mass.
 void AddSection(const Shape& shape, const Pose& X_PS, const Surface& surface, b2Body& body,
                 FixtureTable& table);
 
-/// Bodies that move as one, the root first; what does not depend on a place is the root's.
+/// Bodies that move as one rigid body, the root first; friction, restitution and damping are the
+/// root's.
 class Box2dBody {
  public:
-  /// `indices`: where the bodies stand in Scene::bodies.
+  /// `indices`: the bodies' indices into Scene::bodies.
   Box2dBody(const std::vector<const Body*>& bodies, const std::vector<std::size_t>& indices,
             b2World& world, FixtureTable& table);
 
   b2Body& rigid() { return *rigid_; }
-  /// Nothing moves it: it is fixed or asleep.
+  /// It is fixed or asleep.
   bool rests() const { return rigid_->GetType() == b2_staticBody || !rigid_->IsAwake(); }
-  /// Of the i-th of the bodies.
+  /// State of the i-th body.
   BodyState State(std::size_t i) const;
 
  private:
@@ -49,7 +50,7 @@ class Box2dBody {
   std::vector<Pose> X_PB_;  ///< the bodies' frames in that of the Box2D body
 };
 
-/// Of a thing that stands at X_PB in the body's frame.
+/// State of a scene body whose frame is at X_PB in the frame of the Box2D body.
 BodyState StateOf(const b2Body& body, const Pose& X_PB);
 
 }  // namespace prehend::physics

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/box2d/world_test.cc
+// Rolling friction is a torque of at most coefficient times friction of the other side times normal
+// force. Tested by tests/physics/box2d/world_test.cc
 #include "physics/box2d/contacts.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 namespace prehend::physics {
 namespace {
 
-/// The accessor is not const in Box2D, though it changes nothing.
+/// Box2D's accessor is not const although it changes nothing.
 const FixtureFacts& FactsOf(const b2Fixture& fixture, const FixtureTable& table) {
   return table[const_cast<b2Fixture&>(fixture).GetUserData().pointer];
 }

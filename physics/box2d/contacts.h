@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts of Box2D: their friction and restitution mixed as everywhere else, read after a step,
-// and the rolling friction that Box2D does not have. Only for box2d_*.cc. Tested by
+// Contacts of Box2D: mixes friction and restitution as the other engine does, reads contact points
+// after a step, and adds the rolling friction that Box2D lacks. Only for physics/box2d. Tested by
 // tests/physics/box2d/world_test.cc
 #pragma once
 
@@ -15,10 +15,10 @@ class Box2dMixing final : public b2ContactListener {
   void PreSolve(b2Contact* contact, const b2Manifold* before) override;
 };
 
-/// After every step, between the pairs' BeginTick() and EndTick().
+/// Call after every step, between the pairs' BeginTick() and EndTick().
 void ReadContacts(const b2World& world, const FixtureTable& table, TouchingPairs& pairs);
 
-/// Slows what rolls, by the forces of the last step: after every step.
+/// Applies rolling friction, from the contact forces of the last step. Call after every step.
 void ResistRolling(b2World& world, const FixtureTable& table);
 
 }  // namespace prehend::physics

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/box2d/world_test.cc
+// One Box2D body per part of the hand; each link hangs on its parent by a revolute or a prismatic
+// joint with a motor. Tested by tests/physics/box2d/world_test.cc
 #include "physics/box2d/hand.h"
 
 #include "physics/scene/planar.h"
@@ -29,7 +30,7 @@ Box2dHand::Box2dHand(const Hand& hand, int index, int style, b2World& world, Fix
     const Pose X_WL = hand.X_WH * X_HL[i];
     links_.push_back(
         MakePart(static_cast<int>(i), X_WL, SizeOf(link), link.mass_kg, 1, world, table));
-    // A joint's own motion leaves its axis where it is.
+    // A joint's own motion does not move its axis.
     const Eigen::Vector3d axis_W = X_WL.q * (rest[i].q.conjugate() * link.joint_axis);
     const Eigen::Vector3d pivot_W_m = X_WL * Eigen::Vector3d(-link.length_m / 2, 0, 0);
     b2Body& parent =
@@ -102,7 +103,7 @@ void Box2dHand::Drive(const HandCommand& command, double dt_s) {
 
 void Box2dHand::Drive(const Motor& motor, double wanted_speed, double strength) {
   const auto drive = [&](auto& joint, double speed_scale) {
-    // Box2D's motors insist on their speed; a softer driver asks for a part of the change.
+    // Box2D's motors enforce their speed at once; a softer driver asks for a share of the change.
     const double now = joint.GetJointSpeed(), wanted = motor.sign * wanted_speed * speed_scale;
     joint.SetMotorSpeed(static_cast<float>(now + model_.driver.damping * (wanted - now)));
   };

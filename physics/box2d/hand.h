@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hand in the plane: palm and links are Box2D bodies on driven joints, the palm follows its
-// target by the same limited PIDs as everywhere. It holds things by friction only; nothing ever
-// ties an object to it. Only for box2d_*.cc. Tested by tests/physics/box2d/world_test.cc
+// A hand in the plane: palm and links are Box2D bodies on driven joints, and the palm follows its
+// target with the same limited PIDs as in Bullet. It holds objects by friction only; nothing ever
+// ties an object to it. Only for physics/box2d. Tested by tests/physics/box2d/world_test.cc
 #pragma once
 
 #include <vector>
@@ -14,10 +14,10 @@ namespace prehend::physics {
 
 class Box2dHand {
  public:
-  /// `index`: into Scene::hands. The hand starts open in `style`.
+  /// `index` counts in Scene::hands. The hand starts open in `style`.
   Box2dHand(const Hand& hand, int index, int style, b2World& world, FixtureTable& table);
 
-  /// Forces and motor speeds for the coming tick.
+  /// Sets forces and motor speeds for the coming tick.
   void Drive(const HandCommand& command, double dt_s);
   void Describe(HandState& state) const;
 
@@ -27,8 +27,8 @@ class Box2dHand {
     Pose X_PL;     ///< the part's own frame in that of the Box2D body
   };
   struct Motor {
-    double sign;   ///< of Box2D's coordinate against ours
-    double start;  ///< our coordinate where Box2D's is 0
+    double sign;   ///< Box2D's coordinate times this is ours
+    double start;  ///< our coordinate at Box2D's 0
     b2PrismaticJoint* slide = nullptr;
     b2RevoluteJoint* hinge = nullptr;
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/box2d/world_test.cc
+// Friction is a motor of speed 0 with limited strength. Tested by tests/physics/box2d/world_test.cc
 #include "physics/box2d/joint.h"
 
 #include "physics/scene/joint_spring.h"
@@ -11,7 +11,7 @@ JointSide SideOf(const b2Body& body) {
   const bool moves = body.GetType() == b2_dynamicBody;
   const double per_moment = moves ? kTorqueScale / MomentAboutCentre(body) : 0;
   return {.per_mass = moves ? 1.0 / body.GetMass() : 0,
-          .per_moment_W = per_moment * Eigen::Matrix3d::Identity(),  // it turns about y alone
+          .per_moment_W = per_moment * Eigen::Matrix3d::Identity(),  // it rotates about y only
           .centre_W_m = FromBox2d(body.GetWorldCenter()),
           .v_m_per_s = FromBox2d(body.GetLinearVelocity()),
           .w_rad_per_s = {0, -body.GetAngularVelocity(), 0}};
@@ -24,7 +24,7 @@ Box2dJoint::Box2dJoint(const Joint& joint, int sharers, b2Body& base, b2Body& bo
       sharers_(sharers),
       sign_(joint.kind != JointKind::kSlider && joint.axis_W.y() > 0 ? -1 : 1) {
   if (joint.spring > 0) {
-    // Box2D has one speed for all below which they fall asleep, and a spring may pull more slowly.
+    // Box2D has one sleeping speed for all bodies, and a spring may pull more slowly than that.
     for (b2Body* side : {&base, &body}) side->SetSleepingAllowed(false);
   }
   const float friction = static_cast<float>(joint.friction);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Needs: Box2D 2.4.1. Order matters for determinism: bodies first, then hands, in scene order; one
-// step per tick. Tested by tests/physics/box2d/world_test.cc
+// Needs: Box2D 2.4.1. The order of creation matters for determinism: bodies first, then hands, in
+// scene order; one step per tick. Tested by tests/physics/box2d/world_test.cc
 #include "physics/box2d/world.h"
 
 #include "physics/box2d/contacts.h"
@@ -30,7 +30,7 @@ class Box2dWorld final : public World {
 
   struct Place {
     std::size_t rigid = 0;   ///< index into rigids_
-    std::size_t member = 0;  ///< of that rigid body
+    std::size_t member = 0;  ///< index into that rigid body's members
   };
   const Scene scene_;
   const double dt_s_;
@@ -51,7 +51,7 @@ Box2dWorld::Box2dWorld(const Scene& scene, const std::vector<int>& styles)
       dt_s_(1.0 / scene.world.rate_hz),
       world_(ToBox2d({0, 0, -scene.world.gravity_m_per_s2})),
       stillness_(scene.bodies.size()) {
-  // As in the other engine: what is too fast for its ticks is told by the checks of a run.
+  // As in Bullet: the run's checks report bodies that are too fast for the tick.
   world_.SetContinuousPhysics(false);
   world_.SetContactListener(&mixing_);
   AddBodies();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/world/world_test.cc
+// Makes Bullet's shapes, and one compound shape for a body of several parts. Tested by
+// tests/physics/world/world_test.cc
 #include "physics/bullet/body.h"
 
 #include <cmath>
@@ -10,13 +11,13 @@
 namespace prehend::physics {
 namespace {
 
-/// Below these speeds for two seconds a body falls asleep. Lower: resting objects keep costing time
-/// and creep. Higher: objects in a slow hand would freeze.
+/// A body falls asleep after two seconds below these speeds. With lower ones, resting objects keep
+/// costing time and creep; with higher ones, objects in a slow hand would freeze.
 constexpr double kSleepSpeed_m_per_s = 0.01;
 constexpr double kSleepTurn_rad_per_s = 0.05;
 
-/// In the frame of its centre of mass and principal axes. Without a margin, which would be outside
-/// or cut off corners: what touches it has one.
+/// A hull in the frame of its centre of mass and principal axes. It has no margin, because a margin
+/// would enlarge the hull or cut its corners; the other body of a contact has one.
 class HullShape final : public btConvexHullShape {
  public:
   explicit HullShape(const Hull& hull) : gyration_m2_(ToBullet(hull.gyration_m2)) {
@@ -25,7 +26,7 @@ class HullShape final : public btConvexHullShape {
     setMargin(0);
     recalcLocalAabb();
   }
-  /// Bullet's own is that of the box around it.
+  /// Bullet's own version is that of the bounding box.
   void calculateLocalInertia(btScalar mass, btVector3& inertia) const override {
     inertia = mass * gyration_m2_;
   }
@@ -63,7 +64,7 @@ bool IsSimple(const std::vector<RigidMember>& members) {
   return members.size() == 1 && X_RC.p_m.isZero() && X_RC.q.vec().isZero();
 }
 
-/// Bullet's damping is the share of the speed that is lost in a second.
+/// Converts a decay rate to Bullet's damping: the share of speed lost per second.
 double ShareLost(double rate_per_s) { return 1 - std::exp(-rate_per_s); }
 
 }  // namespace

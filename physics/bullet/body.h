@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A body of the scene, with all bodies that fixed joints tie to it, as one Bullet rigid body.
-// Bullet wants the frame at the centre of mass with principal axes; our frame B stays where the
-// scene put it. Only for bullet_*.cc.
+// A body of the scene, together with all bodies that fixed joints tie to it, as one Bullet rigid
+// body. Bullet requires a frame at the centre of mass with principal axes; our frame B stays where
+// the scene put it. Only for physics/bullet. Tested by tests/physics/world/world_test.cc
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -14,33 +14,34 @@
 
 namespace prehend::physics {
 
-/// Collision margin of boxes and cylinders, metres: inside the shape, so that sizes stay true. The
-/// default of 40 mm would swallow fingers.
+/// Collision margin of boxes and cylinders, metres. It lies inside the shape, so that outer sizes
+/// are exact. Bullet's default of 40 mm is thicker than a finger.
 inline constexpr double kMargin_m = 0.001;
 
-/// In the frame of its centre of mass: RigidMember::X_RC.
+/// The shape in the frame of its centre of mass, RigidMember::X_RC.
 std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape);
 
-/// Mass, surface, damping and sleep of a body that has this shape, at the origin.
+/// Mass, friction, damping and sleeping thresholds of a body with this shape, at the origin.
 btRigidBody::btRigidBodyConstructionInfo RigidInfo(const Body& body, btCollisionShape* shape,
                                                    const btVector3& inertia);
 
 class BulletBody {
  public:
-  /// `bodies`: the root, then those tied to it. Friction, restitution and damping are the root's.
+  /// `bodies`: the root, then the bodies tied to it. Friction, restitution and damping are the
+  /// root's.
   explicit BulletBody(const std::vector<const Body*>& bodies);
 
-  /// From now on it moves in the plane y = 0 and turns about y only.
+  /// From now on the body moves in the plane y = 0 and rotates about y only.
   void KeepInPlane();
 
   btRigidBody& rigid() { return *rigid_; }
-  /// Nothing moves it: it is fixed or asleep.
+  /// It is fixed or asleep.
   bool rests() const {
     return !rigid_->isKinematicObject() && (rigid_->isStaticObject() || !rigid_->isActive());
   }
-  /// Of the i-th of the bodies.
+  /// State of the i-th body.
   BodyState State(std::size_t i) const;
-  /// Which of the bodies each of the rigid body's shapes belongs to.
+  /// For each shape of the rigid body, the index of the body that it belongs to.
   const std::vector<std::size_t>& owners() const { return owners_; }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/world/world_test.cc
+// Leaves out contacts between grains of one body and contacts between bodies that rest. Tested by
+// tests/physics/world/world_test.cc
 #include "physics/bullet/contacts.h"
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
@@ -17,9 +18,9 @@ void ReadContacts(const btManifoldArray& manifolds, const ContactSides& sides,
                   TouchingPairs& pairs) {
   for (int m = 0; m < manifolds.size(); ++m) {
     const btPersistentManifold& manifold = *manifolds[m];
-    // Grains of one body touch each other all the time, and nobody asks.
+    // Grains of one body touch each other in every tick; these contacts are not reported.
     if (manifold.getBody0()->getUserIndex() == manifold.getBody1()->getUserIndex()) continue;
-    // What makes up one object rests or moves as one.
+    // All shapes of one collision object rest or move together: the first one decides.
     if (pairs.Rest(SideOf(sides, *manifold.getBody0(), 0), SideOf(sides, *manifold.getBody1(), 0)))
       continue;
     for (int k = 0; k < manifold.getNumContacts(); ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contact facts, read from Bullet's manifolds after a step (under 1 % of a tick). Only for
-// bullet_*.cc. Tested by tests/physics/world/world_test.cc
+// Reads contact facts from Bullet's manifolds after a step (less than 1 % of a tick). Only for
+// physics/bullet. Tested by tests/physics/world/world_test.cc
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
@@ -12,14 +12,14 @@
 
 namespace prehend::physics {
 
-/// Who a collision object is, or for a compound whose shapes belong to several bodies, who each of
-/// its shapes is. The world gives every object its index here as Bullet's user index.
+/// By collision object, its contact side; for a compound whose shapes belong to several bodies, one
+/// side per shape. A collision object's user index in Bullet is its index here.
 using ContactSides = std::vector<std::vector<ContactSide>>;
 
-/// Whose shape this is; `shape` is the index that Bullet gives to a compound's shape.
+/// The side that this shape belongs to; `shape` is Bullet's index of the shape in a compound.
 const ContactSide& SideOf(const ContactSides& sides, const btCollisionObject& object, int shape);
 
-/// After every step, between the pairs' BeginTick() and EndTick().
+/// Call after every step, between the pairs' BeginTick() and EndTick().
 void ReadContacts(const btManifoldArray& manifolds, const ContactSides& sides,
                   TouchingPairs& pairs);
 

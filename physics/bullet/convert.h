@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between our vectors and Bullet's. Only for bullet_*.cc.
+// Conversions between our vectors and Bullet's. Only for physics/bullet. Tested by
+// tests/physics/world/world_test.cc
 #pragma once
 
 #include <LinearMath/btTransform.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/world/grains_test.cc
+// Grains have their own sleeping thresholds. Tested by tests/physics/world/grains_test.cc
 #include "physics/bullet/grains.h"
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 namespace prehend::physics {
 namespace {
 
-/// A grain that is farther from the origin fell past everything.
+/// A grain farther from the origin than this has left the scene.
 constexpr double kLost_m = 10;
-/// Of a grain, and of its surface.
+/// Sleeping speed of a grain, and of a point of its surface.
 constexpr double kSleepSpeed_m_per_s = 0.05;
 
 }  // namespace
@@ -25,8 +25,8 @@ BulletGrains::BulletGrains(const Body& body) : shape_(body.grains->radius_m) {
   btVector3 inertia;
   shape_.calculateLocalInertia(grain.mass_kg, inertia);
   btRigidBody::btRigidBodyConstructionInfo info = RigidInfo(grain, &shape_, inertia);
-  // Grains tremble in a heap and turn fast for their size: with the limits of things no heap would
-  // ever sleep.
+  // Grains in a heap tremble, and they rotate fast for their size: with the thresholds of other
+  // bodies no heap would ever sleep.
   info.m_linearSleepingThreshold = kSleepSpeed_m_per_s;
   info.m_angularSleepingThreshold = kSleepSpeed_m_per_s / body.grains->radius_m;
   for (const Eigen::Vector3d& p_WG_m : body.grains->p_WG_m) {

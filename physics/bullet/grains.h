@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grains of one body: as many Bullet balls, which share a shape. Only for bullet_*.cc. Tested
+// The grains of one body: many Bullet spheres that share one shape. Only for physics/bullet. Tested
 // by tests/physics/world/grains_test.cc
 #pragma once
 
@@ -16,17 +16,17 @@ namespace prehend::physics {
 
 class BulletGrains {
  public:
-  /// `body` has grains.
+  /// Requires a body with grains.
   explicit BulletGrains(const Body& body);
 
   std::span<const std::unique_ptr<btRigidBody>> rigids() const { return rigids_; }
 
-  /// Stops those that left the world, so that what is spilt does not fall for ever.
+  /// Stops grains that left the world, so that spilt grains do not fall for ever.
   void StopLost();
 
-  /// Are all asleep?
+  /// Whether all grains are asleep.
   bool rests() const;
-  /// Place and velocity, the mean of all.
+  /// Mean position and velocity.
   BodyState Mean() const;
   void AppendCentres(std::vector<Eigen::Vector3d>& centres_W_m) const;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/world/world_test.cc
+// Palm, links, joint motors and joint limits as one btMultiBody. Tested by
+// tests/physics/world/world_test.cc
 #include "physics/bullet/hand.h"
 
 #include <BulletDynamics/Featherstone/btMultiBodyJointLimitConstraint.h>
@@ -12,7 +13,7 @@
 namespace prehend::physics {
 namespace {
 
-/// Frame of a link's centre in H, all joints at zero, as forward kinematics has it.
+/// Frame of a link's centre in H with all joints at zero, as in forward kinematics.
 std::vector<Pose> RestPoses(const HandModel& model) {
   return LinkPoses(model, std::vector<double>(model.links.size(), 0.0));
 }

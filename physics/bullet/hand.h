@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An articulated hand in Bullet: Featherstone multi-body, two 6D PIDs on the palm, a torque-limited
 // velocity servo per joint. It holds things by friction only; nothing ever ties an object to it.
-// Only for bullet_*.cc. Tested by tests/physics/world/world_test.cc
+// Only for physics/bullet. Tested by tests/physics/world/world_test.cc
 #pragma once
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -29,7 +29,7 @@ class BulletHand {
   BulletHand(const BulletHand&) = delete;
   BulletHand& operator=(const BulletHand&) = delete;
 
-  /// Forces and motor targets for the coming tick.
+  /// Sets forces and motor targets for the coming tick.
   void Drive(const HandCommand& command, double dt_s, double gravity_m_per_s2);
   void Describe(HandState& state) const;
 

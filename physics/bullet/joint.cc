@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/scene/joint_test.cc
+// A btGeneric6DofSpring2Constraint with limits, and a friction motor on the free axis. Tested by
+// tests/physics/scene/joint_test.cc
 #include "physics/bullet/joint.h"
 
 #include "physics/bullet/convert.h"
@@ -7,28 +8,29 @@
 namespace prehend::physics {
 namespace {
 
-// The constraint's frame has its x axis along the joint's axis. Axes 0..2 shift along x, y, z, axes
-// 3..5 turn about them.
+// The x axis of the constraint's frame is the joint's axis. Axes 0..2 are translations along x, y,
+// z; axes 3..5 are rotations about them.
 constexpr int kShiftAlongAxis = 0;
 constexpr int kTurnAboutAxis = 3;
 
-/// How firmly what is beyond a limit is restored per tick, as everywhere (physics/bullet/world.cc).
+/// Share of a limit violation that is removed per tick, as for contacts (physics/bullet/world.cc).
 constexpr double kStopErrorReduction = 0.2;
-/// The way that is left to a limit may be gone within the tick, as the gap of a contact. With less,
-/// Bullet brakes what is fast before it arrives: a drawer of 1.4 m/s for the last 15 mm.
+/// The distance that is left to a limit may be closed within the tick, like the gap of a contact.
+/// With a smaller value Bullet brakes a fast body before it arrives: a drawer at 1.4 m/s over its
+/// last 15 mm.
 constexpr double kWholeWay = 1;
-/// And with a bounce of 0 it stops what would arrive within the tick where it is.
+/// With a bounce of 0 Bullet stops a body that would arrive within the tick at its present place.
 constexpr double kKeepSpeedUntilThere = -1;
 
-/// Friction is a motor that wants speed 0 and has little strength.
+/// Friction is a motor with target speed 0 and limited strength.
 void Rub(btGeneric6DofSpring2Constraint& constraint, int axis, double friction) {
   constraint.enableMotor(axis, friction > 0);
   constraint.setTargetVelocity(axis, 0);
   constraint.setMaxMotorForce(axis, friction);
 }
 
-/// What a spring pulls slowly is still on its way. Slower than this, it is within half a millimetre
-/// of where it rests even when damping makes it creep for many seconds.
+/// A body that a spring pulls slowly has not arrived yet. Below this speed it is within half a
+/// millimetre of its rest position, even if strong damping makes it creep for many seconds.
 constexpr double kSprungSleepSpeed_m_per_s = 1e-4;
 constexpr double kSprungSleepTurn_rad_per_s = 5e-4;
 
@@ -46,14 +48,14 @@ JointSide SideOf(const btRigidBody& body) {
 
 BulletJoint::BulletJoint(const Joint& joint, int sharers, btRigidBody& base, btRigidBody& body)
     : joint_(joint), sharers_(sharers) {
-  // Bullet counts these angles from the body to its base, the other way round than ours.
+  // Bullet measures these angles from the body to its base, opposite to ours.
   const Eigen::Vector3d axis_W = joint.kind == JointKind::kHinge ? -joint.axis_W : joint.axis_W;
-  // A slider's is its body's centre of mass: what it holds and what pushes at its limits then has
-  // no lever to turn the body with.
+  // A slider's pivot is its body's centre of mass: then neither its axis forces nor its limit
+  // forces have a lever arm to rotate the body.
   const Eigen::Vector3d pivot_W_m = joint.kind == JointKind::kSlider
                                         ? FromBullet(body.getCenterOfMassPosition())
                                         : joint.pivot_W_m;
-  const Pose X_WJ{pivot_W_m, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), axis_W)};
+  const Pose X_WJ{pivot_W_m, RotationBetween(Eigen::Vector3d::UnitX(), axis_W)};
   const auto in_body = [&](const btRigidBody& owner) {
     return owner.getCenterOfMassTransform().inverse() * ToBullet(X_WJ);
   };
@@ -68,7 +70,7 @@ BulletJoint::BulletJoint(const Joint& joint, int sharers, btRigidBody& base, btR
       side->setSleepingThresholds(kSprungSleepSpeed_m_per_s, kSprungSleepTurn_rad_per_s);
   }
   if (joint.kind == JointKind::kBall) {
-    for (int axis = 3; axis < 6; ++axis) constraint_->setLimit(axis, 1, -1);  // none
+    for (int axis = 3; axis < 6; ++axis) constraint_->setLimit(axis, 1, -1);  // no limits
   } else {
     const int axis = joint.kind == JointKind::kSlider ? kShiftAlongAxis : kTurnAboutAxis;
     constraint_->setLimit(axis, joint.lower, joint.upper);
@@ -87,8 +89,8 @@ void BulletJoint::Prepare(double dt_s) {
   const bool within = position >= joint_.lower && position <= joint_.upper;
   constraint_->setParam(BT_CONSTRAINT_STOP_ERP, within ? kWholeWay : kStopErrorReduction,
                         slides ? kShiftAlongAxis : kTurnAboutAxis);
-  // Impulses, no forces: Bullet's friction does not see what a torque does within the tick, and
-  // what lies on the body would creep.
+  // Impulses, not forces: Bullet's friction ignores the effect of a torque within the tick, and an
+  // object that lies on the body would creep.
   impulse_ =
       dt_s * SpringForce(joint_, Place(position), sharers_, SideOf(base), SideOf(body), dt_s);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A joint between two bodies in Bullet: one kind of constraint with six axes, of which the joint
-// frees some. Only for bullet_*.cc. Tested by tests/physics/scene/joint_test.cc
+// A joint between two bodies in Bullet: one constraint with six axes, some of which are free. Only
+// for physics/bullet. Tested by tests/physics/scene/joint_test.cc
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -14,16 +14,15 @@ namespace prehend::physics {
 
 class BulletJoint {
  public:
-  /// A slider, hinge or ball; fixed joints need none, their bodies are one (BulletBody). The bodies
-  /// must stand as placed.
-  /// `sharers`: see SpringForce.
+  /// A slider, hinge or ball joint; a fixed joint needs no constraint, because its bodies are one
+  /// (BulletBody). The bodies must still be at their initial poses. `sharers`: see SpringForce.
   BulletJoint(const Joint& joint, int sharers, btRigidBody& base, btRigidBody& body);
 
-  /// For the coming tick: how far it is to the limits, spring and damping. Friction and limits are
-  /// rows of the constraint. Nothing moves yet: joints that share a body all read what the last
-  /// tick left.
+  /// Computes spring, damping and the distance to the limits for the coming tick. Friction and
+  /// limits are rows of the constraint. Nothing moves yet, so that joints that share a body all
+  /// read the state after the last tick.
   void Prepare(double dt_s);
-  /// After all joints are prepared.
+  /// Applies spring and damping; call after all joints are loaded.
   void Pull();
   btTypedConstraint& constraint() { return *constraint_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/person/gaze_test.cc
+// A convex sweep of Bullet. Tested by tests/physics/person/gaze_test.cc
 #include "physics/bullet/sight_ray.h"
 
 #include "physics/bullet/convert.h"
@@ -12,7 +12,7 @@ class SightCallback final : public btCollisionWorld::ClosestConvexResultCallback
   SightCallback(const ContactSides& sides, const SightLine& line, const btVector3& from,
                 const btVector3& to)
       : ClosestConvexResultCallback(from, to), sides_(sides), line_(line) {
-    m_collisionFilterGroup = -1;  // everything is seen, persons too
+    m_collisionFilterGroup = -1;  // every body can be seen, persons included
     m_collisionFilterMask = -1;
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person sees: the first thing that a ball meets on its way from her eyes. Only for
-// bullet_*.cc. Tested by tests/physics/person/gaze_test.cc
+// What a person sees: the first surface that a sphere meets on its way from her eyes. Only for
+// physics/bullet. Tested by tests/physics/person/gaze_test.cc
 #pragma once
 
 #include <btBulletCollisionCommon.h>

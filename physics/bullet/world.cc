@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Needs: Bullet 3.24 built with double precision. Order matters for determinism: bodies first, then
-// hands, in scene order; one step of dt per tick, never Bullet's own sub-stepping, whose remainder
-// can drop time. Tested by tests/physics/world/world_test.cc
+// Needs: Bullet 3.24 built with double precision. The order of creation matters for determinism:
+// bodies first, then hands, in scene order. One step of dt per tick, never Bullet's own
+// sub-stepping, whose remainder can drop time. Tested by tests/physics/world/world_test.cc
 #include "physics/bullet/world.h"
 
 #include <btBulletDynamicsCommon.h>
@@ -11,10 +11,9 @@
 #include "physics/bullet/body.h"
 #include "physics/bullet/contacts.h"
 #include "physics/bullet/convert.h"
-#include "physics/bullet/core/dispatcher.h"
 #include "physics/bullet/core/dynamics_world.h"
 #include "physics/bullet/core/flat_impacts.h"
-#include "physics/bullet/core/solver.h"
+#include "physics/bullet/core/parts.h"
 #include "physics/bullet/grains.h"
 #include "physics/bullet/hand.h"
 #include "physics/bullet/joint.h"
@@ -24,31 +23,31 @@
 #include "physics/scene/welded_bodies.h"
 #include "physics/world/sleep_tracker.h"
 
-// The only process-wide setting of Bullet that is touched. Every world sets the same constant.
+// The only process-wide setting of Bullet that is changed; every world sets the same constant.
 extern btScalar gDbvtMargin;
 
 namespace prehend::physics {
 namespace {
 
-/// Growth of boxes in the broad phase, metres. Bullet's 50 mm joins neighbours into one island: ten
-/// times slower.
+/// Margin of bounding boxes in the broad phase, metres. Bullet's 50 mm joins neighbours into one
+/// island, which is ten times slower.
 constexpr double kBroadphaseMargin_m = 0.002;
-/// Fewer lose friction grasps: 20 iterations placed 28 of 40 objects.
+/// With fewer iterations friction grasps fail: 20 iterations placed 28 of 40 objects.
 constexpr int kSolverIterations = 50;
 constexpr double kErrorReduction = 0.2;
-/// Deeper penetration than this is pushed out without adding velocity.
+/// Penetration deeper than this is corrected without adding velocity.
 constexpr double kSplitImpulseThreshold_m = -0.0005;
-/// Islands are solved one by one, not merged into batches: a sleeping neighbour must not change a
-/// result.
+/// Islands are solved one by one and not merged into batches: a sleeping neighbour must not change
+/// a result.
 constexpr int kSolverBatch = 2;
 
-// Collision groups. Fixed bodies need no contacts with each other; every hand has its own bit from
-// kFirstHandGroup.
-constexpr int kNoGroup = 0;  // what is abstract touches nothing, and is not seen
+// Collision groups. Fixed bodies do not collide with each other; every hand has its own bit, from
+// kFirstHandGroup on.
+constexpr int kNoGroup = 0;  // abstract bodies touch nothing and are not seen
 constexpr int kFixedGroup = 1;
 constexpr int kMovingGroup = 2;
 constexpr int kFirstHandGroup = 4;
-// Persons push what moves, and nothing else: they go through what is fixed, and through hands.
+// Persons push moving bodies only: they pass through fixed bodies and hands.
 constexpr int kPersonGroup = 1 << 30;
 
 class BulletWorld final : public World {
@@ -64,7 +63,7 @@ class BulletWorld final : public World {
  private:
   void Configure();
   void AddBodies();
-  /// One rigid body of these bodies of the scene, the root first.
+  /// Adds one rigid body made of these bodies of the scene, the root first.
   void AddRigid(const std::vector<std::size_t>& group);
   void AddGrains(std::size_t body);
   void AddJoints();
@@ -73,18 +72,15 @@ class BulletWorld final : public World {
   const Scene scene_;
   const double dt_s_;
   std::int64_t tick_ = 0;
-  ImpactConfiguration configuration_;
-  BulletDispatcher dispatcher_{&configuration_};
-  btDbvtBroadphase broadphase_;
-  BulletSolver solver_;
-  BulletDynamics world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+  const std::unique_ptr<BulletEngine> engine_;
+  btMultiBodyDynamicsWorld& world_;
   struct Place {
     std::size_t rigid = 0;   ///< index into rigids_
-    std::size_t member = 0;  ///< of that rigid body
+    std::size_t member = 0;  ///< index into that rigid body's members
   };
   std::vector<std::unique_ptr<BulletBody>> rigids_;
-  std::vector<Place> places_;                   ///< one per body of the scene; nothing for grains
-  std::map<std::size_t, BulletGrains> grains_;  ///< by the index of their body
+  std::vector<Place> places_;                   ///< one per body of the scene; unused for grains
+  std::map<std::size_t, BulletGrains> grains_;  ///< by index of the body
   std::vector<BulletJoint> joints_;
   std::vector<std::unique_ptr<BulletHand>> hands_;
   ContactSides sides_;
@@ -93,7 +89,13 @@ class BulletWorld final : public World {
 };
 
 BulletWorld::BulletWorld(const Scene& scene, const std::vector<int>& styles)
-    : scene_(scene), dt_s_(1.0 / scene.world.rate_hz), stillness_(scene.bodies.size()) {
+    : scene_(scene),
+      dt_s_(1.0 / scene.world.rate_hz),
+      engine_(MakeBulletEngine(scene.world.engine == Engine::kBulletStock
+                                   ? BulletParts::kStock
+                                   : BulletParts::kReplaced)),
+      world_(engine_->world()),
+      stillness_(scene.bodies.size()) {
   Configure();
   AddBodies();
   AddJoints();
@@ -115,7 +117,7 @@ void BulletWorld::Configure() {
   world_.setLatencyMotionStateInterpolation(false);
   world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
   world_.getDispatchInfo().m_useContinuous = false;
-  solver_.setRandSeed(0);
+  engine_->solver().setRandSeed(0);
   btContactSolverInfo& info = world_.getSolverInfo();
   info.m_numIterations = kSolverIterations;
   info.m_erp = kErrorReduction;
@@ -202,14 +204,12 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
     return scene_.bodies[i].grains ? grains_.at(i).rests() : rigids_[places_[i].rigid]->rests();
   });
   touching_.BeginTick(stillness_.rests());
-  // Who is woken in a step keeps the contacts that it had when it fell asleep.
-  ReadContacts(world_.woke_any() ? dispatcher_.AllManifolds() : dispatcher_.AwakeManifolds(),
-               sides_, touching_);
+  ReadContacts(engine_->ChangedManifolds(), sides_, touching_);
   touching_.EndTick();
 }
 
 void BulletWorld::MoveKinematic(int body, const Pose& X_WB) {
-  // Bullet takes its velocity from the last place and this one when it steps.
+  // Bullet derives the velocity from the previous pose and this one when it steps.
   const Place& place = places_[static_cast<std::size_t>(body)];
   rigids_[place.rigid]->rigid().setWorldTransform(ToBullet(X_WB));
 }

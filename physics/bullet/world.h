@@ -10,7 +10,8 @@
 
 namespace prehend::physics {
 
-/// Every hand starts at its pose with the joints of `styles[hand]` fully open.
+/// Every hand starts at its pose, with its joints fully open in the style `styles[hand]`. With
+/// Engine::kBulletStock none of Bullet's parts is replaced (physics/bullet/core/parts.h).
 std::unique_ptr<World> MakeBulletWorld(const Scene& scene, const std::vector<int>& styles);
 
 }  // namespace prehend::physics

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/hand/reach_planner_test.cc
+// Distances are exact for spheres against the shapes of physics/scene/geometry.h. Tested by
+// tests/physics/hand/reach_planner_test.cc
 #include "physics/hand/hand_clearance.h"
 
 #include <algorithm>
@@ -12,13 +13,13 @@ namespace {
 
 constexpr int kBallsPerPalmEdge = 5;
 constexpr int kLeastBallsPerLink = 3;
-/// Balls on a link are at most this many radii apart.
+/// Largest distance between neighbouring spheres on a link, in radii.
 constexpr double kBallsApart_radii = 4;
-/// Radius of the balls at the corners of a jaw's end: unlike a fingertip's it is not round.
+/// Radius of the spheres at the corners of a jaw's end, which is not round like a fingertip.
 constexpr double kCorner_m = 0.001;
-/// At 1.5 m/s, the peak of a long reach, this looks every centimetre.
+/// Time step of the samples: one centimetre at 1.5 m/s, the peak speed of a long reach.
 constexpr int kLooks = 120;
-/// Farther than this nothing matters; distances are cut off here.
+/// Distances are cut off here; larger ones do not matter.
 constexpr double kFar_m = 0.1;
 
 }  // namespace

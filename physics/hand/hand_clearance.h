@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a hand in a given posture stays from the bodies of a scene, with the hand covered by
-// small balls. Tested by tests/physics/hand/reach_planner_test.cc
+// Distance between a hand in a given joint posture and the bodies of a scene; the hand is covered
+// by small spheres. Tested by tests/physics/hand/reach_planner_test.cc
 #pragma once
 
 #include <vector>
@@ -15,9 +15,9 @@ class HandClearance {
  public:
   HandClearance(const HandModel& model, const std::vector<double>& joints);
 
-  /// Least distance to any body of a hand that stands at X_WH, metres; negative inside.
+  /// Smallest distance of a hand at X_WH to any body, metres; negative: penetration.
   double At(const Pose& X_WH, const Scene& scene, const Snapshot& now) const;
-  /// The least one along a motion, looked at in even steps of time.
+  /// The smallest distance along a motion, sampled at even time steps.
   double Along(const Segment& segment, const Scene& scene, const Snapshot& now) const;
 
  private:
@@ -26,7 +26,7 @@ class HandClearance {
     double radius_m;
   };
   std::vector<Ball> balls_;
-  double reach_m_ = 0;  ///< radius of a ball around H's origin that holds them all
+  double reach_m_ = 0;  ///< radius of a sphere around H's origin that encloses all
 };
 
 }  // namespace prehend::physics

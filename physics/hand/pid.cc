@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/hand/pid_test.cc
+// The output is clamped by its norm. Tested by tests/physics/hand/pid_test.cc
 #include "physics/hand/pid.h"
 
 namespace prehend::physics {

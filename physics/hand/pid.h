@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The PID of a vector quantity with a limited output: pulls the palm to the tracked target.
-// The integral's part is at most a share of the limit and frozen while the output is saturated, so
-// that a hand that was held back does not shoot off when it comes free. Tested by
-// tests/physics/hand/pid_test.cc
+// A PID of a vector quantity with limited output; it pulls the palm to the tracked target. The
+// integral term is at most a share of the limit and is frozen while the output is saturated
+// (anti-windup), so that a hand that was held back does not overshoot when it is released. Tested
+// by tests/physics/hand/pid_test.cc
 #pragma once
 
 #include "physics/motion/trajectory.h"
@@ -15,8 +15,8 @@ class VectorPid {
  public:
   explicit VectorPid(const PidGains& gains) : gains_(gains) {}
 
-  /// Force or torque for this tick. `error`: target minus value; `rate_error`: target's rate minus
-  /// the value's.
+  /// Force or torque for this tick. `error` is target minus value, `rate_error` is target rate
+  /// minus value rate.
   Eigen::Vector3d Output(const Eigen::Vector3d& error, const Eigen::Vector3d& rate_error,
                          double dt_s);
 
@@ -30,7 +30,7 @@ struct Wrench {
   Eigen::Vector3d torque_nm = Eigen::Vector3d::Zero();
 };
 
-/// The two PIDs of a palm; what they give acts at the palm's centre, in world axes.
+/// The two PIDs of a palm. Their output acts at the palm's centre, in world axes.
 class PalmPids {
  public:
   explicit PalmPids(const HandModel& model)

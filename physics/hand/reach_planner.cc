@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Candidates are scored in radians: turns of the hand, and penalties for grips of last resort.
 // Tested by tests/physics/hand/reach_planner_test.cc
 #include "physics/hand/reach_planner.h"
 
@@ -14,26 +15,26 @@ namespace prehend::physics {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// An object of at least this height, and this much taller than wide, is taken from the side by
-/// Approach::kAuto.
+/// Approach::kAuto takes an object from the side if it is at least this high and this many times as
+/// high as wide.
 constexpr double kTall_m = 0.09;
 constexpr double kSlender = 1.25;
-/// A way that keeps this distance is good enough.
+/// A path with this clearance is accepted.
 constexpr double kClearEnough_m = 0.002;
-/// The orientation has settled after this share of a reach, well before the fingers enclose the
+/// Share of a reach after which the orientation has settled, well before the fingers enclose the
 /// object.
 constexpr double kTurnShare = 0.75;
-/// Orientations tried around a round object.
+/// Number of orientations tried around a round object.
 constexpr int kRoundDirections = 24;
-/// Cost, in radians, of a grip that the hand cannot open far enough for: only when nothing else is
-/// left.
+/// Cost, in radians, of a grip that is wider than the hand opens: a last resort.
 constexpr double kTooWide = 100;
 
-/// Cost of a hand that is turned by a right angle about its way: only when upright does not do.
+/// Cost, in radians, of a hand rotated by a right angle about its approach: for objects that cannot
+/// be gripped upright.
 constexpr double kRolled = 20;
 
-/// Bends of the way, tried in order: how far the last part follows the direction of arrival, how
-/// much it rises first.
+/// Bends of the path, in the order in which they are tried: how long the last part follows the
+/// direction of arrival, and how much the path rises first.
 struct Bend {
   double straight_m;
   double rise_m;
@@ -46,8 +47,8 @@ struct Candidate {
   Eigen::Vector3d toward_W;
   double cost = 0;
   double beside_m =
-      0;  ///< from the point to grasp, other than along the grip, to where the fingers close
-  double too_wide_m = 0;  ///< how much wider than the open hand the object is along the grip
+      0;  ///< distance of the grip from the point to grasp, other than along the grip axis
+  double too_wide_m = 0;  ///< object width along the grip axis minus opening, if positive
 };
 
 /// The rotation that takes the orthonormal pair (a_H, b_H) to (a_W, b_W).
@@ -63,8 +64,8 @@ Eigen::Vector3d Horizontal(double yaw_rad) { return {std::cos(yaw_rad), std::sin
 
 double YawOf(const Eigen::Vector3d& v) { return std::atan2(v.y(), v.x()); }
 
-/// Horizontal directions in which the object may be gripped or approached: its faces, or all
-/// around; in a plane the two ways along it.
+/// Horizontal directions in which the object may be gripped or approached: normals of its faces, or
+/// all around; in a planar scene the two directions along the plane.
 std::vector<double> YawsOf(const Body& body, const Pose& X_WB, double hand_yaw_rad, bool planar) {
   if (planar) return {0, kPi};
   std::vector<double> yaws;
@@ -80,7 +81,7 @@ std::vector<double> YawsOf(const Body& body, const Pose& X_WB, double hand_yaw_r
   return yaws;
 }
 
-/// What the hand has to enclose, and where: a body as a whole at its centre, or a part of it.
+/// What the hand has to enclose: a whole body at its centre, or a part of a body at a point.
 struct Target {
   Target(const Body& whole, const Pose& X_WWhole, const std::optional<Eigen::Vector3d>& point_m)
       : body(whole), X_WB(X_WWhole) {
@@ -101,12 +102,12 @@ struct Target {
   Eigen::Vector3d point_W_m;
 };
 
-/// The heights that a hand may come down to.
+/// Heights above which palm and fingers have to stay.
 class Ground {
  public:
   Ground(const Scene& scene, const Snapshot& now, int object)
       : object_(BoundsOf(scene, now, object)) {
-    constexpr double kInside_m = 0.01;  // a foot that much narrower on all sides is in nobody's way
+    constexpr double kInside_m = 0.01;  // a foot this much narrower does not obstruct
     for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
       const Body& body = scene.bodies[static_cast<std::size_t>(i)];
       if (!IsThing(body) || RootOf(scene, i) == RootOf(scene, object)) continue;
@@ -120,8 +121,9 @@ class Ground {
     }
   }
 
-  /// What is highest below the object and under a box of these half sizes around a point; where the
-  /// object rests on it, the object's lowest point. Far down when there is nothing.
+  /// Height of the highest surface that is below the object and under a box of these half sizes
+  /// around a point; the object's lowest point if the object rests on that surface. Far down if
+  /// there is nothing.
   double Under(const Eigen::Vector3d& p_W_m, const Eigen::Vector3d& half_size_m) const {
     double highest_m = -std::numeric_limits<double>::infinity();
     for (const Eigen::AlignedBox3d& bounds : below_) {
@@ -172,24 +174,25 @@ class CandidateList {
   const GraspStyle& style_;
   const Target target_;
   const Ground ground_;
-  const bool mounted_;  ///< held by a joint, so there is no table below it
+  const bool mounted_;  ///< held by a joint: not resting on a support
 };
 
 Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quaterniond& q) const {
   const Eigen::Vector3d toward_W = q * approach.toward, grip_W = q * style_.grip_axis;
   const double half_grip = HalfWidth(grip_W);
-  // The post stands at the face, so the middle counts along the grip, the point in the other ways.
+  // The post is at the object's face: along the grip axis the middle counts, in the other
+  // directions the point.
   const Eigen::Vector3d to_middle = target_.centre_W_m - target_.point_W_m;
   const Eigen::Vector3d point_W = target_.point_W_m + grip_W * grip_W.dot(to_middle);
   const double to_face = HalfWidth(toward_W) - toward_W.dot(to_middle);
   const double depth = std::max(approach.pads_m, approach.palm_gap_m + to_face);
-  // In H: from the post along the grip axis to the object's middle, at the right depth.
+  // In H: from the post along the grip axis to the object's middle, at the depth of the style.
   const Eigen::Vector3d on_post =
       style_.post_m - approach.toward * approach.toward.dot(style_.post_m);
   const Eigen::Vector3d centre_H = on_post + style_.grip_axis * half_grip + approach.toward * depth;
 
   Candidate candidate{.X_WH = {point_W - q * centre_H, q}, .toward_W = toward_W};
-  // As much as palm and fingers need around what they grasp.
+  // Space that palm and fingers need around the object.
   constexpr double kFinger_m = 0.03, kHalfPalm_m = 0.045;
   const Eigen::Vector3d half_size_m = grip_W.cwiseAbs() * (half_grip + kFinger_m) +
                                       toward_W.cwiseAbs() * kFinger_m +
@@ -238,11 +241,11 @@ std::vector<Candidate> CandidateList::FromSide() const {
        YawsOf(target_.body, target_.X_WB, YawOf(at_rim ? inwards : way), planar_)) {
     const Eigen::Vector3d toward_W = Horizontal(yaw);
     const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(toward_W);
-    // Coming from the far side means going around the object.
+    // An approach from the far side has to go round the object.
     const double around =
         above_it ? 0 : std::acos(std::clamp(toward_W.dot(way.normalized()), -1.0, 1.0));
     add(toward_W, Eigen::Vector3d::UnitZ(), around);
-    // A thing that is lower than wide can also be gripped from above and below.
+    // An object that is lower than wide can also be gripped at its top and bottom.
     if (!planar_ && half_height >= HalfWidth(across_W)) continue;
     add(toward_W, across_W, around + kRolled);
     add(toward_W, -across_W, around + kRolled);
@@ -255,8 +258,8 @@ bool CandidateList::SideIsNatural() const {
   return style_.side && size.z() >= kTall_m && size.z() >= kSlender * std::min(size.x(), size.y());
 }
 
-/// Those that the hand can open for and that grasp the point; when none does, those that come
-/// nearest to it.
+/// Keeps the candidates that the hand can open for and that grasp the point; if there are none,
+/// those nearest to the point.
 void KeepNearest(std::vector<Candidate>& candidates) {
   const auto is_too_wide = [](const Candidate& candidate) { return candidate.too_wide_m > 0; };
   if (!std::ranges::all_of(candidates, is_too_wide)) std::erase_if(candidates, is_too_wide);
@@ -273,7 +276,7 @@ std::vector<Candidate> Candidates(const Scene& scene, const Snapshot& now,
   const CandidateList list(scene, now, query);
   std::vector<Candidate> above = list.FromAbove(), side = list.FromSide();
   if (scene.world.planar) {
-    // A hand cannot turn over in its plane: its y axis stays where it is.
+    // In a planar scene a hand cannot turn over: its y axis does not change.
     const Eigen::Vector3d y_W = query.from.X_WH.q * Eigen::Vector3d::UnitY();
     const auto turned_over = [&](const Candidate& candidate) {
       return y_W.dot(candidate.X_WH.q * Eigen::Vector3d::UnitY()) < 0.5;
@@ -288,7 +291,7 @@ std::vector<Candidate> Candidates(const Scene& scene, const Snapshot& now,
                           (query.approach == Approach::kAuto && list.SideIsNatural());
   std::vector<Candidate>& first = side_first ? side : above;
   std::vector<Candidate>& second = side_first ? above : side;
-  // An approach that was asked for is kept, unless the style does not have it.
+  // A requested approach is used if the style has it.
   if (query.approach == Approach::kAuto || first.empty())
     first.insert(first.end(), second.begin(), second.end());
   if (query.point_m) KeepNearest(first);
@@ -317,8 +320,7 @@ ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& q
   ReachPlan best;
   bool have_one = false;
   for (const Candidate& candidate : Candidates(scene, now, query)) {
-    // An offset is wanted, even into the object: at the end it may bring the hand nearer by its
-    // length.
+    // A requested offset may lead into the object: it may reduce the clearance by its length.
     const double at_end_m = clearance.At(candidate.X_WH, scene, now);
     const bool fits =
         at_end_m >= kClearEnough_m - query.offset_m.norm() && candidate.too_wide_m == 0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a hand has to be to grasp an object in a style, and a smooth way to get there without
-// touching anything. Algorithm: list the orientations that suit the object (its faces, or all
-// around when it is round), keep those whose grip is at the point that was asked for, or else
-// nearest to it, order them by how far the hand has to turn and to go around, and take
-// the first for which one of a few Bezier curves keeps the open hand clear of every body. When none
-// does, the one that stays clearest. Tested by tests/physics/hand/reach_planner_test.cc
+// Plans a reach: where a hand must be to grasp an object in a style, and a smooth path there that
+// touches nothing. Algorithm: list the orientations that suit the object (its faces, or all
+// directions if it is round); keep those whose grip is at the requested point, or else nearest to
+// it; order them by how far the hand has to turn and to go round; take the first for which one of a
+// few Bezier curves keeps the open hand clear of every body. If there is none, take the curve with
+// the largest clearance. Tested by tests/physics/hand/reach_planner_test.cc
 #pragma once
 
 #include "physics/motion/script.h"
@@ -18,10 +18,10 @@ struct ReachPlan {
   Segment segment;
   Eigen::Vector3d toward_W = -Eigen::Vector3d::UnitZ();  ///< direction of arrival
   double clearance_m =
-      0;  ///< least distance of the open hand to any body on the way; negative: it will touch
-  bool found = false;     ///< false: the best of the ways that do not do
-  double beside_m = 0;    ///< how far from the point that was asked for the fingers close
-  double too_wide_m = 0;  ///< how much wider the object is, where they close, than they open
+      0;                ///< smallest distance of the open hand to any body; negative: it will touch
+  bool found = false;   ///< false: no path is clear, and this is the best of them
+  double beside_m = 0;  ///< distance of the grip from the requested point
+  double too_wide_m = 0;  ///< object width at the grip minus opening, if positive
 };
 
 struct ReachQuery {
@@ -30,13 +30,13 @@ struct ReachQuery {
   int style = 0;   ///< index into HandModel::styles
   Approach approach = Approach::kAuto;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
-  /// Grasp the part of the object that is nearest to this point, there. In the object's frame.
+  /// If set, the part of the object nearest to this point (object's frame) is grasped there.
   std::optional<Eigen::Vector3d> point_m;
   TargetState from;
   double over_s = 0.8;
 };
 
-/// Nearer than this the fingers close at the point that was asked for.
+/// A grip nearer than this to the requested point counts as being at it.
 inline constexpr double kAtPoint_m = 0.01;
 
 ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& query);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/hand/script_player_test.cc
+// One Resolver per step turns the step into a trajectory. Tested by
+// tests/physics/hand/script_player_test.cc
 #include "physics/hand/script_player.h"
 
 #include <algorithm>
@@ -13,19 +14,21 @@
 namespace prehend::physics {
 namespace {
 
-/// How far below the first contact the target goes when an object is put down, so that it truly
-/// stands before the hand opens. The palm's spring makes 5 N of it; more would squash.
+/// How far the target goes below the first contact when an object is put down, so that it stands
+/// firmly before the hand opens. With the palm's spring this makes 5 N; more would squeeze the
+/// object.
 constexpr double kPress_m = 0.002;
-/// The palm's integral carries the object's weight and takes a second to forget it: the target goes
-/// lower by what the weight stretches the palm's spring, at most this much.
+/// The integral of the palm's PID carries the object's weight and takes a second to decay: the
+/// target goes lower by the extension of the palm's spring under that weight, at most this much.
 constexpr double kMostSpring_m = 0.01;
-/// Putting down is over after this share of its time; in the rest the object settles.
+/// Share of a put-down's time after which the motion ends; the object settles in the rest.
 constexpr double kLoweringShare = 0.85;
-/// The open hand is covered by balls, which stick out by less than this.
+/// The open hand is approximated by spheres, which protrude by less than this.
 constexpr double kNotedTouch_m = 0.005;
-/// What is wider than the hand opens by less than this is as wide, as lengths are rounded in notes.
+/// An excess width below this is ignored, because notes round lengths to millimetres.
 constexpr double kNotedWidth_m = 0.0005;
-/// Way-points on the arc of a joint: between them the way is straight to a tenth of a millimetre.
+/// Number of way-points on the arc of a joint: between two of them the arc deviates from a straight
+/// line by 0.1 mm at most.
 constexpr int kJointWaypoints = 40;
 
 double DurationOf(const Step& step) {
@@ -45,7 +48,7 @@ double DurationOf(const Beat& beat) {
   return longest;
 }
 
-/// Hands that touch a body, at least one.
+/// Number of hands that touch a body; at least 1.
 int HandsOn(int body, const Snapshot& now) {
   std::set<int> hands;
   for (const ContactPoint& contact : now.contacts) {
@@ -59,7 +62,7 @@ std::string Millimetres(double length_m) {
   return std::to_string(std::lround(1000 * length_m)) + " mm";
 }
 
-/// What a person wants to know of a reach that goes on all the same; empty: nothing.
+/// Remarks on a reach that is executed in spite of problems; empty if there are none.
 std::string NoteAbout(const ReachPlan& plan, const ReachStep& reach, const GraspStyle& style) {
   std::string notes;
   const auto add = [&](const std::string& note) { notes += (notes.empty() ? "" : "; ") + note; };
@@ -78,7 +81,7 @@ std::string NoteAbout(const ReachPlan& plan, const ReachStep& reach, const Grasp
 
 }  // namespace
 
-/// Turns one step into a motion. An empty `problem` afterwards means that it worked.
+/// Turns one step into a motion. An empty `problem` afterwards means success.
 class ScriptPlayer::Resolver {
  public:
   Resolver(const Scene& scene, const Snapshot& now, const Step& step, HandState& hand)
@@ -88,7 +91,7 @@ class ScriptPlayer::Resolver {
     std::visit(*this, step_.action);
     return problem_;
   }
-  /// Empty if there is nothing to say.
+  /// The remark on this step; empty if there is none.
   const std::string& note() const { return note_; }
 
   void operator()(const WaitStep&) {}
@@ -163,7 +166,7 @@ void ScriptPlayer::Resolver::operator()(const TriggerStep& trigger) {
   Follow(segment);
 }
 
-/// The body last reached for; without a reach, the movable one that is pressed most. -1: none.
+/// The body last reached for; without a reach, the movable body that is pressed most; -1: none.
 int ScriptPlayer::Resolver::HeldBody() const {
   if (hand_.object >= 0) return hand_.object;
   std::vector<double> impulse(scene_.bodies.size(), 0);
@@ -207,7 +210,7 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
 }
 
 void ScriptPlayer::Resolver::operator()(const RetreatStep& retreat) {
-  // A hand that never reached goes the way its back looks.
+  // A hand that never reached moves in the direction of its back.
   const bool came = !hand_.came_along_W.isZero();
   const Eigen::Vector3d back =
       came ? Eigen::Vector3d(-hand_.came_along_W) : hand_.target.X_WH.q * Eigen::Vector3d::UnitZ();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/motion/posture_test.cc
+// Directions turn along great circles. Tested by tests/physics/motion/posture_test.cc
 #include "physics/motion/posture.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace prehend::physics {
 namespace {
 
 Eigen::Vector3d TurnedToward(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double share) {
-  const Eigen::Quaterniond whole = Eigen::Quaterniond::FromTwoVectors(a, b);
+  const Eigen::Quaterniond whole = RotationBetween(a, b);
   return Eigen::Quaterniond::Identity().slerp(share, whole) * a;
 }
 

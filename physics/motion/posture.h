@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a body holds itself, as directions: the same figure suits a tall person and a small one. What
-// a recording of a whole body is turned into, and what can be mixed with another figure. Tested by
-// tests/physics/motion/posture_test.cc
+// How a body holds itself, as directions of its bones, so that the same figure suits a tall and a
+// small person. A recording of a whole body becomes figures, and figures can be interpolated.
+// Tested by tests/physics/motion/posture_test.cc
 #pragma once
 
 #include <array>
@@ -12,11 +12,11 @@
 namespace prehend::physics {
 
 struct Figure {
-  /// Of limbs there are two each: kThigh is the right one's, kThigh + 1 the left one's.
+  /// Limbs have two entries each: kThigh is the right one, kThigh + 1 the left one.
   enum Way : std::size_t {
     kTrunk,            ///< from midway between the hip joints to midway between the shoulders
-    kNeck,             ///< from there to where the head turns
-    kFace,             ///< where it looks
+    kNeck,             ///< from there to the joint of the head
+    kFace,             ///< direction of the face
     kCrown,            ///< from the neck to the top of the head
     kAcrossHips,       ///< to her left
     kAcrossShoulders,  ///< to her left
@@ -33,7 +33,8 @@ struct Figure {
   std::array<Eigen::Vector3d, kWays> ways_W;           ///< unit
 };
 
-/// From `a`, at 0, to `b`, at 1: every way turns evenly along the shortest arc.
+/// Interpolates from `a` (share 0) to `b` (share 1): every direction turns evenly along the
+/// shortest arc.
 Figure Mix(const Figure& a, const Figure& b, double share);
 
 struct TimedFigure {
@@ -41,13 +42,13 @@ struct TimedFigure {
   Figure figure;
 };
 
-/// A motion through figures, passed without stopping: the hips on the monotone cubic of
-/// WaypointTrajectory(), the ways turning evenly between neighbours.
+/// A motion through figures without stops: the hips move on the monotone cubic of
+/// WaypointTrajectory(), directions turn evenly between neighbours.
 class FigureTrack {
  public:
-  /// Starts with `from` unless the first figure is at time 0. At least one figure.
+  /// Starts from `from` unless the first figure is at time 0. Requires at least one figure.
   FigureTrack(const Figure& from, std::vector<TimedFigure> figures);
-  /// Before the first: as it starts. After the last: as it ends.
+  /// The figure at a time; the first one before its begin, the last one after its end.
   Figure At(double t_s) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Losses come in runs as in the channel model of Gilbert 1960. Tested by
+// Losses follow the two-state channel of Gilbert 1960. Tested by
 // tests/physics/motion/tracker_test.cc
 #include "physics/motion/tracker.h"
 
@@ -21,8 +21,9 @@ Eigen::Quaterniond Turn(const Eigen::Vector3d& rotation_vector) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, rotation_vector / angle));
 }
 
-/// How many looks are due until this tick; on integers, so that any rate works without drift.
-std::int64_t LooksUntil(std::int64_t tick, const TrackerSettings& settings, int rate_hz) {
+/// Number of samples that are due up to this tick; in integers, so that any rate works without
+/// drift.
+std::int64_t SamplesUntil(std::int64_t tick, const TrackerSettings& settings, int rate_hz) {
   return tick * settings.tracker_hz / rate_hz;
 }
 
@@ -43,14 +44,14 @@ Tracker::Tracker(const TrackerSettings& settings, int rate_hz, std::uint64_t see
 
 TargetState Tracker::Follow(const TargetState& truth) {
   ++tick_;
-  if (LooksUntil(tick_, settings_, rate_hz_) > LooksUntil(tick_ - 1, settings_, rate_hz_)) {
-    // A look is made also when it is lost: losses must not change the noise of the others.
-    const Look look = LookAt(truth);
-    if (!IsDropped()) under_way_.push_back(look);
+  if (SamplesUntil(tick_, settings_, rate_hz_) > SamplesUntil(tick_ - 1, settings_, rate_hz_)) {
+    // A lost sample is taken, too: losses must not change the noise of the other samples.
+    const Sample sample = TakeSample(truth);
+    if (!IsDropped()) in_transit_.push_back(sample);
   }
-  while (!under_way_.empty() && under_way_.front().arrives_tick <= tick_) {
-    StartToward(under_way_.front());
-    under_way_.pop_front();
+  while (!in_transit_.empty() && in_transit_.front().arrives_tick <= tick_) {
+    StartToward(in_transit_.front());
+    in_transit_.pop_front();
   }
   const std::int64_t ticks = tick_ - begun_tick_;
   if (ticks > approach_ticks_) {
@@ -67,33 +68,34 @@ TargetState Tracker::Follow(const TargetState& truth) {
   return now_;
 }
 
-Tracker::Look Tracker::LookAt(const TargetState& truth) {
+Tracker::Sample Tracker::TakeSample(const TargetState& truth) {
   constexpr double kMPerMm = 0.001;
   const double turn_rad =
       2 * std::numbers::pi * settings_.tremor_hz * static_cast<double>(tick_) / rate_hz_;
-  Look look{.arrives_tick = tick_ + latency_ticks_, .X_WH = truth.X_WH, .trigger = truth.trigger};
+  Sample sample{
+      .arrives_tick = tick_ + latency_ticks_, .X_WH = truth.X_WH, .trigger = truth.trigger};
   for (int axis = 0; axis < 3; ++axis)
-    look.X_WH.p_m[axis] +=
+    sample.X_WH.p_m[axis] +=
         settings_.tremor_mm * kMPerMm * std::sin(turn_rad + tremor_phase_rad_[axis]);
-  look.X_WH.p_m += Noise(settings_.jitter_mm * kMPerMm, random_);
-  look.X_WH.q =
+  sample.X_WH.p_m += Noise(settings_.jitter_mm * kMPerMm, random_);
+  sample.X_WH.q =
       (Turn(Noise(settings_.jitter_deg * kRadPerDeg, random_)) * truth.X_WH.q).normalized();
-  return look;
+  return sample;
 }
 
 bool Tracker::IsDropped() {
   const double share = settings_.dropped_share;
-  const double run_looks = std::max(1.0, settings_.dropped_run_s * settings_.tracker_hz);
+  const double run_samples = std::max(1.0, settings_.dropped_run_s * settings_.tracker_hz);
   const double chance = random_.Share();
   if (settings_.dropped_run_s <= 0) return chance < share;
-  losing_ = losing_ ? chance >= 1 / run_looks : chance < share / ((1 - share) * run_looks);
+  losing_ = losing_ ? chance >= 1 / run_samples : chance < share / ((1 - share) * run_samples);
   return losing_;
 }
 
-void Tracker::StartToward(const Look& look) {
+void Tracker::StartToward(const Sample& sample) {
   from_ = now_;
-  to_ = {.X_WH = look.X_WH, .trigger = look.trigger};
-  begun_tick_ = tick_ - 1;  // this tick is the first of the approach
+  to_ = {.X_WH = sample.X_WH, .trigger = sample.trigger};
+  begun_tick_ = tick_ - 1;  // this tick is the first of the motion
 }
 
 }  // namespace prehend::physics

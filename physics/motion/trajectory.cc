@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/motion/trajectory_test.cc
+// Segments are looked up by their end times. Tested by tests/physics/motion/trajectory_test.cc
 #include "physics/motion/trajectory.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ TargetState SegmentAt(const Segment& segment, double t_s) {
   return state;
 }
 
-/// Rate at a way-point between two slopes: their harmonic mean, zero where the direction turns.
+/// Slope at a way-point between two slopes: their harmonic mean, or zero if the sign changes.
 Eigen::Vector3d MonotoneRate(const Eigen::Vector3d& before, const Eigen::Vector3d& after) {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/person/gaze_test.cc
+// The head approaches the eyes' direction exponentially. Tested by
+// tests/physics/person/gaze_test.cc
 #include "physics/person/gaze.h"
 
 #include <algorithm>
@@ -16,9 +17,9 @@ using Eigen::Vector3d;
 
 constexpr double kSaccadeBase_s = 0.021;
 constexpr double kSaccade_s_per_deg = 0.0022;
-/// A target that is farther away than this from one tick to the next is a new one.
+/// A target that moves by more than this within one tick counts as a new one.
 constexpr double kSaccadeFrom_deg = 2;
-/// The head has made up 63 % of its way after this time.
+/// Time after which the head has covered 63 % of its way.
 constexpr double kHeadLag_s = 0.15;
 
 double AngleDeg(const Vector3d& a, const Vector3d& b) {
@@ -26,7 +27,7 @@ double AngleDeg(const Vector3d& a, const Vector3d& b) {
 }
 
 Vector3d Between(const Vector3d& from, const Vector3d& to, double x) {
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(from, to);
+  const Eigen::Quaterniond turn = RotationBetween(from, to);
   return (Eigen::Quaterniond::Identity().slerp(x, turn) * from).normalized();
 }
 
@@ -71,7 +72,7 @@ GazeLeader::GazeLeader(const Scene& scene, const Script& script, const Person& p
     : scene_(scene), script_(script), person_(person), reached_(scene.hands.size(), -1) {}
 
 void GazeLeader::Begin(std::size_t beat, const Snapshot& now) {
-  // The right hand first: two hands that do different things need not be seen both.
+  // The right hand first: she looks at one of two hands that do different things.
   for (const int hand : {person_.right_hand, person_.left_hand}) {
     for (const Step& step : script_.beats[beat].steps) {
       if (hand < 0 || step.hand != hand) continue;
@@ -83,7 +84,7 @@ void GazeLeader::Begin(std::size_t beat, const Snapshot& now) {
   }
 }
 
-/// Nothing when the step does not say where to look: then the eyes stay.
+/// Nullopt if the step gives no target: then the eyes stay.
 std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t beat,
                                                const Snapshot& now) {
   int& reached = reached_[static_cast<std::size_t>(step.hand)];
@@ -106,7 +107,7 @@ std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t bea
   return GazeTarget{.kind = GazeTarget::Kind::kHand, .index = step.hand};
 }
 
-/// On the support of the next put-down; nothing when none follows.
+/// The place on the support of the next put-down; nullopt if none follows.
 std::optional<Vector3d> GazeLeader::LandingPlace(const CarryStep& carry, int hand, std::size_t beat,
                                                  const Snapshot& now) const {
   for (std::size_t later = beat + 1; later < script_.beats.size(); ++later) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a person looks: what she wants to see, and how eyes and head get there. Left alone, her
-// eyes lead her hands: they go to a thing when a hand starts for it, and to the place where it will
-// be put down when it is carried (Johansson, Westling, Bäckström & Flanagan 2001). Tested by
-// tests/physics/person/gaze_test.cc
+// Where a person looks: which target she chooses, and how eyes and head move to it. Without
+// instructions her eyes lead her hands: they go to an object when a hand starts to move to it, and
+// to the landing place when it is carried (Johansson, Westling, Bäckström & Flanagan 2001). Tested
+// by tests/physics/person/gaze_test.cc
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace prehend::physics {
 
-/// What is looked at: a body or a hand of the scene, a point of the world, or whatever is ahead.
+/// A gaze target: a body or a hand of the scene, a point of the world, or straight ahead.
 struct GazeTarget {
   enum class Kind { kAhead, kBody, kHand, kPoint };
   Kind kind = Kind::kAhead;
@@ -24,12 +24,12 @@ struct GazeTarget {
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
 };
 
-/// The middle of what is looked at; nothing for what is ahead.
+/// The centre of a target; nullopt for straight ahead.
 std::optional<Eigen::Vector3d> PointOf(const GazeTarget& target, const Scene& scene,
                                        const Snapshot& now);
 
-/// The first gaze target of the scene that the ball of her sight meets before what she sees. Gaze
-/// targets are no matter, so that no engine meets them.
+/// The nearest gaze target of the scene along her line of sight, if it is nearer than what she
+/// sees. No engine finds gaze targets, because they are abstract.
 struct TargetSeen {
   int body = -1;
   double distance_m = 0;
@@ -37,13 +37,13 @@ struct TargetSeen {
 std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaze,
                                         const SightLine& line = {});
 
-/// Chooses for a person whose eyes lead her hands.
+/// Chooses targets for a person whose eyes lead her hands.
 class GazeLeader {
  public:
   /// `script` and `scene` must outlive it.
   GazeLeader(const Scene& scene, const Script& script, const Person& person);
 
-  /// Where to look from the begin of this beat of the script on.
+  /// Chooses the target from the beginning of this stage of the script on.
   void Begin(std::size_t beat, const Snapshot& now);
   const GazeTarget& target() const { return target_; }
 
@@ -55,20 +55,20 @@ class GazeLeader {
   const Scene& scene_;
   const Script& script_;
   const Person& person_;
-  std::vector<int> reached_;  ///< per hand of the scene: the body it reached for last; -1: none
+  std::vector<int> reached_;  ///< by hand: the body last reached for, or -1
   GazeTarget target_;
 };
 
-/// Moves eyes and head. Eyes jump to a new target: a saccade of 21 ms and 2.2 ms per degree
-/// (Carpenter 1988); a target that moves is followed. The head comes after.
+/// Moves eyes and head. Eyes jump to a new target in a saccade of 21 ms plus 2.2 ms per degree
+/// (Carpenter 1988) and follow a moving target. The head follows more slowly.
 class EyesAndHead {
  public:
   explicit EyesAndHead(const Eigen::Vector3d& ahead_W)
       : eyes_W_(ahead_W), head_W_(ahead_W), from_W_(ahead_W) {}
 
-  /// One tick towards this direction.
+  /// Turns towards this direction for one tick.
   void Turn(const Eigen::Vector3d& wanted_W, double dt_s);
-  /// At once.
+  /// Turns eyes and head at once.
   void Set(const Eigen::Vector3d& toward_W);
 
   const Eigen::Vector3d& eyes_W() const { return eyes_W_; }

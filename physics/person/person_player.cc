@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Motions start at stages of the script; every tick turns them into a posture and that into places.
 // Tested by tests/physics/person/person_player_test.cc
 #include "physics/person/person_player.h"
 
@@ -16,7 +17,7 @@ double PersonPlayer::Motion::At(double t_s) const {
   return from + (to - from) * MinimumJerk((t_s - begin_s) / duration_s);
 }
 
-/// Starts the motion that one step is about.
+/// Starts the motion of one step.
 class PersonPlayer::Resolver {
  public:
   Resolver(PersonPlayer& player, double over_s) : player_(player), over_s_(over_s) {}
@@ -134,8 +135,7 @@ Posture::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
     if (limb < 2) forearm_W = ForearmOf(motion.end, person_, resting);
   }
   const Vector3d from_W = posture_.X_WS * motion.from_S_m;
-  const Eigen::Quaterniond turn =
-      Eigen::Quaterniond::FromTwoVectors(posture_.X_WS.q * motion.forearm_S, forearm_W);
+  const Eigen::Quaterniond turn = RotationBetween(posture_.X_WS.q * motion.forearm_S, forearm_W);
   const Eigen::Quaterniond turned = Eigen::Quaterniond::Identity().slerp(progress, turn);
   return {motion.end, from_W + progress * (to_W - from_W),
           turned * (posture_.X_WS.q * motion.forearm_S)};
@@ -158,9 +158,9 @@ double PersonPlayer::ResistanceTo(int limb, const Snapshot& now) const {
 }
 
 void PersonPlayer::Yield(int limb, const Snapshot& now) {
-  // Resistance grows with the speed, so that speed is taken which keeps it at the limit. From there
-  // the limb takes up its pace again by equal shares: what resisted at a slow pace is met at a slow
-  // one.
+  // Resistance in the solver grows with speed, so the pace is divided by the excess. It then grows
+  // back exponentially from where it was: a resistance that was met at a slow pace is met at a slow
+  // pace again.
   constexpr double kGrow_s = 0.1, kLeastPace = 0.01;
   const double dt_s = 1.0 / scene_.world.rate_hz;
   LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];

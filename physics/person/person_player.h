@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays what a script tells its persons: where they stand, lean, put their limbs, and look. Arms
-// follow the hands of the scene. Nothing pushes back: a person is kinematic. Tested by
-// tests/physics/person/person_player_test.cc
+// Plays the steps of a script for one person: where she stands, how she leans, where her limbs go
+// and where she looks. Her arms follow the hands of the scene. Nothing pushes her back: a person is
+// kinematic. Tested by tests/physics/person/person_player_test.cc
 #pragma once
 
 #include <string>
@@ -17,20 +17,20 @@ namespace prehend::physics {
 
 class PersonPlayer {
  public:
-  /// `scene` and `script` must outlive it. `person` is an index into Scene::persons.
+  /// `scene` and `script` must outlive the player. `person` is an index into Scene::persons.
   PersonPlayer(const Scene& scene, const Script& script, int person);
 
-  /// This beat of the script begins with the tick that follows `now`.
+  /// This stage of the script begins with the tick after `now`.
   void Begin(std::size_t beat, const Snapshot& now);
-  /// Moves her parts for the tick that follows `now`.
+  /// Moves her parts for the tick after `now`.
   void Advance(const Snapshot& now, World& world);
-  /// What she sees, in a world whose last tick she has been moved for.
+  /// What she sees in a world that has stepped since her last Advance().
   GazeState See(const World& world) const;
 
   const Posture& posture() const { return posture_; }
 
  private:
-  /// From where something is to where it shall be, with minimum jerk.
+  /// A minimum-jerk motion of one quantity.
   struct Motion {
     double from = 0, to = 0;
     double begin_s = 0, duration_s = 0;
@@ -38,27 +38,27 @@ class PersonPlayer {
   };
   struct LimbMotion {
     LimbEnd end = LimbEnd::kRightWrist;
-    Eigen::Vector3d from_S_m = Eigen::Vector3d::Zero();  ///< in the frame of her stand
+    Eigen::Vector3d from_S_m = Eigen::Vector3d::Zero();  ///< in the frame of her stance
     Eigen::Vector3d to_S_m = Eigen::Vector3d::Zero();
-    Eigen::Vector3d forearm_S = Eigen::Vector3d::UnitZ();  ///< where it was when the step began
+    Eigen::Vector3d forearm_S = Eigen::Vector3d::UnitZ();  ///< when the step began
     bool to_rest = true;
     Motion progress;
-    std::optional<double> most_n;  ///< the limb yields to more than this
-    double pace = 1;               ///< share of its speed that what resists leaves to it
-    double behind_s = 0;           ///< how far it is behind its time, since it had to yield
+    std::optional<double> most_n;  ///< force above which the limb yields
+    double pace = 1;               ///< share of the full speed, less than 1 under resistance
+    double behind_s = 0;           ///< delay that yielding has caused
   };
   struct RecordedBody {
     FigureTrack track;
     double begin_s = 0;
   };
-  struct Leaving {  ///< from the end of a recording to what she does without
+  struct Leaving {  ///< the transition from the end of a recording
     Figure from;
     Motion progress;
   };
   class Resolver;
 
   Posture::Limb LimbAt(int limb, const Snapshot& now) const;
-  /// Slows a limb down that meets more resistance than it may, and lets it catch its pace again.
+  /// Slows a limb down that meets too much resistance, and speeds it up again afterwards.
   void Yield(int limb, const Snapshot& now);
   double ResistanceTo(int limb, const Snapshot& now) const;
   void HoldFigure();
@@ -77,8 +77,8 @@ class PersonPlayer {
   std::vector<Pose> places_;
   GazeLeader leader_;
   Eyes eyes_;
-  std::optional<GazeTarget> told_;                     ///< a script's target goes before her own
-  std::optional<std::pair<Trajectory, double>> head_;  ///< recorded, and when it began
+  std::optional<GazeTarget> told_;                     ///< the script's target; overrides her own
+  std::optional<std::pair<Trajectory, double>> head_;  ///< recorded motion and its begin, seconds
   std::optional<RecordedBody> body_;
   std::optional<Leaving> leaving_;
   EyesAndHead gaze_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/person/skeleton_test.cc
+// Arms and legs are solved in closed form: two bones and the law of cosines. Tested by
+// tests/physics/person/skeleton_test.cc
 #include "physics/person/skeleton.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Shares of the height: levels of a standing person, lengths of limbs, half breadths, radii.
+// Shares of the body height: levels of a standing person, lengths of limbs, half breadths, radii.
 constexpr double kAnkle = 0.039, kHip = 0.530, kShoulder = 0.818, kNeckTop = 0.870;
 constexpr double kThigh = 0.245, kShank = 0.246, kUpperArm = 0.186, kForearm = 0.146, kPalm = 0.108;
 constexpr double kHalfShoulders = 0.129, kHalfHips = 0.050;
@@ -29,15 +30,15 @@ struct Bone {
 
 double Side(bool right) { return right ? -1 : 1; }
 
-/// What limbs and head hang on.
+/// The points and directions that limbs and head are attached to.
 struct Torso {
   Vector3d hips;      ///< midway between the hip joints
   Vector3d trunk_up;  ///< from there to midway between the shoulders, unit
   Vector3d neck_up, hips_left, shoulders_left;
 };
 
-/// Where her hips go: out from over her feet, and down as far as her legs, whose feet stay, need
-/// it.
+/// Position of the hips: shifted sideways by the sway, and lowered as far as straight legs on fixed
+/// feet require.
 Vector3d SwayOf(const Person& person, const Pose& X_WS, const Eigen::Vector2d& sway_m) {
   if (sway_m.isZero()) return Vector3d::Zero();
   constexpr double kStretched = 0.998;  // of a leg that is straight
@@ -65,7 +66,8 @@ Torso TorsoOf(const Person& person, const Posture& posture) {
   return {hips, up, up, left, left};
 }
 
-/// A point of the trunk: its level when she stands upright, and how far to her left, as shares.
+/// A point of the trunk, given by its level in upright stance and its offset to her left, as shares
+/// of the height.
 Vector3d OnTrunk(const Person& person, const Torso& torso, double level, double left = 0) {
   return torso.hips +
          person.height_m * ((level - kHip) * torso.trunk_up + left * torso.shoulders_left);
@@ -79,14 +81,14 @@ Vector3d HipOf(const Person& person, const Torso& torso, bool right) {
   return torso.hips + Side(right) * kHalfHips * person.height_m * torso.hips_left;
 }
 
-/// The joint between two bones that lead from `from` toward `to`, on the side of `hint`; and where
-/// they really end.
+/// The joint between two bones from `from` towards `to`, on the side of `hint`; and the point where
+/// the second bone ends.
 struct TwoBones {
   Vector3d joint, end;
 };
 TwoBones Reach(const Vector3d& from, const Vector3d& to, double first_m, double second_m,
                const Vector3d& hint) {
-  constexpr double kStraight = 0.999;  // fully stretched the joint would have no side
+  constexpr double kStraight = 0.999;  // a fully stretched limb has no bending plane
   const Vector3d way = to - from;
   const Vector3d toward =
       way.norm() > 1e-6 ? Vector3d(way.normalized()) : Vector3d(-Vector3d::UnitZ());
@@ -172,7 +174,7 @@ void AddArm(const Person& person, const Posture& posture, bool right, std::vecto
   const Arm arm = ArmOf(person, posture, right);
   bones.push_back({right ? "right_upper_arm" : "left_upper_arm", 0.026, arm.elbow, arm.shoulder});
   bones.push_back({right ? "right_forearm" : "left_forearm", kForearmRadius, arm.wrist, arm.elbow});
-  if (FollowsHand(person, right)) return;  // the scene has a better one
+  if (FollowsHand(person, right)) return;  // a hand of the scene takes its place
   bones.push_back({right ? "right_hand" : "left_hand", 0.018,
                    arm.wrist + kPalm * person.height_m * arm.palm_toward, arm.wrist});
 }
@@ -204,11 +206,11 @@ std::vector<Bone> BonesOf(const Person& person, const Posture& posture) {
   return bones;
 }
 
-/// Its axis along z, turned as little as possible from `before`.
+/// The pose of a bone with its axis along z, rotated as little as possible from `before`.
 Pose PlaceOf(const Bone& bone, const Pose* before) {
   const Vector3d axis = (bone.upper_W_m - bone.lower_W_m).normalized();
   const Eigen::Quaterniond q = before ? before->q : Eigen::Quaterniond::Identity();
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(q * Vector3d::UnitZ(), axis);
+  const Eigen::Quaterniond turn = RotationBetween(q * Vector3d::UnitZ(), axis);
   return {(bone.lower_W_m + bone.upper_W_m) / 2, (turn * q).normalized()};
 }
 
@@ -288,7 +290,7 @@ Eigen::Vector3d NeckTop(const Person& person, const Posture& posture) {
 }
 
 Pose HeadToward(const Person& person, const Vector3d& p_W_neck, const Vector3d& toward_W) {
-  // Yaw and pitch, never roll. Straight up or down there is no yaw: the head nods less than that.
+  // Yaw and pitch, no roll. Yaw is undefined straight up and down, so the pitch is limited.
   constexpr double kMostNod = 0.98;
   const double level = std::hypot(toward_W.x(), toward_W.y());
   const double yaw = level > 1e-9 ? std::atan2(toward_W.y(), toward_W.x()) : 0;
@@ -350,7 +352,7 @@ Eigen::Vector3d WristInHand(const Person& person, const HandModel& model) {
 
 namespace {
 
-/// Standing with hanging arms, without a head.
+/// Standing posture with hanging arms, without the head's pose.
 Posture Resting(const Person& person) {
   Posture posture{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}, .figure = {}};
   for (int limb = 0; limb < 4; ++limb)

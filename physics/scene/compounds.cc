@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/scene/compounds_test.cc
+// Round walls are rings of boxes (staves). Tested by tests/physics/scene/compounds_test.cc
 #include "physics/scene/compounds.h"
 
 #include <cmath>
@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Staves of a round wall: with 16 the inside is a hundredth of the radius off a true circle.
+/// Staves of a round wall: with 16 the inner surface differs from a circle by a hundredth of the
+/// radius.
 constexpr int kStaves = 16;
 /// A handle is a bar this thick.
 constexpr double kHandleBar_m = 0.01;
@@ -19,12 +20,12 @@ constexpr double kFootShare = 0.5;
 
 PlacedShape BoxAt(const Vector3d& size_m, const Vector3d& at_m) { return {Box{size_m}, {at_m}}; }
 
-/// A closed ring of boards around z. Their middle lines are at radius_m, half-way up, and they lean
-/// outwards by lean_rad; length_m is measured along them.
+/// A closed ring of boards around z. Half-way up their centre lines are at radius_m; they lean
+/// outwards by lean_rad; length_m is measured along a board.
 void AddRing(double radius_m, double length_m, double wall_m, double lean_rad, double z_m,
              std::vector<PlacedShape>& shapes) {
   const double rise = length_m / 2 * std::sin(lean_rad);
-  // Wide enough at the upper edge, where the ring is widest, to leave no gap outside.
+  // Wide enough to leave no gap at the upper edge, where the ring is widest.
   const double width_m = 2 * (radius_m + rise + wall_m / 2) * std::tan(std::numbers::pi / kStaves);
   for (int i = 0; i < kStaves; ++i) {
     const Eigen::Quaterniond yaw(

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hollow things of everyday life, built from convex pieces. Every one has its frame in the middle
-// of the box around it (a mug's handle apart), z up. Tested by
-// tests/physics/scene/compounds_test.cc
+// Hollow everyday objects, built from convex parts. Each has its frame at the centre of its
+// bounding box (without a mug's handle), z up. Tested by tests/physics/scene/compounds_test.cc
 #pragma once
 
 #include <vector>
@@ -22,13 +21,13 @@ struct Mug {
   double wall_m = 0.005;
   double handle_m = 0.03;  ///< how far the handle stands out; 0: no handle
 };
-/// A round dish whose sides lean outwards.
+/// A round dish with sides that lean outwards.
 struct Bowl {
   double radius_m = 0.08;  ///< outer, at the rim; the foot has half of it
   double height_m = 0.06;
   double wall_m = 0.006;
 };
-/// Boards between two sides, open to -x. Two boards and a back: a cupboard or a chest.
+/// Boards between two sides, open towards -x. Two boards and a back make a cupboard or a chest.
 struct Shelf {
   Eigen::Vector3d size_m = {0.3, 0.6, 0.8};  ///< outer edge lengths
   int boards = 2;                            ///< the lowest and the highest included

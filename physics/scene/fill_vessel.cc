@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/scene/fill_vessel_test.cc
+// Flood fill of one lattice layer after the other. Tested by
+// tests/physics/scene/fill_vessel_test.cc
 #include "physics/scene/fill_vessel.h"
 
 #include <cmath>
@@ -17,11 +18,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Grains are apart by this share of their diameter, so that none starts in another one.
+/// Gap between grains as a share of their diameter, so that none starts inside another.
 constexpr double kGap = 0.02;
-/// Each is shaken by at most this share of the gap.
+/// Each grain is shifted by at most this share of the gap.
 constexpr double kShake = 0.2;
-/// The floor is found to this share of a radius.
+/// Accuracy of the floor's height, as a share of a radius.
 constexpr double kFloorStep = 0.05;
 
 class Filling {
@@ -38,7 +39,7 @@ class Filling {
   std::vector<Vector3d> Fill() {
     const double rim_m = box_.p_BC_m.z() + box_.half_size_m.z();
     double z = box_.p_BC_m.z() - box_.half_size_m.z();
-    if (IsClear({0, 0, z})) return {};  // it has no floor
+    if (IsClear({0, 0, z})) return {};  // the vessel has no floor
     while (z < rim_m && !IsClear({0, 0, z})) z += kFloorStep * radius_m_;
     bool shifted = false;
     while (z < rim_m && grains_.size() < count_ && FillLayer(z, shifted)) {
@@ -68,7 +69,7 @@ class Filling {
     return p_B_m + Vector3d(x, random_.Between(-most_m, most_m), 0);
   }
 
-  /// False when it leaks.
+  /// False if the layer leaks.
   bool FillLayer(double z, bool shifted) {
     std::vector<Vector3d> layer;
     std::deque<std::pair<int, int>> next = {{0, 0}};

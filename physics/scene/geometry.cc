@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/scene/geometry_test.cc
+// One visitor per question over the kinds of shapes. Tested by tests/physics/scene/geometry_test.cc
 #include "physics/scene/geometry.h"
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace {
 /// degrees.
 constexpr double kUprightCosine = 0.996;
 
-/// Of the vertical component of a support's own z axis.
+/// Largest error of the vertical component of an upright support's z axis.
 constexpr double kUprightError = 1e-9;
 
-/// Half extents of a shape along axes in which it stands with rotation R.
+/// Half extents, along the axes of a frame, of a shape whose rotation in that frame is R.
 struct HalfExtentsIn {
   const Eigen::Matrix3d& R;
 
@@ -35,7 +35,7 @@ struct HalfExtentsIn {
   }
 };
 
-/// World axes-aligned box of a shape that stands at X_WS.
+/// Bounding box, aligned with the world's axes, of a shape at X_WS.
 struct BoundsAt {
   const Pose& X_WS;
 
@@ -65,7 +65,8 @@ struct VolumeOfShape {
   double operator()(const Hull& s) const { return s.volume_m3; }
 };
 
-/// Of a point whose offsets beyond the half sizes are given, one per independent direction.
+/// Signed distance of a point from its offsets beyond the half sizes, one per independent
+/// direction.
 template <int N>
 double BeyondHalfSizes(const Eigen::Matrix<double, N, 1>& beyond) {
   return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
@@ -111,11 +112,11 @@ Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB) {
 }
 
 double HighestBelow(const Body& support, const Pose& X_WS, const Body& object, const Pose& X_WO) {
-  // A part that reaches this far into the object is still below it.
+  // A part that overlaps the object by this much still counts as below it.
   constexpr double kOverlap_m = 0.005;
   const bool upright = std::abs((X_WS.q * Eigen::Vector3d::UnitZ()).z() - 1) < kUprightError;
-  // The footprints are compared in the support's own axes if it stands upright: a turned tray's
-  // walls would look thick in the world's.
+  // Footprints are compared in the support's own axes if it stands upright: in the world's axes the
+  // walls of a rotated tray would seem thick.
   const Pose X_WA = upright ? Pose{Eigen::Vector3d::Zero(), X_WS.q} : Pose{};
   const Eigen::AlignedBox3d bounds = WorldBounds(object, X_WA.inverse() * X_WO);
   double top = -HUGE_VAL;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sizes of and distances to the shapes of a scene, as needed to plan motions. No engine involved.
-// Tested by tests/physics/scene/geometry_test.cc
+// Sizes of shapes and distances to them, as needed to plan motions. No engine involved. Tested by
+// tests/physics/scene/geometry_test.cc
 #pragma once
 
 #include <vector>
@@ -9,40 +9,40 @@
 
 namespace prehend::physics {
 
-/// Index into Scene::bodies; -1: there is none.
+/// Index into Scene::bodies, or -1 if no body has this name.
 int FindBody(const Scene& scene, const std::string& name);
 
-/// How far the body reaches from its bounding box' centre in a world direction (unit), metres.
+/// Extent of the body from the centre of its bounding box in a world direction (unit), metres.
 double HalfWidthAlong(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& direction_W);
 
-/// Is the point in the body that stands at X_WB: in its bounding box, of a region in the region
-/// itself?
+/// Whether the point is inside a body at X_WB: inside its bounding box, or for a region inside the
+/// region itself.
 bool IsInside(const Body& body, const Pose& X_WB, const Eigen::Vector3d& p_W_m);
 
-/// World axes-aligned box of a shape that stands at X_WS.
+/// Bounding box, aligned with the world's axes, of a shape at X_WS, metres.
 Eigen::AlignedBox3d WorldBounds(const Shape& shape, const Pose& X_WS);
 
-/// World axes-aligned box of a whole body, metres.
+/// Bounding box, aligned with the world's axes, of a whole body, metres.
 Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB);
 
-/// Height of what carries an object that stands at X_WO: the highest part of `support` that lies
-/// below it. The top of the whole support when no part does.
+/// Height of the surface that carries an object at X_WO, metres: the top of the highest part of
+/// `support` below it, or the top of the whole support if no part is below it.
 double HighestBelow(const Body& support, const Pose& X_WS, const Body& object, const Pose& X_WO);
 
-/// Distance of a point, in the shape's frame, from the surface: negative inside. Metres.
+/// Distance of a point (in the shape's frame) from the surface, metres; negative inside.
 double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S);
 
-/// The part of a body, in its own frame, that is nearest to a point.
+/// The part of a body that is nearest to a point in the body's frame.
 const PlacedShape& PartAt(const Body& body, const Eigen::Vector3d& p_B_m);
 
-/// Distance of a point, in the body's frame, from the nearest surface: negative inside. Metres.
+/// Distance of a point (in the body's frame) from the nearest surface, metres; negative inside.
 double DistanceTo(const Body& body, const Eigen::Vector3d& p_B_m);
 
-/// Cubic metres.
+/// Volume, cubic metres.
 double VolumeOf(const Shape& shape);
 
-/// Do all horizontal directions look the same? True for spheres and for upright cylinders and
-/// capsules.
+/// Whether the body is rotationally symmetric about the vertical: true for spheres and for upright
+/// cylinders and capsules.
 bool IsRoundAboutVertical(const Body& body, const Pose& X_WB);
 
 }  // namespace prehend::physics

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What follows from a hand model alone: joint targets, forward kinematics, the mirror image, stable
-// gains. Tested by tests/physics/scene/hand_model_test.cc
+// Joint targets, forward kinematics, the mirror image and stable gains, from a hand model alone.
+// Tested by tests/physics/scene/hand_model_test.cc
 #include "physics/scene/hand_model.h"
 
 #include <Eigen/Eigenvalues>
@@ -16,7 +16,7 @@ Eigen::Matrix3d BoxInertia(double mass_kg, const Eigen::Vector3d& size_m) {
          Eigen::Vector3d(s2.y() + s2.z(), s2.x() + s2.z(), s2.x() + s2.y()).asDiagonal();
 }
 
-/// About H's origin, all joints at zero.
+/// Moments of inertia about H's origin, all joints at zero.
 Eigen::Matrix3d WholeInertia(const HandModel& model) {
   Eigen::Matrix3d inertia =
       model.palm_inertia_scale * BoxInertia(model.palm_mass_kg, model.palm_size_m);
@@ -32,7 +32,7 @@ Eigen::Matrix3d WholeInertia(const HandModel& model) {
   return inertia;
 }
 
-/// What a PID moves: the least and the largest mass or moment of inertia.
+/// The smallest and the largest mass or moment of inertia that a PID moves.
 struct Inertia {
   const char* of;
   const char* unit;
@@ -54,8 +54,8 @@ std::string NotPositive(const Inertia& inertia, const PidGains& gains) {
   return "";
 }
 
-/// Of a mass m under F = -kp x - kd v, stepped by semi-implicit Euler: kp dt^2/m + 2 kd dt/m < 4
-/// (Jury). Of the same with an integral in continuous time: ki m < kp kd (Routh and Hurwitz).
+/// A mass m under F = -kp x - kd v, stepped by semi-implicit Euler, is stable if kp dt^2/m + 2 kd
+/// dt/m < 4 (Jury). With an integral term in continuous time: ki m < kp kd (Routh and Hurwitz).
 std::string Diverges(const Inertia& inertia, const PidGains& gains, int rate_hz) {
   char text[256];
   const double dt_s = 1.0 / rate_hz;
@@ -80,7 +80,7 @@ std::string Diverges(const Inertia& inertia, const PidGains& gains, int rate_hz)
   return "";
 }
 
-/// The damping alone excites the hand.
+/// Bounds the derivative gain alone: too much damping excites the hand.
 std::string TooStiff(const Inertia& inertia, const PidGains& gains, int rate_hz) {
   const double ratio = gains.derivative / (rate_hz * inertia.least);
   if (ratio < 1) return "";
@@ -102,7 +102,7 @@ std::string WhyUnstable(const Inertia& inertia, const PidGains& gains, int rate_
   return problem;
 }
 
-/// What a joint does to points of H, its parents standing at zero.
+/// The motion of points of H caused by one joint while its parents are at zero.
 Pose JointMotion(const HandLink& link, double value) {
   if (link.slides) return {link.joint_axis * value};
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(value, link.joint_axis));
@@ -131,14 +131,15 @@ std::vector<double> JointTargets(const GraspStyle& style, double trigger) {
 }
 
 std::vector<Pose> LinkPoses(const HandModel& model, const std::vector<double>& joints) {
-  std::vector<Pose> moved(model.links.size());  // what the joints up to this link do to points of H
+  std::vector<Pose> moved(
+      model.links.size());  // motion of points of H by all joints up to this link
   std::vector<Pose> centres(model.links.size());
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const HandLink& link = model.links[i];
     const Pose joint = JointMotion(link, joints[i]);
     moved[i] = link.parent < 0 ? joint : moved[static_cast<std::size_t>(link.parent)] * joint;
     const Pose rest{link.pivot_m + link.direction * (link.length_m / 2),
-                    Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), link.direction)};
+                    RotationBetween(Eigen::Vector3d::UnitX(), link.direction)};
     centres[i] = moved[i] * rest;
   }
   return centres;
@@ -151,8 +152,8 @@ HandModel Mirrored(HandModel model) {
     MirrorVector(link.pivot_m);
     MirrorVector(link.direction);
     MirrorVector(link.joint_axis);
-    // An axis of rotation is a pseudo-vector: its components in the mirror's plane flip, the normal
-    // one stays.
+    // An axis of rotation is a pseudo-vector: its components in the mirror plane change sign, the
+    // normal one does not.
     if (!link.slides) link.joint_axis = -link.joint_axis;
   }
   for (GraspStyle& style : model.styles) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a hand is built and how it grasps, as data: read from physics/library/*.hand.yaml by the
-// harness. Hand frame H: origin at the palm's centre, x along the fingers, y towards the thumb of a
-// right hand, z out of the back of the hand. A left hand is the mirror image in the xz-plane:
-// Mirrored() makes one. Tested by tests/physics/scene/hand_model_test.cc
+// How a hand is built and how it grasps, as data; the harness reads it from
+// physics/library/*.hand.yaml. Hand frame H: origin at the palm's centre, x along the fingers, y
+// towards the thumb of a right hand, z out of the back of the hand. A left hand is the mirror image
+// in the xz-plane: see Mirrored(). Tested by tests/physics/scene/hand_model_test.cc
 #pragma once
 
 #include <optional>
@@ -16,10 +16,10 @@ namespace prehend::physics {
 struct HandLink {
   std::string name;
   int parent = -1;  ///< index into HandModel::links; -1 is the palm
-  Eigen::Vector3d pivot_m = Eigen::Vector3d::Zero();  ///< joint, in H, all joints at zero
+  Eigen::Vector3d pivot_m = Eigen::Vector3d::Zero();  ///< of the joint, in H, all joints at zero
   Eigen::Vector3d direction =
       Eigen::Vector3d::UnitX();  ///< from the pivot along the link, unit, in H
-  bool slides = false;           ///< along the joint's axis; else it turns about it
+  bool slides = false;           ///< along the joint axis; else it rotates about it
   Eigen::Vector3d joint_axis = Eigen::Vector3d::UnitY();  ///< unit, in H; positive values close
   double length_m = 0.03;
   double half_width_m = 0.008;
@@ -31,42 +31,41 @@ struct HandLink {
   int sensor_set = 0;     ///< index into HandModel::sensor_sets
 };
 
-/// Force- or torque-limited PID that makes the palm follow the tracked target.
+/// A PID with limited force or torque; it makes the palm follow the tracked target.
 struct PidGains {
   double proportional = 0;
   double derivative = 0;
   double integral = 0;
   double limit = 0;             ///< clamp of the output, N or Nm
-  double integral_share = 0.6;  ///< the integral's part is at most this share of the limit
+  double integral_share = 0.6;  ///< largest share of the limit that the integral term may take
 };
 
-/// Torque-limited velocity servo of a joint.
+/// Velocity servo of a joint, with limited torque.
 struct JointDriver {
   double stiffness = 0.2;  ///< share of the error removed per tick
-  double damping = 1.0;    ///< 0..1, how firmly the target velocity is enforced
+  double damping = 1.0;    ///< 0..1: how firmly the target velocity is enforced
   double max_speed_rad_per_s = 12;
   double max_slide_m_per_s = 0.3;  ///< the same for links that slide
 };
 
-/// How the hand comes to an object, from above or from the side. The object's centre ends on a line
-/// along `toward`.
+/// How the hand approaches an object, from above or from the side. The object's centre ends on a
+/// line along `toward`.
 struct GraspApproach {
-  Eigen::Vector3d toward =
-      -Eigen::Vector3d::UnitZ();  ///< unit, in H: where the last part of the motion goes
+  Eigen::Vector3d toward = -Eigen::Vector3d::UnitZ();  ///< unit, in H: direction of arrival
   Eigen::Vector3d up =
-      Eigen::Vector3d::UnitY();  ///< unit, in H: up in the world; only used from the side
-  double palm_gap_m = 0.02;  ///< H's origin stays at least this far from the object's nearest face
-  double pads_m = 0.07;  ///< the object's centre is wanted this far from H's origin, along `toward`
-  double floor_m = 0.05;  ///< H's origin stays at least this high above what is below the object
+      Eigen::Vector3d::UnitY();  ///< unit, in H: up in the world; only from the side
+  double palm_gap_m = 0.02;      ///< least distance of H's origin from the object's nearest face
+  double pads_m = 0.07;  ///< wanted distance of the object's centre from H's origin, along `toward`
+  double floor_m = 0.05;  ///< least height of H's origin over the surface below the object
 };
 
-/// One style: frames of joint targets from open to closed, interpolated by the trigger, and the
-/// effort of each joint. One side of the hand is a stiff post, the other one is force-limited: the
-/// object's face goes to the post.
+/// A grasp style: frames of joint targets from open to closed, interpolated by the trigger, and the
+/// effort of each joint. One side of the hand is a stiff post, the other side is force-limited; the
+/// object's face is placed at the post.
 struct GraspStyle {
   std::string name;
   std::vector<std::vector<double>> frames;  ///< at least 2; one joint target per link
-  std::vector<double> effort;               ///< one per link, share of HandLink::strength
+  std::vector<double> effort;               ///< one per link: share of HandLink::strength
   Eigen::Vector3d grip_axis =
       Eigen::Vector3d::UnitX();  ///< unit, in H: from the post to the limited side
   Eigen::Vector3d post_m =
@@ -81,10 +80,10 @@ struct HandModel {
   Eigen::Vector3d palm_size_m = {0.090, 0.084, 0.025};
   double palm_mass_kg = 0.6;
   double palm_inertia_scale =
-      6;  ///< stands for the forearm; without it the palm twists (docs/physics.md)
+      6;  ///< represents the forearm; without it the palm twists (docs/physics.md)
   double friction = 1.0;
   double spinning_friction = 0.01;
-  Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();  ///< unit, in H: where the hand reaches to
+  Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();  ///< unit, in H: the direction of reaching
   std::vector<std::string> sensor_sets;              ///< e.g. fingers, thumb, palm
   int palm_sensor_set = 0;
   std::vector<HandLink> links;
@@ -93,25 +92,26 @@ struct HandModel {
   std::vector<GraspStyle> styles;
 };
 
-/// The speed that the joint's driver wants, per second: towards `target`, within its limit.
+/// Target speed of the joint driver, rad/s or m/s: towards `target`, within the driver's limit.
 double WantedSpeed(const JointDriver& driver, const HandLink& link, double target, double joint,
                    double dt_s);
 
-/// Joint targets of a style at a trigger value, 0 (open) .. 1 (closed): linear between neighbouring
-/// frames.
+/// Joint targets of a style at a trigger value from 0 (open) to 1 (closed), linear between
+/// neighbouring frames; one per link.
 std::vector<double> JointTargets(const GraspStyle& style, double trigger);
 
-/// Centres of all links in H, x along the link, for the given joints (one angle or way per link).
+/// Centre frames of all links in H, x along the link, for the given joints (radians or metres, one
+/// per link).
 std::vector<Pose> LinkPoses(const HandModel& model, const std::vector<double>& joints);
 
-/// The other hand: mirrored in the xz-plane, `left` toggled.
+/// The mirror image in the xz-plane, with `left` toggled.
 HandModel Mirrored(HandModel model);
 
-/// Index of the style of that name; -1 when there is none.
+/// Index of the style with this name, or -1.
 int FindStyle(const HandModel& model, const std::string& name);
 
-/// Empty when the palm's PIDs can follow a target and are stable at this rate, for the mass and for
-/// the moments of inertia of the whole hand; otherwise the reason.
+/// Empty if the palm's PIDs can follow a target and are stable at this rate, for the mass and the
+/// moments of inertia of the whole hand; otherwise the reason.
 std::string CheckGains(const HandModel& model, int rate_hz);
 
 }  // namespace prehend::physics

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/scene/hull_test.cc
+// Faces, then their outlines, then mass properties from tetrahedra. Tested by
+// tests/physics/scene/hull_test.cc
 #include "physics/scene/hull.h"
 
 #include <Eigen/Eigenvalues>
@@ -13,7 +14,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Points = std::vector<Vector3d>;
 
-/// Points this near to a plane or an edge lie on it: above the roundings of single precision at a
+/// A point this near to a plane or an edge lies on it; larger than single-precision rounding at one
 /// metre.
 constexpr double kOnPlane_m = 1e-7;
 
@@ -21,12 +22,12 @@ double HeightOver(const Hull::Face& face, const Vector3d& p) {
   return face.nhat_S.dot(p) - face.offset_m;
 }
 
-/// The points of the plane through three of them, if no other one is outside of it.
+/// The face in the plane through three points, if no other point is outside.
 std::optional<Hull::Face> FaceThrough(const Points& points, int a, int b, int c) {
   const Vector3d normal = (points[b] - points[a]).cross(points[c] - points[a]);
   const double longest = std::max({(points[b] - points[a]).norm(), (points[c] - points[a]).norm(),
                                    (points[c] - points[b]).norm()});
-  if (normal.norm() <= longest * kOnPlane_m) return std::nullopt;  // on one line
+  if (normal.norm() <= longest * kOnPlane_m) return std::nullopt;  // collinear
   Hull::Face face{.corners = {}, .nhat_S = normal.normalized(), .offset_m = 0};
   face.offset_m = face.nhat_S.dot(points[a]);
   bool above = false, below = false;
@@ -43,8 +44,8 @@ std::optional<Hull::Face> FaceThrough(const Points& points, int a, int b, int c)
   return face;
 }
 
-/// All faces, those with many points first. Two faces share an edge at most; what shares more and
-/// looks the same way is the same one but for roundings.
+/// All faces, those with many points first. Two faces share at most an edge; two that share more
+/// and have the same normal are one face with rounding errors.
 std::vector<Hull::Face> FacesOf(const Points& points) {
   const int count = static_cast<int>(points.size());
   std::vector<Hull::Face> found;
@@ -58,7 +59,7 @@ std::vector<Hull::Face> FacesOf(const Points& points) {
   std::vector<Hull::Face> faces;
   const auto same = [](const Hull::Face& l, const Hull::Face& r) {
     constexpr double kSameWay =
-        0.9999;  // cosine; points are so far apart that roundings turn no face by more
+        0.9999;  // cosine; rounding tilts no face by more, as points are far apart
     return l.nhat_S.dot(r.nhat_S) > kSameWay &&
            std::count_if(l.corners.begin(), l.corners.end(), [&](int corner) {
              return std::binary_search(r.corners.begin(), r.corners.end(), corner);
@@ -72,7 +73,7 @@ std::vector<Hull::Face> FacesOf(const Points& points) {
   return faces;
 }
 
-/// Leaves the corners of the face's outline, counter-clockwise (Andrew's monotone chain).
+/// Keeps the corners of the face's outline, counter-clockwise (Andrew's monotone chain).
 void Outline(const Points& points, Hull::Face& face) {
   const Vector3d u = face.nhat_S.unitOrthogonal(), v = face.nhat_S.cross(u);
   const auto flat = [&](int i) { return Eigen::Vector2d(u.dot(points[i]), v.dot(points[i])); };
@@ -141,15 +142,16 @@ std::optional<MadeHull> FindDouble(const Points& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if ((points[i] - points[j]).norm() < kNearestHullPoints_m)
-        return NoHull(static_cast<int>(i),
-                      "point " + std::to_string(i) + " is where point " + std::to_string(j) + " is",
-                      "points are at least 0.1 mm apart; they are counted from 0");
+        return NoHull(
+            static_cast<int>(i),
+            "point " + std::to_string(i) + " is at the same place as point " + std::to_string(j),
+            "points must be at least 0.1 mm apart; the first one is point 0");
     }
   }
   return std::nullopt;
 }
 
-/// The least distance of two parallel planes with all points between them, one of them a face.
+/// The smallest distance of two parallel planes with all points between them, one of them a face.
 double ThicknessOf(const Hull& hull) {
   double thinnest = HUGE_VAL;
   for (const Hull::Face& face : hull.faces) {
@@ -192,7 +194,7 @@ MadeHull MakeHull(const Points& points_m) {
             .gyration_m2 = Vector3d::Zero()};
   if (ThicknessOf(hull) < kThinnestHull_m) {
     return NoHull(-1, "the points lie in a plane, or within 1 mm of one",
-                  "a hull is a solid: give it points at both sides");
+                  "a hull is a solid: add points on both sides of the plane");
   }
   std::vector<bool> is_corner(points_m.size());
   for (Hull::Face& face : hull.faces) {
@@ -205,8 +207,8 @@ MadeHull MakeHull(const Points& points_m) {
     return NoHull(
         point,
         "point " + std::to_string(point) +
-            " is no corner: it lies inside, on a face or on an edge of the hull",
-        "leave it out; what is not convex is built of 'parts'. Points are counted from 0");
+            " is not a corner: it lies inside, on a face or on an edge of the hull",
+        "leave it out; build a shape that is not convex from 'parts'. The first point is point 0");
   }
   Weigh(hull);
   return {.hull = std::move(hull), .point = -1, .problem = {}, .remedy = {}};
@@ -217,7 +219,7 @@ Vector3d NearestIn(const Hull& hull, const Vector3d& p_S) {
   double least = HUGE_VAL;
   for (const Hull::Face& face : hull.faces) {
     if (HeightOver(face, p_S) <= 0)
-      continue;  // the nearest point is on a face that can be seen from here
+      continue;  // the nearest point is on a face that is visible from p_S
     const Vector3d on_face = NearestOn(hull, face, p_S);
     if ((on_face - p_S).norm() < least) nearest = on_face, least = (on_face - p_S).norm();
   }

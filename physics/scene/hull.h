@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Convex hulls: a solid of flat faces, given by its corners. No engine involved. Faces come from
-// all planes through three points that have no point outside, which is exact and quick enough for
-// 64 points. Tested by tests/physics/scene/hull_test.cc
+// Convex hulls: solids with flat faces, given by their corners. No engine involved. Faces come from
+// all planes through three points that have no point outside; this is exact, and fast enough for 64
+// points. Tested by tests/physics/scene/hull_test.cc
 #pragma once
 
 #include <optional>
@@ -12,12 +12,12 @@
 
 namespace prehend::physics {
 
-/// A solid of even density. All in the frame S in which its points were given.
+/// A solid of uniform density. All values are in the frame S in which its points were given.
 struct Hull {
   struct Face {
     std::vector<int> corners;  ///< indices into corners_m, counter-clockwise from outside
     Eigen::Vector3d nhat_S = Eigen::Vector3d::UnitZ();  ///< outwards
-    double offset_m = 0;  ///< of the face's plane from the origin, along nhat_S
+    double offset_m = 0;  ///< distance of the face's plane from the origin, along nhat_S
   };
   std::vector<Eigen::Vector3d> corners_m;
   std::vector<Face> faces;
@@ -29,26 +29,26 @@ struct Hull {
 
 inline constexpr int kFewestHullPoints = 4;
 inline constexpr int kMostHullPoints = 64;
-/// Points nearer than this are one; a solid thinner than this is none.
+/// Points nearer to each other than this count as one; a solid thinner than this is refused.
 inline constexpr double kNearestHullPoints_m = 1e-4;
 inline constexpr double kThinnestHull_m = 1e-3;
 
-/// A hull, or why there is none.
+/// A hull, or the reason why there is none.
 struct MadeHull {
   std::optional<Hull> hull;
-  int point = -1;  ///< the one that is wrong; -1: all of them together
+  int point = -1;  ///< index of the wrong point; -1: the points as a whole
   std::string problem, remedy;
 };
-/// Every point has to be a corner. As many as kFewestHullPoints to kMostHullPoints.
+/// Every point must be a corner; kFewestHullPoints to kMostHullPoints of them.
 MadeHull MakeHull(const std::vector<Eigen::Vector3d>& points_m);
 
-/// The nearest point of the solid, itself inside of it.
+/// The nearest point of the solid; the point itself if it is inside.
 Eigen::Vector3d NearestIn(const Hull& hull, const Eigen::Vector3d& p_S);
 
-/// Of a point from the surface: negative inside. Metres.
+/// Distance of a point from the surface, metres; negative inside.
 double SignedDistance(const Hull& hull, const Eigen::Vector3d& p_S);
 
-/// Directions of all edges, each once.
+/// Directions (unit) of all edges, without repetition.
 std::vector<Eigen::Vector3d> EdgesOf(const Hull& hull);
 
 }  // namespace prehend::physics

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/scene/joint_test.cc
+// A position is read along or about the joint's axis, as placed. Tested by
+// tests/physics/scene/joint_test.cc
 #include "physics/scene/joint.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ const Body& BodyAt(const Scene& scene, int body) {
   return scene.bodies[static_cast<std::size_t>(body)];
 }
 
-/// The index of the body's own joint; -1: none.
+/// Index of the body's own joint, or -1.
 int JointOf(const Scene& scene, int body) {
   const auto it = std::find_if(scene.joints.begin(), scene.joints.end(),
                                [&](const Joint& joint) { return joint.body == body; });

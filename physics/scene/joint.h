@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What follows from where joined bodies stand: a joint's position, and the way that it leaves free.
-// No engine involved. Tested by tests/physics/scene/joint_test.cc
+// Kinematics of joints: their positions, and the motion that they leave free, from the poses of the
+// joined bodies. No engine involved. Tested by tests/physics/scene/joint_test.cc
 #pragma once
 
 #include "physics/scene/scene.h"
@@ -8,25 +8,25 @@
 
 namespace prehend::physics {
 
-/// Where the joint stands when its base and its body stand at these poses.
+/// State of the joint when its base and its body are at these poses.
 JointState StateOf(const Scene& scene, const Joint& joint, const Pose& X_WBase, const Pose& X_WB);
 
-/// Where all joints stand, from the poses of the bodies in the snapshot.
+/// Writes the states of all joints, from the poses of the bodies in the snapshot.
 void DescribeJoints(const Scene& scene, Snapshot& snapshot);
 
-/// The motion in the world that takes the joint's body by `change` (metres or radians) along the
-/// joint's free way, with its base at X_WBase. The identity for joints that have no such way.
+/// The motion in the world that moves the joint's body by `change` (metres or radians) along the
+/// free axis, with its base at X_WBase. The identity for joints without such an axis.
 Pose MotionAlong(const Scene& scene, const Joint& joint, const Pose& X_WBase, double change);
 
-/// The joint that moves a body: its own, or for a body with a fixed joint that of its base, and so
-/// on. -1: none.
+/// Index of the joint that moves a body: its own, or for a body with a fixed joint that of its
+/// base, and so on; -1: none.
 int JointThatMoves(const Scene& scene, int body);
 
-/// The body that carries it by fixed joints, or itself: all bodies with one root are one rigid
-/// body.
+/// The body at the end of its chain of fixed joints, or itself. All bodies with the same root are
+/// one rigid body.
 int RootOf(const Scene& scene, int body);
 
-/// Are the two one rigid body, or the two sides of a joint? Such bodies go through each other.
+/// Whether the two are one rigid body or the two sides of a joint. Such bodies do not collide.
 bool NeverTouch(const Scene& scene, int body, int other);
 
 }  // namespace prehend::physics

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/scene/joint_spring_test.cc
+// The effective inertia of the joint's free axis, by a Cholesky decomposition of order six. Tested
+// by tests/physics/scene/joint_spring_test.cc
 #include "physics/scene/joint_spring.h"
 
 #include <Eigen/Cholesky>
@@ -11,7 +12,7 @@ namespace prehend::physics {
 namespace {
 
 using Eigen::Vector3d;
-/// A turn about the pivot, then a shift of it; or a torque, then a force there.
+/// A rotation about the pivot and a translation of it; or a torque and a force there.
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
@@ -19,7 +20,7 @@ Eigen::Matrix3d Cross(const Vector3d& v) {
   return (Eigen::Matrix3d() << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
 }
 
-/// How it moves at the pivot, by torque and force there.
+/// Acceleration at the pivot in response to torque and force there.
 Matrix6d ResponseAt(const Vector3d& pivot_W_m, const JointSide& side) {
   const Eigen::Matrix3d arm = Cross(pivot_W_m - side.centre_W_m);
   Matrix6d response;
@@ -50,8 +51,8 @@ double SpringForce(const Joint& joint, const JointPlace& place, int sharers, con
   else
     way.head<3>() = place.axis_W;
   const double rate = way.dot(MotionAt(pivot_W_m, body) - MotionAt(pivot_W_m, base));
-  // The joint allows no other motion, whatever forces that takes: what it allows is `way`, and the
-  // force along it is the share of all of them that does work.
+  // The joint prevents every motion but the one along `way`, with whatever forces that takes; only
+  // the force along `way` does work.
   const Matrix6d response = ResponseAt(pivot_W_m, base) + ResponseAt(pivot_W_m, body);
   const double inertia = way.dot(response.ldlt().solve(way));
   const double share = inertia / sharers;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/scene/planar_test.cc
+// One visitor per question over the kinds of shapes. Tested by tests/physics/scene/planar_test.cc
 #include "physics/scene/planar.h"
 
 #include <cmath>
@@ -7,7 +7,8 @@
 namespace prehend::physics {
 namespace {
 
-/// Metres, or the sine of an angle: roundings of places and of turns by whole degrees stay below.
+/// Tolerance, metres or sine of an angle: above the rounding errors of positions and of rotations
+/// by whole degrees.
 constexpr double kTolerance = 1e-6;
 
 bool InPlane(const Eigen::Vector3d& v) { return std::abs(v.y()) < kTolerance; }
@@ -18,7 +19,7 @@ Eigen::Vector2d Flat(const Eigen::Vector3d& v) { return {v.x(), v.z()}; }
 
 double AngleOf(const Eigen::Vector3d& axis) { return std::atan2(axis.z(), axis.x()); }
 
-/// Do the axes that the shape has fit the plane?
+/// Whether the shape's axes are in the plane or across it.
 struct AxesFit {
   const Eigen::Matrix3d R;
 
@@ -28,10 +29,10 @@ struct AxesFit {
   bool operator()(const Sphere&) const { return true; }
   bool operator()(const Cylinder&) const { return InOrAcross(R.col(2)); }
   bool operator()(const Capsule&) const { return InOrAcross(R.col(2)); }
-  bool operator()(const Hull&) const { return false; }  // it need not have one section all along y
+  bool operator()(const Hull&) const { return false; }  // its cross-section may change along y
 };
 
-/// The two axes of a box that lie in the plane.
+/// The two axes of a box in the plane.
 std::pair<int, int> AxesInPlane(const Eigen::Matrix3d& R) {
   if (Across(R.col(0))) return {1, 2};
   return Across(R.col(1)) ? std::pair{0, 2} : std::pair{0, 1};
@@ -112,8 +113,9 @@ std::string WhyNotPlanar(const Body& body) {
   if (!InPlane(body.X_WB.p_m)) return "its centre is off the plane y = 0";
   for (const PlacedShape& placed : body.shapes) {
     const Pose X_WS = body.X_WB * placed.X_BS;
-    if (!InPlane(X_WS.p_m)) return "a part of it lies beside the plane y = 0";
-    if (std::holds_alternative<Hull>(placed.shape)) return "a hull has no one section all along y";
+    if (!InPlane(X_WS.p_m)) return "a part of it is not in the plane y = 0";
+    if (std::holds_alternative<Hull>(placed.shape))
+      return "a hull does not have the same cross-section all along y";
     if (!LiesInPlane(placed.shape, X_WS)) return "it is turned out of the plane";
   }
   return "";
@@ -132,7 +134,7 @@ std::string WhyNotPlanar(const HandModel& model) {
   const std::vector<Pose> X_HL = LinkPoses(model, std::vector<double>(model.links.size(), 0.0));
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const HandLink& link = model.links[i];
-    if (!KeepsPlane(X_HL[i])) return "its link '" + link.name + "' lies beside its plane y = 0";
+    if (!KeepsPlane(X_HL[i])) return "its link '" + link.name + "' is not in its plane y = 0";
     if (link.slides ? !InPlane(link.joint_axis) : !Across(link.joint_axis))
       return "its link '" + link.name + "' moves out of its plane y = 0";
   }

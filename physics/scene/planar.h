@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plane y = 0 of planar scenes: what lies in it, and the section that it cuts. A thing lies in
-// the plane when each of its shapes is symmetric to it and keeps one cross-section all along y; so
-// its section meets another one where the solids themselves do, and a planar engine misses nothing.
-// No engine involved. Tested by tests/physics/scene/planar_test.cc
+// The plane y = 0 of planar scenes: which shapes lie in it, and their cross-sections. A body lies
+// in the plane if each of its shapes is symmetric to the plane and has the same cross-section all
+// along y; then two cross-sections touch exactly where the solids touch, and a planar engine misses
+// no contact. No engine involved. Tested by tests/physics/scene/planar_test.cc
 #pragma once
 
 #include <string>
@@ -11,23 +11,24 @@
 
 namespace prehend::physics {
 
-/// Centre and two axes in the plane: its y axis is the world's, or the opposite.
+/// Whether the centre and two axes are in the plane: the y axis is the world's or its opposite.
 bool KeepsPlane(const Pose& X_WB);
 
-/// A box with two edges, or a cylinder or capsule with its axis, in the plane or across it; any
-/// sphere; each with its centre in the plane.
+/// Whether the shape lies in the plane: a box with two edges in it, a cylinder or capsule with its
+/// axis in it or across it, or a sphere; each with its centre in the plane.
 bool LiesInPlane(const Shape& shape, const Pose& X_WS);
 
-/// Empty when the whole body lies in the plane, otherwise why not.
+/// Empty if the whole body lies in the plane, otherwise the reason why not.
 std::string WhyNotPlanar(const Body& body);
 
-/// Empty when the joint moves its body in the plane only, otherwise why not.
+/// Empty if the joint moves its body in the plane only, otherwise the reason why not.
 std::string WhyNotPlanar(const Joint& joint);
 
-/// Empty when palm, links, joints and grasps lie in the hand's own plane y = 0, otherwise why not.
+/// Empty if palm, links, joints and grasps lie in the hand's own plane y = 0, otherwise the reason
+/// why not.
 std::string WhyNotPlanar(const HandModel& model);
 
-/// A section: a rectangle, rounded by a radius. A disc has no size, only a radius.
+/// A cross-section: a rectangle, rounded by a radius. A disc has size 0 and a radius.
 struct Outline {
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();  ///< x and z in the frame asked for
   double angle_rad = 0;                                ///< from x towards z
@@ -35,11 +36,10 @@ struct Outline {
   double radius_m = 0;
 };
 
-/// The section of a shape that lies in the plane, in the frame F that it stands in; F keeps the
-/// plane.
+/// The cross-section of a shape in the plane, in the frame F; KeepsPlane(F) holds.
 Outline OutlineOf(const Shape& shape, const Pose& X_FS);
 
-/// About an axis along y through its own centre, of a shape that lies in the plane: kg m^2.
+/// Moment of inertia of a shape in the plane about the axis along y through its centre, kg m^2.
 double MomentAboutY(const Shape& shape, const Pose& X_FS, double mass_kg);
 
 }  // namespace prehend::physics

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rigid pose X_AB: where frame B stands in frame A.
+// Rigid poses and rotations. X_AB is the pose of frame B in frame A. Tested by
+// tests/physics/scene/pose_test.cc
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,13 +22,18 @@ struct Pose {
   Pose inverse() const { return {q.conjugate() * -p_m, q.conjugate()}; }
 };
 
-/// The rotation as a vector: unit axis times angle in [0, pi].
+/// The rotation vector: unit axis times angle in [0, pi].
 inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& q) {
   const double sign = q.w() < 0 ? -1 : 1;
   const double sine = q.vec().norm();
   if (sine < 1e-9) return 2 * sign * q.vec();
   return q.vec() * (2 * sign * std::atan2(sine, sign * q.w()) / sine);
 }
+
+/// The shortest rotation from one direction to another; neither has to be a unit vector. Eigen's
+/// FromTwoVectors, which compiles a singular value decomposition wherever it is called: therefore
+/// only in pose.cc.
+Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// Rotates about the world's x, then y, then z axis; degrees.
 inline Eigen::Quaterniond FromRollPitchYaw(const Eigen::Vector3d& rpy_deg) {

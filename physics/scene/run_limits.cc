@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/scene/run_limits_test.cc
+// Limits of speed, distance and penetration depth, and the advice for each. Tested by
+// tests/physics/scene/run_limits_test.cc
 #include "physics/scene/run_limits.h"
 
 #include <algorithm>
@@ -9,9 +10,10 @@
 namespace prehend::physics {
 namespace {
 
-/// Nothing that a hand throws is faster; an exploding contact is.
+/// No object thrown by a hand is faster; one ejected by an unstable contact is.
 constexpr double kMaxSpeed_m_per_s = 50;
-/// Touching bodies overlap by tenths of a millimetre; this much is a tunnel or a bad start.
+/// Touching bodies overlap by tenths of a millimetre; this much means tunnelling or overlapping
+/// initial poses.
 constexpr double kMaxPenetration_m = 0.02;
 
 std::string Say(const char* format, double value) {
@@ -36,8 +38,8 @@ std::optional<RunProblem> CheckState(const std::string& name, const BodyState& s
   return std::nullopt;
 }
 
-/// The solver settles what is pressed together in rounds, and too few when one is so many times the
-/// other.
+/// The iterative solver does not converge if one of two bodies pressed together is so many times
+/// heavier.
 constexpr double kMostMassRatio = 1000;
 
 double MassOf(const Scene& scene, const ContactSide& side) {
@@ -46,8 +48,8 @@ double MassOf(const Scene& scene, const ContactSide& side) {
   return body.fixed ? 0 : body.mass_kg;
 }
 
-/// The remedy for two that are deep in each other. A heavy thing presses a light one into a third,
-/// too.
+/// The advice for two bodies that overlap deeply. A heavy body also presses a light one into a
+/// third.
 std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const ContactPoint& deep) {
   double least_kg = std::numeric_limits<double>::infinity(), most_kg = 0;
   for (const ContactPoint& contact : snapshot.contacts) {
@@ -61,7 +63,7 @@ std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const Contac
     }
   }
   if (most_kg > kMostMassRatio * least_kg)
-    return Say("a mass presses on one that is %.0f times smaller; make them more alike",
+    return Say("a mass presses on one that is %.0f times smaller; make them more similar",
                most_kg / least_kg);
   return scene.hands.empty() ? "start them apart, or let them meet more slowly"
                              : "start them apart, or let the hand come more slowly";
@@ -76,7 +78,8 @@ const std::string& NameOf(const Scene& scene, const ContactSide& side) {
 
 std::optional<RunProblem> CheckSnapshot(const Scene& scene, const Snapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.bodies.size(); ++i) {
-    if (!snapshot.MayHaveMoved(i, snapshot.tick - 1)) continue;  // it was checked when it did
+    if (!snapshot.MayHaveMoved(i, snapshot.tick - 1))
+      continue;  // it was checked when it last moved
     if (auto problem = CheckState(scene.bodies[i].name, snapshot.bodies[i])) return problem;
   }
   for (std::size_t i = 0; i < snapshot.hands.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Is the world still believable? A run that goes wrong is stopped and ends as a value.
-// Tested by tests/physics/scene/run_limits_test.cc
+// Plausibility limits of a run: a run that exceeds one is stopped and ends with a status. Tested by
+// tests/physics/scene/run_limits_test.cc
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace prehend::physics {
 
-/// From the origin. Things that fell past the table are far away by then.
+/// Largest distance from the origin. Objects that fell off the table exceed it after some time.
 inline constexpr double kMaxDistance_m = 20;
 
 struct RunProblem {
@@ -20,7 +20,7 @@ struct RunProblem {
   std::string advice;
 };
 
-/// The first thing that cannot be believed, bodies before hands before contacts.
+/// The first limit that is exceeded: bodies, then hands, then contacts.
 std::optional<RunProblem> CheckSnapshot(const Scene& scene, const Snapshot& snapshot);
 
 }  // namespace prehend::physics

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands in the world before the first tick: plain structs with defaults. SI units, world z
-// up. A Scene is complete: the same Scene and script give the same run, bit for bit. Tested by
+// The world before the first tick: plain structs with defaults. SI units, world z up. A Scene is
+// complete: the same Scene and script give the same run, bit for bit. Tested by
 // tests/physics/scene/joint_test.cc
 #pragma once
 
@@ -37,62 +37,62 @@ struct PlacedShape {
   Pose X_BS;
 };
 
-/// Loose small balls, simulated one by one and seen as one body, whose place is the mean of theirs.
+/// Loose small spheres, simulated one by one and reported as one body at their mean position.
 struct Grains {
   double radius_m = 0.004;
   std::vector<Eigen::Vector3d> p_WG_m;  ///< their centres before the first tick; at least one
 };
 
-/// What has a place, and perhaps room, but no matter: nothing touches it, no ray of sight meets it,
-/// it never moves.
+/// An abstract body has a pose and perhaps an extent, but no matter: it has no contacts, blocks no
+/// line of sight and never moves.
 enum class Abstract {
   kNot,
-  kRegion,      ///< a box or a ball
-  kGazeTarget,  ///< a ball that eyes can look at
+  kRegion,      ///< a box or a sphere
+  kGazeTarget,  ///< a sphere that eyes can look at
   kCamera,      ///< looks along its x axis, up is along its z axis
   kLight
 };
 
 struct Body {
   std::string name;
-  std::vector<PlacedShape> shapes;  ///< one, or several for a compound; none of grains
-  std::optional<Grains>
-      grains;  ///< it is not one thing but many, which share its mass; only in Bullet
-  Abstract abstract = Abstract::kNot;  ///< then it is also fixed, and has one shape, at its origin
-  double view_deg = 33;                ///< of a camera: how much it sees from below to above
+  std::vector<PlacedShape> shapes;     ///< one, or several for a compound; none of grains
+  std::optional<Grains> grains;        ///< many spheres that share the mass; only in Bullet
+  Abstract abstract = Abstract::kNot;  ///< if not kNot: fixed, with one shape at the origin
+  double view_deg = 33;                ///< of a camera: vertical field of view
   bool fixed = false;
-  bool kinematic = false;  ///< moves as a Person's motion says: pushes, and is never pushed
+  bool kinematic = false;  ///< moved by a Person: pushes, and is never pushed
   double mass_kg = 0;      ///< 0 only for fixed and kinematic bodies
   double friction = 0.8;
   double rolling_friction = 0;
   double restitution = 0;
-  double linear_damping_per_s = 0;   ///< its speed decays with this rate, as if in a thick medium
-  double angular_damping_per_s = 0;  ///< the same for its turning
+  double linear_damping_per_s = 0;   ///< its speed decays at this rate, as in a viscous medium
+  double angular_damping_per_s = 0;  ///< the same for its rotation
   Pose X_WB;
 };
 
-/// What a joint leaves free. A ball joint has no limits, friction or spring.
+/// The motion that a joint leaves free. A ball joint has no limits, friction or spring.
 enum class JointKind {
-  kFixed,   ///< nothing: the two are one rigid body, but touched apart
-  kSlider,  ///< motion along the axis
-  kHinge,   ///< turning about the axis through the pivot
-  kBall     ///< turning about the pivot
+  kFixed,   ///< none: one rigid body, with contacts of either part
+  kSlider,  ///< translation along the axis
+  kHinge,   ///< rotation about the axis through the pivot
+  kBall     ///< rotation about the pivot
 };
 
-/// Ties a body to another one, its base. As placed, the joint stands at 0. Metres, newtons and
-/// newton seconds per metre for a slider; radians and newton metres for a hinge.
+/// Connects a body to another one, its base. At the initial poses the joint's position is 0. Units:
+/// m, N, N s/m and N/m for a slider; rad, Nm, Nm s/rad and Nm/rad for a hinge.
 struct Joint {
   JointKind kind = JointKind::kFixed;
   int body = 0;  ///< index into Scene::bodies; at most one joint per body
-  int base = 0;  ///< index into Scene::bodies; no body is its own base's base
-  Eigen::Vector3d pivot_W_m = Eigen::Vector3d::Zero();  ///< as placed
-  Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX();    ///< unit, as placed; positive way
-  double lower = 0;                                     ///< at most 0
-  double upper = 0;                                     ///< at least 0
-  double friction = 0;  ///< largest force or torque that holds still
-  double damping = 0;   ///< force or torque per speed
-  double spring = 0;    ///< force or torque per distance from `rest`
-  double rest = 0;      ///< where the spring pulls to
+  int base = 0;  ///< index into Scene::bodies; bases form no circle
+  Eigen::Vector3d pivot_W_m = Eigen::Vector3d::Zero();  ///< at the initial poses
+  Eigen::Vector3d axis_W =
+      Eigen::Vector3d::UnitX();  ///< unit, at the initial poses; positive direction
+  double lower = 0;              ///< at most 0
+  double upper = 0;              ///< at least 0
+  double friction = 0;           ///< largest force or torque of static friction
+  double damping = 0;            ///< force or torque per speed
+  double spring = 0;             ///< force or torque per displacement from `rest`
+  double rest = 0;               ///< position at which the spring is relaxed
 };
 
 /// What an imperfect tracker does to a hand's motion (class Tracker). The default is what a good
@@ -108,41 +108,44 @@ struct TrackerSettings {
   double tremor_hz = 10;     ///< physiological tremor: 8-12 Hz (Elble & Koller 1990)
 };
 
-/// A hand that takes part: the model says how it is built, the pose where the tracked target
-/// starts.
+/// A hand of the scene: its model, and the pose at which it and its tracked target start.
 struct Hand {
   std::string name;
   HandModel model;
   Pose X_WH;
   std::optional<TrackerSettings> tracking =
-      std::nullopt;  ///< none: the tracked target is where the script wants it
+      std::nullopt;  ///< none: a perfect tracker without delay
 };
 
-/// Where a person looks when nobody tells her to.
+/// Where a person looks if no step of the script says so.
 enum class Eyes {
   kLead,  ///< where her hands go next (Johansson et al. 2001)
   kAhead  ///< straight ahead
 };
 
-/// A human: a head that looks about, and perhaps a body. Her parts are kinematic bodies of the
-/// scene, one after another from `head` on; their order is in physics/person/skeleton.h.
+/// A human: a head that looks around, and perhaps a body. Her parts are consecutive kinematic
+/// bodies of the scene, from `head` on, in the order of physics/person/skeleton.h.
 struct Person {
   std::string name;
   int head = 0;            ///< index into Scene::bodies
-  bool has_body = false;   ///< else she is only a head
+  bool has_body = false;   ///< else there is only a head
   double height_m = 1.75;  ///< standing, from the floor to the crown
-  Pose X_WS;               ///< where she stands: between her feet on the floor, x ahead, z up
+  Pose X_WS;               ///< her stance: between her feet on the floor, x ahead, z up
   Eyes eyes = Eyes::kLead;
   int right_hand = -1;  ///< index into Scene::hands: the hand that her arm follows; -1: none
   int left_hand = -1;
 };
 
-enum class Engine { kBullet, kBox2d };
+enum class Engine {
+  kBullet,
+  kBox2d,
+  kBulletStock  ///< Bullet without our replacements of its parts, to compare with them
+};
 
 struct WorldSettings {
   Engine engine = Engine::kBullet;
-  /// Everything stays in the plane y = 0 and turns about y alone; all that takes part lies in it
-  /// (physics/scene/planar.h). Box2D needs it.
+  /// All bodies and hands lie in the plane y = 0 (physics/scene/planar.h), stay in it and rotate
+  /// about y only. Box2D requires it.
   bool planar = false;
   int rate_hz = 480;
   std::uint64_t seed = 1;
@@ -157,10 +160,11 @@ struct Scene {
   std::vector<Person> persons;
 };
 
-/// A thing can carry others and be grasped; parts of persons, grains and what is abstract cannot.
+/// Whether a body is a thing: it can carry others and be grasped. Parts of persons, grains and
+/// abstract bodies are not.
 bool IsThing(const Body& body);
 
-/// Can it be picked up? Not when it is fixed or no thing, nor when a joint ties it to something.
+/// Whether a body can be picked up: it is a thing, not fixed, and no joint ties it to another body.
 bool MovesFreely(const Scene& scene, int body);
 
 /// Tight oriented bounding box of a body, in its own frame B: centre and half sizes, metres.

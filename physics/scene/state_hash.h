@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// FNV-1a over words of 64 bits, with a shift so that high bits reach low ones: the bits of poses,
-// velocities and joints. Equal hashes mean equal motion. A body asleep stands still: it was counted
-// when it last moved. Tested by tests/physics/simulation_test.cc
+// FNV-1a over 64-bit words, with a shift so that high bits influence low ones: a hash of the bits
+// of poses, velocities and joints. Equal hashes mean equal motion. A sleeping body is skipped: it
+// was hashed when it last moved. Tested by tests/physics/simulation_test.cc
 #pragma once
 
 #include <bit>

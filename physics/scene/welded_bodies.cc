@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/scene/joint_test.cc
+// The root of a body is found along its fixed joints (physics/scene/joint.h). Tested by
+// tests/physics/scene/joint_test.cc
 #include "physics/scene/welded_bodies.h"
 
 #include "physics/scene/geometry.h"
@@ -25,10 +26,10 @@ std::vector<std::vector<std::size_t>> RigidGroups(const Scene& scene) {
 
 namespace {
 
-/// Where the centre of mass of a shape is; most shapes have their frame there.
+/// The frame of a shape's centre of mass; for most shapes it is the shape's own frame.
 Pose CentreOf(const Shape& shape, const Pose& X_RS) {
   const auto* hull = std::get_if<Hull>(&shape);
-  return hull ? X_RS * hull->X_SC : X_RS;  // the others keep their pose to the last bit
+  return hull ? X_RS * hull->X_SC : X_RS;  // the other shapes keep their pose to the last bit
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ std::vector<RigidMember> MembersOf(const std::vector<const Body*>& bodies) {
     for (const PlacedShape& placed : body.shapes) volume += VolumeOf(placed.shape);
     const double density = (fixed ? 1.0 : body.mass_kg) / volume;
     for (const PlacedShape& placed : body.shapes) {
-      // So do the root's own shapes.
+      // The root's own shapes keep their pose to the last bit, too.
       const Pose X_RS = i == 0 ? placed.X_BS : X_RW * body.X_WB * placed.X_BS;
       members.push_back(
           {&placed, i, CentreOf(placed.shape, X_RS), density * VolumeOf(placed.shape)});

@@ -10,19 +10,20 @@
 
 namespace prehend::physics {
 
-/// Every body of the scene in exactly one group, which lists indices into Scene::bodies, the root
-/// first. Sorted by root.
+/// Groups of indices into Scene::bodies, each with its root first, sorted by root. Every body of
+/// the scene is in exactly one group.
 std::vector<std::vector<std::size_t>> RigidGroups(const Scene& scene);
 
 /// A shape of one of the bodies that make up a rigid body.
 struct RigidMember {
   const PlacedShape* placed = nullptr;
   std::size_t owner = 0;  ///< index into the bodies
-  Pose X_RC;  ///< its centre of mass and principal axes, in the frame of the first body, the root
-  double mass_kg = 0;  ///< of a fixed body: as if its density were 1
+  Pose X_RC;              ///< centre of mass and principal axes, in the frame of the root
+  double mass_kg = 0;     ///< of a fixed body: its volume, as if its density were 1
 };
 
-/// The mass of a body is spread evenly over its shapes' volumes. The bodies outlive the result.
+/// All shapes of the bodies. A body's mass is distributed over its shapes by volume. The bodies
+/// must outlive the result.
 std::vector<RigidMember> MembersOf(const std::vector<const Body*>& bodies);
 
 }  // namespace prehend::physics

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/world/world_test.cc
+// Pairs move between the two maps when a body falls asleep or wakes. Tested by
+// tests/physics/world/world_test.cc
 #include "physics/world/contact_hold.h"
 
 #include <algorithm>
@@ -8,10 +9,11 @@
 namespace prehend::physics {
 namespace {
 
-/// A pair that stops pushing for no longer than this still touches: 8 ms at 480 Hz.
+/// A contact survives this many ticks without an impulse: 8 ms at 480 Hz.
 constexpr int kHoldTicks = 4;
 
-/// A ball in the seam of two shapes touches both in one place, so the place alone is no order.
+/// A ball in the seam of two shapes touches both at one point, so the position alone does not
+/// define an order.
 bool PointLess(const ContactPoint& l, const ContactPoint& r) {
   const auto key = [](const ContactPoint& point) {
     return std::tuple(point.p_W_m.x(), point.p_W_m.y(), point.p_W_m.z(), point.normal_impulse_n_s,
@@ -25,7 +27,8 @@ bool PointLess(const ContactPoint& l, const ContactPoint& r) {
 void TouchingPairs::BeginTick(const std::vector<char>& rests) {
   if (rests != rests_) {
     rests_ = rests;
-    // Who has just fallen asleep was simulated in this tick: its last points are still to come.
+    // A body that has just fallen asleep was simulated in this tick: its last points are still to
+    // come.
     rested_.resize(rests.size(), 0);
     for (std::size_t i = 0; i < rests.size(); ++i) rested_[i] &= rests[i];
     if (MovePairs(resting_, pairs_, false)) ShareResting();
@@ -59,7 +62,7 @@ void TouchingPairs::EndTick() {
   if (MovePairs(pairs_, resting_, true)) ShareResting();
 }
 
-/// Whether there were any.
+/// Returns whether there were any.
 bool TouchingPairs::MovePairs(Pairs& from, Pairs& to, bool that_rest) {
   const std::size_t before = from.size();
   for (auto it = from.begin(); it != from.end();) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What counts as touching, the same for every engine. Two surfaces touch in a tick in which
-// momentum passed between them, wherever they were before and after it: a bounce is over within
-// one. Once they touch, they do until they have not pushed for a few ticks, because a resting
-// contact's impulse flickers. Between two that rest nothing changes, and it costs no time. Tested
-// by tests/physics/world/world_test.cc, tests/physics/world/bounce_test.cc
+// Defines contact, the same for every engine. Two surfaces are in contact in a tick in which
+// momentum passed between them, whatever their distance was before and after it: a bounce is over
+// within one tick. A contact lasts until no impulse has passed for a few ticks, because the impulse
+// of a resting contact flickers. Contacts between two resting bodies do not change and cost no
+// time. Tested by tests/physics/world/world_test.cc, tests/physics/world/bounce_test.cc
 #pragma once
 
 #include <map>
@@ -17,22 +17,22 @@ namespace prehend::physics {
 
 class TouchingPairs {
  public:
-  /// Before the engine's points of a tick are added. `rests`: by body of the scene, whether it is
-  /// fixed or asleep after this tick.
+  /// Call before the points of a tick are added. `rests`: by body of the scene, whether it is fixed
+  /// or asleep after this tick.
   void BeginTick(const std::vector<char>& rests);
-  /// Both rest and did so before: there is nothing to add between them.
+  /// Whether both rest and did so in the tick before: then there is no point to add.
   bool Rest(const ContactSide& a, const ContactSide& b) const { return Rests(a) && Rests(b); }
-  /// A point that the engine knows; one that does not push is left out. The sides may come in any
-  /// order.
+  /// Adds a contact point of the engine; a point without impulse is ignored. The sides may be in
+  /// any order.
   void Add(ContactPoint point);
-  /// After the last point of the tick.
+  /// Call after the last point of the tick.
   void EndTick();
   /// Writes contacts, sorted by (a, b, point), and the resting ones.
   void Describe(Snapshot& snapshot) const;
 
  private:
   struct Pair {
-    std::vector<ContactPoint> points;  ///< of the last tick at which they touched
+    std::vector<ContactPoint> points;  ///< of the last tick with an impulse
     int quiet_ticks = 0;
     bool seen = false;  ///< in the present tick
   };
@@ -45,10 +45,10 @@ class TouchingPairs {
   bool MovePairs(Pairs& from, Pairs& to, bool that_rest);
   void ShareResting();
 
-  Pairs pairs_;                                              ///< of which one may move
-  Pairs resting_;                                            ///< the others
-  std::vector<char> rests_;                                  ///< by body, after this tick
-  std::vector<char> rested_;                                 ///< after the tick before, too
+  Pairs pairs_;               ///< pairs of which one side may move
+  Pairs resting_;             ///< all other pairs
+  std::vector<char> rests_;   ///< by body, after this tick
+  std::vector<char> rested_;  ///< by body, after this tick and the one before
   std::shared_ptr<const std::vector<ContactPoint>> shared_;  ///< the points of `resting_`
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who rests, and since when: what nobody needs to look at again. Tested by
+// Which bodies rest, and since when: they need not be described or sensed again. Tested by
 // tests/physics/world/world_test.cc
 #pragma once
 
@@ -14,8 +14,8 @@ class Stillness {
  public:
   explicit Stillness(std::size_t bodies) : rests_(bodies, 0), moved_tick_(bodies, 0) {}
 
-  /// After every step; `rests(i)`: body i is fixed or asleep. Who has just fallen asleep was moved
-  /// in this tick, if only by losing its speed.
+  /// Call after every step. `rests(i)`: body i is fixed or asleep. A body that has just fallen
+  /// asleep counts as moved in this tick, because it lost its speed.
   template <typename Rests>
   void Update(std::int64_t tick, const Rests& rests) {
     for (std::size_t i = 0; i < rests_.size(); ++i) {
@@ -26,8 +26,8 @@ class Stillness {
   }
   const std::vector<char>& rests() const { return rests_; }
 
-  /// Writes what may not be as it is in the snapshot: `state(i)` is the state of body i. The
-  /// snapshot is new, or of the same world.
+  /// Writes the states that may differ from those in the snapshot; `state(i)` is the state of body
+  /// i. The snapshot is new, or of the same world.
   template <typename State>
   void Describe(Snapshot& snapshot, const State& state) const {
     snapshot.bodies.resize(moved_tick_.size());
@@ -39,7 +39,7 @@ class Stillness {
   }
 
  private:
-  std::vector<char> rests_;  // bool, but quick to compare
+  std::vector<char> rests_;  // as bool, but fast to combine
   std::vector<std::int64_t> moved_tick_;
 };
 

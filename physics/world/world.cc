@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an engine need not have: one without persons moves no kinematic bodies and sees nothing.
+// Defaults for engines without persons. Tested by tests/physics/world/world_test.cc
 #include "physics/world/world.h"
 
 namespace prehend::physics {

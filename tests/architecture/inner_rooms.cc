@@ -32,7 +32,7 @@ const Arrows& ProjectArrows() {
 
       {"harness/base", {"grammar/base"}},
       {"harness/process", {}},
-      {"harness/timeline", {"grammar/base"}},
+      {"harness/timeline", {"grammar/base", "grammar/program"}},
       // A witness of its own: it never sees what it judges.
       {"harness/oracle", {"grammar/base", "physics/scene"}},
       {"harness/scenario", {"grammar/base", "harness/base", "physics/motion", "physics/scene"}},
@@ -66,7 +66,7 @@ const Arrows& ProjectArrows() {
        {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/golden",
         "harness/oracle", "harness/pictures", "harness/process", "harness/read", "harness/run",
         "harness/scenario", "harness/sense", "harness/timeline", "physics/scene"}},
-      {"harness/report", {"harness/base", "harness/check", "harness/timeline"}},
+      {"harness/report", {"harness/base", "harness/check"}},
       {"harness/cli",
        {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/check",
         "harness/explain", "harness/format", "harness/golden", "harness/oracle", "harness/pictures",

@@ -51,6 +51,14 @@ TEST(Describe, PromisesAreKeptOnTheCorpus) {
   }
 }
 
+TEST(Describe, TextListsLaws) {
+  const std::string text = Text(Describe(*testing::CompileLibrary("contact")));
+  EXPECT_NE(text.find("\nlaw supports_lie_inside_contacts(object: Movable, support: Thing)\n"
+                      "    supported_by(object, support) lies inside contact(object, support)\n"),
+            std::string::npos)
+      << text;
+}
+
 TEST(Describe, TextListsParametersWithTheirPlaces) {
   const std::string text = Text(Describe(*testing::CompileLibrary("grasp", {{"grip_on", "0.5"}})));
   EXPECT_NE(

@@ -138,7 +138,8 @@ physics::HandState DemoHandState(const physics::HandModel& model, const Pose& X_
     X_WJ.push_back(X_WP * Pose{link.pivot_m, turn} *
                    Pose{-link.pivot_m, Eigen::Quaterniond::Identity()});
     const Pose X_HL{link.pivot_m + link.direction * link.length_m / 2,
-                    Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitX(), link.direction)};
+                    RotationBetween(Eigen::Vector3f::UnitX(), link.direction.entity_table<float>())
+                        .entity_table<double>()};
     state.X_WL.push_back(X_WJ.back() * X_HL);
   }
   return state;

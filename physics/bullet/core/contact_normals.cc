@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/world/tipping_test.cc
+// A flag on each point tells kept points from new ones. Tested by
+// tests/physics/world/tipping_test.cc
 #include "physics/bullet/core/contact_normals.h"
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
@@ -7,21 +8,20 @@
 namespace prehend::physics {
 namespace {
 
-/// Ours among the flags of a point: it was there before this tick. A point that is found anew has
-/// none of them.
+/// Our flag on a contact point: it existed before this tick. A new point has no flags.
 constexpr int kKept = 1 << 16;
 
 std::size_t IndexOf(const btCollisionObject& body) {
   return static_cast<std::size_t>(body.getWorldArrayIndex());
 }
 
-/// Of a hand. Its points stay as Bullet keeps them: fingers press, so that points are found anew
-/// all the time.
+/// Whether it is a link of a hand. Its points stay as Bullet keeps them: fingers press, so new
+/// points are found all the time.
 bool IsLink(const btCollisionObject& body) {
   return body.getInternalType() == btCollisionObject::CO_FEATHERSTONE_LINK;
 }
 
-/// The shorter of two ways that go the same way, else none.
+/// The shorter of two changes in the same direction, else zero.
 btVector3 Shared(const btVector3& a, const btVector3& b) {
   if (a.dot(b) <= 0) return {0, 0, 0};
   return a.length2() < b.length2() ? a : b;

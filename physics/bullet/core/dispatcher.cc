@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sorts pairs by the ids of their proxies, as Bullet does. Tested by
+// tests/physics/world/world_test.cc
 #include "physics/bullet/core/dispatcher.h"
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>

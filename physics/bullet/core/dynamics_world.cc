@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Bullet's own list of moving bodies holds only the awake ones while it steps. Tested by
+// tests/physics/world/world_test.cc
 #include "physics/bullet/core/dynamics_world.h"
 
 #include <btBulletCollisionCommon.h>
@@ -38,8 +40,8 @@ void BulletDynamics::internalSingleStepSimulation(btScalar dt_s) {
 
 void BulletDynamics::solveConstraints(btContactSolverInfo& info) {
   btMultiBodyDynamicsWorld::solveConstraints(info);
-  // Islands have been woken as a whole, and who fell asleep with its island still has to lose its
-  // speed.
+  // Islands were woken as a whole, and a body that fell asleep with its island still has to lose
+  // its speed.
   woke_any_ = false;
   m_nonStaticRigidBodies.resize(0);
   for (std::size_t i = 0; i < moving_.size(); ++i) {

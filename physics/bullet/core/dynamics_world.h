@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's world, whose loops over bodies leave out those that sleep. Bullet goes through all of
-// them some eight times a tick, and moves where each will be. Only for bullet_*.cc. Tested by
+// Bullet's world with loops that skip sleeping bodies. Bullet visits all bodies some eight times
+// per tick and predicts their motion. Only for physics/bullet. Tested by
 // tests/physics/world/world_test.cc
 #pragma once
 
@@ -10,12 +10,12 @@
 
 namespace prehend::physics {
 
-/// Second user index of a body whose box in the broad phase is as large as it is. Bullet makes
-/// boxes of moving bodies 20 mm larger than need be. For grains, that joins every one with all of
-/// its vessel: 200 of them took 6 ms a tick, and take 2 ms with tight boxes.
+/// Second user index of a body with a tight bounding box in the broad phase. Bullet enlarges the
+/// boxes of moving bodies by 20 mm. With these boxes every grain is paired with all others of its
+/// vessel: 200 grains took 6 ms per tick, and take 2 ms with tight boxes.
 constexpr int kTightBox = 1;
 
-/// Add all bodies before the first step.
+/// All bodies must be added before the first step.
 class BulletDynamics final : public btMultiBodyDynamicsWorld {
  public:
   using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
@@ -29,8 +29,8 @@ class BulletDynamics final : public btMultiBodyDynamicsWorld {
   void solveConstraints(btContactSolverInfo& info) override;
   void SetTightBox(btCollisionObject& object);
 
-  std::vector<btRigidBody*> moving_;  ///< all that are not static, in the order of their adding
-  std::vector<char> stepped_;         ///< parallel: in Bullet's list of this step
+  std::vector<btRigidBody*> moving_;  ///< all bodies that are not static, in order of insertion
+  std::vector<char> stepped_;         ///< by index in moving_: in Bullet's list of this step
   bool woke_any_ = false;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Method: what finds further points by tilting the smaller body a little is van den Bergen's idea,
-// as in Bullet's own btConvexConvexAlgorithm (zlib licence), which does it for all contacts or
-// none. Tested by tests/physics/world/bounce_test.cc
+// Method: further points are found by tilting the smaller body a little, an idea of van den Bergen
+// that Bullet's btConvexConvexAlgorithm (zlib licence) applies to all contacts or to none. Tested
+// by tests/physics/world/bounce_test.cc
 #include "physics/bullet/core/flat_impacts.h"
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
@@ -13,20 +13,20 @@
 namespace prehend::physics {
 namespace {
 
-/// Three ways to tilt: the points they find have the middle of a face between them.
+/// Three directions of tilt: their points enclose the middle of a face.
 constexpr int kTilts = 3;
-/// As little as finds a rim: what is round is met that much beside its lowest line.
+/// The smallest tilt that finds a rim: a round body is touched that much beside its lowest line.
 constexpr btScalar kTilt_rad = 0.005;
-/// Points of one face have one normal; of an edge, it tilts with the body.
+/// Least cosine between normals of one face; the normal of an edge tilts with the body.
 constexpr btScalar kSameNormal = 0.9995;
 constexpr int kMostPoints = 4;
-/// The point that Bullet finds is the deepest. Deeper ones are errors of its search.
+/// The point that Bullet finds is the deepest one; deeper ones are errors of its search.
 constexpr btScalar kSlack_m = 1e-4;
 
-/// Takes what is found for a tilted body as points of the body as it stands.
+/// Converts points of the tilted body to points of the body as it is.
 class PointsOfTilted final : public btManifoldResult {
  public:
-  /// `back` brings the tilted body back: a point's first or second one.
+  /// `back` undoes the tilt of the point's first or second body.
   PointsOfTilted(const btManifoldResult& found, bool tilted_is_first, const btTransform& back,
                  const btManifoldPoint& deepest)
       : btManifoldResult(found),
@@ -52,7 +52,7 @@ class PointsOfTilted final : public btManifoldResult {
   const btManifoldPoint deepest_;
 };
 
-/// A person's parts are round, and give nothing back that could be shared between points.
+/// A person's parts are round and have no restitution to distribute over points.
 bool CanMeetFlat(const btCollisionObjectWrapper& side) {
   const btCollisionObject& object = *side.getCollisionObject();
   return object.getInternalType() == btCollisionObject::CO_RIGID_BODY &&

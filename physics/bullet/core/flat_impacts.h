@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where two bodies meet that come together fast. Between other shapes than boxes Bullet finds one
-// point a tick and gathers them: a can that falls flat on its foot is stopped at one point of its
-// rim, and tips. Only for bullet_*.cc. Tested by tests/physics/world/bounce_test.cc
+// Contact points of fast impacts. Except for box against box, Bullet finds one point per tick and
+// accumulates them: a can that falls flat on its base is stopped at one point of its rim and tips
+// over. Only for physics/bullet. Tested by tests/physics/world/bounce_test.cc
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
@@ -9,11 +9,11 @@
 
 namespace prehend::physics {
 
-/// What comes together slower just touches, and does not bounce.
+/// Slower contacts do not bounce.
 inline constexpr btScalar kSlowestImpact_m_per_s = 0.2;
 
-/// Bullet's collisions, which find all of a face that hits another one within one tick. What is
-/// slower, balls, hands and persons meet as ever.
+/// Bullet's collision detection, which finds all of a face in the tick of its impact. Slower
+/// contacts and those of spheres, hands and persons are stock.
 class ImpactConfiguration final : public btDefaultCollisionConfiguration {
  public:
   ImpactConfiguration();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/world/bounce_test.cc
+// Speeds are read from the bodies once per manifold. Tested by tests/physics/world/bounce_test.cc
 #include "physics/bullet/core/restitution.h"
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -7,7 +7,7 @@
 namespace prehend::physics {
 namespace {
 
-/// How one side of a contact moves. A hand's link stands still here: hands do not bounce.
+/// Motion of one side of a contact. A hand's link counts as still: hands do not bounce.
 struct Motion {
   explicit Motion(const btCollisionObject& object) {
     const btRigidBody* const body = btRigidBody::upcast(&object);
@@ -43,7 +43,7 @@ TimelyBounces::TimelyBounces(btPersistentManifold* const* manifolds, int count, 
       if (point.m_combinedRestitution <= 0 || point.getDistance() <= 0) continue;
       if (speed < slowest_m_per_s) continue;
       if (point.getDistance() <= speed * dt_s) {
-        point.setDistance(0);  // computed anew in every tick
+        point.setDistance(0);  // Bullet computes it anew in every tick
       } else {
         later_.emplace_back(&point, point.m_combinedRestitution);
         point.m_combinedRestitution = 0;

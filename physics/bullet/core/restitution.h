@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// When and how fast things bounce in Bullet. Its solver lets a gap close within the tick at most,
-// which is right for what does not bounce: who is pushed touches in this tick. But it adds the
-// speed after a bounce to that, and so pushes as much as a tick's way too early, and takes gap / dt
-// off the speed. Only for bullet_*.cc. Tested by tests/physics/world/bounce_test.cc
+// When and how fast bodies bounce in Bullet. Bullet closes a gap within one tick, which is right
+// for a body that does not bounce, and adds the rebound velocity on top: a bouncing body rebounds
+// up to one tick early and loses gap / dt of its speed. Only for physics/bullet. Tested by
+// tests/physics/world/bounce_test.cc
 #pragma once
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
@@ -12,16 +12,17 @@
 
 namespace prehend::physics {
 
-/// How fast the bodies come together at a point, m/s; negative: they part.
+/// Speed of approach of the two bodies at a point, m/s; negative: they separate.
 btScalar ApproachSpeed(const btPersistentManifold& manifold, const btManifoldPoint& point);
 
-/// While it lives, contacts are as the solver has to see them: a point bounces in the tick in which
-/// its gap closes, as if it were closed already, and not before. And a point that parts begins with
-/// no impulse: Bullet begins with the last tick's, lets friction answer it, takes it back and
-/// leaves the friction, which threw what had just bounced off to the side, turning.
+/// Changes contact points for the solver during its lifetime. A point bounces in the tick in which
+/// its gap closes, as if the gap were closed already, and not before. A separating point starts
+/// with no impulse: Bullet warm-starts it with the last tick's impulse, computes friction from it
+/// and removes the impulse but not the friction, which deflects and spins a body that has just
+/// bounced.
 class TimelyBounces {
  public:
-  /// `slowest_m_per_s`: slower impacts do not bounce, and what is slower does not part.
+  /// `slowest_m_per_s`: slower impacts do not bounce, and slower separation is ignored.
   TimelyBounces(btPersistentManifold* const* manifolds, int count, btScalar dt_s,
                 btScalar slowest_m_per_s);
   ~TimelyBounces();
@@ -29,7 +30,7 @@ class TimelyBounces {
   TimelyBounces& operator=(const TimelyBounces&) = delete;
 
  private:
-  std::vector<std::pair<btManifoldPoint*, btScalar>> later_;  ///< and what their restitution is
+  std::vector<std::pair<btManifoldPoint*, btScalar>> later_;  ///< points and their own restitution
 };
 
 }  // namespace prehend::physics

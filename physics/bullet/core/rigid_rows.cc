@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Method and rows: btSequentialImpulseConstraintSolver of Bullet 3.24 (zlib licence), whose results
-// these are, bit by bit. Tested by tests/physics/bullet/solver_test.cc
+// Method and rows: btSequentialImpulseConstraintSolver of Bullet 3.24 (zlib licence). The results
+// are the same, bit by bit. Tested by tests/physics/bullet/solver_test.cc
 #include "physics/bullet/core/rigid_rows.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ void RigidRows::Setup(const Pools& pools) {
 void RigidRows::Arrange(const btConstraintArray& sources,
                         const btAlignedObjectArray<btSolverBody>& bodies) {
   const std::size_t count = At(sources.size());
-  // A row comes one level after the latest that shares a body which moves.
+  // The level of a row is one above the highest earlier row that shares a moving body with it.
   bodys_level_.assign(At(bodies.size()), -1);
   level_.resize(count);
   next_.assign(count + 1, 0);

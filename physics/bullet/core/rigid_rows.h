@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of btSequentialImpulseConstraintSolver (between rigid bodies), made faster. Same rows,
-// same arithmetic, hence the same bits; but each is first written out flat, a side that does not
-// move costs nothing, and rows that share no body stand beside each other, so that none waits for
-// its neighbour's result. Tested by tests/physics/bullet/solver_test.cc
+// The rows between rigid bodies of btSequentialImpulseConstraintSolver, made faster. Same rows,
+// same arithmetic, hence the same bits. But every row is first written out flat, a side that does
+// not move costs nothing, and rows without a common body are adjacent, so that none waits for its
+// neighbour's result. Tested by tests/physics/bullet/solver_test.cc
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
@@ -20,12 +20,12 @@ inline Six SixOf(const btVector3& linear, const btVector3& angular) {
   return {linear.x(), linear.y(), linear.z(), angular.x(), angular.y(), angular.z()};
 }
 
-/// A rigid body as a row of the solver sees it: what the row reads and changes of it. Sums stand in
-/// Bullet's order, to the last bit.
+/// One rigid body of a row: what the row reads and changes of it. Sums are in Bullet's order, to
+/// the last bit.
 struct RigidSide {
-  Six* speeds = nullptr;  ///< what the solver adds to the body's; null: the body does not move
+  Six* speeds = nullptr;  ///< solver's change of the body's speeds; null: fixed
   Six jacobian{};
-  Six response{};  ///< to a unit impulse
+  Six response{};  ///< change of the speeds by a unit impulse
 
   btScalar SpeedAlong() const {
     if (!speeds) return 0;
@@ -43,7 +43,7 @@ inline bool Moves(const btSolverBody& body) {
   return body.m_originalBody && !body.internalGetInvMass().isZero();
 }
 
-/// `speeds` are those of the body.
+/// `speeds`: the solver's change of the body's speeds.
 inline RigidSide MakeRigidSide(const btSolverBody& body, Six& speeds, const btVector3& linear,
                                const btVector3& angular, const btVector3& angular_response) {
   if (!Moves(body)) return {};
@@ -53,42 +53,41 @@ inline RigidSide MakeRigidSide(const btSolverBody& body, Six& speeds, const btVe
                             angular_response * body.m_angularFactor)};
 }
 
-/// Asks for an order of rows that is not random, and frictions after all contacts (Bullet's
-/// defaults).
+/// Requires rows in a fixed order, and friction rows after all contact rows (Bullet's defaults).
 class RigidRows {
  public:
-  /// What Bullet has set up of one group of islands; must outlive the rest.
+  /// Bullet's rows of one group of islands; they must outlive the other calls.
   struct Pools {
     btAlignedObjectArray<btSolverBody>& bodies;
     btConstraintArray &joints, &contacts, &frictions, &rolling;
   };
   void Setup(const Pools& pools);
 
-  /// What the solver adds to the speeds of this body, by its index in Pools::bodies.
+  /// The solver's change of the speeds of a body, by its index in Pools::bodies.
   Six& SpeedsOf(int body) { return speeds_[static_cast<std::size_t>(body)]; }
 
-  /// Each row once; `contact_iterations` is for how many iterations all but joints take part.
-  /// Returns the largest squared change of a speed.
+  /// Solves each row once. Rows that are not joints take part in the first `contact_iterations`
+  /// iterations. Returns the largest squared change of a speed.
   btScalar Solve(int iteration, int contact_iterations);
-  /// Likewise for what only moves bodies out of each other ("split impulse").
+  /// The same for rows that only correct penetration ("split impulse").
   btScalar SolvePenetrations();
 
-  /// Impulses and speeds go to where Bullet looks for them.
+  /// Writes impulses and speeds back to Bullet's rows and bodies.
   void WriteBack(const Pools& pools) const;
 
  private:
   struct Row {
-    RigidSide side;  ///< one that moves, if one does
-    int other = -1;  ///< index into others_, if both do
+    RigidSide side;  ///< a side that moves, if there is one
+    int other = -1;  ///< index into others_, if both sides move
     btScalar wanted, softness, inverse_mass, mass, least, most, friction;
     btScalar impulse;
-    const btScalar* pressure;  ///< of a friction row: its contact's impulse
-    int iterations;            ///< of a joint: takes part in so many
+    const btScalar* pressure;  ///< of a friction row: impulse of its contact
+    int iterations;            ///< of a joint: number of iterations
     const btSolverConstraint* source;
   };
   using Rows = std::vector<Row>;
 
-  /// In which order to go through them; those that share a body keep theirs.
+  /// Computes the order of rows; rows with a common body keep their order.
   void Arrange(const btConstraintArray& sources, const btAlignedObjectArray<btSolverBody>& bodies);
   void Flatten(const Pools& pools, const btConstraintArray& sources, Rows& rows);
   Row MakeRow(const btSolverConstraint& source, const Pools& pools, std::vector<Six>& speeds);

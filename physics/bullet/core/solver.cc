@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Method and order of rows: btMultiBodyConstraintSolver of Bullet 3.24 (zlib licence), whose
-// results these are, bit by bit. Tested by tests/physics/bullet/solver_test.cc
+// Method and order of rows: btMultiBodyConstraintSolver of Bullet 3.24 (zlib licence). The results
+// are the same, bit by bit. Tested by tests/physics/bullet/solver_test.cc
 #include "physics/bullet/core/solver.h"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -18,7 +18,7 @@ void AddScaled(const btScalar* __restrict what, btScalar scale, int count,
   for (int i = 0; i < count; ++i) sum[i] += what[i] * scale;
 }
 
-/// An impulse that is to become `sum` by `change` from `old`, kept within bounds.
+/// Clamps an impulse that changes from `old` by `change` to `sum`.
 void Clamp(btScalar least, btScalar most, btScalar old, btScalar& sum, btScalar& change) {
   if (sum < least) {
     change = least - old;
@@ -38,8 +38,8 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   const btScalar result = btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(
       bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
   rigid_.Setup(RigidPools());
-  // No row of a multibody is warm-started, so its speeds begin at zero here, and in the end they
-  // are what is to be added.
+  // No row of a multibody is warm-started: its speeds start at zero here, and their final values
+  // are added to the multibody.
   terms_.clear();
   met_.clear();
   Flatten(m_multiBodyNonContactConstraints, joints_);
@@ -202,7 +202,7 @@ btScalar BulletSolver::solveSingleIteration(int iteration, btCollisionObject**, 
                                             btPersistentManifold**, int, btTypedConstraint**, int,
                                             const btContactSolverInfo& info, btIDebugDraw*) {
   btScalar largest = rigid_.Solve(iteration, info.m_numIterations);
-  // Joints are gone through to and fro.
+  // Joints are solved forwards and backwards in turn, as in Bullet.
   const std::size_t joint_count = joints_.size();
   for (std::size_t i = 0; i < joint_count; ++i)
     largest = std::max(largest, Solve(joints_[iteration & 1 ? i : joint_count - 1 - i]));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's solver of multibodies, made faster for hands; physics/bullet/core/rigid_rows.h does so
-// for what is rigid. Same rows, same order, same arithmetic, hence the same bits wherever nothing
-// bounces; but each row is first written out flat, with the few elements of its Jacobian that are
-// not zero (a joint motor has one, a finger's contact ten of 22), rows whose impulse does not
-// change touch nothing, and velocities reach the multibody once per step. Tested by
+// Bullet's solver of multibodies, made faster for hands (physics/bullet/core/rigid_rows.h does the
+// same for rigid bodies). Same rows, same order, same arithmetic, hence the same bits unless a body
+// bounces. But every row is first written out flat, with the few non-zero elements of its Jacobian
+// (a joint motor has one, a finger's contact 10 of 22); rows whose impulse does not change write
+// nothing; and velocities are written to the multibody once per step. Tested by
 // tests/physics/bullet/solver_test.cc
 #pragma once
 
@@ -15,9 +15,9 @@
 
 namespace prehend::physics {
 
-/// Projected Gauss-Seidel over the rows of btMultiBodyConstraintSolver. Asks for two friction
-/// directions and an implicit friction cone (Bullet's default for multibodies), and for as many
-/// iterations for every row as `m_numIterations` says.
+/// Projected Gauss-Seidel over the rows of btMultiBodyConstraintSolver. Requires two friction
+/// directions, an implicit friction cone (Bullet's default for multibodies), and `m_numIterations`
+/// iterations for every row.
 class BulletSolver final : public btMultiBodyConstraintSolver {
  public:
   btScalar solveGroupCacheFriendlySetup(btCollisionObject** bodies, int body_count,
@@ -29,10 +29,10 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
       btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
       int manifold_count, btTypedConstraint** constraints, int constraint_count,
       const btContactSolverInfo& info, btIDebugDraw* drawer) override;
-  /// As Bullet does it, but what bounces does so in time (physics/bullet/core/restitution.h).
+  /// Bullet's version within TimelyBounces (physics/bullet/core/restitution.h).
   void convertContacts(btPersistentManifold** manifolds, int count,
                        const btContactSolverInfo& info) override;
-  /// Squared change of an impulse, the largest of all rows: zero when nothing changed.
+  /// Largest squared change of an impulse of all rows; zero if nothing changed.
   btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
                                 btPersistentManifold** manifolds, int manifold_count,
                                 btTypedConstraint** constraints, int constraint_count,
@@ -41,12 +41,12 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
                                          const btContactSolverInfo& info) override;
 
  private:
-  /// An element of a Jacobian that is not zero.
+  /// A non-zero element of a Jacobian.
   struct Term {
     int speed;  ///< index into m_data.m_deltaVelocities
     btScalar factor;
   };
-  /// What a row does to one of its two bodies: a multibody, a rigid body, or neither.
+  /// One of the two bodies of a row: a multibody, a rigid body, or none.
   struct Side {
     int first_term = 0, end_term = 0;  ///< in terms_
     int speeds = 0;                    ///< of the multibody, in m_data.m_deltaVelocities
@@ -58,7 +58,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
     Side a, b;
     btScalar wanted, softness, inverse_mass, least, most, friction;
     btScalar impulse;
-    int normal;  ///< of a friction row: index of its contact
+    int normal;  ///< of a friction row: index of its contact row
     btMultiBodySolverConstraint* source;
   };
   using Rows = std::vector<Row>;
@@ -69,7 +69,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
                 const btVector3& linear, const btVector3& angular,
                 const btVector3& angular_response);
   btScalar SpeedAlong(const Side& side) const;
-  /// Impulse of the contact whose friction this is.
+  /// Impulse of the contact of a friction row.
   btScalar Pressure(const Row& friction) const;
   btScalar WantedChange(const Row& row) const;
   void Push(const Side& side, btScalar impulse);

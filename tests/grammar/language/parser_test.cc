@@ -34,6 +34,20 @@ TEST(Parser, BindsOperatorsAsDocumented) {
        "until (a(x) begins) since near(x, p(x)@end) approaching gap(x) receding at most 0.005 m, "
        "slower than 0.02 m/s "
        "at most 0.5 s at most 3 s back"},
+      {"until a(x) begins since b(x) approaching gap(x) receding at most 5 mm, slower than 2 cm/s "
+       "at "
+       "most 0.5 s, onset 1 mm/s at most 3 s back",
+       "until (a(x) begins) since b(x) approaching gap(x) receding at most 0.005 m, slower than "
+       "0.02 "
+       "m/s at most 0.5 s, onset 0.001 m/s at most 3 s back"},
+      {"while a(x) drawn as phase \"#d62728\" without ghost",
+       "while a(x) drawn as phase \"#D62728\" without ghost"},
+      {"while a(x) with b = c(x) drawn as phase with ghost at end lasting 1 s",
+       "while a(x) lasting 1 s with b = c(x) drawn as phase with ghost at end"},
+      {"while a(x) drawn \"#00000f\" without row", "while a(x) drawn \"#00000F\" without row"},
+      {"while a(x) drawn as grasp with b = c(x)", "while a(x) with b = c(x) drawn as grasp"},
+      {"while a(x) drawn as support with ghost = c(x)",
+       "while a(x) with ghost = c(x) drawn as support"},
       {"rest of a(x) outside b(x, any), c(x) lasting 1 s",
        "rest of a(x) outside b(x, any), c(x) lasting 1 s"},
       {"compose p: a(x), q: b(x) where p before|meets q",
@@ -47,6 +61,23 @@ TEST(Parser, BindsOperatorsAsDocumented) {
     const std::string head = "grammar g\nevent e(x: X) ";
     EXPECT_EQ(DumpOf(head + text), head + dumped + "\n");
   }
+}
+
+TEST(Parser, ReadsLaws) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"rest of a(x, y) outside b(x, any Cup), c(y) is empty", ""},
+      {"a(x, y), b(y, x) do not overlap", ""},
+      {"a(x, y), b(y, x) lie inside c(any) or d(x)", "a(x, y), b(y, x) lies inside c(any) or d(x)"},
+      {"a(x, y) meets|before b(x) or c(y)", ""},
+  };
+  for (const auto& [text, dumped] : cases) {
+    const std::string head = "grammar g\nlaw l(x: X, y: Y) ";
+    EXPECT_EQ(DumpOf(head + text), head + (*dumped ? dumped : text) + "\n");
+  }
+  // These words are names elsewhere.
+  EXPECT_EQ(
+      DumpOf("grammar g\nevent is(do: X) while empty(do)\nlaw lies(do: X) is(do) meets is(do)"),
+      "grammar g\nevent is(do: X) while empty(do)\nlaw lies(do: X) is(do) meets is(do)\n");
 }
 
 TEST(Parser, ADumpReadsBackAsItself) {

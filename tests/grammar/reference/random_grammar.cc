@@ -82,6 +82,7 @@ class Maker {
       rule.idles = rule.approaches && Sometimes();
       rule.speed_m_per_s = rule.idles ? 370 : 0;
       rule.idle = static_cast<Tick>(Below(5));
+      rule.onset_m_per_s = rule.idle % 2 == 1 ? 120 : rule.speed_m_per_s / 10;
       return;
     }
     rule.second = Moment("begin");
@@ -279,8 +280,9 @@ class Writer {
     if (!rule.approaches) return {};
     const std::string text =
         " approaching height(x) receding at most " + std::to_string(rule.slack_m) + ".5 m";
-    return rule.idles ? text + ", slower than 370 m/s at most " + std::to_string(rule.idle) + " ms"
-                      : text;
+    if (!rule.idles) return text;
+    return text + ", slower than 370 m/s at most " + std::to_string(rule.idle) + " ms" +
+           (rule.onset_m_per_s == 120 ? ", onset 120 m/s" : "");
   }
 
   std::string ComposeText(const RandomRule& rule) const {
@@ -391,6 +393,7 @@ class Meaning {
         reference::Approach approach{.signal = {e_.height_m.begin(), e_.height_m.end()},
                                      .slack = rule.slack_m + 0.5,
                                      .speed = rule.speed_m_per_s,
+                                     .onset = rule.onset_m_per_s,
                                      .idle = rule.idles ? rule.idle : -1};
         return InTicks(reference::UntilSince(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
                                              e_.ticks, rule.back,

@@ -74,6 +74,7 @@ struct RandomRule {
   bool has_second = false, has_during = false, or_drop = false, approaches = false, idles = false;
   int slack_m = 0;
   double speed_m_per_s = 0;
+  double onset_m_per_s = 0;  ///< 120 where the text says it, a tenth of the speed where it does not
   Tick bridging = 0, lasting = 0, within = -1, back = 0, idle = 0;
   bool halves = false;      ///< its durations are half a tick off what they are in whole ticks
   std::vector<Term> calls;  ///< kRest: the whole and the others; kCompose: the parts

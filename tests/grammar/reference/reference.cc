@@ -133,7 +133,7 @@ int ApproachBegin(const Approach& a, const Ticks& ticks, int earliest, int end) 
   // after.
   int begin = end;
   for (int i = end - 1; i >= limit; --i) {
-    const bool moves = speed(i) >= a.speed || (begin == i + 1 && speed(i) > a.speed / 10);
+    const bool moves = speed(i) >= a.speed || (begin == i + 1 && speed(i) > a.onset);
     if (moves && (!receded || a.signal[i] > largest_after(i))) begin = i;
   }
   return begin;

@@ -75,6 +75,7 @@ struct Approach {
   std::vector<double> signal;
   double slack = 0;
   double speed = 0;
+  double onset = 0;
   Tick idle = -1;
 };
 Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, Tick back,

@@ -58,7 +58,8 @@ TEST(CheckPlanarTest, WhatDoesNotFitIsRefused) {
       {"{engine: box2d}", "{engine: box2d, planar: false}",
        "3:32: planar: engine box2d knows nothing but the plane | planar: true, or engine: bullet"},
       {"{engine: box2d}", "{engine: box3d}",
-       "3:17: engine: expected one of bullet, box2d, found 'box3d' | did you mean 'box2d'?"},
+       "3:17: engine: expected one of bullet, box2d, bullet_stock, found 'box3d' | did you mean "
+       "'box2d'?"},
       {"at_m: [0.2, 0]", "at_m: [0.2, 0.1]",
        "6:75: 'box' does not fit a planar world: its centre is off the plane y = 0 | in a planar "
        "world y is 0"},
@@ -66,14 +67,14 @@ TEST(CheckPlanarTest, WhatDoesNotFitIsRefused) {
        "6:3: 'box' does not fit a planar world: it is turned out of the plane | turn it about y "
        "only, and give it no parts beside the plane; see docs/scenario-format.md"},
       {"box: {size_m: [0.06, 0.06, 0.10]}", "tray: {size_m: [0.06, 0.06, 0.10]}",
-       "6:3: 'box' does not fit a planar world: a part of it lies beside the plane y = 0 | turn it "
+       "6:3: 'box' does not fit a planar world: a part of it is not in the plane y = 0 | turn it "
        "about y only, and give it no parts beside the plane; see docs/scenario-format.md"},
       {"at_m: [0.2, 0]", "at_m: [0.2, 0], ball_joint: {to: table, at_m: [0.2, 0, 0.9]}",
        "6:97: the joint of 'box' does not fit a planar world: a ball joint turns out of the plane "
        "| hinge with axis: [0, 1, 0]"},
       {"hand: planar_gripper", "hand: human_right",
-       "8:19: hand 'human_right' does not fit a planar world: its link 'index_proximal' lies "
-       "beside its plane y = 0 | the hand 'planar_gripper' does"},
+       "8:19: hand 'human_right' does not fit a planar world: its link 'index_proximal' is "
+       "not in its plane y = 0 | the hand 'planar_gripper' does"},
       {"at_m: [-0.2, 0, 1.05]", "at_m: [-0.2, 0.1, 1.05]",
        "8:41: at_m: 'gripper' starts beside the plane y = 0 | in a planar world y is 0"},
       {"at_m: [-0.2, 0, 1.05]", "at_m: [-0.2, 0, 1.05], rpy_deg: [0, 0, 90]",

@@ -120,14 +120,15 @@ TEST(AbstractEntities, AHullIsReadWithThePlaceOfEachMistake) {
             "6:25: points_m: expected at least 4, found 3\n");
   EXPECT_EQ(
       Complaint("hull: {points_m: [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0.1, 0.1, 0]]" + end),
-      "6:25: points_m: the points lie in a plane, or within 1 mm of one | a hull is a solid: give "
-      "it points at both sides\n");
+      "6:25: points_m: the points lie in a plane, or within 1 mm of one | a hull is a solid: add "
+      "points on both sides of the plane\n");
   EXPECT_EQ(
       Complaint("hull: {points_m: [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1], [0.01, 0.01, "
                 "0.01]]" +
                 end),
-      "6:76: points_m: point 4 is no corner: it lies inside, on a face or on an edge of the hull | "
-      "leave it out; what is not convex is built of 'parts'. Points are counted from 0\n");
+      "6:76: points_m: point 4 is not a corner: it lies inside, on a face or on an edge of the "
+      "hull | "
+      "leave it out; build a shape that is not convex from 'parts'. The first point is point 0\n");
 }
 
 }  // namespace

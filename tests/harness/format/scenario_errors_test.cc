@@ -51,7 +51,7 @@ const Case kCases[] = {
       {"tags_not_list", "grammar: pick_and_place", "tags: smoke", kRefuses,
        "3:7: tags: expected a list, found 'smoke'\n"},
       {"unknown_engine", "engine: bullet", "engine: bulet", kRefuses,
-       "4:17: engine: expected one of bullet, box2d, found 'bulet' | did you mean 'bullet'?\n"},
+       "4:17: engine: expected one of bullet, box2d, bullet_stock, found 'bulet' | did you mean 'bullet'?\n"},
       {"rate_too_high", "rate_hz: 480", "rate_hz: 100000", kRefuses,
        "4:34: rate_hz: expected a whole number from 60 to 4800, found '100000'\n"},
       {"rate_not_whole", "rate_hz: 480", "rate_hz: 480.5", kRefuses,

@@ -106,19 +106,19 @@ TEST(Hull, WhatIsNoHullIsToldWhy) {
       {"a point twice",
        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0.00005}},
        4,
-       "point 4 is where point 1 is"},
+       "point 4 is at the same place as point 1"},
       {"one inside",
        {{0, 0, 0}, {0.1, 0.1, 0.1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
        1,
-       "point 1 is no corner: it lies inside, on a face or on an edge of the hull"},
+       "point 1 is not a corner: it lies inside, on a face or on an edge of the hull"},
       {"one on a face",
        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2, 0.3, 0}},
        4,
-       "point 4 is no corner: it lies inside, on a face or on an edge of the hull"},
+       "point 4 is not a corner: it lies inside, on a face or on an edge of the hull"},
       {"one on an edge",
        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}},
        4,
-       "point 4 is no corner: it lies inside, on a face or on an edge of the hull"},
+       "point 4 is not a corner: it lies inside, on a face or on an edge of the hull"},
   };
   for (const auto& row : table) {
     const MadeHull made = MakeHull(row.points);
@@ -182,7 +182,7 @@ TEST(Hull, FallsAsTheBoxThatItIs) {
 
 TEST(Hull, IsRefusedInAPlane) {
   Body body{.name = "gem", .shapes = {{*MakeHull(BoxPoints({0.1, 0.1, 0.1})).hull, {}}}};
-  EXPECT_EQ(WhyNotPlanar(body), "a hull has no one section all along y");
+  EXPECT_EQ(WhyNotPlanar(body), "a hull does not have the same cross-section all along y");
 }
 
 }  // namespace

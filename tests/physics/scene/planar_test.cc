@@ -42,7 +42,7 @@ TEST(PlanarTest, ABodySaysWhyItDoesNotFit) {
   EXPECT_EQ(WhyNotPlanar(body), "its centre is off the plane y = 0");
   body.X_WB.p_m.y() = 0;
   body.shapes[1].X_BS.p_m.y() = 0.01;
-  EXPECT_EQ(WhyNotPlanar(body), "a part of it lies beside the plane y = 0");
+  EXPECT_EQ(WhyNotPlanar(body), "a part of it is not in the plane y = 0");
   body.shapes[1] = {Box{}, Turned(0.2, Vector3d::UnitX())};
   EXPECT_EQ(WhyNotPlanar(body), "it is turned out of the plane");
 }
@@ -62,7 +62,7 @@ TEST(PlanarTest, JointsMoveInThePlaneOrSayWhyNot) {
 TEST(PlanarTest, TheGripperIsPlanarAHumanHandIsNot) {
   EXPECT_EQ(WhyNotPlanar(LibraryHand("planar_gripper")), "");
   EXPECT_EQ(WhyNotPlanar(LibraryHand("human_right")),
-            "its link 'index_proximal' lies beside its plane y = 0");
+            "its link 'index_proximal' is not in its plane y = 0");
   HandModel gripper = LibraryHand("planar_gripper");
   gripper.styles[0].grip_axis = Vector3d::UnitY();
   EXPECT_EQ(WhyNotPlanar(gripper), "its style 'parallel' does not grip in the plane");

@@ -55,7 +55,7 @@ TEST(RunChecksTest, WhatIsPressedIntoAnotherByAHugeMassIsAdvisedOfIt) {
   EXPECT_EQ(CheckSnapshot(scene, now)->advice, "start them apart, or let them meet more slowly");
   now.contacts.push_back({.a = {.body = 1}, .b = {.body = 2}});
   EXPECT_EQ(CheckSnapshot(scene, now)->advice,
-            "a mass presses on one that is 1000000 times smaller; make them more alike");
+            "a mass presses on one that is 1000000 times smaller; make them more similar");
 }
 
 }  // namespace

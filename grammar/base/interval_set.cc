@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/timeline/interval_set.h. Tested by tests/harness/check/invariants_test.cc
-#include "harness/timeline/interval_set.h"
+// See grammar/base/interval_set.h. Tested by tests/grammar/base/interval_set_test.cc
+#include "grammar/base/interval_set.h"
 
 #include <algorithm>
 
-namespace prehend::harness {
-
-using grammar::Interval;
+namespace prehend::grammar {
 
 IntervalSet Union(std::vector<Interval> intervals) {
   std::sort(intervals.begin(), intervals.end(),
@@ -36,6 +34,4 @@ IntervalSet Without(Interval whole, const IntervalSet& parts) {
   return left;
 }
 
-bool Covers(const IntervalSet& set, Interval interval) { return Without(interval, set).empty(); }
-
-}  // namespace prehend::harness
+}  // namespace prehend::grammar
