@@ -24,7 +24,7 @@ struct Overloaded : Ts... {
 };
 
 Affine3f ToAffine(const physics::Pose& pose) {
-  return Eigen::Translation3f(pose.p_m.entity_table<float>()) * pose.q.entity_table<float>();
+  return Eigen::Translation3f(pose.p_m.cast<float>()) * pose.q.cast<float>();
 }
 
 // A box whose outer half sizes are given; edges are rounded inwards.
@@ -36,7 +36,7 @@ void SetRoundedBox(const Vector3f& outer_half_m, float rounding_m, Item* item) {
 
 void SetShape(const physics::Shape& shape, Item* item, DrawList* list) {
   std::visit(Overloaded{[&](const physics::Box& box) {
-                          const Vector3f half = box.size_m.entity_table<float>() / 2;
+                          const Vector3f half = box.size_m.cast<float>() / 2;
                           SetRoundedBox(half, std::min(0.008f, 0.16f * half.minCoeff()), item);
                         },
                         [&](const physics::Sphere& sphere) {
@@ -122,7 +122,7 @@ void AddGrains(const physics::Grains& grains, const physics::Snapshot& snapshot,
 void AddHand(const physics::HandModel& model, const physics::HandState& state, const Look& look,
              std::vector<Item>* items, DrawList* list) {
   Item palm = MakeItem(ToAffine(state.palm.X_WB), look);
-  SetRoundedBox(model.palm_size_m.entity_table<float>() / 2, 0.012f, &palm);
+  SetRoundedBox(model.palm_size_m.cast<float>() / 2, 0.012f, &palm);
   AddItem(palm, items, list);
   for (std::size_t i = 0; i < std::min(model.links.size(), state.X_WL.size()); ++i) {
     const physics::HandLink& link = model.links[i];

@@ -110,9 +110,8 @@ Mesh HullMesh(const physics::Hull& hull) {
   for (const physics::Hull::Face& face : hull.faces) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const int corner : face.corners)
-      mesh.vertices.push_back(
-          {hull.corners_m[static_cast<std::size_t>(corner)].entity_table<float>(),
-           face.nhat_S.entity_table<float>()});
+      mesh.vertices.push_back({hull.corners_m[static_cast<std::size_t>(corner)].cast<float>(),
+                               face.nhat_S.cast<float>()});
     for (std::uint32_t i = 2; i < face.corners.size(); ++i)
       mesh.triangles.insert(mesh.triangles.end(), {first, first + i - 1, first + i});
   }

@@ -23,23 +23,38 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
       grips_(entity_table_.entities.size(), thresholds_.OfGrip(0)),
       awake_(program_->rules.size()) {
   for (const Rule& rule : program_->rules) {
-    rule_ticks_.push_back({.bridging = history_.AtMostTicks(rule.bridging_s),
-                           .lasting = history_.AtLeastTicks(rule.lasting_s),
-                           .idle = history_.AtMostTicks(rule.idle_s),
-                           .back = history_.AtMostTicks(rule.back_s),
-                           .within = rule.within_s < 0 ? -1
-                                     : rule.absence    ? history_.AtLeastTicks(rule.within_s)
-                                                       : history_.AtMostTicks(rule.within_s),
-                           .in_time = history_.AtMostTicks(rule.within_s)});
-    // A requirement or an attribute is asked for where the run ended, when its gap is too long.
-    const double waits_s =
-        rule.requirement == kNone && rule.attributes.empty() ? 0 : rule.bridging_s;
-    longest_look_back_ = std::max(
-        longest_look_back_, history_.AtLeastTicks(rule.back_s + rule.looks_around_s + waits_s));
+    rule_ticks_.push_back(TicksOf(rule));
+    longest_look_back_ = std::max(longest_look_back_, history_.AtLeastTicks(LooksBack_s(rule)));
   }
   instances_.BindUnguarded();
   for (int i = 0; i < instances_.size(); ++i) Wake(i);
   if (instances_.TooMany()) error_ = instances_.WhyTooMany();
+}
+
+Engine::RuleTicks Engine::TicksOf(const Rule& rule) const {
+  RuleTicks ticks{.lasting = history_.AtLeastTicks(rule.lasting_s)};
+  if (const auto* holds = rule.If<WhileRule>())
+    ticks.bridging = history_.AtMostTicks(holds->bridging_s);
+  if (const auto* from_to = rule.If<FromToRule>(); from_to != nullptr && from_to->within_s >= 0) {
+    ticks.in_time = history_.AtMostTicks(from_to->within_s);
+    ticks.within = from_to->absence ? history_.AtLeastTicks(from_to->within_s) : ticks.in_time;
+  }
+  if (const auto* looks_back = rule.If<UntilSinceRule>()) {
+    ticks.back = history_.AtMostTicks(looks_back->back_s);
+    if (looks_back->approach) ticks.idle = history_.AtMostTicks(looks_back->approach->idle_s);
+  }
+  return ticks;
+}
+
+// How far before the newest frame the rule may ask for values.
+double Engine::LooksBack_s(const Rule& rule) {
+  double back_s = rule.looks_around_s;
+  if (const auto* looks_back = rule.If<UntilSinceRule>()) back_s += looks_back->back_s;
+  // A requirement or an attribute is asked for where the run ended, when its gap is too long.
+  if (const auto* holds = rule.If<WhileRule>();
+      holds != nullptr && (rule.requirement != kNone || !rule.attributes.empty()))
+    back_s += holds->bridging_s;
+  return back_s;
 }
 
 void Engine::Wake(int index) {
@@ -155,14 +170,15 @@ bool Engine::MayRest(const RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
   if (instance.next <= history_.now() || !instance.pending.empty() || evaluator_.depends_on_time())
     return false;
-  switch (rule.form) {
+  switch (rule.form()) {
     case Form::kCompose:
       return true;
     case Form::kFromTo:
       // What must not come may still come at the deadline; what should have come is too late after
       // it.
       if (instance.open && TicksOf(instance).within >= 0) {
-        WakeAt(instance.begin.tick + TicksOf(instance).within + (rule.absence ? 0 : 1),
+        WakeAt(instance.begin.tick + TicksOf(instance).within +
+                   (rule.As<FromToRule>().absence ? 0 : 1),
                instance.index);
       }
       return true;
@@ -257,13 +273,13 @@ void Engine::FreeOrQueue(std::vector<int>& candidates) {
 }
 
 bool Engine::CanBeFreed(const RuleInstance& instance) const {
-  const Form form = RuleOf(instance).form;
+  const Form form = RuleOf(instance).form();
   if (form != Form::kTouching && !instances_.GuardRests(instance)) return false;
   // Compositions remember; and whoever asks about this instance must be woken by it, unless it is
   // made to be.
   const auto remembers = [](const std::vector<Span>& spans) { return !spans.empty(); };
   const auto depends = [&](const Watcher& watcher) {
-    return RuleOf(instances_[watcher.instance]).form != Form::kAny;
+    return RuleOf(instances_[watcher.instance]).form() != Form::kAny;
   };
   return std::none_of(instance.parts.begin(), instance.parts.end(), remembers) &&
          !MayOverlap(instance) &&
@@ -273,12 +289,13 @@ bool Engine::CanBeFreed(const RuleInstance& instance) const {
 // A first part is on its way that may begin before the end of the last composition, which has to be
 // remembered then.
 bool Engine::MayOverlap(const RuleInstance& instance) const {
-  if (RuleOf(instance).form != Form::kCompose) return false;
-  const int index = instances_.Find(instance, RuleOf(instance).composition.parts.front());
+  const auto* composition = RuleOf(instance).If<ComposeRule>();
+  if (composition == nullptr) return false;
+  const int index = instances_.Find(instance, composition->parts.front());
   if (index == kNone) return false;
   const RuleInstance& first = instances_[index];
   return first.open || first.awake || !first.pending.empty() ||
-         RuleOf(first).form == Form::kCompose;
+         RuleOf(first).form() == Form::kCompose;
 }
 
 }  // namespace prehend::grammar

@@ -169,11 +169,13 @@ class Engine {
   void Emit(RuleInstance& instance, const Pending& finished);
   void Keep(RuleInstance& instance, const Span& span);
   Tick DecidedAt(const RuleInstance& instance, const Span& span) const {
-    return RuleOf(instance).absence ? DeadlineOf(span) : decided_;
+    const auto* from_to = RuleOf(instance).If<FromToRule>();
+    return from_to != nullptr && from_to->absence ? DeadlineOf(span) : decided_;
   }
   Tick DeadlineOf(const Span& span) const;
   void UpdateKnown(RuleInstance& instance);
   bool RunIsCertain(const RuleInstance& instance) const;
+  static bool MayBeDropped(const Rule& rule);
   void FinishInstance(RuleInstance& instance, Moment end);
   void Note(const RuleInstance& instance, CandidateOutcome::Kind kind, const Span& span,
             FrameNumber cause = kNever, const WalkBack& walk = {}) {
@@ -188,6 +190,8 @@ class Engine {
   void StepCompose(RuleInstance& instance);
 
   const Rule& RuleOf(const RuleInstance& instance) const { return program_->rules[instance.rule]; }
+  RuleTicks TicksOf(const Rule& rule) const;
+  static double LooksBack_s(const Rule& rule);
   const RuleTicks& TicksOf(const RuleInstance& instance) const {
     return rule_ticks_[instance.rule];
   }

@@ -37,15 +37,15 @@ constexpr AllenSet kToLater =
 // their ends, so all may still be hoped of them.
 bool IsHopeless(const Program& program, const Rule& rule, const RuleInstance& instance, int part,
                 const Span& span) {
-  const Composition& composition = rule.composition;
+  const ComposeRule& composition = rule.As<ComposeRule>();
   return std::any_of(
       composition.clauses.begin(), composition.clauses.end(),
-      [&](const Composition::Clause& clause) {
+      [&](const ComposeRule::Clause& clause) {
         if (clause.left == clause.right || (clause.left != part && clause.right != part))
           return false;
         const bool is_left = clause.left == part;
         const int other = is_left ? clause.right : clause.left;
-        if (program.rules[rule.references[composition.parts[other]].rule].form == Form::kCompose)
+        if (program.rules[rule.references[composition.parts[other]].rule].form() == Form::kCompose)
           return false;
         if ((clause.relations & (is_left ? kToLater : kToEarlier)) != 0) return false;
         const std::vector<Span>& others = instance.parts[other];
@@ -60,7 +60,7 @@ bool IsHopeless(const Program& program, const Rule& rule, const RuleInstance& in
 // Tries all ways to complete `chosen` and keeps the best one.
 class Combinations {
  public:
-  Combinations(const Composition& composition, const RuleInstance& instance, FrameNumber settled)
+  Combinations(const ComposeRule& composition, const RuleInstance& instance, FrameNumber settled)
       : composition_(composition), lane_(instance), settled_(settled) {
     Choose(0);
   }
@@ -79,7 +79,7 @@ class Combinations {
   bool RelationsHoldUpTo(int part) const {
     return std::all_of(
         composition_.clauses.begin(), composition_.clauses.end(),
-        [&](const Composition::Clause& clause) {
+        [&](const ComposeRule::Clause& clause) {
           if (std::max(clause.left, clause.right) != part) return true;
           return (Bit(Relate(TicksOf(*chosen_[clause.left]), TicksOf(*chosen_[clause.right]))) &
                   clause.relations) != 0;
@@ -102,7 +102,7 @@ class Combinations {
     found_ = true;
   }
 
-  const Composition& composition_;
+  const ComposeRule& composition_;
   const RuleInstance& lane_;
   FrameNumber settled_;
   std::array<const Span*, kMaxParts> chosen_ = {};
@@ -117,7 +117,7 @@ class Combinations {
 void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
   for (const PartOf& part_of : RuleOf(part).part_of) {
     const Rule& whole = program_->rules[part_of.rule];
-    const Reference& reference = whole.references[whole.composition.parts[part_of.part]];
+    const Reference& reference = whole.references[whole.As<ComposeRule>().parts[part_of.part]];
     for (int order = 0; order < (RuleOf(part).symmetric ? 2 : 1); ++order) {
       Binding from = part.entities;
       if (order == 1) std::swap(from[0], from[1]);
@@ -140,7 +140,7 @@ void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
 // that are complete by then.
 FrameNumber Engine::Settled(const RuleInstance& instance) const {
   // A composition rests though its parts do not, as each of their intervals wakes it.
-  if (RuleOf(instance).form == Form::kCompose && !instance.awake) return PartsSettled(instance);
+  if (RuleOf(instance).form() == Form::kCompose && !instance.awake) return PartsSettled(instance);
   FrameNumber settled = instance.awake ? instance.next - 1 : finishing_ ? kNever : history_.now();
   if (instance.in_gap) settled = std::min(settled, instance.gap.frame - 1);
   for (const Pending& pending : instance.pending)
@@ -150,7 +150,7 @@ FrameNumber Engine::Settled(const RuleInstance& instance) const {
 
 FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
   FrameNumber settled = finishing_ ? kNever : history_.now();
-  for (const int part : RuleOf(composition).composition.parts) {
+  for (const int part : RuleOf(composition).As<ComposeRule>().parts) {
     const int index = instances_.Find(composition, part);
     if (index != kNone) settled = std::min(settled, Settled(instances_[index]));
   }
@@ -161,7 +161,7 @@ void Engine::StepCompose(RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
   const FrameNumber settled = PartsSettled(instance);
   for (;;) {
-    const Combinations combinations(rule.composition, instance, settled);
+    const Combinations combinations(rule.As<ComposeRule>(), instance, settled);
     if (combinations.best() == nullptr) break;
     const Span whole = *combinations.best();
     instance.last_end = whole.end.frame;

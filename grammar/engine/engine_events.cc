@@ -24,7 +24,7 @@ void Engine::Begin(RuleInstance& instance, FrameNumber frame) {
 
 // A hand that no frame has shown yet has no style.
 int Engine::StyleOfHand(int entity, FrameNumber frame) const {
-  const HandSample* hand = history_.Hand(entity, frame);
+  const HandAtFrame* hand = history_.Hand(entity, frame);
   return hand == nullptr ? kNoEntity : hand->look.style;
 }
 
@@ -119,10 +119,15 @@ Tick Engine::DeadlineOf(const Span& span) const {
   return just_passed ? span.end.tick : decided_;
 }
 
+// An open run may be given up for what comes or does not come.
+bool Engine::MayBeDropped(const Rule& rule) {
+  const auto* from_to = rule.If<FromToRule>();
+  return from_to != nullptr && (from_to->or_drop || from_to->within_s >= 0);
+}
+
 bool Engine::RunIsCertain(const RuleInstance& instance) const {
   const Rule& rule = RuleOf(instance);
-  if (rule.requirement != kNone || rule.confirmed_by != kNone || rule.or_drop || rule.within_s >= 0)
-    return false;
+  if (rule.requirement != kNone || rule.confirmed_by != kNone || MayBeDropped(rule)) return false;
   const Tick earliest_end =
       instance.in_gap ? instance.gap.tick : history_.At(instance.next - 1).tick + 1;
   return earliest_end - instance.begin.tick >= TicksOf(instance).lasting;
@@ -136,7 +141,7 @@ void Engine::UpdateKnown(RuleInstance& instance) {
     const FrameNumber certain_end = instance.in_gap ? instance.gap.frame : instance.next;
     instance.known = instance.certain ? certain_end : instance.begin.frame;
   }
-  if (rule.form == Form::kUntilSince && rule.referenced && instance.next > history_.first()) {
+  if (rule.form() == Form::kUntilSince && rule.referenced && instance.next > history_.first()) {
     // A later interval ends after the last frame seen and reaches back no further than its rule
     // says.
     const Tick last = history_.At(instance.next - 1).tick;
@@ -150,10 +155,11 @@ void Engine::UpdateKnown(RuleInstance& instance) {
 // The last frames are decided, then what is open ends with the episode.
 void Engine::FinishInstance(RuleInstance& instance, Moment end) {
   StepInstance(instance);
+  const auto* from_to = RuleOf(instance).If<FromToRule>();
   if (instance.open && TicksOf(instance).within >= 0) MeetDeadline(instance, end);
   if (instance.open && instance.in_gap) {
     Close(instance, instance.gap);
-  } else if (instance.open && !RuleOf(instance).or_drop) {
+  } else if (instance.open && (from_to == nullptr || !from_to->or_drop)) {
     Close(instance, end, true);
   } else if (instance.open) {
     Note(instance, CandidateOutcome::Kind::kUnfinished, {instance.begin, end});

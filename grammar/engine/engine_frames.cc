@@ -19,7 +19,7 @@ bool Same(const EntitySample& a, const EntitySample& b) {
          a.gazes_at == b.gazes_at;
 }
 
-bool SamePose(const HandSample& a, const HandSample& b) {
+bool SamePose(const HandSample& a, const HandAtFrame& b) {
   const auto same = [](const CollisionSphere& x, const CollisionSphere& y) {
     return x.p_W_m == y.p_W_m && x.radius_m == y.radius_m;
   };
@@ -180,7 +180,7 @@ void Engine::Look(int entity, const EntitySample& look) {
 }
 
 void Engine::Look(const HandSample& hand) {
-  const HandSample* before = history_.Hand(hand.entity, history_.now());
+  const HandAtFrame* before = history_.Hand(hand.entity, history_.now());
   const bool same_grip = before != nullptr && before->look.trigger == hand.trigger;
   const bool same_pose = before != nullptr && SamePose(hand, *before);
   if (same_grip && same_pose) return;

@@ -140,7 +140,7 @@ Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const
   bool swapped = false;
   ThresholdSet beyond = 0;
   if (value.op == Op::kTrigger) {
-    const HandSample* hand = history_.Hand(Entity(value, view, 0), view.frame);
+    const HandAtFrame* hand = history_.Hand(Entity(value, view, 0), view.frame);
     beyond = hand != nullptr ? hand->beyond : thresholds_.OfGrip(0);
   } else {
     const RuleInstance* touching = Touching(value, view, swapped);
@@ -289,7 +289,7 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
   bool swapped = false;
   switch (node.op) {
     case Op::kTrigger: {
-      const HandSample* hand = history_.Hand(a, frame);
+      const HandAtFrame* hand = history_.Hand(a, frame);
       return hand == nullptr ? 0 : hand->look.trigger;
     }
     case Op::kSensorSets: {
@@ -363,7 +363,7 @@ bool Evaluator::SensorSet(const Node& node, const View& view) const {
 }
 
 double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
-  const HandSample* sample = history_.Hand(hand, frame);
+  const HandAtFrame* sample = history_.Hand(hand, frame);
   if (sample == nullptr) return 0;
   const EntitySample& look = history_.Look(object, frame);
   double gap = std::numeric_limits<double>::infinity();
@@ -385,8 +385,8 @@ double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
 double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
   depends_on_time_ = true;
   if (frame <= history_.first()) return 0;
-  const HandSample* now = history_.Hand(hand, frame);
-  const HandSample* before = history_.Hand(hand, frame - 1);
+  const HandAtFrame* now = history_.Hand(hand, frame);
+  const HandAtFrame* before = history_.Hand(hand, frame - 1);
   if (now == nullptr || before == nullptr) return 0;
   double farthest = 0;
   for (std::size_t i = 0;
@@ -502,7 +502,7 @@ std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
       return PositionOn(Entity(node, view, 0), Entity(node, view, 1), view.frame);
     case Op::kAhead: {
       const int entity = Entity(node, view, 0);
-      const HandSample* hand = history_.Hand(entity, view.frame);
+      const HandAtFrame* hand = history_.Hand(entity, view.frame);
       const std::optional<double> distance = Number(node.args[0], view);
       if (!distance) return std::nullopt;
       const Vector3d ahead_W = hand == nullptr ? Vector3d(Vector3d::UnitX()) : hand->look.ahead_W;

@@ -8,7 +8,7 @@ namespace prehend::grammar {
 namespace {
 
 constexpr double kRounding = 1e-6;  // of a product of seconds and ticks per second
-constexpr double kMostTicks = 1e15;
+constexpr double kMaxTracedTicks = 1e15;
 
 }  // namespace
 
@@ -23,10 +23,10 @@ void History::BeginFrame(Tick tick) {
 }
 
 void History::SetSample(int entity, const EntitySample& look) {
-  RingBuffer<PoseSample>& samples = looks_[entity];
+  RingBuffer<PoseAtFrame>& samples = looks_[entity];
   ForgetSamples(samples, first_look_);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
-  PoseSample& sample = samples.PushBack();
+  PoseAtFrame& sample = samples.PushBack();
   sample.frame = now();
   sample.look = look;
 }
@@ -38,7 +38,7 @@ void History::SetHand(const HandSample& look, std::uint64_t beyond) {
     hand_samples_.emplace_back();
   }
   ForgetSamples(hand_samples_[index], first_look_);
-  HandSample& sample = hand_samples_[index].PushBack();
+  HandAtFrame& sample = hand_samples_[index].PushBack();
   sample.frame = now();
   sample.look = look;
   sample.collision_spheres.assign(look.collision_spheres.begin(), look.collision_spheres.end());
@@ -73,12 +73,12 @@ FrameNumber History::LastNotAfter(Tick tick) const {
 
 Tick History::AtMostTicks(double seconds) const {
   return static_cast<Tick>(
-      std::floor(std::min(seconds * ticks_per_second_, kMostTicks) + kRounding));
+      std::floor(std::min(seconds * ticks_per_second_, kMaxTracedTicks) + kRounding));
 }
 
 Tick History::AtLeastTicks(double seconds) const {
   return static_cast<Tick>(
-      std::ceil(std::min(seconds * ticks_per_second_, kMostTicks) - kRounding));
+      std::ceil(std::min(seconds * ticks_per_second_, kMaxTracedTicks) - kRounding));
 }
 
 }  // namespace prehend::grammar

@@ -22,7 +22,8 @@ struct Moment {
   Tick tick = 0;
 };
 
-struct HandSample {
+/// What a hand was like from one frame on.
+struct HandAtFrame {
   FrameNumber frame = 0;
   HandSample look;  ///< its own span is empty, see `collision_spheres`
   std::vector<CollisionSphere> collision_spheres;
@@ -83,7 +84,7 @@ class History {
     return looks_[entity].empty() ? kNotSeenYet : SampleAt(looks_[entity], frame).look;
   }
   /// Null if this entity is no hand.
-  const HandSample* Hand(int entity, FrameNumber frame) const {
+  const HandAtFrame* Hand(int entity, FrameNumber frame) const {
     const int index = hand_of_entity_[entity];
     return index < 0 ? nullptr : &SampleAt(hand_samples_[index], frame);
   }
@@ -94,7 +95,7 @@ class History {
   Tick AtLeastTicks(double seconds) const;
 
  private:
-  struct PoseSample {
+  struct PoseAtFrame {
     FrameNumber frame = 0;
     EntitySample look;
   };
@@ -104,9 +105,9 @@ class History {
   FrameNumber first_look_ = 0;
   bool complete_ = false;
   RingBuffer<Tick> ticks_;
-  std::vector<RingBuffer<PoseSample>> looks_;         // by entity
-  std::vector<RingBuffer<HandSample>> hand_samples_;  // by hand, in order of first sight
-  std::vector<int> hand_of_entity_;                   // index into hand_samples_ or -1
+  std::vector<RingBuffer<PoseAtFrame>> looks_;         // by entity
+  std::vector<RingBuffer<HandAtFrame>> hand_samples_;  // by hand, in order of first sight
+  std::vector<int> hand_of_entity_;                    // index into hand_samples_ or -1
 };
 
 }  // namespace prehend::grammar

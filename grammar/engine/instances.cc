@@ -22,7 +22,7 @@ RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_t
   for (const int index : program.schedule) {
     const Rule& rule = program.rules[index];
     // Compositions are made when a part has an interval for them.
-    if (rule.guard != kNone && rule.form != Form::kCompose)
+    if (rule.guard != kNone && rule.form() != Form::kCompose)
       guarded_[rule.references[rule.guard].rule].push_back(index);
   }
   for (const Rule& rule : program.rules) {
@@ -50,7 +50,7 @@ bool RuleInstances::IsA(int entity, const std::string& class_name) const {
 
 void RuleInstances::BindUnguarded() {
   for (const int rule : program_.schedule) {
-    if (program_.rules[rule].form == Form::kTouching || program_.rules[rule].guard != kNone)
+    if (program_.rules[rule].form() == Form::kTouching || program_.rules[rule].guard != kNone)
       continue;
     double bindings = 1;
     for (const std::vector<bool>& role : fits_[rule]) {
@@ -139,7 +139,8 @@ int RuleInstances::Make(const InstanceKey& key) {
   const Rule& r = program_.rules[key.rule];
   instance.references.assign(r.references.size(), kNone);
   instance.anchors.assign(3 * r.anchors.size(), 0);
-  instance.parts.resize(r.composition.parts.size());
+  if (const auto* composition = r.If<ComposeRule>())
+    instance.parts.resize(composition->parts.size());
   if (key.rule == kTouchingRule) {
     touches_.Insert(instance.index, PairKey(key.entities[0], key.entities[1]));
   } else {
@@ -176,7 +177,7 @@ void RuleInstances::MakeDependents(int instance, std::vector<int>& made) {
 void RuleInstances::LinkToGuard(int index, int guard) {
   RuleInstance& instance = instances_[index];
   const Rule& rule = program_.rules[instance.rule];
-  if (rule.form == Form::kAny) {
+  if (rule.form() == Form::kAny) {
     if (std::find(instance.members.begin(), instance.members.end(), guard) !=
         instance.members.end())
       return;
@@ -273,7 +274,7 @@ void RuleInstances::Free(int index, std::vector<int>& orphans) {
 bool RuleInstances::GuardRests(const RuleInstance& instance) const {
   const Rule& rule = program_.rules[instance.rule];
   const auto rests = [&](int guard) { return !instances_[guard].awake && !instances_[guard].open; };
-  if (rule.form == Form::kAny)
+  if (rule.form() == Form::kAny)
     return std::all_of(instance.members.begin(), instance.members.end(), rests);
   if (rule.guard == kNone) return false;
   const int guard = instance.references[rule.guard];

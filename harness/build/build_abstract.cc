@@ -6,7 +6,7 @@ namespace prehend::harness {
 namespace {
 
 /// A camera or a light is a point; bodies have shapes.
-constexpr double kPointM = 0.005;
+constexpr double kPointRadius_m = 0.005;
 
 /// x ahead, z as far up as that allows; a camera that looks straight up or down has its upper side
 /// at the world's y.
@@ -27,10 +27,10 @@ Eigen::Quaterniond LookingAlong(const Eigen::Vector3d& way) {
 
 }  // namespace
 
-void MakeAbstract(const EntityEntry& entity, physics::Body& body) {
+void MakeAbstract(const EntityYaml& entity, physics::Body& body) {
   body.abstract = AbstractOf(entity);
   body.fixed = true;
-  physics::Shape shape = physics::Sphere{kPointM};
+  physics::Shape shape = physics::Sphere{kPointRadius_m};
   if (entity.region && entity.region->size_m) shape = physics::Box{*entity.region->size_m};
   if (entity.region && entity.region->radius_m) shape = physics::Sphere{*entity.region->radius_m};
   if (entity.gaze_target) shape = physics::Sphere{entity.gaze_target->radius_m};

@@ -11,7 +11,7 @@
 namespace prehend::harness {
 
 /// The body's shape, and of a camera its pose. `entity` is abstract, the body at its place.
-void MakeAbstract(const EntityEntry& entity, physics::Body& body);
+void MakeAbstract(const EntityYaml& entity, physics::Body& body);
 
 /// "a region" for a body without matter, "grains" for grains; "" for a thing.
 std::string WhyNoThing(const physics::Body& body);

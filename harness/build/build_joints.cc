@@ -15,9 +15,9 @@ using physics::JointKind;
 class Relation {
  public:
   /// `to_itself`: what is wrong with a ring of them, "is part of itself".
-  Relation(const ScenarioEntry& entry, std::string to_itself, Complaints& complaints)
+  Relation(const ScenarioYaml& entry, std::string to_itself, DiagnosticList& errors)
       : to_itself_(std::move(to_itself)),
-        complaints_(complaints),
+        errors_(errors),
         target_(entry.entities.size(), grammar::kNoEntity) {
     for (const auto& named : entry.entities) names_.push_back(named.name);
   }
@@ -26,15 +26,15 @@ class Relation {
   bool Add(std::size_t i, const char* key, const Located<std::string>& name) {
     const auto found = std::find(names_.begin(), names_.end(), name.value);
     if (found == names_.end()) {
-      complaints_.AddUnknownName(name.where,
-                                 fmt::format("{}: no entity is called '{}'", key, name.value),
-                                 name.value, names_);
+      errors_.AddUnknownName(name.where,
+                             fmt::format("{}: no entity is called '{}'", key, name.value),
+                             name.value, names_);
       return false;
     }
     target_[i] = static_cast<int>(found - names_.begin());
     if (!LeadsBackTo(i)) return true;
-    complaints_.Add(name.where,
-                    fmt::format("{}: '{}', directly or not, {}", key, names_[i], to_itself_));
+    errors_.Add(name.where,
+                fmt::format("{}: '{}', directly or not, {}", key, names_[i], to_itself_));
     target_[i] = grammar::kNoEntity;
     return false;
   }
@@ -51,7 +51,7 @@ class Relation {
   }
 
   const std::string to_itself_;
-  Complaints& complaints_;
+  DiagnosticList& errors_;
   std::vector<std::string> names_;
   std::vector<int> target_;
 };
@@ -59,11 +59,11 @@ class Relation {
 struct Written {
   const char* key;
   JointKind kind;
-  const JointEntry* joint;  ///< null for fixed_to
+  const JointYaml* joint;  ///< null for fixed_to
   const Located<std::string>* to;
 };
 
-std::optional<Written> JointOf(const EntityEntry& entity) {
+std::optional<Written> JointOf(const EntityYaml& entity) {
   if (entity.fixed_to) return Written{"fixed_to", JointKind::kFixed, nullptr, &*entity.fixed_to};
   if (const auto& slider = entity.slider)
     return Written{"slider", JointKind::kSlider, &slider->value, &slider->value.to};
@@ -77,7 +77,7 @@ std::optional<Written> JointOf(const EntityEntry& entity) {
 physics::Joint MakeJoint(const Written& written) {
   physics::Joint joint{.kind = written.kind};
   if (!written.joint) return joint;
-  const JointEntry& entry = *written.joint;
+  const JointYaml& entry = *written.joint;
   const double scale = written.kind == JointKind::kHinge ? physics::kRadPerDeg : 1;
   joint.pivot_W_m = entry.at_m;
   joint.axis_W = entry.axis.normalized();
@@ -92,25 +92,24 @@ physics::Joint MakeJoint(const Written& written) {
 
 }  // namespace
 
-std::vector<physics::Joint> BuildJoints(const ScenarioEntry& entry, Complaints& complaints) {
+std::vector<physics::Joint> BuildJoints(const ScenarioYaml& entry, DiagnosticList& errors) {
   std::vector<physics::Joint> joints;
-  Relation hangs_on(entry, "hangs on itself", complaints);
+  Relation hangs_on(entry, "hangs on itself", errors);
   for (std::size_t i = 0; i < entry.entities.size(); ++i) {
-    const EntityEntry& entity = entry.entities[i].value;
+    const EntityYaml& entity = entry.entities[i].value;
     const auto written = JointOf(entity);
     if (!written || !hangs_on.Add(i, written->key, *written->to)) continue;
     const auto base = static_cast<std::size_t>(hangs_on.target(i));
     if (written->kind == JointKind::kFixed && entry.entities[base].value.fixed) {
-      complaints.Add(written->to->where,
-                     fmt::format("fixed_to: '{}' never moves", written->to->value),
-                     fmt::format("give '{}' 'fixed: true' instead", entry.entities[i].name));
+      errors.Add(written->to->where, fmt::format("fixed_to: '{}' never moves", written->to->value),
+                 fmt::format("give '{}' 'fixed: true' instead", entry.entities[i].name));
     }
     if (AbstractOf(entry.entities[base].value) != physics::Abstract::kNot)
-      complaints.Add(written->to->where, fmt::format("{}: '{}' is no matter: nothing hangs on it",
-                                                     written->key, written->to->value));
+      errors.Add(written->to->where, fmt::format("{}: '{}' is no matter: nothing hangs on it",
+                                                 written->key, written->to->value));
     if (entry.entities[base].value.grains)
-      complaints.Add(written->to->where, fmt::format("{}: '{}' is grains, which carry nothing",
-                                                     written->key, written->to->value));
+      errors.Add(written->to->where, fmt::format("{}: '{}' is grains, which carry nothing",
+                                                 written->key, written->to->value));
     physics::Joint& joint = joints.emplace_back(MakeJoint(*written));
     joint.body = static_cast<int>(i);
     joint.base = static_cast<int>(base);
@@ -118,8 +117,8 @@ std::vector<physics::Joint> BuildJoints(const ScenarioEntry& entry, Complaints& 
   return joints;
 }
 
-std::vector<int> PartsOf(const ScenarioEntry& entry, Complaints& complaints) {
-  Relation part_of(entry, "is part of itself", complaints);
+std::vector<int> PartsOf(const ScenarioYaml& entry, DiagnosticList& errors) {
+  Relation part_of(entry, "is part of itself", errors);
   for (std::size_t i = 0; i < entry.entities.size(); ++i) {
     if (const auto& whole = entry.entities[i].value.part_of) part_of.Add(i, "part_of", *whole);
   }

@@ -11,10 +11,10 @@ namespace prehend::harness {
 
 /// The joints, in the order of their entities. Complains about entities that are unknown, that hang
 /// on themselves, or that are fixed to something that cannot move.
-std::vector<physics::Joint> BuildJoints(const ScenarioEntry& entry, Complaints& complaints);
+std::vector<physics::Joint> BuildJoints(const ScenarioYaml& entry, DiagnosticList& errors);
 
 /// For every entity the index of the one that it is part of, or grammar::kNoEntity. Complains about
 /// unknown names and about entities that are, directly or not, parts of themselves.
-std::vector<int> PartsOf(const ScenarioEntry& entry, Complaints& complaints);
+std::vector<int> PartsOf(const ScenarioYaml& entry, DiagnosticList& errors);
 
 }  // namespace prehend::harness

@@ -15,29 +15,29 @@ namespace {
 class ConditionBuilder {
  public:
   ConditionBuilder(const physics::Scene& scene, const physics::Script& script,
-                   Complaints& complaints)
-      : scene_(scene), complaints_(complaints), end_s_(DurationOf(script)) {
+                   DiagnosticList& errors)
+      : scene_(scene), errors_(errors), end_s_(DurationOf(script)) {
     // Every beat ends with a tick.
     latest_s_ = end_s_ + static_cast<double>(script.beats.size() + 1) / scene.world.rate_hz;
     for (const physics::Body& body : scene.bodies) names_.push_back(body.name);
   }
 
-  std::optional<Outcome::Condition> Build(const ConditionEntry& wanted) const {
+  std::optional<Outcome::Condition> Build(const ConditionYaml& wanted) const {
     Outcome::Condition condition{.wanted = wanted};
     condition.body = Find("entity", wanted.entity, wanted.where);
     if (condition.body < 0) return std::nullopt;
     condition.joint = JointOf(condition.body);
     if ((wanted.joint_above || wanted.joint_below) && condition.joint < 0)
-      complaints_.Add(wanted.where, fmt::format("entity: '{}' hangs on no joint", wanted.entity));
+      errors_.Add(wanted.where, fmt::format("entity: '{}' hangs on no joint", wanted.entity));
     if (wanted.at_s && *wanted.at_s > latest_s_)
-      complaints_.Add(
+      errors_.Add(
           wanted.where,
           fmt::format("at_s: {} s is after the end, which is at {:.3f} s", *wanted.at_s, end_s_),
           "without at_s it is looked at then");
     if (wanted.inside) {
       condition.vessel = Find("inside", wanted.inside->value, wanted.inside->where);
       if (condition.vessel == condition.body)
-        complaints_.Add(wanted.inside->where, "inside: nothing is inside of itself");
+        errors_.Add(wanted.inside->where, "inside: nothing is inside of itself");
     }
     return condition;
   }
@@ -47,8 +47,8 @@ class ConditionBuilder {
   int Find(const char* key, const std::string& name, const Where& where) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     if (found != names_.end()) return static_cast<int>(found - names_.begin());
-    complaints_.AddUnknownName(where, fmt::format("{}: no entity is called '{}'", key, name), name,
-                               names_);
+    errors_.AddUnknownName(where, fmt::format("{}: no entity is called '{}'", key, name), name,
+                           names_);
     return -1;
   }
 
@@ -60,27 +60,27 @@ class ConditionBuilder {
   }
 
   const physics::Scene& scene_;
-  Complaints& complaints_;
+  DiagnosticList& errors_;
   double end_s_ = 0, latest_s_ = 0;
   std::vector<std::string> names_;
 };
 
 }  // namespace
 
-std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionEntry>>>& entries,
+std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionYaml>>>& entries,
                                    const physics::Scene& scene, const physics::Script& script,
-                                   Complaints& complaints) {
-  const ConditionBuilder builder(scene, script, complaints);
+                                   DiagnosticList& errors) {
+  const ConditionBuilder builder(scene, script, errors);
   std::vector<Outcome> outcomes;
   for (const auto& entry : entries) {
     if (entry.name == "failed" || entry.name == "other")
-      complaints.Add(entry.name_where,
-                     fmt::format("outcomes: '{}' is what trials are called that {}", entry.name,
-                                 entry.name == "failed" ? "went wrong" : "have no other outcome"),
-                     "choose another name");
+      errors.Add(entry.name_where,
+                 fmt::format("outcomes: '{}' is what trials are called that {}", entry.name,
+                             entry.name == "failed" ? "went wrong" : "have no other outcome"),
+                 "choose another name");
     Outcome& outcome = outcomes.emplace_back();
     outcome.name = entry.name;
-    for (const ConditionEntry& wanted : entry.value) {
+    for (const ConditionYaml& wanted : entry.value) {
       if (auto condition = builder.Build(wanted))
         outcome.conditions.push_back(std::move(*condition));
     }

@@ -15,8 +15,8 @@ namespace prehend::harness {
 
 /// Complains about unknown entities, about joints that are asked for but not there, and about
 /// moments after the end.
-std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionEntry>>>& entries,
+std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionYaml>>>& entries,
                                    const physics::Scene& scene, const physics::Script& script,
-                                   Complaints& complaints);
+                                   DiagnosticList& errors);
 
 }  // namespace prehend::harness

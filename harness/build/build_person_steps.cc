@@ -10,44 +10,44 @@ namespace prehend::harness {
 namespace {
 
 struct PersonStepMaker {
-  const Named<StepEntry>& step;
+  const Named<StepYaml>& step;
   const physics::Person& person;
   const physics::Scene& scene;
-  Complaints& complaints;
+  DiagnosticList& errors;
 
-  physics::PersonStep operator()(const WaitEntry& e) const {
+  physics::PersonStep operator()(const WaitYaml& e) const {
     return {0, physics::WaitStep{}, e.wait_s};
   }
-  physics::PersonStep operator()(const LookAtEntry& e) const {
+  physics::PersonStep operator()(const LookAtYaml& e) const {
     CheckSeen(e.look_at);
     return {0, physics::LookAtStep{e.look_at.value}, e.over_s};
   }
-  physics::PersonStep operator()(const LookAtPointEntry& e) const {
+  physics::PersonStep operator()(const LookAtPointYaml& e) const {
     return {0, physics::LookAtStep{e.look_at_m}, e.over_s};
   }
-  physics::PersonStep operator()(const EyesEntry& e) const {
+  physics::PersonStep operator()(const EyesYaml& e) const {
     return {0, physics::EyesStep{e.eyes}, e.over_s};
   }
-  physics::PersonStep operator()(const WalkEntry& e) const {
+  physics::PersonStep operator()(const WalkYaml& e) const {
     return {0, physics::WalkStep{e.walk_to_m}, e.over_s};
   }
-  physics::PersonStep operator()(const TurnEntry& e) const {
+  physics::PersonStep operator()(const TurnYaml& e) const {
     return {0, physics::TurnStep{e.turn_to_deg * physics::kRadPerDeg}, e.over_s};
   }
-  physics::PersonStep operator()(const LeanEntry& e) const {
+  physics::PersonStep operator()(const LeanYaml& e) const {
     return {0, physics::LeanStep{e.lean_deg * physics::kRadPerDeg}, e.over_s};
   }
-  physics::PersonStep operator()(const SwayEntry& e) const {
+  physics::PersonStep operator()(const SwayYaml& e) const {
     CheckBody(e.sway_by_m.where, "sway_by_m");
     return {0, physics::SwayStep{e.sway_by_m.value}, e.over_s};
   }
-  physics::PersonStep operator()(const MoveLimbEntry& e) const {
+  physics::PersonStep operator()(const MoveLimbYaml& e) const {
     CheckFree(e.move_limb);
     return {0, physics::MoveLimbStep{e.move_limb.value, e.to_m, e.most_n}, e.over_s};
   }
-  physics::PersonStep operator()(const RecordingEntry& e) const {
+  physics::PersonStep operator()(const RecordingYaml& e) const {
     if (!e.style.value.empty())
-      complaints.Add(e.style.where, "style: a person's recording moves her head, no hand");
+      errors.Add(e.style.where, "style: a person's recording moves her head, no hand");
     if (!e.figures.empty()) {
       CheckBody(e.recording.where, "recording");
       return {0, physics::BodyPosesStep{e.figures}, e.figures.back().t_s};
@@ -55,11 +55,11 @@ struct PersonStepMaker {
     const double over_s = e.poses.empty() ? 0 : e.poses.back().t_s;
     return {0, physics::HeadPosesStep{e.poses}, over_s};
   }
-  template <class HandEntry>
-  physics::PersonStep operator()(const HandEntry&) const {
-    complaints.Add(
-        step.name_where, fmt::format("'{}' is a person, and this step is for hands", step.name),
-        "persons look, walk, turn, lean, move a limb; their hands are actors of their own");
+  template <class HandYaml>
+  physics::PersonStep operator()(const HandYaml&) const {
+    errors.Add(step.name_where,
+               fmt::format("'{}' is a person, and this step is for hands", step.name),
+               "persons look, walk, turn, lean, move a limb; their hands are actors of their own");
     return {};
   }
 
@@ -76,23 +76,22 @@ struct PersonStepMaker {
   void CheckSeen(const Located<std::string>& name) const {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
       if (scene.bodies[i].name == name.value && IsHers(i))
-        return complaints.Add(
-            name.where, fmt::format("look_at: '{}' cannot look at herself", person.name),
-            "she looks at things, hands and other persons, or at a point: look_at_m");
+        return errors.Add(name.where,
+                          fmt::format("look_at: '{}' cannot look at herself", person.name),
+                          "she looks at things, hands and other persons, or at a point: look_at_m");
     }
     std::vector<std::string> names;
     for (const physics::Body& body : scene.bodies) names.push_back(body.name);
     for (const physics::Hand& hand : scene.hands) names.push_back(hand.name);
     if (std::find(names.begin(), names.end(), name.value) != names.end()) return;
-    complaints.AddUnknownName(name.where,
-                              fmt::format("look_at: no entity is called '{}'", name.value),
-                              name.value, names);
+    errors.AddUnknownName(name.where, fmt::format("look_at: no entity is called '{}'", name.value),
+                          name.value, names);
   }
 
   bool CheckBody(const Where& where, const char* key) const {
     if (!person.has_body)
-      complaints.Add(where, fmt::format("{}: '{}' is only a head", key, person.name),
-                     "write 'person: body'");
+      errors.Add(where, fmt::format("{}: '{}' is only a head", key, person.name),
+                 "write 'person: body'");
     return person.has_body;
   }
 
@@ -103,19 +102,19 @@ struct PersonStepMaker {
     const bool left = limb.value == LimbEnd::kLeftElbow || limb.value == LimbEnd::kLeftWrist;
     const int hand = right ? person.right_hand : left ? person.left_hand : -1;
     if (hand < 0) return;
-    complaints.Add(limb.where,
-                   fmt::format("move_limb: this arm follows the hand '{}'",
-                               scene.hands[static_cast<std::size_t>(hand)].name),
-                   "move the hand instead");
+    errors.Add(limb.where,
+               fmt::format("move_limb: this arm follows the hand '{}'",
+                           scene.hands[static_cast<std::size_t>(hand)].name),
+               "move the hand instead");
   }
 };
 
 }  // namespace
 
-physics::PersonStep MakePersonStep(const Named<StepEntry>& step, int person,
-                                   const physics::Scene& scene, Complaints& complaints) {
+physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,
+                                   const physics::Scene& scene, DiagnosticList& errors) {
   const physics::Person& who = scene.persons[static_cast<std::size_t>(person)];
-  physics::PersonStep made = std::visit(PersonStepMaker{step, who, scene, complaints}, step.value);
+  physics::PersonStep made = std::visit(PersonStepMaker{step, who, scene, errors}, step.value);
   made.person = person;
   return made;
 }

@@ -10,7 +10,7 @@ namespace prehend::harness {
 
 /// Complains about a step that is for hands, about things to look at that are not there, and about
 /// limbs that are not free to go.
-physics::PersonStep MakePersonStep(const Named<StepEntry>& step, int person,
-                                   const physics::Scene& scene, Complaints& complaints);
+physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,
+                                   const physics::Scene& scene, DiagnosticList& errors);
 
 }  // namespace prehend::harness

@@ -14,15 +14,15 @@ namespace {
 
 class PersonBuilder {
  public:
-  PersonBuilder(const ScenarioEntry& entry, physics::Scene& scene, Complaints& complaints)
-      : scene_(scene), complaints_(complaints) {
+  PersonBuilder(const ScenarioYaml& entry, physics::Scene& scene, DiagnosticList& errors)
+      : scene_(scene), errors_(errors) {
     for (const auto& hand : entry.hands) hands_.push_back(hand.name);
     for (const auto& entity : entry.entities) taken_.insert(entity.name);
     for (const auto& actor : entry.actors) taken_.insert(actor.name);
   }
 
-  void Add(const Named<PersonActor>& actor) {
-    const PersonActor& written = actor.value;
+  void Add(const Named<PersonActorYaml>& actor) {
+    const PersonActorYaml& written = actor.value;
     physics::Person person{
         .name = actor.name,
         .head = static_cast<int>(scene_.bodies.size()),
@@ -40,14 +40,12 @@ class PersonBuilder {
   int FindHand(const char* key, const Located<std::string>& name) {
     const auto found = std::find(hands_.begin(), hands_.end(), name.value);
     if (found == hands_.end()) {
-      complaints_.AddUnknownName(name.where,
-                                 fmt::format("{}: no hand is called '{}'", key, name.value),
-                                 name.value, hands_);
+      errors_.AddUnknownName(name.where, fmt::format("{}: no hand is called '{}'", key, name.value),
+                             name.value, hands_);
       return -1;
     }
     if (!used_.insert(name.value).second)
-      complaints_.Add(name.where,
-                      fmt::format("{}: '{}' is already on another arm", key, name.value));
+      errors_.Add(name.where, fmt::format("{}: '{}' is already on another arm", key, name.value));
     return static_cast<int>(found - hands_.begin());
   }
 
@@ -57,24 +55,23 @@ class PersonBuilder {
         physics::PlacesOf(person, physics::Standing(scene_, person), {});
     for (std::size_t i = 0; i < parts.size(); ++i) {
       if (i > 0 && !taken_.insert(parts[i].name).second)
-        complaints_.Add(where,
-                        fmt::format("'{}' is the name of a part of '{}' and of something else",
-                                    parts[i].name, person.name));
+        errors_.Add(where, fmt::format("'{}' is the name of a part of '{}' and of something else",
+                                       parts[i].name, person.name));
       parts[i].X_WB = places[i];
       scene_.bodies.push_back(std::move(parts[i]));
     }
   }
 
   physics::Scene& scene_;
-  Complaints& complaints_;
+  DiagnosticList& errors_;
   std::vector<std::string> hands_;
   std::set<std::string> taken_, used_;
 };
 
 }  // namespace
 
-void AddPersons(const ScenarioEntry& entry, physics::Scene& scene, Complaints& complaints) {
-  PersonBuilder builder(entry, scene, complaints);
+void AddPersons(const ScenarioYaml& entry, physics::Scene& scene, DiagnosticList& errors) {
+  PersonBuilder builder(entry, scene, errors);
   for (const auto& actor : entry.persons) builder.Add(actor);
 }
 

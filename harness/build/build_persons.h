@@ -12,6 +12,6 @@ namespace prehend::harness {
 /// Adds the persons and, after all other bodies, their parts to a scene that has its hands.
 /// Complains about hands that are not there or belong to two arms, and about parts whose names are
 /// taken.
-void AddPersons(const ScenarioEntry& entry, physics::Scene& scene, Complaints& complaints);
+void AddPersons(const ScenarioYaml& entry, physics::Scene& scene, DiagnosticList& errors);
 
 }  // namespace prehend::harness

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 constexpr double kDefaultSphereRollingFriction =
     0.006;  // a ball on a table stops within a metre (docs/physics.md)
 
-physics::PlacedShape ShapeOf(const PartEntry& part) {
+physics::PlacedShape ShapeOf(const PartYaml& part) {
   const physics::Pose X_BS{part.at_m, physics::FromRollPitchYaw(part.rpy_deg)};
   if (part.sphere) return {*part.sphere, X_BS};
   if (part.cylinder) return {*part.cylinder, X_BS};
@@ -29,27 +29,27 @@ physics::PlacedShape ShapeOf(const PartEntry& part) {
   return {part.box.value_or(physics::Box{}), X_BS};
 }
 
-std::vector<physics::PlacedShape> ShapesOf(const EntityEntry& entity) {
+std::vector<physics::PlacedShape> ShapesOf(const EntityYaml& entity) {
   if (entity.grains) return {};
   if (entity.tray) return physics::ShapesOf(*entity.tray);
   if (entity.mug) return physics::ShapesOf(*entity.mug);
   if (entity.bowl) return physics::ShapesOf(*entity.bowl);
   if (entity.shelf) return physics::ShapesOf(*entity.shelf);
   if (entity.parts.empty()) {
-    return {ShapeOf(PartEntry{.box = entity.box,
-                              .sphere = entity.sphere,
-                              .cylinder = entity.cylinder,
-                              .capsule = entity.capsule,
-                              .hull = entity.hull})};
+    return {ShapeOf(PartYaml{.box = entity.box,
+                             .sphere = entity.sphere,
+                             .cylinder = entity.cylinder,
+                             .capsule = entity.capsule,
+                             .hull = entity.hull})};
   }
   std::vector<physics::PlacedShape> shapes;
-  for (const PartEntry& part : entity.parts) shapes.push_back(ShapeOf(part));
+  for (const PartYaml& part : entity.parts) shapes.push_back(ShapeOf(part));
   return shapes;
 }
 
 /// Everything but the place.
-physics::Body MakeBody(const Named<EntityEntry>& named) {
-  const EntityEntry& entity = named.value;
+physics::Body MakeBody(const Named<EntityYaml>& named) {
+  const EntityYaml& entity = named.value;
   physics::Body body;
   body.name = named.name;
   body.shapes = ShapesOf(entity);
@@ -99,8 +99,7 @@ physics::Pose Above(physics::Pose X_WB) {
 /// Places every body after the one it stands on.
 class Stacking {
  public:
-  Stacking(const ScenarioEntry& entry, Complaints& complaints)
-      : entry_(entry), complaints_(complaints) {
+  Stacking(const ScenarioYaml& entry, DiagnosticList& errors) : entry_(entry), errors_(errors) {
     for (const auto& named : entry.entities) {
       index_[named.name] = bodies.size();
       names_.push_back(named.name);
@@ -119,10 +118,10 @@ class Stacking {
       next = SupportOf(*next);
     }
     if (next && progress_[*next] == Progress::kBegun) {
-      const EntityEntry& entity = entry_.entities[above.back()].value;
+      const EntityYaml& entity = entry_.entities[above.back()].value;
       const auto& below = entity.in ? entity.in : entity.on;
-      complaints_.Add(below->where, fmt::format("on: '{}' stands, directly or not, on itself",
-                                                entry_.entities[*next].name));
+      errors_.Add(below->where, fmt::format("on: '{}' stands, directly or not, on itself",
+                                            entry_.entities[*next].name));
     }
     for (; !above.empty(); above.pop_back()) {
       if (entry_.entities[above.back()].value.in)
@@ -139,21 +138,20 @@ class Stacking {
   enum class Progress { kWaiting, kBegun, kDone };
 
   std::optional<std::size_t> SupportOf(std::size_t i) {
-    const EntityEntry& entity = entry_.entities[i].value;
+    const EntityYaml& entity = entry_.entities[i].value;
     const auto& below = entity.in ? entity.in : entity.on;
     if (!below) return std::nullopt;
     const char* key = entity.in ? "in" : "on";
     const auto found = index_.find(below->value);
     if (found == index_.end()) {
-      complaints_.AddUnknownName(below->where,
-                                 fmt::format("{}: no entity is called '{}'", key, below->value),
-                                 below->value, names_);
+      errors_.AddUnknownName(below->where,
+                             fmt::format("{}: no entity is called '{}'", key, below->value),
+                             below->value, names_);
       return std::nullopt;
     }
     if (const std::string what = WhyNoThing(bodies[found->second]); !what.empty()) {
-      complaints_.Add(below->where,
-                      fmt::format("{}: '{}' is {}, which carr{} nothing", key, below->value, what,
-                                  what == "grains" ? "y" : "ies"));
+      errors_.Add(below->where, fmt::format("{}: '{}' is {}, which carr{} nothing", key,
+                                            below->value, what, what == "grains" ? "y" : "ies"));
       return std::nullopt;
     }
     return found->second;
@@ -168,23 +166,23 @@ class Stacking {
   }
 
   void PlaceInVessel(std::size_t i) {
-    const EntityEntry& entity = entry_.entities[i].value;
+    const EntityYaml& entity = entry_.entities[i].value;
     physics::Body& body = bodies[i];
     const physics::Body* vessel = Placed(entity.in);
     if (!vessel || !entity.grains) return;  // was complained about
     if (Uprightness(*vessel) < kUpright) {
-      return complaints_.Add(entity.in->where,
-                             fmt::format("in: '{}' does not stand upright", vessel->name));
+      return errors_.Add(entity.in->where,
+                         fmt::format("in: '{}' does not stand upright", vessel->name));
     }
-    constexpr int kMostGrains = 500;
+    constexpr int kMaxGrains = 500;
     grains_so_far_ += entity.grains->count;
-    if (grains_so_far_ > kMostGrains) {
-      return complaints_.Add(entity.in->where,
-                             fmt::format("more than {} grains in the scenario", kMostGrains));
+    if (grains_so_far_ > kMaxGrains) {
+      return errors_.Add(entity.in->where,
+                         fmt::format("more than {} grains in the scenario", kMaxGrains));
     }
     const std::uint64_t seed =
         physics::Random(entry_.world.seed ^ physics::Random(i).Next()).Next();
-    const GrainsEntry& grains = *entity.grains;
+    const GrainsYaml& grains = *entity.grains;
     for (const Vector3d& p_B_m :
          physics::FillVessel(*vessel, grains.radius_m, grains.count, seed)) {
       body.grains->p_WG_m.push_back(vessel->X_WB * p_B_m);
@@ -192,16 +190,16 @@ class Stacking {
     }
     if (const std::size_t fit = body.grains->p_WG_m.size();
         fit < static_cast<std::size_t>(grains.count)) {
-      complaints_.Add(entity.in->where,
-                      fmt::format("in: {} of {} grains fit into '{}' below its rim", fit,
-                                  grains.count, vessel->name),
-                      "take fewer, smaller ones, or a larger vessel; its hollow is around the "
-                      "vertical through its at_m");
+      errors_.Add(entity.in->where,
+                  fmt::format("in: {} of {} grains fit into '{}' below its rim", fit, grains.count,
+                              vessel->name),
+                  "take fewer, smaller ones, or a larger vessel; its hollow is around the "
+                  "vertical through its at_m");
     }
   }
 
   void PlaceOnSupport(std::size_t i) {
-    const EntityEntry& entity = entry_.entities[i].value;
+    const EntityYaml& entity = entry_.entities[i].value;
     physics::Body& body = bodies[i];
     const std::vector<double>& at = entity.at_m.value;
     if (at.size() < 2) return;  // was complained about
@@ -213,15 +211,15 @@ class Stacking {
     body.X_WB.p_m.z() =
         physics::HighestBelow(support, support.X_WB, body, Above(body.X_WB)) - lowest;
     if (!StandsAbove(support, {at[0], at[1]})) {
-      complaints_.Add(
+      errors_.Add(
           entity.at_m.where,
           fmt::format("at_m: the centre of '{}' is not above '{}'", body.name, support.name),
           "at_m is in world coordinates, also with 'on'");
     }
   }
 
-  const ScenarioEntry& entry_;
-  Complaints& complaints_;
+  const ScenarioYaml& entry_;
+  DiagnosticList& errors_;
   std::map<std::string, std::size_t> index_;
   std::vector<std::string> names_;
   std::vector<Progress> progress_;
@@ -237,21 +235,21 @@ void Override(const PidOverride& given, physics::PidGains& gains) {
 
 }  // namespace
 
-std::vector<physics::Body> PlaceBodies(const ScenarioEntry& entry, Complaints& complaints) {
-  Stacking stacking(entry, complaints);
+std::vector<physics::Body> PlaceBodies(const ScenarioYaml& entry, DiagnosticList& errors) {
+  Stacking stacking(entry, errors);
   for (std::size_t i = 0; i < entry.entities.size(); ++i) stacking.Place(i);
   return std::move(stacking.bodies);
 }
 
-physics::Hand PlaceHand(const Named<HandActor>& actor, physics::HandModel model, int rate_hz,
-                        Complaints& complaints) {
+physics::Hand PlaceHand(const Named<HandActorYaml>& actor, physics::HandModel model, int rate_hz,
+                        DiagnosticList& errors) {
   if (actor.value.gains) {
     Override(actor.value.gains->value.translation, model.translation);
     Override(actor.value.gains->value.rotation, model.rotation);
   }
   if (const std::string unstable = physics::CheckGains(model, rate_hz); !unstable.empty()) {
-    complaints.Add(actor.value.gains ? actor.value.gains->where : actor.value.hand.where,
-                   fmt::format("actor '{}' cannot be stable: {}", actor.name, unstable));
+    errors.Add(actor.value.gains ? actor.value.gains->where : actor.value.hand.where,
+               fmt::format("actor '{}' cannot be stable: {}", actor.name, unstable));
   }
   physics::Hand hand{
       .name = actor.name,
@@ -261,8 +259,8 @@ physics::Hand PlaceHand(const Named<HandActor>& actor, physics::HandModel model,
   if (const auto& tracking = actor.value.tracking) {
     hand.tracking = tracking->value;
     if (tracking->value.tracker_hz > rate_hz) {
-      complaints.Add(tracking->where, fmt::format("tracker_hz {} is above rate_hz {}",
-                                                  tracking->value.tracker_hz, rate_hz));
+      errors.Add(tracking->where, fmt::format("tracker_hz {} is above rate_hz {}",
+                                              tracking->value.tracker_hz, rate_hz));
     }
   }
   return hand;

@@ -11,19 +11,20 @@ namespace prehend::harness {
 
 /// The bodies, in the order of the entities. Complains about supports that are unknown or cyclic,
 /// or that an entity's centre does not stand above; such an entity is placed at z = 0.
-std::vector<physics::Body> PlaceBodies(const ScenarioEntry& entry, Complaints& complaints);
+std::vector<physics::Body> PlaceBodies(const ScenarioYaml& entry, DiagnosticList& errors);
 
 /// One hand of this model, as the actor says. Complains about gains that cannot be stable at the
 /// rate.
-physics::Hand PlaceHand(const Named<HandActor>& actor, physics::HandModel model, int rate_hz,
-                        Complaints& complaints);
+physics::Hand PlaceHand(const Named<HandActorYaml>& actor, physics::HandModel model, int rate_hz,
+                        DiagnosticList& errors);
 
 /// Complains about things, persons and hands out of the world: a run would end in its first tick.
-void CheckDistances(const ScenarioEntry& entry, const physics::Scene& scene,
-                    Complaints& complaints);
+void ValidateDistances(const ScenarioYaml& entry, const physics::Scene& scene,
+                       DiagnosticList& errors);
 
 /// Complains about things that stand in each other by more than a millimetre: bodies, and hands
 /// that start in one.
-void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints);
+void ValidatePlacement(const ScenarioYaml& entry, const physics::Scene& scene,
+                       DiagnosticList& errors);
 
 }  // namespace prehend::harness

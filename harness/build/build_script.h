@@ -12,13 +12,13 @@ namespace prehend::harness {
 /// Complains about unknown actors, entities and styles, about approaches a style does not have, and
 /// about a script that is too long. `scene` has the hands and persons of `entry`, in that order;
 /// hands without styles are not checked for theirs.
-physics::Script BuildScript(const ScenarioEntry& entry, const physics::Scene& scene,
-                            Complaints& complaints);
+physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
+                            DiagnosticList& errors);
 
 /// How long the script takes, with what is simulated after it.
 double DurationOf(const physics::Script& script);
 
 /// A way-point as the hand's pose.
-physics::Pose PoseOf(const PoseEntry& pose);
+physics::Pose PoseOf(const PoseYaml& pose);
 
 }  // namespace prehend::harness

@@ -9,29 +9,29 @@
 namespace prehend::harness {
 namespace {
 
-bool HasJaw(const DigitEntry& digit) { return digit.jaw.has_value(); }
-bool HasPhalanges(const DigitEntry& digit) { return !HasJaw(digit); }
-std::size_t JointsOf(const DigitEntry& digit) { return HasJaw(digit) ? 1 : digit.phalanges.size(); }
+bool HasJaw(const DigitYaml& digit) { return digit.jaw.has_value(); }
+bool HasPhalanges(const DigitYaml& digit) { return !HasJaw(digit); }
+std::size_t JointsOf(const DigitYaml& digit) { return HasJaw(digit) ? 1 : digit.phalanges.size(); }
 
 class StyleBuilder {
  public:
-  StyleBuilder(const std::vector<Named<DigitEntry>>& digits, Complaints& complaints)
-      : digits_(digits), complaints_(complaints) {}
+  StyleBuilder(const std::vector<Named<DigitYaml>>& digits, DiagnosticList& errors)
+      : digits_(digits), errors_(errors) {}
 
-  physics::GraspStyle BuildStyle(const Named<StyleEntry>& style);
+  physics::GraspStyle BuildStyle(const Named<StyleYaml>& style);
 
  private:
-  using Concerned = bool (*)(const DigitEntry&);
+  using Concerned = bool (*)(const DigitYaml&);
   std::vector<std::vector<double>> JointNumbers(const Located<PerDigit>& numbers,
                                                 bool one_is_enough, Concerned concerned);
-  std::vector<std::vector<double>> FramesOf(const Named<StyleEntry>& style);
+  std::vector<std::vector<double>> FramesOf(const Named<StyleYaml>& style);
   /// Complains about joints that are to go where their limits do not let them.
   void CheckRanges(const Located<PerDigit>& frame, const char* unit);
   /// False after complaining about a digit that the hand does not have.
   bool CheckDigitNames(const Located<PerDigit>& numbers);
 
-  const std::vector<Named<DigitEntry>>& digits_;
-  Complaints& complaints_;
+  const std::vector<Named<DigitYaml>>& digits_;
+  DiagnosticList& errors_;
 };
 
 bool StyleBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
@@ -41,8 +41,8 @@ bool StyleBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
   for (const auto& given : numbers.value) {
     if (std::find(names.begin(), names.end(), given.name) != names.end()) continue;
     good = false;
-    complaints_.AddUnknownName(
-        given.name_where, fmt::format("the hand has no digit '{}'", given.name), given.name, names);
+    errors_.AddUnknownName(given.name_where, fmt::format("the hand has no digit '{}'", given.name),
+                           given.name, names);
   }
   return good;
 }
@@ -60,14 +60,14 @@ std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDig
                      [&](const auto& candidate) { return candidate.name == digit.name; });
     if (!concerned(digit.value)) {
       if (given != numbers.value.end())
-        complaints_.Add(
+        errors_.Add(
             given->name_where,
             fmt::format("{}: phalanges belong into frames_deg, jaws into frames_m", digit.name));
       continue;
     }
     if (given == numbers.value.end()) {
       if (names_are_right)
-        complaints_.Add(numbers.where, fmt::format("there is nothing for digit '{}'", digit.name));
+        errors_.Add(numbers.where, fmt::format("there is nothing for digit '{}'", digit.name));
       continue;
     }
     const std::size_t joints = JointsOf(digit.value);
@@ -75,9 +75,9 @@ std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDig
     for (const Located<double>& number : given->value.value) values.push_back(number.value);
     if (values.size() == 1 && one_is_enough) values.resize(joints, values.front());
     if (values.size() != joints) {
-      complaints_.Add(given->value.where,
-                      fmt::format("{}: expected {} {}, one for each joint, found {}", digit.name,
-                                  joints, joints == 1 ? "number" : "numbers", values.size()));
+      errors_.Add(given->value.where,
+                  fmt::format("{}: expected {} {}, one for each joint, found {}", digit.name,
+                              joints, joints == 1 ? "number" : "numbers", values.size()));
     }
     values.resize(joints);
     all[i] = std::move(values);
@@ -87,26 +87,25 @@ std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDig
 
 void StyleBuilder::CheckRanges(const Located<PerDigit>& frame, const char* unit) {
   for (const auto& [name, name_where, targets] : frame.value) {
-    const auto digit = std::ranges::find(digits_, name, &Named<DigitEntry>::name);
+    const auto digit = std::ranges::find(digits_, name, &Named<DigitYaml>::name);
     if (digit == digits_.end() || targets.value.size() != JointsOf(digit->value)) continue;
     for (std::size_t i = 0; i < targets.value.size(); ++i) {
       const bool is_jaw = HasJaw(digit->value);
-      const LinkEntry& link =
-          is_jaw ? static_cast<const LinkEntry&>(*digit->value.jaw) : digit->value.phalanges[i];
+      const LinkYaml& link =
+          is_jaw ? static_cast<const LinkYaml&>(*digit->value.jaw) : digit->value.phalanges[i];
       const Eigen::Vector2d& range = link.range.value;
       const double target = targets.value[i].value;
       if (target >= range[0] && target <= range[1]) continue;
       const std::string part = is_jaw ? name : name + "_" + digit->value.phalanges[i].name.value;
-      complaints_.Add(
-          targets.value[i].where,
-          fmt::format("{}: expected {} to {} {}, the range of the joint of '{}', found {}", name,
-                      range[0], range[1], unit, part, target));
+      errors_.Add(targets.value[i].where,
+                  fmt::format("{}: expected {} to {} {}, the range of the joint of '{}', found {}",
+                              name, range[0], range[1], unit, part, target));
     }
   }
 }
 
 /// From open to closed, one number per link; empty after complaining.
-std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleEntry>& style) {
+std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleYaml>& style) {
   const auto& angles = style.value.frames_deg;
   const auto& ways = style.value.frames_m;
   const auto any = [&](Concerned of) {
@@ -114,13 +113,13 @@ std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleEntry>&
                        [&](const auto& digit) { return of(digit.value); });
   };
   const auto missing = [&](const char* key) {
-    complaints_.Add(style.name_where, fmt::format("style '{}' has no '{}'", style.name, key));
+    errors_.Add(style.name_where, fmt::format("style '{}' has no '{}'", style.name, key));
   };
   if (angles.empty() && any(HasPhalanges)) missing("frames_deg");
   if (ways.empty() && any(HasJaw)) missing("frames_m");
   if (!angles.empty() && !ways.empty() && angles.size() != ways.size()) {
-    complaints_.Add(ways.front().where, fmt::format("frames_m: {} frames, but frames_deg has {}",
-                                                    ways.size(), angles.size()));
+    errors_.Add(ways.front().where, fmt::format("frames_m: {} frames, but frames_deg has {}",
+                                                ways.size(), angles.size()));
     return {};
   }
   std::vector<std::vector<double>> frames(std::max(angles.size(), ways.size()));
@@ -142,7 +141,7 @@ std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleEntry>&
   return frames;
 }
 
-physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleEntry>& style) {
+physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleYaml>& style) {
   physics::GraspStyle built{.name = style.name,
                             .frames = FramesOf(style),
                             .grip_axis = style.value.grip.axis,
@@ -150,7 +149,7 @@ physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleEntry>& style) {
                             .opening_m = style.value.grip.opening_m,
                             .above = style.value.above,
                             .side = style.value.side};
-  const auto all = [](const DigitEntry&) { return true; };
+  const auto all = [](const DigitYaml&) { return true; };
   for (const auto& effort : JointNumbers(style.value.effort, true, all))
     built.effort.insert(built.effort.end(), effort.begin(), effort.end());
   return built;
@@ -158,10 +157,10 @@ physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleEntry>& style) {
 
 }  // namespace
 
-void AddStyles(const std::vector<Named<DigitEntry>>& digits,
-               const std::vector<Named<StyleEntry>>& styles, SameName rule, Complaints& complaints,
+void AddStyles(const std::vector<Named<DigitYaml>>& digits,
+               const std::vector<Named<StyleYaml>>& styles, SameName rule, DiagnosticList& errors,
                std::vector<physics::GraspStyle>& to) {
-  StyleBuilder builder(digits, complaints);
+  StyleBuilder builder(digits, errors);
   for (const auto& style : styles) {
     physics::GraspStyle built = builder.BuildStyle(style);
     const auto same_name = std::ranges::find(to, style.name, &physics::GraspStyle::name);
@@ -170,8 +169,8 @@ void AddStyles(const std::vector<Named<DigitEntry>>& digits,
     } else if (rule == SameName::kTakesItsPlace) {
       *same_name = std::move(built);
     } else {
-      complaints.Add(style.name_where, fmt::format("the hand has a style '{}' already", style.name),
-                     "one of its files gives it; only `grasps` of a scenario replace styles");
+      errors.Add(style.name_where, fmt::format("the hand has a style '{}' already", style.name),
+                 "one of its files gives it; only `grasps` of a scenario replace styles");
     }
   }
 }

@@ -13,8 +13,8 @@ namespace prehend::harness {
 enum class SameName { kIsRefused, kTakesItsPlace };
 
 /// Of a hand with these digits.
-void AddStyles(const std::vector<Named<DigitEntry>>& digits,
-               const std::vector<Named<StyleEntry>>& styles, SameName rule, Complaints& complaints,
+void AddStyles(const std::vector<Named<DigitYaml>>& digits,
+               const std::vector<Named<StyleYaml>>& styles, SameName rule, DiagnosticList& errors,
                std::vector<physics::GraspStyle>& to);
 
 }  // namespace prehend::harness

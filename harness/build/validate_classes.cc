@@ -12,14 +12,14 @@ namespace prehend::harness {
 namespace {
 
 /// The class that this one is a kind of; nullptr when that is not said.
-const Named<Located<std::string>>* KindOf(const ScenarioEntry& entry,
+const Named<Located<std::string>>* KindOf(const ScenarioYaml& entry,
                                           const std::string& class_name) {
   const auto found =
       std::ranges::find(entry.classes, class_name, &Named<Located<std::string>>::name);
   return found == entry.classes.end() ? nullptr : &*found;
 }
 
-bool IsKindOfItself(const ScenarioEntry& entry, const Named<Located<std::string>>& kind) {
+bool IsKindOfItself(const ScenarioYaml& entry, const Named<Located<std::string>>& kind) {
   const Named<Located<std::string>>* next = &kind;
   for (std::size_t steps = 0; next && steps <= entry.classes.size(); ++steps) {
     if (next->value.value == kind.name) return true;
@@ -30,24 +30,24 @@ bool IsKindOfItself(const ScenarioEntry& entry, const Named<Located<std::string>
 
 }  // namespace
 
-void CheckKinds(const ScenarioEntry& entry, Complaints& complaints) {
+void ValidateClasses(const ScenarioYaml& entry, DiagnosticList& errors) {
   std::vector<std::string> used;  // classes that something is of
   for (const auto& entity : entry.entities) used.push_back(entity.value.class_name.value);
   for (const auto& kind : entry.classes) used.push_back(kind.value.value);
   for (const auto& kind : entry.classes) {
     for (const auto& [name, where] :
          {std::pair{kind.name, kind.name_where}, std::pair{kind.value.value, kind.value.where}}) {
-      if (IsBuiltInClass(name))
-        complaints.Add(where, fmt::format("classes: '{}' is built in and given anyway", name),
-                       "kinds are classes of your own: 'Cup: Container'");
+      if (IsScenarioBuiltinClass(name))
+        errors.Add(where, fmt::format("classes: '{}' is built in and given anyway", name),
+                   "kinds are classes of your own: 'Cup: Container'");
     }
     if (std::ranges::find(used, kind.name) == used.end())
-      complaints.AddUnknownName(kind.name_where,
-                                fmt::format("classes: no entity is of the class '{}'", kind.name),
-                                kind.name, used);
+      errors.AddUnknownName(kind.name_where,
+                            fmt::format("classes: no entity is of the class '{}'", kind.name),
+                            kind.name, used);
     if (IsKindOfItself(entry, kind))
-      complaints.Add(kind.value.where,
-                     fmt::format("classes: '{}' is, directly or not, a kind of itself", kind.name));
+      errors.Add(kind.value.where,
+                 fmt::format("classes: '{}' is, directly or not, a kind of itself", kind.name));
   }
 }
 

@@ -8,6 +8,6 @@
 namespace prehend::harness {
 
 /// Complains about kinds of themselves, and about classes that nothing is of.
-void CheckKinds(const ScenarioEntry& entry, Complaints& complaints);
+void ValidateClasses(const ScenarioYaml& entry, DiagnosticList& errors);
 
 }  // namespace prehend::harness

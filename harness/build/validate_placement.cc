@@ -16,7 +16,7 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kAllowedM = 0.001;  // as deep as collision margins hide
+constexpr double kMaxOverlap_m = 0.001;  // as deep as collision margins hide
 
 /// A body or a hand.
 struct Occupant {
@@ -91,33 +91,31 @@ bool MayOverlap(const Occupant& a, const Occupant& b) {
 }
 
 void Complain(const Occupant& later, const Occupant& earlier, double depth_m,
-              Complaints& complaints) {
+              DiagnosticList& errors) {
   const double depth_mm = depth_m * 1000;
   if (later.person) {
-    complaints.Add(
+    errors.Add(
         later.where,
         fmt::format("'{}' starts inside '{}', {:.0f} mm deep", later.name, earlier.name, depth_mm),
         "let her stand elsewhere");
   } else if (later.hand) {
-    complaints.Add(later.where,
-                   fmt::format("actor '{}' starts inside '{}', {:.0f} mm deep", later.name,
-                               earlier.name, depth_mm),
-                   "let the hand start in free space");
+    errors.Add(later.where,
+               fmt::format("actor '{}' starts inside '{}', {:.0f} mm deep", later.name,
+                           earlier.name, depth_mm),
+               "let the hand start in free space");
   } else if (earlier.grains || later.grains) {
-    complaints.Add(
-        later.where,
-        fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),
-        "grains lie around the vertical axis of their vessel: leave that free");
+    errors.Add(later.where,
+               fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),
+               "grains lie around the vertical axis of their vessel: leave that free");
   } else {
-    complaints.Add(
-        later.where,
-        fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),
-        fmt::format("'on: {}' with at_m: [x, y] puts it on top", earlier.name));
+    errors.Add(later.where,
+               fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),
+               fmt::format("'on: {}' with at_m: [x, y] puts it on top", earlier.name));
   }
 }
 
 /// Of a body's place. After the entities come the parts of the persons.
-Where WhereOf(const ScenarioEntry& entry, const physics::Scene& scene, std::size_t body) {
+Where WhereOf(const ScenarioYaml& entry, const physics::Scene& scene, std::size_t body) {
   if (body < entry.entities.size()) return PlaceOf(entry.entities[body].value);
   Where where;
   for (std::size_t i = 0; i < scene.persons.size(); ++i) {
@@ -129,14 +127,14 @@ Where WhereOf(const ScenarioEntry& entry, const physics::Scene& scene, std::size
 
 }  // namespace
 
-void CheckDistances(const ScenarioEntry& entry, const physics::Scene& scene,
-                    Complaints& complaints) {
+void ValidateDistances(const ScenarioYaml& entry, const physics::Scene& scene,
+                       DiagnosticList& errors) {
   const auto check = [&](Where where, const Eigen::Vector3d& p_W_m) {
     if (p_W_m.norm() <= physics::kMaxDistance_m) return;
-    complaints.Add(where,
-                   fmt::format("at_m: expected a place within {} m of the origin, found one {:.1f} "
-                               "m from it",
-                               physics::kMaxDistance_m, p_W_m.norm()));
+    errors.Add(where,
+               fmt::format("at_m: expected a place within {} m of the origin, found one {:.1f} "
+                           "m from it",
+                           physics::kMaxDistance_m, p_W_m.norm()));
   };
   for (std::size_t i = 0; i < entry.entities.size(); ++i)
     check(WhereOf(entry, scene, i), scene.bodies[i].X_WB.p_m);
@@ -144,8 +142,8 @@ void CheckDistances(const ScenarioEntry& entry, const physics::Scene& scene,
   for (const auto& hand : entry.hands) check(hand.value.at_m.where, hand.value.at_m.value);
 }
 
-void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene,
-                   Complaints& complaints) {
+void ValidatePlacement(const ScenarioYaml& entry, const physics::Scene& scene,
+                       DiagnosticList& errors) {
   std::vector<Occupant> occupants;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     occupants.push_back(OccupantOf(scene.bodies[i], WhereOf(entry, scene, i)));
@@ -167,9 +165,9 @@ void CheckOverlaps(const ScenarioEntry& entry, const physics::Scene& scene,
       if (occupants[by_x[j]].bounds.min().x() > occupants[by_x[i]].bounds.max().x()) break;
       if (complained.contains(later)) continue;
       const double depth_m = Depth(occupants[earlier], occupants[later]);
-      if (depth_m <= kAllowedM || Joined(scene, earlier, later)) continue;
+      if (depth_m <= kMaxOverlap_m || Joined(scene, earlier, later)) continue;
       if (MayOverlap(occupants[earlier], occupants[later])) continue;
-      Complain(occupants[later], occupants[earlier], depth_m, complaints);
+      Complain(occupants[later], occupants[earlier], depth_m, errors);
       complained.insert(later);
     }
   }

@@ -11,6 +11,6 @@ namespace prehend::harness {
 
 /// Complains about everything in the scenario that does not stay in the plane. The scene is the one
 /// that was built of `entry`; bodies, hands and joints stand in the order of their entries.
-void CheckPlanar(const ScenarioEntry& entry, const physics::Scene& scene, Complaints& complaints);
+void ValidatePlanar(const ScenarioYaml& entry, const physics::Scene& scene, DiagnosticList& errors);
 
 }  // namespace prehend::harness

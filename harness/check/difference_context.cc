@@ -22,7 +22,7 @@ using grammar::Tick;
 
 /// Touches within this time are listed.
 constexpr double kAround_s = 0.1;
-constexpr std::size_t kMostTouches = 8;
+constexpr std::size_t kMaxTouches = 8;
 
 struct Touching {
   int a = 0, b = 0;
@@ -119,15 +119,15 @@ std::string FactsAround(const Scenario& scenario, std::span<const physics::Snaps
   text += StateText(sensing.Sense(snapshot), participants, entity_table);
   const std::vector<Touching> touches =
       TouchesIn({tick - around, tick + around}, participants, recording, sensing);
-  for (std::size_t i = 0; i < std::min(touches.size(), kMostTouches); ++i) {
+  for (std::size_t i = 0; i < std::min(touches.size(), kMaxTouches); ++i) {
     const auto name = [&](int id) {
       return entity_table.entities[static_cast<std::size_t>(id)].name;
     };
     text += fmt::format("    {} touches {} {}\n", name(touches[i].a), name(touches[i].b),
                         IntervalText(touches[i].interval, rate));
   }
-  if (touches.size() > kMostTouches)
-    text += fmt::format("    and {} more touches\n", touches.size() - kMostTouches);
+  if (touches.size() > kMaxTouches)
+    text += fmt::format("    and {} more touches\n", touches.size() - kMaxTouches);
   return text;
 }
 

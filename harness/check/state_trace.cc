@@ -15,8 +15,8 @@
 namespace prehend::harness {
 namespace {
 
-constexpr std::size_t kMostTicks = 20'000;
-constexpr std::size_t kMostEntities = 100'000;
+constexpr std::size_t kMaxTracedTicks = 20'000;
+constexpr std::size_t kMaxTracedEntities = 100'000;
 
 /// Half of the bits are enough to tell two states apart.
 template <typename State>
@@ -58,7 +58,7 @@ PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snaps
   PhysicsTrace trace;
   for (const physics::Body& body : scene.bodies) trace.entities.push_back(body.name);
   for (const physics::Hand& hand : scene.hands) trace.entities.push_back(hand.name);
-  const std::size_t step = recording.size() / kMostTicks + 1;
+  const std::size_t step = recording.size() / kMaxTracedTicks + 1;
   for (std::size_t i = 0; i < recording.size(); i += step) {
     trace.ticks.push_back(recording[i].tick);
     AddHashes(recording[i], trace.hashes);
@@ -109,7 +109,7 @@ std::optional<PhysicsTrace> ReadTrace(const std::filesystem::path& path) {
   std::size_t entities = 0;
   if (!(file >> word >> version >> entities) || word != "trace" || version != 1)
     return std::nullopt;
-  if (entities > kMostEntities) return std::nullopt;
+  if (entities > kMaxTracedEntities) return std::nullopt;
   PhysicsTrace trace;
   for (std::size_t k = 0; k < entities && file >> word; ++k) trace.entities.push_back(word);
   std::int64_t tick = 0;

@@ -86,7 +86,7 @@ void ShowDifference(const Played& played, const OracleComparison& truth,
   if (!played.old) {
     context.out << "new golden:\n" << RunTable(played.run);
   } else {
-    const WorldEntry& world = played.loaded.scenario.world;
+    const WorldYaml& world = played.loaded.scenario.world;
     context.out << DifferenceText(Compare(*played.old, played.run.timeline,
                                           DefaultTolerance(world.rate_hz, world.sensing_hz)),
                                   ExplainCommand(played.id, {}));
@@ -137,7 +137,7 @@ ExitCode Refuse(const CommandContext& context, const Played& played, const Golde
 ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
   GoldenFiles(context.root).RemovePending(played.id);
   LeaveBaseline(context, played);
-  const WorldEntry& world = played.loaded.scenario.world;
+  const WorldYaml& world = played.loaded.scenario.world;
   const std::string margin = MarginText(
       Compare(*played.old, played.run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz)));
   context.out << "nothing to accept: the scenario agrees with "

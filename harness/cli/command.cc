@@ -75,8 +75,8 @@ ExitCode Complain(const CommandContext& context, ExitCode code, const std::strin
 }
 
 ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& diagnostics) {
-  constexpr std::size_t kMostTold = 100;  // nobody reads on
-  const std::size_t told = std::min(diagnostics.size(), kMostTold);
+  constexpr std::size_t kMaxReported = 100;  // nobody reads on
+  const std::size_t told = std::min(diagnostics.size(), kMaxReported);
   for (std::size_t i = 0; i < told; ++i) context.err << Format(diagnostics[i]);
   if (told < diagnostics.size()) context.err << "and " << diagnostics.size() - told << " more\n";
   context.err << "  again: " << context.command_line << "\n";

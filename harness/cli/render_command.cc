@@ -33,11 +33,11 @@ void Declare(CLI::App& options) {
 }
 
 /// What the command line asks for instead of the scenario's own pictures; nothing when it does not.
-std::optional<PictureEntry> AskedPicture(const CLI::App& options, const Scenario& scenario) {
+std::optional<PictureYaml> AskedPicture(const CLI::App& options, const Scenario& scenario) {
   if (!IsGiven(options, "--at") && !IsGiven(options, "--camera") && !IsGiven(options, "--output"))
     return std::nullopt;
-  PictureEntry entry =
-      scenario.pictures.empty() ? PictureEntry{.at = {"0", {}}} : scenario.pictures.front();
+  PictureYaml entry =
+      scenario.pictures.empty() ? PictureYaml{.at = {"0", {}}} : scenario.pictures.front();
   entry.at.value = ValueOf(options, "--at", entry.at.value);
   entry.camera.value = ValueOf(options, "--camera", entry.camera.value);
   return entry;

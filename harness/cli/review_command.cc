@@ -81,7 +81,7 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
     review.text = EventLines(*pending.value) + DerivationLines(*pending.value, {});
     return review;
   }
-  const WorldEntry& world = scenario.value->world;
+  const WorldYaml& world = scenario.value->world;
   const Comparison comparison = Compare(*golden.value, ToTimeline(*pending.value),
                                         DefaultTolerance(world.rate_hz, world.sensing_hz));
   const std::string derivation = DerivationLines(*pending.value, golden.value->derived);

@@ -20,7 +20,7 @@
 namespace prehend::harness {
 namespace {
 
-constexpr int kMostTrials = 100000;
+constexpr int kMaxTrials = 100000;
 
 void Declare(CLI::App& options) {
   options.add_option("scenario", "a name, skill/name or a file")->required()->expected(1);
@@ -30,11 +30,11 @@ void Declare(CLI::App& options) {
                   "simulate this many variations of the scenario and count its outcomes")
       ->type_name("N")
       ->expected(1)
-      ->check(CLI::Range(1, kMostTrials));
+      ->check(CLI::Range(1, kMaxTrials));
   options.add_option("--trial", "simulate one of these variations")
       ->type_name("K")
       ->expected(1)
-      ->check(CLI::Range(1, kMostTrials));
+      ->check(CLI::Range(1, kMaxTrials));
   options.add_option("--jobs", "trials at a time; default: one per core")
       ->type_name("N")
       ->expected(1)

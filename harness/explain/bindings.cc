@@ -15,7 +15,7 @@ using grammar::ReplayMonitor;
 void Fill(ReplayMonitor& past, int rule, Binding& entities, std::size_t role,
           std::vector<int>& instances) {
   const std::size_t roles = past.program().rules[rule].roles.size();
-  if (instances.size() >= kMostBindings) return;
+  if (instances.size() >= kMaxBindings) return;
   if (role == roles) {
     const int instance = past.InstanceOf(rule, entities);
     if (instance != kNone &&
@@ -46,7 +46,7 @@ std::vector<int> BindingsThatFit(ReplayMonitor& past, int rule, const Binding& w
       return true;
     };
     const bool either_way = asked.symmetric && fits({wanted[1], wanted[0], wanted[2], wanted[3]});
-    if (instances.size() < kMostBindings && (fits(wanted) || either_way))
+    if (instances.size() < kMaxBindings && (fits(wanted) || either_way))
       instances.push_back(instance);
   }
   Binding entities = wanted;

@@ -9,10 +9,10 @@
 
 namespace prehend::harness::explain {
 
-inline constexpr std::size_t kMostBindings = 64;
+inline constexpr std::size_t kMaxBindings = 64;
 
 /// Those that were looked at while the episode went on; if there is none, those that could have
-/// been. At most kMostBindings. `wanted`: kNone for whoever.
+/// been. At most kMaxBindings. `wanted`: kNone for whoever.
 std::vector<int> BindingsThatFit(grammar::ReplayMonitor& past, int rule,
                                  const grammar::Binding& wanted);
 

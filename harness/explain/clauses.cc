@@ -292,7 +292,7 @@ double Clauses::NearestMember(int any_instance, FrameNumber frame, int depth) {
 }
 
 double Clauses::Nearness(int node, const Moment& at, bool truth, int depth) {
-  constexpr int kDeepest = 6;
+  constexpr int kMaxDepth = 6;
   const Node& n = NodeAt(node);
   if (past_.Truth(node, at) == truth) return 1;
   if (n.op == Op::kNot) return Nearness(n.args[0], at, !truth, depth);
@@ -303,7 +303,7 @@ double Clauses::Nearness(int node, const Moment& at, bool truth, int depth) {
   }
   if (n.op == Op::kHolds) {
     const int target = past_.Referred(at.instance, n.slot);
-    if (!truth || target == kNone || depth == kDeepest) return 0;
+    if (!truth || target == kNone || depth == kMaxDepth) return 0;
     const grammar::Rule& rule = past_.RuleOf(target);
     if (rule.form == grammar::Form::kWhile) {
       return 0.9 * Nearness(rule.first, {.instance = target, .frame = at.frame}, true, depth + 1);

@@ -74,7 +74,7 @@ std::vector<WhyEvent> ExplainEvents(ReplayMonitor& past, const Ask& ask) {
 }
 
 std::vector<WhyEvent> NearestEvents(ReplayMonitor& past, const Ask& ask) {
-  constexpr std::size_t kMost = 3;
+  constexpr std::size_t kMaxListed = 3;
   std::vector<const CandidateOutcome*> intervals = IntervalsOf(past, ask);
   const auto away = [&](const CandidateOutcome* outcome) {
     if (!ask.time_s) return Tick{0};
@@ -84,7 +84,7 @@ std::vector<WhyEvent> NearestEvents(ReplayMonitor& past, const Ask& ask) {
   std::stable_sort(
       intervals.begin(), intervals.end(),
       [&](const CandidateOutcome* a, const CandidateOutcome* b) { return away(a) < away(b); });
-  if (intervals.size() > kMost) intervals.resize(kMost);
+  if (intervals.size() > kMaxListed) intervals.resize(kMaxListed);
   std::vector<WhyEvent> events;
   EventReasons reasons(past);
   for (const CandidateOutcome* outcome : intervals)

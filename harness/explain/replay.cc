@@ -12,7 +12,7 @@ Watched Watch(const EpisodeSource& source) {
   grammar::ReplayMonitor& past = *watched.past;
   bool too_long = false;
   const EpisodeSource::Played played = source.play([&](const grammar::Frame& frame) {
-    too_long = too_long || past.frames() >= kMostFrames;
+    too_long = too_long || past.frames() >= kMaxFrames;
     if (!too_long) past.Advance(frame);
   });
   past.Finish(played.end);
@@ -22,7 +22,7 @@ Watched Watch(const EpisodeSource& source) {
   } else if (too_long) {
     watched.problem = fmt::format(
         "the episode has more than {} frames, and all of them would have to be remembered",
-        kMostFrames);
+        kMaxFrames);
   } else if (past.frames() == 0) {
     watched.problem = "the episode has no frames";
   }

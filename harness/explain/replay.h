@@ -11,7 +11,7 @@
 namespace prehend::harness::explain {
 
 /// More would take too much memory: at 240 frames per second, seven minutes.
-inline constexpr grammar::FrameNumber kMostFrames = 100'000;
+inline constexpr grammar::FrameNumber kMaxFrames = 100'000;
 
 struct Watched {
   std::unique_ptr<grammar::ReplayMonitor> past;

@@ -94,10 +94,10 @@ class Collector {
 
   std::vector<std::optional<double>>* Add(std::string name, Track::Kind kind, std::string unit) {
     const std::size_t values = (tracks_.tracks.size() + 1) * tracks_.ticks.size();
-    if (tracks_.tracks.size() == kMostTracks || values > kMostTrackValues) {
+    if (tracks_.tracks.size() == kMaxTracks || values > kMaxTrackValues) {
       tracks_.problem =
           fmt::format("more than {} tracks, or {} values; ask for some of them with --only",
-                      kMostTracks, kMostTrackValues);
+                      kMaxTracks, kMaxTrackValues);
       return nullptr;
     }
     if (!names_.insert(name).second) return nullptr;

@@ -14,8 +14,8 @@
 
 namespace prehend::harness::explain {
 
-inline constexpr std::size_t kMostTracks = 10'000;
-inline constexpr std::size_t kMostTrackValues = 50'000'000;
+inline constexpr std::size_t kMaxTracks = 10'000;
+inline constexpr std::size_t kMaxTrackValues = 50'000'000;
 
 struct Track {
   enum class Kind { kEvent, kCondition, kSignal };

@@ -24,7 +24,7 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr int kDeepest = 8;  // rules behind rules
+constexpr int kMaxDepth = 8;  // rules behind rules
 
 Reason Remark(std::string what, std::string how = {}) {
   return {.mark = Mark::kNote,
@@ -52,7 +52,7 @@ std::string EventReasons::Seconds(double seconds) const {
 
 Clauses::Follow EventReasons::FollowFrom(int depth) {
   return [this, depth](int instance, const CandidateOutcome& outcome, bool end) {
-    if (depth >= kDeepest) return Reasons{};
+    if (depth >= kMaxDepth) return Reasons{};
     return end ? End(instance, outcome, depth + 1) : Begin(instance, outcome, depth + 1);
   };
 }
@@ -78,7 +78,7 @@ Reasons EventReasons::Begin(int instance, const CandidateOutcome& outcome, int d
     case Form::kFromTo: {
       const Moment at{.instance = instance, .frame = begin, .begin = begin};
       Reasons reasons = Change(rule.first, at, true, depth);
-      AddNew(Change(rule.during, at, true, kDeepest), reasons);
+      AddNew(Change(rule.during, at, true, kMaxDepth), reasons);
       return reasons;
     }
     case Form::kUntilSince:
@@ -122,7 +122,7 @@ Reasons EventReasons::End(int instance, const CandidateOutcome& outcome, int dep
       if (!ChooseParts(instance, outcome, parts)) return {};
       Reason last = Remark(Label(past_, parts.back()->instance), "ended");
       last.mark = Mark::kTurned;
-      if (depth < kDeepest) last.because = End(parts.back()->instance, *parts.back(), depth + 1);
+      if (depth < kMaxDepth) last.because = End(parts.back()->instance, *parts.back(), depth + 1);
       return {std::move(last)};
     }
   }
@@ -260,7 +260,7 @@ Reasons EventReasons::Parts(int instance, const CandidateOutcome& outcome, int d
                            IntervalText({part->span.begin.tick, part->span.end.tick},
                                         past_.entity_table().ticks_per_second));
     if (part == chosen.front()) reason.mark = Mark::kTurned;
-    if (part == chosen.front() && depth < kDeepest)
+    if (part == chosen.front() && depth < kMaxDepth)
       reason.because = Begin(part->instance, *part, depth + 1);
     reasons.push_back(std::move(reason));
   }
@@ -300,7 +300,7 @@ Reasons EventReasons::Waited(int instance, const CandidateOutcome& outcome, int 
   const Rule& rule = past_.RuleOf(instance);
   const Tick end = outcome.span.end.tick;
   Reasons reasons;
-  if (outcome.decided <= end || depth >= kDeepest) return reasons;
+  if (outcome.decided <= end || depth >= kMaxDepth) return reasons;
   if (rule.bridging_s > 0 && !outcome.span.open_end) {
     reasons.push_back(Remark(Label(past_, instance), "a gap of up to " + Seconds(rule.bridging_s) +
                                                          " would have been bridged"));

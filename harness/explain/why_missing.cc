@@ -23,7 +23,7 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr int kDeepest = 8;         // rules behind rules
+constexpr int kMaxDepth = 8;        // rules behind rules
 constexpr double kAround_s = 0.25;  // a person's or a golden's idea of a moment is not exact
 
 // The innermost clause that failed first.
@@ -104,7 +104,7 @@ WhyMissing MissingReasons::Explain(const std::vector<int>& instances,
 }
 
 MissingReasons::Blame MissingReasons::OfInstance(int instance, const Window& window, int depth) {
-  if (instance == kNone || depth >= kDeepest) return {};
+  if (instance == kNone || depth >= kMaxDepth) return {};
   if (const CandidateOutcome* run = NearestRun(instance, window))
     return OfRun(*run, depth, window.at ? grammar::kNever : window.last);
   return OfForm(instance, window, depth);
@@ -314,7 +314,7 @@ MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int
   if (has_end) {
     Reason ended{.mark = Mark::kNote,
                  .what = "it ended there",
-                 .because = events_.End(instance, outcome, kDeepest - 1)};
+                 .because = events_.End(instance, outcome, kMaxDepth - 1)};
     run.because.push_back(std::move(ended));
   }
   return {{std::move(run)}, RunCloseness(outcome)};

@@ -24,8 +24,8 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr FrameNumber kMostLooks = 2000;   // of a long window only so many frames are looked at
-constexpr std::size_t kMostIntervals = 4;  // are listed
+constexpr FrameNumber kMostLooks = 2000;  // of a long window only so many frames are looked at
+constexpr std::size_t kMaxIntervals = 4;  // are listed
 
 Reason Failed(std::string what, std::string how, Reasons because = {}) {
   return {.mark = Mark::kFailed,
@@ -44,8 +44,8 @@ Reason MissingReasons::Intervals(int instance, std::string how) {
   std::size_t count = 0;
   for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
     if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
-    if (count++ == kMostIntervals) how += ", ..";
-    if (count > kMostIntervals) continue;
+    if (count++ == kMaxIntervals) how += ", ..";
+    if (count > kMaxIntervals) continue;
     how +=
         (count == 1 ? " " : ", ") + IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
                                                  past_.entity_table().ticks_per_second);

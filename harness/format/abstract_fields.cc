@@ -11,40 +11,40 @@ namespace {
 
 using physics::Abstract;
 
-constexpr double kSmallestM = 0.001, kLargestM = 100;
+constexpr double kMinSize_m = 0.001, kMaxSize_m = 100;
 
 }  // namespace
 
-Format<RegionEntry> RegionFormat() {
-  using R = RegionEntry;
-  return Record<R>("a region")
-      .Optional("size_m", &R::size_m, Vector<3>(kSmallestM, kLargestM),
+ValueFormat<RegionYaml> RegionFormat() {
+  using R = RegionYaml;
+  return StructFormat<R>("a region")
+      .Optional("size_m", &R::size_m, Vector<3>(kMinSize_m, kMaxSize_m),
                 "Full edge lengths [x, y, z] of a box.")
-      .Optional("radius_m", &R::radius_m, Number(kSmallestM, kLargestM), "Radius of a ball.")
+      .Optional("radius_m", &R::radius_m, Number(kMinSize_m, kMaxSize_m), "Radius of a ball.")
       .ExactlyOneOf({"size_m", "radius_m"})
       .format();
 }
 
-Format<GazeTargetEntry> GazeTargetFormat() {
-  using G = GazeTargetEntry;
-  return Record<G>("a gaze target")
-      .Optional("radius_m", &G::radius_m, Number(kSmallestM, 10),
+ValueFormat<GazeTargetYaml> GazeTargetFormat() {
+  using G = GazeTargetYaml;
+  return StructFormat<G>("a gaze target")
+      .Optional("radius_m", &G::radius_m, Number(kMinSize_m, 10),
                 "Radius of the ball that is looked at.")
       .format();
 }
 
-Format<CameraEntry> CameraFormat() {
-  using C = CameraEntry;
-  return Record<C>("a camera")
-      .Required("toward_m", &C::toward_m, Vector<3>(-kFarthestM, kFarthestM),
+ValueFormat<CameraYaml> CameraFormat() {
+  using C = CameraYaml;
+  return StructFormat<C>("a camera")
+      .Required("toward_m", &C::toward_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "A point in the middle of its picture, in the world.")
       .Optional("view_deg", &C::view_deg, Number(5, 120), "How much it sees, from below to above.")
       .format();
 }
 
-Format<LightEntry> LightFormat() { return Record<LightEntry>("a light").format(); }
+ValueFormat<LightYaml> LightFormat() { return StructFormat<LightYaml>("a light").format(); }
 
-void CheckAbstract(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
+void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
   const Abstract abstract = AbstractOf(entity);
   if (abstract == Abstract::kNot) return;
   const std::string noun = NounOf(abstract);
@@ -52,23 +52,23 @@ void CheckAbstract(const YamlNode& node, const EntityEntry& entity, Complaints& 
        {"fixed", "mass_kg", "friction", "rolling_friction", "restitution", "linear_damping_per_s",
         "angular_damping_per_s", "fixed_to", "slider", "hinge", "ball_joint", "on", "in"}) {
     if (const YamlNode* given = node.Find(key))
-      complaints.Add(given->key_where, std::string(key) + ": " + noun +
-                                           " has none; it is no matter, and stays where it is");
+      errors.Add(given->key_where, std::string(key) + ": " + noun +
+                                       " has none; it is no matter, and stays where it is");
   }
   for (const char* key : {"rpy_deg", "yaw_deg"}) {
     const YamlNode* given = abstract == Abstract::kRegion ? nullptr : node.Find(key);
     if (given)
-      complaints.Add(given->key_where, std::string(key) + ": " + noun + " is not turned",
-                     abstract == Abstract::kCamera ? "it looks toward_m" : "");
+      errors.Add(given->key_where, std::string(key) + ": " + noun + " is not turned",
+                 abstract == Abstract::kCamera ? "it looks toward_m" : "");
   }
   if (entity.camera && std::ranges::find(CameraWords(), node.key) != CameraWords().end())
-    complaints.Add(node.key_where, "'" + node.key + "' is a camera that every scenario has",
-                   "call it otherwise");
+    errors.Add(node.key_where, "'" + node.key + "' is a camera that every scenario has",
+               "call it otherwise");
   if (entity.camera && entity.at_m.value.size() == 3) {
     const Eigen::Vector3d at_m(entity.at_m.value[0], entity.at_m.value[1], entity.at_m.value[2]);
-    if ((entity.camera->toward_m.value - at_m).norm() < kSmallestM)
-      complaints.Add(entity.camera->toward_m.where, "toward_m: the camera stands there",
-                     "a point that it looks at");
+    if ((entity.camera->toward_m.value - at_m).norm() < kMinSize_m)
+      errors.Add(entity.camera->toward_m.where, "toward_m: the camera stands there",
+                 "a point that it looks at");
   }
 }
 

@@ -11,8 +11,8 @@
 namespace prehend::harness {
 namespace {
 
-Format<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)[4]) {
-  return Record<PidOverride>(noun)
+ValueFormat<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)[4]) {
+  return StructFormat<PidOverride>(noun)
       .Optional(keys[0], &PidOverride::proportional, Number(0, 1e6), "Force or torque per error.")
       .Optional(keys[1], &PidOverride::derivative, Number(0, 1e5),
                 "Force or torque per speed of the error.")
@@ -22,8 +22,8 @@ Format<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)
       .format();
 }
 
-Format<GainsOverride> GainsFormat() {
-  return Record<GainsOverride>("the gains")
+ValueFormat<GainsOverride> GainsFormat() {
+  return StructFormat<GainsOverride>("the gains")
       .Optional("translation", &GainsOverride::translation,
                 PidFormat("the translation gains", {"proportional_n_per_m", "derivative_n_s_per_m",
                                                     "integral_n_per_m_s", "limit_n"}),
@@ -37,19 +37,19 @@ Format<GainsOverride> GainsFormat() {
 }
 
 /// What would need more losses than there are looks.
-void CheckLosses(const YamlNode& node, const physics::TrackerSettings& t, Complaints& complaints) {
+void CheckLosses(const YamlNode& node, const physics::TrackerSettings& t, DiagnosticList& errors) {
   if (t.dropped_run_s <= 0) return;
   const double run_looks = std::max(1.0, t.dropped_run_s * t.tracker_hz);
   const double least_looks = t.dropped_share / (1 - t.dropped_share);
   if (run_looks >= least_looks) return;
-  complaints.Add(node.Find("dropped_run_s")->where,
-                 fmt::format("dropped_run_s: a share of {} needs losses of at least {:.3f} s",
-                             t.dropped_share, least_looks / t.tracker_hz));
+  errors.Add(node.Find("dropped_run_s")->where,
+             fmt::format("dropped_run_s: a share of {} needs losses of at least {:.3f} s",
+                         t.dropped_share, least_looks / t.tracker_hz));
 }
 
-Format<physics::TrackerSettings> TrackingFormat() {
+ValueFormat<physics::TrackerSettings> TrackingFormat() {
   using T = physics::TrackerSettings;
-  return Record<T>("the tracking")
+  return StructFormat<T>("the tracking")
       .Optional("tracker_hz", &T::tracker_hz, Integer<int>(1, 4800),
                 "Looks of the tracker per second, at most rate_hz.")
       .Optional("latency_s", &T::latency_s, Number(0, 2), "From a look to its arrival.")
@@ -68,11 +68,11 @@ Format<physics::TrackerSettings> TrackingFormat() {
 }
 
 /// What hands and persons have in common.
-Format<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
+ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kMaxDistance_m, kMaxDistance_m); }
 
-Format<HandActor> HandActorFormat() {
-  using A = HandActor;
-  return Record<A>("actor")
+ValueFormat<HandActorYaml> HandActorFormat() {
+  using A = HandActorYaml;
+  return StructFormat<A>("actor")
       .NamedByKey()
       .Required("hand", &A::hand,
                 Word("[A-Za-z0-9_./-]+", "a hand like 'human_right', or a .hand.yaml file", 255),
@@ -95,9 +95,9 @@ Format<HandActor> HandActorFormat() {
       .format();
 }
 
-Format<PersonActor> PersonActorFormat() {
-  using P = PersonActor;
-  return Record<P>("actor")
+ValueFormat<PersonActorYaml> PersonActorFormat() {
+  using P = PersonActorYaml;
+  return StructFormat<P>("actor")
       .NamedByKey()
       .Required("person", &P::person,
                 Choice<PersonKind>({{"head", PersonKind::kHead}, {"body", PersonKind::kBody}}),
@@ -115,21 +115,20 @@ Format<PersonActor> PersonActorFormat() {
 
 }  // namespace
 
-Format<physics::Eyes> EyesFormat() {
+ValueFormat<physics::Eyes> EyesFormat() {
   return Choice<physics::Eyes>({{"lead", physics::Eyes::kLead}, {"ahead", physics::Eyes::kAhead}});
 }
 
-Format<ActorEntry> ActorFormat() {
-  return ByKey<ActorEntry>("an actor",
-                           {{"hand", AsAlternative<ActorEntry>(HandActorFormat())},
-                            {"person", AsAlternative<ActorEntry>(PersonActorFormat())}});
+ValueFormat<ActorYaml> ActorFormat() {
+  return ByKey<ActorYaml>("an actor", {{"hand", AsAlternative<ActorYaml>(HandActorFormat())},
+                                       {"person", AsAlternative<ActorYaml>(PersonActorFormat())}});
 }
 
-void SortActors(ScenarioEntry& entry) {
-  for (const Named<ActorEntry>& actor : entry.actors) {
-    if (const auto* hand = std::get_if<HandActor>(&actor.value))
+void SortActors(ScenarioYaml& entry) {
+  for (const Named<ActorYaml>& actor : entry.actors) {
+    if (const auto* hand = std::get_if<HandActorYaml>(&actor.value))
       entry.hands.push_back({actor.name, actor.name_where, *hand});
-    if (const auto* person = std::get_if<PersonActor>(&actor.value))
+    if (const auto* person = std::get_if<PersonActorYaml>(&actor.value))
       entry.persons.push_back({actor.name, actor.name_where, *person});
   }
 }

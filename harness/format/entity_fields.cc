@@ -13,81 +13,80 @@
 namespace prehend::harness {
 namespace {
 
-constexpr std::size_t kMostParts = 256;
-constexpr double kMostResistance = 1e5;
-constexpr double kFarthestSlideM = 10;
-constexpr double kFarthestTurnDeg = 170;  // at half a turn the two ways could not be told apart
+constexpr std::size_t kMaxParts = 256;
+constexpr double kMaxResistance = 1e5;
+constexpr double kMaxSlide_m = 10;
+constexpr double kMaxTurn_deg = 170;  // at half a turn the two ways could not be told apart
 
 /// A joint's range is [least, most] and holds 0, where it was placed.
-void CheckRange(const YamlNode&, const JointEntry& joint, Complaints& complaints) {
+void CheckRange(const YamlNode&, const JointYaml& joint, DiagnosticList& errors) {
   const Eigen::Vector2d& range = joint.range.value;
   if (range[0] <= 0 && range[1] >= 0 && range[0] < range[1]) return;
-  complaints.Add(joint.range.where,
-                 fmt::format("expected a range [least, most] with 0, where it is placed, between "
-                             "or at them, found [{}, {}]",
-                             range[0], range[1]));
+  errors.Add(joint.range.where,
+             fmt::format("expected a range [least, most] with 0, where it is placed, between "
+                         "or at them, found [{}, {}]",
+                         range[0], range[1]));
 }
 
-Record<JointEntry> JointRecord(const std::string& noun) {
-  using J = JointEntry;
-  return Record<J>(noun).Required("to", &J::to, Identifier(), "The entity that it hangs on.");
+StructFormat<JointYaml> JointRecord(const std::string& noun) {
+  using J = JointYaml;
+  return StructFormat<J>(noun).Required("to", &J::to, Identifier(), "The entity that it hangs on.");
 }
 
-Format<Eigen::Vector3d> Axis() { return Vector<3>(-1, 1); }
+ValueFormat<Eigen::Vector3d> Axis() { return Vector<3>(-1, 1); }
 
-void CheckAxis(const YamlNode& node, const JointEntry& joint, Complaints& complaints) {
+void CheckAxis(const YamlNode& node, const JointYaml& joint, DiagnosticList& errors) {
   if (joint.axis.norm() > 1e-6) return;
-  complaints.Add(node.Find("axis")->where, "axis: expected a direction other than [0, 0, 0]");
+  errors.Add(node.Find("axis")->where, "axis: expected a direction other than [0, 0, 0]");
 }
 
 /// A rest without a spring would do nothing; one of no stiffness is somebody's choice.
-std::function<void(const YamlNode&, const JointEntry&, Complaints&)> SpringPullsTo(
+std::function<void(const YamlNode&, const JointYaml&, DiagnosticList&)> SpringPullsTo(
     const char* rest, const char* spring) {
-  return [rest, spring](const YamlNode& node, const JointEntry&, Complaints& complaints) {
+  return [rest, spring](const YamlNode& node, const JointYaml&, DiagnosticList& errors) {
     const YamlNode* given = node.Find(rest);
     if (!given || node.Find(spring)) return;
-    complaints.Add(given->key_where, fmt::format("{}: there is no spring that pulls to it", rest),
-                   fmt::format("give it {}", spring));
+    errors.Add(given->key_where, fmt::format("{}: there is no spring that pulls to it", rest),
+               fmt::format("give it {}", spring));
   };
 }
 
-Format<JointEntry> SliderFormat() {
-  using J = JointEntry;
+ValueFormat<JointYaml> SliderFormat() {
+  using J = JointYaml;
   return JointRecord("a slider")
       .Required("axis", &J::axis, Axis(),
                 "The direction in which it opens, in the world, as placed.")
-      .Required("range_m", &J::range, Vector<2>(-kFarthestSlideM, kFarthestSlideM),
+      .Required("range_m", &J::range, Vector<2>(-kMaxSlide_m, kMaxSlide_m),
                 "How far it goes from where it is placed: [least, most].")
-      .Optional("friction_n", &J::friction, Number(0, kMostResistance),
+      .Optional("friction_n", &J::friction, Number(0, kMaxResistance),
                 "Largest force that it holds against.")
-      .Optional("damping_n_s_per_m", &J::damping, Number(0, kMostResistance),
+      .Optional("damping_n_s_per_m", &J::damping, Number(0, kMaxResistance),
                 "Force against its speed.")
-      .Optional("spring_n_per_m", &J::spring, Number(0, kMostResistance),
+      .Optional("spring_n_per_m", &J::spring, Number(0, kMaxResistance),
                 "Force that pulls it to rest_m.")
-      .Optional("rest_m", &J::rest, Number(-kFarthestSlideM, kFarthestSlideM),
-                "Where its spring is slack.")
+      .Optional("rest_m", &J::rest, Number(-kMaxSlide_m, kMaxSlide_m), "Where its spring is slack.")
       .Check(CheckAxis)
       .Check(CheckRange)
       .Check(SpringPullsTo("rest_m", "spring_n_per_m"))
       .format();
 }
 
-Format<JointEntry> HingeFormat() {
-  using J = JointEntry;
+ValueFormat<JointYaml> HingeFormat() {
+  using J = JointYaml;
   return JointRecord("a hinge")
-      .Required("at_m", &J::at_m, Vector<3>(-kFarthestM, kFarthestM),
+      .Required("at_m", &J::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "A point of its axis, in the world, as placed.")
       .Required("axis", &J::axis, Axis(),
                 "The direction of its axis; it opens the way that a right-handed screw turns.")
-      .Required("range_deg", &J::range, Vector<2>(-kFarthestTurnDeg, kFarthestTurnDeg),
+      .Required("range_deg", &J::range, Vector<2>(-kMaxTurn_deg, kMaxTurn_deg),
                 "How far it turns from where it is placed: [least, most].")
-      .Optional("friction_nm", &J::friction, Number(0, kMostResistance),
+      .Optional("friction_nm", &J::friction, Number(0, kMaxResistance),
                 "Largest torque that it holds against.")
-      .Optional("damping_nm_s_per_rad", &J::damping, Number(0, kMostResistance),
+      .Optional("damping_nm_s_per_rad", &J::damping, Number(0, kMaxResistance),
                 "Torque against its speed.")
-      .Optional("spring_nm_per_rad", &J::spring, Number(0, kMostResistance),
+      .Optional("spring_nm_per_rad", &J::spring, Number(0, kMaxResistance),
                 "Torque that turns it to rest_deg.")
-      .Optional("rest_deg", &J::rest, Number(-kFarthestTurnDeg, kFarthestTurnDeg),
+      .Optional("rest_deg", &J::rest, Number(-kMaxTurn_deg, kMaxTurn_deg),
                 "Where its spring is slack.")
       .Check(CheckAxis)
       .Check(CheckRange)
@@ -95,28 +94,28 @@ Format<JointEntry> HingeFormat() {
       .format();
 }
 
-Format<JointEntry> BallJointFormat() {
+ValueFormat<JointYaml> BallJointFormat() {
   return JointRecord("a ball joint")
-      .Required("at_m", &JointEntry::at_m, Vector<3>(-kFarthestM, kFarthestM),
+      .Required("at_m", &JointYaml::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "The point about which it turns any way, in the world, as placed.")
       .format();
 }
 
-void CheckClass(const EntityEntry& entity, Complaints& complaints) {
-  if (!IsBuiltInClass(entity.class_name.value)) return;
-  complaints.Add(entity.class_name.where,
-                 "class: '" + entity.class_name.value + "' is built in and given anyway",
-                 "name what the thing is, for example Cup");
+void CheckClass(const EntityYaml& entity, DiagnosticList& errors) {
+  if (!IsScenarioBuiltinClass(entity.class_name.value)) return;
+  errors.Add(entity.class_name.where,
+             "class: '" + entity.class_name.value + "' is built in and given anyway",
+             "name what the thing is, for example Cup");
 }
 
 /// What hangs on a joint moves, and what is fixed to something has its surface.
-void CheckJoint(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
+void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
   const std::string title = "entity '" + node.key + "'";
   for (const char* key : {"fixed_to", "slider", "hinge", "ball_joint"}) {
     const YamlNode* joint = node.Find(key);
     if (joint && entity.fixed) {
-      complaints.Add(joint->key_where, title + " is fixed: it cannot hang on a joint",
-                     "remove fixed or " + std::string(key));
+      errors.Add(joint->key_where, title + " is fixed: it cannot hang on a joint",
+                 "remove fixed or " + std::string(key));
     }
   }
   if (!entity.fixed_to) return;
@@ -124,62 +123,61 @@ void CheckJoint(const YamlNode& node, const EntityEntry& entity, Complaints& com
                           "angular_damping_per_s"}) {
     const YamlNode* surface = node.Find(key);
     if (surface) {
-      complaints.Add(surface->key_where,
-                     std::string(key) + ": what is fixed to something has its surface",
-                     "give it to '" + entity.fixed_to->value + "'");
+      errors.Add(surface->key_where,
+                 std::string(key) + ": what is fixed to something has its surface",
+                 "give it to '" + entity.fixed_to->value + "'");
     }
   }
 }
 
 /// Grains lie in a vessel, and nothing else does. They are many: what one thing has, they have not.
-void CheckGrains(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
+void CheckGrains(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
   const std::string title = "entity '" + node.key + "'";
   if (entity.in && !entity.grains)
-    complaints.Add(entity.in->where, "in: only grains are put into something",
-                   "for a thing: 'on', with at_m: [x, y]");
+    errors.Add(entity.in->where, "in: only grains are put into something",
+               "for a thing: 'on', with at_m: [x, y]");
   if (!entity.grains) return;
   if (!entity.in)
-    complaints.Add(node.key_where, title + " is grains: it needs the key 'in'",
-                   "the vessel that they fill");
+    errors.Add(node.key_where, title + " is grains: it needs the key 'in'",
+               "the vessel that they fill");
   for (const char* key : {"fixed", "part_of", "fixed_to", "slider", "hinge", "ball_joint", "on",
                           "at_m", "rpy_deg", "yaw_deg"}) {
     if (const YamlNode* given = node.Find(key))
-      complaints.Add(given->key_where,
-                     std::string(key) + ": grains have none; they lie loose in their vessel");
+      errors.Add(given->key_where,
+                 std::string(key) + ": grains have none; they lie loose in their vessel");
   }
 }
 
-void CheckEntity(const YamlNode& node, const EntityEntry& entity, Complaints& complaints) {
-  CheckClass(entity, complaints);
-  CheckJoint(node, entity, complaints);
-  CheckGrains(node, entity, complaints);
-  CheckAbstract(node, entity, complaints);
+void CheckEntity(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
+  CheckClass(entity, errors);
+  CheckJoint(node, entity, errors);
+  CheckGrains(node, entity, errors);
+  CheckAbstract(node, entity, errors);
   const bool abstract = AbstractOf(entity) != physics::Abstract::kNot;
   const std::string title = "entity '" + node.key + "'";
   if (entity.fixed && entity.mass_kg) {
-    complaints.Add(entity.mass_kg->where, title + " is fixed: it cannot have a mass",
-                   "remove fixed or mass_kg");
+    errors.Add(entity.mass_kg->where, title + " is fixed: it cannot have a mass",
+               "remove fixed or mass_kg");
   }
   if (!entity.fixed && !entity.mass_kg && !abstract) {
-    complaints.Add(node.key_where, title + " can move: it needs the key 'mass_kg'",
-                   "or 'fixed: true'");
+    errors.Add(node.key_where, title + " can move: it needs the key 'mass_kg'", "or 'fixed: true'");
   }
   const std::size_t wanted = entity.on && !abstract ? 2 : 3;
   if (!entity.in && !entity.grains && entity.at_m.value.size() != wanted) {
-    complaints.Add(entity.at_m.where,
-                   wanted == 2 ? "at_m: with 'on' expected [x, y], found 3 numbers"
-                               : "at_m: expected [x, y, z], the centre, found 2 numbers",
-                   wanted == 2 ? "z follows from the top of the support"
-                   : abstract  ? ""
-                               : "or [x, y] together with 'on: SUPPORT'");
+    errors.Add(entity.at_m.where,
+               wanted == 2 ? "at_m: with 'on' expected [x, y], found 3 numbers"
+                           : "at_m: expected [x, y, z], the centre, found 2 numbers",
+               wanted == 2 ? "z follows from the top of the support"
+               : abstract  ? ""
+                           : "or [x, y] together with 'on: SUPPORT'");
   }
 }
 
 }  // namespace
 
-Format<EntityEntry> EntityFormat() {
-  using E = EntityEntry;
-  return Record<E>("entity")
+ValueFormat<EntityYaml> EntityFormat() {
+  using E = EntityYaml;
+  return StructFormat<E>("entity")
       .NamedByKey()
       .Optional("class", &E::class_name,
                 Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'"),
@@ -197,7 +195,7 @@ Format<EntityEntry> EntityFormat() {
       .Optional("bowl", &E::bowl, BowlFormat(), "Its shape: a round dish.")
       .Optional("shelf", &E::shelf, ShelfFormat(),
                 "Its shape: boards between two sides; a cupboard has two.")
-      .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMostParts),
+      .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMaxParts),
                 "Its shape: several shapes, rigidly together.")
       .Optional("grains", &E::grains, GrainsFormat(),
                 "Many loose balls in a vessel, seen as one entity.")
@@ -230,7 +228,7 @@ Format<EntityEntry> EntityFormat() {
       .Optional("hinge", &E::hinge, HingeFormat(), "It turns on another entity, as a door does.")
       .Optional("ball_joint", &E::ball_joint, BallJointFormat(),
                 "It swings any way about a point of another entity.")
-      .Optional("at_m", &E::at_m, ListOf(Number(-kFarthestM, kFarthestM), 2, 3),
+      .Optional("at_m", &E::at_m, ListOf(Number(-kMaxDistance_m, kMaxDistance_m), 2, 3),
                 "World coordinates of its centre: [x, y, z], or [x, y] with 'on'.")
       .Optional("rpy_deg", &E::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis.")

@@ -18,48 +18,46 @@ using physics::GraspApproach;
 using physics::JointDriver;
 using physics::PidGains;
 
-Format<double> PartLength() { return Number(0.001, 0.5); }
-Format<double> PartMass() { return Number(0.001, 10); }
-Format<Vector3d> InHand() { return Vector<3>(-1, 1); }
+ValueFormat<double> PartLength() { return Number(0.001, 0.5); }
+ValueFormat<double> PartMass() { return Number(0.001, 10); }
+ValueFormat<Vector3d> InHand() { return Vector<3>(-1, 1); }
 
 /// A direction of any length but 0; what is read has length 1.
-Format<Vector3d> Direction() {
+ValueFormat<Vector3d> Direction() {
   const auto vector = Vector<3>(-1, 1);
-  return {.schema = vector.schema,
-          .read =
-              [vector](const YamlNode& node, Complaints& complaints, Vector3d& value) {
-                if (!vector.read(node, complaints, value)) return false;
-                if (value.norm() < 1e-6)
-                  return ComplainWanted(node, complaints, "a direction other than [0, 0, 0]");
-                value.normalize();
-                return true;
-              },
-          .show = vector.show};
+  return ValueFormat<Vector3d>(
+             vector.schema(),
+             [vector](const YamlNode& node, DiagnosticList& errors, Vector3d& value) {
+               if (!vector.Read(node, errors, value)) return false;
+               if (value.norm() < 1e-6)
+                 return ReportExpected(node, errors, "a direction other than [0, 0, 0]");
+               value.normalize();
+               return true;
+             })
+      .ShownAs(vector);
 }
 
-Format<PerDigit> PerDigitFormat(double lowest, double highest) {
+ValueFormat<PerDigit> PerDigitFormat(double lowest, double highest) {
   return MapOf(Identifier(), WithPlace(ListOf(WithPlace(Number(lowest, highest)), 1, 8)), 1, 16);
 }
 
 /// Names, each of them once.
-Format<std::vector<std::string>> DifferentNames(std::size_t most) {
+ValueFormat<std::vector<std::string>> DifferentNames(std::size_t most) {
   const auto list = ListOf(Identifier(), 1, most);
-  return {
-      .schema = list.schema,
-      .read =
-          [list](const YamlNode& node, Complaints& complaints, std::vector<std::string>& names) {
-            if (!list.read(node, complaints, names)) return false;
-            bool good = true;
-            for (std::size_t i = 0; i < names.size(); ++i) {
-              const auto here = names.begin() + static_cast<std::ptrdiff_t>(i);
-              if (std::find(names.begin(), here, *here) == here) continue;
-              complaints.Add(node.children[i].where,
-                             fmt::format("{}: '{}' is given twice", node.key, *here));
-              good = false;
-            }
-            return good;
-          },
-      .show = list.show};
+  return ValueFormat<std::vector<std::string>>(
+      list.schema(),
+      [list](const YamlNode& node, DiagnosticList& errors, std::vector<std::string>& names) {
+        if (!list.Read(node, errors, names)) return false;
+        bool good = true;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+          const auto here = names.begin() + static_cast<std::ptrdiff_t>(i);
+          if (std::find(names.begin(), here, *here) == here) continue;
+          errors.Add(node.children[i].where,
+                     fmt::format("{}: '{}' is given twice", node.key, *here));
+          good = false;
+        }
+        return good;
+      });
 }
 
 constexpr double kDegPerRad = 180 / std::numbers::pi;
@@ -71,21 +69,21 @@ double DegreesBetween(const Vector3d& a, const Vector3d& b) {
 
 /// Complains unless `direction`, which `key` of the node gives, is across another one.
 void CheckAcross(const YamlNode& node, const char* key, const Vector3d& direction,
-                 const std::string& other_key, const Vector3d& other, Complaints& complaints,
+                 const std::string& other_key, const Vector3d& other, DiagnosticList& errors,
                  const std::string& hint) {
-  constexpr double kMostOff_deg = 1;  // two written digits
+  constexpr double kMaxOff_deg = 1;  // two written digits
   const double degrees = DegreesBetween(direction, other);
-  if (90 - degrees <= kMostOff_deg) return;
-  complaints.Add(node.Find(key)->where,
-                 fmt::format("{}: expected a direction at right angles to {}, found one at {:.3g} "
-                             "degrees to it",
-                             key, other_key, degrees),
-                 hint);
+  if (90 - degrees <= kMaxOff_deg) return;
+  errors.Add(node.Find(key)->where,
+             fmt::format("{}: expected a direction at right angles to {}, found one at {:.3g} "
+                         "degrees to it",
+                         key, other_key, degrees),
+             hint);
 }
 
-Format<PalmEntry> PalmFormat() {
-  using P = PalmEntry;
-  return Record<P>("the palm")
+ValueFormat<PalmYaml> PalmFormat() {
+  using P = PalmYaml;
+  return StructFormat<P>("the palm")
       .Optional("size_m", &P::size_m, Vector<3>(0.005, 0.5),
                 "Full edge lengths of its box [x, y, z].")
       .Optional("mass_kg", &P::mass_kg, PartMass(), "Mass.")
@@ -96,8 +94,8 @@ Format<PalmEntry> PalmFormat() {
       .format();
 }
 
-Format<PidGains> TranslationFormat() {
-  return Record<PidGains>("the translation gains")
+ValueFormat<PidGains> TranslationFormat() {
+  return StructFormat<PidGains>("the translation gains")
       .Required("proportional_n_per_m", &PidGains::proportional, Number(0, 1e6), "Force per error.")
       .Required("derivative_n_s_per_m", &PidGains::derivative, Number(0, 1e5),
                 "Force per speed of the error.")
@@ -109,8 +107,8 @@ Format<PidGains> TranslationFormat() {
       .format();
 }
 
-Format<PidGains> RotationFormat() {
-  return Record<PidGains>("the rotation gains")
+ValueFormat<PidGains> RotationFormat() {
+  return StructFormat<PidGains>("the rotation gains")
       .Required("proportional_nm_per_rad", &PidGains::proportional, Number(0, 1e6),
                 "Torque per error.")
       .Required("derivative_nm_s_per_rad", &PidGains::derivative, Number(0, 1e5),
@@ -123,9 +121,9 @@ Format<PidGains> RotationFormat() {
       .format();
 }
 
-Format<JointDriver> DriverFormat() {
+ValueFormat<JointDriver> DriverFormat() {
   using D = JointDriver;
-  return Record<D>("the joint driver")
+  return StructFormat<D>("the joint driver")
       .Optional("stiffness", &D::stiffness, Number(0, 1),
                 "Share of the error that it tries to remove per tick.")
       .Optional("damping", &D::damping, Number(0, 1), "How firmly it holds the speed it wants.")
@@ -138,64 +136,64 @@ Format<JointDriver> DriverFormat() {
 
 /// A member that a phalanx or a jaw has as a link.
 template <class Link, class Member>
-Member Link::*Of(Member LinkEntry::*member) {
+Member Link::*Of(Member LinkYaml::*member) {
   return member;
 }
 
 /// `record` with what a phalanx and a jaw have in common; the units are those of its joint.
 template <class Link>
-Record<Link> LinkRecord(Record<Link> record, const char* strength, double strongest,
-                        const char* range, double farthest) {
+StructFormat<Link> LinkRecord(StructFormat<Link> record, const char* strength, double strongest,
+                              const char* range, double farthest) {
   return record
-      .Required("length_m", Of<Link>(&LinkEntry::length_m), PartLength(),
+      .Required("length_m", Of<Link>(&LinkYaml::length_m), PartLength(),
                 "From its joint to the next one.")
-      .Required("half_width_m", Of<Link>(&LinkEntry::half_width_m), PartLength(),
+      .Required("half_width_m", Of<Link>(&LinkYaml::half_width_m), PartLength(),
                 "Half of its size across.")
-      .Required("half_thickness_m", Of<Link>(&LinkEntry::half_thickness_m), PartLength(),
+      .Required("half_thickness_m", Of<Link>(&LinkYaml::half_thickness_m), PartLength(),
                 "Half of its size from back to pad.")
-      .Required("mass_kg", Of<Link>(&LinkEntry::mass_kg), PartMass(), "Mass.")
-      .Required(strength, Of<Link>(&LinkEntry::strength), Number(0, strongest),
+      .Required("mass_kg", Of<Link>(&LinkYaml::mass_kg), PartMass(), "Mass.")
+      .Required(strength, Of<Link>(&LinkYaml::strength), Number(0, strongest),
                 "Largest torque or force of its joint at effort 1.")
-      .Required(range, Of<Link>(&LinkEntry::range), Vector<2>(-farthest, farthest),
+      .Required(range, Of<Link>(&LinkYaml::range), Vector<2>(-farthest, farthest),
                 "Joint limits [least, most].")
-      .Check([key = std::string(range)](const YamlNode&, const Link& link, Complaints& complaints) {
-        CheckLeastMost(key, link.range.value, link.range.where, complaints);
+      .Check([key = std::string(range)](const YamlNode&, const Link& link, DiagnosticList& errors) {
+        CheckLeastMost(key, link.range.value, link.range.where, errors);
       });
 }
 
-Format<PhalanxEntry> PhalanxFormat() {
-  using P = PhalanxEntry;
-  Record<P> record("a phalanx");
+ValueFormat<PhalanxYaml> PhalanxFormat() {
+  using P = PhalanxYaml;
+  StructFormat<P> record("a phalanx");
   record.Required("name", &P::name, Identifier(), "Its name after the digit's: index_proximal.")
       .Optional("joint_axis", &P::joint_axis, Direction(),
                 "Of the joint at its base, in H; positive angles close.");
   return LinkRecord(record, "strength_nm", 100, "range_deg", 180).format();
 }
 
-Format<JawEntry> JawFormat() {
-  Record<JawEntry> record("a jaw");
-  record.Required("slides", &JawEntry::slides, Direction(),
+ValueFormat<JawYaml> JawFormat() {
+  StructFormat<JawYaml> record("a jaw");
+  record.Required("slides", &JawYaml::slides, Direction(),
                   "In H: the way it slides; positive values close.");
   return LinkRecord(record, "strength_n", 1000, "range_m", 0.5).format();
 }
 
 /// A joint at the last part that turns it about its own length neither opens nor closes anything.
-void CheckLastJoint(const YamlNode& node, const DigitEntry& digit, Complaints& complaints) {
-  constexpr double kLeastOff_deg = 1;
+void CheckLastJoint(const YamlNode& node, const DigitYaml& digit, DiagnosticList& errors) {
+  constexpr double kMinAngle_deg = 1;
   if (digit.phalanges.empty()) return;
-  if (DegreesBetween(digit.phalanges.back().joint_axis, digit.direction) >= kLeastOff_deg) return;
+  if (DegreesBetween(digit.phalanges.back().joint_axis, digit.direction) >= kMinAngle_deg) return;
   const YamlNode& last = node.Find("phalanges")->children.back();
   const YamlNode* axis = last.Find("joint_axis");
-  complaints.Add(axis ? axis->where : last.where,
-                 fmt::format("joint_axis: expected an axis across the direction of digit '{}', "
-                             "found one along it: the joint would move nothing",
-                             node.key),
-                 axis ? "" : "without joint_axis it is [0, 1, 0]");
+  errors.Add(axis ? axis->where : last.where,
+             fmt::format("joint_axis: expected an axis across the direction of digit '{}', "
+                         "found one along it: the joint would move nothing",
+                         node.key),
+             axis ? "" : "without joint_axis it is [0, 1, 0]");
 }
 
-Format<DigitEntry> DigitFormat() {
-  using D = DigitEntry;
-  return Record<D>("digit")
+ValueFormat<DigitYaml> DigitFormat() {
+  using D = DigitYaml;
+  return StructFormat<D>("digit")
       .NamedByKey()
       .Required("sensor_set", &D::sensor_set, Identifier(),
                 "The sensor set that feels its contacts.")
@@ -210,9 +208,9 @@ Format<DigitEntry> DigitFormat() {
       .format();
 }
 
-Format<GripEntry> GripFormat() {
-  using G = GripEntry;
-  return Record<G>("the grip")
+ValueFormat<GripYaml> GripFormat() {
+  using G = GripYaml;
+  return StructFormat<G>("the grip")
       .Required("axis", &G::axis, Direction(),
                 "In H: from the stiff side (the post) to the force-limited side.")
       .Required("post_m", &G::post_m, InHand(),
@@ -222,9 +220,9 @@ Format<GripEntry> GripFormat() {
       .format();
 }
 
-Record<GraspApproach> ApproachRecord(const std::string& noun) {
+StructFormat<GraspApproach> ApproachRecord(const std::string& noun) {
   using A = GraspApproach;
-  return Record<A>(noun)
+  return StructFormat<A>(noun)
       .Required("toward", &A::toward, Direction(),
                 "In H: the direction of the last part of the motion.")
       .Required("palm_gap_m", &A::palm_gap_m, Number(-0.5, 0.5),
@@ -237,21 +235,21 @@ Record<GraspApproach> ApproachRecord(const std::string& noun) {
 
 /// The grip closes across the way of arrival, and what is up is across it, too: else no turn of the
 /// hand suits.
-void CheckApproaches(const YamlNode& node, const StyleEntry& style, Complaints& complaints) {
+void CheckApproaches(const YamlNode& node, const StyleYaml& style, DiagnosticList& errors) {
   const auto check_toward = [&](const char* key, const GraspApproach& approach) {
-    CheckAcross(*node.Find(key), "toward", approach.toward, "grip.axis", style.grip.axis,
-                complaints, "the hand arrives along toward and closes along grip.axis");
+    CheckAcross(*node.Find(key), "toward", approach.toward, "grip.axis", style.grip.axis, errors,
+                "the hand arrives along toward and closes along grip.axis");
   };
   if (style.above) check_toward("above", *style.above);
   if (!style.side) return;
   check_toward("side", *style.side);
-  CheckAcross(*node.Find("side"), "up", style.side->up, "toward", style.side->toward, complaints,
+  CheckAcross(*node.Find("side"), "up", style.side->up, "toward", style.side->toward, errors,
               "the hand arrives level, along toward, with up towards the sky");
 }
 
-Format<StyleEntry> StyleFormat() {
-  using S = StyleEntry;
-  return Record<S>("style")
+ValueFormat<StyleYaml> StyleFormat() {
+  using S = StyleYaml;
+  return StructFormat<S>("style")
       .NamedByKey()
       .Required("grip", &S::grip, GripFormat(), "Where the object is held.")
       .Optional("above", &S::above, ApproachRecord("the approach from above").format(),
@@ -269,31 +267,31 @@ Format<StyleEntry> StyleFormat() {
                 "Joint angles from open to closed: for each digit one number for each joint.")
       .Optional("frames_m", &S::frames_m, ListOf(WithPlace(PerDigitFormat(-0.5, 0.5)), 2, 16),
                 "Where jaws stand from open to closed: for each jaw one number.")
-      .Check([](const YamlNode& node, const S& style, Complaints& complaints) {
+      .Check([](const YamlNode& node, const S& style, DiagnosticList& errors) {
         if (style.above || style.side) return;
-        complaints.Add(node.key_where, "style '" + node.key + "' has no approach",
-                       "give 'above', 'side' or both");
+        errors.Add(node.key_where, "style '" + node.key + "' has no approach",
+                   "give 'above', 'side' or both");
       })
       .Check(CheckApproaches)
       .format();
 }
 
-Format<std::vector<Named<StyleEntry>>> StylesFormat() {
+ValueFormat<std::vector<Named<StyleYaml>>> StylesFormat() {
   return MapOf(Identifier(), StyleFormat(), 1, 64);
 }
 
-Format<GainsEntry> GainsFormat() {
-  return Record<GainsEntry>("the gains")
-      .Required("translation", &GainsEntry::translation, TranslationFormat(),
+ValueFormat<GainsYaml> GainsFormat() {
+  return StructFormat<GainsYaml>("the gains")
+      .Required("translation", &GainsYaml::translation, TranslationFormat(),
                 "How the palm follows a position.")
-      .Required("rotation", &GainsEntry::rotation, RotationFormat(),
+      .Required("rotation", &GainsYaml::rotation, RotationFormat(),
                 "How the palm follows an orientation.")
       .format();
 }
 
-Format<HandEntry> BuildHandFormat() {
-  using H = HandEntry;
-  return Record<H>("the hand")
+ValueFormat<HandYaml> BuildHandFormat() {
+  using H = HandYaml;
+  return StructFormat<H>("the hand")
       .Required("hand", &H::name, Identifier(), "Its name: that of the file without '.hand.yaml'.")
       .Required("sensor_sets", &H::sensor_sets, DifferentNames(16), "Groups of contact sensors.")
       .Optional("ahead", &H::ahead, Direction(), "In H: where the region of interest lies.")
@@ -309,45 +307,45 @@ Format<HandEntry> BuildHandFormat() {
       .Optional("grasps", &H::grasps, ListOf(WithPlace(Identifier()), 1, 16),
                 "Grasp files in the same folder, by name, without '.grasps.yaml'.")
       .Optional("styles", &H::styles, StylesFormat(), "Grasps, by name.")
-      .Check([](const YamlNode& node, const H& hand, Complaints& complaints) {
+      .Check([](const YamlNode& node, const H& hand, DiagnosticList& errors) {
         if (hand.grasps.empty() && hand.styles.empty())
-          complaints.Add(node.where, "the hand has no style of grasp",
-                         "give 'grasps', 'styles' or both");
+          errors.Add(node.where, "the hand has no style of grasp",
+                     "give 'grasps', 'styles' or both");
       })
       .format();
 }
 
-Format<GraspsEntry> BuildGraspsFormat() {
-  return Record<GraspsEntry>("the grasps")
-      .Required("grasps", &GraspsEntry::name, Identifier(),
+ValueFormat<GraspsYaml> BuildGraspsFormat() {
+  return StructFormat<GraspsYaml>("the grasps")
+      .Required("grasps", &GraspsYaml::name, Identifier(),
                 "Their name: that of the file without '.grasps.yaml'.")
-      .Required("styles", &GraspsEntry::styles, StylesFormat(), "Grasps, by name.")
+      .Required("styles", &GraspsYaml::styles, StylesFormat(), "Grasps, by name.")
       .format();
 }
 
-Format<MirrorEntry> BuildMirrorFormat() {
-  return Record<MirrorEntry>("the hand")
-      .Required("hand", &MirrorEntry::name, Identifier(),
+ValueFormat<MirrorYaml> BuildMirrorFormat() {
+  return StructFormat<MirrorYaml>("the hand")
+      .Required("hand", &MirrorYaml::name, Identifier(),
                 "Its name: that of the file without '.hand.yaml'.")
-      .Required("mirror_of", &MirrorEntry::mirror_of, Identifier(),
+      .Required("mirror_of", &MirrorYaml::mirror_of, Identifier(),
                 "The hand in the same folder that it mirrors.")
       .format();
 }
 
 }  // namespace
 
-const Format<HandEntry>& HandFormat() {
-  static const Format<HandEntry> format = BuildHandFormat();
+const ValueFormat<HandYaml>& HandFormat() {
+  static const ValueFormat<HandYaml> format = BuildHandFormat();
   return format;
 }
 
-const Format<GraspsEntry>& GraspsFormat() {
-  static const Format<GraspsEntry> format = BuildGraspsFormat();
+const ValueFormat<GraspsYaml>& GraspsFormat() {
+  static const ValueFormat<GraspsYaml> format = BuildGraspsFormat();
   return format;
 }
 
-const Format<MirrorEntry>& MirrorFormat() {
-  static const Format<MirrorEntry> format = BuildMirrorFormat();
+const ValueFormat<MirrorYaml>& MirrorFormat() {
+  static const ValueFormat<MirrorYaml> format = BuildMirrorFormat();
   return format;
 }
 

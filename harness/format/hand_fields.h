@@ -14,7 +14,7 @@
 
 namespace prehend::harness {
 
-struct PalmEntry {
+struct PalmYaml {
   Eigen::Vector3d size_m = physics::HandModel{}.palm_size_m;
   double mass_kg = physics::HandModel{}.palm_mass_kg;
   double inertia_scale = physics::HandModel{}.palm_inertia_scale;
@@ -22,82 +22,82 @@ struct PalmEntry {
 };
 
 /// What a phalanx and a jaw have in common.
-struct LinkEntry {
+struct LinkYaml {
   double length_m = 0, half_width_m = 0, half_thickness_m = 0;
   double mass_kg = 0;
   double strength = 0;             ///< newton metres of a phalanx, newtons of a jaw
   Located<Eigen::Vector2d> range;  ///< degrees of a phalanx, metres of a jaw
 };
 
-struct PhalanxEntry : LinkEntry {
+struct PhalanxYaml : LinkYaml {
   Located<std::string> name;
   Eigen::Vector3d joint_axis = Eigen::Vector3d::UnitY();
 };
 
 /// Slides straight, as those of a gripper do.
-struct JawEntry : LinkEntry {
+struct JawYaml : LinkYaml {
   Eigen::Vector3d slides = Eigen::Vector3d::UnitX();
 };
 
 /// Has either phalanges or a jaw.
-struct DigitEntry {
+struct DigitYaml {
   Located<std::string> sensor_set;
   Eigen::Vector3d base_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
-  std::vector<PhalanxEntry> phalanges;
-  std::optional<JawEntry> jaw;
+  std::vector<PhalanxYaml> phalanges;
+  std::optional<JawYaml> jaw;
 };
 
 /// Numbers for the joints of digits, by the digit's name.
 using PerDigit = std::vector<Named<Located<std::vector<Located<double>>>>>;
 
-struct GripEntry {
+struct GripYaml {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
   Eigen::Vector3d post_m = Eigen::Vector3d::Zero();
   double opening_m = physics::GraspStyle{}.opening_m;
 };
 
-struct StyleEntry {
-  GripEntry grip;
+struct StyleYaml {
+  GripYaml grip;
   std::optional<physics::GraspApproach> above, side;
   Located<PerDigit> effort;
   std::vector<Located<PerDigit>> frames_deg;  ///< of digits with phalanges
   std::vector<Located<PerDigit>> frames_m;    ///< of jaws
 };
 
-struct GainsEntry {
+struct GainsYaml {
   physics::PidGains translation, rotation;
 };
 
-struct HandEntry {
+struct HandYaml {
   Located<std::string> name;
   std::vector<std::string> sensor_sets;
   Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();
   double friction = physics::HandModel{}.friction;
   double spinning_friction = physics::HandModel{}.spinning_friction;
-  PalmEntry palm;
-  GainsEntry gains;
+  PalmYaml palm;
+  GainsYaml gains;
   physics::JointDriver driver;
-  std::vector<Named<DigitEntry>> digits;
+  std::vector<Named<DigitYaml>> digits;
   std::vector<Located<std::string>> grasps;  ///< names of grasp files
-  std::vector<Named<StyleEntry>> styles;
+  std::vector<Named<StyleYaml>> styles;
 };
 
 /// A grasp file: styles for hands that have these digits.
-struct GraspsEntry {
+struct GraspsYaml {
   Located<std::string> name;
-  std::vector<Named<StyleEntry>> styles;
+  std::vector<Named<StyleYaml>> styles;
 };
 
 /// The mirror image of another hand file.
-struct MirrorEntry {
+struct MirrorYaml {
   Located<std::string> name;
   Located<std::string> mirror_of;
 };
 
 // Built once, since that takes longer than reading a hand.
-const Format<HandEntry>& HandFormat();
-const Format<MirrorEntry>& MirrorFormat();
-const Format<GraspsEntry>& GraspsFormat();
+const ValueFormat<HandYaml>& HandFormat();
+const ValueFormat<MirrorYaml>& MirrorFormat();
+const ValueFormat<GraspsYaml>& GraspsFormat();
 
 }  // namespace prehend::harness

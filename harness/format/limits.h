@@ -10,14 +10,14 @@
 namespace prehend::harness {
 
 /// How far from the origin a scenario may put or send anything.
-inline constexpr double kFarthestM = physics::kMaxDistance_m;
+inline constexpr double kMaxDistance_m = physics::kMaxDistance_m;
 
 inline constexpr std::size_t kMaxEntities = 10'000;
 inline constexpr std::size_t kMaxActors = 16;
 inline constexpr std::size_t kMaxBeats = 1'000;
 inline constexpr std::size_t kMaxPoses = 10'000;  ///< in all steps together
 inline constexpr std::size_t kMaxPictures = 32;
-inline constexpr double kMaxDurationS = 3'600;
+inline constexpr double kMaxDuration_s = 3'600;
 inline constexpr std::size_t kMaxVariations = 64;
 inline constexpr std::size_t kMaxOutcomes = 16;
 

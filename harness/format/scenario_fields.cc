@@ -10,10 +10,10 @@
 namespace prehend::harness {
 namespace {
 
-Format<WorldEntry> WorldFormat() {
-  using W = WorldEntry;
+ValueFormat<WorldYaml> WorldFormat() {
+  using W = WorldYaml;
   using physics::Engine;
-  return Record<W>("the world")
+  return StructFormat<W>("the world")
       .Optional("engine", &W::engine,
                 Choice<Engine>({{"bullet", Engine::kBullet},
                                 {"box2d", Engine::kBox2d},
@@ -30,19 +30,19 @@ Format<WorldEntry> WorldFormat() {
                 "nothing, so its normal does not say what is held from below.")
       .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
                 "Seed of all randomness.")
-      .Check([](const YamlNode&, const W& world, Complaints& complaints) {
+      .Check([](const YamlNode&, const W& world, DiagnosticList& errors) {
         if (world.engine != Engine::kBox2d || !world.planar || world.planar->value) return;
-        complaints.Add(world.planar->where, "planar: engine box2d knows nothing but the plane",
-                       "planar: true, or engine: bullet");
+        errors.Add(world.planar->where, "planar: engine box2d knows nothing but the plane",
+                   "planar: true, or engine: bullet");
       })
-      .Check([](const YamlNode& node, const W& world, Complaints& complaints) {
+      .Check([](const YamlNode& node, const W& world, DiagnosticList& errors) {
         if (world.sensing_hz <= world.rate_hz) return;
         const std::string sensing = std::to_string(world.sensing_hz),
                           rate = std::to_string(world.rate_hz);
         if (const YamlNode* written = node.Find("sensing_hz")) {
-          complaints.Add(written->where, "sensing_hz " + sensing + " is above rate_hz " + rate);
+          errors.Add(written->where, "sensing_hz " + sensing + " is above rate_hz " + rate);
         } else {
-          complaints.Add(
+          errors.Add(
               node.Find("rate_hz")->where,
               "rate_hz " + rate + " is below sensing_hz, which is " + sensing + " unless given",
               "add sensing_hz: " + rate);
@@ -51,42 +51,41 @@ Format<WorldEntry> WorldFormat() {
       .format();
 }
 
-constexpr std::size_t kMaxKinds = 100;
+constexpr std::size_t kMaxClasses = 100;
 
-Format<std::string> ClassName() {
+ValueFormat<std::string> ClassName() {
   return Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'");
 }
 
-/// A moment is an event's boundary or a time; PictureEntry keeps both as text.
-Format<std::string> MomentFormat() {
-  const auto seconds = Number(0, kMaxDurationS);
+/// A moment is an event's boundary or a time; PictureYaml keeps both as text.
+ValueFormat<std::string> MomentFormat() {
+  const auto seconds = Number(0, kMaxDuration_s);
   const auto boundary =
       Word("[a-z][a-z0-9_]*\\.(begin|end)", "a time in seconds, or an event like 'reaching.begin'");
-  return {.schema = {{"anyOf", {seconds.schema, boundary.schema}}},
-          .read =
-              [=](const YamlNode& node, Complaints& complaints, std::string& moment) {
-                double time_s = 0;
-                const bool is_time = node.kind == YamlNode::Kind::kScalar && MeaningOf(node).number;
-                if (!is_time) return boundary.read(node, complaints, moment);
-                moment = node.text;
-                return seconds.read(node, complaints, time_s);
-              },
-          .show = {}};
+  return ValueFormat<std::string>(
+      {{"anyOf", {seconds.schema(), boundary.schema()}}},
+      [=](const YamlNode& node, DiagnosticList& errors, std::string& moment) {
+        double time_s = 0;
+        const bool is_time = node.kind == YamlNode::Kind::kScalar && MeaningOf(node).number;
+        if (!is_time) return boundary.Read(node, errors, moment);
+        moment = node.text;
+        return seconds.Read(node, errors, time_s);
+      });
 }
 
-Format<PictureEntry> PictureFormat() {
-  return Record<PictureEntry>("a picture")
-      .Required("at", &PictureEntry::at, MomentFormat(),
+ValueFormat<PictureYaml> PictureFormat() {
+  return StructFormat<PictureYaml>("a picture")
+      .Required("at", &PictureYaml::at, MomentFormat(),
                 "When: an event's 'begin' or 'end', or seconds.")
       .Optional(
-          "camera", &PictureEntry::camera, Identifier(),
+          "camera", &PictureYaml::camera, Identifier(),
           "From where: front, left, right, top, three_quarter, or an entity that is a camera.")
       .format();
 }
 
-Format<ScenarioEntry> BuildScenarioFormat() {
-  using S = ScenarioEntry;
-  return Record<S>("the scenario")
+ValueFormat<ScenarioYaml> BuildScenarioFormat() {
+  using S = ScenarioYaml;
+  return StructFormat<S>("the scenario")
       .Required("scenario", &S::name, Identifier(), "Its name: that of the file without '.yaml'.")
       .Required("shows", &S::shows, Text(), "One sentence: what happens and what it proves.")
       .Optional("grammar", &S::grammar, Identifier(),
@@ -95,7 +94,7 @@ Format<ScenarioEntry> BuildScenarioFormat() {
       .Optional("world", &S::world, WorldFormat(), "Engine, rates and seed.")
       .Required("entities", &S::entities, MapOf(Identifier(), EntityFormat(), 1, kMaxEntities),
                 "The things in the world, by name.")
-      .Optional("classes", &S::classes, MapOf(ClassName(), WithPlace(ClassName()), 0, kMaxKinds),
+      .Optional("classes", &S::classes, MapOf(ClassName(), WithPlace(ClassName()), 0, kMaxClasses),
                 "Classes, and the class that each is a kind of: {Cup: Container}.")
       .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors),
                 "The hands, by name.")
@@ -114,8 +113,8 @@ Format<ScenarioEntry> BuildScenarioFormat() {
 
 }  // namespace
 
-const Format<ScenarioEntry>& ScenarioFormat() {
-  static const Format<ScenarioEntry> format = BuildScenarioFormat();
+const ValueFormat<ScenarioYaml>& ScenarioFormat() {
+  static const ValueFormat<ScenarioYaml> format = BuildScenarioFormat();
   return format;
 }
 
@@ -125,7 +124,7 @@ std::string ScenarioSchema() {
       {"title", "prehend scenario, version 1"},
       {"description",
        "Generated by 'prehend schema'. The reader checks more: see docs/scenario-format.md."}};
-  schema.update(ScenarioFormat().schema);
+  schema.update(ScenarioFormat().schema());
   return schema.dump(1) + "\n";
 }
 

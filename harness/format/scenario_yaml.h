@@ -20,7 +20,7 @@
 namespace prehend::harness {
 
 /// One of the shapes of a compound; exactly one of the first five is given.
-struct PartEntry {
+struct PartYaml {
   std::optional<physics::Box> box;
   std::optional<physics::Sphere> sphere;
   std::optional<physics::Cylinder> cylinder;
@@ -31,27 +31,27 @@ struct PartEntry {
 };
 
 /// Loose balls that lie in a vessel.
-struct GrainsEntry {
+struct GrainsYaml {
   int count = 0;
   double radius_m = 0;
 };
 
 // What is abstract: it has a place, and no matter.
-struct RegionEntry {
+struct RegionYaml {
   std::optional<Eigen::Vector3d> size_m;  ///< of a box
   std::optional<double> radius_m;         ///< of a ball
 };
-struct GazeTargetEntry {
+struct GazeTargetYaml {
   double radius_m = 0.02;
 };
-struct CameraEntry {
+struct CameraYaml {
   Located<Eigen::Vector3d> toward_m{Eigen::Vector3d::Zero(), {}};
   double view_deg = physics::Body{}.view_deg;
 };
-struct LightEntry {};
+struct LightYaml {};
 
 /// A joint to another entity; which numbers are read depends on its kind.
-struct JointEntry {
+struct JointYaml {
   Located<std::string> to;
   Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
@@ -62,7 +62,7 @@ struct JointEntry {
   double rest = 0;    ///< metres or degrees
 };
 
-struct EntityEntry {
+struct EntityYaml {
   Where where;
   Located<std::string> class_name{"Object", {}};
   std::optional<Located<std::string>> part_of;
@@ -75,12 +75,12 @@ struct EntityEntry {
   std::optional<physics::Mug> mug;
   std::optional<physics::Bowl> bowl;
   std::optional<physics::Shelf> shelf;
-  std::vector<PartEntry> parts;
-  std::optional<GrainsEntry> grains;
-  std::optional<RegionEntry> region;
-  std::optional<GazeTargetEntry> gaze_target;
-  std::optional<CameraEntry> camera;
-  std::optional<LightEntry> light;
+  std::vector<PartYaml> parts;
+  std::optional<GrainsYaml> grains;
+  std::optional<RegionYaml> region;
+  std::optional<GazeTargetYaml> gaze_target;
+  std::optional<CameraYaml> camera;
+  std::optional<LightYaml> light;
   bool fixed = false;
   std::optional<Located<double>> mass_kg;
   std::optional<Located<double>> friction;  ///< default: that of physics::Body
@@ -89,7 +89,7 @@ struct EntityEntry {
   double linear_damping_per_s = 0;
   double angular_damping_per_s = 0;
   std::optional<Located<std::string>> fixed_to;
-  std::optional<Located<JointEntry>> slider, hinge, ball_joint;
+  std::optional<Located<JointYaml>> slider, hinge, ball_joint;
   std::optional<Located<std::string>> on;
   std::optional<Located<std::string>> in;  ///< the vessel of grains, which have no at_m
   Located<std::vector<double>> at_m;
@@ -97,7 +97,7 @@ struct EntityEntry {
   std::optional<double> yaw_deg;
 };
 
-inline physics::Abstract AbstractOf(const EntityEntry& entity) {
+inline physics::Abstract AbstractOf(const EntityYaml& entity) {
   using enum physics::Abstract;
   return entity.region        ? kRegion
          : entity.gaze_target ? kGazeTarget
@@ -125,7 +125,7 @@ inline const char* NounOf(physics::Abstract abstract) {
 }
 
 /// Where it is said where it is.
-inline const Where& PlaceOf(const EntityEntry& entity) {
+inline const Where& PlaceOf(const EntityYaml& entity) {
   return entity.in ? entity.in->where : entity.at_m.where;
 }
 
@@ -137,7 +137,7 @@ struct GainsOverride {
   PidOverride translation, rotation;
 };
 
-struct HandActor {
+struct HandActorYaml {
   Where where;
   Located<std::string> hand;
   std::vector<Located<std::string>>
@@ -150,7 +150,7 @@ struct HandActor {
 
 enum class PersonKind { kHead, kBody };
 
-struct PersonActor {
+struct PersonActorYaml {
   Where where;
   PersonKind person = PersonKind::kBody;
   Located<Eigen::Vector3d> at_m;
@@ -159,10 +159,10 @@ struct PersonActor {
   physics::Eyes eyes = physics::Eyes::kLead;
   std::optional<Located<std::string>> right_hand, left_hand;
 };
-using ActorEntry = std::variant<HandActor, PersonActor>;
+using ActorYaml = std::variant<HandActorYaml, PersonActorYaml>;
 
 // The steps of the script. Default durations are human-like (docs/scenario-format.md).
-struct ReachEntry {
+struct ReachYaml {
   Located<std::string> reach;
   Located<std::string> style{"wrap", {}};
   physics::Approach from = physics::Approach::kAuto;
@@ -170,45 +170,45 @@ struct ReachEntry {
   std::optional<Located<Eigen::Vector3d>> point_m;
   double over_s = 0.8;
 };
-struct CloseEntry {
+struct CloseYaml {
   double close_to = 1;
   double over_s = 0.6;
 };
-struct OpenEntry {
+struct OpenYaml {
   double open_to = 0;
   double over_s = 0.45;
 };
-struct LiftEntry {
+struct LiftYaml {
   double lift_by_m = 0;
   double over_s = 0.6;
 };
-struct MoveEntry {
+struct MoveYaml {
   Located<Eigen::Vector3d> move_by_m{Eigen::Vector3d::Zero(), {}};
   double over_s = 0.8;
 };
-struct CarryEntry {
+struct CarryYaml {
   Where where;
   Located<Eigen::Vector2d> carry_to_m{Eigen::Vector2d::Zero(), {}};
   double over_s = 1.0;
 };
-struct PlaceEntry {
+struct PlaceYaml {
   Where where;
   Located<std::string> place_on;
   double over_s = 0.6;
 };
-struct RetreatEntry {
+struct RetreatYaml {
   double retreat_by_m = 0;
   double over_s = 0.6;
 };
-struct FollowJointEntry {
+struct FollowJointYaml {
   Located<std::string> follow_joint;
   double to = 1;
   double over_s = 1.5;
 };
-struct WaitEntry {
+struct WaitYaml {
   double wait_s = 0;
 };
-struct PoseEntry {
+struct PoseYaml {
   Where where;
   double t_s = 0;
   Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
@@ -216,11 +216,11 @@ struct PoseEntry {
   std::optional<Eigen::Vector4d> quat_wxyz;
   std::optional<double> trigger;
 };
-struct PosesEntry {
-  std::vector<PoseEntry> poses;
+struct PosesYaml {
+  std::vector<PoseYaml> poses;
   Located<std::string> style;  ///< "": stays
 };
-struct RecordingEntry {
+struct RecordingYaml {
   Located<std::string> recording;
   std::optional<Located<std::string>> device;
   std::optional<Located<int>> button;
@@ -242,69 +242,69 @@ struct RecordingEntry {
   std::vector<physics::TimedFigure> figures;
 };
 // Steps of persons.
-struct LookAtEntry {
+struct LookAtYaml {
   Located<std::string> look_at;
   double over_s = 0.5;
 };
-struct LookAtPointEntry {
+struct LookAtPointYaml {
   Eigen::Vector3d look_at_m = Eigen::Vector3d::Zero();
   double over_s = 0.5;
 };
-struct EyesEntry {
+struct EyesYaml {
   physics::Eyes eyes = physics::Eyes::kLead;
   double over_s = 0.5;
 };
-struct WalkEntry {
+struct WalkYaml {
   Eigen::Vector2d walk_to_m = Eigen::Vector2d::Zero();
   double over_s = 1.0;
 };
-struct TurnEntry {
+struct TurnYaml {
   double turn_to_deg = 0;
   double over_s = 0.8;
 };
-struct LeanEntry {
+struct LeanYaml {
   double lean_deg = 0;
   double over_s = 0.8;
 };
-struct SwayEntry {
+struct SwayYaml {
   Located<Eigen::Vector2d> sway_by_m{Eigen::Vector2d::Zero(), {}};
   double over_s = 0.8;
 };
-struct MoveLimbEntry {
+struct MoveLimbYaml {
   Located<physics::LimbEnd> move_limb;
   std::optional<Eigen::Vector3d> to_m;
   std::optional<double> most_n;
   double over_s = 0.8;
 };
 
-using StepEntry = std::variant<WaitEntry, ReachEntry, CloseEntry, OpenEntry, LiftEntry, MoveEntry,
-                               CarryEntry, PlaceEntry, RetreatEntry, FollowJointEntry, PosesEntry,
-                               RecordingEntry, LookAtEntry, LookAtPointEntry, EyesEntry, WalkEntry,
-                               TurnEntry, LeanEntry, SwayEntry, MoveLimbEntry>;
+using StepYaml =
+    std::variant<WaitYaml, ReachYaml, CloseYaml, OpenYaml, LiftYaml, MoveYaml, CarryYaml, PlaceYaml,
+                 RetreatYaml, FollowJointYaml, PosesYaml, RecordingYaml, LookAtYaml,
+                 LookAtPointYaml, EyesYaml, WalkYaml, TurnYaml, LeanYaml, SwayYaml, MoveLimbYaml>;
 
 /// One item of the script: what each named actor does at the same time.
-using BeatEntry = std::vector<Named<StepEntry>>;
+using StageYaml = std::vector<Named<StepYaml>>;
 
-struct ScenarioEntry {
+struct ScenarioYaml {
   Where where;
   Located<std::string> name;
   std::string shows;
   Located<std::string> grammar{kDefaultGrammar, {}};
   std::vector<std::string> tags;
-  WorldEntry world;
-  std::vector<Named<EntityEntry>> entities;
+  WorldYaml world;
+  std::vector<Named<EntityYaml>> entities;
   std::vector<Named<Located<std::string>>> classes;  ///< and what each is a kind of
-  std::vector<Named<ActorEntry>> actors;
-  std::vector<Named<HandActor>> hands;      ///< those of the actors; see SortActors()
-  std::vector<Named<PersonActor>> persons;  ///< the others
-  std::vector<BeatEntry> script;
+  std::vector<Named<ActorYaml>> actors;
+  std::vector<Named<HandActorYaml>> hands;      ///< those of the actors; see SortActors()
+  std::vector<Named<PersonActorYaml>> persons;  ///< the others
+  std::vector<StageYaml> script;
   double settle_s = physics::Script{}.settle_s;
-  std::vector<VariationEntry> vary;
-  std::vector<Named<std::vector<ConditionEntry>>> outcomes;
-  std::vector<PictureEntry> pictures;
+  std::vector<VariationYaml> vary;
+  std::vector<Named<std::vector<ConditionYaml>>> outcomes;
+  std::vector<PictureYaml> pictures;
 };
 
 /// Fills in `hands` and `persons`, in the order of the actors.
-void SortActors(ScenarioEntry& entry);
+void SortActors(ScenarioYaml& entry);
 
 }  // namespace prehend::harness

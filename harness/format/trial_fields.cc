@@ -14,53 +14,52 @@ namespace prehend::harness {
 namespace {
 
 /// A text, or a number or flag as it is written: what a field can be set to.
-Format<std::string> Value() {
-  const Format<std::string> text = Text();
-  return {.schema = {{"type", {"string", "number", "boolean"}}},
-          .read =
-              [text](const YamlNode& node, Complaints& complaints, std::string& value) {
-                const bool plain = node.kind == YamlNode::Kind::kScalar &&
-                                   (NumberOf(node) || node.text == "true" || node.text == "false");
-                if (!plain) return text.read(node, complaints, value);
-                value = node.text;
-                return true;
-              },
-          .show = {}};
+ValueFormat<std::string> Value() {
+  const ValueFormat<std::string> text = Text();
+  return ValueFormat<std::string>(
+      {{"type", {"string", "number", "boolean"}}},
+      [text](const YamlNode& node, DiagnosticList& errors, std::string& value) {
+        const bool plain = node.kind == YamlNode::Kind::kScalar &&
+                           (NumberOf(node) || node.text == "true" || node.text == "false");
+        if (!plain) return text.Read(node, errors, value);
+        value = node.text;
+        return true;
+      });
 }
 
 /// What can never hold, or always does.
-void CheckCondition(const YamlNode& node, const ConditionEntry& wanted, Complaints& complaints) {
-  const auto complain = [&](const char* key, const std::string& message) {
-    complaints.Add(node.Find(key)->where, std::string(key) + ": " + message);
+void CheckCondition(const YamlNode& node, const ConditionYaml& wanted, DiagnosticList& errors) {
+  const auto report = [&](const char* key, const std::string& message) {
+    errors.Add(node.Find(key)->where, std::string(key) + ": " + message);
   };
   const auto nothing_between = [&](const char* above, const std::optional<double>& least,
                                    const char* below, const std::optional<double>& most) {
     if (least && most && *least >= *most)
-      complain(below, fmt::format("nothing is between '{}' and '{}'", above, below));
+      report(below, fmt::format("nothing is between '{}' and '{}'", above, below));
   };
   nothing_between("above_m", wanted.above_m, "below_m", wanted.below_m);
   nothing_between("tilt_above_deg", wanted.tilt_above_deg, "tilt_below_deg", wanted.tilt_below_deg);
   nothing_between("joint_above", wanted.joint_above, "joint_below", wanted.joint_below);
-  if (node.Find("within_m") && !wanted.near_m) complain("within_m", "there is no 'near_m'");
-  if (node.Find("share") && !wanted.inside) complain("share", "there is no 'inside'");
+  if (node.Find("within_m") && !wanted.near_m) report("within_m", "there is no 'near_m'");
+  if (node.Find("share") && !wanted.inside) report("share", "there is no 'inside'");
   const auto says_nothing = [](const YamlNode& field) {
     return field.key == "entity" || field.key == "at_s";
   };
   if (std::ranges::all_of(node.children, says_nothing))
-    complaints.Add(node.where, "a condition: it always holds", "say what, as above_m: 0.9");
+    errors.Add(node.where, "a condition: it always holds", "say what, as above_m: 0.9");
 }
 
-Format<ConditionEntry> ConditionFormat() {
-  using C = ConditionEntry;
-  const auto height = Number(-kFarthestM, kFarthestM);
+ValueFormat<ConditionYaml> ConditionFormat() {
+  using C = ConditionYaml;
+  const auto height = Number(-kMaxDistance_m, kMaxDistance_m);
   const auto angle = Number(0, 180);
   const auto fraction = Number(0, 1);
-  return Record<C>("a condition")
+  return StructFormat<C>("a condition")
       .Required("entity", &C::entity, Identifier(), "The entity that it is about.")
-      .Optional("at_s", &C::at_s, Number(0, kMaxDurationS), "When; default: when the run ends.")
+      .Optional("at_s", &C::at_s, Number(0, kMaxDuration_s), "When; default: when the run ends.")
       .Optional("near_m", &C::near_m, ListOf(height, 2, 3),
                 "Its centre is near [x, y] or [x, y, z] ...")
-      .Optional("within_m", &C::within_m, Number(0, kFarthestM), "... as near as this.")
+      .Optional("within_m", &C::within_m, Number(0, kMaxDistance_m), "... as near as this.")
       .Optional("above_m", &C::above_m, height, "Its centre is higher than this.")
       .Optional("below_m", &C::below_m, height, "Its centre is lower than this.")
       .Optional("tilt_below_deg", &C::tilt_below_deg, angle,
@@ -82,10 +81,10 @@ Format<ConditionEntry> ConditionFormat() {
 
 }  // namespace
 
-Format<VariationEntry> VariationFormat() {
-  using V = VariationEntry;
+ValueFormat<VariationYaml> VariationFormat() {
+  using V = VariationYaml;
   const auto range = Vector<2>(-kMaxNumber, kMaxNumber);
-  return Record<V>("a variation")
+  return StructFormat<V>("a variation")
       .Required(
           "fields", &V::fields,
           ListOf(Word("[a-z0-9_]+(\\.[a-z0-9_]+)*", "a field like 'entities.milk.mass_kg'", 255), 1,
@@ -97,25 +96,24 @@ Format<VariationEntry> VariationFormat() {
       .Optional("times", &V::times, range, "What is written, times anything between [least, most].")
       .Optional("choose", &V::choose, ListOf(Value(), 1, 64), "One of these values.")
       .ExactlyOneOf({"uniform", "normal", "plus", "times", "choose"})
-      .Check([](const YamlNode& node, const V& variation, Complaints& complaints) {
+      .Check([](const YamlNode& node, const V& variation, DiagnosticList& errors) {
         for (const char* key : {"uniform", "plus", "times"}) {
           const YamlNode* written = node.Find(key);
           if (!written) continue;
           const auto& given = variation.uniform ? variation.uniform
                               : variation.plus  ? variation.plus
                                                 : variation.times;
-          if ((*given)[0] != (*given)[1]) CheckLeastMost(key, *given, written->where, complaints);
+          if ((*given)[0] != (*given)[1]) CheckLeastMost(key, *given, written->where, errors);
         }
         if (variation.normal && (*variation.normal)[1] < 0)
-          complaints.Add(
-              node.Find("normal")->where,
-              fmt::format("normal: expected [mean, deviation], and no deviation below 0, "
-                          "found [{}, {}]",
-                          (*variation.normal)[0], (*variation.normal)[1]));
+          errors.Add(node.Find("normal")->where,
+                     fmt::format("normal: expected [mean, deviation], and no deviation below 0, "
+                                 "found [{}, {}]",
+                                 (*variation.normal)[0], (*variation.normal)[1]));
       })
       .format();
 }
 
-Format<std::vector<ConditionEntry>> OutcomeFormat() { return ListOf(ConditionFormat(), 1, 32); }
+ValueFormat<std::vector<ConditionYaml>> OutcomeFormat() { return ListOf(ConditionFormat(), 1, 32); }
 
 }  // namespace prehend::harness

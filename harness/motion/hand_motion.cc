@@ -10,13 +10,13 @@ namespace prehend::harness {
 namespace {
 
 /// Unevenness of a tracker is no gap, nor is a single look that is missing at 90 Hz.
-constexpr double kLeastGap_s = 0.05;
+constexpr double kMinGap_s = 0.05;
 constexpr double kGapOfMedian = 4;
 /// A hand is slower than this, and noise moves it less far (thrown balls leave the hand at 40 m/s,
 /// but nobody throws with a tracker).
 constexpr double kJumpSpeed_m_per_s = 8;
-constexpr double kLeastJump_m = 0.03;
-constexpr std::size_t kMostComplaints = 12;
+constexpr double kMinJump_m = 0.03;
+constexpr std::size_t kMaxReported = 12;
 
 double MedianInterval(const std::vector<TrackSample>& samples) {
   std::vector<double> intervals;
@@ -41,7 +41,7 @@ class TrackChecker {
           "are these times milliseconds, and called seconds? Else raise most_gap_s");
       return std::move(found_);
     }
-    const double gap_s = std::max(kLeastGap_s, kGapOfMedian * usual_s);
+    const double gap_s = std::max(kMinGap_s, kGapOfMedian * usual_s);
     for (std::size_t i = 1; i < track_.samples.size(); ++i) {
       const TrackSample &before = track_.samples[i - 1], &sample = track_.samples[i];
       const double dt_s = sample.t_s - before.t_s;
@@ -57,7 +57,7 @@ class TrackChecker {
             fmt::format("gap: no sample for {:.3f} s before this one, at {:.3f} s; it is bridged",
                         dt_s, sample.t_s));
       }
-      if (way_m <= kLeastJump_m || way_m <= kJumpSpeed_m_per_s * dt_s) continue;
+      if (way_m <= kMinJump_m || way_m <= kJumpSpeed_m_per_s * dt_s) continue;
       const std::string jump =
           fmt::format("jump: {:.3f} m within {:.3f} s, at {:.3f} s", way_m, dt_s, sample.t_s);
       if (way_m > limits_.jump_m) {
@@ -72,7 +72,7 @@ class TrackChecker {
 
  private:
   void Add(const TrackSample& sample, bool is_warning, std::string message, std::string hint = {}) {
-    if (found_.size() == kMostComplaints) return;
+    if (found_.size() == kMaxReported) return;
     found_.push_back(grammar::DiagnosticAt(track_.file, track_.text, sample.place,
                                            std::move(message), std::move(hint)));
     found_.back().is_warning = is_warning;

@@ -15,7 +15,8 @@
 namespace prehend::harness {
 
 inline constexpr std::size_t kMaxTrackSamples = 100'000;
-inline constexpr double kFarthestTrackM = 100;  ///< from the recording's origin, each coordinate
+inline constexpr double kMaxTrackCoordinate_m =
+    100;  ///< from the recording's origin, each coordinate
 
 struct TrackSample {
   double t_s = 0;  ///< since the first sample; increasing

@@ -14,30 +14,30 @@ namespace prehend::harness {
 namespace {
 
 constexpr double kSPerMs = 1e-3;
-constexpr int kMostButtons = 1000;
+constexpr int kMaxButtons = 1000;
 constexpr std::string_view kButtonEvents[] = {"buttonchanged", "buttondown", "buttonup"};
 
-struct XyzEntry {
+struct XyzYaml {
   double x = 0, y = 0, z = 0;
 };
 struct CapturedPose {
   Where where;
-  XyzEntry position, rotation;
+  XyzYaml position, rotation;
   Located<double> timestamp;
 };
 
-Format<XyzEntry> XyzFormat(double most) {
-  return Record<XyzEntry>("a vector")
-      .Required("x", &XyzEntry::x, Number(-most, most), "")
-      .Required("y", &XyzEntry::y, Number(-most, most), "")
-      .Required("z", &XyzEntry::z, Number(-most, most), "")
+ValueFormat<XyzYaml> XyzFormat(double most) {
+  return StructFormat<XyzYaml>("a vector")
+      .Required("x", &XyzYaml::x, Number(-most, most), "")
+      .Required("y", &XyzYaml::y, Number(-most, most), "")
+      .Required("z", &XyzYaml::z, Number(-most, most), "")
       .format();
 }
 
-Format<std::vector<CapturedPose>> PosesFormat() {
+ValueFormat<std::vector<CapturedPose>> PosesFormat() {
   using P = CapturedPose;
-  return ListOf(Record<P>("a pose")
-                    .Required("position", &P::position, XyzFormat(kFarthestTrackM), "")
+  return ListOf(StructFormat<P>("a pose")
+                    .Required("position", &P::position, XyzFormat(kMaxTrackCoordinate_m), "")
                     .Required("rotation", &P::rotation, XyzFormat(1e4), "")
                     .Required("timestamp", &P::timestamp, Number(-1e15, 1e15), "")
                     .format(),
@@ -74,18 +74,18 @@ const YamlNode* FindAll(const YamlNode& node, std::initializer_list<const char*>
 class CaptureReader {
  public:
   CaptureReader(const YamlDocument& document, const CapturedDevice& device)
-      : document_(document), device_(device), complaints_(document) {}
+      : document_(document), device_(device), errors_(document) {}
 
   MotionTrack Read() {
     const YamlNode* device = FindDevice();
     if (!device) return {};
     const YamlNode* written = device->Find("poses");
     if (!written) {
-      complaints_.Add(device->key_where, fmt::format("'{}' has no 'poses'", device_.name));
+      errors_.Add(device->key_where, fmt::format("'{}' has no 'poses'", device_.name));
       return {};
     }
     std::vector<CapturedPose> poses;
-    if (!PosesFormat().read(*written, complaints_, poses)) return {};
+    if (!PosesFormat().Read(*written, errors_, poses)) return {};
     MotionTrack track{.samples = {},
                       .file = document_.sources.front().name,
                       .text = document_.sources.front().text};
@@ -94,10 +94,10 @@ class CaptureReader {
     for (const CapturedPose& pose : poses) {
       const double t_s = (pose.timestamp.value - begin_ms) * kSPerMs;
       if (!track.samples.empty() && t_s <= track.samples.back().t_s) {
-        complaints_.Add(pose.timestamp.where,
-                        fmt::format("the timestamps must increase from pose to pose: {} ms comes "
-                                    "after {} ms",
-                                    pose.timestamp.value, before_ms));
+        errors_.Add(pose.timestamp.where,
+                    fmt::format("the timestamps must increase from pose to pose: {} ms comes "
+                                "after {} ms",
+                                pose.timestamp.value, before_ms));
         return {};
       }
       track.samples.push_back({t_s, ToOurAxes(pose), {}, pose.where.place});
@@ -107,21 +107,21 @@ class CaptureReader {
     return track;
   }
 
-  grammar::Diagnostics diagnostics() const { return complaints_.Sorted(); }
+  grammar::Diagnostics diagnostics() const { return errors_.Sorted(); }
 
  private:
   const YamlNode* FindDevice() {
     if (document_.root.kind != YamlNode::Kind::kMapping) {
-      complaints_.Add(document_.root.where, "expected an object with the devices of a recording",
-                      "like {\"right\": {\"poses\": [...], \"events\": [...]}}");
+      errors_.Add(document_.root.where, "expected an object with the devices of a recording",
+                  "like {\"right\": {\"poses\": [...], \"events\": [...]}}");
       return nullptr;
     }
     if (const YamlNode* device = document_.root.Find(device_.name)) return device;
     std::vector<std::string> names;
     for (const YamlNode& child : document_.root.children) names.push_back(child.key);
-    complaints_.AddUnknownName(document_.root.where,
-                               fmt::format("no device is called '{}'", device_.name), device_.name,
-                               names);
+    errors_.AddUnknownName(document_.root.where,
+                           fmt::format("no device is called '{}'", device_.name), device_.name,
+                           names);
     return nullptr;
   }
 
@@ -138,17 +138,17 @@ class CaptureReader {
     const YamlNode *id = FindAll(event, {"detail", "id"}), *at = event.Find("timestamp"),
                    *value = FindAll(event, {"detail", "state", "value"});
     if (!id || !at) {
-      complaints_.Add(event.where, fmt::format("a '{}' needs a '{}'", name->text,
-                                               id ? "timestamp" : "detail.id"));
+      errors_.Add(event.where,
+                  fmt::format("a '{}' needs a '{}'", name->text, id ? "timestamp" : "detail.id"));
       return std::nullopt;
     }
     ButtonEvent read{.name = name->text};
-    bool good = Integer<int>(0, kMostButtons).read(*id, complaints_, read.id);
-    good &= Number(-1e15, 1e15).read(*at, complaints_, read.at_ms);
+    bool good = Integer<int>(0, kMaxButtons).Read(*id, errors_, read.id);
+    good &= Number(-1e15, 1e15).Read(*at, errors_, read.at_ms);
     // Many recordings have lost their values: then there is none, or an empty one.
     const bool has_value =
         good && read.id == device_.button && value && value->kind == YamlNode::Kind::kScalar;
-    if (has_value) good &= Number(0, 1).read(*value, complaints_, read.value.emplace());
+    if (has_value) good &= Number(0, 1).Read(*value, errors_, read.value.emplace());
     return good ? std::optional(std::move(read)) : std::nullopt;
   }
 
@@ -201,7 +201,7 @@ class CaptureReader {
 
   const YamlDocument& document_;
   const CapturedDevice& device_;
-  Complaints complaints_;
+  DiagnosticList errors_;
 };
 
 }  // namespace

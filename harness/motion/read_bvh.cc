@@ -18,8 +18,8 @@ namespace {
 using grammar::Diagnostics;
 using grammar::Place;
 
-constexpr std::size_t kMostComplaints = 20;
-constexpr double kLongestFrame_s = 1;
+constexpr std::size_t kMaxReported = 20;
+constexpr double kMaxFrame_s = 1;
 
 struct Word {
   std::string_view text;
@@ -58,11 +58,11 @@ class BvhReader {
     const Place counted = at_;
     if (*frames != std::floor(*frames))
       return Complain(at_, fmt::format("Frames: expected a whole number, found {}", *frames));
-    const auto frame_time = HeaderNumber("Frame Time:", 0, kLongestFrame_s);
+    const auto frame_time = HeaderNumber("Frame Time:", 0, kMaxFrame_s);
     if (!frame_time) return;
     if (*frame_time <= 0) return Complain(at_, "Frame Time: expected a number above 0, found 0");
     bvh.frame_time_s = *frame_time;
-    while (diagnostics.size() < kMostComplaints && NextLine()) TakeRow();
+    while (diagnostics.size() < kMaxReported && NextLine()) TakeRow();
     if (diagnostics.empty() && static_cast<double>(bvh.rows.size()) != *frames)
       Complain(counted,
                fmt::format("Frames: {} are announced, {} follow", *frames, bvh.rows.size()));
@@ -94,11 +94,11 @@ class BvhReader {
   Place PlaceOf(const Word& word) const { return {line_, word.column}; }
 
   bool Wrong(const std::string& wanted) {
-    constexpr std::size_t kMostShown = 6;
+    constexpr std::size_t kMaxShown = 6;
     std::string line;
-    for (std::size_t i = 0; i < std::min(words_.size(), kMostShown); ++i)
+    for (std::size_t i = 0; i < std::min(words_.size(), kMaxShown); ++i)
       line += (i > 0 ? " " : "") + std::string(words_[i].text);
-    if (words_.size() > kMostShown) line += " ..";
+    if (words_.size() > kMaxShown) line += " ..";
     const std::string found = line.empty() ? "the end of the file" : "'" + line + "'";
     Complain(at_, fmt::format("expected {}, found {}", wanted, found));
     return false;

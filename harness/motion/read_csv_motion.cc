@@ -19,7 +19,7 @@ namespace {
 using grammar::Diagnostics;
 using grammar::Place;
 
-constexpr std::size_t kMostComplaints = 20;
+constexpr std::size_t kMaxReported = 20;
 constexpr double kUnitTolerance = 0.01;  // two written digits
 
 /// A column of the header: which quantity it holds, and what to multiply with to get SI units.
@@ -95,7 +95,7 @@ class CsvReader {
 
   void Read() {
     const std::string_view text = track.text;
-    for (std::size_t begin = 0; begin < text.size() && diagnostics.size() < kMostComplaints;) {
+    for (std::size_t begin = 0; begin < text.size() && diagnostics.size() < kMaxReported;) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
       ++line_;
       TakeLine(text.substr(begin, end - begin));
@@ -211,10 +211,11 @@ class CsvReader {
                       fmt::format("the times must increase from row to row: {} s comes after {} s",
                                   row["t"], first_t_s_ + track.samples.back().t_s));
     for (const char* axis : {"x", "y", "z"}) {
-      if (std::abs(row[axis]) > kFarthestTrackM)
-        return Complain(place_of(axis),
-                        fmt::format("{}: {} m is beyond {} m", axis, row[axis], kFarthestTrackM),
-                        "are the units those that the header says?");
+      if (std::abs(row[axis]) > kMaxTrackCoordinate_m)
+        return Complain(
+            place_of(axis),
+            fmt::format("{}: {} m is beyond {} m", axis, row[axis], kMaxTrackCoordinate_m),
+            "are the units those that the header says?");
     }
     if (has_quaternion_) {
       const Eigen::Quaterniond q(row["qw"], row["qx"], row["qy"], row["qz"]);

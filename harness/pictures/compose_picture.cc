@@ -19,7 +19,7 @@ using grammar::DrawnAs;
 constexpr double kSceneryFromM = 0.5;
 // Paths are thinned to this many points a second; more only costs triangles.
 constexpr double kPathPointsPerS = 60;
-constexpr std::size_t kMostRows = 6;  // of the strip; more would hide the picture
+constexpr std::size_t kMaxRows = 6;  // of the strip; more would hide the picture
 
 render::Color ColorOf(std::uint32_t rgb) {
   return {static_cast<float>(rgb >> 16 & 255) / 255, static_cast<float>(rgb >> 8 & 255) / 255,
@@ -49,7 +49,7 @@ std::optional<Eigen::Vector3f> ToLight(const physics::Scene& scene) {
   for (const physics::Body& body : scene.bodies)
     if (physics::IsThing(body)) things.extend(body.X_WB.p_m);
   if (things.isEmpty()) return std::nullopt;
-  return (light->X_WB.p_m - things.center()).entity_table<float>();
+  return (light->X_WB.p_m - things.center()).cast<float>();
 }
 
 double Seconds(grammar::Tick tick, const RunResult& run) {
@@ -113,7 +113,7 @@ void AppendPath(const physics::Scene& scene, const RunResult& run, int hand,
     const bool change = first || now != phase;
     const double t_s = Seconds(snapshot.tick, run);
     if (!change && t_s < next_point_s) continue;
-    const Eigen::Vector3f point = snapshot.hands[hand].palm.X_WB.p_m.entity_table<float>();
+    const Eigen::Vector3f point = snapshot.hands[hand].palm.X_WB.p_m.cast<float>();
     if (change) {
       if (!first) path.back().points_m.push_back(point);
       path.push_back({.points_per_s = kPathPointsPerS});
@@ -173,15 +173,13 @@ std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunRe
     const physics::Pose& X_WB = snapshot.bodies[body].X_WB;
     const Eigen::Vector3d half = (X_WB.q.toRotationMatrix().cwiseAbs() * box.half_size_m);
     const Eigen::Vector3d foot = X_WB * box.p_BC_m - Eigen::Vector3d(0, 0, half.z());
-    markers.push_back(
-        {render::MarkerKind::kSupport, foot.entity_table<float>(),
-         Eigen::Vector3d(half.x() * 1.35, half.y() * 1.35, 0.006).entity_table<float>()});
+    markers.push_back({render::MarkerKind::kSupport, foot.cast<float>(),
+                       Eigen::Vector3d(half.x() * 1.35, half.y() * 1.35, 0.006).cast<float>()});
   }
   for (const physics::ContactPoint& contact : snapshot.contacts) {
     if (contact.a.hand < 0 && contact.b.hand < 0) continue;
-    markers.push_back({render::MarkerKind::kContact,
-                       contact.p_W_m.entity_table<float>(),
-                       {0.008f, 0.008f, 0.008f}});
+    markers.push_back(
+        {render::MarkerKind::kContact, contact.p_W_m.cast<float>(), {0.008f, 0.008f, 0.008f}});
   }
   return markers;
 }
@@ -229,13 +227,13 @@ render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& ru
         [&](const auto& e) { return FirstOf(run, e); });
   }
   for (const std::string& name : OtherEvents(run)) {
-    if (strip.rows.size() >= kMostRows) break;
+    if (strip.rows.size() >= kMaxRows) break;
     add_row(
         spoken(name), [&](const auto& e) { return e.event == name; },
         [&](const auto& e) { return e.roles.empty() ? spoken(name) : e.roles.back().value; });
   }
   for (const physics::Body& body : scenario.scene.bodies) {
-    if (body.fixed || body.kinematic || strip.rows.size() >= kMostRows) continue;
+    if (body.fixed || body.kinematic || strip.rows.size() >= kMaxRows) continue;
     add_row(
         body.name + " on",
         [&](const auto& e) {
@@ -249,8 +247,8 @@ render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& ru
 /// A camera of the scenario.
 render::Camera CameraOf(const physics::Body& camera) {
   const Eigen::Vector3d ahead_m = camera.X_WB * Eigen::Vector3d::UnitX();
-  return {.eye_m = camera.X_WB.p_m.entity_table<float>(),
-          .look_at_m = ahead_m.entity_table<float>(),
+  return {.eye_m = camera.X_WB.p_m.cast<float>(),
+          .look_at_m = ahead_m.cast<float>(),
           .vertical_field_of_view_deg = static_cast<float>(camera.view_deg)};
 }
 
@@ -268,8 +266,7 @@ render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& pi
     if (local.half_size_m.maxCoeff() * 2 > kSceneryFromM || !IsSeen(scenario.scene.bodies[i]))
       continue;
     for (const physics::Snapshot* snapshot : {&picture.snapshot}) {
-      const Eigen::Vector3f centre =
-          (snapshot->bodies[i].X_WB * local.p_BC_m).entity_table<float>();
+      const Eigen::Vector3f centre = (snapshot->bodies[i].X_WB * local.p_BC_m).cast<float>();
       const float reach = static_cast<float>(local.half_size_m.norm());
       box.extend(Eigen::Vector3f(centre.array() + reach));
       box.extend(Eigen::Vector3f(centre.array() - reach));
@@ -283,7 +280,7 @@ render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& pi
 }  // namespace
 
 render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
-                               const PictureEntry& entry) {
+                               const PictureYaml& entry) {
   const FoundTime moment = FindEventTime(entry.at.value, run);
   render::Picture picture;
   picture.scene = &scenario.scene;

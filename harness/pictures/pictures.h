@@ -32,7 +32,7 @@ PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
                            const std::string& directory);
 
 /// One picture into one file.
-PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureEntry& entry,
+PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureYaml& entry,
                           const std::string& file);
 
 struct PictureDifference {

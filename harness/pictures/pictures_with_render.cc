@@ -14,7 +14,7 @@ namespace {
 
 /// Draws one entry; returns an error text or "".
 std::string DrawOne(render::Painter& painter, const Scenario& scenario, const RunResult& run,
-                    const PictureEntry& entry, const std::string& file,
+                    const PictureYaml& entry, const std::string& file,
                     std::vector<WrittenPicture>& written) {
   if (!painter.error().empty()) return painter.error();
   if (run.recording.empty()) return "the run recorded nothing to draw";
@@ -32,9 +32,9 @@ bool SameSize(const render::Image& a, const render::Image& b) {
 
 /// The pixel whose red is the i-th byte.
 bool Differs(const render::Image& golden, const render::Image& drawn, std::size_t i) {
-  constexpr int kMostColour = 24;
+  constexpr int kMaxColourDifference = 24;
   const auto far_apart = [&](std::size_t k) {
-    return std::abs(int{golden.rgb[k]} - int{drawn.rgb[k]}) > kMostColour;
+    return std::abs(int{golden.rgb[k]} - int{drawn.rgb[k]}) > kMaxColourDifference;
   };
   return far_apart(i) || far_apart(i + 1) || far_apart(i + 2);
 }
@@ -58,7 +58,7 @@ PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
   return result;
 }
 
-PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureEntry& entry,
+PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureYaml& entry,
                           const std::string& file) {
   PictureResult result;
   render::Painter painter;
@@ -67,7 +67,7 @@ PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const 
 }
 
 PictureDifference ComparePicture(const std::string& golden_file, const std::string& drawn_file) {
-  constexpr double kMostPixels = 0.01;
+  constexpr double kMaxPixelShare = 0.01;
   const render::Image golden = render::ReadPng(golden_file), drawn = render::ReadPng(drawn_file);
   if (golden.rgb.empty()) return {golden_file + " cannot be read"};
   if (!SameSize(golden, drawn)) {
@@ -78,9 +78,9 @@ PictureDifference ComparePicture(const std::string& golden_file, const std::stri
   for (std::size_t i = 0; i < golden.rgb.size(); i += 3) differing += Differs(golden, drawn, i);
   const double share =
       static_cast<double>(differing) / (static_cast<double>(golden.rgb.size()) / 3);
-  if (share <= kMostPixels) return {.text = "", .same_size = true};
+  if (share <= kMaxPixelShare) return {.text = "", .same_size = true};
   return {.text = fmt::format("{:.1f} % of its pixels differ, at most {:g} % may", 100 * share,
-                              100 * kMostPixels),
+                              100 * kMaxPixelShare),
           .same_size = true};
 }
 

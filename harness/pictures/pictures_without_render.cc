@@ -13,7 +13,7 @@ PictureResult DrawPictures(const Scenario&, const RunResult&, const std::string&
   return NoRenderRoom();
 }
 
-PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureEntry&,
+PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureYaml&,
                           const std::string&) {
   return NoRenderRoom();
 }

@@ -25,8 +25,7 @@ constexpr const char* kGraspsEnding = ".grasps.yaml";
 /// Turns an entry into a model and complains about names and counts that do not fit together.
 class HandBuilder {
  public:
-  HandBuilder(const HandEntry& entry, Complaints& complaints)
-      : entry_(entry), complaints_(complaints) {}
+  HandBuilder(const HandYaml& entry, DiagnosticList& errors) : entry_(entry), errors_(errors) {}
 
   HandModel Build() {
     HandModel model;
@@ -43,29 +42,29 @@ class HandBuilder {
     model.rotation = entry_.gains.rotation;
     model.driver = entry_.driver;
     for (const auto& digit : entry_.digits) AddDigit(digit, model.links);
-    AddStyles(entry_.digits, entry_.styles, SameName::kIsRefused, complaints_, model.styles);
+    AddStyles(entry_.digits, entry_.styles, SameName::kIsRefused, errors_, model.styles);
     return model;
   }
 
  private:
   int SensorSet(const Located<std::string>& name);
-  void AddDigit(const Named<DigitEntry>& digit, std::vector<physics::HandLink>& links);
-  const HandEntry& entry_;
-  Complaints& complaints_;
+  void AddDigit(const Named<DigitYaml>& digit, std::vector<physics::HandLink>& links);
+  const HandYaml& entry_;
+  DiagnosticList& errors_;
 };
 
 int HandBuilder::SensorSet(const Located<std::string>& name) {
   const auto& sets = entry_.sensor_sets;
   const auto it = std::find(sets.begin(), sets.end(), name.value);
   if (it != sets.end()) return static_cast<int>(it - sets.begin());
-  complaints_.AddUnknownName(name.where,
-                             fmt::format("sensor_set: '{}' is not in sensor_sets", name.value),
-                             name.value, sets);
+  errors_.AddUnknownName(name.where,
+                         fmt::format("sensor_set: '{}' is not in sensor_sets", name.value),
+                         name.value, sets);
   return 0;
 }
 
 /// Everything but its name, its place and its joint's axis.
-physics::HandLink LinkOf(const LinkEntry& link, double joint_unit, int sensor_set) {
+physics::HandLink LinkOf(const LinkYaml& link, double joint_unit, int sensor_set) {
   return {.length_m = link.length_m,
           .half_width_m = link.half_width_m,
           .half_thickness_m = link.half_thickness_m,
@@ -76,15 +75,15 @@ physics::HandLink LinkOf(const LinkEntry& link, double joint_unit, int sensor_se
           .sensor_set = sensor_set};
 }
 
-void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::HandLink>& links) {
+void HandBuilder::AddDigit(const Named<DigitYaml>& digit, std::vector<physics::HandLink>& links) {
   const int sensor_set = SensorSet(digit.value.sensor_set);
   Eigen::Vector3d pivot_m = digit.value.base_m;
   int parent = -1;
   const auto add = [&](physics::HandLink link, const std::string& name, Where where,
                        const Eigen::Vector3d& joint_axis) {
     if (std::ranges::count(links, name, &physics::HandLink::name) > 0)
-      complaints_.Add(where, fmt::format("a second part of the hand is called '{}'", name),
-                      "a part is called like its digit, a phalanx DIGIT_NAME");
+      errors_.Add(where, fmt::format("a second part of the hand is called '{}'", name),
+                  "a part is called like its digit, a phalanx DIGIT_NAME");
     link.name = name;
     link.parent = parent;
     link.pivot_m = pivot_m;
@@ -94,7 +93,7 @@ void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::
     parent = static_cast<int>(links.size()) - 1;
     pivot_m += digit.value.direction * links.back().length_m;
   };
-  for (const PhalanxEntry& phalanx : digit.value.phalanges)
+  for (const PhalanxYaml& phalanx : digit.value.phalanges)
     add(LinkOf(phalanx, physics::kRadPerDeg, sensor_set), digit.name + "_" + phalanx.name.value,
         phalanx.name.where, phalanx.joint_axis);
   if (!digit.value.jaw) return;
@@ -105,10 +104,10 @@ void HandBuilder::AddDigit(const Named<DigitEntry>& digit, std::vector<physics::
 
 /// `key` is the one whose value is the name.
 void CheckName(const std::string& path, const char* ending, const char* key,
-               const Located<std::string>& name, Complaints& complaints) {
+               const Located<std::string>& name, DiagnosticList& errors) {
   const std::string file = fs::path(path).filename().string();
   if (file == name.value + ending) return;
-  complaints.Add(
+  errors.Add(
       name.where,
       fmt::format("{}: the name is '{}', but the file is called '{}'", key, name.value, file),
       "rename one of them");
@@ -116,15 +115,15 @@ void CheckName(const std::string& path, const char* ending, const char* key,
 
 /// The path of the file that a hand's file names, in its own folder; nothing after complaining.
 std::optional<std::string> FindBeside(const std::string& path, const char* ending, const char* key,
-                                      const Located<std::string>& name, Complaints& complaints) {
+                                      const Located<std::string>& name, DiagnosticList& errors) {
   const fs::path folder = fs::path(path).parent_path();
   const fs::path found = folder / (name.value + ending);
   std::error_code error;
   if (fs::exists(found, error)) return found.string();
-  complaints.AddUnknownName(name.where,
-                            fmt::format("{}: there is no {}{} beside this file, in {}", key,
-                                        name.value, ending, folder.empty() ? "." : folder.string()),
-                            name.value, NamesIn(folder.empty() ? "." : folder, ending));
+  errors.AddUnknownName(name.where,
+                        fmt::format("{}: there is no {}{} beside this file, in {}", key, name.value,
+                                    ending, folder.empty() ? "." : folder.string()),
+                        name.value, NamesIn(folder.empty() ? "." : folder, ending));
   return std::nullopt;
 }
 
@@ -148,7 +147,7 @@ class HandReader {
   }
   ReadResult<HandModel> ReadHand(const std::string& path, const YamlDocument& document);
   ReadResult<HandModel> ReadMirror(const std::string& path, const YamlDocument& document);
-  Diagnostics AddGrasps(const std::string& path, const HandEntry& hand, SameName same_name,
+  Diagnostics AddGrasps(const std::string& path, const HandYaml& hand, SameName same_name,
                         HandModel& model);
 
   const std::vector<std::string>& more_grasps_;
@@ -156,26 +155,25 @@ class HandReader {
 };
 
 /// The styles of a grasp file. Returns what is wrong in it.
-Diagnostics HandReader::AddGrasps(const std::string& path, const HandEntry& hand,
-                                  SameName same_name, HandModel& model) {
+Diagnostics HandReader::AddGrasps(const std::string& path, const HandYaml& hand, SameName same_name,
+                                  HandModel& model) {
   ReadResult<YamlDocument> document = ReadFile(path);
   if (!document.value) return std::move(document.diagnostics);
-  Complaints complaints(*document.value);
-  GraspsEntry entry;
-  if (GraspsFormat().read(document.value->root, complaints, entry)) {
-    CheckName(path, kGraspsEnding, "grasps", entry.name, complaints);
-    AddStyles(hand.digits, entry.styles, same_name, complaints, model.styles);
+  DiagnosticList errors(*document.value);
+  GraspsYaml entry;
+  if (GraspsFormat().Read(document.value->root, errors, entry)) {
+    CheckName(path, kGraspsEnding, "grasps", entry.name, errors);
+    AddStyles(hand.digits, entry.styles, same_name, errors, model.styles);
   }
-  return complaints.Sorted();
+  return errors.Sorted();
 }
 
 ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDocument& document) {
-  Complaints complaints(document);
-  HandEntry entry;
-  if (!HandFormat().read(document.root, complaints, entry))
-    return {std::nullopt, complaints.Sorted()};
-  CheckName(path, kHandEnding, "hand", entry.name, complaints);
-  HandModel model = HandBuilder(entry, complaints).Build();
+  DiagnosticList errors(document);
+  HandYaml entry;
+  if (!HandFormat().Read(document.root, errors, entry)) return {std::nullopt, errors.Sorted()};
+  CheckName(path, kHandEnding, "hand", entry.name, errors);
+  HandModel model = HandBuilder(entry, errors).Build();
   Diagnostics in_grasps;
   const auto add = [&](const std::string& grasps, SameName same_name) {
     for (auto& diagnostic : AddGrasps(grasps, entry, same_name, model))
@@ -184,13 +182,13 @@ ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDo
   std::set<std::string> seen;
   for (const auto& name : entry.grasps) {
     if (!seen.insert(name.value).second) {
-      complaints.Add(name.where, fmt::format("grasps: '{}' is given twice", name.value));
-    } else if (const auto grasps = FindBeside(path, kGraspsEnding, "grasps", name, complaints)) {
+      errors.Add(name.where, fmt::format("grasps: '{}' is given twice", name.value));
+    } else if (const auto grasps = FindBeside(path, kGraspsEnding, "grasps", name, errors)) {
       add(*grasps, SameName::kIsRefused);
     }
   }
   for (const std::string& grasps : more_grasps_) add(grasps, SameName::kTakesItsPlace);
-  Diagnostics diagnostics = complaints.Sorted();
+  Diagnostics diagnostics = errors.Sorted();
   diagnostics.insert(diagnostics.end(), in_grasps.begin(), in_grasps.end());
   if (!diagnostics.empty()) return {std::nullopt, std::move(diagnostics)};
   return {std::move(model), {}};
@@ -198,24 +196,22 @@ ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDo
 
 ReadResult<HandModel> HandReader::ReadMirror(const std::string& path,
                                              const YamlDocument& document) {
-  Complaints complaints(document);
-  MirrorEntry entry;
-  if (!MirrorFormat().read(document.root, complaints, entry))
-    return {std::nullopt, complaints.Sorted()};
-  CheckName(path, kHandEnding, "hand", entry.name, complaints);
+  DiagnosticList errors(document);
+  MirrorYaml entry;
+  if (!MirrorFormat().Read(document.root, errors, entry)) return {std::nullopt, errors.Sorted()};
+  CheckName(path, kHandEnding, "hand", entry.name, errors);
   if (entry.mirror_of.value == entry.name.value)
-    complaints.Add(entry.mirror_of.where, "a hand cannot mirror itself");
-  if (!complaints.empty()) return {std::nullopt, complaints.Sorted()};
+    errors.Add(entry.mirror_of.where, "a hand cannot mirror itself");
+  if (!errors.empty()) return {std::nullopt, errors.Sorted()};
 
-  const auto original_path =
-      FindBeside(path, kHandEnding, "mirror_of", entry.mirror_of, complaints);
-  if (!original_path) return {std::nullopt, complaints.Sorted()};
+  const auto original_path = FindBeside(path, kHandEnding, "mirror_of", entry.mirror_of, errors);
+  if (!original_path) return {std::nullopt, errors.Sorted()};
   ReadResult<YamlDocument> original_file = ReadFile(*original_path);
   if (!original_file.value) return {std::nullopt, std::move(original_file.diagnostics)};
   if (original_file.value->root.Find("mirror_of")) {
-    complaints.Add(entry.mirror_of.where,
-                   fmt::format("'{}' is itself a mirror image", entry.mirror_of.value));
-    return {std::nullopt, complaints.Sorted()};
+    errors.Add(entry.mirror_of.where,
+               fmt::format("'{}' is itself a mirror image", entry.mirror_of.value));
+    return {std::nullopt, errors.Sorted()};
   }
   ReadResult<HandModel> original = ReadHand(*original_path, *original_file.value);
   if (original.value) {

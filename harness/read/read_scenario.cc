@@ -32,39 +32,39 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void CheckNames(const std::string& file, const ScenarioEntry& entry, const ScenarioLibrary& library,
-                Complaints& complaints) {
+void CheckNames(const std::string& file, const ScenarioYaml& entry, const ScenarioLibrary& library,
+                DiagnosticList& errors) {
   const std::string stem = path(file).stem().string();
   if (!entry.name.value.empty() && entry.name.value != stem) {
-    complaints.Add(entry.name.where,
-                   fmt::format("scenario: the name is '{}', but the file is called '{}'",
-                               entry.name.value, path(file).filename().string()),
-                   "rename one of them");
+    errors.Add(entry.name.where,
+               fmt::format("scenario: the name is '{}', but the file is called '{}'",
+                           entry.name.value, path(file).filename().string()),
+               "rename one of them");
   }
   if (!Contains(library.grammars, entry.grammar.value)) {
-    complaints.AddUnknownName(
-        entry.grammar.where, fmt::format("grammar: no grammar is called '{}'", entry.grammar.value),
-        entry.grammar.value, library.grammars);
+    errors.AddUnknownName(entry.grammar.where,
+                          fmt::format("grammar: no grammar is called '{}'", entry.grammar.value),
+                          entry.grammar.value, library.grammars);
   }
   for (const auto& actor : entry.actors) {
     const bool taken = std::any_of(entry.entities.begin(), entry.entities.end(),
                                    [&](const auto& entity) { return entity.name == actor.name; });
     if (taken)
-      complaints.Add(actor.name_where,
-                     fmt::format("'{}' is already the name of an entity", actor.name));
+      errors.Add(actor.name_where,
+                 fmt::format("'{}' is already the name of an entity", actor.name));
   }
 }
 
 /// The actor's model, or an empty one after complaining; what is wrong in a hand's file goes to
 /// `in_hand_files`.
-physics::HandModel FindHand(const std::string& file, const HandActor& actor,
-                            const ScenarioLibrary& library, Complaints& complaints,
+physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
+                            const ScenarioLibrary& library, DiagnosticList& errors,
                             Diagnostics& in_hand_files) {
   const Located<std::string>& hand = actor.hand;
   const bool is_file = hand.value.ends_with(".yaml");
   if (!is_file && !Contains(library.hands, hand.value)) {
-    complaints.AddUnknownName(hand.where, fmt::format("hand: no hand is called '{}'", hand.value),
-                              hand.value, library.hands);
+    errors.AddUnknownName(hand.where, fmt::format("hand: no hand is called '{}'", hand.value),
+                          hand.value, library.hands);
     return {};
   }
   const auto beside = [&](const std::string& other) {
@@ -75,14 +75,14 @@ physics::HandModel FindHand(const std::string& file, const HandActor& actor,
   for (const auto& more : actor.grasps) {
     grasps.push_back(beside(more.value));
     if (!seen.insert(path(grasps.back()).lexically_normal()).second)
-      complaints.Add(more.where, fmt::format("grasps: '{}' is given twice", more.value));
+      errors.Add(more.where, fmt::format("grasps: '{}' is given twice", more.value));
   }
   auto model = library.read_hand(is_file ? beside(hand.value) : hand.value, grasps);
   if (model.value) return std::move(*model.value);
   // Blamed is the file where something is wrong. What has no place could not be opened.
   const auto blame = [&](const char* key, const Located<std::string>& named, bool is_open) {
-    complaints.Add(named.where, fmt::format("{}: '{}' cannot be used, see below", key, named.value),
-                   is_open ? "" : "its path starts at the folder of the scenario");
+    errors.Add(named.where, fmt::format("{}: '{}' cannot be used, see below", key, named.value),
+               is_open ? "" : "its path starts at the folder of the scenario");
   };
   std::map<std::string, bool> bad;  ///< and whether they could be opened
   for (const grammar::Diagnostic& found : model.diagnostics) bad[found.file] = found.place.line > 0;
@@ -113,29 +113,29 @@ void AddPersonClasses(Scenario& scenario) {
   }
 }
 
-ReadResult<Scenario> AllOf(const Complaints& complaints, const Diagnostics& in_other_files) {
-  Diagnostics diagnostics = complaints.Sorted();
+ReadResult<Scenario> AllOf(const DiagnosticList& errors, const Diagnostics& in_other_files) {
+  Diagnostics diagnostics = errors.Sorted();
   diagnostics.insert(diagnostics.end(), in_other_files.begin(), in_other_files.end());
   return {std::nullopt, std::move(diagnostics)};
 }
 
 ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& document,
                              const ScenarioLibrary& library) {
-  Complaints complaints(document);
-  ScenarioEntry entry;
-  const bool well_formed = ScenarioFormat().read(document.root, complaints, entry);
+  DiagnosticList errors(document);
+  ScenarioYaml entry;
+  const bool well_formed = ScenarioFormat().Read(document.root, errors, entry);
   SortActors(entry);
-  CheckNames(file, entry, library, complaints);
+  CheckNames(file, entry, library, errors);
   Diagnostics in_other_files;
   if (!well_formed) {
     // Names can be looked up without the rest.
     for (const auto& actor : entry.hands) {
       if (!actor.value.hand.value.empty())
-        FindHand(file, actor.value, library, complaints, in_other_files);
+        FindHand(file, actor.value, library, errors, in_other_files);
     }
-    return AllOf(complaints, in_other_files);
+    return AllOf(errors, in_other_files);
   }
-  ReadRecordings(file, entry, library, complaints, in_other_files);
+  ReadRecordings(file, entry, library, errors, in_other_files);
   Scenario scenario;
   physics::Scene& scene = scenario.scene;
   scene.world.rate_hz = entry.world.rate_hz;
@@ -143,25 +143,24 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scene.world.engine = entry.world.engine;
   scene.world.planar = entry.world.planar ? entry.world.planar->value
                                           : entry.world.engine == physics::Engine::kBox2d;
-  scene.bodies = PlaceBodies(entry, complaints);
-  scene.joints = BuildJoints(entry, complaints);
-  scenario.body_part_of = PartsOf(entry, complaints);
+  scene.bodies = PlaceBodies(entry, errors);
+  scene.joints = BuildJoints(entry, errors);
+  scenario.body_part_of = PartsOf(entry, errors);
   for (const auto& actor : entry.hands) {
-    physics::HandModel model = FindHand(file, actor.value, library, complaints, in_other_files);
+    physics::HandModel model = FindHand(file, actor.value, library, errors, in_other_files);
     const bool known = !model.name.empty();
-    scene.hands.push_back(known
-                              ? PlaceHand(actor, std::move(model), entry.world.rate_hz, complaints)
-                              : physics::Hand{actor.name, {}, {}});
+    scene.hands.push_back(known ? PlaceHand(actor, std::move(model), entry.world.rate_hz, errors)
+                                : physics::Hand{actor.name, {}, {}});
   }
-  AddPersons(entry, scene, complaints);
-  scenario.script = BuildScript(entry, scene, complaints);
-  scenario.outcomes = BuildOutcomes(entry.outcomes, scene, scenario.script, complaints);
-  CheckKinds(entry, complaints);
-  CheckVariedFields(document, entry.vary, complaints);
-  if (scene.world.planar) CheckPlanar(entry, scene, complaints);
-  if (complaints.empty()) CheckDistances(entry, scene, complaints);
-  if (complaints.empty()) CheckOverlaps(entry, scene, complaints);
-  if (!complaints.empty()) return AllOf(complaints, in_other_files);
+  AddPersons(entry, scene, errors);
+  scenario.script = BuildScript(entry, scene, errors);
+  scenario.outcomes = BuildOutcomes(entry.outcomes, scene, scenario.script, errors);
+  ValidateClasses(entry, errors);
+  ValidateVariations(document, entry.vary, errors);
+  if (scene.world.planar) ValidatePlanar(entry, scene, errors);
+  if (errors.empty()) ValidateDistances(entry, scene, errors);
+  if (errors.empty()) ValidatePlacement(entry, scene, errors);
+  if (!errors.empty()) return AllOf(errors, in_other_files);
 
   scenario.name = entry.name.value;
   scenario.file = file;
@@ -176,14 +175,14 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   for (const auto& kind : entry.classes) scenario.kinds.push_back({kind.name, kind.value.value});
   scenario.variations = std::move(entry.vary);
   scenario.pictures = std::move(entry.pictures);
-  for (const PictureEntry& picture : scenario.pictures) {
+  for (const PictureYaml& picture : scenario.pictures) {
     const std::string& camera = picture.camera.value;
     if (WhyNoCamera(scenario, camera))
-      complaints.AddUnknownName(picture.camera.where,
-                                fmt::format("camera: no camera is called '{}'", camera), camera,
-                                CamerasOf(scenario));
+      errors.AddUnknownName(picture.camera.where,
+                            fmt::format("camera: no camera is called '{}'", camera), camera,
+                            CamerasOf(scenario));
   }
-  if (!complaints.empty()) return AllOf(complaints, in_other_files);
+  if (!errors.empty()) return AllOf(errors, in_other_files);
   scenario.warnings = std::move(in_other_files);
   return {std::move(scenario), {}};
 }
@@ -193,7 +192,7 @@ ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocu
                                     const ScenarioLibrary& library) {
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
   for (const std::string& assignment : overrides) {
-    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema, *document.value);
+    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema(), *document.value);
         !bad.empty())
       return {std::nullopt, std::move(bad)};
   }

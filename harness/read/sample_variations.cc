@@ -24,13 +24,13 @@ Random GeneratorFor(std::uint64_t seed, int trial, std::size_t variation) {
 }
 
 /// Chance may not leave the bounds that the reader has tried.
-constexpr double kMostDeviations = 3;
+constexpr double kMaxDeviations = 3;
 
-Draw DrawFrom(const VariationEntry& variation, Random& random) {
+Draw SampleFrom(const VariationYaml& variation, Random& random) {
   if (variation.choose) return (*variation.choose)[random.Next() % variation.choose->size()];
   if (variation.normal) {
     double deviations = random.Normal(0, 1);
-    while (std::abs(deviations) > kMostDeviations) deviations = random.Normal(0, 1);
+    while (std::abs(deviations) > kMaxDeviations) deviations = random.Normal(0, 1);
     return (*variation.normal)[0] + deviations * (*variation.normal)[1];
   }
   const auto& between = variation.uniform ? variation.uniform
@@ -51,10 +51,10 @@ const YamlNode* FindField(const YamlNode& root, const std::string& path) {
   return node;
 }
 
-Bounds BoundsOf(const VariationEntry& variation) {
+Bounds BoundsOf(const VariationYaml& variation) {
   if (variation.choose) return {"choose", {variation.choose->begin(), variation.choose->end()}};
   if (variation.normal) {
-    const double mean = (*variation.normal)[0], most = kMostDeviations * (*variation.normal)[1];
+    const double mean = (*variation.normal)[0], most = kMaxDeviations * (*variation.normal)[1];
     return {"normal", {mean - most, mean + most}};
   }
   const auto from = [](const char* key, const Eigen::Vector2d& range) {
@@ -64,7 +64,7 @@ Bounds BoundsOf(const VariationEntry& variation) {
   return variation.plus ? from("plus", *variation.plus) : from("times", *variation.times);
 }
 
-std::string SettingOf(const YamlDocument& document, const VariationEntry& variation,
+std::string SettingOf(const YamlDocument& document, const VariationYaml& variation,
                       const std::string& field, const Draw& draw) {
   if (const auto* text = std::get_if<std::string>(&draw)) return field + "=" + *text;
   const YamlNode* node = FindField(document.root, field);
@@ -72,18 +72,18 @@ std::string SettingOf(const YamlDocument& document, const VariationEntry& variat
   double value = std::get<double>(draw);
   if (variation.plus) value = written + value;
   if (variation.times) value = written * value;
-  if (IsWholeNumber(field, ScenarioFormat().schema, document))
+  if (IsWholeNumber(field, ScenarioFormat().schema(), document))
     return fmt::format("{}={}", field, std::llround(value));
   return fmt::format("{}={:.6f}", field, value);
 }
 
-std::vector<std::string> DrawTrial(const YamlDocument& document,
-                                   const std::vector<VariationEntry>& variations,
-                                   std::uint64_t seed, int trial) {
+std::vector<std::string> SampleTrial(const YamlDocument& document,
+                                     const std::vector<VariationYaml>& variations,
+                                     std::uint64_t seed, int trial) {
   std::vector<std::string> settings;
   for (std::size_t i = 0; i < variations.size(); ++i) {
     Random random = GeneratorFor(seed, trial, i);
-    const Draw draw = DrawFrom(variations[i], random);
+    const Draw draw = SampleFrom(variations[i], random);
     for (const std::string& field : variations[i].fields)
       settings.push_back(SettingOf(document, variations[i], field, draw));
   }

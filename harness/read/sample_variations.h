@@ -16,10 +16,10 @@
 namespace prehend::harness {
 
 /// The settings ("entities.milk.mass_kg=0.31") of trial 1, 2, ...: the same ones for the same seed
-/// and trial, whatever was drawn before. The variations have passed CheckVariedFields().
-std::vector<std::string> DrawTrial(const YamlDocument& document,
-                                   const std::vector<VariationEntry>& variations,
-                                   std::uint64_t seed, int trial);
+/// and trial, whatever was drawn before. The variations have passed ValidateVariations().
+std::vector<std::string> SampleTrial(const YamlDocument& document,
+                                     const std::vector<VariationYaml>& variations,
+                                     std::uint64_t seed, int trial);
 
 /// What is drawn for all fields of a variation: a number, or one of the texts to choose from.
 using Draw = std::variant<double, std::string>;
@@ -29,10 +29,10 @@ struct Bounds {
   const char* key = "";  ///< that of the distribution: "uniform"
   std::vector<Draw> draws;
 };
-Bounds BoundsOf(const VariationEntry& variation);
+Bounds BoundsOf(const VariationYaml& variation);
 
 /// What a draw makes of one of the variation's fields, as for --set.
-std::string SettingOf(const YamlDocument& document, const VariationEntry& variation,
+std::string SettingOf(const YamlDocument& document, const VariationYaml& variation,
                       const std::string& field, const Draw& draw);
 
 /// What a path like "entities.milk.mass_kg" leads to; null when it leads nowhere.

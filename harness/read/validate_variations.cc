@@ -41,7 +41,7 @@ bool IsAboutThePath(const grammar::Diagnostic& wrong, const std::string& setting
 }
 
 /// Nobody can put a drawn number in quotes.
-std::string HintFor(const grammar::Diagnostic& wrong, const VariationEntry& variation) {
+std::string HintFor(const grammar::Diagnostic& wrong, const VariationYaml& variation) {
   const bool wants_text = wrong.hint.starts_with("put it in quotes");
   return wants_text && !variation.choose ? "to draw texts: choose: [...]" : wrong.hint;
 }
@@ -49,9 +49,9 @@ std::string HintFor(const grammar::Diagnostic& wrong, const VariationEntry& vari
 class DrawChecker {
  public:
   DrawChecker(const YamlDocument& document, const Reader& read)
-      : document_(document), read_(read), complaints_(document) {}
+      : document_(document), read_(read), errors_(document) {}
 
-  void Check(const VariationEntry& variation, std::size_t index) {
+  void Check(const VariationYaml& variation, std::size_t index) {
     const Bounds bounds = BoundsOf(variation);
     const YamlNode& written = *NodeOf(document_, index).Find(bounds.key);
     for (std::size_t bound = 0; bound < bounds.draws.size(); ++bound) {
@@ -60,32 +60,32 @@ class DrawChecker {
       for (const std::string& field : variation.fields) {
         if (IsSetOnCommandLine(document_, field)) continue;
         setting = SettingOf(document_, variation, field, bounds.draws[bound]);
-        (void)ApplyOverride(setting, ScenarioFormat().schema,
-                            varied);  // CheckVariedFields() has tried the path
+        (void)ApplyOverride(setting, ScenarioFormat().schema(),
+                            varied);  // ValidateVariations() has tried the path
       }
       if (setting.empty()) return;
       const grammar::Diagnostics wrong = read_(varied);
       if (wrong.empty()) continue;
       const Where where = IsAboutThePath(wrong.front(), setting) ? PlaceOfField(document_, index, 0)
                                                                  : written.children[bound].where;
-      complaints_.Add(where, fmt::format("with {}: {}", setting, wrong.front().message),
-                      HintFor(wrong.front(), variation));
+      errors_.Add(where, fmt::format("with {}: {}", setting, wrong.front().message),
+                  HintFor(wrong.front(), variation));
       return;
     }
   }
 
-  grammar::Diagnostics Sorted() const { return complaints_.Sorted(); }
+  grammar::Diagnostics Sorted() const { return errors_.Sorted(); }
 
  private:
   const YamlDocument& document_;
   const Reader& read_;
-  Complaints complaints_;
+  DiagnosticList errors_;
 };
 
 }  // namespace
 
-void CheckVariedFields(const YamlDocument& document, const std::vector<VariationEntry>& variations,
-                       Complaints& complaints) {
+void ValidateVariations(const YamlDocument& document, const std::vector<VariationYaml>& variations,
+                        DiagnosticList& errors) {
   std::set<std::string> varied;
   YamlDocument tried = document;
   for (std::size_t i = 0; i < variations.size(); ++i) {
@@ -94,28 +94,28 @@ void CheckVariedFields(const YamlDocument& document, const std::vector<Variation
       const std::string& field = variations[i].fields[k];
       const Where where = PlaceOfField(document, i, k);
       if (field == "vary" || field.starts_with("vary.")) {
-        complaints.Add(where, "fields: what is varied cannot be varied itself");
+        errors.Add(where, "fields: what is varied cannot be varied itself");
         continue;
       }
       if (!varied.insert(CanonicalPath(document.root, field)).second)
-        complaints.Add(where, fmt::format("fields: '{}' is varied twice", field),
-                       "give it one distribution");
+        errors.Add(where, fmt::format("fields: '{}' is varied twice", field),
+                   "give it one distribution");
       const YamlNode* node = FindField(document.root, field);
       const grammar::Diagnostics nowhere =
-          ApplyOverride(field + "=0", ScenarioFormat().schema, tried);
+          ApplyOverride(field + "=0", ScenarioFormat().schema(), tried);
       if (!nowhere.empty() || (relative && !node)) {
         const std::string hint =
             nowhere.empty() ? "plus and times need a number that is written" : nowhere.front().hint;
-        complaints.Add(where, fmt::format("fields: the scenario has no '{}'", field), hint);
+        errors.Add(where, fmt::format("fields: the scenario has no '{}'", field), hint);
       } else if (relative && !NumberOf(*node)) {
-        complaints.Add(where, fmt::format("fields: '{}' is no number", field));
+        errors.Add(where, fmt::format("fields: '{}' is no number", field));
       }
     }
   }
 }
 
 grammar::Diagnostics CheckDraws(const YamlDocument& document,
-                                const std::vector<VariationEntry>& variations, const Reader& read) {
+                                const std::vector<VariationYaml>& variations, const Reader& read) {
   DrawChecker checker(document, read);
   for (std::size_t i = 0; i < variations.size(); ++i) checker.Check(variations[i], i);
   return checker.Sorted();

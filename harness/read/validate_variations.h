@@ -13,16 +13,16 @@ namespace prehend::harness {
 
 /// Complains about fields that lead nowhere, that are varied twice, or that are no numbers where
 /// numbers are varied.
-void CheckVariedFields(const YamlDocument& document, const std::vector<VariationEntry>& variations,
-                       Complaints& complaints);
+void ValidateVariations(const YamlDocument& document, const std::vector<VariationYaml>& variations,
+                        DiagnosticList& errors);
 
 /// What the reader says of a scenario: nothing, if it can be read.
 using Reader = std::function<grammar::Diagnostics(const YamlDocument&)>;
 
 /// Applies the bounds of each variation, all else as written, and complains about the first one
 /// that cannot be read. What the command line sets is not varied, and so not looked at.
-/// CheckVariedFields() found nothing.
+/// ValidateVariations() found nothing.
 grammar::Diagnostics CheckDraws(const YamlDocument& document,
-                                const std::vector<VariationEntry>& variations, const Reader& read);
+                                const std::vector<VariationYaml>& variations, const Reader& read);
 
 }  // namespace prehend::harness

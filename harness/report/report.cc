@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "harness/base/markup.h"
+#include "harness/golden/timeline_svg.h"
 
 namespace prehend::harness {
 namespace {

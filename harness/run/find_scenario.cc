@@ -23,9 +23,9 @@ constexpr const char* kScenarioEnding = ".yaml";
 /// The shortest of the names that contain a part; "" when none does, or when the part is of nearly
 /// all names.
 std::string ShortestWith(const std::string& part, const std::vector<std::string>& names) {
-  constexpr std::size_t kShortestPart = 3;
+  constexpr std::size_t kMinPartLength = 3;
   std::string shortest;
-  if (part.size() < kShortestPart) return shortest;
+  if (part.size() < kMinPartLength) return shortest;
   for (const std::string& name : names) {
     const bool is_shorter = shortest.empty() || name.size() < shortest.size();
     if (is_shorter && name.find(part) != std::string::npos) shortest = name;

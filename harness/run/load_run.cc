@@ -33,13 +33,13 @@ Settings Split(const std::vector<std::string>& settings,
   for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
     const std::string name = setting.substr(0, equals);
-    const auto complain = [&](const char* message, const std::string& hint) {
+    const auto report = [&](const char* message, const std::string& hint) {
       split.diagnostics.push_back(grammar::DiagnosticAt("--set", setting, {1, 1}, message, hint));
     };
     if (equals == std::string::npos || name.empty() || equals + 1 == setting.size()) {
-      complain("expected NAME=VALUE", "--set reach_radius=25cm, --set entities.milk.mass_kg=8");
+      report("expected NAME=VALUE", "--set reach_radius=25cm, --set entities.milk.mass_kg=8");
     } else if (!seen.insert(name).second) {
-      complain("the same name is set twice", "give each --set a name of its own");
+      report("the same name is set twice", "give each --set a name of its own");
     } else if (is_field(name)) {
       split.of_scenario.push_back(setting);
     } else {
@@ -52,7 +52,7 @@ Settings Split(const std::vector<std::string>& settings,
 /// The scenario's own grammar must have the events that pictures ask for.
 grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Program& program) {
   grammar::Diagnostics diagnostics;
-  for (const PictureEntry& picture : scenario.pictures) {
+  for (const PictureYaml& picture : scenario.pictures) {
     const auto problem = WhyNoEventTime(picture.at.value, program);
     if (!problem) continue;
     const bool in_file = picture.at.where.source == 0;
@@ -73,7 +73,7 @@ std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
       request.settings, [](const auto& set) { return set.starts_with("grammar="); });
   if (!document.value || is_set) return "";
   const YamlNode* node = document.value->root.Find("grammar");
-  const std::string name = node ? node->text : ScenarioEntry{}.grammar.value;
+  const std::string name = node ? node->text : ScenarioYaml{}.grammar.value;
   return std::ranges::count(ProjectLibrary(root).grammars, name) > 0 ? name : "";
 }
 
@@ -81,7 +81,7 @@ std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
 
 bool IsFieldOfScenario(const std::string& name) {
   return name.find('.') != std::string::npos ||
-         ScenarioFormat().schema.at("properties").contains(name);
+         ScenarioFormat().schema().at("properties").contains(name);
 }
 
 ReadResult<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,

@@ -53,7 +53,7 @@ std::string OutcomeWatch::Judge(const physics::Snapshot& last) const {
 
 bool OutcomeWatch::Holds(const Outcome::Condition& condition,
                          const physics::Snapshot& snapshot) const {
-  const ConditionEntry& wanted = condition.wanted;
+  const ConditionYaml& wanted = condition.wanted;
   const auto index = static_cast<std::size_t>(condition.body);
   const physics::Body& body = scene_.bodies[index];
   const physics::BodyState& state = snapshot.bodies[index];

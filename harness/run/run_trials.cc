@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kFailed = "failed";
 constexpr double kTimeLimit_s = 600;
-constexpr std::size_t kMostListed = 20;
+constexpr std::size_t kMaxListed = 20;
 
 /// What trials are drawn from; the file is looked at once, before the first of them.
 struct Nominal {
@@ -33,7 +33,7 @@ ReadResult<Nominal> ReadNominal(const RunRequest& request, const std::string& ro
   if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
   for (const std::string& setting : request.settings) {
     if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
-      (void)ApplyOverride(setting, ScenarioFormat().schema,
+      (void)ApplyOverride(setting, ScenarioFormat().schema(),
                           *document.value);  // LoadRun() has accepted it
   }
   return {Nominal{std::move(*loaded.value), std::move(*document.value)}, {}};
@@ -44,7 +44,7 @@ RunRequest WithDraws(const RunRequest& request, const Nominal& nominal, int tria
   const Scenario& scenario = nominal.run.scenario;
   RunRequest varied = request;
   for (std::string& drawn :
-       DrawTrial(nominal.document, scenario.variations, scenario.world.seed, trial)) {
+       SampleTrial(nominal.document, scenario.variations, scenario.world.seed, trial)) {
     const std::string field = drawn.substr(0, drawn.find('=') + 1);
     const bool set = std::ranges::any_of(
         request.settings, [&](const std::string& given) { return given.starts_with(field); });
@@ -159,7 +159,7 @@ std::string TrialTable(const TrialReport& report, const std::string& command) {
   for (std::size_t i = names.size(); i-- > 1;) {
     for (const TrialResult& result : results) {
       if (result.outcome != names[i]) continue;
-      if (++listed > kMostListed) {
+      if (++listed > kMaxListed) {
         ++more;
         continue;
       }

@@ -36,18 +36,18 @@ std::vector<std::string> BuiltInClassesOf(const physics::Scene& scene, std::size
 
 }  // namespace
 
-bool IsBuiltInClass(const std::string& name) {
+bool IsScenarioBuiltinClass(const std::string& name) {
   static const std::set<std::string> names = {
       "Entity",   "Thing",  "Movable",  "Fixed",  "Jointed",    "Hand",   "Person",
       "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera", "Light"};
   return names.contains(name);
 }
 
-std::vector<std::string> WithKinds(const std::string& class_name,
-                                   const std::vector<KindEntry>& kinds) {
+std::vector<std::string> WithBaseClasses(const std::string& class_name,
+                                         const std::vector<BaseClass>& kinds) {
   std::vector<std::string> all = {class_name};
   while (all.size() <= kinds.size()) {
-    const auto found = std::ranges::find(kinds, all.back(), &KindEntry::name);
+    const auto found = std::ranges::find(kinds, all.back(), &BaseClass::name);
     if (found == kinds.end()) break;
     all.push_back(found->of);
   }
@@ -55,7 +55,7 @@ std::vector<std::string> WithKinds(const std::string& class_name,
 }
 
 std::vector<std::string> ClassesOf(const Scenario& scenario, std::size_t body) {
-  std::vector<std::string> classes = WithKinds(scenario.body_classes[body], scenario.kinds);
+  std::vector<std::string> classes = WithBaseClasses(scenario.body_classes[body], scenario.kinds);
   for (std::string& given : BuiltInClassesOf(scenario.scene, body))
     classes.push_back(std::move(given));
   return classes;

@@ -11,11 +11,11 @@
 namespace prehend::harness {
 
 /// Whether every scenario has this class; a scenario may not declare one of the same name.
-bool IsBuiltInClass(const std::string& name);
+bool IsScenarioBuiltinClass(const std::string& name);
 
 /// A class and its base classes, the most special first.
-std::vector<std::string> WithKinds(const std::string& class_name,
-                                   const std::vector<KindEntry>& kinds);
+std::vector<std::string> WithBaseClasses(const std::string& class_name,
+                                         const std::vector<BaseClass>& kinds);
 
 /// All classes of a body of the scenario, most special first: its own and their base classes, then
 /// the built-in ones.

@@ -18,7 +18,7 @@
 
 namespace prehend::harness {
 
-struct WorldEntry {
+struct WorldYaml {
   physics::Engine engine = physics::Engine::kBullet;
   std::optional<Located<bool>> planar;  ///< default: as the engine needs it
   int rate_hz = 480;
@@ -28,12 +28,12 @@ struct WorldEntry {
 };
 
 /// A class and what it is a kind of: every Mug is a Cup.
-struct KindEntry {
+struct BaseClass {
   std::string name;
   std::string of;
 };
 
-struct PictureEntry {
+struct PictureYaml {
   Located<std::string> at;  ///< "reaching.begin", "putting_down.end", or a time: "1.25"; see
                             ///< harness/run/event_time.h
   Located<std::string> camera{"three_quarter",
@@ -51,15 +51,15 @@ struct Scenario {
   std::string shows;
   std::string grammar = kDefaultGrammar;
   std::vector<std::string> tags;
-  WorldEntry world;
+  WorldYaml world;
   physics::Scene scene;
   std::vector<std::string> body_classes;  ///< one per scene body
-  std::vector<KindEntry> kinds;           ///< each class at most once
+  std::vector<BaseClass> kinds;           ///< each class at most once
   std::vector<int> body_part_of;  ///< one per scene body: a scene body, or grammar::kNoEntity
   physics::Script script;
-  std::vector<VariationEntry> variations;
+  std::vector<VariationYaml> variations;
   std::vector<Outcome> outcomes;
-  std::vector<PictureEntry> pictures;
+  std::vector<PictureYaml> pictures;
   grammar::Diagnostics warnings;  ///< about what can be used, but is odd
 };
 

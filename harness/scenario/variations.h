@@ -14,7 +14,7 @@
 namespace prehend::harness {
 
 /// One draw for all its fields; exactly one distribution is given.
-struct VariationEntry {
+struct VariationYaml {
   Where where;
   std::vector<std::string> fields;         ///< paths as of --set
   std::optional<Eigen::Vector2d> uniform;  ///< [least, most]
@@ -25,7 +25,7 @@ struct VariationEntry {
 };
 
 /// What has to be true of one entity; everything that is given.
-struct ConditionEntry {
+struct ConditionYaml {
   Where where;
   std::string entity;
   std::optional<double> at_s;                 ///< when; default: at the end
@@ -46,7 +46,7 @@ struct Outcome {
     int body = 0;
     int joint = -1;   ///< index into Scene::joints
     int vessel = -1;  ///< what it has to be inside of
-    ConditionEntry wanted;
+    ConditionYaml wanted;
   };
   std::string name;
   std::vector<Condition> conditions;

@@ -20,13 +20,13 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kFarthestM = 1e4;
-constexpr double kFastest = 1e4;
+constexpr double kMaxPosition_m = 1e4;
+constexpr double kMaxVelocity = 1e4;
 constexpr std::int64_t kLatestTick = 1'000'000'000'000;
 constexpr std::size_t kMaxMembers = 10'000;
 constexpr std::size_t kMaxFeelers = 1000;
 constexpr std::size_t kMaxSets = 32;
-constexpr std::size_t kMaxKinds = 100;
+constexpr std::size_t kMaxClasses = 100;
 
 struct MemberEntry {
   std::string class_name = "Object";
@@ -60,7 +60,7 @@ struct LookEntry {
   double joint_position = 0, joint_fraction = 0;
   std::optional<Located<std::string>> gazes_at;
 };
-struct HandEntry {
+struct HandYaml {
   double trigger = 0;
   std::optional<Eigen::Vector3d> ahead;
   std::vector<Eigen::Vector4d> feelers_m;
@@ -77,7 +77,7 @@ struct TouchEntry {
 struct FrameEntry {
   Located<std::int64_t> tick;
   std::vector<Named<LookEntry>> looks;
-  std::vector<Named<HandEntry>> hands;
+  std::vector<Named<HandYaml>> hands;
   std::vector<TouchEntry> touches;
 };
 struct EndEntry {
@@ -85,15 +85,19 @@ struct EndEntry {
 };
 using LineEntry = std::variant<FrameEntry, EndEntry>;
 
-Format<std::string> Name() { return Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'"); }
-Format<std::string> ClassName() { return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"); }
-Format<Eigen::Vector3d> Position() { return Vector<3>(-kFarthestM, kFarthestM); }
-Format<Eigen::Vector3d> Velocity() { return Vector<3>(-kFastest, kFastest); }
+ValueFormat<std::string> Name() {
+  return Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'");
+}
+ValueFormat<std::string> ClassName() {
+  return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'");
+}
+ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kMaxPosition_m, kMaxPosition_m); }
+ValueFormat<Eigen::Vector3d> Velocity() { return Vector<3>(-kMaxVelocity, kMaxVelocity); }
 
-Format<HeaderEntry> HeaderFormat() {
+ValueFormat<HeaderEntry> HeaderFormat() {
   using M = MemberEntry;
-  const Format<M> member =
-      Record<M>("entity")
+  const ValueFormat<M> member =
+      StructFormat<M>("entity")
           .NamedByKey()
           .Optional("class", &M::class_name, ClassName(), "")
           .Optional("fixed", &M::fixed, Flag(), "")
@@ -103,17 +107,17 @@ Format<HeaderEntry> HeaderFormat() {
           .Optional("abstract", &M::abstract, Choice({"Region", "GazeTarget", "Camera", "Light"}),
                     "")
           .Optional("round", &M::round, Flag(), "")
-          .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxKinds), "")
+          .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxClasses), "")
           .Optional("hand", &M::hand, Flag(), "")
           .Optional("centre_m", &M::centre_m, Position(), "")
-          .Required("size_m", &M::size_m, Vector<3>(0, kFarthestM), "")
+          .Required("size_m", &M::size_m, Vector<3>(0, kMaxPosition_m), "")
           .Optional("mass_kg", &M::mass_kg, Number(0, 1e6), "")
           .Optional("strength_n", &M::strength_n, Number(0, 1e6), "")
           .Optional("part_of", &M::part_of, Name(), "")
           .Optional("sensor_sets", &M::sensor_sets, ListOf(Name(), 1, kMaxSets), "")
           .format();
   using H = HeaderEntry;
-  return Record<H>("the first line")
+  return StructFormat<H>("the first line")
       .Required("recording", &H::version, Integer<int>(kEpisodeVersion, kEpisodeVersion), "")
       .Required("episode", &H::episode, Name(), "")
       .Optional("grammar", &H::grammar, Name(), "")
@@ -123,32 +127,33 @@ Format<HeaderEntry> HeaderFormat() {
       .format();
 }
 
-Format<LineEntry> LineFormat() {
+ValueFormat<LineEntry> LineFormat() {
   using L = LookEntry;
-  const Format<L> look = Record<L>("look")
-                             .NamedByKey()
-                             .Required("at_m", &L::at_m, Position(), "")
-                             .Optional("quat_wxyz", &L::quat_wxyz, UnitQuaternion(), "")
-                             .Optional("v_m_per_s", &L::v_m_per_s, Velocity(), "")
-                             .Optional("w_rad_per_s", &L::w_rad_per_s, Velocity(), "")
-                             .Optional("asleep", &L::asleep, Flag(), "")
-                             .Optional("joint_position", &L::joint_position, Number(-1e4, 1e4), "")
-                             .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
-                             .Optional("gazes_at", &L::gazes_at, Name(), "")
-                             .format();
-  using H = HandEntry;
-  const Format<H> hand =
-      Record<H>("hand")
+  const ValueFormat<L> look =
+      StructFormat<L>("look")
+          .NamedByKey()
+          .Required("at_m", &L::at_m, Position(), "")
+          .Optional("quat_wxyz", &L::quat_wxyz, UnitQuaternion(), "")
+          .Optional("v_m_per_s", &L::v_m_per_s, Velocity(), "")
+          .Optional("w_rad_per_s", &L::w_rad_per_s, Velocity(), "")
+          .Optional("asleep", &L::asleep, Flag(), "")
+          .Optional("joint_position", &L::joint_position, Number(-1e4, 1e4), "")
+          .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
+          .Optional("gazes_at", &L::gazes_at, Name(), "")
+          .format();
+  using H = HandYaml;
+  const ValueFormat<H> hand =
+      StructFormat<H>("hand")
           .NamedByKey()
           .Optional("trigger", &H::trigger, Number(0, 1), "")
           .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
           .Optional("feelers_m", &H::feelers_m,
-                    ListOf(Vector<4>(-kFarthestM, kFarthestM), 1, kMaxFeelers), "")
+                    ListOf(Vector<4>(-kMaxPosition_m, kMaxPosition_m), 1, kMaxFeelers), "")
           .Optional("style", &H::style, Name(), "")
           .format();
   using T = TouchEntry;
-  const Format<T> touch =
-      Record<T>("a touch")
+  const ValueFormat<T> touch =
+      StructFormat<T>("a touch")
           .Required("a", &T::a, Name(), "")
           .Required("b", &T::b, Name(), "")
           .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
@@ -162,14 +167,14 @@ Format<LineEntry> LineFormat() {
   return ByKey<LineEntry>(
       "a line",
       {{"tick", AsAlternative<LineEntry>(
-                    Record<F>("a frame")
+                    StructFormat<F>("a frame")
                         .Required("tick", &F::tick, tick, "")
                         .Optional("looks", &F::looks, MapOf(Name(), look, 0, kMaxMembers), "")
                         .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
                         .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
                         .format())},
        {"end_tick",
-        AsAlternative<LineEntry>(Record<EndEntry>("the last line")
+        AsAlternative<LineEntry>(StructFormat<EndEntry>("the last line")
                                      .Required("end_tick", &EndEntry::end_tick, tick, "")
                                      .format())}});
 }
@@ -187,19 +192,18 @@ class EpisodeReader {
     if (text.find_first_not_of(" \r") == std::string::npos) return;
     auto document = ParseYaml(file_, text);
     if (!document.value) return Report(std::move(document.diagnostics));
-    Complaints complaints(*document.value);
+    DiagnosticList errors(*document.value);
     if (!header_) {
       HeaderEntry header;
-      if (HeaderFormat().read(document.value->root, complaints, header))
-        TakeHeader(header, complaints);
+      if (HeaderFormat().Read(document.value->root, errors, header)) TakeHeader(header, errors);
       header_ = true;
     } else {
       LineEntry line;
-      if (line_format_.read(document.value->root, complaints, line)) {
-        std::visit([&](const auto& entry) { Take(entry, complaints); }, line);
+      if (line_format_.Read(document.value->root, errors, line)) {
+        std::visit([&](const auto& entry) { Take(entry, errors); }, line);
       }
     }
-    if (!complaints.empty()) Report(complaints.Sorted());
+    if (!errors.empty()) Report(errors.Sorted());
   }
 
   void Finish() {
@@ -225,7 +229,7 @@ class EpisodeReader {
     diagnostics = std::move(found);
   }
 
-  void TakeHeader(const HeaderEntry& header, Complaints& complaints) {
+  void TakeHeader(const HeaderEntry& header, DiagnosticList& errors) {
     episode.header.episode = header.episode;
     episode.header.grammar = header.grammar;
     grammar::EntityTable& entity_table = episode.header.entity_table;
@@ -241,7 +245,7 @@ class EpisodeReader {
       member.round = m.round;
       member.mass_kg = m.mass_kg;
       member.strength_n = m.strength_n;
-      if (m.part_of) member.part_of = IndexOf(m.part_of->value, m.part_of->where, complaints);
+      if (m.part_of) member.part_of = IndexOf(m.part_of->value, m.part_of->where, errors);
       if (m.hand) {
         member.classes = {"Hand", "Entity"};
         member.sensor_sets = m.sensor_sets;
@@ -274,32 +278,31 @@ class EpisodeReader {
   }
 
   /// The entity of this name, or kNoEntity after complaining.
-  int IndexOf(const std::string& name, const Where& where, Complaints& complaints) const {
+  int IndexOf(const std::string& name, const Where& where, DiagnosticList& errors) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     if (found != names_.end()) return static_cast<int>(found - names_.begin());
-    complaints.AddUnknownName(where, fmt::format("no entity is called '{}'", name), name, names_);
+    errors.AddUnknownName(where, fmt::format("no entity is called '{}'", name), name, names_);
     return grammar::kNoEntity;
   }
 
-  void Take(const EndEntry& entry, Complaints& complaints) {
+  void Take(const EndEntry& entry, DiagnosticList& errors) {
     ended_ = true;
     episode.end_tick = entry.end_tick.value;
     if (!episode.frames.empty() && episode.end_tick <= episode.frames.back().tick) {
-      complaints.Add(
+      errors.Add(
           entry.end_tick.where,
           fmt::format("end_tick: expected more than {}, the tick of the last frame, found {}",
                       episode.frames.back().tick, episode.end_tick));
     }
   }
 
-  void Take(const FrameEntry& entry, Complaints& complaints) {
+  void Take(const FrameEntry& entry, DiagnosticList& errors) {
     const grammar::Tick before = now_.tick, tick = entry.tick.value;
     const bool first = episode.frames.empty();
-    if (ended_) return complaints.Add(entry.tick.where, "a frame after the line with 'end_tick'");
+    if (ended_) return errors.Add(entry.tick.where, "a frame after the line with 'end_tick'");
     if (!first && tick <= before) {
-      return complaints.Add(
-          entry.tick.where,
-          fmt::format("the ticks must increase: {} comes after {}", tick, before));
+      return errors.Add(entry.tick.where,
+                        fmt::format("the ticks must increase: {} comes after {}", tick, before));
     }
     const double dt_s = static_cast<double>(tick - before) /
                         static_cast<double>(episode.header.entity_table.ticks_per_second);
@@ -307,22 +310,22 @@ class EpisodeReader {
     for (grammar::EntitySample& look : now_.entities)
       look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
     for (const Named<LookEntry>& look : entry.looks) {
-      const int index = IndexOf(look.name, look.name_where, complaints);
+      const int index = IndexOf(look.name, look.name_where, errors);
       if (index == grammar::kNoEntity) continue;
       TakeSample(look.value, first ? 0 : dt_s, now_.entities[index]);
       if (const auto& gazes_at = look.value.gazes_at) {
-        now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, complaints);
+        now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, errors);
       }
     }
-    for (const Named<HandEntry>& hand : entry.hands) TakeHand(hand, complaints);
+    for (const Named<HandYaml>& hand : entry.hands) TakeHand(hand, errors);
     now_.touches.clear();
-    for (const TouchEntry& touch : entry.touches) TakeTouch(touch, complaints);
+    for (const TouchEntry& touch : entry.touches) TakeTouch(touch, errors);
     std::sort(now_.touches.begin(), now_.touches.end(), [](const auto& a, const auto& b) {
       return std::pair(a.a, a.b) < std::pair(b.a, b.b);
     });
     episode.frames.push_back(now_);
     if (episode.frames.size() > kMaxEpisodeFrames)
-      complaints.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
+      errors.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
   }
 
   /// Velocities that are not given are those from the previous look to this one.
@@ -346,15 +349,15 @@ class EpisodeReader {
     if (entry.w_rad_per_s) look.w_WB_rad_per_s = *entry.w_rad_per_s;
   }
 
-  void TakeHand(const Named<HandEntry>& named, Complaints& complaints) {
-    const int entity = IndexOf(named.name, named.name_where, complaints);
+  void TakeHand(const Named<HandYaml>& named, DiagnosticList& errors) {
+    const int entity = IndexOf(named.name, named.name_where, errors);
     if (entity == grammar::kNoEntity) return;
     const auto found = std::find(hands_.begin(), hands_.end(), entity);
     if (found == hands_.end())
-      return complaints.Add(named.name_where, fmt::format("'{}' is no hand", named.name),
-                            "its entity has no 'hand: true'");
+      return errors.Add(named.name_where, fmt::format("'{}' is no hand", named.name),
+                        "its entity has no 'hand: true'");
     const auto slot = static_cast<std::size_t>(found - hands_.begin());
-    const HandEntry& entry = named.value;
+    const HandYaml& entry = named.value;
     const grammar::EntitySample& look = now_.entities[static_cast<std::size_t>(entity)];
     grammar::HandSample& hand = now_.hands[slot];
     hand.trigger = entry.trigger;
@@ -364,9 +367,9 @@ class EpisodeReader {
       const std::vector<std::string>& styles = episode.header.entity_table.styles;
       const auto style = std::find(styles.begin(), styles.end(), entry.style->value);
       if (style == styles.end())
-        complaints.AddUnknownName(entry.style->where,
-                                  fmt::format("no style is called '{}'", entry.style->value),
-                                  entry.style->value, styles);
+        errors.AddUnknownName(entry.style->where,
+                              fmt::format("no style is called '{}'", entry.style->value),
+                              entry.style->value, styles);
       hand.style = static_cast<int>(style - styles.begin());
     }
     std::vector<grammar::CollisionSphere>& collision_spheres = now_.collision_spheres[slot];
@@ -376,12 +379,12 @@ class EpisodeReader {
     if (collision_spheres.empty()) collision_spheres.push_back({look.p_WB_m, 0});
   }
 
-  void TakeTouch(const TouchEntry& entry, Complaints& complaints) {
-    int a = IndexOf(entry.a.value, entry.a.where, complaints),
-        b = IndexOf(entry.b.value, entry.b.where, complaints);
+  void TakeTouch(const TouchEntry& entry, DiagnosticList& errors) {
+    int a = IndexOf(entry.a.value, entry.a.where, errors),
+        b = IndexOf(entry.b.value, entry.b.where, errors);
     if (a == grammar::kNoEntity || b == grammar::kNoEntity) return;
     if (a == b)
-      return complaints.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
+      return errors.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
     grammar::Touch touch{.a = a,
                          .b = b,
                          .up_on_a = entry.up_on_a,
@@ -389,7 +392,7 @@ class EpisodeReader {
                          .normal_force_n = entry.force_n};
     touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(SpeedAtTheUpper(touch));
     for (const Located<std::string>& set : entry.sensor_sets)
-      touch.sensor_sets |= SetBit(set, a, b, complaints);
+      touch.sensor_sets |= SetBit(set, a, b, errors);
     if (a > b) {
       std::swap(touch.a, touch.b);
       std::swap(touch.up_on_a, touch.up_on_b);
@@ -398,8 +401,8 @@ class EpisodeReader {
         std::any_of(now_.touches.begin(), now_.touches.end(),
                     [&](const grammar::Touch& t) { return t.a == touch.a && t.b == touch.b; });
     if (twice)
-      return complaints.Add(entry.a.where, fmt::format("'{}' and '{}' are said to touch twice",
-                                                       entry.a.value, entry.b.value));
+      return errors.Add(entry.a.where, fmt::format("'{}' and '{}' are said to touch twice",
+                                                   entry.a.value, entry.b.value));
     now_.touches.push_back(touch);
   }
 
@@ -411,19 +414,19 @@ class EpisodeReader {
   }
 
   std::uint32_t SetBit(const Located<std::string>& set, int a, int b,
-                       Complaints& complaints) const {
+                       DiagnosticList& errors) const {
     const std::vector<grammar::EntityInfo>& members = episode.header.entity_table.entities;
     const std::vector<std::string>& sets =
         !members[a].sensor_sets.empty() ? members[a].sensor_sets : members[b].sensor_sets;
     const auto found = std::find(sets.begin(), sets.end(), set.value);
     if (found != sets.end()) return std::uint32_t{1} << (found - sets.begin());
-    complaints.AddUnknownName(set.where, fmt::format("no sensor set is called '{}'", set.value),
-                              set.value, sets);
+    errors.AddUnknownName(set.where, fmt::format("no sensor set is called '{}'", set.value),
+                          set.value, sets);
     return 0;
   }
 
   std::string file_;
-  Format<LineEntry> line_format_;
+  ValueFormat<LineEntry> line_format_;
   int line_ = 0;
   bool header_ = false, ended_ = false;
   std::vector<std::string> names_;

@@ -18,7 +18,7 @@ bool IsHand(const grammar::EntityInfo& member) { return member.classes.front() =
 
 /// Of what is no hand: its own class, what that is a kind of, and what is built in.
 void AddClasses(const std::vector<std::string>& classes, Json& json) {
-  const auto given = std::find_if(classes.begin() + 1, classes.end(), IsBuiltInClass);
+  const auto given = std::find_if(classes.begin() + 1, classes.end(), IsScenarioBuiltinClass);
   json["class"] = classes.front();
   if (given != classes.begin() + 1)
     json["kinds"] = std::vector<std::string>(classes.begin() + 1, given);

@@ -26,7 +26,7 @@ struct Visit {
   int grip = 0, lift = 0, lower = 0, release = 0, leave = 0;
 };
 constexpr int kRiseFrames = 24;
-constexpr int kLongestVisit = 400;
+constexpr int kMaxVisitTicks = 400;
 constexpr double kRise_m = 0.24;
 
 class Stations {
@@ -40,7 +40,7 @@ class Stations {
     // agenda_[frame % period]: who does something then; every visit is over before its period is.
     for (int i = 0; i < objects; ++i) {
       starts_.push_back(
-          1 + static_cast<int>(random_() % static_cast<unsigned>(period_ - kLongestVisit)));
+          1 + static_cast<int>(random_() % static_cast<unsigned>(period_ - kMaxVisitTicks)));
     }
     agenda_.resize(static_cast<std::size_t>(period_));
     for (int i = 0; i < objects; ++i) PlanVisit(i);

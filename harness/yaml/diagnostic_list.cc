@@ -10,26 +10,26 @@
 
 namespace prehend::harness {
 
-void Complaints::Add(Where where, std::string message, std::string hint) {
+void DiagnosticList::Add(Where where, std::string message, std::string hint) {
   const YamlSource& source = document_.sources[static_cast<std::size_t>(where.source)];
   found_.emplace_back(where, grammar::DiagnosticAt(source.name, source.text, where.place,
                                                    std::move(message), std::move(hint)));
 }
 
-void Complaints::AddUnknownName(Where where, std::string message, const std::string& name,
-                                const std::vector<std::string>& candidates) {
-  constexpr std::size_t kMostListed = 20;
+void DiagnosticList::AddUnknownName(Where where, std::string message, const std::string& name,
+                                    const std::vector<std::string>& candidates) {
+  constexpr std::size_t kMaxListed = 20;
   const std::string near = grammar::NearestName(name, candidates);
   std::string hint;
   if (!near.empty()) {
     hint = fmt::format("did you mean '{}'?", near);
-  } else if (!candidates.empty() && candidates.size() <= kMostListed) {
+  } else if (!candidates.empty() && candidates.size() <= kMaxListed) {
     hint = fmt::format("known: {}", fmt::join(candidates, ", "));
   }
   Add(where, std::move(message), std::move(hint));
 }
 
-grammar::Diagnostics Complaints::Sorted() const {
+grammar::Diagnostics DiagnosticList::Sorted() const {
   auto sorted = found_;
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
     const auto key = [](const Where& w) {

@@ -11,10 +11,10 @@
 
 namespace prehend::harness {
 
-class Complaints {
+class DiagnosticList {
  public:
   /// The document outlives this object.
-  explicit Complaints(const YamlDocument& document) : document_(document) {}
+  explicit DiagnosticList(const YamlDocument& document) : document_(document) {}
 
   void Add(Where where, std::string message, std::string hint = {});
   /// For example "did you mean 'mass_kg'?", or the list of candidates when nothing is near.

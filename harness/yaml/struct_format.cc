@@ -26,26 +26,26 @@ std::string WithoutUnit(const std::string& key) {
 }
 
 /// Returns the known key that was probably meant, or "".
-std::string ComplainUnknownKey(const YamlNode& child, const std::string& title,
-                               const std::vector<std::string>& known, Complaints& complaints) {
+std::string ReportUnknownKey(const YamlNode& child, const std::string& title,
+                             const std::vector<std::string>& known, DiagnosticList& errors) {
   const std::string message = fmt::format("unknown key '{}' in {}", child.key, title);
   const auto same_stem = std::find_if(known.begin(), known.end(), [&](const std::string& key) {
     return WithoutUnit(key) == WithoutUnit(child.key);
   });
   if (same_stem != known.end()) {
-    complaints.Add(child.key_where, message, fmt::format("did you mean '{}'?", *same_stem));
+    errors.Add(child.key_where, message, fmt::format("did you mean '{}'?", *same_stem));
     return *same_stem;
   }
   if (const std::string remedy = LookAlikeRemedy(child.key); !remedy.empty()) {
-    complaints.Add(child.key_where, message, remedy);
+    errors.Add(child.key_where, message, remedy);
     return "";
   }
   const bool is_number = child.key.find_first_not_of("0123456789") == std::string::npos;
   if (is_number && child.kind == YamlNode::Kind::kNull) {
-    complaints.Add(child.key_where, message, "decimals have a point: 0.5");
+    errors.Add(child.key_where, message, "decimals have a point: 0.5");
     return "";
   }
-  complaints.AddUnknownName(child.key_where, message, child.key, known);
+  errors.AddUnknownName(child.key_where, message, child.key, known);
   return grammar::NearestName(child.key, known);
 }
 
@@ -66,13 +66,71 @@ std::vector<std::string> KeysPresent(const YamlNode& node, const std::vector<std
 
 Json Requires(const std::vector<std::string>& keys) { return {{"required", keys}}; }
 
+/// The index of the one key of `cases` that is in the mapping; nothing after complaining.
+std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& noun,
+                                    const std::vector<std::string>& cases, DiagnosticList& errors) {
+  if (node.kind != YamlNode::Kind::kMapping) {
+    ReportExpected(node, errors, fmt::format("a mapping with the fields of {}", noun));
+    return std::nullopt;
+  }
+  const auto present = KeysPresent(node, cases);
+  if (present.size() == 1) {
+    return static_cast<std::size_t>(std::find(cases.begin(), cases.end(), present[0]) -
+                                    cases.begin());
+  }
+  if (present.size() > 1) {
+    errors.Add(node.Find(present[1])->key_where,
+               fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
+    return std::nullopt;
+  }
+  const std::string first = node.children.empty() ? "" : node.children[0].key;
+  errors.AddUnknownName(
+      node.children.empty() ? node.where : node.children[0].key_where,
+      fmt::format("{} needs one of the keys {}", noun, fmt::join(cases, ", ")), first,
+      grammar::NearestName(first, cases).empty() ? std::vector<std::string>{} : cases);
+  return std::nullopt;
+}
+
 }  // namespace
 
-std::string RecordRules::TitleOf(const YamlNode& node) const {
+StructRules::StructRules(std::string called) : noun(std::move(called)) {}
+StructRules::StructRules(const StructRules& other) = default;
+StructRules::~StructRules() = default;
+
+void StructRules::Add(std::string_view key, bool required, std::ptrdiff_t offset,
+                      MemberReader read_member, const ErasedFormat& format, std::string_view doc,
+                      const void* initial) {
+  Json schema = {{"description", doc}};
+  schema.update(format.schema);
+  if (initial && format.show) schema["default"] = format.show(initial);
+  fields.push_back({.key = std::string(key),
+                    .required = required,
+                    .schema = std::move(schema),
+                    .offset = offset,
+                    .read_member = read_member,
+                    .read = format.read});
+}
+
+bool StructRules::Read(const YamlNode& node, DiagnosticList& errors, void* value) const {
+  char* const bytes = static_cast<char*>(value);
+  if (where_offset) *reinterpret_cast<Where*>(bytes + *where_offset) = node.where;
+  bool good = CheckKeys(node, errors);
+  if (node.kind != YamlNode::Kind::kMapping) return good;
+  for (const Field& field : fields) {
+    const YamlNode* child = node.Find(field.key);
+    if (child) good &= field.read_member(field.read, *child, errors, bytes + field.offset);
+  }
+  if (good) {
+    for (const Check& check : checks) check(node, value, errors);
+  }
+  return good;
+}
+
+std::string StructRules::TitleOf(const YamlNode& node) const {
   return named_by_key && !node.key.empty() ? fmt::format("{} '{}'", noun, node.key) : noun;
 }
 
-Json RecordRules::Schema() const {
+Json StructRules::Schema() const {
   Json schema = {
       {"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
   Json required = Json::array();
@@ -97,9 +155,9 @@ Json RecordRules::Schema() const {
   return schema;
 }
 
-bool RecordRules::CheckKeys(const YamlNode& node, Complaints& complaints) const {
+bool StructRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const {
   if (node.kind != YamlNode::Kind::kMapping) {
-    return ComplainWanted(node, complaints,
+    return ReportExpected(node, errors,
                           fmt::format("a mapping with the fields of {}", TitleOf(node)));
   }
   std::vector<std::string> known;
@@ -108,27 +166,27 @@ bool RecordRules::CheckKeys(const YamlNode& node, Complaints& complaints) const 
   std::set<std::string> meant;  // but misspelt: not to be called missing, too
   for (const YamlNode& child : node.children) {
     if (std::find(known.begin(), known.end(), child.key) != known.end()) continue;
-    meant.insert(ComplainUnknownKey(child, TitleOf(node), known, complaints));
+    meant.insert(ReportUnknownKey(child, TitleOf(node), known, errors));
     good = false;
   }
   for (const Field& field : fields) {
     if (!field.required || node.Find(field.key) || meant.contains(field.key)) continue;
-    complaints.Add(HeadOf(node), fmt::format("{} needs the key '{}'", TitleOf(node), field.key));
+    errors.Add(HeadOf(node), fmt::format("{} needs the key '{}'", TitleOf(node), field.key));
     good = false;
   }
   for (const auto& keys : exactly_one) {
     const bool misspelt =
         std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return meant.contains(key); });
     if (misspelt || !KeysPresent(node, keys).empty()) continue;
-    complaints.Add(HeadOf(node), fmt::format("{} needs one of the keys {}", TitleOf(node),
-                                             fmt::join(keys, ", ")));
+    errors.Add(HeadOf(node),
+               fmt::format("{} needs one of the keys {}", TitleOf(node), fmt::join(keys, ", ")));
     good = false;
   }
   for (const auto* groups : {&exactly_one, &at_most_one}) {
     for (const auto& keys : *groups) {
       const auto present = KeysPresent(node, keys);
       if (present.size() < 2) continue;
-      complaints.Add(
+      errors.Add(
           node.Find(present[1])->key_where,
           fmt::format("{} cannot have both '{}' and '{}'", TitleOf(node), present[0], present[1]));
       good = false;
@@ -137,29 +195,30 @@ bool RecordRules::CheckKeys(const YamlNode& node, Complaints& complaints) const 
   return good;
 }
 
-std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& noun,
-                                    const std::vector<std::string>& cases, Complaints& complaints) {
-  if (node.kind != YamlNode::Kind::kMapping) {
-    ComplainWanted(node, complaints, fmt::format("a mapping with the fields of {}", noun));
-    return std::nullopt;
+ErasedFormat FormatOf(const StructRules& rules) {
+  return {.schema = rules.Schema(),
+          .read = [shared = std::make_shared<const StructRules>(rules)](
+                      const YamlNode& node, DiagnosticList& errors, void* value) {
+            return shared->Read(node, errors, value);
+          }};
+}
+
+ErasedFormat ErasedByKey(const std::string& noun,
+                         std::vector<std::pair<std::string, ErasedFormat>> cases) {
+  Json one_of = Json::array();
+  std::vector<std::string> keys;
+  std::vector<ErasedFormat::Read> readers;
+  for (auto& [key, format] : cases) {
+    one_of.push_back(std::move(format.schema));
+    keys.push_back(key);
+    readers.push_back(std::move(format.read));
   }
-  const auto present = KeysPresent(node, cases);
-  if (present.size() == 1) {
-    return static_cast<std::size_t>(std::find(cases.begin(), cases.end(), present[0]) -
-                                    cases.begin());
-  }
-  if (present.size() > 1) {
-    complaints.Add(
-        node.Find(present[1])->key_where,
-        fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
-    return std::nullopt;
-  }
-  const std::string first = node.children.empty() ? "" : node.children[0].key;
-  complaints.AddUnknownName(
-      node.children.empty() ? node.where : node.children[0].key_where,
-      fmt::format("{} needs one of the keys {}", noun, fmt::join(cases, ", ")), first,
-      grammar::NearestName(first, cases).empty() ? std::vector<std::string>{} : cases);
-  return std::nullopt;
+  return {.schema = {{"oneOf", std::move(one_of)}},
+          .read = [noun, keys = std::move(keys), readers = std::move(readers)](
+                      const YamlNode& node, DiagnosticList& errors, void* value) {
+            const auto found = FindCase(node, noun, keys, errors);
+            return found && readers[*found](node, errors, value);
+          }};
 }
 
 }  // namespace prehend::harness

@@ -7,6 +7,7 @@
 #include <regex.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <memory>
@@ -44,25 +45,25 @@ bool HasControlCharacters(const std::string& text) {
 }
 
 /// The node's text when it is unmistakably a string, else a complaint.
-std::optional<std::string> StringOf(const YamlNode& node, Complaints& complaints,
+std::optional<std::string> StringOf(const YamlNode& node, DiagnosticList& errors,
                                     const std::string& wanted) {
   if (node.kind == YamlNode::Kind::kScalar) {
     ScalarMeaning meaning = MeaningOf(node);
     if (meaning.string && HasControlCharacters(*meaning.string)) {
-      complaints.Add(node.where,
-                     fmt::format("{}expected {}, found control characters", LabelOf(node), wanted));
+      errors.Add(node.where,
+                 fmt::format("{}expected {}, found control characters", LabelOf(node), wanted));
       return std::nullopt;
     }
     if (meaning.string) return std::move(meaning.string);
     if (meaning.number || meaning.flag) {
-      complaints.Add(node.where,
-                     fmt::format("{}expected {}, found the {} {}", LabelOf(node), wanted,
-                                 meaning.number ? "number" : "flag", node.text),
-                     fmt::format("put it in quotes if text is meant: '{}'", node.text));
+      errors.Add(node.where,
+                 fmt::format("{}expected {}, found the {} {}", LabelOf(node), wanted,
+                             meaning.number ? "number" : "flag", node.text),
+                 fmt::format("put it in quotes if text is meant: '{}'", node.text));
       return std::nullopt;
     }
   }
-  ComplainWanted(node, complaints, wanted);
+  ReportExpected(node, errors, wanted);
   return std::nullopt;
 }
 
@@ -87,30 +88,35 @@ std::string NumberRemedy(const YamlNode& node) {
                           : "write the number alone; its unit is the last word of the key";
 }
 
-bool ComplainNumberWanted(const YamlNode& node, Complaints& complaints, const std::string& wanted) {
+bool ReportExpectedNumber(const YamlNode& node, DiagnosticList& errors, const std::string& wanted) {
   const std::string remedy = NumberRemedy(node);
-  if (remedy.empty() || !MeaningOf(node).string) return ComplainWanted(node, complaints, wanted);
-  complaints.Add(node.where,
-                 fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
-                 remedy);
+  if (remedy.empty() || !MeaningOf(node).string) return ReportExpected(node, errors, wanted);
+  errors.Add(node.where,
+             fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)), remedy);
   return false;
 }
 
-bool HasSize(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
+bool HasSize(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most) {
   const std::size_t size = node.children.size();
   if (size >= least && size <= most) return true;
   const std::string wanted = least == most  ? fmt::format("{} items", least)
                              : size < least ? fmt::format("at least {}", least)
                                             : fmt::format("at most {}", most);
-  complaints.Add(node.where, fmt::format("{}expected {}, found {}", LabelOf(node), wanted, size));
+  errors.Add(node.where, fmt::format("{}expected {}, found {}", LabelOf(node), wanted, size));
   return false;
 }
 
-Json ShowString(const std::string& value) { return Json(value); }
+Json ShowString(const void* value) { return Json(*static_cast<const std::string*>(value)); }
+std::string& StringAt(void* value) { return *static_cast<std::string*>(value); }
 
 }  // namespace
 
-bool ComplainWanted(const YamlNode& node, Complaints& complaints, const std::string& wanted) {
+FormatHolder::FormatHolder(ErasedFormat erased) : erased_(std::move(erased)) {}
+FormatHolder::FormatHolder(const FormatHolder& other) = default;
+FormatHolder::FormatHolder(FormatHolder&& other) noexcept = default;
+FormatHolder::~FormatHolder() = default;
+
+bool ReportExpected(const YamlNode& node, DiagnosticList& errors, const std::string& wanted) {
   std::string message =
       fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node));
   std::string hint;
@@ -119,158 +125,277 @@ bool ComplainWanted(const YamlNode& node, Complaints& complaints, const std::str
     if (!meaning.ambiguous.empty()) message += fmt::format(" ({})", meaning.ambiguous);
     hint = meaning.remedy.empty() ? LookAlikeRemedy(node.text) : meaning.remedy;
   }
-  complaints.Add(node.where, std::move(message), std::move(hint));
+  errors.Add(node.where, std::move(message), std::move(hint));
   return false;
 }
 
-bool IsListOf(const YamlNode& node, Complaints& complaints, std::size_t least, std::size_t most) {
-  if (node.kind == YamlNode::Kind::kSequence) return HasSize(node, complaints, least, most);
+namespace {
+
+/// Complains when the node is no list, or has a wrong number of items. The same for mappings.
+bool IsListOf(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most) {
+  if (node.kind == YamlNode::Kind::kSequence) return HasSize(node, errors, least, most);
   const std::string wanted = least == most ? fmt::format("a list of {}", least) : "a list";
-  if (node.kind != YamlNode::Kind::kMapping) return ComplainWanted(node, complaints, wanted);
-  complaints.Add(node.where, fmt::format("{}expected {}, found a mapping", LabelOf(node), wanted),
-                 "each item on a line of its own begins with '- ', or all are in [..]");
+  if (node.kind != YamlNode::Kind::kMapping) return ReportExpected(node, errors, wanted);
+  errors.Add(node.where, fmt::format("{}expected {}, found a mapping", LabelOf(node), wanted),
+             "each item on a line of its own begins with '- ', or all are in [..]");
   return false;
 }
 
-bool IsMappingOf(const YamlNode& node, Complaints& complaints, std::size_t least,
+bool IsMappingOf(const YamlNode& node, DiagnosticList& errors, std::size_t least,
                  std::size_t most) {
-  if (node.kind == YamlNode::Kind::kMapping) return HasSize(node, complaints, least, most);
+  if (node.kind == YamlNode::Kind::kMapping) return HasSize(node, errors, least, most);
   if (node.kind != YamlNode::Kind::kSequence)
-    return ComplainWanted(node, complaints, "a mapping from names");
-  complaints.Add(node.where,
-                 fmt::format("{}expected a mapping from names, found a list", LabelOf(node)),
-                 "lines 'NAME: ..' without '- ' before them");
+    return ReportExpected(node, errors, "a mapping from names");
+  errors.Add(node.where,
+             fmt::format("{}expected a mapping from names, found a list", LabelOf(node)),
+             "lines 'NAME: ..' without '- ' before them");
   return false;
 }
 
-Format<double> Number(double lowest, double highest) {
+}  // namespace
+
+ValueFormat<double> Number(double lowest, double highest) {
   const std::string wanted = fmt::format("a number from {} to {}", lowest, highest);
-  return {.schema = {{"type", "number"}, {"minimum", lowest}, {"maximum", highest}},
-          .read =
-              [=](const YamlNode& node, Complaints& complaints, double& value) {
-                const auto meaning = NumericMeaning(node);
-                if (!meaning || !(*meaning->number >= lowest && *meaning->number <= highest)) {
-                  return ComplainNumberWanted(node, complaints, wanted);
-                }
-                value = *meaning->number;
-                return true;
-              },
-          .show = [](const double& value) { return Json(value); }};
+  return ValueFormat<double>(
+      {.schema = {{"type", "number"}, {"minimum", lowest}, {"maximum", highest}},
+       .read =
+           [=](const YamlNode& node, DiagnosticList& errors, void* value) {
+             const auto meaning = NumericMeaning(node);
+             if (!meaning || !(*meaning->number >= lowest && *meaning->number <= highest))
+               return ReportExpectedNumber(node, errors, wanted);
+             *static_cast<double*>(value) = *meaning->number;
+             return true;
+           },
+       .show = [](const void* value) { return Json(*static_cast<const double*>(value)); }});
 }
 
-Format<std::int64_t> Integer64(std::int64_t lowest, std::int64_t highest) {
+ErasedFormat ErasedInteger(std::int64_t lowest, std::int64_t highest, const IntegerAccess& access) {
   const std::string wanted = fmt::format("a whole number from {} to {}", lowest, highest);
   return {.schema = {{"type", "integer"}, {"minimum", lowest}, {"maximum", highest}},
           .read =
-              [=](const YamlNode& node, Complaints& complaints, std::int64_t& value) {
+              [=](const YamlNode& node, DiagnosticList& errors, void* value) {
                 const auto meaning = NumericMeaning(node);
                 constexpr double kExactInDouble = 9007199254740992.0;  // 2^53
-                if (!meaning || !meaning->integer || std::abs(*meaning->number) > kExactInDouble) {
-                  return ComplainWanted(node, complaints, wanted);
-                }
+                if (!meaning || !meaning->integer || std::abs(*meaning->number) > kExactInDouble)
+                  return ReportExpected(node, errors, wanted);
                 const auto whole = static_cast<std::int64_t>(*meaning->number);
-                if (whole < lowest || whole > highest)
-                  return ComplainWanted(node, complaints, wanted);
-                value = whole;
+                if (whole < lowest || whole > highest) return ReportExpected(node, errors, wanted);
+                access.set(whole, value);
                 return true;
               },
-          .show = [](const std::int64_t& value) { return Json(value); }};
+          .show = [access](const void* value) { return Json(access.get(value)); }};
 }
 
-Format<bool> Flag() {
-  return {.schema = {{"type", "boolean"}},
-          .read =
-              [](const YamlNode& node, Complaints& complaints, bool& value) {
-                if (node.kind != YamlNode::Kind::kScalar || !MeaningOf(node).flag) {
-                  return ComplainWanted(node, complaints, "true or false");
-                }
-                value = *MeaningOf(node).flag;
-                return true;
-              },
-          .show = [](const bool& value) { return Json(value); }};
+ValueFormat<bool> Flag() {
+  return ValueFormat<bool>(
+      {.schema = {{"type", "boolean"}},
+       .read =
+           [](const YamlNode& node, DiagnosticList& errors, void* value) {
+             if (node.kind != YamlNode::Kind::kScalar || !MeaningOf(node).flag)
+               return ReportExpected(node, errors, "true or false");
+             *static_cast<bool*>(value) = *MeaningOf(node).flag;
+             return true;
+           },
+       .show = [](const void* value) { return Json(*static_cast<const bool*>(value)); }});
 }
 
-Format<std::string> Text(std::size_t max_length) {
+ValueFormat<std::string> Text(std::size_t max_length) {
   const std::string wanted = fmt::format("text of 1 to {} bytes", max_length);
-  return {.schema = {{"type", "string"}, {"minLength", 1}, {"maxLength", max_length}},
-          .read =
-              [=](const YamlNode& node, Complaints& complaints, std::string& value) {
-                auto text = StringOf(node, complaints, wanted);
-                if (!text) return false;
-                if (text->empty() || text->size() > max_length)
-                  return ComplainWanted(node, complaints, wanted);
-                value = std::move(*text);
-                return true;
-              },
-          .show = ShowString};
+  return ValueFormat<std::string>(
+      {.schema = {{"type", "string"}, {"minLength", 1}, {"maxLength", max_length}},
+       .read =
+           [=](const YamlNode& node, DiagnosticList& errors, void* value) {
+             auto text = StringOf(node, errors, wanted);
+             if (!text) return false;
+             if (text->empty() || text->size() > max_length)
+               return ReportExpected(node, errors, wanted);
+             StringAt(value) = std::move(*text);
+             return true;
+           },
+       .show = ShowString});
 }
 
-Format<std::string> Word(const std::string& pattern, const std::string& wanted,
-                         std::size_t max_length) {
+ValueFormat<std::string> Word(const std::string& pattern, const std::string& wanted,
+                              std::size_t max_length) {
   const std::string whole = "^(" + pattern + ")$";
-  return {.schema = {{"type", "string"}, {"pattern", whole}, {"maxLength", max_length}},
-          .read =
-              [=, matcher = Compiled(whole)](const YamlNode& node, Complaints& complaints,
-                                             std::string& value) {
-                auto text = StringOf(node, complaints, wanted);
-                if (!text) return false;
-                if (text->size() > max_length) {
-                  return ComplainWanted(node, complaints,
-                                        fmt::format("{} of at most {} bytes", wanted, max_length));
-                }
-                if (!Matches(matcher.get(), *text)) return ComplainWanted(node, complaints, wanted);
-                value = std::move(*text);
-                return true;
-              },
-          .show = ShowString};
+  return ValueFormat<std::string>(
+      {.schema = {{"type", "string"}, {"pattern", whole}, {"maxLength", max_length}},
+       .read =
+           [=, matcher = Compiled(whole)](const YamlNode& node, DiagnosticList& errors,
+                                          void* value) {
+             auto text = StringOf(node, errors, wanted);
+             if (!text) return false;
+             if (text->size() > max_length) {
+               return ReportExpected(node, errors,
+                                     fmt::format("{} of at most {} bytes", wanted, max_length));
+             }
+             if (!Matches(matcher.get(), *text)) return ReportExpected(node, errors, wanted);
+             StringAt(value) = std::move(*text);
+             return true;
+           },
+       .show = ShowString});
 }
 
 void CheckLeastMost(const std::string& key, const Eigen::Vector2d& range, Where where,
-                    Complaints& complaints) {
+                    DiagnosticList& errors) {
   if (range[0] < range[1]) return;
-  complaints.Add(
-      where, fmt::format("{}: expected [least, most], found [{}, {}]", key, range[0], range[1]));
+  errors.Add(where,
+             fmt::format("{}: expected [least, most], found [{}, {}]", key, range[0], range[1]));
 }
 
-Format<Eigen::Vector4d> UnitQuaternion() {
-  const auto vector = Vector<4>(-1, 1);
-  return {.schema = vector.schema,
+namespace {
+
+/// `count` numbers in a row, from `value` on.
+ErasedFormat ErasedVector(std::size_t count, double lowest, double highest) {
+  const ValueFormat<double> number = Number(lowest, highest);
+  return {.schema = {{"type", "array"},
+                     {"items", number.schema()},
+                     {"minItems", count},
+                     {"maxItems", count}},
           .read =
-              [vector](const YamlNode& node, Complaints& complaints, Eigen::Vector4d& value) {
-                constexpr double kTolerance = 0.01;  // two written digits
-                if (!vector.read(node, complaints, value)) return false;
-                if (std::abs(value.norm() - 1) <= kTolerance) return true;
-                complaints.Add(node.where,
-                               fmt::format("{}expected a unit quaternion [w, x, y, z], found one "
-                                           "of length {:.4g}",
-                                           LabelOf(node), value.norm()));
-                return false;
+              [=](const YamlNode& node, DiagnosticList& errors, void* value) {
+                if (!IsListOf(node, errors, count, count)) return false;
+                std::array<double, 4> numbers{};
+                bool good = true;
+                for (std::size_t i = 0; i < count; ++i)
+                  good &= number.Read(node.children[i], errors, numbers[i]);
+                if (good) std::copy_n(numbers.data(), count, static_cast<double*>(value));
+                return good;
               },
-          .show = vector.show};
+          .show =
+              [count](const void* value) {
+                const auto* numbers = static_cast<const double*>(value);
+                return Json(std::vector<double>(numbers, numbers + count));
+              }};
 }
 
-Format<std::string> Identifier() { return Word("[a-z][a-z0-9_]*", "a name like 'milk_carton'"); }
+}  // namespace
 
-Format<std::string> Choice(std::vector<std::string> words) {
+template <>
+ValueFormat<Eigen::Vector2d> Vector<2>(double lowest, double highest) {
+  return ValueFormat<Eigen::Vector2d>(ErasedVector(2, lowest, highest));
+}
+template <>
+ValueFormat<Eigen::Vector3d> Vector<3>(double lowest, double highest) {
+  return ValueFormat<Eigen::Vector3d>(ErasedVector(3, lowest, highest));
+}
+template <>
+ValueFormat<Eigen::Vector4d> Vector<4>(double lowest, double highest) {
+  return ValueFormat<Eigen::Vector4d>(ErasedVector(4, lowest, highest));
+}
+
+ValueFormat<Eigen::Vector4d> UnitQuaternion() {
+  const auto vector = Vector<4>(-1, 1);
+  return ValueFormat<Eigen::Vector4d>(
+             vector.schema(),
+             [vector](const YamlNode& node, DiagnosticList& errors, Eigen::Vector4d& value) {
+               constexpr double kTolerance = 0.01;  // two written digits
+               if (!vector.Read(node, errors, value)) return false;
+               if (std::abs(value.norm() - 1) <= kTolerance) return true;
+               errors.Add(node.where,
+                          fmt::format("{}expected a unit quaternion [w, x, y, z], found one "
+                                      "of length {:.4g}",
+                                      LabelOf(node), value.norm()));
+               return false;
+             })
+      .ShownAs(vector);
+}
+
+ValueFormat<std::string> Identifier() {
+  return Word("[a-z][a-z0-9_]*", "a name like 'milk_carton'");
+}
+
+ValueFormat<std::string> Choice(std::vector<std::string> words) {
   const std::string wanted = words.size() == 1 ? fmt::format("'{}'", words[0])
                                                : fmt::format("one of {}", fmt::join(words, ", "));
-  return {.schema = {{"type", "string"}, {"enum", words}},
+  Json schema = {{"type", "string"}, {"enum", words}};
+  return ValueFormat<std::string>(
+      {.schema = std::move(schema),
+       .read =
+           [wanted, words = std::move(words)](const YamlNode& node, DiagnosticList& errors,
+                                              void* value) {
+             auto text = StringOf(node, errors, wanted);
+             if (!text) return false;
+             if (std::find(words.begin(), words.end(), *text) == words.end()) {
+               const std::string near = grammar::NearestName(*text, words);
+               errors.Add(
+                   node.where,
+                   fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
+                   near.empty() ? "" : fmt::format("did you mean '{}'?", near));
+               return false;
+             }
+             StringAt(value) = std::move(*text);
+             return true;
+           },
+       .show = ShowString});
+}
+
+ErasedFormat ErasedChoice(std::vector<std::string> words, std::vector<std::int64_t> meanings,
+                          const IntegerAccess& access) {
+  const ValueFormat<std::string> word = Choice(words);
+  return {.schema = word.schema(),
           .read =
-              [=](const YamlNode& node, Complaints& complaints, std::string& value) {
-                auto text = StringOf(node, complaints, wanted);
-                if (!text) return false;
-                if (std::find(words.begin(), words.end(), *text) == words.end()) {
-                  const std::string near = grammar::NearestName(*text, words);
-                  complaints.Add(
-                      node.where,
-                      fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
-                      near.empty() ? "" : fmt::format("did you mean '{}'?", near));
-                  return false;
-                }
-                value = std::move(*text);
+              [=](const YamlNode& node, DiagnosticList& errors, void* value) {
+                std::string chosen;
+                if (!word.Read(node, errors, chosen)) return false;
+                const auto found = std::ranges::find(words, chosen) - words.begin();
+                access.set(meanings[static_cast<std::size_t>(found)], value);
                 return true;
               },
-          .show = ShowString};
+          .show =
+              [=](const void* value) {
+                const auto found = std::ranges::find(meanings, access.get(value));
+                if (found == meanings.end()) return Json();
+                return Json(words[static_cast<std::size_t>(found - meanings.begin())]);
+              }};
+}
+
+ErasedFormat ErasedList(const ErasedFormat& item, std::size_t least, std::size_t most,
+                        const ListAccess& access) {
+  return {.schema = {{"type", "array"},
+                     {"items", item.schema},
+                     {"minItems", least},
+                     {"maxItems", most}},
+          .read =
+              [=, read = item.read](const YamlNode& node, DiagnosticList& errors, void* list) {
+                access.clear(list);
+                if (!IsListOf(node, errors, least, most)) return false;
+                bool good = true;
+                for (const YamlNode& child : node.children)
+                  good &= read(child, errors, access.append(list));
+                return good;
+              },
+          .show =
+              [access, show = item.show](const void* list) {
+                Json shown = Json::array();
+                for (std::size_t i = 0; i < access.size(list); ++i)
+                  shown.push_back(show ? show(access.at(list, i)) : Json());
+                return shown;
+              }};
+}
+
+ErasedFormat ErasedMap(const ValueFormat<std::string>& name, const ErasedFormat& item,
+                       std::size_t least, std::size_t most, const MapAccess& access) {
+  return {.schema = {{"type", "object"},
+                     {"propertyNames", name.schema()},
+                     {"additionalProperties", item.schema},
+                     {"minProperties", least},
+                     {"maxProperties", most}},
+          .read = [=, read_name = name.erased().read, read = item.read](
+                      const YamlNode& node, DiagnosticList& errors, void* map) {
+            access.clear(map);
+            bool good = IsMappingOf(node, errors, least, most);
+            for (const YamlNode& child : node.children) {
+              YamlNode key;
+              key.kind = YamlNode::Kind::kScalar;
+              key.text = child.key;
+              key.where = child.key_where;
+              std::string read_key = child.key;
+              good &= read_name(key, errors, &read_key);
+              good &= read(child, errors, access.append(map, read_key, child.key_where));
+            }
+            return good;
+          }};
 }
 
 }  // namespace prehend::harness

@@ -95,14 +95,14 @@ const YamlNode* ChildOf(const YamlNode& node, std::string_view step) {
 
 Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema,
                           YamlDocument& document) {
-  const auto complain = [&](std::size_t offset, std::string message,
-                            std::string hint) -> Diagnostics {
+  const auto report = [&](std::size_t offset, std::string message,
+                          std::string hint) -> Diagnostics {
     return {grammar::DiagnosticAt("--set", assignment, {1, static_cast<int>(offset) + 1},
                                   std::move(message), std::move(hint))};
   };
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size()) {
-    return complain(0, "expected PATH=VALUE", "for example entities.milk.mass_kg=8");
+    return report(0, "expected PATH=VALUE", "for example entities.milk.mass_kg=8");
   }
   auto parsed = ParseYaml("--set", assignment.substr(equals + 1));
   if (!parsed.value) return std::move(parsed.diagnostics);
@@ -118,8 +118,8 @@ Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema,
     const bool last = end == equals;
     const bool may_add = node->kind == Kind::kMapping && (last || IsOptionalMapping(known, step));
     if (!child && !may_add) {
-      return complain(begin, fmt::format("nothing is called '{}' here", step),
-                      HintFor(*node, known, step));
+      return report(begin, fmt::format("nothing is called '{}' here", step),
+                    HintFor(*node, known, step));
     }
     if (!child) {
       child = &node->children.emplace_back();

@@ -156,10 +156,10 @@ std::string Describe(const YamlNode& node) {
     case YamlNode::Kind::kScalar:
       break;
   }
-  constexpr std::size_t kMostShown = 40;
+  constexpr std::size_t kMaxShown = 40;
   std::string shown = node.text;
-  if (shown.size() > kMostShown) {
-    std::size_t cut = kMostShown;  // not within a UTF-8 sequence
+  if (shown.size() > kMaxShown) {
+    std::size_t cut = kMaxShown;  // not within a UTF-8 sequence
     while (cut > 0 && (static_cast<unsigned char>(shown[cut]) & 0xC0) == 0x80) --cut;
     shown = shown.substr(0, cut) + "...";
   }

@@ -141,7 +141,7 @@ MadeHull NoHull(int point, std::string problem, std::string remedy) {
 std::optional<MadeHull> FindDouble(const Points& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if ((points[i] - points[j]).norm() < kNearestHullPoints_m)
+      if ((points[i] - points[j]).norm() < kMinHullPointDistance_m)
         return NoHull(
             static_cast<int>(i),
             "point " + std::to_string(i) + " is at the same place as point " + std::to_string(j),
@@ -192,7 +192,7 @@ MadeHull MakeHull(const Points& points_m) {
             .volume_m3 = 0,
             .X_SC = {},
             .gyration_m2 = Vector3d::Zero()};
-  if (ThicknessOf(hull) < kThinnestHull_m) {
+  if (ThicknessOf(hull) < kMinHullThickness_m) {
     return NoHull(-1, "the points lie in a plane, or within 1 mm of one",
                   "a hull is a solid: add points on both sides of the plane");
   }

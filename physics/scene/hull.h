@@ -27,11 +27,11 @@ struct Hull {
       Eigen::Vector3d::Zero();  ///< moments of inertia about the axes of C, per mass
 };
 
-inline constexpr int kFewestHullPoints = 4;
-inline constexpr int kMostHullPoints = 64;
+inline constexpr int kMinHullPoints = 4;
+inline constexpr int kMaxHullPoints = 64;
 /// Points nearer to each other than this count as one; a solid thinner than this is refused.
-inline constexpr double kNearestHullPoints_m = 1e-4;
-inline constexpr double kThinnestHull_m = 1e-3;
+inline constexpr double kMinHullPointDistance_m = 1e-4;
+inline constexpr double kMinHullThickness_m = 1e-3;
 
 /// A hull, or the reason why there is none.
 struct MadeHull {
@@ -39,7 +39,7 @@ struct MadeHull {
   int point = -1;  ///< index of the wrong point; -1: the points as a whole
   std::string problem, remedy;
 };
-/// Every point must be a corner; kFewestHullPoints to kMostHullPoints of them.
+/// Every point must be a corner; kMinHullPoints to kMaxHullPoints of them.
 MadeHull MakeHull(const std::vector<Eigen::Vector3d>& points_m);
 
 /// The nearest point of the solid; the point itself if it is inside.

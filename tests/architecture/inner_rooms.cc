@@ -66,7 +66,7 @@ const Arrows& ProjectArrows() {
        {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/golden",
         "harness/oracle", "harness/pictures", "harness/process", "harness/read", "harness/run",
         "harness/scenario", "harness/sense", "harness/timeline", "physics/scene"}},
-      {"harness/report", {"harness/base", "harness/check"}},
+      {"harness/report", {"harness/base", "harness/check", "harness/golden", "harness/timeline"}},
       {"harness/cli",
        {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/check",
         "harness/explain", "harness/format", "harness/golden", "harness/oracle", "harness/pictures",

@@ -31,7 +31,7 @@ physics::Body MakeBody(const std::string& name, const physics::Shape& shape, con
 Pose GraspPose(const Vector3f& p_m) {
   const Eigen::Quaterniond q =
       Eigen::AngleAxisd(2.4, Vector3d::UnitZ()) * Eigen::AngleAxisd(-1.45, Vector3d::UnitX());
-  return {p_m.entity_table<double>(), q};
+  return {p_m.cast<double>(), q};
 }
 
 std::vector<Vector3f> Curve(const Vector3f& a, const Vector3f& b, const Vector3f& c,
@@ -93,8 +93,7 @@ physics::Snapshot At(const physics::Scene& scene, const Vector3f& hand_m, double
   physics::Snapshot snapshot;
   for (const physics::Body& body : scene.bodies) snapshot.bodies.push_back({.X_WB = body.X_WB});
   snapshot.hands.push_back(DemoHandState(scene.hands[0].model, GraspPose(hand_m), curl_rad));
-  if (held)
-    snapshot.bodies[1].X_WB.p_m = hand_m.entity_table<double>() + Vector3d(-0.055, 0.04, -0.02);
+  if (held) snapshot.bodies[1].X_WB.p_m = hand_m.cast<double>() + Vector3d(-0.055, 0.04, -0.02);
   return snapshot;
 }
 
@@ -137,9 +136,9 @@ physics::HandState DemoHandState(const physics::HandModel& model, const Pose& X_
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(curl_rad, link.joint_axis));
     X_WJ.push_back(X_WP * Pose{link.pivot_m, turn} *
                    Pose{-link.pivot_m, Eigen::Quaterniond::Identity()});
-    const Pose X_HL{link.pivot_m + link.direction * link.length_m / 2,
-                    RotationBetween(Eigen::Vector3f::UnitX(), link.direction.entity_table<float>())
-                        .entity_table<double>()};
+    const Pose X_HL{
+        link.pivot_m + link.direction * link.length_m / 2,
+        RotationBetween(Eigen::Vector3f::UnitX(), link.direction.cast<float>()).cast<double>()};
     state.X_WL.push_back(X_WJ.back() * X_HL);
   }
   return state;

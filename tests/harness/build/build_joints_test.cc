@@ -92,7 +92,7 @@ TEST(BuildJoints, CompoundsAndWhatStandsInThem) {
 struct Case {
   const char* name;
   std::string text;
-  std::string complaints;
+  std::string errors;
 };
 
 TEST(BuildJoints, RefusesWhatCannotBe) {
@@ -133,7 +133,7 @@ TEST(BuildJoints, RefusesWhatCannotBe) {
   for (const Case& c : cases) {
     const auto read = Read(c.text);
     EXPECT_FALSE(read.value) << c.name;
-    EXPECT_EQ(Brief(read.diagnostics), c.complaints) << c.name;
+    EXPECT_EQ(Brief(read.diagnostics), c.errors) << c.name;
   }
 }
 

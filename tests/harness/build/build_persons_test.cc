@@ -25,7 +25,7 @@ std::string WithActor(const std::string& actor, const std::string& beat = "") {
 ReadResult<Scenario> Read(const std::string& text) {
   return ReadScenarioText("probe.yaml", text, {}, ProbeLibrary());
 }
-std::string ComplaintsAbout(const std::string& text) { return Brief(Read(text).diagnostics); }
+std::string ErrorsAbout(const std::string& text) { return Brief(Read(text).diagnostics); }
 
 TEST(PersonsTest, ABodyIsAnEntityWithParts) {
   const auto read = Read(WithActor("{person: body, at_m: [-0.9, 0, 0], right_hand: right_hand}"));
@@ -61,11 +61,11 @@ struct Bad {
   const char* name;
   const char* actor;
   const char* beat;
-  const char* complaints;
+  const char* errors;
 };
 class PersonsRefused : public testing::TestWithParam<Bad> {};
 TEST_P(PersonsRefused, WithTheirPlace) {
-  EXPECT_EQ(ComplaintsAbout(WithActor(GetParam().actor, GetParam().beat)), GetParam().complaints);
+  EXPECT_EQ(ErrorsAbout(WithActor(GetParam().actor, GetParam().beat)), GetParam().errors);
 }
 
 // clang-format off
@@ -96,7 +96,7 @@ TEST(PersonsTest, NamesOfPartsMustBeFree) {
       "entities:\n  anna_pelvis: {fixed: true, sphere: {radius_m: 0.1}, at_m: [0, 3, 1]}\n";
   std::string clash = text;
   clash.replace(clash.find("entities:\n"), 10, taken);
-  EXPECT_EQ(ComplaintsAbout(clash),
+  EXPECT_EQ(ErrorsAbout(clash),
             "11:3: 'anna_pelvis' is the name of a part of 'anna' and of something else\n");
 }
 
@@ -124,15 +124,14 @@ TEST(TrackingOfAHandTest, IsSetFromTheCommandLine) {
 }
 
 TEST(TrackingOfAHandTest, Refuses) {
-  EXPECT_EQ(ComplaintsAbout(WithTracking("{jitter_m: 1}")),
+  EXPECT_EQ(ErrorsAbout(WithTracking("{jitter_m: 1}")),
             "9:72: unknown key 'jitter_m' in the tracking | did you mean 'jitter_mm'?\n");
-  EXPECT_EQ(ComplaintsAbout(WithTracking("{tracker_hz: 960}")),
+  EXPECT_EQ(ErrorsAbout(WithTracking("{tracker_hz: 960}")),
             "9:71: tracker_hz 960 is above rate_hz 480\n");
-  EXPECT_EQ(ComplaintsAbout(WithTracking("{latency_s: 3}")),
+  EXPECT_EQ(ErrorsAbout(WithTracking("{latency_s: 3}")),
             "9:83: latency_s: expected a number from 0 to 2, found '3'\n");
-  EXPECT_EQ(
-      ComplaintsAbout(WithTracking("{tracker_hz: 10, dropped_share: 0.9, dropped_run_s: 0.5}")),
-      "9:123: dropped_run_s: a share of 0.9 needs losses of at least 0.900 s\n");
+  EXPECT_EQ(ErrorsAbout(WithTracking("{tracker_hz: 10, dropped_share: 0.9, dropped_run_s: 0.5}")),
+            "9:123: dropped_run_s: a share of 0.9 needs losses of at least 0.900 s\n");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct Case {
   const char* from;
   const char* to;
   Schema schema;  ///< what a validator makes of it: it does not know what names mean, nor geometry
-  const char* complaints;
+  const char* errors;
 };
 
 constexpr const char* kMilk =
@@ -220,7 +220,7 @@ class ScenarioError : public testing::TestWithParam<Case> {};
 TEST_P(ScenarioError, IsExplainedInFull) {
   const std::string text = ProbeWith(GetParam().from, GetParam().to);
   EXPECT_EQ(Brief(ReadScenarioText("probe.yaml", text, {}, ProbeLibrary()).diagnostics),
-            GetParam().complaints);
+            GetParam().errors);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ScenarioError, testing::ValuesIn(kCases),

@@ -27,15 +27,15 @@ std::string Write(const std::string& name, const std::string& text) {
 }
 
 /// What is said about a file, its folder left out.
-std::string Complaints(const grammar::Diagnostics& diagnostics) {
+std::string DiagnosticList(const grammar::Diagnostics& diagnostics) {
   std::string text = Brief(diagnostics);
   for (std::size_t at; (at = text.find(Folder())) != std::string::npos;)
     text.erase(at, Folder().size());
   return text;
 }
 
-std::string CsvComplaints(const std::string& text) {
-  return Complaints(ReadMotionCsv(Write("m.csv", text)).diagnostics);
+std::string CsvErrors(const std::string& text) {
+  return DiagnosticList(ReadMotionCsv(Write("m.csv", text)).diagnostics);
 }
 
 TEST(MotionCsvTest, ReadsUnitsOfTheHeader) {
@@ -46,7 +46,7 @@ TEST(MotionCsvTest, ReadsUnitsOfTheHeader) {
                           "100, 500, 20, 1.5, 0, 0, 1.5707963267948966, 0\n"
                           "\n"
                           "350, 600, 20, 1.5, 0, 0, 0, 1\n"));
-  ASSERT_TRUE(track.value) << Complaints(track.diagnostics);
+  ASSERT_TRUE(track.value) << DiagnosticList(track.diagnostics);
   ASSERT_EQ(track.value->samples.size(), 2u);
   const TrackSample &a = track.value->samples[0], &b = track.value->samples[1];
   EXPECT_DOUBLE_EQ(a.t_s, 0);
@@ -68,14 +68,12 @@ TEST(MotionCsvTest, QuaternionAndTriggerAreOptional) {
 struct BadCsv {
   const char* name;
   const char* text;
-  const char* complaints;
+  const char* errors;
 };
 
 class MotionCsvRefuses : public testing::TestWithParam<BadCsv> {};
 
-TEST_P(MotionCsvRefuses, WithItsPlace) {
-  EXPECT_EQ(CsvComplaints(GetParam().text), GetParam().complaints);
-}
+TEST_P(MotionCsvRefuses, WithItsPlace) { EXPECT_EQ(CsvErrors(GetParam().text), GetParam().errors); }
 
 // clang-format off
 INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
@@ -102,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
 // clang-format on
 
 TEST(MotionCsvTest, AMissingFileIsNamed) {
-  EXPECT_EQ(Complaints(ReadMotionCsv(Folder() + "none.csv").diagnostics),
+  EXPECT_EQ(DiagnosticList(ReadMotionCsv(Folder() + "none.csv").diagnostics),
             "none.csv:0:0: no such file\n");
 }
 
@@ -119,7 +117,7 @@ constexpr const char* kCapture = R"({"right": {"poses": [
 
 TEST(MotionCaptureTest, TurnsIntoOurAxes) {
   const auto track = ReadMotionCapture(Write("m.json", kCapture), {.name = "right"});
-  ASSERT_TRUE(track.value) << Complaints(track.diagnostics);
+  ASSERT_TRUE(track.value) << DiagnosticList(track.diagnostics);
   const physics::Pose& turned = track.value->samples[0].X_RD;
   EXPECT_LT((turned.p_m - Eigen::Vector3d(0.3, -0.1, 1.2)).norm(), 1e-12);
   // Turned to the left by a right angle: what was ahead is now left.
@@ -150,34 +148,34 @@ TEST(MotionCaptureTest, ValuesGoBeforePresses) {
 }
 
 TEST(MotionCaptureTest, Refuses) {
-  const auto complaints = [](const std::string& text, const std::string& device) {
-    return Complaints(ReadMotionCapture(Write("m.json", text), {.name = device}).diagnostics);
+  const auto errors = [](const std::string& text, const std::string& device) {
+    return DiagnosticList(ReadMotionCapture(Write("m.json", text), {.name = device}).diagnostics);
   };
-  EXPECT_EQ(complaints(kCapture, "rigth"),
+  EXPECT_EQ(errors(kCapture, "rigth"),
             "m.json:1:1: no device is called 'rigth' | did you mean 'right'?\n");
-  EXPECT_EQ(complaints("[1, 2]", "right"),
+  EXPECT_EQ(errors("[1, 2]", "right"),
             "m.json:1:1: expected an object with the devices of a recording | like {\"right\": "
             "{\"poses\": [...], \"events\": [...]}}\n");
-  EXPECT_EQ(complaints(R"({"right": {}})", "right"), "m.json:1:2: 'right' has no 'poses'\n");
+  EXPECT_EQ(errors(R"({"right": {}})", "right"), "m.json:1:2: 'right' has no 'poses'\n");
   std::string text = kCapture;
   text.replace(text.find("\"timestamp\": 1200"), 17, "\"timestamp\": 1100");
-  EXPECT_EQ(complaints(text, "right"),
+  EXPECT_EQ(errors(text, "right"),
             "m.json:4:100: the timestamps must increase from pose to pose: 1100 ms comes after "
             "1100 ms\n");
-  EXPECT_EQ(complaints("{\"right\": [", "right"),
+  EXPECT_EQ(errors("{\"right\": [", "right"),
             "m.json:1:1: not valid JSON: a '[' before this is not closed | each '[' needs its ']', "
             "each '{' its '}'\n");
   const auto with_state = [&](const char* state) {
     std::string changed = kCapture;
     changed.replace(changed.find("\"state\": {}"), 11, state);
-    return complaints(changed, "right");
+    return errors(changed, "right");
   };
   EXPECT_EQ(with_state("\"state\": {\"value\": 7}"),
             "m.json:7:68: value: expected a number from 0 to 1, found '7'\n");
   const auto with_id = [&](const char* id) {
     std::string changed = kCapture;
     changed.replace(changed.find("\"id\": 2"), 7, id);
-    return complaints(changed, "right");
+    return errors(changed, "right");
   };
   EXPECT_EQ(with_id("\"id\": \"x\""),
             "m.json:9:43: id: expected a whole number from 0 to 1000, found the text 'x'\n");
@@ -192,12 +190,12 @@ TEST(CheckTrackTest, GapsAndJumpsAreToldAndLimited) {
   }
   const auto track = ReadMotionCsv(Write("m.csv", csv));
   ASSERT_TRUE(track.value);
-  EXPECT_EQ(Complaints(CheckTrack(*track.value, {})),
+  EXPECT_EQ(DiagnosticList(CheckTrack(*track.value, {})),
             "m.csv:22:1: gap: no sample for 0.160 s before this one, at 0.350 s; it is bridged\n"
             "m.csv:27:1: jump: 0.090 m within 0.010 s, at 0.400 s\n");
   for (const auto& diagnostic : CheckTrack(*track.value, {})) EXPECT_TRUE(diagnostic.is_warning);
   const auto strict = CheckTrack(*track.value, {.gap_s = 0.1, .jump_m = 0.05});
-  EXPECT_EQ(Complaints(strict),
+  EXPECT_EQ(DiagnosticList(strict),
             "m.csv:22:1: gap: no sample for 0.160 s before this one, at 0.350 s; at most 0.1 s are "
             "bridged | cut the "
             "recording with from_s and to_s, or raise most_gap_s\n"

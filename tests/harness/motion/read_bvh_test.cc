@@ -42,7 +42,7 @@ ReadResult<BvhFile> Read(const std::string& text) {
 }
 
 /// With `what` replaced; where and what is said.
-std::string ComplaintsWith(const std::string& what, const std::string& by) {
+std::string ErrorsWith(const std::string& what, const std::string& by) {
   std::string text = kArm;
   text.replace(text.find(what), what.size(), by);
   std::string said = Brief(Read(text).diagnostics);
@@ -98,7 +98,7 @@ TEST(MotionBvhTest, SaysWhatIsWrongAndWhere) {
       {"1 2 3", "1 inf 3", "18:3: expected a number, found 'inf'\n"},
       {"1 2 3", "1 2e9 3", "18:3: expected a number from -1000000 to 1000000, found 2e9\n"},
   };
-  for (const Bad& bad : bads) EXPECT_EQ(ComplaintsWith(bad.what, bad.by), bad.said) << bad.by;
+  for (const Bad& bad : bads) EXPECT_EQ(ErrorsWith(bad.what, bad.by), bad.said) << bad.by;
 }
 
 TEST(MotionBvhTest, TheEndComesTooEarly) {

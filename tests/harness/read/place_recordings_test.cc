@@ -38,7 +38,7 @@ class RecordedInputTest : public testing::Test {
                             ProbeWith("{reach: milk, style: wrap, over_s: 0.8}", "{" + step + "}"),
                             {}, ProbeLibrary());
   }
-  std::string ComplaintsAbout(const std::string& step) {
+  std::string ErrorsAbout(const std::string& step) {
     std::string text = Brief(Read(step).diagnostics);
     const std::string folder = folder_.string() + "/";
     for (std::size_t at; (at = text.find(folder)) != std::string::npos;)
@@ -96,23 +96,23 @@ TEST_F(RecordedInputTest, FollowsTheRecordingWithoutDriftAtAnyRate) {
 }
 
 TEST_F(RecordedInputTest, Refuses) {
-  EXPECT_EQ(ComplaintsAbout("recording: lime.csv"),
+  EXPECT_EQ(ErrorsAbout("recording: lime.csv"),
             "probe.yaml:11:29: recording: 'lime.csv' cannot be used, see below\nlime.csv:0:0: no "
             "such file\n");
-  EXPECT_EQ(ComplaintsAbout("recording: line.txt"),
+  EXPECT_EQ(ErrorsAbout("recording: line.txt"),
             "probe.yaml:11:29: recording: expected a .csv, .json or .bvh file, found 'line.txt'\n");
-  EXPECT_EQ(ComplaintsAbout("recording: line.json"),
+  EXPECT_EQ(ErrorsAbout("recording: line.json"),
             "probe.yaml:11:29: recording: which device of the .json file is followed? | add "
             "device: right\n");
-  EXPECT_EQ(ComplaintsAbout("recording: line.csv, device: right"),
+  EXPECT_EQ(ErrorsAbout("recording: line.csv, device: right"),
             "probe.yaml:11:47: device: a CSV file has only one\n");
-  EXPECT_EQ(ComplaintsAbout("recording: line.csv, button: 1"),
+  EXPECT_EQ(ErrorsAbout("recording: line.csv, button: 1"),
             "probe.yaml:11:47: button: a CSV file has a trigger, no buttons\n");
-  EXPECT_EQ(ComplaintsAbout("recording: line.csv, from_s: 1.9, to_s: 1.905"),
+  EXPECT_EQ(ErrorsAbout("recording: line.csv, from_s: 1.9, to_s: 1.905"),
             "probe.yaml:11:58: between 1.9 and 1.905 s the recording has 1 of at least 2 samples "
             "| it takes 2.000 s\n");
   EXPECT_EQ(
-      ComplaintsAbout("recording: line.csv, style: warp"),
+      ErrorsAbout("recording: line.csv, style: warp"),
       "probe.yaml:11:46: style: hand 'human_right' has no style 'warp' | did you mean 'wrap'?\n");
 }
 
@@ -126,7 +126,7 @@ TEST_F(RecordedInputTest, OddRecordingsAreUsedWithAWarning) {
   EXPECT_EQ(read.value->warnings[0].message,
             "gap: no sample for 0.200 s before this one, at 0.220 s; it is bridged");
   EXPECT_TRUE(read.value->warnings[0].is_warning);
-  EXPECT_EQ(ComplaintsAbout("recording: gap.csv, most_gap_s: 0.1"),
+  EXPECT_EQ(ErrorsAbout("recording: gap.csv, most_gap_s: 0.1"),
             "probe.yaml:11:29: recording: 'gap.csv' cannot be used, see below\n"
             "gap.csv:5:1: gap: no sample for 0.200 s before this one, at 0.220 s; at most 0.1 s "
             "are bridged | cut the "
@@ -143,18 +143,18 @@ TEST_F(RecordedInputTest, TheTriggerHasToBeAButtonThatIsPressed) {
                                         << pose << "10}], \"events\": [" << events << "]}}";
   };
   write(R"({"name": "buttondown", "detail": {"id": 2}, "timestamp": 5})");
-  EXPECT_EQ(ComplaintsAbout("recording: pad.json"),
+  EXPECT_EQ(ErrorsAbout("recording: pad.json"),
             "probe.yaml:11:29: recording: which device of the .json file is followed? | add "
             "device: left or right\n");
-  EXPECT_EQ(ComplaintsAbout("recording: pad.json, device: right, button: 3"),
+  EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 3"),
             "probe.yaml:11:62: button: button 3 of 'right' is never pressed | pressed are 2\n");
-  EXPECT_EQ(ComplaintsAbout("recording: pad.json, device: right, button: 2"), "");
+  EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 2"), "");
   const auto odd = Read("recording: pad.json, device: right");
   ASSERT_TRUE(odd.value && odd.value->warnings.size() == 1) << Brief(odd.diagnostics);
   EXPECT_EQ(odd.value->warnings[0].message,
             "button 1 of 'right' is never pressed, so the grip stays open");
   write("");
-  EXPECT_EQ(ComplaintsAbout("recording: pad.json, device: right, button: 2"),
+  EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 2"),
             "probe.yaml:11:62: button: button 2 of 'right' is never pressed | no button is\n");
   EXPECT_TRUE(Read("recording: pad.json, device: right").value->warnings.empty());
 }

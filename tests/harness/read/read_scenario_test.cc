@@ -22,8 +22,7 @@ Scenario Read(const std::string& text, const std::vector<std::string>& overrides
   return read.value.value_or(Scenario{});
 }
 
-std::string ComplaintsAbout(const std::string& text,
-                            const std::vector<std::string>& overrides = {}) {
+std::string ErrorsAbout(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return Brief(ReadScenarioText("probe.yaml", text, overrides, ProbeLibrary()).diagnostics);
 }
 
@@ -143,21 +142,21 @@ TEST(ReadScenario, GainsReplaceOnlyWhatIsGiven) {
 TEST(ReadScenario, OverridesComeBeforeTheChecks) {
   EXPECT_EQ(Read(kProbe, {"entities.milk.mass_kg=8"}).scene.bodies[1].mass_kg, 8);
   EXPECT_EQ(Read(kProbe, {"world={rate_hz: 960, sensing_hz: 30}"}).scene.world.rate_hz, 960);
-  EXPECT_EQ(ComplaintsAbout(kProbe, {"entities.milk.mass_kg=-8"}),
+  EXPECT_EQ(ErrorsAbout(kProbe, {"entities.milk.mass_kg=-8"}),
             "--set:1:23: mass_kg: expected a number from 0.001 to 1000, found '-8'\n");
-  EXPECT_EQ(ComplaintsAbout(kProbe, {"entities.milk.on=tables"}),
+  EXPECT_EQ(ErrorsAbout(kProbe, {"entities.milk.on=tables"}),
             "--set:1:18: on: no entity is called 'tables' | did you mean 'table'?\n");
 }
 
 TEST(ReadScenario, LimitsOnTheWhole) {
   std::string beats;
   for (int i = 0; i < 7; ++i) beats += "  - right_hand: {wait_s: 600}\n";
-  EXPECT_EQ(ComplaintsAbout(ProbeWith("pictures:\n", beats + "pictures:\n")),
+  EXPECT_EQ(ErrorsAbout(ProbeWith("pictures:\n", beats + "pictures:\n")),
             "18:5: the script takes more than 3600 s up to here\n");
 
   std::string many;
   for (std::size_t i = 0; i <= kMaxBeats; ++i) many += "  - right_hand: {wait_s: 0.01}\n";
-  EXPECT_EQ(ComplaintsAbout(ProbeWith("pictures:\n", many + "pictures:\n")),
+  EXPECT_EQ(ErrorsAbout(ProbeWith("pictures:\n", many + "pictures:\n")),
             "11:3: script: expected at most 1000, found 1003\n");
 }
 
@@ -170,7 +169,7 @@ TEST(ReadScenario, TenThousandEntitiesAreReadAndCheckedQuickly) {
   }
   EXPECT_EQ(Read(ProbeWith("actors:\n", entities + "actors:\n")).scene.bodies.size(), kMaxEntities);
   entities += "  one_too_many: {fixed: true, sphere: {radius_m: 0.1}, at_m: [0, 0, 9]}\n";
-  EXPECT_EQ(ComplaintsAbout(ProbeWith("actors:\n", entities + "actors:\n")),
+  EXPECT_EQ(ErrorsAbout(ProbeWith("actors:\n", entities + "actors:\n")),
             "6:3: entities: expected at most 10000, found 10001\n");
 }
 

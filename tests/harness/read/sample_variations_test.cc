@@ -20,7 +20,7 @@ std::vector<std::string> Draw(const std::string& vary, std::uint64_t seed, int t
   EXPECT_TRUE(read.value) << Brief(read.diagnostics);
   if (!read.value) return {};
   const auto document = ParseYaml("probe.yaml", kProbe + vary);
-  return DrawTrial(*document.value, read.value->variations, seed, trial);
+  return SampleTrial(*document.value, read.value->variations, seed, trial);
 }
 
 double NumberIn(const std::string& setting) {

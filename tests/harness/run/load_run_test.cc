@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a run needs, from files: settings go to the scenario or to its grammar, all problems are
 // reported at once, and every file that was used is named.
-#include "grammar/program/program.h"
 #include "harness/run/load_run.h"
+
+#include "grammar/program/program.h"
 #include "tests/harness/check/checked_run.h"
 
 namespace prehend::harness {

@@ -107,7 +107,7 @@ TEST(Outcome, OfGrainsAShareIsInside) {
   snapshot.grains = {
       {0, 0, 0}, {0.04, 0.04, 0}, {0, 0, -0.04}, {0.06, 0, 0}};  // the last one is outside
   const auto judge = [&](double share) {
-    ConditionEntry wanted{.entity = "peas"};
+    ConditionYaml wanted{.entity = "peas"};
     wanted.inside = Located<std::string>{"cup", {}};
     wanted.share = share;
     const std::vector<Outcome> outcomes = {{"kept", {{.body = 1, .vessel = 0, .wanted = wanted}}}};

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/run/load_run.h"
+#include "harness/sense/entity_table.h"
 #include "harness/timeline/timeline_json.h"
 
 namespace prehend::harness {

@@ -14,6 +14,7 @@
 #include "harness/run/load_run.h"
 #include "harness/run/outcome.h"
 #include "harness/run/run_scenario.h"
+#include "harness/sense/entity_table.h"
 #include "harness/sense/episode_file.h"
 #include "harness/timeline/timeline_json.h"
 

@@ -18,7 +18,7 @@ YamlDocument Parse(const std::string& text) {
   return document.value.value_or(YamlDocument{});
 }
 
-std::string Complaints(const std::string& text) {
+std::string DiagnosticList(const std::string& text) {
   return Brief(ParseYaml("probe.yaml", text).diagnostics);
 }
 
@@ -64,7 +64,7 @@ TEST(LocatedYaml, NullKnowsItsSpelling) {
 
 struct Refused {
   const char* text;
-  const char* complaints;
+  const char* errors;
 };
 
 TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
@@ -110,7 +110,7 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
        "text with ': ' goes in quotes\n"},
   };
   for (const Refused& refused : table)
-    EXPECT_EQ(Complaints(refused.text), refused.complaints) << refused.text;
+    EXPECT_EQ(DiagnosticList(refused.text), refused.errors) << refused.text;
 }
 
 TEST(LocatedYaml, QuotedMergeKeyIsAKey) { EXPECT_TRUE(Parse("'<<': 1\n").root.Find("<<")); }
@@ -122,12 +122,11 @@ TEST(LocatedYaml, DeepNestingIsRefusedBeforeTheStackIsGone) {
     return text;
   };
   for (const char* piece : {"[", "{", "- ", "{a: ", "[[{a: ", "? "}) {
-    const std::string complaints = Complaints(repeated(piece, 10'000));
-    EXPECT_NE(complaints.find("nested deeper than 64 levels"), std::string::npos)
-        << piece << complaints;
+    const std::string errors = DiagnosticList(repeated(piece, 10'000));
+    EXPECT_NE(errors.find("nested deeper than 64 levels"), std::string::npos) << piece << errors;
   }
-  EXPECT_EQ(Complaints(repeated("[", 64) + repeated("]", 64)), "");
-  EXPECT_NE(Complaints(repeated("[", 65) + repeated("]", 65)), "");
+  EXPECT_EQ(DiagnosticList(repeated("[", 64) + repeated("]", 64)), "");
+  EXPECT_NE(DiagnosticList(repeated("[", 65) + repeated("]", 65)), "");
 }
 
 const nlohmann::ordered_json kSchema = {
@@ -136,11 +135,11 @@ const nlohmann::ordered_json kSchema = {
       {"settle_s", {{"type", "number"}}}}}};
 
 TEST(LocatedYaml, QuotationsMustEnd) {
-  EXPECT_EQ(Complaints("a: 'it''s\n"),
+  EXPECT_EQ(DiagnosticList("a: 'it''s\n"),
             "1:4: this quotation does not end | close it with the same quote\n");
-  EXPECT_EQ(Complaints("a: \"b\\\"\n"),
+  EXPECT_EQ(DiagnosticList("a: \"b\\\"\n"),
             "1:4: this quotation does not end | close it with the same quote\n");
-  EXPECT_EQ(Complaints("a: 'it''s'\nb: \"c\\\\\"\nd: |\n  'e\n"), "");
+  EXPECT_EQ(DiagnosticList("a: 'it''s'\nb: \"c\\\\\"\nd: |\n  'e\n"), "");
 }
 
 std::string Overridden(const std::string& assignment) {
