@@ -9,15 +9,15 @@
 #include <filesystem>
 
 #include "harness/base/shell_quote.h"
-#include "harness/check/accept_golden.h"
 #include "harness/check/blame.h"
-#include "harness/check/compare_engines.h"
-#include "harness/check/judge_golden.h"
-#include "harness/check/judge_invariants.h"
-#include "harness/check/judge_pictures.h"
 #include "harness/check/last_pass.h"
 #include "harness/check/state_trace.h"
 #include "harness/golden/golden_files.h"
+#include "harness/judge/accept_golden.h"
+#include "harness/judge/compare_engines.h"
+#include "harness/judge/judge_golden.h"
+#include "harness/judge/judge_invariants.h"
+#include "harness/judge/judge_pictures.h"
 #include "harness/pictures/pictures.h"
 #include "harness/run/run_text.h"
 

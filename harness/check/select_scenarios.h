@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/check/unreferenced_goldens.h"
+#include "harness/judge/unreferenced_goldens.h"
 #include "harness/run/find_scenario.h"
 
 namespace prehend::harness {

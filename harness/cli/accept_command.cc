@@ -6,16 +6,16 @@
 #include <algorithm>
 
 #include "harness/base/content_hash.h"
-#include "harness/check/accept_golden.h"
 #include "harness/check/check_scenario.h"
-#include "harness/check/compare_engines.h"
-#include "harness/check/compare_with_oracle.h"
 #include "harness/check/last_pass.h"
 #include "harness/check/state_trace.h"
 #include "harness/cli/accept_pictures.h"
 #include "harness/cli/command.h"
 #include "harness/golden/compare.h"
 #include "harness/golden/golden_files.h"
+#include "harness/judge/accept_golden.h"
+#include "harness/judge/compare_engines.h"
+#include "harness/judge/compare_with_oracle.h"
 #include "harness/run/run_text.h"
 
 namespace prehend::harness {

@@ -7,8 +7,8 @@
 
 #include "harness/base/content_hash.h"
 #include "harness/base/shell_quote.h"
-#include "harness/check/unreferenced_goldens.h"
 #include "harness/golden/golden_files.h"
+#include "harness/judge/unreferenced_goldens.h"
 #include "harness/pictures/pictures.h"
 
 namespace prehend::harness {

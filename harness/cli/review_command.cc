@@ -10,14 +10,14 @@
 #include <set>
 
 #include "harness/base/shell_quote.h"
-#include "harness/check/accept_golden.h"
 #include "harness/check/check_scenario.h"
-#include "harness/check/compare_engines.h"
 #include "harness/check/select_scenarios.h"
-#include "harness/check/unreferenced_goldens.h"
 #include "harness/cli/command.h"
 #include "harness/golden/compare.h"
 #include "harness/golden/golden_files.h"
+#include "harness/judge/accept_golden.h"
+#include "harness/judge/compare_engines.h"
+#include "harness/judge/unreferenced_goldens.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
 #include "harness/timeline/event_text.h"

@@ -2,11 +2,11 @@
 // The order of judging, and what a check leaves behind.
 #include "harness/check/check_scenario.h"
 
-#include "harness/check/accept_golden.h"
-#include "harness/check/judge_golden.h"
 #include "harness/check/last_pass.h"
 #include "harness/golden/golden_files.h"
-#include "tests/harness/check/checked_run.h"
+#include "harness/judge/accept_golden.h"
+#include "harness/judge/judge_golden.h"
+#include "tests/harness/judge/checked_run.h"
 
 namespace prehend::harness {
 namespace {

@@ -4,7 +4,7 @@
 #include "harness/run/load_run.h"
 
 #include "grammar/program/program.h"
-#include "tests/harness/check/checked_run.h"
+#include "tests/harness/judge/checked_run.h"
 
 namespace prehend::harness {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A timeline that is as it should be, and each invariant broken once.
-#include "harness/check/invariants.h"
+#include "harness/judge/invariants.h"
 
 #include <gtest/gtest.h>
 

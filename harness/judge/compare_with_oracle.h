@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run against the physical oracle's view of it: which recognised events follow from the
 // definitions. A golden's header keeps the count. Tested by
-// tests/harness/check/compare_with_oracle_test.cc
+// tests/harness/judge/compare_with_oracle_test.cc
 #pragma once
 
 #include <string>

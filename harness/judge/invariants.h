@@ -2,7 +2,7 @@
 // What must hold of every timeline, whatever its events mean: begin < end, inside the episode,
 // apart from itself, decided in time. A violation is a mistake in the engine. What must hold of
 // certain events is said by the laws of their grammar (grammar/check_laws.h). Tested by
-// tests/harness/check/invariants_test.cc
+// tests/harness/judge/invariants_test.cc
 #pragma once
 
 #include <map>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a person wrote into a golden survives the next acceptance, and the count of events that
 // follow from the definitions is renewed when it is not true any more.
-#include "harness/check/accept_golden.h"
+#include "harness/judge/accept_golden.h"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include "harness/oracle/oracle.h"
 #include "harness/run/load_grammar.h"
 #include "harness/timeline/match_events.h"
-#include "tests/harness/check/played_scenario.h"
+#include "tests/harness/judge/played_scenario.h"
 
 namespace prehend::harness {
 namespace {

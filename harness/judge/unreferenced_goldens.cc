@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/unreferenced_goldens.h. Tested by tests/harness/golden/golden_files_test.cc
-#include "harness/check/unreferenced_goldens.h"
+// See harness/judge/unreferenced_goldens.h. Tested by tests/harness/golden/golden_files_test.cc
+#include "harness/judge/unreferenced_goldens.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run against what must hold of every timeline, and the laws of its grammar. Tested by
-// tests/harness/check/judge_invariants_test.cc
+// tests/harness/judge/judge_invariants_test.cc
 #pragma once
 
-#include "harness/check/judge.h"
+#include "harness/judge/judge.h"
 
 namespace prehend::harness {
 

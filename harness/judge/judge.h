@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the judges of a check are given, and what they return: a run with what it was played from,
-// and findings. Tested by tests/harness/check/judge_golden_test.cc
+// and findings. Tested by tests/harness/judge/judge_golden_test.cc
 #pragma once
 
 #include <iterator>

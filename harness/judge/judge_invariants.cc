@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/judge_invariants.h. Tested by tests/harness/check/judge_invariants_test.cc
-#include "harness/check/judge_invariants.h"
+// See harness/judge/judge_invariants.h. Tested by tests/harness/judge/judge_invariants_test.cc
+#include "harness/judge/judge_invariants.h"
 
 #include "grammar/check_laws.h"
 #include "grammar/describe.h"
-#include "harness/check/invariants.h"
 #include "harness/golden/compare.h"
+#include "harness/judge/invariants.h"
 #include "harness/sense/entity_table.h"
 #include "harness/timeline/event_text.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/check/compare_engines_test.cc
-#include "harness/check/compare_engines.h"
+// Tested by tests/harness/judge/compare_engines_test.cc
+#include "harness/judge/compare_engines.h"
 
 #include <cmath>
 

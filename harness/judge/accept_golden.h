@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The golden that a run proposes: the recognised events, and everything that people wrote into the
-// old one. Tested by tests/harness/check/accept_golden_test.cc
+// old one. Tested by tests/harness/judge/accept_golden_test.cc
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "grammar/base/timeline.h"
-#include "harness/check/compare_with_oracle.h"
 #include "harness/golden/golden.h"
+#include "harness/judge/compare_with_oracle.h"
 
 namespace prehend::harness {
 

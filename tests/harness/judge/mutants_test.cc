@@ -12,7 +12,7 @@
 #include "harness/base/text_file.h"
 #include "harness/golden/compare.h"
 #include "harness/golden/golden_files.h"
-#include "tests/harness/check/played_scenario.h"
+#include "tests/harness/judge/played_scenario.h"
 
 namespace prehend::harness {
 namespace {

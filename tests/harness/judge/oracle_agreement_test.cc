@@ -9,9 +9,9 @@
 #include <algorithm>
 
 #include "grammar/program/program.h"
-#include "harness/check/compare_with_oracle.h"
 #include "harness/golden/compare.h"
 #include "harness/golden/golden_files.h"
+#include "harness/judge/compare_with_oracle.h"
 #include "harness/oracle/oracle.h"
 #include "harness/run/find_scenario.h"
 #include "harness/run/load_run.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/difference_context.h. Tested by tests/harness/check/difference_context_test.cc
-#include "harness/check/difference_context.h"
+// See harness/judge/difference_context.h. Tested by tests/harness/judge/difference_context_test.cc
+#include "harness/judge/difference_context.h"
 
 #include <fmt/format.h>
 

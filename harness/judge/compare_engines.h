@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A planar scenario in the other engine: what is recognised does not depend on the engine that
-// computed the physics. Tested by tests/harness/check/compare_engines_test.cc
+// computed the physics. Tested by tests/harness/judge/compare_engines_test.cc
 #pragma once
 
 #include <memory>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run against its golden and the ground truth. Tested by tests/harness/check/judge_golden_test.cc
+// A run against its golden and the ground truth. Tested by tests/harness/judge/judge_golden_test.cc
 #pragma once
 
 #include <optional>
 #include <string>
 
-#include "harness/check/compare_with_oracle.h"
-#include "harness/check/judge.h"
 #include "harness/golden/compare.h"
+#include "harness/judge/compare_with_oracle.h"
+#include "harness/judge/judge.h"
 
 namespace prehend::harness {
 

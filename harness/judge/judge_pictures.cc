@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/judge_pictures.h. Tested by tests/harness/check/judge_pictures_test.cc
-#include "harness/check/judge_pictures.h"
+// See harness/judge/judge_pictures.h. Tested by tests/harness/judge/judge_pictures_test.cc
+#include "harness/judge/judge_pictures.h"
 
 #include <fmt/format.h>
 
-#include "harness/check/unreferenced_goldens.h"
 #include "harness/golden/golden_files.h"
+#include "harness/judge/unreferenced_goldens.h"
 #include "harness/pictures/pictures.h"
 
 namespace prehend::harness {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run that keeps the invariants, and one that does not.
-#include "harness/check/judge_invariants.h"
+#include "harness/judge/judge_invariants.h"
 
-#include "tests/harness/check/checked_run.h"
+#include "tests/harness/judge/checked_run.h"
 
 namespace prehend::harness {
 namespace {

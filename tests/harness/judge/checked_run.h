@@ -10,7 +10,7 @@
 #include <string>
 
 #include "harness/base/atomic_file.h"
-#include "harness/check/judge.h"
+#include "harness/judge/judge.h"
 
 namespace prehend::harness {
 

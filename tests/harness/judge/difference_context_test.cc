@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The facts beside a difference are those of its participants, around its moment.
-#include "harness/check/difference_context.h"
+#include "harness/judge/difference_context.h"
 
 #include <gtest/gtest.h>
 

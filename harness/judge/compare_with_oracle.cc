@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/compare_with_oracle.h. Tested by
-// tests/harness/check/compare_with_oracle_test.cc
-#include "harness/check/compare_with_oracle.h"
+// See harness/judge/compare_with_oracle.h. Tested by
+// tests/harness/judge/compare_with_oracle_test.cc
+#include "harness/judge/compare_with_oracle.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One function per invariant, and the table that names them. Tested by
-// tests/harness/check/invariants_test.cc
-#include "harness/check/invariants.h"
+// tests/harness/judge/invariants_test.cc
+#include "harness/judge/invariants.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run judged by its golden and the ground truth: what holds, what differs, what waits.
-#include "harness/check/judge_golden.h"
+#include "harness/judge/judge_golden.h"
 
-#include "tests/harness/check/checked_run.h"
+#include "tests/harness/judge/checked_run.h"
 
 namespace prehend::harness {
 namespace {

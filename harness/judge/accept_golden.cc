@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/accept_golden.h. Tested by tests/harness/check/accept_golden_test.cc
-#include "harness/check/accept_golden.h"
+// See harness/judge/accept_golden.h. Tested by tests/harness/judge/accept_golden_test.cc
+#include "harness/judge/accept_golden.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures against their goldens, without drawing: what is said, and what is stored. Pixels are
 // compared in tests/program/golden_workflow_test.cc
-#include "harness/check/judge_pictures.h"
+#include "harness/judge/judge_pictures.h"
 
 #include "harness/pictures/pictures.h"
-#include "tests/harness/check/checked_run.h"
+#include "tests/harness/judge/checked_run.h"
 
 namespace prehend::harness {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a golden says about where it comes from, on a real run that is then falsified.
-#include "harness/check/compare_with_oracle.h"
+#include "harness/judge/compare_with_oracle.h"
 
 #include <gtest/gtest.h>
 

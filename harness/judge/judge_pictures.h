@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pictures of a run against the goldens of pictures.
-// Tested by tests/harness/check/judge_pictures_test.cc
+// Tested by tests/harness/judge/judge_pictures_test.cc
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "harness/check/judge.h"
+#include "harness/judge/judge.h"
 
 namespace prehend::harness {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What was sensed where a difference begins: position, speed and contacts of the participants of
 // both sides. Shown with the first difference. Tested by
-// tests/harness/check/difference_context_test.cc
+// tests/harness/judge/difference_context_test.cc
 #pragma once
 
 #include <span>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/judge_golden.h. Tested by tests/harness/check/judge_golden_test.cc
-#include "harness/check/judge_golden.h"
+// See harness/judge/judge_golden.h. Tested by tests/harness/judge/judge_golden_test.cc
+#include "harness/judge/judge_golden.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "harness/check/accept_golden.h"
-#include "harness/check/difference_context.h"
+#include "harness/judge/accept_golden.h"
+#include "harness/judge/difference_context.h"
 
 namespace prehend::harness {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The comparison of engines: it agrees on what is shipped, and it can disagree.
-#include "harness/check/compare_engines.h"
+#include "harness/judge/compare_engines.h"
 
 #include <gtest/gtest.h>
 
