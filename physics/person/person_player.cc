@@ -161,14 +161,14 @@ void PersonPlayer::Yield(int limb, const Snapshot& now) {
   // Resistance in the solver grows with speed, so the pace is divided by the excess. It then grows
   // back exponentially from where it was: a resistance that was met at a slow pace is met at a slow
   // pace again.
-  constexpr double kGrow_s = 0.1, kLeastPace = 0.01;
+  constexpr double kGrow_s = 0.1, kMinPace = 0.01;
   const double dt_s = 1.0 / scene_.world.rate_hz;
   LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
   if (!motion.most_n) return;
   const double resistance_n = ResistanceTo(limb, now);
   motion.pace = resistance_n > *motion.most_n
                     ? motion.pace * *motion.most_n / resistance_n
-                    : std::min(1.0, std::max(motion.pace, kLeastPace) * (1 + dt_s / kGrow_s));
+                    : std::min(1.0, std::max(motion.pace, kMinPace) * (1 + dt_s / kGrow_s));
   motion.behind_s += (1 - motion.pace) * dt_s;
 }
 
