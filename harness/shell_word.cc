@@ -2,6 +2,8 @@
 // Tested by tests/house/command_line_test.cc
 #include "harness/shell_word.h"
 
+#include <cstdlib>
+
 namespace prehend::harness {
 
 std::string ShellWord(std::string_view word) {
@@ -11,6 +13,17 @@ std::string ShellWord(std::string_view word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
   return quoted + "'";
+}
+
+std::string ProgramName() {
+  const char* const called = std::getenv("PREHEND_COMMAND");
+  return called && *called ? ShellWord(called) : "prehend";
+}
+
+std::string CommandText(const std::vector<std::string>& words) {
+  std::string text = ProgramName();
+  for (const std::string& word : words) text += " " + ShellWord(word);
+  return text;
 }
 
 }  // namespace prehend::harness

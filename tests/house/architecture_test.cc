@@ -49,7 +49,7 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"yaml-cpp", std::regex("yaml-cpp/.*"), std::regex("harness/.*")},
       {"JSON", std::regex("nlohmann/.*"), std::regex("(harness|tests|bench)/.*")},
       {"fmt", std::regex("fmt/.*"), std::regex("(harness|tests|bench)/.*")},
-      {"CLI11", std::regex("CLI/.*"), std::regex("harness/.*")},
+      {"CLI11", std::regex("CLI/.*"), std::regex("harness/.*/parse_arguments\\.cc")},
       {"OpenGL and OSMesa", std::regex("(GL/.*|GLES.*|EGL/.*)"), std::regex("render/.*")},
       {"libpng", std::regex("png\\.h"), std::regex("(render|tests/render)/.*")},
       {"stb", std::regex("stb/.*"), std::regex("render/.*")},
@@ -200,6 +200,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"physics/world.cc", "<btBulletDynamicsCommon.h>", "Bullet does not belong here"},
         Case{"physics/bullet_world.cc", "<btBulletDynamicsCommon.h>", ""},
         Case{"harness/a.cc", "<GL/osmesa.h>", "OpenGL and OSMesa does not belong here"},
+        Case{"harness/commands/a.cc", "<CLI/CLI.hpp>", "CLI11 does not belong here"},
+        Case{"harness/commands/parse_arguments.cc", "<CLI/CLI.hpp>", ""},
         Case{"grammar/a.cc", "<fstream>", "the grammar room has no files"},
         Case{"bench/a.cc", "<gtest/gtest.h>", "GoogleTest does not belong here"}));
 

@@ -21,7 +21,8 @@ class GoldenWorkflow : public SmallProject {
 };
 
 TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
-  EXPECT_EQ(Do("review").out, "nothing is pending ('prehend check' finds out what should be)\n");
+  EXPECT_EQ(Do("review").out,
+            "nothing is pending ('prehend check' finds what differs from its golden)\n");
   EXPECT_EQ(Do("review").exit_code, 0);
   EXPECT_EQ(Do("check --no-pictures").exit_code, 5);
   const Said fresh = Do("review");
@@ -45,8 +46,8 @@ TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
 
   fs::remove(Scenario());
   const Said orphans = Do("review");
-  EXPECT_TRUE(
-      SaysIn(orphans, "orphan  rest/carton_rests\n    pending, but there is no such scenario"))
+  EXPECT_TRUE(SaysIn(
+      orphans, "orphan  rest/carton_rests\n    the scenario of this pending golden does not exist"))
       << orphans.out;
   EXPECT_TRUE(SaysIn(orphans, "carton_rests.timeline belongs to no scenario: remove it"))
       << orphans.out;
@@ -118,7 +119,7 @@ TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
   WriteFile(Scenario(), Replaced(kCartonRests, "wait_s: 0.2", "wait_s: 0.3"));
   const std::string by_fingerprint = " --reviewed " + shown;
   for (const auto& [how, why] :
-       {std::pair(std::string(), "was " + shown + ", but the scenario yields something else now"),
+       {std::pair(std::string(), "is " + shown + ", but the scenario now yields"),
         std::pair(by_fingerprint, ", not " + shown)}) {
     const Said refused = Do("accept carton_rests --reason seen" + how);
     EXPECT_EQ(refused.exit_code, 1) << refused.err;
@@ -129,7 +130,7 @@ TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
   const std::string now = Json::parse(Do("review --json").out)["pending"][0]["fingerprint"];
   const Said no_fingerprint = Do("accept carton_rests --reason seen --reviewed ABCDEF01");
   EXPECT_EQ(no_fingerprint.exit_code, 2);
-  EXPECT_NE(no_fingerprint.err.find("--reviewed: 'ABCDEF01' is no fingerprint; "),
+  EXPECT_NE(no_fingerprint.err.find("--reviewed: found 'ABCDEF01', wanted the 8 digits "),
             std::string::npos);
   EXPECT_EQ(Do("accept carton_rests --reason seen --reviewed " + now).exit_code, 0);
 }
@@ -272,9 +273,10 @@ TEST_F(GoldenWorkflow, WhatThePhysicalOracleObjectsToIsAnsweredBeforeItIsAccepte
   const Said refused = Do("accept carton_rests --reason seen");
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_TRUE(SaysIn(refused, objection)) << refused.out;
-  EXPECT_NE(refused.err.find("the physical oracle objects to contact(carton, table) (shown above); "
-                             "nothing was accepted"),
-            std::string::npos)
+  EXPECT_NE(
+      refused.err.find("the physical oracle objects to contact(carton, table) (printed above); "
+                       "nothing was accepted"),
+      std::string::npos)
       << refused.err;
   EXPECT_NE(Do("accept carton_rests --reviewed 00000000 --reason seen")
                 .err.find(" --reason \"...\" --against-the-oracle \"EVENT(ROLES): ...\""),
@@ -355,8 +357,7 @@ TEST_F(GoldenWorkflow, WhatDiffersBetweenEnginesIsShownAndNotAccepted) {
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_TRUE(SaysIn(refused, "recognised in bullet, expected as recognised in box2d:\n"))
       << refused.out;
-  EXPECT_NE(refused.err.find(
-                "bullet does not lead to the same events (shown above); nothing was accepted"),
+  EXPECT_NE(refused.err.find("bullet yields other events (printed above); nothing was accepted"),
             std::string::npos)
       << refused.err;
   EXPECT_FALSE(fs::exists(Golden("rest/stones_tumble")));
@@ -366,7 +367,7 @@ TEST_F(GoldenWorkflow, WhatDiffersBetweenEnginesIsShownAndNotAccepted) {
   EXPECT_EQ(Do("check stones_tumble --no-pictures").exit_code, 5);
   Accept("stones_tumble");
   EXPECT_EQ(Do("review stones_tumble").out,
-            "nothing is pending ('prehend check' finds out what should be)\n");
+            "nothing is pending ('prehend check' finds what differs from its golden)\n");
 }
 
 }  // namespace
