@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The yardstick of bench/physics_bench.cc: boxes on a floor in a bare Bullet loop, with the same
-// settings of solver, sleeping and broad phase as physics/bullet_world.cc, and nothing read back.
+// settings of solver, sleeping and broad phase as physics/bullet/world.cc, and nothing read back.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "physics/scene.h"
+#include "physics/scene/scene.h"
 
 extern btScalar gDbvtMargin;
 

@@ -7,11 +7,12 @@
 #include <algorithm>
 #include <string>
 
-#include "harness/library_paths.h"
-#include "harness/prepare_run.h"
-#include "harness/run_output.h"
-#include "harness/run_scenario.h"
-#include "harness/speed/four_rules.h"
+#include "harness/base/project_paths.h"
+#include "harness/run/find_scenario.h"
+#include "harness/run/load_run.h"
+#include "harness/run/run_scenario.h"
+#include "harness/run/run_text.h"
+#include "harness/speed/workload.h"
 
 namespace prehend::harness {
 namespace {
@@ -33,7 +34,7 @@ void Play(benchmark::State& state, const ChangeLog& log, double operations, Watc
 
 Recognised ByGrammar(const ChangeLog& log, benchmark::State& state) {
   state.PauseTiming();
-  grammar::Monitor monitor(CompileFourRules(), log.cast);
+  grammar::Monitor monitor(CompileFourRules(), log.entity_table);
   state.ResumeTiming();
   return WatchByGrammar(log, monitor).recognised;
 }
@@ -85,8 +86,8 @@ BENCHMARK(Dense<ByHand>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMillisecond)
 // All of pick_and_place on a simulated scene, from its recording: sensing and grammar, no physics.
 void RecordedCarton(benchmark::State& state) {
   const std::string root = FindProjectRoot().value_or(".");
-  const PreparedRun carton =
-      *PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root)
+  const LoadedRun carton =
+      *LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root)
            .value;
   const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
   std::size_t events = 0;
@@ -101,7 +102,7 @@ BENCHMARK(RecordedCarton)->Unit(benchmark::kMillisecond);
 
 void IdleTick(benchmark::State& state) {
   const ChangeLog log = MakeStations(static_cast<int>(state.range(0)), 1, kPeriod_s);
-  grammar::Monitor monitor(CompileFourRules(), log.cast);
+  grammar::Monitor monitor(CompileFourRules(), log.entity_table);
   std::vector<grammar::Event> events;
   monitor.AdvanceBy(log[0], events);
   grammar::Tick tick = 1;
@@ -116,7 +117,7 @@ void Binding(benchmark::State& state) {
   const auto program = CompileFourRules();
   int bindings = 0;
   for (auto _ : state) {
-    grammar::Monitor monitor(program, log.cast);
+    grammar::Monitor monitor(program, log.entity_table);
     std::vector<grammar::Event> events;
     monitor.AdvanceBy(log[0], events);
     bindings = monitor.lanes_in_use();

@@ -5,17 +5,17 @@
 
 #include <string>
 
-#include "harness/library_paths.h"
-#include "harness/prepare_run.h"
-#include "harness/run_scenario.h"
+#include "harness/base/project_paths.h"
+#include "harness/run/find_scenario.h"
+#include "harness/run/load_run.h"
+#include "harness/run/run_scenario.h"
 
 namespace prehend::harness {
 namespace {
 
-PreparedRun Carton() {
+LoadedRun Carton() {
   const std::string root = FindProjectRoot().value_or(".");
-  return *PrepareRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"},
-                     root)
+  return *LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root)
               .value;
 }
 
@@ -25,7 +25,7 @@ void CountRealTime(benchmark::State& state, double simulated_s) {
 }
 
 void CartonPhysicsAlone(benchmark::State& state) {
-  const PreparedRun carton = Carton();
+  const LoadedRun carton = Carton();
   double simulated_s = 0;
   for (auto _ : state) {
     physics::Simulation simulation(carton.scenario.scene, carton.scenario.script);
@@ -39,7 +39,7 @@ void CartonPhysicsAlone(benchmark::State& state) {
 BENCHMARK(CartonPhysicsAlone)->Unit(benchmark::kMillisecond);
 
 void CartonWatched(benchmark::State& state) {
-  const PreparedRun carton = Carton();
+  const LoadedRun carton = Carton();
   double simulated_s = 0;
   for (auto _ : state) {
     const RunResult run = RunScenario(carton.scenario, carton.program, {.measure = true});

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "grammar/lanes.h"
+#include "grammar/engine/instances.h"
 
 namespace prehend::grammar {
 namespace {
@@ -36,21 +36,21 @@ class Waits {
  public:
   explicit Waits(const Program& program)
       : program_(program),
-        end_(program.events.size()),
-        truth_(program.events.size()),
-        settled_(program.events.size()) {
+        end_(program.rules.size()),
+        truth_(program.rules.size()),
+        settled_(program.rules.size()) {
     for (const int rule : program.schedule) Work(rule);
   }
   const Wait& OfEnd(int rule) const { return end_[rule]; }
 
  private:
   void Work(int index) {
-    const Rule& rule = program_.events[index];
+    const Rule& rule = program_.rules[index];
     Wait& end = end_[index];
     const std::optional<Edge> settling = SettlesWhereItEnds(rule);
     end = WaitOf(rule, settling);
     if (rule.confirmed_within != kNone) {
-      end.until_end_of.insert(program_.events[rule.references[rule.confirmed_within].rule].name);
+      end.until_end_of.insert(program_.rules[rule.references[rule.confirmed_within].rule].name);
     }
     if (rule.form == Form::kUntilSince) {
       if (const auto edge = EdgeOf(program_, rule, rule.first))
@@ -59,8 +59,8 @@ class Waits {
       if (const Settled* whole = SettledBy(rule.references[rule.first]))
         settled_[index] = Settled{whole->edge, WaitOf(rule, whole->edge)};
     }
-    // The truth at a frame may have to wait for more than the end's decision: see engine_events.cc,
-    // UpdateKnown.
+    // The truth at a frame may have to wait for more than the end's decision: see
+    // grammar/engine/engine_events.cc, UpdateKnown.
     Wait& truth = truth_[index];
     truth = end;
     if (settling) Include(truth, WaitOf(rule, std::nullopt));
@@ -80,7 +80,7 @@ class Waits {
   // Null if it is none of that, or of other roles than the rule that asks.
   const Settled* SettledBy(const Reference& reference) const {
     const std::optional<Settled>& settled = settled_[static_cast<std::size_t>(reference.rule)];
-    for (std::size_t i = 0; i < program_.events[reference.rule].roles.size(); ++i) {
+    for (std::size_t i = 0; i < program_.rules[reference.rule].roles.size(); ++i) {
       if (reference.roles[i] != static_cast<int>(i)) return nullptr;
     }
     return settled ? &*settled : nullptr;
@@ -106,7 +106,7 @@ class Waits {
       Include(wait, is_settled ? settled->wait
                     : composes ? end_[reference.rule]
                                : truth_[reference.rule]);
-      if (composes) wait.until_end_of.insert(program_.events[reference.rule].name);
+      if (composes) wait.until_end_of.insert(program_.rules[reference.rule].name);
     }
     wait.seconds += rule.bridging_s + rule.looks_around_s;
     return wait;
@@ -125,13 +125,13 @@ std::string Watched(const Program& program, const Rule& rule) {
       text += (text.empty() ? "every " : " and every ") + role.class_name;
     return text;
   }
-  const Rule& guard = program.events[rule.references[rule.guard].rule];
+  const Rule& guard = program.rules[rule.references[rule.guard].rule];
   return guard.form == Form::kTouching ? "pairs that touch" : "while " + guard.name;
 }
 
 // A composition remembers so many intervals of each part.
 std::size_t BytesPerBinding(const Rule& rule) {
-  return sizeof(Lane) + rule.references.size() * sizeof(int) +
+  return sizeof(RuleInstance) + rule.references.size() * sizeof(int) +
          rule.anchors.size() * 3 * sizeof(double) +
          rule.composition.parts.size() * kRememberedSpans * sizeof(Span);
 }
@@ -180,11 +180,11 @@ std::string ParamsText(const std::vector<ProgramParam>& params) {
 GrammarDescription Describe(const Program& program) {
   GrammarDescription description{.name = program.name,
                                  .params = program.params,
-                                 .bytes_per_pose = sizeof(FrameNumber) + sizeof(EntityLook),
-                                 .bytes_per_feeler = sizeof(Feeler)};
+                                 .bytes_per_pose = sizeof(FrameNumber) + sizeof(EntitySample),
+                                 .bytes_per_feeler = sizeof(CollisionSphere)};
   const Waits waits(program);
-  for (std::size_t i = 0; i < program.events.size(); ++i) {
-    const Rule& rule = program.events[i];
+  for (std::size_t i = 0; i < program.rules.size(); ++i) {
+    const Rule& rule = program.rules[i];
     description.history_s = std::max(description.history_s, rule.back_s + rule.looks_around_s);
     if (rule.form == Form::kTouching || rule.hidden) continue;
     description.rules.push_back({.head = Head(rule),
@@ -194,6 +194,7 @@ GrammarDescription Describe(const Program& program) {
                                  .bytes_per_binding = BytesPerBinding(rule),
                                  .bytes_per_interval = rule.referenced ? sizeof(Span) : 0});
   }
+  for (const Law& law : program.laws) description.laws.push_back({law.Head(), law.says});
   return description;
 }
 
@@ -208,12 +209,13 @@ std::string Text(const GrammarDescription& description) {
           ", and " + std::to_string(rule.bytes_per_interval) + " for each of its recent intervals";
     text += "\n";
   }
+  for (const LawDescription& law : description.laws) text += law.head + "\n    " + law.says + "\n";
   text += "\n";
   text += ParamsText(description.params);
   text += "\nmemory: poses of the last " + QuantityText({description.history_s, kSeconds}) + ", " +
           std::to_string(description.bytes_per_pose) + " bytes per frame and moving entity, " +
           std::to_string(description.bytes_per_feeler) +
-          " per frame and feeler of a hand; intervals are recent as long as " +
+          " per frame and collision sphere of a hand; intervals are recent as long as " +
           "their poses are kept\n";
   return text;
 }

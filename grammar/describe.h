@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "grammar/program.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar {
 
@@ -27,13 +27,19 @@ struct RuleDescription {
   std::size_t bytes_per_interval = 0;  ///< kept for as long as poses are, if others ask for them
 };
 
+struct LawDescription {
+  std::string head;  ///< "law slides_are_supported(hand: Hand, object: Movable)"
+  std::string says;  ///< "sliding(hand, object) lies inside supported_by(object, any)"
+};
+
 struct GrammarDescription {
   std::string name;
   std::vector<RuleDescription> rules;  ///< in the order of the files; no hidden ones
+  std::vector<LawDescription> laws;
   std::vector<ProgramParam> params;
   double history_s = 0;              ///< how long poses are kept
   std::size_t bytes_per_pose = 0;    ///< kept per frame and entity that is awake
-  std::size_t bytes_per_feeler = 0;  ///< kept per frame and feeler of a hand
+  std::size_t bytes_per_feeler = 0;  ///< kept per frame and collision sphere of a hand
 };
 
 GrammarDescription Describe(const Program& program);

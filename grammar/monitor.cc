@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grammar/monitor.h"
 
-#include "grammar/engine.h"
+#include "grammar/engine/engine.h"
 
 namespace prehend::grammar {
 
@@ -10,8 +10,8 @@ struct Monitor::State {
 };
 
 // The engine refers to its own members, so it lives where it was made.
-Monitor::Monitor(std::shared_ptr<const Program> program, Cast cast)
-    : state_(new State{Engine(std::move(program), std::move(cast))}) {}
+Monitor::Monitor(std::shared_ptr<const Program> program, EntityTable entity_table)
+    : state_(new State{Engine(std::move(program), std::move(entity_table))}) {}
 Monitor::~Monitor() = default;
 Monitor::Monitor(Monitor&&) noexcept = default;
 Monitor& Monitor::operator=(Monitor&&) noexcept = default;
@@ -24,6 +24,6 @@ void Monitor::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
   state_->engine.AdvanceBy(changes, out);
 }
 void Monitor::Finish(Tick end, std::vector<Event>& out) { state_->engine.Finish(end, out); }
-int Monitor::lanes_in_use() const { return state_->engine.lanes_in_use(); }
+int Monitor::instances_in_use() const { return state_->engine.instances_in_use(); }
 
 }  // namespace prehend::grammar

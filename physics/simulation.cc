@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/simulation_test.cc
+// One tick: script, trackers, persons, step, snapshot, hash, checks. Tested by
+// tests/physics/simulation_test.cc
 #include "physics/simulation.h"
 
-#include "physics/box2d_world.h"
-#include "physics/bullet_world.h"
-#include "physics/person_player.h"
-#include "physics/run_checks.h"
-#include "physics/script_player.h"
-#include "physics/state_hash.h"
-#include "physics/tracking.h"
+#include "physics/box2d/world.h"
+#include "physics/bullet/world.h"
+#include "physics/hand/script_player.h"
+#include "physics/motion/tracker.h"
+#include "physics/person/person_player.h"
+#include "physics/scene/run_limits.h"
+#include "physics/scene/state_hash.h"
 
 namespace prehend::physics {
 namespace {
 
-/// Longer runs are a mistake in a script: half an hour of simulated time takes minutes and fills
+/// A longer run is a mistake in the script: half an hour of simulated time takes minutes and fills
 /// memory.
 constexpr double kLongestRun_s = 1800;
 
@@ -66,7 +67,8 @@ void Simulation::State::AddTrackers() {
     const Hand& hand = scene.hands[i];
     std::optional<Tracker>& tracker = trackers.emplace_back();
     if (!hand.tracking) continue;
-    // Hands differ, and the next seed must not give one hand the noise that another one has now.
+    // Every hand has its own seed, chosen so that the next scenario seed does not give one hand the
+    // noise that another hand has now.
     const std::uint64_t seed = Random(scene.world.seed ^ Random(i).Next()).Next();
     tracker.emplace(*hand.tracking, scene.world.rate_hz, seed, TargetState{.X_WH = hand.X_WH});
   }

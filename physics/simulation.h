@@ -7,18 +7,18 @@
 #include <memory>
 #include <string>
 
-#include "physics/scene.h"
-#include "physics/script.h"
-#include "physics/script_player.h"
-#include "physics/snapshot.h"
+#include "physics/hand/script_player.h"
+#include "physics/motion/script.h"
+#include "physics/scene/scene.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::physics {
 
 struct RunStatus {
   enum class Kind { kRunning, kCompleted, kFailed };
   Kind kind = Kind::kRunning;
-  std::int64_t tick = 0;  ///< at which it ended
-  std::string entity;     ///< who went wrong; empty unless failed
+  std::int64_t tick = 0;  ///< at which the run ended
+  std::string entity;     ///< the cause; empty unless failed
   std::string reason;     ///< non-finite state, runaway speed, deep penetration, out of the world
   std::string advice;
 };
@@ -29,14 +29,14 @@ class Simulation {
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 
-  /// Advances one tick. False when the run is over (then status() says why and nothing was
-  /// stepped).
+  /// Advances one tick. False if the run is over: then nothing was stepped, and status() gives the
+  /// reason.
   bool Step();
 
   const Scene& scene() const;
   const Snapshot& snapshot() const;
   const RunStatus& status() const;
-  /// What the script's hands could not do as well as they should.
+  /// Remarks on steps that the hands executed but perhaps not as intended.
   const std::vector<ScriptNote>& notes() const;
   /// FNV-1a over every pose, velocity and joint of every tick so far.
   std::uint64_t state_hash() const;

@@ -221,15 +221,15 @@ void AddGhost(const Picture& picture, std::size_t number, DrawList* list) {
 
 void AddMarker(const Picture& picture, std::size_t number, DrawList* list) {
   const Marker& marker = picture.markers[number];
-  struct MarkerLook {
+  struct MarkerSample {
     const char* name;
     Color color;
     float alpha;
   };
-  static const MarkerLook kLooks[] = {{"contact", {1.0f, 0.83f, 0.0f}, 0.9f},
-                                      {"support", {0.18f, 0.80f, 0.25f}, 0.75f},
-                                      {"region", {0.42f, 0.66f, 1.0f}, 0.30f}};
-  const MarkerLook& look = kLooks[static_cast<int>(marker.kind)];
+  static const MarkerSample kLooks[] = {{"contact", {1.0f, 0.83f, 0.0f}, 0.9f},
+                                        {"support", {0.18f, 0.80f, 0.25f}, 0.75f},
+                                        {"region", {0.42f, 0.66f, 1.0f}, 0.30f}};
+  const MarkerSample& look = kLooks[static_cast<int>(marker.kind)];
   const std::string name = "marker:" + std::to_string(number) + ":" + look.name;
   if (!(marker.half_size_m.minCoeff() > 0)) return;
   const Affine3f X_WI = Eigen::Translation3f(marker.p_W_m) * Eigen::Scaling(marker.half_size_m);

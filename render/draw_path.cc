@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "render/draw_list.h"
+#include "render/mesh.h"
 
 namespace prehend::render {
 namespace {
@@ -87,8 +88,7 @@ void AddArrow(const std::vector<Vector3f>& points, float scale, Item item, DrawL
       ++ahead;
     const Vector3f direction = (points[ahead] - points[i - 1]).normalized();
     item.primitive = Primitive::kCone;
-    item.X_WI = Eigen::Translation3f(points[i - 1]) *
-                Eigen::Quaternionf::FromTwoVectors(Vector3f::UnitZ(), direction);
+    item.X_WI = Eigen::Translation3f(points[i - 1]) * RotationBetween(Vector3f::UnitZ(), direction);
     item.half_size_m = Vector3f(kArrowRadius_m, kArrowRadius_m, kArrowLength_m) * scale;
     AddItem(item, &list->paths, list);
     return;

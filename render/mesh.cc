@@ -127,7 +127,7 @@ Mesh TubeMesh(const std::vector<Vector3f>& points, int segments) {
     const Vector3f chord = points[std::min(i + 1, points.size() - 1)] - points[i == 0 ? 0 : i - 1];
     const Vector3f next = chord.norm() > 1e-9f ? Vector3f(chord.normalized()) : tangent;
     // Turning the frame with the tangent keeps the tube from twisting.
-    across = (Eigen::Quaternionf::FromTwoVectors(tangent, next) * across).normalized();
+    across = (RotationBetween(tangent, next) * across).normalized();
     tangent = next;
     const Vector3f up = tangent.cross(across);
     for (int k = 0; k <= segments; ++k) {
@@ -144,6 +144,10 @@ Mesh TubeMesh(const std::vector<Vector3f>& points, int segments) {
     }
   }
   return mesh;
+}
+
+Eigen::Quaternionf RotationBetween(const Vector3f& from, const Vector3f& to) {
+  return Eigen::Quaternionf::FromTwoVectors(from, to);
 }
 
 }  // namespace prehend::render

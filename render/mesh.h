@@ -6,11 +6,11 @@
 // Tested by tests/render/mesh_test.cc
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
-#include "physics/scene.h"
+#include "physics/scene/scene.h"
 
 namespace prehend::render {
 
@@ -36,5 +36,8 @@ Mesh HullMesh(const physics::Hull& hull);
 /// A tube along the points; corners are the points themselves, so draw it with half size 1. Empty
 /// below two points.
 Mesh TubeMesh(const std::vector<Eigen::Vector3f>& points, int segments);
+
+/// The shortest rotation from one direction to another, as physics::RotationBetween.
+Eigen::Quaternionf RotationBetween(const Eigen::Vector3f& from, const Eigen::Vector3f& to);
 
 }  // namespace prehend::render

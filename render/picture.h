@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "physics/scene.h"
-#include "physics/snapshot.h"
+#include "physics/scene/scene.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::render {
 

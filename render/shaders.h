@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shader sources (GLSL 3.30). What each computes is said beside it in shaders.cc.
+// The shader sources (GLSL 3.30). What each computes is said beside it in render/shaders.cc.
 // Tested by tests/render/painter_test.cc
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See bindings.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/bindings.h. Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/bindings.h"
 
 #include <algorithm>
@@ -8,35 +8,37 @@ namespace prehend::harness::explain {
 namespace {
 
 using grammar::Binding;
-using grammar::Hindsight;
 using grammar::kNone;
+using grammar::ReplayMonitor;
 
 // Fills the open roles from `role` on with everybody whose class fits.
-void Fill(Hindsight& past, int rule, Binding& entities, std::size_t role, std::vector<int>& lanes) {
-  const std::size_t roles = past.program().events[rule].roles.size();
-  if (lanes.size() >= kMostBindings) return;
+void Fill(ReplayMonitor& past, int rule, Binding& entities, std::size_t role,
+          std::vector<int>& instances) {
+  const std::size_t roles = past.program().rules[rule].roles.size();
+  if (instances.size() >= kMaxBindings) return;
   if (role == roles) {
-    const int lane = past.LaneOf(rule, entities);
-    if (lane != kNone && std::find(lanes.begin(), lanes.end(), lane) == lanes.end())
-      lanes.push_back(lane);
+    const int instance = past.InstanceOf(rule, entities);
+    if (instance != kNone &&
+        std::find(instances.begin(), instances.end(), instance) == instances.end())
+      instances.push_back(instance);
     return;
   }
-  if (entities[role] != kNone) return Fill(past, rule, entities, role + 1, lanes);
-  for (int entity = 0; entity < static_cast<int>(past.cast().entities.size()); ++entity) {
+  if (entities[role] != kNone) return Fill(past, rule, entities, role + 1, instances);
+  for (int entity = 0; entity < static_cast<int>(past.entity_table().entities.size()); ++entity) {
     if (std::find(entities.begin(), entities.end(), entity) != entities.end()) continue;
     entities[role] = entity;
-    Fill(past, rule, entities, role + 1, lanes);
+    Fill(past, rule, entities, role + 1, instances);
     entities[role] = kNone;
   }
 }
 
 }  // namespace
 
-std::vector<int> BindingsThatFit(Hindsight& past, int rule, const Binding& wanted) {
-  const grammar::Rule& asked = past.program().events[rule];
-  std::vector<int> lanes;
-  for (const int lane : past.LanesOf(rule)) {
-    const Binding& entities = past.At(lane).entities;
+std::vector<int> BindingsThatFit(ReplayMonitor& past, int rule, const Binding& wanted) {
+  const grammar::Rule& asked = past.program().rules[rule];
+  std::vector<int> instances;
+  for (const int instance : past.InstancesOf(rule)) {
+    const Binding& entities = past.At(instance).entities;
     const auto fits = [&](const Binding& open) {
       for (std::size_t i = 0; i < asked.roles.size(); ++i) {
         if (open[i] != kNone && open[i] != entities[i]) return false;
@@ -44,11 +46,12 @@ std::vector<int> BindingsThatFit(Hindsight& past, int rule, const Binding& wante
       return true;
     };
     const bool either_way = asked.symmetric && fits({wanted[1], wanted[0], wanted[2], wanted[3]});
-    if (lanes.size() < kMostBindings && (fits(wanted) || either_way)) lanes.push_back(lane);
+    if (instances.size() < kMaxBindings && (fits(wanted) || either_way))
+      instances.push_back(instance);
   }
   Binding entities = wanted;
-  if (lanes.empty()) Fill(past, rule, entities, 0, lanes);
-  return lanes;
+  if (instances.empty()) Fill(past, rule, entities, 0, instances);
+  return instances;
 }
 
 }  // namespace prehend::harness::explain

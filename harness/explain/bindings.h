@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bindings of a rule that could be meant where some of its roles are left open.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
 #include <vector>
 
-#include "grammar/hindsight.h"
+#include "grammar/replay_monitor.h"
 
 namespace prehend::harness::explain {
 
-inline constexpr std::size_t kMostBindings = 64;
+inline constexpr std::size_t kMaxBindings = 64;
 
 /// Those that were looked at while the episode went on; if there is none, those that could have
-/// been. At most kMostBindings. `wanted`: kNone for whoever.
-std::vector<int> BindingsThatFit(grammar::Hindsight& past, int rule,
+/// been. At most kMaxBindings. `wanted`: kNone for whoever.
+std::vector<int> BindingsThatFit(grammar::ReplayMonitor& past, int rule,
                                  const grammar::Binding& wanted);
 
 }  // namespace prehend::harness::explain

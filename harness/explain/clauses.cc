@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See clauses.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/clauses.h. Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/clauses.h"
 
 #include <fmt/format.h>
@@ -8,11 +8,11 @@
 #include <cmath>
 
 #include "harness/explain/nodes.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
 
 namespace prehend::harness::explain {
 
-using grammar::Fate;
+using grammar::CandidateOutcome;
 using grammar::FrameNumber;
 using grammar::kNone;
 using grammar::Node;
@@ -20,7 +20,7 @@ using grammar::Op;
 using Mark = Reason::Mark;
 
 std::string Clauses::Time(FrameNumber frame) {
-  return At(past_.TickOf(frame), past_.cast().ticks_per_second);
+  return At(past_.TickOf(frame), past_.entity_table().ticks_per_second);
 }
 
 bool Clauses::IsChoice(int node, bool truth) const {
@@ -69,7 +69,7 @@ std::optional<Clauses::Measured> Clauses::Measure(int node, const Moment& at) {
 Reason Clauses::Measurement(const Clause& clause, const Moment& at,
                             const std::optional<Measured>& before) {
   Reason reason{.mark = Mark::kHeld,
-                .what = ClauseText(past_, at.lane, clause.node),
+                .what = ClauseText(past_, at.instance, clause.node),
                 .how = {},
                 .where = {},
                 .tick = past_.TickOf(at.frame),
@@ -121,30 +121,31 @@ Reason Clauses::Leaf(int node, const Moment& at, bool truth, bool brief) {
   return reason;
 }
 
-Reason Clauses::Boundary(int lane, const Fate& fate, bool end, const Follow& follow) {
-  const grammar::Rule& rule = past_.RuleOf(lane);
-  const FrameNumber frame = end ? fate.span.end.frame : fate.span.begin.frame;
+Reason Clauses::Boundary(int instance, const CandidateOutcome& outcome, bool end,
+                         const Follow& follow) {
+  const grammar::Rule& rule = past_.RuleOf(instance);
+  const FrameNumber frame = end ? outcome.span.end.frame : outcome.span.begin.frame;
   return {.mark = Mark::kTurned,
-          .what = Label(past_, lane),
+          .what = Label(past_, instance),
           .how = end          ? "ended"
                  : frame == 0 ? "held from the first frame on"
                               : "began",
           .where = rule.form == grammar::Form::kTouching ? "" : Source(rule.file, rule.place),
           .tick = past_.TickOf(frame),
           .reading = {},
-          .because = follow ? follow(lane, fate, end) : Reasons{}};
+          .because = follow ? follow(instance, outcome, end) : Reasons{}};
 }
 
 // Somebody's class does not fit, or somebody would play two roles.
-Reason Clauses::Impossible(int lane, int slot) {
-  const grammar::Reference& reference = past_.RuleOf(lane).references[slot];
-  const grammar::Rule& rule = past_.program().events[reference.rule];
+Reason Clauses::Impossible(int instance, int slot) {
+  const grammar::Reference& reference = past_.RuleOf(instance).references[slot];
+  const grammar::Rule& rule = past_.program().rules[reference.rule];
   std::string names;
   std::string why = "an entity would play two roles";
   for (std::size_t role = 0; role < rule.roles.size(); ++role) {
     if (reference.roles[role] == kNone) continue;
-    const grammar::CastMember& member =
-        past_.cast().entities[past_.At(lane).entities[reference.roles[role]]];
+    const grammar::EntityInfo& member =
+        past_.entity_table().entities[past_.At(instance).entities[reference.roles[role]]];
     const std::string& wanted = rule.roles[role].class_name;
     names += (names.empty() ? "" : ", ") + member.name;
     if (std::ranges::count(member.classes, wanted) == 0)
@@ -155,10 +156,11 @@ Reason Clauses::Impossible(int lane, int slot) {
           .how = "impossible: " + why};
 }
 
-Reason Clauses::Reference(int lane, int slot, FrameNumber frame, bool truth, const Follow& follow) {
-  const int target = past_.Referred(lane, slot);
-  if (target == kNone) return Impossible(lane, slot);
-  const Fate* begun = past_.LastBegun(target, frame);
+Reason Clauses::Reference(int instance, int slot, FrameNumber frame, bool truth,
+                          const Follow& follow) {
+  const int target = past_.Referred(instance, slot);
+  if (target == kNone) return Impossible(instance, slot);
+  const CandidateOutcome* begun = past_.LastBegun(target, frame);
   Reason reason{.mark = Mark::kHeld,
                 .what = Label(past_, target),
                 .how = {},
@@ -177,8 +179,9 @@ Reason Clauses::Reference(int lane, int slot, FrameNumber frame, bool truth, con
     reason.how =
         begun == nullptr ? "never held so far" : "had ended at " + Time(begun->span.end.frame);
     if (begun != nullptr) reason.tick = begun->span.end.tick;
-    for (const Fate& next : past_.FatesOf(target)) {
-      if (next.kind != Fate::Kind::kInterval || next.span.begin.frame <= frame) continue;
+    for (const CandidateOutcome& next : past_.OutcomesOf(target)) {
+      if (next.kind != CandidateOutcome::Kind::kInterval || next.span.begin.frame <= frame)
+        continue;
       reason.how += ", begins at " + Time(next.span.begin.frame);
       break;
     }
@@ -194,16 +197,16 @@ void Clauses::Edge(int node, const Moment& at, bool truth, const Follow& follow,
   const Node& arg = NodeAt(n.args[0]);
   if (!truth) {
     out.push_back({.mark = Mark::kHeld,
-                   .what = ClauseText(past_, at.lane, node),
+                   .what = ClauseText(past_, at.instance, node),
                    .how = "not at this moment"});
   } else if (arg.op != Op::kHolds) {
     Collect(n.args[0], at, !end, follow, brief, out);
   } else {
-    const int target = past_.Referred(at.lane, arg.slot);
-    for (const Fate& fate : past_.FatesOf(target)) {
-      const FrameNumber boundary = end ? fate.span.end.frame : fate.span.begin.frame;
-      if (fate.kind != Fate::Kind::kInterval || boundary != at.frame) continue;
-      return out.push_back(Boundary(target, fate, end, follow));
+    const int target = past_.Referred(at.instance, arg.slot);
+    for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
+      const FrameNumber boundary = end ? outcome.span.end.frame : outcome.span.begin.frame;
+      if (outcome.kind != CandidateOutcome::Kind::kInterval || boundary != at.frame) continue;
+      return out.push_back(Boundary(target, outcome, end, follow));
     }
   }
 }
@@ -225,7 +228,7 @@ void Clauses::Collect(int node, const Moment& at, bool truth, const Follow& foll
     case Op::kEnds:
       return Edge(node, at, truth, follow, brief, out);
     case Op::kHolds:
-      return out.push_back(Reference(at.lane, n.slot, at.frame, truth, follow));
+      return out.push_back(Reference(at.instance, n.slot, at.frame, truth, follow));
     default:
       return out.push_back(Leaf(node, at, truth, brief));
   }
@@ -243,12 +246,13 @@ Reasons Clauses::Change(int node, const Moment& at, bool truth, const Follow& fo
 std::string Clauses::WhenInstead(const Node& edge, const Moment& at) {
   const bool begins = edge.op == Op::kBegins;
   if ((!begins && edge.op != Op::kEnds) || NodeAt(edge.args[0]).op != Op::kHolds) return {};
-  const int target = past_.Referred(at.lane, NodeAt(edge.args[0]).slot);
+  const int target = past_.Referred(at.instance, NodeAt(edge.args[0]).slot);
   std::optional<FrameNumber> last;
   if (target == kNone) return {};
-  for (const Fate& fate : past_.FatesOf(target)) {
-    const FrameNumber frame = begins ? fate.span.begin.frame : fate.span.end.frame;
-    const bool is_one = fate.kind == Fate::Kind::kInterval && (begins || frame < past_.frames());
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
+    const FrameNumber frame = begins ? outcome.span.begin.frame : outcome.span.end.frame;
+    const bool is_one =
+        outcome.kind == CandidateOutcome::Kind::kInterval && (begins || frame < past_.frames());
     if (is_one && frame > at.frame) return "; it is next at " + Time(frame);
     if (is_one) last = frame;
   }
@@ -260,7 +264,7 @@ Reason Clauses::Told(const Clause& clause, const Moment& at) {
   const bool now = past_.Truth(clause.node, at);
   Reason reason;
   if (n.op == Op::kHolds) {
-    reason = Reference(at.lane, n.slot, at.frame, now, nullptr);
+    reason = Reference(at.instance, n.slot, at.frame, now, nullptr);
     if (reason.mark == Mark::kTurned && at.frame > 0) reason.how += " at " + Time(at.frame);
   } else {
     reason = Measurement(clause, at, std::nullopt);
@@ -276,19 +280,19 @@ Reasons Clauses::State(int node, const Moment& at, bool truth) {
   return reasons;
 }
 
-double Clauses::NearestMember(int any_lane, FrameNumber frame, int depth) {
+double Clauses::NearestMember(int any_instance, FrameNumber frame, int depth) {
   double nearest = 0;
-  for (const int member : past_.At(any_lane).members) {
+  for (const int member : past_.At(any_instance).members) {
     const grammar::Rule& rule = past_.RuleOf(member);
     if (rule.form != grammar::Form::kWhile) continue;
-    nearest = std::max(nearest,
-                       0.9 * Nearness(rule.first, {.lane = member, .frame = frame}, true, depth));
+    nearest = std::max(
+        nearest, 0.9 * Nearness(rule.first, {.instance = member, .frame = frame}, true, depth));
   }
   return nearest;
 }
 
 double Clauses::Nearness(int node, const Moment& at, bool truth, int depth) {
-  constexpr int kDeepest = 6;
+  constexpr int kMaxDepth = 6;
   const Node& n = NodeAt(node);
   if (past_.Truth(node, at) == truth) return 1;
   if (n.op == Op::kNot) return Nearness(n.args[0], at, !truth, depth);
@@ -298,11 +302,11 @@ double Clauses::Nearness(int node, const Moment& at, bool truth, int depth) {
     return (n.op == Op::kAnd) == truth ? (left + right) / 2 : std::max(left, right);
   }
   if (n.op == Op::kHolds) {
-    const int target = past_.Referred(at.lane, n.slot);
-    if (!truth || target == kNone || depth == kDeepest) return 0;
+    const int target = past_.Referred(at.instance, n.slot);
+    if (!truth || target == kNone || depth == kMaxDepth) return 0;
     const grammar::Rule& rule = past_.RuleOf(target);
     if (rule.form == grammar::Form::kWhile) {
-      return 0.9 * Nearness(rule.first, {.lane = target, .frame = at.frame}, true, depth + 1);
+      return 0.9 * Nearness(rule.first, {.instance = target, .frame = at.frame}, true, depth + 1);
     }
     return rule.form == grammar::Form::kAny ? NearestMember(target, at.frame, depth + 1) : 0;
   }

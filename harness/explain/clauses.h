@@ -1,30 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clauses of a condition at a frame: which of them made it true or false, with what they
-// measured. Knows the forms of the language, no rule. Tested by tests/harness/explain_test.cc
+// measured. Knows the forms of the language, no rule. Tested by
+// tests/harness/explain/explain_test.cc
 #pragma once
 
 #include <functional>
 #include <optional>
 
-#include "grammar/hindsight.h"
-#include "harness/explain/reason.h"
+#include "grammar/replay_monitor.h"
+#include "harness/explain/explanation.h"
 
 namespace prehend::harness::explain {
 
-using Moment = grammar::Hindsight::Moment;
+using Moment = grammar::ReplayMonitor::Moment;
 
 class Clauses {
  public:
   /// Reasons that stand behind a boundary of another rule's interval: (binding, interval, its end).
-  using Follow = std::function<Reasons(int lane, const grammar::Fate& fate, bool end)>;
+  using Follow =
+      std::function<Reasons(int instance, const grammar::CandidateOutcome& outcome, bool end)>;
 
-  explicit Clauses(grammar::Hindsight& past) : past_(past) {}
+  explicit Clauses(grammar::ReplayMonitor& past) : past_(past) {}
 
   /// The clauses that make the node what it is at the frame: true, or false. What became so at this
   /// very frame is followed. `brief` leaves out what was so already.
   Reasons Change(int node, const Moment& at, bool truth, const Follow& follow, bool brief = false);
   /// The same for a reference of the binding.
-  Reason Reference(int lane, int slot, grammar::FrameNumber frame, bool truth,
+  Reason Reference(int instance, int slot, grammar::FrameNumber frame, bool truth,
                    const Follow& follow);
 
   /// The clauses of the node, as they were at the frame: those that are not `truth` have failed.
@@ -58,7 +60,8 @@ class Clauses {
     std::string of;  ///< " from the centre"
   };
   std::optional<Measured> Measure(int node, const Moment& at);
-  Reason Boundary(int lane, const grammar::Fate& fate, bool end, const Follow& follow);
+  Reason Boundary(int instance, const grammar::CandidateOutcome& outcome, bool end,
+                  const Follow& follow);
   void Edge(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out);
   Reason Leaf(int node, const Moment& at, bool truth, bool brief);
   Reason Measurement(const Clause& clause, const Moment& at, const std::optional<Measured>& before);
@@ -66,12 +69,12 @@ class Clauses {
                Reasons& out);
   void Split(int node, const Moment& at, bool truth, std::vector<Clause>& out);
   std::string WhenInstead(const grammar::Node& edge, const Moment& at);
-  Reason Impossible(int lane, int slot);
-  double NearestMember(int any_lane, grammar::FrameNumber frame, int depth);
+  Reason Impossible(int instance, int slot);
+  double NearestMember(int any_instance, grammar::FrameNumber frame, int depth);
   std::string Since(int node, const Moment& at, bool truth);
   const grammar::Node& NodeAt(int node) const { return past_.program().nodes[node]; }
 
-  grammar::Hindsight& past_;
+  grammar::ReplayMonitor& past_;
 };
 
 }  // namespace prehend::harness::explain

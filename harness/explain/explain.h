@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // Answers of `prehend explain`, as values, as text and as JSON.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "grammar/hindsight.h"
-#include "harness/explain/ask.h"
-#include "harness/explain/reason.h"
+#include "grammar/replay_monitor.h"
+#include "harness/explain/explanation.h"
+#include "harness/explain/query.h"
 
 namespace prehend::harness::explain {
 
 /// Every event of the episode in the order of time, with what turned at its boundaries.
-std::vector<WhyEvent> ExplainAll(grammar::Hindsight& past);
+std::vector<WhyEvent> ExplainAll(grammar::ReplayMonitor& past);
 /// The intervals that are asked for, in the order of time: those that contain its moment, if it has
 /// one.
-std::vector<WhyEvent> ExplainEvents(grammar::Hindsight& past, const Ask& ask);
+std::vector<WhyEvent> ExplainEvents(grammar::ReplayMonitor& past, const Ask& ask);
 /// The intervals of the asked name and entities that are nearest to its moment, at most three;
 /// without reasons.
-std::vector<WhyEvent> NearestEvents(grammar::Hindsight& past, const Ask& ask);
+std::vector<WhyEvent> NearestEvents(grammar::ReplayMonitor& past, const Ask& ask);
 /// Why there is none.
-WhyMissing ExplainMissing(grammar::Hindsight& past, const Ask& ask);
+WhyMissing ExplainMissing(grammar::ReplayMonitor& past, const Ask& ask);
 
 std::string Text(const WhyEvent& why, grammar::Tick ticks_per_second);
 std::string Text(const WhyMissing& why, grammar::Tick ticks_per_second);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explanations for programs. Tested by tests/harness/explain_test.cc
+// Explanations for programs. Tested by tests/harness/explain/explain_test.cc
 #include <cmath>
 #include <nlohmann/json.hpp>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explanations for people: a tree of clauses, aligned; one line per event for all of them.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "harness/event_text.h"
 #include "harness/explain/explain.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 using grammar::Tick;
 using Mark = Reason::Mark;
 
-constexpr std::size_t kWidest = 70;  // what stands beyond starts a column of its own
+constexpr std::size_t kMaxWidth = 70;  // what stands beyond starts a column of its own
 
 char Sign(Mark mark) {
   switch (mark) {
@@ -51,7 +51,7 @@ std::string Tree(const std::string& title, const Reasons& reasons) {
   AddLines(reasons, 2, lines);
   std::size_t width = 0;
   for (const Line& line : lines) {
-    if (line.left.size() <= kWidest) width = std::max(width, line.left.size());
+    if (line.left.size() <= kMaxWidth) width = std::max(width, line.left.size());
   }
   std::string text = title + "\n";
   for (const Line& line : lines) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What kind of clause a node of a program is.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
 #include <algorithm>
 
-#include "grammar/program.h"
+#include "grammar/program/program.h"
 
 namespace prehend::harness::explain {
 

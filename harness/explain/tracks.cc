@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See tracks.h. Tested by tests/harness/tracks_test.cc
+// See harness/explain/tracks.h. Tested by tests/harness/explain/tracks_test.cc
 #include "harness/explain/tracks.h"
 
 #include <fmt/format.h>
@@ -8,20 +8,20 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "harness/event_text.h"
 #include "harness/explain/nodes.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 namespace {
 
-using grammar::Fate;
+using grammar::CandidateOutcome;
 using grammar::FrameNumber;
-using grammar::Hindsight;
 using grammar::kNone;
 using grammar::Node;
 using grammar::Op;
 using grammar::Program;
+using grammar::ReplayMonitor;
 using grammar::Rule;
 
 /// A number of one rule that can be plotted: a side of a comparison, or how far something is from a
@@ -72,14 +72,14 @@ std::string NameOf(const Program& program, const Signal& signal) {
 
 class Collector {
  public:
-  Collector(Hindsight& past, const std::set<std::string>& only) : past_(past), only_(only) {
-    tracks_.ticks_per_second = past.cast().ticks_per_second;
+  Collector(ReplayMonitor& past, const std::set<std::string>& only) : past_(past), only_(only) {
+    tracks_.ticks_per_second = past.entity_table().ticks_per_second;
     for (FrameNumber frame = 0; frame < past.frames(); ++frame)
       tracks_.ticks.push_back(past.TickOf(frame));
   }
 
   Tracks Collect() {
-    const std::vector<Rule>& rules = past_.program().events;
+    const std::vector<Rule>& rules = past_.program().rules;
     for (std::size_t rule = 0; rule < rules.size(); ++rule) {
       if (!rules[rule].hidden && Wanted(rules[rule].name)) AddIntervals(static_cast<int>(rule));
     }
@@ -94,10 +94,10 @@ class Collector {
 
   std::vector<std::optional<double>>* Add(std::string name, Track::Kind kind, std::string unit) {
     const std::size_t values = (tracks_.tracks.size() + 1) * tracks_.ticks.size();
-    if (tracks_.tracks.size() == kMostTracks || values > kMostTrackValues) {
+    if (tracks_.tracks.size() == kMaxTracks || values > kMaxTrackValues) {
       tracks_.problem =
           fmt::format("more than {} tracks, or {} values; ask for some of them with --only",
-                      kMostTracks, kMostTrackValues);
+                      kMaxTracks, kMaxTrackValues);
       return nullptr;
     }
     if (!names_.insert(name).second) return nullptr;
@@ -108,54 +108,55 @@ class Collector {
 
   void AddIntervals(int rule) {
     const Track::Kind kind =
-        past_.program().events[rule].printed ? Track::Kind::kEvent : Track::Kind::kCondition;
-    for (const int lane : past_.LanesOf(rule)) {
-      auto* values = tracks_.problem.empty() ? Add(Label(past_, lane), kind, "") : nullptr;
+        past_.program().rules[rule].printed ? Track::Kind::kEvent : Track::Kind::kCondition;
+    for (const int instance : past_.InstancesOf(rule)) {
+      auto* values = tracks_.problem.empty() ? Add(Label(past_, instance), kind, "") : nullptr;
       if (values == nullptr) continue;
       std::fill(values->begin(), values->end(), 0);
-      for (const Fate& fate : past_.FatesOf(lane)) {
-        if (fate.kind != Fate::Kind::kInterval) continue;
-        const FrameNumber end = std::min(fate.span.end.frame, past_.frames());
-        for (FrameNumber frame = fate.span.begin.frame; frame < end; ++frame) (*values)[frame] = 1;
+      for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+        if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
+        const FrameNumber end = std::min(outcome.span.end.frame, past_.frames());
+        for (FrameNumber frame = outcome.span.begin.frame; frame < end; ++frame)
+          (*values)[frame] = 1;
       }
     }
   }
 
   void AddSignals(int rule) {
-    const Rule& asked = past_.program().events[rule];
+    const Rule& asked = past_.program().rules[rule];
     for (const Signal& signal : SignalsOf(past_.program(), asked)) {
       if (!Wanted(NameOf(past_.program(), signal)) && !Wanted(asked.name)) continue;
-      for (const int lane : past_.LanesOf(rule)) {
-        if (tracks_.problem.empty()) AddSignal(lane, signal);
+      for (const int instance : past_.InstancesOf(rule)) {
+        if (tracks_.problem.empty()) AddSignal(instance, signal);
       }
     }
   }
 
-  void AddSignal(int lane, const Signal& signal) {
+  void AddSignal(int instance, const Signal& signal) {
     const Program& program = past_.program();
     const bool anchored =
         AsksFor(program, signal.node, Op::kAtBegin) || AsksFor(program, signal.node, Op::kAtEnd);
-    std::string name = ClauseText(past_, lane, signal.node);
+    std::string name = ClauseText(past_, instance, signal.node);
     if (name.empty()) return;
     if (signal.what == Signal::What::kDistance) name += ": from the centre";
     if (signal.what == Signal::What::kHeight) name += ": above or below the centre";
     // What is measured from an interval's boundary is another thing in each rule.
-    if (anchored) name = RuleName(past_, lane) + ": " + name;
+    if (anchored) name = RuleName(past_, instance) + ": " + name;
     const grammar::Dimension& dimension = signal.what == Signal::What::kNumber
                                               ? NoteOf(program, signal.node).dimension
                                               : grammar::kMetres;
     auto* values = Add(std::move(name), Track::Kind::kSignal,
                        dimension == grammar::kPlain ? "" : grammar::DimensionText(dimension));
     if (values == nullptr) return;
-    if (!anchored) return Fill(signal, 0, past_.frames(), {.lane = lane}, *values);
-    for (const Fate& fate : past_.FatesOf(lane)) {
-      const FrameNumber begin = fate.span.begin.frame;
-      Fill(signal, begin, std::min(fate.span.end.frame + 1, past_.frames()),
-           {.lane = lane, .begin = begin, .end = fate.span.end.frame}, *values);
+    if (!anchored) return Fill(signal, 0, past_.frames(), {.instance = instance}, *values);
+    for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+      const FrameNumber begin = outcome.span.begin.frame;
+      Fill(signal, begin, std::min(outcome.span.end.frame + 1, past_.frames()),
+           {.instance = instance, .begin = begin, .end = outcome.span.end.frame}, *values);
     }
   }
 
-  void Fill(const Signal& signal, FrameNumber first, FrameNumber end, Hindsight::Moment at,
+  void Fill(const Signal& signal, FrameNumber first, FrameNumber end, ReplayMonitor::Moment at,
             std::vector<std::optional<double>>& values) {
     for (at.frame = first; at.frame < end; ++at.frame) {
       if (signal.what == Signal::What::kNumber) {
@@ -167,7 +168,7 @@ class Collector {
     }
   }
 
-  Hindsight& past_;
+  ReplayMonitor& past_;
   const std::set<std::string>& only_;
   Tracks tracks_;
   std::set<std::string> names_;
@@ -196,7 +197,7 @@ std::string CsvCell(const std::string& text) {
 
 std::vector<std::string> TrackNames(const Program& program) {
   std::set<std::string> names;
-  for (const Rule& rule : program.events) {
+  for (const Rule& rule : program.rules) {
     if (rule.hidden) continue;
     names.insert(rule.name);
     for (const Signal& signal : SignalsOf(program, rule)) names.insert(NameOf(program, signal));
@@ -205,7 +206,7 @@ std::vector<std::string> TrackNames(const Program& program) {
   return {names.begin(), names.end()};
 }
 
-Tracks CollectTracks(Hindsight& past, const std::set<std::string>& only) {
+Tracks CollectTracks(ReplayMonitor& past, const std::set<std::string>& only) {
   return Collector(past, only).Collect();
 }
 

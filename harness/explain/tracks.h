@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every named condition and signal of a grammar over time, one value per frame: for plots.
-// Tested by tests/harness/tracks_test.cc
+// Tested by tests/harness/explain/tracks_test.cc
 #pragma once
 
 #include <optional>
@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "grammar/hindsight.h"
-#include "harness/read_result.h"
+#include "grammar/replay_monitor.h"
+#include "harness/base/read_result.h"
 
 namespace prehend::harness::explain {
 
-inline constexpr std::size_t kMostTracks = 10'000;
-inline constexpr std::size_t kMostTrackValues = 50'000'000;
+inline constexpr std::size_t kMaxTracks = 10'000;
+inline constexpr std::size_t kMaxTrackValues = 50'000'000;
 
 struct Track {
   enum class Kind { kEvent, kCondition, kSignal };
@@ -38,7 +38,7 @@ struct Tracks {
 std::vector<std::string> TrackNames(const grammar::Program& program);
 
 /// `only`: these names; empty: all.
-Tracks CollectTracks(grammar::Hindsight& past, const std::set<std::string>& only);
+Tracks CollectTracks(grammar::ReplayMonitor& past, const std::set<std::string>& only);
 
 /// One line per frame: time_s, tick, and a column per track, the unit in brackets. Values that are
 /// none are empty.

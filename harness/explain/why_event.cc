@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// See why_event.h. Tested by tests/harness/explain_test.cc
+// See harness/explain/why_event.h. Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/why_event.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "grammar/allen.h"
-#include "harness/event_text.h"
+#include "grammar/base/allen.h"
 #include "harness/explain/nodes.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 
-using grammar::Fate;
+using grammar::CandidateOutcome;
 using grammar::Form;
 using grammar::FrameNumber;
 using grammar::kNone;
@@ -24,7 +24,7 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr int kDeepest = 8;  // rules behind rules
+constexpr int kMaxDepth = 8;  // rules behind rules
 
 Reason Remark(std::string what, std::string how = {}) {
   return {.mark = Mark::kNote,
@@ -51,9 +51,9 @@ std::string EventReasons::Seconds(double seconds) const {
 }
 
 Clauses::Follow EventReasons::FollowFrom(int depth) {
-  return [this, depth](int lane, const Fate& fate, bool end) {
-    if (depth >= kDeepest) return Reasons{};
-    return end ? End(lane, fate, depth + 1) : Begin(lane, fate, depth + 1);
+  return [this, depth](int instance, const CandidateOutcome& outcome, bool end) {
+    if (depth >= kMaxDepth) return Reasons{};
+    return end ? End(instance, outcome, depth + 1) : Begin(instance, outcome, depth + 1);
   };
 }
 
@@ -61,40 +61,40 @@ Reasons EventReasons::Change(int node, const Moment& at, bool truth, int depth) 
   return node == kNone ? Reasons{} : clauses_.Change(node, at, truth, FollowFrom(depth), brief_);
 }
 
-Reasons EventReasons::Begin(int lane, const Fate& fate, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
-  const FrameNumber begin = fate.span.begin.frame;
+Reasons EventReasons::Begin(int instance, const CandidateOutcome& outcome, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
+  const FrameNumber begin = outcome.span.begin.frame;
   switch (rule.form) {
     case Form::kTouching:
       return {};
     case Form::kAny:
-      return BeginOrEndOfAny(lane, begin, false, depth);
+      return BeginOrEndOfAny(instance, begin, false, depth);
     case Form::kWhile: {
-      const Moment at{.lane = lane, .frame = begin};
+      const Moment at{.instance = instance, .frame = begin};
       Reasons reasons = Change(rule.first, at, true, depth);
       AddNew(Change(rule.second, at, false, depth), reasons);
       return reasons;
     }
     case Form::kFromTo: {
-      const Moment at{.lane = lane, .frame = begin, .begin = begin};
+      const Moment at{.instance = instance, .frame = begin, .begin = begin};
       Reasons reasons = Change(rule.first, at, true, depth);
-      AddNew(Change(rule.during, at, true, kDeepest), reasons);
+      AddNew(Change(rule.during, at, true, kMaxDepth), reasons);
       return reasons;
     }
     case Form::kUntilSince:
-      return BeginOfWalk(lane, fate, depth);
+      return BeginOfWalk(instance, outcome, depth);
     case Form::kRestOf:
-      return BeginOrEndOfRest(lane, begin, true, depth);
+      return BeginOrEndOfRest(instance, begin, true, depth);
     case Form::kCompose:
-      return Parts(lane, fate, depth);
+      return Parts(instance, outcome, depth);
   }
   return {};
 }
 
-Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
-  const FrameNumber begin = fate.span.begin.frame;
-  const FrameNumber end = fate.span.end.frame;
+Reasons EventReasons::End(int instance, const CandidateOutcome& outcome, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
+  const FrameNumber begin = outcome.span.begin.frame;
+  const FrameNumber end = outcome.span.end.frame;
   // That B did not come is decided by time alone; what comes in that frame comes too late.
   if (rule.absence) return {Remark("nothing came within " + Seconds(rule.within_s))};
   if (end >= past_.frames()) return {Remark("the episode ends here")};
@@ -102,27 +102,27 @@ Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
     case Form::kTouching:
       return {};
     case Form::kAny:
-      return BeginOrEndOfAny(lane, end, true, depth);
+      return BeginOrEndOfAny(instance, end, true, depth);
     case Form::kWhile: {
       const bool hysteresis = rule.second != kNone;
-      return Change(hysteresis ? rule.second : rule.first, {.lane = lane, .frame = end}, hysteresis,
-                    depth);
+      return Change(hysteresis ? rule.second : rule.first, {.instance = instance, .frame = end},
+                    hysteresis, depth);
     }
     case Form::kFromTo: {
-      const Moment at{.lane = lane, .frame = end, .begin = begin};
+      const Moment at{.instance = instance, .frame = end, .begin = begin};
       const bool closed = past_.Truth(rule.second, at);
       return Change(closed ? rule.second : rule.during, at, closed, depth);
     }
     case Form::kUntilSince:
-      return Change(rule.first, {.lane = lane, .frame = end}, true, depth);
+      return Change(rule.first, {.instance = instance, .frame = end}, true, depth);
     case Form::kRestOf:
-      return BeginOrEndOfRest(lane, end, false, depth);
+      return BeginOrEndOfRest(instance, end, false, depth);
     case Form::kCompose: {
-      std::vector<const Fate*> parts;
-      if (!ChooseParts(lane, fate, parts)) return {};
-      Reason last = Remark(Label(past_, parts.back()->lane), "ended");
+      std::vector<const CandidateOutcome*> parts;
+      if (!ChooseParts(instance, outcome, parts)) return {};
+      Reason last = Remark(Label(past_, parts.back()->instance), "ended");
       last.mark = Mark::kTurned;
-      if (depth < kDeepest) last.because = End(parts.back()->lane, *parts.back(), depth + 1);
+      if (depth < kMaxDepth) last.because = End(parts.back()->instance, *parts.back(), depth + 1);
       return {std::move(last)};
     }
   }
@@ -130,19 +130,20 @@ Reasons EventReasons::End(int lane, const Fate& fate, int depth) {
 }
 
 // What stopped the walk back from the end.
-Reasons EventReasons::BeginOfWalk(int lane, const Fate& fate, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
-  const FrameNumber begin = fate.span.begin.frame;
-  const FrameNumber end = fate.span.end.frame;
-  const FrameNumber at = fate.walk.at;
+Reasons EventReasons::BeginOfWalk(int instance, const CandidateOutcome& outcome, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
+  const FrameNumber begin = outcome.span.begin.frame;
+  const FrameNumber end = outcome.span.end.frame;
+  const FrameNumber at = outcome.walk.at;
   const auto signal = [&](FrameNumber frame) {
-    return past_.Number(rule.approach, {.lane = lane, .frame = frame, .end = end}).value_or(0);
+    return past_.Number(rule.approach, {.instance = instance, .frame = frame, .end = end})
+        .value_or(0);
   };
   const auto text = [&](double value) {
     return QuantityText(value, NoteOf(past_.program(), rule.approach).dimension);
   };
   Reasons reasons;
-  switch (fate.walk.stop) {
+  switch (outcome.walk.stop) {
     case WalkBack::Stop::kFirstFrame:
       reasons = {Remark("it held from the first frame on")};
       break;
@@ -153,11 +154,12 @@ Reasons EventReasons::BeginOfWalk(int lane, const Fate& fate, int depth) {
       reasons = {Remark("it looks at most " + Seconds(rule.back_s) + " back")};
       break;
     case WalkBack::Stop::kSince:
-      reasons = Change(rule.second, {.lane = lane, .frame = at + 1, .end = end}, true, depth);
+      reasons =
+          Change(rule.second, {.instance = instance, .frame = at + 1, .end = end}, true, depth);
       break;
     case WalkBack::Stop::kReceding:
       reasons = {Remark(
-          "the approach turns here: " + ClauseText(past_, lane, rule.approach),
+          "the approach turns here: " + ClauseText(past_, instance, rule.approach),
           fmt::format("is {}; at {} it was {}, and it may recede by at most {}",
                       text(signal(begin)), clauses_.Time(at), text(signal(at)), text(rule.slack)))};
       reasons.front().mark = Mark::kTurned;
@@ -167,16 +169,16 @@ Reasons EventReasons::BeginOfWalk(int lane, const Fate& fate, int depth) {
       reasons.front().mark = Mark::kTurned;
       break;
   }
-  const bool later = fate.walk.stop != WalkBack::Stop::kReceding &&
-                     fate.walk.stop != WalkBack::Stop::kIdle &&
-                     begin > at + (fate.walk.stop == WalkBack::Stop::kSince ? 1 : 0);
+  const bool later = outcome.walk.stop != WalkBack::Stop::kReceding &&
+                     outcome.walk.stop != WalkBack::Stop::kIdle &&
+                     begin > at + (outcome.walk.stop == WalkBack::Stop::kSince ? 1 : 0);
   if (!later || rule.approach == kNone) return reasons;
   const grammar::Dimension of_signal = NoteOf(past_.program(), rule.approach).dimension;
   const grammar::Dimension dimension = rule.motion == kNone
                                            ? grammar::Quotient(of_signal, grammar::kSeconds)
                                            : NoteOf(past_.program(), rule.motion).dimension;
   Reason moved =
-      Remark(ClauseText(past_, lane, rule.motion == kNone ? rule.approach : rule.motion) +
+      Remark(ClauseText(past_, instance, rule.motion == kNone ? rule.approach : rule.motion) +
                  " moves from here on",
              "not slower than " + QuantityText(rule.speed, dimension));
   moved.mark = Mark::kTurned;
@@ -184,14 +186,14 @@ Reasons EventReasons::BeginOfWalk(int lane, const Fate& fate, int depth) {
   return reasons;
 }
 
-Reasons EventReasons::BeginOrEndOfRest(int lane, FrameNumber frame, bool begins, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
+Reasons EventReasons::BeginOrEndOfRest(int instance, FrameNumber frame, bool begins, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
   Reasons reasons;
   const auto add = [&](int slot, bool truth) {
-    const int target = past_.Referred(lane, slot);
+    const int target = past_.Referred(instance, slot);
     const bool holds = target != kNone && past_.Covering(target, frame) != nullptr;
     if (holds != truth) return;
-    Reason reason = clauses_.Reference(lane, slot, frame, truth, FollowFrom(depth));
+    Reason reason = clauses_.Reference(instance, slot, frame, truth, FollowFrom(depth));
     if (!brief_ || reason.mark == Mark::kTurned) reasons.push_back(std::move(reason));
   };
   add(rule.first, begins);
@@ -200,15 +202,15 @@ Reasons EventReasons::BeginOrEndOfRest(int lane, FrameNumber frame, bool begins,
 }
 
 // The bindings that begin or end here; of several that hold, others go on.
-Reasons EventReasons::BeginOrEndOfAny(int lane, FrameNumber frame, bool end, int depth) {
+Reasons EventReasons::BeginOrEndOfAny(int instance, FrameNumber frame, bool end, int depth) {
   Reasons reasons;
-  std::vector<int> members = past_.At(lane).members;
+  std::vector<int> members = past_.At(instance).members;
   std::sort(members.begin(), members.end(),
             [&](int a, int b) { return past_.At(a).entities < past_.At(b).entities; });
   for (const int member : members) {
-    for (const Fate& fate : past_.FatesOf(member)) {
-      const FrameNumber boundary = end ? fate.span.end.frame : fate.span.begin.frame;
-      if (fate.kind != Fate::Kind::kInterval || boundary != frame) continue;
+    for (const CandidateOutcome& outcome : past_.OutcomesOf(member)) {
+      const FrameNumber boundary = end ? outcome.span.end.frame : outcome.span.begin.frame;
+      if (outcome.kind != CandidateOutcome::Kind::kInterval || boundary != frame) continue;
       const Rule& rule = past_.RuleOf(member);
       reasons.push_back({.mark = Mark::kTurned,
                          .what = Label(past_, member),
@@ -216,23 +218,24 @@ Reasons EventReasons::BeginOrEndOfAny(int lane, FrameNumber frame, bool end, int
                          .where = rule.form == Form::kTouching ? "" : Source(rule.file, rule.place),
                          .tick = past_.TickOf(frame),
                          .reading = {},
-                         .because = FollowFrom(depth)(member, fate, end)});
+                         .because = FollowFrom(depth)(member, outcome, end)});
     }
   }
   return reasons;
 }
 
-bool EventReasons::ChooseParts(int lane, const Fate& whole, std::vector<const Fate*>& chosen) {
-  const grammar::Composition& composition = past_.RuleOf(lane).composition;
+bool EventReasons::ChooseParts(int instance, const CandidateOutcome& whole,
+                               std::vector<const CandidateOutcome*>& chosen) {
+  const grammar::Composition& composition = past_.RuleOf(instance).composition;
   const std::size_t part = chosen.size();
   if (part == composition.parts.size()) return true;
-  const int target = past_.Referred(lane, composition.parts[part]);
-  for (const Fate& fate : past_.FatesOf(target)) {
-    if (fate.kind != Fate::Kind::kInterval) continue;
-    if (part == 0 && fate.span.begin.frame != whole.span.begin.frame) continue;
-    if (part + 1 == composition.parts.size() && fate.span.end.frame != whole.span.end.frame)
+  const int target = past_.Referred(instance, composition.parts[part]);
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
+    if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
+    if (part == 0 && outcome.span.begin.frame != whole.span.begin.frame) continue;
+    if (part + 1 == composition.parts.size() && outcome.span.end.frame != whole.span.end.frame)
       continue;
-    chosen.push_back(&fate);
+    chosen.push_back(&outcome);
     const auto holds = [&](const grammar::Composition::Clause& clause) {
       if (std::max(clause.left, clause.right) != static_cast<int>(part)) return true;
       const auto ticks = [&](int i) {
@@ -242,106 +245,107 @@ bool EventReasons::ChooseParts(int lane, const Fate& whole, std::vector<const Fa
               clause.relations) != 0;
     };
     const bool fits = std::all_of(composition.clauses.begin(), composition.clauses.end(), holds);
-    if (fits && ChooseParts(lane, whole, chosen)) return true;
+    if (fits && ChooseParts(instance, whole, chosen)) return true;
     chosen.pop_back();
   }
   return false;
 }
 
-Reasons EventReasons::Parts(int lane, const Fate& fate, int depth) {
-  std::vector<const Fate*> chosen;
+Reasons EventReasons::Parts(int instance, const CandidateOutcome& outcome, int depth) {
+  std::vector<const CandidateOutcome*> chosen;
   Reasons reasons;
-  if (!ChooseParts(lane, fate, chosen)) return reasons;
-  for (const Fate* part : chosen) {
-    Reason reason = Remark(
-        "part " + Label(past_, part->lane),
-        IntervalText({part->span.begin.tick, part->span.end.tick}, past_.cast().ticks_per_second));
+  if (!ChooseParts(instance, outcome, chosen)) return reasons;
+  for (const CandidateOutcome* part : chosen) {
+    Reason reason = Remark("part " + Label(past_, part->instance),
+                           IntervalText({part->span.begin.tick, part->span.end.tick},
+                                        past_.entity_table().ticks_per_second));
     if (part == chosen.front()) reason.mark = Mark::kTurned;
-    if (part == chosen.front() && depth < kDeepest)
-      reason.because = Begin(part->lane, *part, depth + 1);
+    if (part == chosen.front() && depth < kMaxDepth)
+      reason.because = Begin(part->instance, *part, depth + 1);
     reasons.push_back(std::move(reason));
   }
   return reasons;
 }
 
-Reasons EventReasons::Counted(int lane, const Fate& fate) {
-  const Rule& rule = past_.RuleOf(lane);
-  const Tick per_second = past_.cast().ticks_per_second;
+Reasons EventReasons::Counted(int instance, const CandidateOutcome& outcome) {
+  const Rule& rule = past_.RuleOf(instance);
+  const Tick per_second = past_.entity_table().ticks_per_second;
   Reasons reasons;
   if (rule.lasting_s > 0) {
-    reasons.push_back(
-        Remark("lasting " + Seconds(rule.lasting_s),
-               "it lasted " + Duration(fate.span.end.tick - fate.span.begin.tick, per_second)));
+    reasons.push_back(Remark(
+        "lasting " + Seconds(rule.lasting_s),
+        "it lasted " + Duration(outcome.span.end.tick - outcome.span.begin.tick, per_second)));
   }
   if (rule.requirement != kNone) {
-    const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
-    const Moment at{.lane = lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
+    const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
+    const Moment at{
+        .instance = instance, .frame = last, .begin = outcome.span.begin.frame, .end = last};
     for (Reason& reason : clauses_.State(rule.requirement, at, true)) {
       reason.what = "requires " + reason.what;
       reasons.push_back(std::move(reason));
     }
   }
-  if (rule.confirmed_by != kNone && fate.cause != grammar::kNever) {
-    const int by = past_.Referred(lane, rule.confirmed_by);
-    const int within = past_.Referred(lane, rule.confirmed_within);
-    reasons.push_back(Remark(
-        "confirmed by " + Label(past_, by),
-        "it began at " + clauses_.Time(fate.cause) + ", while " + Label(past_, within) + " held"));
+  if (rule.confirmed_by != kNone && outcome.cause != grammar::kNever) {
+    const int by = past_.Referred(instance, rule.confirmed_by);
+    const int within = past_.Referred(instance, rule.confirmed_within);
+    reasons.push_back(Remark("confirmed by " + Label(past_, by),
+                             "it began at " + clauses_.Time(outcome.cause) + ", while " +
+                                 Label(past_, within) + " held"));
   }
   return reasons;
 }
 
 // Why it was not known at its end already.
-Reasons EventReasons::Waited(int lane, const Fate& fate, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
-  const Tick end = fate.span.end.tick;
+Reasons EventReasons::Waited(int instance, const CandidateOutcome& outcome, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
+  const Tick end = outcome.span.end.tick;
   Reasons reasons;
-  if (fate.decided <= end || depth >= kDeepest) return reasons;
-  if (rule.bridging_s > 0 && !fate.span.open_end) {
-    reasons.push_back(Remark(Label(past_, lane), "a gap of up to " + Seconds(rule.bridging_s) +
-                                                     " would have been bridged"));
+  if (outcome.decided <= end || depth >= kMaxDepth) return reasons;
+  if (rule.bridging_s > 0 && !outcome.span.open_end) {
+    reasons.push_back(Remark(Label(past_, instance), "a gap of up to " + Seconds(rule.bridging_s) +
+                                                         " would have been bridged"));
   }
-  if (rule.looks_around_s > 0 && !fate.span.open_end) {
-    reasons.push_back(Remark(Label(past_, lane), "a signal over a window looks " +
-                                                     Seconds(rule.looks_around_s) + " ahead"));
+  if (rule.looks_around_s > 0 && !outcome.span.open_end) {
+    reasons.push_back(Remark(Label(past_, instance), "a signal over a window looks " +
+                                                         Seconds(rule.looks_around_s) + " ahead"));
   }
-  if (rule.confirmed_by != kNone && fate.cause != grammar::kNever) {
-    reasons.push_back(Remark(Label(past_, past_.Referred(lane, rule.confirmed_by)),
-                             "had to begin, and did so at " + clauses_.Time(fate.cause)));
+  if (rule.confirmed_by != kNone && outcome.cause != grammar::kNever) {
+    reasons.push_back(Remark(Label(past_, past_.Referred(instance, rule.confirmed_by)),
+                             "had to begin, and did so at " + clauses_.Time(outcome.cause)));
   }
-  for (Reason& reason : WaitedFor(lane, fate, depth)) reasons.push_back(std::move(reason));
+  for (Reason& reason : WaitedFor(instance, outcome, depth)) reasons.push_back(std::move(reason));
   return reasons;
 }
 
 // How far back it may turn out to have held: it looks back itself, or begins with what does. 0: not
 // at all.
-double EventReasons::LooksBack_s(int lane) {
-  const Rule& rule = past_.RuleOf(lane);
+double EventReasons::LooksBack_s(int instance) {
+  const Rule& rule = past_.RuleOf(instance);
   if (rule.form == Form::kUntilSince) return rule.back_s;
   const int begins_with = rule.form == Form::kRestOf   ? rule.first
                           : rule.form == Form::kFromTo ? rule.opened_by
                                                        : kNone;
-  const int target = begins_with == kNone ? kNone : past_.Referred(lane, begins_with);
+  const int target = begins_with == kNone ? kNone : past_.Referred(instance, begins_with);
   return target == kNone ? 0 : LooksBack_s(target);
 }
 
 // What it refers to and was known at that very moment only; or what might still have come in that
 // time.
-Reasons EventReasons::WaitedFor(int lane, const Fate& fate, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
-  std::vector<int> targets = past_.At(lane).members;
+Reasons EventReasons::WaitedFor(int instance, const CandidateOutcome& outcome, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
+  std::vector<int> targets = past_.At(instance).members;
   for (std::size_t slot = 0; slot < rule.references.size() && rule.form != Form::kAny; ++slot) {
-    targets.push_back(past_.Referred(lane, static_cast<int>(slot)));
+    targets.push_back(past_.Referred(instance, static_cast<int>(slot)));
   }
   std::erase(targets, kNone);
   Reasons reasons;
   for (const int target : targets) {
-    const std::vector<Fate>& fates = past_.FatesOf(target);
-    const auto only_then = [&](const Fate& other) {
-      return other.decided == fate.decided && other.span.end.tick < other.decided;
+    const std::vector<CandidateOutcome>& outcomes = past_.OutcomesOf(target);
+    const auto only_then = [&](const CandidateOutcome& other) {
+      return other.decided == outcome.decided && other.span.end.tick < other.decided;
     };
-    const auto other = std::find_if(fates.begin(), fates.end(), only_then);
-    if (other == fates.end()) continue;
+    const auto other = std::find_if(outcomes.begin(), outcomes.end(), only_then);
+    if (other == outcomes.end()) continue;
     Reason reason = Remark(Label(past_, target), "was decided only then");
     reason.because = Waited(target, *other, depth + 1);
     reasons.push_back(std::move(reason));
@@ -357,21 +361,21 @@ Reasons EventReasons::WaitedFor(int lane, const Fate& fate, int depth) {
   return reasons;
 }
 
-WhyEvent EventReasons::Explain(int lane, const Fate& fate, bool brief) {
+WhyEvent EventReasons::Explain(int instance, const CandidateOutcome& outcome, bool brief) {
   brief_ = brief;
-  const Rule& rule = past_.RuleOf(lane);
-  WhyEvent why{.event = Label(past_, lane),
+  const Rule& rule = past_.RuleOf(instance);
+  WhyEvent why{.event = Label(past_, instance),
                .where = Source(rule.file, rule.place),
-               .interval = {fate.span.begin.tick, fate.span.end.tick},
-               .decided = fate.decided,
-               .open_end = fate.span.open_end,
-               .began = Begin(lane, fate),
-               .ended = End(lane, fate),
+               .interval = {outcome.span.begin.tick, outcome.span.end.tick},
+               .decided = outcome.decided,
+               .open_end = outcome.span.open_end,
+               .began = Begin(instance, outcome),
+               .ended = End(instance, outcome),
                .counted = {},
                .waited = {}};
   if (brief) return why;
-  why.counted = Counted(lane, fate);
-  why.waited = Waited(lane, fate, 0);
+  why.counted = Counted(instance, outcome);
+  why.waited = Waited(instance, outcome, 0);
   return why;
 }
 

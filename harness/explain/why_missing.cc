@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See why_missing.h. Runs that were given up, and the choice of what to blame.
-// Tested by tests/harness/explain_test.cc
+// See harness/explain/why_missing.h. Runs that were given up, and the choice of what to blame.
+// Tested by tests/harness/explain/explain_test.cc
 #include "harness/explain/why_missing.h"
 
 #include <fmt/format.h>
@@ -9,12 +9,12 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/event_text.h"
-#include "harness/explain/wording.h"
+#include "harness/explain/phrasing.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 
-using grammar::Fate;
+using grammar::CandidateOutcome;
 using grammar::FrameNumber;
 using grammar::kNone;
 using grammar::Rule;
@@ -23,7 +23,7 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr int kDeepest = 8;         // rules behind rules
+constexpr int kMaxDepth = 8;        // rules behind rules
 constexpr double kAround_s = 0.25;  // a person's or a golden's idea of a moment is not exact
 
 // The innermost clause that failed first.
@@ -61,15 +61,16 @@ MissingReasons::Window MissingReasons::Within(const Window& window, FrameNumber 
   return {std::max(around.first, window.first), std::min(around.last, window.last), frame};
 }
 
-WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<FrameNumber> at) {
+WhyMissing MissingReasons::Explain(const std::vector<int>& instances,
+                                   std::optional<FrameNumber> at) {
   const Window window = at ? Around(*at) : Whole();
   std::optional<Blame> worst;
-  int blamed = lanes.front();
-  for (const int lane : lanes) {
-    Blame blame = OfLane(lane, window, 0);
+  int blamed = instances.front();
+  for (const int instance : instances) {
+    Blame blame = OfInstance(instance, window, 0);
     if (worst && blame.closeness <= worst->closeness) continue;
     worst = std::move(blame);
-    blamed = lane;
+    blamed = instance;
   }
   const Rule& rule = past_.RuleOf(blamed);
   WhyMissing why{.event = Label(past_, blamed),
@@ -85,15 +86,15 @@ WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<
       why.because += ": " + failure->because.front().what + " " + failure->because.front().how;
     }
     if (failure->tick && failure->reading)
-      why.because += ", at " + At(*failure->tick, past_.cast().ticks_per_second);
+      why.because += ", at " + At(*failure->tick, past_.entity_table().ticks_per_second);
   }
-  for (const Fate& fate : past_.FatesOf(blamed)) {
-    if (fate.kind != Fate::Kind::kInterval) continue;
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(blamed)) {
+    if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
     why.nearest.push_back({.event = why.event,
                            .where = why.where,
-                           .interval = {fate.span.begin.tick, fate.span.end.tick},
-                           .decided = fate.decided,
-                           .open_end = fate.span.open_end,
+                           .interval = {outcome.span.begin.tick, outcome.span.end.tick},
+                           .decided = outcome.decided,
+                           .open_end = outcome.span.open_end,
                            .began = {},
                            .ended = {},
                            .counted = {},
@@ -102,49 +103,52 @@ WhyMissing MissingReasons::Explain(const std::vector<int>& lanes, std::optional<
   return why;
 }
 
-MissingReasons::Blame MissingReasons::OfLane(int lane, const Window& window, int depth) {
-  if (lane == kNone || depth >= kDeepest) return {};
-  if (const Fate* run = NearestRun(lane, window))
+MissingReasons::Blame MissingReasons::OfInstance(int instance, const Window& window, int depth) {
+  if (instance == kNone || depth >= kMaxDepth) return {};
+  if (const CandidateOutcome* run = NearestRun(instance, window))
     return OfRun(*run, depth, window.at ? grammar::kNever : window.last);
-  return OfForm(lane, window, depth);
+  return OfForm(instance, window, depth);
 }
 
 // Of the runs within the window that came to nothing, the one that was nearest to being an
 // interval.
-const Fate* MissingReasons::NearestRun(int lane, const Window& window) {
-  const Fate* nearest = nullptr;
+const CandidateOutcome* MissingReasons::NearestRun(int instance, const Window& window) {
+  const CandidateOutcome* nearest = nullptr;
   double closeness = 0;
-  for (const Fate& fate : past_.FatesOf(lane)) {
-    const bool within = fate.span.begin.frame <= window.last && fate.span.end.frame >= window.first;
-    if (fate.kind == Fate::Kind::kInterval || !within) continue;
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+    const bool within =
+        outcome.span.begin.frame <= window.last && outcome.span.end.frame >= window.first;
+    if (outcome.kind == CandidateOutcome::Kind::kInterval || !within) continue;
     const bool covers =
-        window.at && fate.span.begin.frame <= *window.at && *window.at < fate.span.end.frame;
-    const double here = RunCloseness(fate) + (covers ? 1 : 0);
+        window.at && outcome.span.begin.frame <= *window.at && *window.at < outcome.span.end.frame;
+    const double here = RunCloseness(outcome) + (covers ? 1 : 0);
     if (nearest != nullptr && here <= closeness) continue;
-    nearest = &fate;
+    nearest = &outcome;
     closeness = here;
   }
   return nearest;
 }
 
-double MissingReasons::RunCloseness(const Fate& fate) {
-  const Rule& rule = past_.RuleOf(fate.lane);
-  const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
-  const double lasted_s = static_cast<double>(fate.span.end.tick - fate.span.begin.tick) /
-                          static_cast<double>(past_.cast().ticks_per_second);
-  switch (fate.kind) {
-    case Fate::Kind::kTooShort:
+double MissingReasons::RunCloseness(const CandidateOutcome& outcome) {
+  const Rule& rule = past_.RuleOf(outcome.instance);
+  const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
+  const double lasted_s = static_cast<double>(outcome.span.end.tick - outcome.span.begin.tick) /
+                          static_cast<double>(past_.entity_table().ticks_per_second);
+  switch (outcome.kind) {
+    case CandidateOutcome::Kind::kTooShort:
       return 1 + 0.5 * lasted_s / rule.lasting_s;
-    case Fate::Kind::kRefused: {
-      const Moment at{
-          .lane = fate.lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
+    case CandidateOutcome::Kind::kRefused: {
+      const Moment at{.instance = outcome.instance,
+                      .frame = last,
+                      .begin = outcome.span.begin.frame,
+                      .end = last};
       return 1 + 0.9 * clauses_.Nearness(rule.requirement, at, true);
     }
-    case Fate::Kind::kUnconfirmed:
+    case CandidateOutcome::Kind::kUnconfirmed:
       return 1.9;
-    case Fate::Kind::kNothingBack: {
-      if (fate.span.end.frame == 0) return 0.9;  // nor could there be anything
-      const Moment before{.lane = fate.lane, .frame = last - 1, .end = last};
+    case CandidateOutcome::Kind::kNothingBack: {
+      if (outcome.span.end.frame == 0) return 0.9;  // nor could there be anything
+      const Moment before{.instance = outcome.instance, .frame = last - 1, .end = last};
       return 1 + 0.5 * clauses_.Nearness(rule.second, before, true);
     }
     default:
@@ -152,21 +156,21 @@ double MissingReasons::RunCloseness(const Fate& fate) {
   }
 }
 
-std::string MissingReasons::Awaited(int lane) {
-  const Rule& rule = past_.RuleOf(lane);
-  return (rule.absence ? "without " : "to ") + ClauseText(past_, lane, rule.second);
+std::string MissingReasons::Awaited(int instance) {
+  const Rule& rule = past_.RuleOf(instance);
+  return (rule.absence ? "without " : "to ") + ClauseText(past_, instance, rule.second);
 }
 
 // When what was waited for came after all, for the first time.
-std::string MissingReasons::HowLate(const Fate& fate) {
-  const Rule& rule = past_.RuleOf(fate.lane);
-  const Tick per_second = past_.cast().ticks_per_second;
+std::string MissingReasons::HowLate(const CandidateOutcome& outcome) {
+  const Rule& rule = past_.RuleOf(outcome.instance);
+  const Tick per_second = past_.entity_table().ticks_per_second;
   const Tick within = past_.AtMostTicks(rule.within_s);
-  for (FrameNumber frame = fate.span.begin.frame + 1; frame < past_.frames(); ++frame) {
-    const Tick late = past_.TickOf(frame) - fate.span.begin.tick - within;
-    if (late <= 0 ||
-        !past_.Truth(rule.second,
-                     {.lane = fate.lane, .frame = frame, .begin = fate.span.begin.frame}))
+  for (FrameNumber frame = outcome.span.begin.frame + 1; frame < past_.frames(); ++frame) {
+    const Tick late = past_.TickOf(frame) - outcome.span.begin.tick - within;
+    if (late <= 0 || !past_.Truth(rule.second, {.instance = outcome.instance,
+                                                .frame = frame,
+                                                .begin = outcome.span.begin.frame}))
       continue;
     return "but " + Duration(late, per_second) + " later, at " + clauses_.Time(frame);
   }
@@ -175,19 +179,21 @@ std::string MissingReasons::HowLate(const Fate& fate) {
 
 // What is required, as it was at the end; of alternatives, the one that came closest at any time of
 // the run stands first.
-Reasons MissingReasons::Requirement(const Fate& fate, int depth) {
-  const int node = past_.RuleOf(fate.lane).requirement;
-  const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
-  const Moment at{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame, .end = last};
-  const Window run{fate.span.begin.frame, last};
+Reasons MissingReasons::Requirement(const CandidateOutcome& outcome, int depth) {
+  const int node = past_.RuleOf(outcome.instance).requirement;
+  const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
+  const Moment at{
+      .instance = outcome.instance, .frame = last, .begin = outcome.span.begin.frame, .end = last};
+  const Window run{outcome.span.begin.frame, last};
   Reasons told;
   for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
     Reason reason = clauses_.Told(clause, at);
     const grammar::Node& n = past_.program().nodes[clause.node];
-    const int target =
-        n.op == grammar::Op::kHolds && clause.truth ? past_.Referred(fate.lane, n.slot) : kNone;
+    const int target = n.op == grammar::Op::kHolds && clause.truth
+                           ? past_.Referred(outcome.instance, n.slot)
+                           : kNone;
     if (reason.mark == Mark::kFailed && target != kNone)
-      reason.because = OfLane(target, run, depth + 1).reasons;
+      reason.because = OfInstance(target, run, depth + 1).reasons;
     reason.what = "requires " + reason.what;
     told.push_back(std::move(reason));
   }
@@ -196,17 +202,17 @@ Reasons MissingReasons::Requirement(const Fate& fate, int depth) {
 }
 
 // Where the conditions that should have begun at the end came closest within the run.
-Reasons MissingReasons::EndThatNeverCame(const Fate& fate, FrameNumber look_until) {
-  const Rule& rule = past_.RuleOf(fate.lane);
+Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameNumber look_until) {
+  const Rule& rule = past_.RuleOf(outcome.instance);
   if (rule.absence) return {};
-  const FrameNumber last = std::min({fate.span.end.frame, past_.frames() - 1, look_until});
-  const Moment end{.lane = fate.lane, .frame = last, .begin = fate.span.begin.frame};
+  const FrameNumber last = std::min({outcome.span.end.frame, past_.frames() - 1, look_until});
+  const Moment end{.instance = outcome.instance, .frame = last, .begin = outcome.span.begin.frame};
   Reasons told;
   for (const Clauses::Clause& clause : clauses_.Split(rule.second, end, true)) {
     const grammar::Node& moment = past_.program().nodes[clause.node];
     if (moment.op != grammar::Op::kBegins || !clause.truth) continue;
     Moment at = end;
-    at.frame = Closest(moment.args[0], at, {fate.span.begin.frame, last});
+    at.frame = Closest(moment.args[0], at, {outcome.span.begin.frame, last});
     for (Reason& reason : clauses_.State(moment.args[0], at, true)) {
       if (!reason.reading) continue;
       reason.what = "to " + reason.what;
@@ -217,18 +223,19 @@ Reasons MissingReasons::EndThatNeverCame(const Fate& fate, FrameNumber look_unti
   return told;
 }
 
-MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth, FrameNumber look_until) {
-  const int lane = fate.lane;
-  const Rule& rule = past_.RuleOf(lane);
-  const Tick per_second = past_.cast().ticks_per_second;
-  const FrameNumber begin = fate.span.begin.frame;
-  const FrameNumber last = std::min(fate.span.end.frame, past_.frames() - 1);
+MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int depth,
+                                            FrameNumber look_until) {
+  const int instance = outcome.instance;
+  const Rule& rule = past_.RuleOf(instance);
+  const Tick per_second = past_.entity_table().ticks_per_second;
+  const FrameNumber begin = outcome.span.begin.frame;
+  const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
   Reason run{
       .mark = Mark::kFailed,
-      .what = Label(past_, lane),
-      .how = "from " + clauses_.Time(begin) + " to " + At(fate.span.end.tick, per_second) + ": ",
+      .what = Label(past_, instance),
+      .how = "from " + clauses_.Time(begin) + " to " + At(outcome.span.end.tick, per_second) + ": ",
       .where = Source(rule.file, rule.place),
-      .tick = fate.span.begin.tick,
+      .tick = outcome.span.begin.tick,
       .reading = {},
       .because = {}};
   const auto fail = [&](std::string what, std::string how) {
@@ -240,57 +247,59 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth, FrameNu
       run.because.push_back(std::move(reason));
     }
   };
-  const std::string lasted = Duration(fate.span.end.tick - fate.span.begin.tick, per_second);
-  switch (fate.kind) {
-    case Fate::Kind::kTooShort:
+  const std::string lasted = Duration(outcome.span.end.tick - outcome.span.begin.tick, per_second);
+  switch (outcome.kind) {
+    case CandidateOutcome::Kind::kTooShort:
       run.how += "too short";
       fail("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds),
            "it lasted only " + lasted);
       break;
-    case Fate::Kind::kRefused:
+    case CandidateOutcome::Kind::kRefused:
       run.how += "not what is required";
-      run.because = Requirement(fate, depth);
+      run.because = Requirement(outcome, depth);
       break;
-    case Fate::Kind::kUnconfirmed: {
+    case CandidateOutcome::Kind::kUnconfirmed: {
       run.how += "not confirmed";
-      const int by = past_.Referred(lane, rule.confirmed_by);
-      const int within = past_.Referred(lane, rule.confirmed_within);
-      const bool episode = fate.cause >= past_.frames();
+      const int by = past_.Referred(instance, rule.confirmed_by);
+      const int within = past_.Referred(instance, rule.confirmed_within);
+      const bool episode = outcome.cause >= past_.frames();
       fail("confirmed by " + Label(past_, by),
            "it did not begin before " +
                (episode ? std::string("the episode ended") : Label(past_, within) + " was over") +
-               " at " + clauses_.Time(fate.cause));
-      const Window wait{fate.span.end.frame, std::min(fate.cause, past_.frames() - 1)};
-      run.because.back().because = OfLane(by, wait, depth + 1).reasons;
+               " at " + clauses_.Time(outcome.cause));
+      const Window wait{outcome.span.end.frame, std::min(outcome.cause, past_.frames() - 1)};
+      run.because.back().because = OfInstance(by, wait, depth + 1).reasons;
       break;
     }
-    case Fate::Kind::kDropped:
+    case CandidateOutcome::Kind::kDropped:
       run.how += "dropped";
-      run.because = EndThatNeverCame(fate, look_until);
-      clauses("during ", rule.during, {.lane = lane, .frame = fate.cause, .begin = begin});
+      run.because = EndThatNeverCame(outcome, look_until);
+      clauses("during ", rule.during,
+              {.instance = instance, .frame = outcome.cause, .begin = begin});
       break;
-    case Fate::Kind::kTooLate:
+    case CandidateOutcome::Kind::kTooLate:
       run.how += "dropped";
-      fail(Awaited(lane), "it did not come within " +
-                              QuantityText(rule.within_s, grammar::kSeconds) + ", " +
-                              HowLate(fate));
+      fail(Awaited(instance), "it did not come within " +
+                                  QuantityText(rule.within_s, grammar::kSeconds) + ", " +
+                                  HowLate(outcome));
       break;
-    case Fate::Kind::kCame:
+    case CandidateOutcome::Kind::kCame:
       run.how += "what must not come came";
-      fail(Awaited(lane), "it came after " + lasted + ", at " + At(fate.span.end.tick, per_second));
+      fail(Awaited(instance),
+           "it came after " + lasted + ", at " + At(outcome.span.end.tick, per_second));
       break;
-    case Fate::Kind::kUnfinished:
+    case CandidateOutcome::Kind::kUnfinished:
       run.how += "dropped";
-      fail(Awaited(lane), !rule.absence ? "the episode ended before"
-                                        : "it is decided only " +
-                                              QuantityText(rule.within_s, grammar::kSeconds) +
-                                              " later, the episode ended before");
+      fail(Awaited(instance), !rule.absence ? "the episode ended before"
+                                            : "it is decided only " +
+                                                  QuantityText(rule.within_s, grammar::kSeconds) +
+                                                  " later, the episode ended before");
       break;
-    case Fate::Kind::kNothingBack: {
-      run.how = "nothing before its end at " + clauses_.Time(fate.span.end.frame);
+    case CandidateOutcome::Kind::kNothingBack: {
+      run.how = "nothing before its end at " + clauses_.Time(outcome.span.end.frame);
       const FrameNumber before = std::max<FrameNumber>(last - 1, 0);
       Reasons state =
-          clauses_.State(rule.second, {.lane = lane, .frame = before, .end = last}, true);
+          clauses_.State(rule.second, {.instance = instance, .frame = before, .end = last}, true);
       for (Reason& reason : state) {
         reason.what = "since " + reason.what;
         run.because.push_back(std::move(reason));
@@ -300,14 +309,15 @@ MissingReasons::Blame MissingReasons::OfRun(const Fate& fate, int depth, FrameNu
     default:
       break;
   }
-  const bool has_end = fate.kind == Fate::Kind::kTooShort || fate.kind == Fate::Kind::kRefused;
+  const bool has_end = outcome.kind == CandidateOutcome::Kind::kTooShort ||
+                       outcome.kind == CandidateOutcome::Kind::kRefused;
   if (has_end) {
     Reason ended{.mark = Mark::kNote,
                  .what = "it ended there",
-                 .because = events_.End(lane, fate, kDeepest - 1)};
+                 .because = events_.End(instance, outcome, kMaxDepth - 1)};
     run.because.push_back(std::move(ended));
   }
-  return {{std::move(run)}, RunCloseness(fate)};
+  return {{std::move(run)}, RunCloseness(outcome)};
 }
 
 }  // namespace prehend::harness::explain

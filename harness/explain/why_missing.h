@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why an interval that was expected is none: the run that nearly was one and what it lacked, or
 // else the first clause that failed where the condition came closest, into the rules that it refers
-// to. Tested by tests/harness/explain_test.cc
+// to. Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
 #include "harness/explain/why_event.h"
@@ -10,11 +10,12 @@ namespace prehend::harness::explain {
 
 class MissingReasons {
  public:
-  explicit MissingReasons(grammar::Hindsight& past) : past_(past), clauses_(past), events_(past) {}
+  explicit MissingReasons(grammar::ReplayMonitor& past)
+      : past_(past), clauses_(past), events_(past) {}
 
   /// Of the bindings the one that came closest. `at`: where it should have been; otherwise
   /// anywhere.
-  WhyMissing Explain(const std::vector<int>& lanes, std::optional<grammar::FrameNumber> at);
+  WhyMissing Explain(const std::vector<int>& instances, std::optional<grammar::FrameNumber> at);
 
  private:
   /// The frames to look at, and the one that it is about.
@@ -32,38 +33,39 @@ class MissingReasons {
   /// Likewise, for what stands behind something else: not beyond the moment that was asked for.
   Window Within(const Window& window, grammar::FrameNumber frame);
 
-  Blame OfLane(int lane, const Window& window, int depth);
-  const grammar::Fate* NearestRun(int lane, const Window& window);
-  double RunCloseness(const grammar::Fate& fate);
+  Blame OfInstance(int instance, const Window& window, int depth);
+  const grammar::CandidateOutcome* NearestRun(int instance, const Window& window);
+  double RunCloseness(const grammar::CandidateOutcome& outcome);
   /// "to touching(hand, cup) ends", "without touching(hand, cup) begins"
-  std::string Awaited(int lane);
-  std::string HowLate(const grammar::Fate& fate);
+  std::string Awaited(int instance);
+  std::string HowLate(const grammar::CandidateOutcome& outcome);
   /// `look_until`: what came later than that could not have helped.
-  Blame OfRun(const grammar::Fate& fate, int depth,
+  Blame OfRun(const grammar::CandidateOutcome& outcome, int depth,
               grammar::FrameNumber look_until = grammar::kNever);
-  Reasons Requirement(const grammar::Fate& fate, int depth);
-  Reasons EndThatNeverCame(const grammar::Fate& fate, grammar::FrameNumber look_until);
-  Blame OfForm(int lane, const Window& window, int depth);
-  Blame OfWhile(int lane, const Window& window, int depth);
-  Blame OfFromTo(int lane, const Window& window, int depth);
-  Blame OfUntil(int lane, const Window& window, int depth);
-  std::optional<Blame> OfLaterEnd(int lane, grammar::FrameNumber at, int depth);
-  Blame OfRest(int lane, const Window& window, int depth);
-  Blame OfAny(int lane, const Window& window, int depth);
-  Blame OfCompose(int lane, const Window& window, int depth);
-  Blame OfFact(int lane, const Window& window);
+  Reasons Requirement(const grammar::CandidateOutcome& outcome, int depth);
+  Reasons EndThatNeverCame(const grammar::CandidateOutcome& outcome,
+                           grammar::FrameNumber look_until);
+  Blame OfForm(int instance, const Window& window, int depth);
+  Blame OfWhile(int instance, const Window& window, int depth);
+  Blame OfFromTo(int instance, const Window& window, int depth);
+  Blame OfUntil(int instance, const Window& window, int depth);
+  std::optional<Blame> OfLaterEnd(int instance, grammar::FrameNumber at, int depth);
+  Blame OfRest(int instance, const Window& window, int depth);
+  Blame OfAny(int instance, const Window& window, int depth);
+  Blame OfCompose(int instance, const Window& window, int depth);
+  Blame OfFact(int instance, const Window& window);
 
   /// The clauses of a condition where they came closest to holding, the first failed one followed.
   Blame OfClauses(int node, Moment at, const Window& window, int depth);
   void Follow(Reason& reason, int target, grammar::FrameNumber frame, const Window& window,
               int depth);
-  Reason ClosestApproach(int lane, const Window& window);
+  Reason ClosestApproach(int instance, const Window& window);
   grammar::FrameNumber Closest(int node, Moment at, const Window& window);
   /// The moment never came.
-  Blame OfMoment(int node, int lane, const Window& window, int depth);
-  Reason Intervals(int lane, std::string how);
+  Blame OfMoment(int node, int instance, const Window& window, int depth);
+  Reason Intervals(int instance, std::string how);
 
-  grammar::Hindsight& past_;
+  grammar::ReplayMonitor& past_;
   Clauses clauses_;
   EventReasons events_;
 };

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where there was no run: which clause kept each form from beginning one.
-// Tested by tests/harness/explain_test.cc
+// Tested by tests/harness/explain/explain_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "grammar/allen.h"
-#include "harness/event_text.h"
+#include "grammar/base/allen.h"
 #include "harness/explain/bindings.h"
 #include "harness/explain/nodes.h"
+#include "harness/explain/phrasing.h"
 #include "harness/explain/why_missing.h"
-#include "harness/explain/wording.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness::explain {
 
-using grammar::Fate;
+using grammar::CandidateOutcome;
 using grammar::Form;
 using grammar::FrameNumber;
 using grammar::kNone;
@@ -24,8 +24,8 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr FrameNumber kMostLooks = 2000;   // of a long window only so many frames are looked at
-constexpr std::size_t kMostIntervals = 4;  // are listed
+constexpr FrameNumber kMostLooks = 2000;  // of a long window only so many frames are looked at
+constexpr std::size_t kMaxIntervals = 4;  // are listed
 
 Reason Failed(std::string what, std::string how, Reasons because = {}) {
   return {.mark = Mark::kFailed,
@@ -40,44 +40,46 @@ Reason Failed(std::string what, std::string how, Reasons because = {}) {
 }  // namespace
 
 // "contact(hand, cup)  1.0..2.0 s, 3.0..4.0 s"
-Reason MissingReasons::Intervals(int lane, std::string how) {
+Reason MissingReasons::Intervals(int instance, std::string how) {
   std::size_t count = 0;
-  for (const Fate& fate : past_.FatesOf(lane)) {
-    if (fate.kind != Fate::Kind::kInterval) continue;
-    if (count++ == kMostIntervals) how += ", ..";
-    if (count > kMostIntervals) continue;
-    how += (count == 1 ? " " : ", ") +
-           IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second);
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+    if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
+    if (count++ == kMaxIntervals) how += ", ..";
+    if (count > kMaxIntervals) continue;
+    how +=
+        (count == 1 ? " " : ", ") + IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
+                                                 past_.entity_table().ticks_per_second);
   }
-  return {.mark = Mark::kNote, .what = Label(past_, lane), .how = count == 0 ? "never" : how};
+  return {.mark = Mark::kNote, .what = Label(past_, instance), .how = count == 0 ? "never" : how};
 }
 
-MissingReasons::Blame MissingReasons::OfForm(int lane, const Window& window, int depth) {
-  switch (past_.RuleOf(lane).form) {
+MissingReasons::Blame MissingReasons::OfForm(int instance, const Window& window, int depth) {
+  switch (past_.RuleOf(instance).form) {
     case Form::kTouching:
-      return OfFact(lane, window);
+      return OfFact(instance, window);
     case Form::kAny:
-      return OfAny(lane, window, depth);
+      return OfAny(instance, window, depth);
     case Form::kWhile:
-      return OfWhile(lane, window, depth);
+      return OfWhile(instance, window, depth);
     case Form::kFromTo:
-      return OfFromTo(lane, window, depth);
+      return OfFromTo(instance, window, depth);
     case Form::kUntilSince:
-      return OfUntil(lane, window, depth);
+      return OfUntil(instance, window, depth);
     case Form::kRestOf:
-      return OfRest(lane, window, depth);
+      return OfRest(instance, window, depth);
     case Form::kCompose:
-      return OfCompose(lane, window, depth);
+      return OfCompose(instance, window, depth);
   }
   return {};
 }
 
-MissingReasons::Blame MissingReasons::OfFact(int lane, const Window& window) {
+MissingReasons::Blame MissingReasons::OfFact(int instance, const Window& window) {
   const bool at = window.at.has_value();
   Reason reason =
-      Failed(Label(past_, lane),
+      Failed(Label(past_, instance),
              at ? "they did not touch at " + clauses_.Time(*window.at) : "they did not touch");
-  if (!past_.FatesOf(lane).empty()) reason.because.push_back(Intervals(lane, "they touched"));
+  if (!past_.OutcomesOf(instance).empty())
+    reason.because.push_back(Intervals(instance, "they touched"));
   return {{std::move(reason)}, 0};
 }
 
@@ -123,7 +125,7 @@ MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Windo
     const bool follow = reason.mark == Mark::kFailed && !followed;
     followed |= reason.mark == Mark::kFailed;
     if (follow && n.op == Op::kHolds && clause.truth) {
-      Follow(reason, past_.Referred(at.lane, n.slot), at.frame, window, depth);
+      Follow(reason, past_.Referred(at.instance, n.slot), at.frame, window, depth);
     }
     blame.reasons.push_back(std::move(reason));
   }
@@ -137,7 +139,7 @@ void MissingReasons::Follow(Reason& reason, int target, FrameNumber frame, const
   if (target == kNone || past_.RuleOf(target).form == Form::kTouching) return;
   const bool never = past_.LastBegun(target, past_.frames()) == nullptr;
   Reasons behind =
-      OfLane(target, never && !window.at ? window : Within(window, frame), depth + 1).reasons;
+      OfInstance(target, never && !window.at ? window : Within(window, frame), depth + 1).reasons;
   if (behind.size() == 1 && behind.front().what == reason.what) {
     reason.how += "; " + behind.front().how;
     reason.where = behind.front().where;
@@ -146,23 +148,23 @@ void MissingReasons::Follow(Reason& reason, int target, FrameNumber frame, const
   reason.because = std::move(behind);
 }
 
-MissingReasons::Blame MissingReasons::OfWhile(int lane, const Window& window, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
-  Blame inner = OfClauses(rule.first, {.lane = lane}, window, depth);
-  const FrameNumber closest = Closest(rule.first, {.lane = lane}, window);
-  Reason reason = Failed(Label(past_, lane), "came closest at " + clauses_.Time(closest),
+MissingReasons::Blame MissingReasons::OfWhile(int instance, const Window& window, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
+  Blame inner = OfClauses(rule.first, {.instance = instance}, window, depth);
+  const FrameNumber closest = Closest(rule.first, {.instance = instance}, window);
+  Reason reason = Failed(Label(past_, instance), "came closest at " + clauses_.Time(closest),
                          std::move(inner.reasons));
   reason.where = Source(rule.file, rule.place);
   reason.tick = past_.TickOf(closest);
   return {{std::move(reason)}, inner.closeness};
 }
 
-MissingReasons::Blame MissingReasons::OfMoment(int node, int lane, const Window& window,
+MissingReasons::Blame MissingReasons::OfMoment(int node, int instance, const Window& window,
                                                int depth) {
   // Some of it happened, but not all at once.
-  const Moment at{.lane = lane, .frame = Closest(node, {.lane = lane}, window)};
+  const Moment at{.instance = instance, .frame = Closest(node, {.instance = instance}, window)};
   if (past_.program().nodes[node].op == Op::kAnd && clauses_.Nearness(node, at, true) >= 0.5) {
-    return OfClauses(node, {.lane = lane}, window, depth);
+    return OfClauses(node, {.instance = instance}, window, depth);
   }
   Blame best;
   for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
@@ -171,101 +173,102 @@ MissingReasons::Blame MissingReasons::OfMoment(int node, int lane, const Window&
     const grammar::Node& arg = past_.program().nodes[n.args[0]];
     Blame blame;
     if (arg.op == Op::kHolds) {
-      const int target = past_.Referred(lane, arg.slot);
+      const int target = past_.Referred(instance, arg.slot);
       if (target == kNone) continue;
       const bool ever = past_.LastBegun(target, past_.frames()) != nullptr;
-      const Fate* last = past_.LastBegun(target, window.last);
+      const CandidateOutcome* last = past_.LastBegun(target, window.last);
       const bool here = last != nullptr && last->span.end.frame >= window.first;
-      if (!here) blame = OfLane(target, window, depth + 1);
+      if (!here) blame = OfInstance(target, window, depth + 1);
       if (ever) {
         blame.reasons.insert(blame.reasons.begin(), Intervals(target, "is there at"));
         blame.closeness = 0.95;
       }
     } else {
-      blame = OfClauses(n.args[0], {.lane = lane}, window, depth);
+      blame = OfClauses(n.args[0], {.instance = instance}, window, depth);
     }
     if (best.reasons.empty() || blame.closeness > best.closeness) best = std::move(blame);
   }
   return best;
 }
 
-MissingReasons::Blame MissingReasons::OfFromTo(int lane, const Window& window, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
+MissingReasons::Blame MissingReasons::OfFromTo(int instance, const Window& window, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
   // The last moment that should have begun it.
   const FrameNumber until = window.at.value_or(window.last);
   FrameNumber from = until;
   const auto begins = [&](FrameNumber frame) {
-    return past_.Truth(rule.first, {.lane = lane, .frame = frame, .begin = frame});
+    return past_.Truth(rule.first, {.instance = instance, .frame = frame, .begin = frame});
   };
   while (from >= 0 && !begins(from)) --from;
-  Reason reason = Failed(Label(past_, lane), "", {});
+  Reason reason = Failed(Label(past_, instance), "", {});
   reason.where = Source(rule.file, rule.place);
   if (from < 0) {
-    const std::string text = ClauseText(past_, lane, rule.first);
-    Blame blame = OfMoment(rule.first, lane, window, depth);
+    const std::string text = ClauseText(past_, instance, rule.first);
+    Blame blame = OfMoment(rule.first, instance, window, depth);
     reason.how = "nothing began it";
     reason.because = {Failed(text.empty() ? "what begins it" : "from " + text,
                              "did not happen up to " + clauses_.Time(until),
                              std::move(blame.reasons))};
     return {{std::move(reason)}, 0.5 * blame.closeness};
   }
-  for (const Fate& fate : past_.FatesOf(lane)) {
-    if (fate.span.begin.frame != from) continue;
-    if (fate.kind != Fate::Kind::kInterval) return OfRun(fate, depth);
-    reason.how =
-        "the one before, " +
-        IntervalText({fate.span.begin.tick, fate.span.end.tick}, past_.cast().ticks_per_second) +
-        ", was over already";
-    reason.because = events_.End(lane, fate);
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+    if (outcome.span.begin.frame != from) continue;
+    if (outcome.kind != CandidateOutcome::Kind::kInterval) return OfRun(outcome, depth);
+    reason.how = "the one before, " +
+                 IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
+                              past_.entity_table().ticks_per_second) +
+                 ", was over already";
+    reason.because = events_.End(instance, outcome);
     return {{std::move(reason)}, 0.9};
   }
   reason.how = "could have begun at " + clauses_.Time(from);
-  const Moment at{.lane = lane, .frame = from, .begin = from};
+  const Moment at{.instance = instance, .frame = from, .begin = from};
   if (rule.during != kNone && !past_.Truth(rule.during, at)) {
     for (Reason& state : clauses_.State(rule.during, at, true)) {
       state.what = "during " + state.what;
       reason.because.push_back(std::move(state));
     }
   } else {
-    reason.because = {Failed(Awaited(lane), "was at the same moment, and that is no interval")};
+    reason.because = {Failed(Awaited(instance), "was at the same moment, and that is no interval")};
   }
   return {{std::move(reason)}, 0.8};
 }
 
-Reason MissingReasons::ClosestApproach(int lane, const Window& window) {
-  const Rule& rule = past_.RuleOf(lane);
-  Reason reason{.mark = Mark::kNote, .what = ClauseText(past_, lane, rule.approach)};
+Reason MissingReasons::ClosestApproach(int instance, const Window& window) {
+  const Rule& rule = past_.RuleOf(instance);
+  Reason reason{.mark = Mark::kNote, .what = ClauseText(past_, instance, rule.approach)};
   double smallest = 0;
   for (FrameNumber frame = window.first; frame <= window.last; ++frame) {
     const double value =
-        past_.Number(rule.approach, {.lane = lane, .frame = frame, .end = window.last}).value_or(0);
+        past_.Number(rule.approach, {.instance = instance, .frame = frame, .end = window.last})
+            .value_or(0);
     if (reason.tick && value >= smallest) continue;
     smallest = value;
     reason.tick = past_.TickOf(frame);
   }
-  reason.how = "was smallest at " + At(*reason.tick, past_.cast().ticks_per_second) + ": " +
+  reason.how = "was smallest at " + At(*reason.tick, past_.entity_table().ticks_per_second) + ": " +
                QuantityText(smallest, NoteOf(past_.program(), rule.approach).dimension);
   return reason;
 }
 
 // Whatever ended later begins too late; whatever came to nothing later, did so; unless it looks
 // back less far than that.
-std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(int lane, FrameNumber at,
+std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(int instance, FrameNumber at,
                                                                 int depth) {
-  const Rule& rule = past_.RuleOf(lane);
-  for (const Fate& fate : past_.FatesOf(lane)) {
-    if (fate.span.end.frame <= at) continue;
-    const bool reaches = fate.span.end.tick - past_.TickOf(at) <= past_.AtMostTicks(rule.back_s);
-    const bool is_interval = fate.kind == Fate::Kind::kInterval;
-    if (reaches && !is_interval) return OfRun(fate, depth);
-    Reason reason = Failed(Label(past_, lane), "");
+  const Rule& rule = past_.RuleOf(instance);
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+    if (outcome.span.end.frame <= at) continue;
+    const bool reaches = outcome.span.end.tick - past_.TickOf(at) <= past_.AtMostTicks(rule.back_s);
+    const bool is_interval = outcome.kind == CandidateOutcome::Kind::kInterval;
+    if (reaches && !is_interval) return OfRun(outcome, depth);
+    Reason reason = Failed(Label(past_, instance), "");
     reason.where = Source(rule.file, rule.place);
     if (is_interval) {
-      reason.how = "begins at " + clauses_.Time(fate.span.begin.frame) + " only";
-      reason.because = events_.Begin(lane, fate);
+      reason.how = "begins at " + clauses_.Time(outcome.span.begin.frame) + " only";
+      reason.because = events_.Begin(instance, outcome);
     } else {
       const std::string back = QuantityText(rule.back_s, grammar::kSeconds);
-      reason.how = "the next end is at " + clauses_.Time(fate.span.end.frame) +
+      reason.how = "the next end is at " + clauses_.Time(outcome.span.end.frame) +
                    ", and it looks at most " + back + " back";
     }
     return Blame{{std::move(reason)}, 0.9};
@@ -273,31 +276,32 @@ std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(int lane, FrameN
   return std::nullopt;
 }
 
-MissingReasons::Blame MissingReasons::OfUntil(int lane, const Window& window, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
+MissingReasons::Blame MissingReasons::OfUntil(int instance, const Window& window, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
   if (window.at) {
-    if (std::optional<Blame> later = OfLaterEnd(lane, *window.at, depth)) return *std::move(later);
+    if (std::optional<Blame> later = OfLaterEnd(instance, *window.at, depth))
+      return *std::move(later);
   }
   const Window rest = window.at ? Window{*window.at, past_.frames() - 1} : window;
-  Blame blame = OfMoment(rule.first, lane, rest, depth);
+  Blame blame = OfMoment(rule.first, instance, rest, depth);
   const bool whole = rest.first == 0 && rest.last >= past_.frames() - 1;
-  const std::string text = ClauseText(past_, lane, rule.first);
+  const std::string text = ClauseText(past_, instance, rule.first);
   const std::string when = whole       ? "never happened"
                            : window.at ? "did not happen at or after " + clauses_.Time(rest.first)
                                        : "did not happen from " + clauses_.Time(rest.first) +
                                              " to " + clauses_.Time(rest.last);
-  Reason reason = Failed(Label(past_, lane), "nothing ended it");
+  Reason reason = Failed(Label(past_, instance), "nothing ended it");
   reason.where = Source(rule.file, rule.place);
   reason.because = {
       Failed(text.empty() ? "what ends it" : "until " + text, when, std::move(blame.reasons))};
-  if (rule.approach != kNone) reason.because.push_back(ClosestApproach(lane, window));
+  if (rule.approach != kNone) reason.because.push_back(ClosestApproach(instance, window));
   return {{std::move(reason)}, 0.5 * blame.closeness};
 }
 
-MissingReasons::Blame MissingReasons::OfRest(int lane, const Window& window, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
-  const int whole = past_.Referred(lane, rule.first);
-  Reason reason = Failed(Label(past_, lane), "", {});
+MissingReasons::Blame MissingReasons::OfRest(int instance, const Window& window, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
+  const int whole = past_.Referred(instance, rule.first);
+  Reason reason = Failed(Label(past_, instance), "", {});
   reason.where = Source(rule.file, rule.place);
   const auto covers = [&](int target, FrameNumber frame) {
     return target != kNone && past_.Covering(target, frame) != nullptr;
@@ -309,23 +313,24 @@ MissingReasons::Blame MissingReasons::OfRest(int lane, const Window& window, int
     reason.how = "is a rest of " + (whole == kNone ? "nothing" : Label(past_, whole));
     Reason missing = Failed(whole == kNone ? "it" : Label(past_, whole),
                             window.at ? "did not hold at " + clauses_.Time(frame) : "never held",
-                            OfLane(whole, window, depth + 1).reasons);
+                            OfInstance(whole, window, depth + 1).reasons);
     reason.because = {std::move(missing)};
     return {{std::move(reason)}, 0.1};
   }
   reason.how = "nothing is left of " + Label(past_, whole) + " at " + clauses_.Time(frame);
   for (const int slot : rule.outside) {
-    const int target = past_.Referred(lane, slot);
+    const int target = past_.Referred(instance, slot);
     if (!covers(target, frame)) continue;
-    const Fate& fate = *past_.Covering(target, frame);
-    Reason covered = Failed("outside " + Label(past_, target),
-                            "it held " + IntervalText({fate.span.begin.tick, fate.span.end.tick},
-                                                      past_.cast().ticks_per_second));
+    const CandidateOutcome& outcome = *past_.Covering(target, frame);
+    Reason covered =
+        Failed("outside " + Label(past_, target),
+               "it held " + IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
+                                         past_.entity_table().ticks_per_second));
     if (past_.RuleOf(target).form == Form::kUntilSince) {
-      const Moment at{.lane = target,
+      const Moment at{.instance = target,
                       .frame = frame,
-                      .begin = fate.span.begin.frame,
-                      .end = fate.span.end.frame};
+                      .begin = outcome.span.begin.frame,
+                      .end = outcome.span.end.frame};
       covered.because = clauses_.State(past_.RuleOf(target).second, at, true);
     }
     reason.because.push_back(std::move(covered));
@@ -333,47 +338,49 @@ MissingReasons::Blame MissingReasons::OfRest(int lane, const Window& window, int
   return {{std::move(reason)}, 0.7};
 }
 
-MissingReasons::Blame MissingReasons::OfAny(int lane, const Window& window, int depth) {
-  Blame best{{Failed(Label(past_, lane), "nothing that fits was there")}, -1};
-  const grammar::Reference& reference = past_.RuleOf(lane).references[0];
+MissingReasons::Blame MissingReasons::OfAny(int instance, const Window& window, int depth) {
+  Blame best{{Failed(Label(past_, instance), "nothing that fits was there")}, -1};
+  const grammar::Reference& reference = past_.RuleOf(instance).references[0];
   grammar::Binding wanted = grammar::kUnbound;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (reference.roles[i] != kNone) wanted[i] = past_.At(lane).entities[reference.roles[i]];
+    if (reference.roles[i] != kNone) wanted[i] = past_.At(instance).entities[reference.roles[i]];
   }
   for (const int candidate : BindingsThatFit(past_, reference.rule, wanted)) {
-    Blame blame = OfLane(candidate, window, depth + 1);
+    Blame blame = OfInstance(candidate, window, depth + 1);
     if (blame.closeness > best.closeness) best = std::move(blame);
   }
   return best;
 }
 
-MissingReasons::Blame MissingReasons::OfCompose(int lane, const Window& window, int depth) {
-  const Rule& rule = past_.RuleOf(lane);
-  Reason reason = Failed(Label(past_, lane), "needs all its parts", {});
+MissingReasons::Blame MissingReasons::OfCompose(int instance, const Window& window, int depth) {
+  const Rule& rule = past_.RuleOf(instance);
+  Reason reason = Failed(Label(past_, instance), "needs all its parts", {});
   reason.where = Source(rule.file, rule.place);
   std::vector<int> parts;
   bool complete = true;
   for (const int slot : rule.composition.parts) {
-    parts.push_back(past_.Referred(lane, slot));
+    parts.push_back(past_.Referred(instance, slot));
     if (parts.back() == kNone) return {{std::move(reason)}, 0};
     Reason part = Intervals(parts.back(), "was there");
     if (past_.LastBegun(parts.back(), past_.frames()) == nullptr) {
       part.mark = Mark::kFailed;
-      if (complete) part.because = OfLane(parts.back(), window, depth + 1).reasons;
+      if (complete) part.because = OfInstance(parts.back(), window, depth + 1).reasons;
       complete = false;
     }
     reason.because.push_back(std::move(part));
   }
   for (const grammar::Composition::Clause& clause : rule.composition.clauses) {
     if (!complete) break;
-    const auto ticks = [](const Fate& fate) {
-      return grammar::Interval{fate.span.begin.tick, fate.span.end.tick};
+    const auto ticks = [](const CandidateOutcome& outcome) {
+      return grammar::Interval{outcome.span.begin.tick, outcome.span.end.tick};
     };
     bool holds = false;
     std::string relation;
-    for (const Fate& left : past_.FatesOf(parts[clause.left])) {
-      for (const Fate& right : past_.FatesOf(parts[clause.right])) {
-        if (left.kind != Fate::Kind::kInterval || right.kind != Fate::Kind::kInterval) continue;
+    for (const CandidateOutcome& left : past_.OutcomesOf(parts[clause.left])) {
+      for (const CandidateOutcome& right : past_.OutcomesOf(parts[clause.right])) {
+        if (left.kind != CandidateOutcome::Kind::kInterval ||
+            right.kind != CandidateOutcome::Kind::kInterval)
+          continue;
         const grammar::Allen is = grammar::Relate(ticks(left), ticks(right));
         holds |= (grammar::Bit(is) & clause.relations) != 0;
         relation = grammar::kAllenNames[static_cast<std::size_t>(is)];

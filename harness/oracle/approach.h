@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a hand came to an object: its distance, its region of interest, and the moment since which it
-// was coming. Tested by tests/harness/oracle_test.cc
+// was coming. Tested by tests/harness/oracle/oracle_test.cc
 #pragma once
 
 #include <span>

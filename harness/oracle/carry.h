@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a hand does with an object during one grasp. Tested by tests/harness/oracle_test.cc
+// What a hand does with an object during one grasp. Tested by tests/harness/oracle/oracle_test.cc
 #pragma once
 
 #include <map>

@@ -134,11 +134,10 @@ bool OracleDefines(std::string_view event) {
   return std::ranges::find(OracleEvents(), event) != OracleEvents().end();
 }
 
-grammar::Timeline TrueTimeline(const Scenario& scenario,
+grammar::Timeline TrueTimeline(const physics::Scene& scene,
                                std::span<const physics::Snapshot> recording, grammar::Tick end,
                                const OracleSettings& settings) {
-  return oracle::TimelineBuilder(oracle::MakeRecording(scenario.scene, recording), settings, end)
-      .Build();
+  return oracle::TimelineBuilder(oracle::MakeRecording(scene, recording), settings, end).Build();
 }
 
 }  // namespace prehend::harness

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The recording as the oracle reads it: frames by index, time in ticks, and who touched whom in
 // every frame. Entities are the scene's bodies, then its hands. Tested by
-// tests/harness/oracle_test.cc
+// tests/harness/oracle/oracle_test.cc
 #pragma once
 
 #include <map>
@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "harness/oracle/oracle.h"
+#include "harness/oracle/settings.h"
 #include "harness/oracle/spans.h"
-#include "physics/scene.h"
-#include "physics/snapshot.h"
+#include "physics/scene/scene.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::harness::oracle {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stretches of frames and what can be done with them. Tested by tests/harness/oracle_test.cc
+// Stretches of frames and what can be done with them. Tested by tests/harness/oracle/oracle_test.cc
 #pragma once
 
 #include <algorithm>
 #include <vector>
 
-#include "grammar/frame.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::harness::oracle {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scores of the literature that do not stand in the table, over the episodes in which an event
 // happened or was said to. Labels are events with their roles; each is scored alone, because events
-// of different labels overlap. Tested by tests/harness/score_test.cc
+// of different labels overlap. Tested by tests/harness/score/score_test.cc
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/score_metrics_test.cc
+// Tested by tests/harness/score/score_metrics_test.cc
 #include "harness/score/intersection_metrics.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scores by how much of an event is covered, which forgive it to be said in pieces (Bilen et al.
 // 2020, "A framework for the robust evaluation of sound event detection"; psds_eval). Tested by
-// tests/harness/score_metrics_test.cc against printouts of the reference program.
+// tests/harness/score/score_metrics_test.cc against printouts of the reference program.
 #pragma once
 
 #include "harness/score/segments.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/score_test.cc
+// Tested by tests/harness/score/score_test.cc
 #include "harness/score/labelled.h"
 
 #include <map>

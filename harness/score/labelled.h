@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Timelines as the scores read them: labelled segments, all together and label by label.
-// Tested by tests/harness/score_test.cc
+// Tested by tests/harness/score/score_test.cc
 #pragma once
 
 #include <vector>
 
-#include "grammar/timeline.h"
+#include "grammar/base/timeline.h"
 #include "harness/score/segments.h"
 
 namespace prehend::harness::score {

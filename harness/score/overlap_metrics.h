@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scores of whole segments and of frames, as the literature on temporal segmentation defines them.
 // All are of one episode; counts of several episodes may be added (pooled). Tested by
-// tests/harness/score_metrics_test.cc against printouts of the reference programs.
+// tests/harness/score/score_metrics_test.cc against printouts of the reference programs.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scores of the partition of an episode into labelled segments and background: where its boundaries
 // are, and which frames belong together. Segments must not overlap within a side. Tested by
-// tests/harness/score_metrics_test.cc against printouts of the reference programs.
+// tests/harness/score/score_metrics_test.cc against printouts of the reference programs.
 #pragma once
 
 #include <optional>

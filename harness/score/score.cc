@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/score_test.cc
+// Tested by tests/harness/score/score_test.cc
 #include "harness/score/score.h"
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <functional>
 #include <set>
 
-#include "harness/oracle/agreement.h"
 #include "harness/score/labelled.h"
+#include "harness/timeline/match_events.h"
 
 namespace prehend::harness::score {
 namespace {
@@ -32,16 +32,16 @@ grammar::Timeline OfKind(const grammar::Timeline& timeline, const std::string& e
   return only;
 }
 
-double SecondsOf(const std::vector<JudgedEpisode>& episodes) {
+double SecondsOf(const std::vector<EpisodeToScore>& episodes) {
   double seconds = 0;
-  for (const JudgedEpisode& episode : episodes)
+  for (const EpisodeToScore& episode : episodes)
     seconds +=
         static_cast<double>(episode.ticks) / static_cast<double>(episode.truth.ticks_per_second);
   return seconds;
 }
 
 /// Adds what one episode says about one kind of event.
-void AddEpisode(const JudgedEpisode& judged, const LabelledEpisode& episode,
+void AddEpisode(const EpisodeToScore& judged, const LabelledEpisode& episode,
                 const std::string& event, double collar_s, EventScore& score) {
   const double per_s = episode.ticks_per_second;
   const Segments &truth = episode.whole.truth, &found = episode.whole.prediction;
@@ -74,12 +74,12 @@ void AddEpisode(const JudgedEpisode& judged, const LabelledEpisode& episode,
 }
 
 /// All kinds when `event` is empty.
-EventScore ScoreKind(const std::vector<JudgedEpisode>& episodes, const std::string& event,
+EventScore ScoreKind(const std::vector<EpisodeToScore>& episodes, const std::string& event,
                      double collar_s) {
   EventScore score{.event = event.empty() ? "all" : event};
   std::vector<LabelledEpisode> labelled;
   double edits = 0;
-  for (const JudgedEpisode& judged : episodes) {
+  for (const EpisodeToScore& judged : episodes) {
     LabelledEpisode episode =
         Labelled(OfKind(judged.truth, event), OfKind(judged.found, event), judged.ticks);
     AddEpisode(judged, episode, event, collar_s, score);
@@ -102,10 +102,10 @@ double BoundaryErrors::QuantileByMagnitude(double share) const {
 
 double EventScore::LatencyQuantile(double share) const { return Quantile(latency_s, share); }
 
-Score ScoreOf(const std::string& grammar, const std::vector<JudgedEpisode>& episodes,
+Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
               double collar_s) {
   std::set<std::string> kinds;
-  for (const JudgedEpisode& episode : episodes) {
+  for (const EpisodeToScore& episode : episodes) {
     for (const auto* side : {&episode.truth, &episode.found}) {
       for (const NamedEvent& event : side->events) kinds.insert(event.event);
     }
@@ -116,7 +116,7 @@ Score ScoreOf(const std::string& grammar, const std::vector<JudgedEpisode>& epis
               .episodes = static_cast<int>(episodes.size()),
               .not_spoken_of = {},
               .not_judged = {}};
-  for (const JudgedEpisode& episode : episodes) {
+  for (const EpisodeToScore& episode : episodes) {
     for (const auto& [event, times] : episode.not_judged) score.not_judged[event] += times;
   }
   for (const std::string& kind : kinds) score.events.push_back(ScoreKind(episodes, kind, collar_s));

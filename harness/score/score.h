@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a grammar recognises: its timelines against true ones, per kind of event and in total.
-// Tested by tests/harness/score_test.cc
+// Tested by tests/harness/score/score_test.cc
 #pragma once
 
 #include <map>
 #include <string>
 #include <vector>
 
-#include "grammar/timeline.h"
+#include "grammar/base/timeline.h"
 #include "harness/score/further_scores.h"
 #include "harness/score/overlap_metrics.h"
 #include "harness/score/ward.h"
@@ -15,7 +15,7 @@
 namespace prehend::harness::score {
 
 /// One episode as it truly was and as a grammar says it was.
-struct JudgedEpisode {
+struct EpisodeToScore {
   std::string scenario;
   grammar::Tick ticks = 0;
   grammar::Timeline truth;
@@ -60,7 +60,7 @@ struct Score {
 };
 
 /// Labels are events with their roles. `collar_s` is for the collar-based scores.
-Score ScoreOf(const std::string& grammar, const std::vector<JudgedEpisode>& episodes,
+Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
               double collar_s);
 
 /// A table for people: Ward's error row, boundary errors, F1@{10,25,50}, edit, frames, F at the

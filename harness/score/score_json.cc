@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/house/score_test.cc
+// Tested by tests/program/score_test.cc
 #include "harness/score/score_json.h"
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores as JSON. Tested by tests/house/score_test.cc
+// Scores as JSON. Tested by tests/program/score_test.cc
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores as tables. Tested by tests/harness/score_test.cc
+// Scores as tables. Tested by tests/harness/score/score_test.cc
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

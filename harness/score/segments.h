@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "grammar/frame.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::harness::score {
 

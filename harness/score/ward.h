@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a recognition is wrong: the error classes of Ward, Lukowicz & Gellersen 2011, "Performance
 // metrics for activity recognition", section 4. Of one class at a time: the intervals in which
-// something was true, and was said to be. Tested by tests/harness/score_metrics_test.cc
+// something was true, and was said to be. Tested by tests/harness/score/score_metrics_test.cc
 #pragma once
 
 #include <vector>
 
-#include "grammar/frame.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::harness::score {
 

@@ -1,59 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames in memory, each as what is new in it, to be played to monitors as often as one likes.
-// Tested by tests/harness/speed_test.cc
+// Tested by tests/harness/speed/workload_test.cc
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "grammar/frame.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::harness {
 
 class ChangeLog {
  public:
-  grammar::Cast cast;
+  grammar::EntityTable entity_table;
 
   std::size_t size() const { return frames_.size(); }
   grammar::Tick end_tick() const { return frames_.empty() ? 0 : frames_.back().tick + 1; }
 
   /// A frame begins; what is added from now on is new in it.
   void Begin(grammar::Tick tick) {
-    frames_.push_back({tick, entities_.size(), hands_.size(), touches_.size(), partings_.size()});
+    frames_.push_back(
+        {tick, entities_.size(), hands_.size(), touches_.size(), contact_ends_.size()});
   }
   void Add(const grammar::EntityChange& change) { entities_.push_back(change); }
-  /// Without feelers: they would not outlive the call.
-  void Add(grammar::HandLook hand) {
-    hand.feelers = {};
+  /// Without collision spheres: they would not outlive the call.
+  void Add(grammar::HandSample hand) {
+    hand.collision_spheres = {};
     hands_.push_back(hand);
   }
   void Add(const grammar::Touch& touch) { touches_.push_back(touch); }
-  void Add(const grammar::Parting& parting) { partings_.push_back(parting); }
+  void Add(const grammar::ContactEnd& contact_end) { contact_ends_.push_back(contact_end); }
 
   /// Lives as long as nothing is added.
   grammar::FrameChanges operator[](std::size_t i) const {
     const Start& here = frames_[i];
     const bool is_last = i + 1 == frames_.size();
     const Start next =
-        is_last ? Start{0, entities_.size(), hands_.size(), touches_.size(), partings_.size()}
+        is_last ? Start{0, entities_.size(), hands_.size(), touches_.size(), contact_ends_.size()}
                 : frames_[i + 1];
     return {here.tick,
             {entities_.data() + here.entity, next.entity - here.entity},
             {hands_.data() + here.hand, next.hand - here.hand},
             {touches_.data() + here.touch, next.touch - here.touch},
-            {partings_.data() + here.parting, next.parting - here.parting}};
+            {contact_ends_.data() + here.contact_end, next.contact_end - here.contact_end}};
   }
 
  private:
   struct Start {
     grammar::Tick tick = 0;
-    std::size_t entity = 0, hand = 0, touch = 0, parting = 0;
+    std::size_t entity = 0, hand = 0, touch = 0, contact_end = 0;
   };
   std::vector<Start> frames_;
   std::vector<grammar::EntityChange> entities_;
-  std::vector<grammar::HandLook> hands_;
+  std::vector<grammar::HandSample> hands_;
   std::vector<grammar::Touch> touches_;
-  std::vector<grammar::Parting> partings_;
+  std::vector<grammar::ContactEnd> contact_ends_;
 };
 
 }  // namespace prehend::harness

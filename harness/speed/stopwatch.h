@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of the processor, not of the wall: others may use this machine, too.
-// Tested by tests/harness/speed_test.cc
+// Tested by tests/harness/speed/workload_test.cc
 #pragma once
 
 #include <ctime>

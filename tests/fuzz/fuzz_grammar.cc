@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "grammar/compile.h"
+#include "grammar/compile/compile.h"
 #include "grammar/describe.h"
-#include "grammar/program.h"
+#include "grammar/program/program.h"
 
 namespace {
 
@@ -33,21 +33,23 @@ std::optional<GrammarText> Library(std::string_view name) {
 
 // A hand grasps a cup, lifts it and lets go.
 void Watch(const std::shared_ptr<const Program>& program) {
-  const Cast cast{.ticks_per_second = 100,
-                  .entities = {{.name = "hand",
-                                .classes = {"Hand", "Entity"},
-                                .sensor_sets = {"fingers", "thumb"}},
-                               {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}},
-                               {.name = "table", .classes = {"Fixed", "Thing", "Entity"}}},
-                  .styles = {"wrap"}};
-  Monitor monitor(program, cast);
-  std::vector<EntityLook> looks(3);
-  const Feeler feeler;
+  const EntityTable entity_table{
+      .ticks_per_second = 100,
+      .entities = {{.name = "hand",
+                    .classes = {"Hand", "Entity"},
+                    .sensor_sets = {"fingers", "thumb"}},
+                   {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}},
+                   {.name = "table", .classes = {"Fixed", "Thing", "Entity"}}},
+      .styles = {"wrap"}};
+  Monitor monitor(program, entity_table);
+  std::vector<EntitySample> looks(3);
+  const CollisionSphere collision_sphere;
   std::vector<Event> events;
   for (int i = 0; i < 30; ++i) {
     looks[1].p_WB_m.z() = i < 10 ? 0 : 0.01 * i;
-    const HandLook hand{
-        .entity = 0, .trigger = i > 3 && i < 20 ? 1.0 : 0.0, .feelers = {&feeler, 1}};
+    const HandSample hand{.entity = 0,
+                          .trigger = i > 3 && i < 20 ? 1.0 : 0.0,
+                          .collision_spheres = {&collision_sphere, 1}};
     std::vector<Touch> touches;
     if (i > 2 && i < 22) touches.push_back({.a = 0, .b = 1, .normal_force_n = 2, .sensor_sets = 3});
     if (i < 10 || i > 25) touches.push_back({.a = 1, .b = 2, .up_on_a = 1, .normal_force_n = 1});

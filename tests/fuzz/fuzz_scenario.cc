@@ -5,8 +5,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "harness/library_paths.h"
-#include "harness/read_scenario.h"
+#include "harness/read/read_scenario.h"
+#include "harness/run/find_scenario.h"
+#include "harness/run/project_library.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prehend::harness;

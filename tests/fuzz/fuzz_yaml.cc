@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "harness/located_yaml.h"
+#include "harness/yaml/located_yaml.h"
 
 namespace {
 

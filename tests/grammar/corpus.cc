@@ -10,7 +10,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "grammar/program.h"
+#include "grammar/name_events.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar::testing {
 namespace {
@@ -30,8 +31,8 @@ std::string Trim(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-CastMember Member(const std::string& name, const std::string& class_name) {
-  CastMember member{.name = name, .classes = {class_name}};
+EntityInfo Member(const std::string& name, const std::string& class_name) {
+  EntityInfo member{.name = name, .classes = {class_name}};
   if (class_name == "Movable" || class_name == "Fixed" || class_name == "Jointed")
     member.classes.emplace_back("Thing");
   if (class_name == "Hand") member.sensor_sets = {"fingers", "thumb", "palm"};
@@ -40,7 +41,7 @@ CastMember Member(const std::string& name, const std::string& class_name) {
 }
 
 // "8kg", "50N" or "thumb+index+middle".
-void ApplyDetail(CastMember& member, const std::string& detail) {
+void ApplyDetail(EntityInfo& member, const std::string& detail) {
   if (detail.ends_with("kg")) {
     member.mass_kg = std::stod(detail);
   } else if (detail.ends_with("N")) {
@@ -52,18 +53,19 @@ void ApplyDetail(CastMember& member, const std::string& detail) {
   }
 }
 
-std::vector<CastMember> ParseCast(const std::string& text) {
-  std::vector<CastMember> cast;
+std::vector<EntityInfo> ParseEntities(const std::string& text) {
+  std::vector<EntityInfo> entity_table;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     std::istringstream parts(word);
     std::string name, class_name;
     if (!std::getline(parts, name, ':') || !std::getline(parts, class_name, ':'))
-      Abort("cast wants NAME:CLASS, found " + word);
-    cast.push_back(Member(name, class_name));
-    for (std::string detail; std::getline(parts, detail, ':');) ApplyDetail(cast.back(), detail);
+      Abort("entities wants NAME:CLASS, found " + word);
+    entity_table.push_back(Member(name, class_name));
+    for (std::string detail; std::getline(parts, detail, ':');)
+      ApplyDetail(entity_table.back(), detail);
   }
-  return cast;
+  return entity_table;
 }
 
 int Digit(char c) {
@@ -85,25 +87,26 @@ double Interpolate(const std::string& cells, Tick tick) {
 class Stage {
  public:
   explicit Stage(const CorpusCase& c) : case_(c) {
-    for (std::size_t i = 0; i < c.cast.size(); ++i) ids_[c.cast[i].name] = static_cast<int>(i);
+    for (std::size_t i = 0; i < c.entity_table.size(); ++i)
+      ids_[c.entity_table[i].name] = static_cast<int>(i);
   }
 
   Frame Look(Tick tick) {
-    looks_.assign(case_.cast.size(), {});
+    looks_.assign(case_.entity_table.size(), {});
     touches_.clear();
     hands_.clear();
-    feelers_.assign(case_.cast.size(), {});
-    for (std::size_t i = 0; i < case_.cast.size(); ++i) {
-      if (case_.cast[i].classes.front() == "Hand")
+    collision_spheres_.assign(case_.entity_table.size(), {});
+    for (std::size_t i = 0; i < case_.entity_table.size(); ++i) {
+      if (case_.entity_table[i].classes.front() == "Hand")
         hands_.push_back({.entity = static_cast<int>(i)});
     }
     for (const Row& row : case_.facts) Apply(row, tick);
-    for (HandLook& hand : hands_) {
-      feelers_[hand.entity] = {.p_W_m = looks_[hand.entity].p_WB_m, .radius_m = 0};
-      hand.feelers = {&feelers_[hand.entity], 1};
+    for (HandSample& hand : hands_) {
+      collision_spheres_[hand.entity] = {.p_W_m = looks_[hand.entity].p_WB_m, .radius_m = 0};
+      hand.collision_spheres = {&collision_spheres_[hand.entity], 1};
     }
     for (Touch& touch : touches_) {
-      const EntityLook &a = looks_[touch.a], &b = looks_[touch.b];
+      const EntitySample &a = looks_[touch.a], &b = looks_[touch.b];
       touch.vertical_speed_m_per_s =
           VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
     }
@@ -130,7 +133,7 @@ class Stage {
         row.cells[std::min(static_cast<std::size_t>(tick / kColumnTicks), row.cells.size() - 1)];
     if (what == "x" || what == "y" || what == "z") {
       const int axis = what[0] - 'x';
-      EntityLook& look = looks_[Id(who)];
+      EntitySample& look = looks_[Id(who)];
       look.p_WB_m[axis] = Interpolate(row.cells, tick) / 100;
       // As a simulator does, the velocity is that of the step that led here.
       look.v_WB_m_per_s[axis] =
@@ -140,7 +143,7 @@ class Stage {
     } else if (what == "shakes") {
       if (cell == '#') Shake(looks_[Id(who)], static_cast<double>(tick) / kTicksPerSecond);
     } else if (what == "grip") {
-      for (HandLook& hand : hands_) {
+      for (HandSample& hand : hands_) {
         if (hand.entity == Id(who)) hand.trigger = cell == '#' ? 1 : Digit(cell) / 10.0;
       }
     } else if (what == "joint") {
@@ -157,7 +160,7 @@ class Stage {
 
   // Two centimetres around the other's origin; each column says by how many sixteenths of a turn it
   // goes on.
-  static void Circle(EntityLook& look, const Eigen::Vector3d& centre, const std::string& cells,
+  static void Circle(EntitySample& look, const Eigen::Vector3d& centre, const std::string& cells,
                      Tick tick) {
     constexpr double kRadius_m = 0.02;
     const auto full = static_cast<std::size_t>(tick / kColumnTicks);
@@ -172,7 +175,7 @@ class Stage {
   static int Steps(char cell) { return cell >= 'a' ? -(cell - 'a' + 1) : Digit(cell); }
 
   void ApplyPair(int a, int b, const std::string& what, char cell) {
-    const std::vector<std::string>& sets = case_.cast[a].sensor_sets;
+    const std::vector<std::string>& sets = case_.entity_table[a].sensor_sets;
     const auto set = std::find(sets.begin(), sets.end(), what);
     if (what == "looks") {
       looks_[a].gazes_at = b;
@@ -195,7 +198,7 @@ class Stage {
     return touches_.back();
   }
 
-  static void Shake(EntityLook& look, double seconds) {
+  static void Shake(EntitySample& look, double seconds) {
     constexpr double kAmplitude_m = 0.0002;
     constexpr double kRadPerSecond = 300;
     look.p_WB_m.x() += kAmplitude_m * std::sin(kRadPerSecond * seconds);
@@ -221,9 +224,9 @@ class Stage {
 
   const CorpusCase& case_;
   std::map<std::string, int> ids_;
-  std::vector<EntityLook> looks_;
-  std::vector<Feeler> feelers_;
-  std::vector<HandLook> hands_;
+  std::vector<EntitySample> looks_;
+  std::vector<CollisionSphere> collision_spheres_;
+  std::vector<HandSample> hands_;
   std::vector<Touch> touches_;
 };
 
@@ -280,7 +283,7 @@ std::vector<CorpusCase> ReadCorpusText(const std::string& path, const std::strin
     if (line.starts_with("== ")) {
       cases.push_back({.title = line.substr(3),
                        .line = number,
-                       .cast = ParseCast("hand:Hand cup:Movable table:Fixed")});
+                       .entity_table = ParseEntities("hand:Hand cup:Movable table:Fixed")});
       in_expected = false;
     } else if (cases.empty()) {
       Abort(path + ": a case starts with '== TITLE'");
@@ -292,8 +295,8 @@ std::vector<CorpusCase> ReadCorpusText(const std::string& path, const std::strin
       cases.back().jittered = true;
     } else if (line.starts_with("grammar ")) {
       cases.back().grammar = Trim(line.substr(8));
-    } else if (line.starts_with("cast ")) {
-      cases.back().cast = ParseCast(line.substr(5));
+    } else if (line.starts_with("entities ")) {
+      cases.back().entity_table = ParseEntities(line.substr(9));
     } else if (bar != std::string::npos) {
       const std::string cells = line.substr(bar + 1, line.find('|', bar + 1) - bar - 1);
       (in_expected ? cases.back().expected : cases.back().facts)
@@ -318,8 +321,9 @@ CorpusRun RunCase(const CorpusCase& c, int frames_per_second) {
 
 CorpusRun RunCase(const CorpusCase& c, const std::shared_ptr<const Program>& program,
                   int frames_per_second) {
-  const Cast cast{.ticks_per_second = kTicksPerSecond, .entities = c.cast, .styles = {"wrap"}};
-  Monitor monitor(program, cast);
+  const EntityTable entity_table{
+      .ticks_per_second = kTicksPerSecond, .entities = c.entity_table, .styles = {"wrap"}};
+  Monitor monitor(program, entity_table);
   Stage stage(c);
   std::vector<Event> events;
   const Tick end = kColumnTicks * static_cast<Tick>(c.facts.front().cells.size());
@@ -327,7 +331,7 @@ CorpusRun RunCase(const CorpusCase& c, const std::shared_ptr<const Program>& pro
   for (Tick tick = 0; tick < end; tick += NextFrame(c, index++, frames_per_second))
     monitor.Advance(stage.Look(tick), events);
   monitor.Finish(end, events);
-  return {monitor.error(), NameEvents(*program, cast, events)};
+  return {monitor.error(), NameEvents(*program, entity_table, events)};
 }
 
 std::vector<Row> DrawEvents(const CorpusCase& c, const Timeline& timeline) {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
-#include "grammar/timeline.h"
 
 namespace prehend::grammar::testing {
 
@@ -25,7 +25,7 @@ struct CorpusCase {
   std::string grammar = "pick_and_place";
   bool jittered = false;
   std::vector<int> rates;  ///< frames per second, if several are to give the same
-  std::vector<CastMember> cast;
+  std::vector<EntityInfo> entity_table;
   std::vector<Row> facts;
   std::vector<Row> expected;
 };

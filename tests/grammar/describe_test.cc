@@ -42,13 +42,20 @@ TEST(Describe, PromisesAreKeptOnTheCorpus) {
     for (const NamedEvent& event : testing::RunCase(c).timeline.events) {
       const Wait& wait = Find(d, event.event).latency;
       if (!wait.until_end_of.empty()) continue;
-      constexpr double kLongestFrame_s =
-          2 * 0.0162;  // a gap and a window may each wait for a frame
+      constexpr double kMaxFrame_s = 2 * 0.0162;  // a gap and a window may each wait for a frame
       EXPECT_LE(static_cast<double>(event.decided - event.interval.end),
-                testing::kCorpusTicksPerSecond * (wait.seconds + kLongestFrame_s))
+                testing::kCorpusTicksPerSecond * (wait.seconds + kMaxFrame_s))
           << c.title << ": " << event.Label();
     }
   }
+}
+
+TEST(Describe, TextListsLaws) {
+  const std::string text = Text(Describe(*testing::CompileLibrary("contact")));
+  EXPECT_NE(text.find("\nlaw supports_lie_inside_contacts(object: Movable, support: Thing)\n"
+                      "    supported_by(object, support) lies inside contact(object, support)\n"),
+            std::string::npos)
+      << text;
 }
 
 TEST(Describe, TextListsParametersWithTheirPlaces) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "grammar/check_laws.h"
 #include "tests/grammar/corpus.h"
 
 namespace prehend::grammar::testing {
@@ -29,6 +30,20 @@ std::vector<Row> Sorted(std::vector<Row> rows) {
   return rows;
 }
 
+// A row "violated NAME" per law that is broken, drawn where it is.
+std::vector<Row> DrawViolations(const CorpusCase& drawn, const Program& program,
+                                const Timeline& timeline) {
+  const EntityTable entity_table{.ticks_per_second = kCorpusTicksPerSecond,
+                                 .entities = drawn.entity_table};
+  Timeline violations{.ticks_per_second = kCorpusTicksPerSecond};
+  for (const LawViolation& violation : CheckLaws(program, entity_table, timeline))
+    violations.events.push_back(
+        {.event = "violated " + violation.law->name, .interval = violation.when});
+  std::vector<Row> rows = DrawEvents(drawn, violations);
+  for (Row& row : rows) row.name.resize(row.name.size() - 2);  // it has no roles: "()"
+  return rows;
+}
+
 TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
   const std::vector<std::string> blocks =
       Blocks(ReadFile(PREHEND_SOURCE_DIR "/docs/grammar-language.md"));
@@ -38,15 +53,17 @@ TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
     const CompileResult compiled = Compile({"docs", blocks[i]}, LibraryIncluder());
     ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
     EXPECT_EQ(Format(compiled.warnings), "");
-    ASSERT_TRUE(i + 1 < blocks.size() && blocks[i + 1].starts_with("cast "))
+    ASSERT_TRUE(i + 1 < blocks.size() && blocks[i + 1].starts_with("entities "))
         << "nothing is drawn below\n"
         << blocks[i];
     const CorpusCase drawn = ReadCorpusText("docs", "== example\n" + blocks[i + 1]).front();
     const CorpusRun run = RunCase(drawn, compiled.program);
     EXPECT_EQ(run.error, "");
     EXPECT_FALSE(run.timeline.events.empty());
-    EXPECT_EQ(Text(Sorted(drawn.expected)), Text(Sorted(DrawEvents(drawn, run.timeline))))
-        << blocks[i];
+    std::vector<Row> rows = DrawEvents(drawn, run.timeline);
+    for (Row& row : DrawViolations(drawn, *compiled.program, run.timeline))
+      rows.push_back(std::move(row));
+    EXPECT_EQ(Text(Sorted(drawn.expected)), Text(Sorted(std::move(rows)))) << blocks[i];
     ++examples;
   }
   EXPECT_GE(examples, 13);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <new>
 
+#include "grammar/name_events.h"
 #include "tests/grammar/corpus.h"
 #include "tests/grammar/scene.h"
 
@@ -57,7 +58,7 @@ void PlayRound(Scene& scene, Monitor& monitor, Tick start, std::vector<Event>& e
     scene.looks[Scene::kCup].v_WB_m_per_s.z() = speed;
     scene.looks[Scene::kHand].p_WB_m = {t < 300 ? 0.3 - static_cast<double>(t) * 0.001 : 0, 0,
                                         lift};
-    scene.feeler.p_W_m = scene.looks[Scene::kHand].p_WB_m;
+    scene.collision_sphere.p_W_m = scene.looks[Scene::kHand].p_WB_m;
     scene.hand.ahead_W = {-1, 0, 0};
     scene.hand.trigger = t >= 300 && t < 1900 ? 1 : 0;
     scene.touches.clear();
@@ -70,7 +71,7 @@ void PlayRound(Scene& scene, Monitor& monitor, Tick start, std::vector<Event>& e
 
 TEST(Monitor, AllocatesNothingOnceItIsWarm) {
   Scene scene;
-  Monitor monitor(testing::CompileLibrary("pick_and_place"), scene.cast);
+  Monitor monitor(testing::CompileLibrary("pick_and_place"), scene.entity_table);
   std::vector<Event> events;
   events.reserve(10000);
   scene.touches.reserve(8);
@@ -86,7 +87,7 @@ TEST(Monitor, AllocatesNothingOnceItIsWarm) {
 
 TEST(Monitor, GivesEventsInOrderAndNeverBeforeTheyAreCertain) {
   Scene scene;
-  Monitor monitor(testing::CompileLibrary("pick_and_place"), scene.cast);
+  Monitor monitor(testing::CompileLibrary("pick_and_place"), scene.entity_table);
   std::vector<Event> events;
   PlayRound(scene, monitor, 0, events);
   for (std::size_t i = 1; i < events.size(); ++i)
@@ -107,14 +108,14 @@ TEST(Monitor, GivesEventsInOrderAndNeverBeforeTheyAreCertain) {
 TEST(Monitor, TellsTheStyleOfAGrasp) {
   Scene scene;
   const auto program = testing::CompileLibrary("grasp");
-  Monitor monitor(program, scene.cast);
+  Monitor monitor(program, scene.entity_table);
   std::vector<Event> events;
   scene.hand.style = 1;
   PlayRound(scene, monitor, 0, events);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].style, 1);
   EXPECT_EQ(events[0].interval, (Interval{300, 1900}));
-  EXPECT_EQ(NameEvents(*program, scene.cast, events).events[0].roles.back(),
+  EXPECT_EQ(NameEvents(*program, scene.entity_table, events).events[0].roles.back(),
             (Role{"style", "pinch"}));
 }
 
@@ -122,7 +123,7 @@ TEST(Monitor, RefusesFramesThatCannotBe) {
   const auto program = testing::CompileLibrary("contact");
   const auto error_after = [&](auto&& spoil) {
     Scene scene;
-    Monitor monitor(program, scene.cast);
+    Monitor monitor(program, scene.entity_table);
     std::vector<Event> events;
     monitor.Advance(scene.At(10), events);
     Frame frame = scene.At(20);
@@ -135,21 +136,21 @@ TEST(Monitor, RefusesFramesThatCannotBe) {
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = 10; }),
             "the frames are not in order of time");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.entities = f.entities.first(2); }),
-            "a frame shows another number of entities than the cast");
+            "a frame shows another number of entities than the entity table");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.entities = {}; }),
-            "a frame shows another number of entities than the cast");
+            "a frame shows another number of entities than the entity table");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::max(); }),
             "a frame's tick is too large");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::min(); }),
             "a frame's tick is too large");
-  static const std::vector<HandLook> kTwice(2, HandLook{.entity = Scene::kHand});
+  static const std::vector<HandSample> kTwice(2, HandSample{.entity = Scene::kHand});
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.hands = kTwice; }),
-            "a frame shows a hand twice, or its hands are not in the order of the cast");
+            "a frame shows a hand twice, or its hands are not in the order of the entity table");
   EXPECT_EQ(error_after([](Scene& s, Frame& f) {
               s.touches = {{.a = 1, .b = 7}};
               f.touches = s.touches;
             }),
-            "a frame shows a touch of somebody not in the cast");
+            "a frame shows a touch of somebody not in the entity table");
 }
 
 // Whatever a frame says of the hand, the monitor goes on: nothing of it is needed to be there.
@@ -167,14 +168,14 @@ event carried(hand: Hand, object: Movable) from held(hand, object) begins
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::pair<const char*, std::function<void(Scene&, Frame&)>> spoilers[] = {
       {"hand not shown", [](Scene&, Frame& f) { f.hands = {}; }},
-      {"no feelers", [](Scene& s, Frame&) { s.hand.feelers = {}; }},
+      {"no collision spheres", [](Scene& s, Frame&) { s.hand.collision_spheres = {}; }},
       {"style unknown", [](Scene& s, Frame&) { s.hand.style = 99; }},
       {"not a number",
        [](Scene& s, Frame&) {
          s.looks[Scene::kCup].p_WB_m.setConstant(kNan);
          s.looks[Scene::kHand].v_WB_m_per_s.setConstant(kNan);
          s.hand.ahead_W.setConstant(kNan);
-         s.feeler.p_W_m.setConstant(kNan);
+         s.collision_sphere.p_W_m.setConstant(kNan);
        }},
       {"infinite", [](Scene& s, Frame&) { s.looks[Scene::kCup].p_WB_m.setConstant(1 / 0.0); }},
       {"touch twice",
@@ -187,7 +188,7 @@ event carried(hand: Hand, object: Movable) from held(hand, object) begins
     for (const bool always : {true, false}) {
       SCOPED_TRACE(what);
       Scene scene;
-      Monitor monitor(program, scene.cast);
+      Monitor monitor(program, scene.entity_table);
       std::vector<Event> events;
       for (int i = 0; i < 100; ++i) {
         const Scene sound = scene;
@@ -201,7 +202,7 @@ event carried(hand: Hand, object: Movable) from held(hand, object) begins
       monitor.Finish(1000, events);
       EXPECT_EQ(monitor.error(), "");
       EXPECT_FALSE(events.empty());
-      NameEvents(*program, scene.cast, events);
+      NameEvents(*program, scene.entity_table, events);
     }
   }
 }
@@ -219,17 +220,17 @@ TEST(Monitor, RefusesTooManyBindings) {
   const auto program = testing::CompileText(
       "grammar t\nevent far(a: Thing, b: Thing, c: Thing)\n"
       "  while distance(a, b) > 1 m and distance(b, c) > 1 m\n");
-  Cast cast;
+  EntityTable entity_table;
   for (int i = 0; i < 200; ++i)
-    cast.entities.push_back({.name = std::to_string(i), .classes = {"Thing", "Entity"}});
-  const Monitor monitor(program, cast);
+    entity_table.entities.push_back({.name = std::to_string(i), .classes = {"Thing", "Entity"}});
+  const Monitor monitor(program, entity_table);
   EXPECT_EQ(monitor.error(),
             "more than 1000000 bindings with those of 'far(a: Thing, b: Thing, c: Thing)': "
             "there are 200 for a, 200 for b, 200 for c; give the roles narrower classes");
 }
 
 TEST(Monitor, WithoutFramesThereIsNothing) {
-  Monitor monitor(testing::CompileLibrary("pick_and_place"), Scene().cast);
+  Monitor monitor(testing::CompileLibrary("pick_and_place"), Scene().entity_table);
   std::vector<Event> events;
   monitor.Finish(100, events);
   EXPECT_TRUE(events.empty());

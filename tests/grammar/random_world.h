@@ -18,20 +18,21 @@ class RandomWorld {
   static constexpr int kHands = 2, kObjects = 5, kPlaces = 2;
 
   explicit RandomWorld(std::uint64_t seed) : random_(seed), looks(kHands + kObjects + kPlaces) {
-    cast.ticks_per_second = 1000;
-    cast.styles = {"wrap", "pinch"};
+    entity_table.ticks_per_second = 1000;
+    entity_table.styles = {"wrap", "pinch"};
     for (int i = 0; i < kHands; ++i) {
-      cast.entities.push_back({.name = "hand" + std::to_string(i), .classes = {"Hand", "Entity"}});
+      entity_table.entities.push_back(
+          {.name = "hand" + std::to_string(i), .classes = {"Hand", "Entity"}});
       hands.push_back({.entity = i});
-      feelers.push_back(std::vector<Feeler>(2));
+      collision_spheres.push_back(std::vector<CollisionSphere>(2));
     }
     for (int i = 0; i < kObjects; ++i) {
-      cast.entities.push_back(
+      entity_table.entities.push_back(
           {.name = "object" + std::to_string(i), .classes = {"Movable", "Thing", "Entity"}});
-      cast.entities.back().half_size_m.setConstant(0.03);
+      entity_table.entities.back().half_size_m.setConstant(0.03);
     }
     for (int i = 0; i < kPlaces; ++i) {
-      cast.entities.push_back(
+      entity_table.entities.push_back(
           {.name = "place" + std::to_string(i), .classes = {"Fixed", "Thing", "Entity"}});
     }
     calm_ = 2 + random_() % 60;
@@ -45,11 +46,11 @@ class RandomWorld {
     for (int i = 0; i < kHands; ++i) {
       if (Sometimes()) hands[i].trigger = Choose({0, 0.2, 0.3, 1});
       if (Sometimes()) hands[i].style = static_cast<int>(random_() % 2);
-      for (std::size_t k = 0; k < feelers[i].size(); ++k) {
-        feelers[i][k] = {looks[i].p_WB_m + Eigen::Vector3d(0, 0.02 * static_cast<double>(k), 0),
-                         0.01};
+      for (std::size_t k = 0; k < collision_spheres[i].size(); ++k) {
+        collision_spheres[i][k] = {
+            looks[i].p_WB_m + Eigen::Vector3d(0, 0.02 * static_cast<double>(k), 0), 0.01};
       }
-      hands[i].feelers = feelers[i];
+      hands[i].collision_spheres = collision_spheres[i];
     }
     for (int a = 0; a < static_cast<int>(looks.size()); ++a) {
       for (int b = a + 1; b < static_cast<int>(looks.size()) - (a < kHands ? kPlaces : 0); ++b)
@@ -64,7 +65,7 @@ class RandomWorld {
   bool Sometimes() { return random_() % calm_ == 0; }
   double Choose(std::vector<double> values) { return values[random_() % values.size()]; }
 
-  void Move(EntityLook& look) {
+  void Move(EntitySample& look) {
     if (Sometimes()) {
       look.v_WB_m_per_s = {Choose({0, 0, 0, 0.3, -0.3}), Choose({0, 0, 0.1}),
                            Choose({0, 0, 0, 0.2, -0.2})};
@@ -104,17 +105,17 @@ class RandomWorld {
   std::map<std::pair<int, int>, Touch> touching_;
 
  public:
-  Cast cast;
+  EntityTable entity_table;
   Tick tick = 0;
-  std::vector<EntityLook> looks;
-  std::vector<HandLook> hands;
-  std::vector<std::vector<Feeler>> feelers;
+  std::vector<EntitySample> looks;
+  std::vector<HandSample> hands;
+  std::vector<std::vector<CollisionSphere>> collision_spheres;
   std::vector<Touch> touches;
 };
 
 /// Rules that ask everything at all times, so that something is always awake, to stand beside those
 /// of the library.
-inline constexpr const char* kRestlessRules = R"(
+inline constexpr const char* kTimeDependentRules = R"(
 use pick_and_place
 event near(hand: Hand, object: Movable) while distance(hand, object) < 10 cm bridging 50 ms lasting 30 ms
 event apart(object: Movable, support: Thing)

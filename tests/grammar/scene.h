@@ -8,35 +8,36 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
-#include "grammar/program.h"
-#include "grammar/timeline.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar::testing {
 
-/// A hand with one feeler, a cup and a tray; the ids are their places in the cast. 1000 ticks per
-/// second.
+/// A hand with one collision sphere, a cup and a tray; the ids are their places in the
+/// entity_table. 1000 ticks per second.
 struct Scene {
   static constexpr int kHand = 0;
   static constexpr int kCup = 1;
   static constexpr int kTray = 2;
 
-  Cast cast{.ticks_per_second = 1000,
-            .entities = {{.name = "hand",
-                          .classes = {"Hand", "Entity"},
-                          .sensor_sets = {"fingers", "thumb", "palm"}},
-                         {.name = "cup",
-                          .classes = {"Cup", "Movable", "Thing", "Entity"},
-                          .part_of = kTray},
-                         {.name = "tray", .classes = {"Movable", "Thing", "Entity"}}},
-            .styles = {"wrap", "pinch"}};
-  std::vector<EntityLook> looks = std::vector<EntityLook>(3);
-  Feeler feeler;
-  HandLook hand{.entity = kHand};
+  EntityTable entity_table{
+      .ticks_per_second = 1000,
+      .entities = {{.name = "hand",
+                    .classes = {"Hand", "Entity"},
+                    .sensor_sets = {"fingers", "thumb", "palm"}},
+                   {.name = "cup",
+                    .classes = {"Cup", "Movable", "Thing", "Entity"},
+                    .part_of = kTray},
+                   {.name = "tray", .classes = {"Movable", "Thing", "Entity"}}},
+      .styles = {"wrap", "pinch"}};
+  std::vector<EntitySample> looks = std::vector<EntitySample>(3);
+  CollisionSphere collision_sphere;
+  HandSample hand{.entity = kHand};
   std::vector<Touch> touches;
 
   Frame At(Tick tick) {
-    hand.feelers = {&feeler, 1};
+    hand.collision_spheres = {&collision_sphere, 1};
     return {.tick = tick, .entities = looks, .hands = {&hand, 1}, .touches = touches};
   }
 };

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "harness/read_scenario.h"
+#include "harness/read/read_scenario.h"
 
 namespace prehend::harness {
 

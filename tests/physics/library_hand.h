@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "harness/read_hand_model.h"
+#include "harness/read/read_hand_model.h"
 
 namespace prehend::physics {
 

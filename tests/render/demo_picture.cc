@@ -136,8 +136,9 @@ physics::HandState DemoHandState(const physics::HandModel& model, const Pose& X_
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(curl_rad, link.joint_axis));
     X_WJ.push_back(X_WP * Pose{link.pivot_m, turn} *
                    Pose{-link.pivot_m, Eigen::Quaterniond::Identity()});
-    const Pose X_HL{link.pivot_m + link.direction * link.length_m / 2,
-                    Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitX(), link.direction)};
+    const Pose X_HL{
+        link.pivot_m + link.direction * link.length_m / 2,
+        RotationBetween(Eigen::Vector3f::UnitX(), link.direction.cast<float>()).cast<double>()};
     state.X_WL.push_back(X_WJ.back() * X_HL);
   }
   return state;

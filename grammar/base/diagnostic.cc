@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/base/diagnostic.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace prehend::grammar {
+namespace {
+
+// Longer lines are cut to a window around the caret, so that an error in a one-line 50 MB file
+// stays readable.
+constexpr std::size_t kMaxShownBytes = 120;
+constexpr std::size_t kShownBeforeCaret = 60;
+
+// Bytes that would garble a terminal are shown as '?'. Bytes of UTF-8 sequences stay.
+std::string Printable(std::string_view text) {
+  std::string shown(text);
+  for (char& c : shown) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\t') || byte == 0x7f) c = '?';
+  }
+  return shown;
+}
+
+bool IsContinuationByte(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
+
+// The source line and the caret line below it. Tabs are repeated, so the caret stands right at any
+// tab width.
+std::string CaretBlock(std::string_view line, int column) {
+  const std::size_t caret = std::min<std::size_t>(column > 0 ? column - 1 : 0, line.size());
+  std::size_t first = 0;
+  if (line.size() > kMaxShownBytes && caret > kShownBeforeCaret) first = caret - kShownBeforeCaret;
+  while (first > 0 && first < line.size() && IsContinuationByte(line[first])) --first;
+  const bool cut_end = line.size() - first > kMaxShownBytes;
+  const std::string lead = first > 0 ? "..." : "";
+
+  std::string block =
+      "  " + lead + Printable(line.substr(first, kMaxShownBytes)) + (cut_end ? "..." : "") + "\n";
+  block += "  " + std::string(lead.size(), ' ');
+  for (const char c : line.substr(first, caret - first)) {
+    if (!IsContinuationByte(c)) block += c == '\t' ? '\t' : ' ';
+  }
+  return block + "^\n";
+}
+
+std::string_view LineOf(std::string_view text, int line) {
+  std::size_t begin = 0;
+  for (int i = 1; i < line; ++i) {
+    const std::size_t newline = text.find('\n', begin);
+    if (newline == std::string_view::npos) return {};
+    begin = newline + 1;
+  }
+  std::string_view rest = text.substr(std::min(begin, text.size()));
+  rest = rest.substr(0, rest.find('\n'));
+  if (!rest.empty() && rest.back() == '\r') rest.remove_suffix(1);
+  return rest;
+}
+
+// Optimal string alignment distance by rows: Levenshtein's, with two swapped neighbours counted as
+// one mistake.
+std::size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before_last, last, row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before_last = std::exchange(last, row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substitution = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({substitution, row[j - 1] + 1, last[j] + 1});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], before_last[j - 2] + 1);
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string Format(const Diagnostic& diagnostic) {
+  std::string text = diagnostic.file;
+  if (diagnostic.place.line > 0) {
+    text +=
+        ":" + std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column);
+  }
+  text += (diagnostic.is_warning ? ": warning: " : ": error: ") + diagnostic.message + "\n";
+  if (!diagnostic.source_line.empty())
+    text += CaretBlock(diagnostic.source_line, diagnostic.place.column);
+  if (!diagnostic.hint.empty()) text += "  hint: " + diagnostic.hint + "\n";
+  return text;
+}
+
+std::string Format(const Diagnostics& diagnostics) {
+  std::string text;
+  for (const Diagnostic& diagnostic : diagnostics) text += Format(diagnostic);
+  return text;
+}
+
+Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place place,
+                        std::string message, std::string hint) {
+  return {.file = std::string(file),
+          .place = place,
+          .message = std::move(message),
+          .source_line = place.line > 0 ? std::string(LineOf(text, place.line)) : std::string(),
+          .hint = std::move(hint)};
+}
+
+std::string NearestName(std::string_view name, const std::vector<std::string>& candidates) {
+  // Comparing takes time proportional to both lengths; nobody mistypes a name of this length.
+  constexpr std::size_t kLongestName = 100;
+  if (name.size() > kLongestName) return {};
+  std::string best;
+  std::size_t best_distance = 0;
+  for (const std::string& candidate : candidates) {
+    if (candidate.size() > kLongestName) continue;
+    const std::size_t distance = EditDistance(name, candidate);
+    if (3 * distance > std::max(name.size(), candidate.size())) continue;
+    if (best.empty() || distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+}  // namespace prehend::grammar

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// A complaint about somebody's input: where, what was found, what was wanted.
+// Shared by the grammar language and by every YAML reader, so that all errors look alike.
+// Tested by tests/grammar/base/diagnostic_test.cc
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace prehend::grammar {
+
+/// A place in a text; line and column count from 1, column in bytes. Line 0 means "the file as a
+/// whole".
+struct Place {
+  int line = 0;
+  int column = 0;
+};
+
+struct Diagnostic {
+  std::string file;
+  Place place;
+  std::string message;      ///< what was found, what was wanted
+  std::string source_line;  ///< the line at `place`, without newline; may be empty
+  std::string hint;         ///< the remedy or the nearest known name; may be empty
+  bool is_warning = false;
+};
+
+using Diagnostics = std::vector<Diagnostic>;
+
+/// `file:line:column: error: message` (or `warning:`), then the source line and a caret below it
+/// (tabs kept, very long lines cut around the caret), then the hint. Ends with a newline.
+std::string Format(const Diagnostic& diagnostic);
+
+/// All of them, one after another.
+std::string Format(const Diagnostics& diagnostics);
+
+/// Builds a diagnostic at a place of `text`, filling in the source line.
+Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place place,
+                        std::string message, std::string hint = {});
+
+/// The candidate with the smallest edit distance to `name`, or "" when none is near enough to be
+/// worth suggesting (distance above a third of the longer name's length).
+std::string NearestName(std::string_view name, const std::vector<std::string>& candidates);
+
+}  // namespace prehend::grammar

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/base/quantity.h"
+
+#include <array>
+#include <charconv>
+#include <numbers>
+
+namespace prehend::grammar {
+namespace {
+
+constexpr std::array kUnits = {
+    Unit{"m", kMetres, 1},       Unit{"cm", kMetres, 0.01},
+    Unit{"mm", kMetres, 0.001},  Unit{"s", kSeconds, 1},
+    Unit{"ms", kSeconds, 0.001}, Unit{"N", kNewtons, 1},
+    Unit{"rad", kRadians, 1},    Unit{"deg", kRadians, std::numbers::pi / 180},
+};
+
+// As the language has it: m/s/s.
+void AppendPower(std::string& text, char sign, std::string_view name, int power) {
+  for (int i = 0; i < power; ++i) {
+    if (!text.empty() || sign == '/') text += sign;
+    text += name;
+  }
+}
+
+}  // namespace
+
+bool Dimension::IsModest() const {
+  constexpr int kHighest = 9;
+  for (const int power : {length, time, force, angle}) {
+    if (power > kHighest || power < -kHighest) return false;
+  }
+  return true;
+}
+
+Dimension Product(const Dimension& a, const Dimension& b) {
+  return {a.length + b.length, a.time + b.time, a.force + b.force, a.angle + b.angle};
+}
+
+Dimension Quotient(const Dimension& a, const Dimension& b) {
+  return {a.length - b.length, a.time - b.time, a.force - b.force, a.angle - b.angle};
+}
+
+const Unit* FindUnit(std::string_view name) {
+  for (const Unit& unit : kUnits) {
+    if (unit.name == name) return &unit;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> UnitNames() {
+  std::vector<std::string> names;
+  for (const Unit& unit : kUnits) names.emplace_back(unit.name);
+  return names;
+}
+
+std::string DimensionText(const Dimension& dimension) {
+  if (dimension == kPlain) return "a plain number";
+  std::string above;
+  std::string below;
+  const auto add = [&](std::string_view name, int power) {
+    AppendPower(above, '*', name, power);
+    AppendPower(below, '/', name, -power);
+  };
+  add("m", dimension.length);
+  add("s", dimension.time);
+  add("N", dimension.force);
+  add("rad", dimension.angle);
+  if (above.empty()) above = "1";
+  return above + below;
+}
+
+std::string QuantityText(const Quantity& quantity) {
+  std::array<char, 32> digits{};
+  const auto [end, error] =
+      std::to_chars(digits.data(), digits.data() + digits.size(), quantity.value);
+  std::string text(digits.data(), end);
+  if (quantity.dimension != kPlain) text += " " + DimensionText(quantity.dimension);
+  return text;
+}
+
+}  // namespace prehend::grammar

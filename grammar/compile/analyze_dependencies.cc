@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/compile/analyze_dependencies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "grammar/compile/contradictions.h"
+
+namespace prehend::grammar {
+namespace {
+
+// `sensor_sets(hand, object) >= 2` and `up(a, b) >= 0.5` are false unless the two touch.
+bool ImpliesTouch(const Program& program, const Node& node) {
+  const Node& left = program.nodes[node.args[0]];
+  const Node& right = program.nodes[node.args[1]];
+  if (right.op != Op::kNumber) return false;
+  const bool sets = left.op == Op::kSensorSets || left.op == Op::kForceBetween;
+  if (!sets && left.op != Op::kUp) return false;
+  const double when_apart = sets ? 0 : -1;
+  return (node.op == Op::kGreaterEqual && right.number > when_apart) ||
+         (node.op == Op::kGreater && right.number >= when_apart);
+}
+
+// References that must be true whenever the node is; at a moment they may have been so up to there,
+// if `at_moments`.
+void CollectNecessary(const Program& program, int index, std::vector<int>& references,
+                      bool at_moments = true) {
+  if (index == kNone) return;
+  const Node& node = program.nodes[index];
+  switch (node.op) {
+    case Op::kHolds:
+    case Op::kSensorSet:
+      references.push_back(node.slot);
+      break;
+    case Op::kAnd:
+      CollectNecessary(program, node.args[0], references, at_moments);
+      CollectNecessary(program, node.args[1], references, at_moments);
+      break;
+    case Op::kBegins:
+    case Op::kEnds:
+      if (at_moments) CollectNecessary(program, node.args[0], references);
+      break;
+    case Op::kGreater:
+    case Op::kGreaterEqual:
+      if (ImpliesTouch(program, node)) references.push_back(program.nodes[node.args[0]].slot);
+      break;
+    default:
+      break;
+  }
+}
+
+// How many bindings one binding of the reference wakes, roughly: a free Hand costs less than any
+// other free role.
+int Fanout(const Rule& rule, const Reference& reference) {
+  int fanout = 0;
+  for (std::size_t role = 0; role < rule.roles.size(); ++role) {
+    const bool named =
+        std::count(reference.roles.begin(), reference.roles.end(), static_cast<int>(role)) > 0;
+    if (!named) fanout += rule.roles[role].class_name == "Hand" ? 1 : 10;
+  }
+  return fanout;
+}
+
+// The last of equals: conditions that are built on others stand later and hold more rarely.
+int MostSpecific(const Rule& rule, const std::vector<int>& candidates) {
+  int best = kNone;
+  for (const int candidate : candidates) {
+    if (best == kNone ||
+        Fanout(rule, rule.references[candidate]) <= Fanout(rule, rule.references[best]))
+      best = candidate;
+  }
+  return best;
+}
+
+int ChooseGuard(const Program& program, const Rule& rule) {
+  std::vector<int> candidates;
+  switch (rule.form) {
+    case Form::kTouching:
+      return kNone;
+    case Form::kAny:
+      return 0;
+    case Form::kWhile:
+      CollectNecessary(program, rule.first, candidates);
+      break;
+    case Form::kFromTo:
+      CollectNecessary(program, rule.during, candidates);
+      CollectNecessary(program, rule.first, candidates);
+      break;
+    case Form::kUntilSince:
+      // If nobody asks where it is not, it is enough to wake at its end; else its truth must be
+      // known at all times. It ends a frame later than that what leads to it holds.
+      CollectNecessary(program, rule.second, candidates, false);
+      if (!rule.referenced) CollectNecessary(program, rule.first, candidates);
+      break;
+    case Form::kRestOf:
+      candidates.push_back(rule.first);
+      break;
+    case Form::kCompose:
+      return rule.composition.parts.front();  // and woken by each interval of a part
+  }
+  return MostSpecific(rule, candidates);
+}
+
+// Whether the guard must be true in the very frame in which something begins.
+bool GuardsBegin(const Program& program, const Rule& rule) {
+  std::vector<int> needed;
+  if (rule.form == Form::kFromTo) CollectNecessary(program, rule.during, needed, false);
+  if (rule.form == Form::kFromTo || rule.form == Form::kUntilSince)
+    CollectNecessary(program, rule.first, needed, false);
+  return std::find(needed.begin(), needed.end(), rule.guard) != needed.end();
+}
+
+// A moment that must be there when something begins, if it is the begin or the end of an event.
+void FindOpening(const Program& program, Rule& rule, int index) {
+  const Node& node = program.nodes[index];
+  if (node.op == Op::kAnd) {
+    FindOpening(program, rule, node.args[0]);
+    FindOpening(program, rule, node.args[1]);
+  } else if ((node.op == Op::kBegins || node.op == Op::kEnds) &&
+             program.nodes[node.args[0]].op == Op::kHolds) {
+    rule.opened_by = program.nodes[node.args[0]].slot;
+    rule.opened_by_end = node.op == Op::kEnds;
+  }
+}
+
+bool IsLook(Op op) {
+  switch (op) {
+    case Op::kInSphere:
+    case Op::kBoxInSphere:
+    case Op::kInCylinder:
+    case Op::kTrigger:
+    case Op::kSensorSets:
+    case Op::kUp:
+    case Op::kForceBetween:
+    case Op::kTouchSpeed:
+    case Op::kGap:
+    case Op::kClosingSpeed:
+    case Op::kSurfaceSpeed:
+    case Op::kDistance:
+    case Op::kDistanceAlong:
+    case Op::kHeight:
+    case Op::kSpeed:
+    case Op::kVerticalSpeed:
+    case Op::kRelativeVerticalSpeed:
+    case Op::kSpeedAlong:
+    case Op::kDriftAlong:
+    case Op::kTurnRate:
+    case Op::kTilt:
+    case Op::kSensorSet:
+    case Op::kGazed:
+    case Op::kInside:
+    case Op::kJointFraction:
+    case Op::kJointAngle:
+    case Op::kJointTravel:
+    case Op::kRate:
+    case Op::kPosition:
+    case Op::kPositionOn:
+    case Op::kAhead:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool UsesLooks(const Program& program, int index) {
+  if (index == kNone) return false;
+  const Node& node = program.nodes[index];
+  return IsLook(node.op) || std::any_of(node.args.begin(), node.args.end(),
+                                        [&](int arg) { return UsesLooks(program, arg); });
+}
+
+// For what a touch measures, apart from which thresholds it is beyond.
+bool AsksTouches(const Program& program, int index) {
+  if (index == kNone) return false;
+  const Node& node = program.nodes[index];
+  if (node.by_threshold.value != kNone) return false;
+  switch (node.op) {
+    case Op::kSensorSet:
+    case Op::kSensorSets:
+    case Op::kUp:
+    case Op::kForceBetween:
+    case Op::kTouchSpeed:
+      return true;
+    default:
+      break;
+  }
+  return std::any_of(node.args.begin(), node.args.end(),
+                     [&](int arg) { return AsksTouches(program, arg); });
+}
+
+// Whether it compares what a touch measures with thresholds.
+bool ComparesTouches(const Program& program, int index) {
+  if (index == kNone) return false;
+  const Node& node = program.nodes[index];
+  if (node.by_threshold.value != kNone)
+    return program.nodes[node.by_threshold.value].op != Op::kTrigger;
+  return std::any_of(node.args.begin(), node.args.end(),
+                     [&](int arg) { return ComparesTouches(program, arg); });
+}
+
+double LooksAround(const Program& program, int index) {
+  if (index == kNone) return 0;
+  const Node& node = program.nodes[index];
+  double seconds = 0;
+  for (const int arg : node.args) seconds = std::max(seconds, LooksAround(program, arg));
+  return node.op == Op::kDriftAlong || node.op == Op::kTurnRate || node.op == Op::kRate
+             ? seconds + node.number / 2
+             : seconds;
+}
+
+// The number of a threshold, entered if it is new; kNone if there are too many.
+int Enter(Program& program, const Threshold& threshold) {
+  const auto found = std::find(program.thresholds.begin(), program.thresholds.end(), threshold);
+  const auto place = static_cast<int>(found - program.thresholds.begin());
+  if (place == kMaxThresholds) return kNone;
+  if (found == program.thresholds.end()) program.thresholds.push_back(threshold);
+  return place;
+}
+
+// What a touch or a grip measures, as it names its entities and the other way round.
+std::optional<std::array<Threshold::Value, 2>> MeasuredBy(Op op) {
+  using enum Threshold::Value;
+  switch (op) {
+    case Op::kSensorSets:
+      return {{kSensorSets, kSensorSets}};
+    case Op::kForceBetween:
+      return {{kForce, kForce}};
+    case Op::kTouchSpeed:
+      return {{kVerticalSpeed, kVerticalSpeed}};
+    case Op::kUp:
+      return {{kUpOnFirst, kUpOnSecond}};
+    case Op::kTrigger:
+      return {{kTrigger, kTrigger}};
+    default:
+      return std::nullopt;
+  }
+}
+
+// Nothing is larger than what is endless, nor at least what is no number.
+double NextLarger(double number) {
+  using Limits = std::numeric_limits<double>;
+  return number < Limits::infinity() ? std::nextafter(number, Limits::infinity())
+                                     : Limits::quiet_NaN();
+}
+
+// `value >= number`, or another order or the other way round, is answered when the value is
+// measured.
+void FindThreshold(Program& program, Node& node) {
+  if (node.op < Op::kLess || node.op > Op::kGreaterEqual) return;
+  const bool mirrored = program.nodes[node.args[0]].op == Op::kNumber;
+  const Op op = mirrored ? Mirrored(node.op) : node.op;
+  const int value = node.args[mirrored ? 1 : 0];
+  const Node& number = program.nodes[node.args[mirrored ? 0 : 1]];
+  const auto measured = MeasuredBy(program.nodes[value].op);
+  if (number.op != Op::kNumber || !measured) return;
+  const bool strict = op == Op::kGreater || op == Op::kLessEqual;
+  const bool beyond = op == Op::kGreater || op == Op::kGreaterEqual;
+  const double at_least = strict ? NextLarger(number.number) : number.number;
+  const int as_named = Enter(program, {(*measured)[0], at_least});
+  const int swapped = Enter(program, {(*measured)[1], at_least});
+  if (as_named != kNone && swapped != kNone)
+    node.by_threshold = {value, {as_named, swapped}, beyond};
+}
+
+// Only these thresholds matter of what is measured.
+void WatchThresholds(const Program& program, Rule& rule, const ByThreshold& by) {
+  const ThresholdSet both = ThresholdSet{1} << by.thresholds[0] | ThresholdSet{1}
+                                                                      << by.thresholds[1];
+  const Node& value = program.nodes[by.value];
+  if (value.op == Op::kTrigger) rule.watches_grip[value.roles[0]] = true;
+  (value.op == Op::kTrigger ? rule.watches_grips : rule.watches_press) |= both;
+}
+
+// Adds a comparison to what must be measured, if it is of the same touch or hand as the others.
+bool AddMeasured(const Program& program, MeasuredPart& part, const ByThreshold& by) {
+  const Node& value = program.nodes[by.value];
+  const auto add = [&](Limits& limits, int threshold) {
+    (by.beyond ? limits.beyond : limits.short_of) |= ThresholdSet{1} << threshold;
+  };
+  if (value.op == Op::kTrigger) {
+    if (part.hand != kNone && part.hand != value.roles[0]) return false;
+    part.hand = value.roles[0];
+    add(part.grip, by.thresholds[0]);
+    return true;
+  }
+  if (part.touch != kNone && part.touch != value.slot) return false;
+  part.touch = value.slot;
+  if (part.first == kNone) part.first = value.roles[0];
+  const std::size_t swapped = part.first == value.roles[0] ? 0 : 1;
+  add(part.press[swapped], by.thresholds[0]);
+  add(part.press[1 - swapped], by.thresholds[1]);
+  return true;
+}
+
+void FindMeasured(const Program& program, const Rule& rule, MeasuredPart& part, int index) {
+  const Node& node = program.nodes[index];
+  const bool touching = node.op == Op::kHolds && rule.references[node.slot].rule == kTouchingRule;
+  if (node.op == Op::kAnd) {
+    FindMeasured(program, rule, part, node.args[0]);
+    FindMeasured(program, rule, part, node.args[1]);
+  } else if (node.by_threshold.value != kNone) {
+    part.whole = AddMeasured(program, part, node.by_threshold) && part.whole;
+  } else if (touching && (part.touch == kNone || part.touch == node.slot)) {
+    part.touch = node.slot;
+    part.must_touch = true;
+  } else {
+    part.whole = false;
+  }
+}
+
+// All that it asks is measured: each frame is decided when it is there, and none is looked at
+// later.
+bool IsKnownAtOnce(const Rule& rule) {
+  return rule.measured.whole && !rule.measured.is_empty() && rule.requirement == kNone &&
+         rule.confirmed_by == kNone && rule.attributes.empty() && rule.anchors.empty();
+}
+
+// And nothing else has a say in when its intervals begin and end, and whether they are any.
+bool IsInstant(const Rule& rule) {
+  return IsKnownAtOnce(rule) && rule.measured.touch != kNone && rule.bridging_s == 0 &&
+         (rule.lasting_s == 0 || !rule.referenced);
+}
+
+// A value where the interval begins or ends is not asked for at every frame.
+void WatchEntities(const Program& program, Rule& rule, int index) {
+  if (index == kNone) return;
+  const Node& node = program.nodes[index];
+  if (node.by_threshold.value != kNone) return WatchThresholds(program, rule, node.by_threshold);
+  switch (node.op) {
+    case Op::kHolds:
+    case Op::kPartOf:
+    case Op::kIsA:
+    case Op::kWeight:
+    case Op::kStrength:
+    case Op::kAtBegin:
+    case Op::kAtEnd:
+      return;
+    case Op::kSensorSets:
+    case Op::kUp:
+    case Op::kForceBetween:
+    case Op::kTouchSpeed:
+    case Op::kSensorSet:
+      rule.watches_press |= kAnyChange;
+      return;
+    case Op::kTrigger:
+      rule.watches_grips |= kAnyChange;
+      break;
+    default:
+      break;
+  }
+  for (const int role : node.roles) {
+    if (role != kNone)
+      (node.op == Op::kTrigger ? rule.watches_grip : rule.watches_pose)[role] = true;
+  }
+  for (const int arg : node.args) WatchEntities(program, rule, arg);
+}
+
+// A composition is told of finished intervals; every other rule asks for the truth at a frame.
+void MarkReferenced(Program& program, int index) {
+  const Rule& rule = program.rules[index];
+  if (rule.form != Form::kCompose) {
+    for (const Reference& reference : rule.references)
+      program.rules[reference.rule].referenced = true;
+    return;
+  }
+  for (std::size_t part = 0; part < rule.composition.parts.size(); ++part) {
+    const int target = rule.references[rule.composition.parts[part]].rule;
+    program.rules[target].part_of.push_back({index, static_cast<int>(part)});
+  }
+}
+
+}  // namespace
+
+void ChooseGuards(Program& program) {
+  for (Node& node : program.nodes) FindThreshold(program, node);
+  for (std::size_t i = 0; i < program.rules.size(); ++i)
+    MarkReferenced(program, static_cast<int>(i));
+  for (Rule& rule : program.rules) {
+    rule.guard = ChooseGuard(program, rule);
+    rule.guarded_begin = GuardsBegin(program, rule);
+    // An `until` that others ask about must know at all times how far back a later one can reach.
+    const bool waits =
+        rule.form == Form::kFromTo || (rule.form == Form::kUntilSince && !rule.referenced);
+    if (waits) FindOpening(program, rule, rule.first);
+    rule.uses_looks = rule.style_role != kNone || rule.approach != kNone || !rule.anchors.empty() ||
+                      (rule.form != Form::kRestOf && UsesLooks(program, rule.first)) ||
+                      UsesLooks(program, rule.second) || UsesLooks(program, rule.during) ||
+                      UsesLooks(program, rule.requirement) || !rule.attributes.empty();
+    if (rule.form != Form::kRestOf) WatchEntities(program, rule, rule.first);
+    // The approach to an end is looked at when the end is there, unless others must know at all
+    // times.
+    if (rule.form != Form::kUntilSince || rule.referenced)
+      WatchEntities(program, rule, rule.second);
+    WatchEntities(program, rule, rule.during);
+    if (rule.form == Form::kWhile || rule.form == Form::kFromTo) {
+      FindMeasured(program, rule, rule.measured, rule.first);
+      rule.measured.whole =
+          rule.measured.whole && rule.form == Form::kWhile && rule.second == kNone;
+      rule.measured.instant = IsInstant(rule);
+    }
+    std::vector<int> nodes = rule.anchors;
+    for (const RuleAttribute& attribute : rule.attributes) nodes.push_back(attribute.node);
+    nodes.insert(nodes.end(),
+                 {rule.second, rule.during, rule.approach, rule.motion, rule.requirement});
+    if (rule.form != Form::kRestOf) nodes.push_back(rule.first);
+    for (const int node : nodes) {
+      rule.looks_around_s = std::max(rule.looks_around_s, LooksAround(program, node));
+      program.asks_touches = program.asks_touches || AsksTouches(program, node);
+      program.recalls_touches =
+          program.recalls_touches || (!IsKnownAtOnce(rule) && ComparesTouches(program, node));
+    }
+  }
+}
+
+}  // namespace prehend::grammar

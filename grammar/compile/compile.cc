@@ -1,0 +1,499 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grammar files -> Program: reads includes, collects parameters and heads, lowers every definition,
+// orders the rules so that each follows those it refers to, and picks each rule's guard. Tested by
+// tests/grammar/compile/compile_test.cc
+#include "grammar/compile/compile.h"
+
+#include <algorithm>
+#include <deque>
+#include <set>
+
+#include "grammar/compile/analyze_dependencies.h"
+#include "grammar/compile/lower.h"
+#include "grammar/compile/lower_definition.h"
+#include "grammar/compile/lower_law.h"
+#include "grammar/language/parser.h"
+
+namespace prehend::grammar {
+namespace {
+
+using ast::Definition;
+
+constexpr std::size_t kMaxFiles = 64;
+constexpr std::size_t kMaxRules = 1000;
+
+struct Source {
+  GrammarText text;
+  ast::File file;
+};
+
+class Compiler {
+ public:
+  Compiler(const GrammarText& grammar, const Includer& includer, const Overrides& overrides,
+           const std::vector<std::string>& known)
+      : includer_(includer), overrides_(overrides), known_(known) {
+    Read(grammar);
+  }
+
+  CompileResult Run() {
+    CollectParams();
+    ApplyOverrides();
+    CollectHeads();
+    CollectDefines();
+    CheckLawHeads();
+    if (diagnostics_.empty()) CheckDefines();
+    if (diagnostics_.empty()) LowerAll();
+    if (diagnostics_.empty()) Order();
+    if (!diagnostics_.empty())
+      return {.program = nullptr, .diagnostics = std::move(diagnostics_), .warnings = {}};
+    ChooseGuards(program_);
+    warnings_ = std::move(symbols_.warnings);
+    WarnOfUnused();
+    program_.warnings = warnings_;
+    return {.program = std::make_shared<const Program>(std::move(program_)),
+            .diagnostics = {},
+            .warnings = std::move(warnings_)};
+  }
+
+ private:
+  void Complain(const Source& source, Place place, std::string message, std::string hint = {}) {
+    diagnostics_.push_back(DiagnosticAt(source.text.file, source.text.text, place,
+                                        std::move(message), std::move(hint)));
+  }
+
+  // The grammar and everything it uses, each once, what is used first.
+  void Read(const GrammarText& grammar) {
+    std::set<std::string, std::less<>> seen;
+    ReadFile(grammar, seen);
+    if (!sources_.empty()) program_.name = sources_.back().file.name;
+  }
+
+  void ReadFile(const GrammarText& grammar, std::set<std::string, std::less<>>& seen) {
+    Source source{grammar, Parse(grammar, diagnostics_)};
+    seen.insert({source.file.name, grammar.file});
+    for (const ast::Use& use : source.file.uses) {
+      if (use.is_path && !CheckPath(source, use)) continue;
+      const std::string name = use.is_path ? Beside(grammar.file, use.name) : use.name;
+      if (!seen.insert(name).second) continue;
+      if (seen.size() > kMaxFiles) {
+        Complain(source, use.place,
+                 "more than " + std::to_string(kMaxFiles) + " grammars are used together");
+        break;
+      }
+      const std::optional<GrammarText> used = includer_ ? includer_(name) : std::nullopt;
+      if (!used) {
+        Complain(source, use.place, "there is no grammar '" + use.name + "' to use",
+                 use.is_path ? "looked for " + name : Suggest(use.name, known_));
+      } else {
+        ReadFile(*used, seen);
+      }
+    }
+    sources_.push_back(std::move(source));
+  }
+
+  // A path is seen from the file that names it, and leads to a file of the same folder or below.
+  bool CheckPath(const Source& source, const ast::Use& use) {
+    const bool climbs =
+        use.name.starts_with("/") || ("/" + use.name + "/").find("/../") != std::string::npos;
+    if (!climbs && use.name.ends_with(".grammar")) return true;
+    Complain(source, use.place, "\"" + use.name + "\" is not a file beside this one",
+             "a relative path that ends with .grammar and does not climb: use "
+             "\"shared/pouring.grammar\"");
+    return false;
+  }
+
+  static std::string Beside(const std::string& file, const std::string& path) {
+    const std::size_t slash = file.rfind('/');
+    return file.substr(0, slash == std::string::npos ? 0 : slash + 1) +
+           path.substr(path.starts_with("./") ? 2 : 0);
+  }
+
+  void CollectParams() {
+    for (const Source& source : sources_) {
+      symbols_.files.try_emplace(source.text.file, static_cast<int>(symbols_.files.size()));
+      for (const ast::Param& param : source.file.params) {
+        const auto [entry, is_new] =
+            symbols_.params.try_emplace(param.name, static_cast<int>(program_.params.size()));
+        if (!is_new) {
+          const ProgramParam& first = program_.params[entry->second];
+          Complain(source, param.place, "the parameter '" + param.name + "' is defined twice",
+                   FirstAt(first.file, first.place));
+          continue;
+        }
+        program_.params.push_back({.name = param.name,
+                                   .value = param.value,
+                                   .file = source.text.file,
+                                   .place = param.place});
+      }
+    }
+  }
+
+  static std::string FirstAt(const std::string& file, Place place) {
+    return "the first one is at " + file + ":" + std::to_string(place.line) + ":" +
+           std::to_string(place.column);
+  }
+
+  void ApplyOverrides() {
+    for (const auto& [name, value] : overrides_) {
+      const GrammarText text{"parameter " + name, value};
+      const auto complain = [&](std::string message, std::string hint) {
+        diagnostics_.push_back(
+            DiagnosticAt(text.file, text.text, {1, 1}, std::move(message), std::move(hint)));
+      };
+      const auto found = symbols_.params.find(name);
+      if (found == symbols_.params.end()) {
+        std::vector<std::string> names;
+        for (const auto& [known, index] : symbols_.params) names.push_back(known);
+        const std::string near = NearestName(name, names);
+        complain("the grammar has no parameter '" + name + "'",
+                 near.empty() ? "" : "did you mean '" + near + "'?");
+        continue;
+      }
+      const std::optional<Quantity> quantity = ParseQuantity(text, diagnostics_);
+      if (!quantity) continue;
+      ProgramParam& param = program_.params[found->second];
+      if (!(quantity->dimension == param.value.dimension)) {
+        complain("'" + name + "' is in " + DimensionText(param.value.dimension) + ", this is " +
+                     DimensionText(quantity->dimension),
+                 "its value in the grammar is " + QuantityText(param.value));
+        continue;
+      }
+      param.value = *quantity;
+      param.overridden = true;
+    }
+  }
+
+  void CollectHeads() {
+    program_.rules.push_back({.name = "touching",
+                              .roles = {{"a", "Entity"}, {"b", "Entity"}},
+                              .form = Form::kTouching,
+                              .symmetric = true});
+    for (const Source& source : sources_) {
+      for (const Definition& definition : source.file.definitions) CollectHead(source, definition);
+    }
+    if (program_.rules.size() == 1 && diagnostics_.empty()) {
+      Complain(sources_.back(), {1, 1}, "the grammar defines no event",
+               "for example: event held(hand: Hand, "
+               "object: Thing) while sensor_sets(hand, object) >= 2");
+    }
+  }
+
+  void CollectHead(const Source& source, const Definition& definition) {
+    const int index = static_cast<int>(program_.rules.size());
+    if (program_.rules.size() > kMaxRules) {
+      if (program_.rules.size() == kMaxRules + 1)
+        Complain(source, definition.place, "the grammar has more than 1000 rules");
+      return;
+    }
+    if (IsBuiltin(definition.name)) {
+      return Complain(source, definition.place, "'" + definition.name + "' is a built-in signal",
+                      "choose another name");
+    }
+    const auto [entry, is_new] = symbols_.rules.try_emplace(definition.name, index);
+    if (!is_new) {
+      const Rule& first = program_.rules[entry->second];
+      return Complain(source, definition.place, "'" + definition.name + "' is defined twice",
+                      FirstAt(first.file, first.place));
+    }
+    Rule rule{.name = definition.name, .file = source.text.file, .place = definition.place};
+    rule.printed = definition.is_event;
+    rule.symmetric = definition.symmetric;
+    rule.form = FormOf(definition.form);  // others must know before it is lowered
+    CheckRoles(source, definition.roles);
+    CheckSymmetry(source, definition);
+    for (const ast::Role& role : definition.roles)
+      rule.roles.push_back({role.name, role.class_name});
+    program_.rules.push_back(std::move(rule));
+    definitions_.push_back({&source, &definition});
+  }
+
+  static Form FormOf(Definition::Form form) {
+    switch (form) {
+      case Definition::Form::kWhile:
+        return Form::kWhile;
+      case Definition::Form::kFromTo:
+        return Form::kFromTo;
+      case Definition::Form::kUntilSince:
+        return Form::kUntilSince;
+      case Definition::Form::kRestOf:
+        return Form::kRestOf;
+      case Definition::Form::kCompose:
+        break;
+    }
+    return Form::kCompose;
+  }
+
+  static bool IsBuiltin(std::string_view name) {
+    return FindBuiltin(name) != nullptr || name == "is" || IsOverInterval(name);
+  }
+
+  void CollectDefines() {
+    for (const Source& source : sources_) {
+      for (const ast::Define& define : source.file.defines) {
+        const auto rule = symbols_.rules.find(define.name);
+        if (rule != symbols_.rules.end() &&
+            IsLater(program_.rules[rule->second].file, source.text.file)) {
+          const Located& located = definitions_[rule->second - 1];
+          Complain(*located.source, located.definition->place,
+                   "'" + define.name + "' is defined twice",
+                   FirstAt(source.text.file, define.place));
+        } else if (IsBuiltin(define.name) || rule != symbols_.rules.end() ||
+                   symbols_.IsParamIn(source.text.file, define.name) ||
+                   !symbols_.defines.try_emplace(define.name, DefineSource{&source.text, &define})
+                        .second) {
+          Complain(source, define.place, "'" + define.name + "' means something already",
+                   "choose another name");
+        }
+        CheckParameters(source, define);
+      }
+    }
+    CheckParamsAgainstDefines();
+  }
+
+  // Of two that are called the same, whoever comes later is told.
+  void CheckParamsAgainstDefines() {
+    for (const Source& source : sources_) {
+      for (const ast::Param& param : source.file.params) {
+        const auto define = symbols_.defines.find(param.name);
+        if (define == symbols_.defines.end() ||
+            !IsLater(source.text.file, define->second.text->file))
+          continue;
+        Complain(source, param.place, "'" + param.name + "' is defined twice",
+                 FirstAt(define->second.text->file, define->second.define->place));
+      }
+    }
+  }
+
+  // Nothing refers to a law, so only another law's name is in its way.
+  void CheckLawHeads() {
+    std::map<std::string, std::string, std::less<>> laws;  // name -> where the first one is
+    for (const Source& source : sources_) {
+      for (const ast::Law& law : source.file.laws) {
+        const auto [first, is_new] =
+            laws.try_emplace(law.name, FirstAt(source.text.file, law.place));
+        if (!is_new)
+          Complain(source, law.place, "the law '" + law.name + "' is defined twice", first->second);
+        CheckRoles(source, law.roles);
+      }
+    }
+  }
+
+  bool IsLater(const std::string& file, const std::string& other) const {
+    return symbols_.files.find(file)->second > symbols_.files.find(other)->second;
+  }
+
+  void CheckParameters(const Source& source, const ast::Define& define) {
+    std::set<std::string> names;
+    for (const ast::Role& parameter : define.parameters) {
+      if (!names.insert(parameter.name).second) {
+        Complain(source, parameter.place, "the parameter '" + parameter.name + "' is named twice");
+      }
+      if (symbols_.IsParamIn(source.text.file, parameter.name)) {
+        Complain(source, parameter.place,
+                 "'" + parameter.name + "' is a parameter of the grammar already");
+      }
+      if (parameter.class_name == "number" || parameter.class_name == "position") continue;
+      std::vector<std::string> others = UnitNames();
+      others.insert(others.end(), {"number", "position"});
+      CheckClassName(source, parameter, others);
+    }
+  }
+
+  // Each body for itself, on a copy of the heads, with the widest entities that it allows.
+  void CheckDefines() {
+    Program scratch = program_;
+    for (const auto& [name, source] : symbols_.defines) {
+      Symbols symbols{
+          scratch, symbols_.rules, symbols_.params, symbols_.files, symbols_.defines, {}, {}, {},
+          {}};
+      scratch.rules.resize(program_.rules.size());
+      scratch.nodes.clear();
+      Rule& rule = scratch.rules.emplace_back();
+      rule.place = source.define->place;
+      for (const ast::Role& parameter : source.define->parameters) {
+        if (parameter.class_name != "number" && parameter.class_name != "position") {
+          rule.roles.push_back({parameter.name, parameter.class_name});
+        }
+      }
+      Lowering(symbols, static_cast<int>(scratch.rules.size()) - 1, *source.text, diagnostics_)
+          .Check(source);
+      symbols_.used_params.merge(symbols.used_params);
+      if (!diagnostics_.empty()) return;
+    }
+  }
+
+  void CheckRoles(const Source& source, const std::vector<ast::Role>& roles) {
+    if (roles.size() > kMaxRoles) {
+      Complain(source, roles[kMaxRoles].place, "more than " + std::to_string(kMaxRoles) + " roles");
+    }
+    std::set<std::string> names;
+    for (const ast::Role& role : roles) {
+      if (!names.insert(role.name).second)
+        Complain(source, role.place, "the role '" + role.name + "' is named twice");
+      if (symbols_.IsParamIn(source.text.file, role.name)) {
+        Complain(source, role.place, "'" + role.name + "' is a parameter and cannot be a role too",
+                 "call one of them otherwise");
+      }
+      CheckClassName(source, role);
+    }
+  }
+
+  void CheckSymmetry(const Source& source, const Definition& definition) {
+    if (!definition.symmetric) return;
+    if (definition.roles.size() < 2 ||
+        definition.roles[0].class_name != definition.roles[1].class_name) {
+      Complain(source, definition.place,
+               "the first two roles of a symmetric event are of the same class");
+    }
+  }
+
+  // `hand: hand` is meant to be `hand: Hand`; other unknown names may be classes of a scenario.
+  void CheckClassName(const Source& source, const ast::Role& role,
+                      std::vector<std::string> known = {}) {
+    if (StartsWithCapital(role.class_name)) {
+      NoteClass(program_, role.class_name, source.text.file, role.place);
+    } else {
+      known.insert(known.end(), BuiltinClasses().begin(), BuiltinClasses().end());
+      const std::string near = NearestName(role.class_name, known);
+      Complain(source, role.place,
+               "'" + role.class_name + "' is not a class; classes start with a capital letter",
+               near.empty() ? "" : "did you mean '" + near + "'?");
+    }
+  }
+
+  void LowerAll() {
+    for (std::size_t i = 0; i < definitions_.size(); ++i) {
+      LowerDefinition(*definitions_[i].source, *definitions_[i].definition,
+                      static_cast<int>(i) + 1);
+    }
+    for (const Source& source : sources_) {
+      for (const ast::Law& written : source.file.laws) {
+        std::optional<Law> law = LowerLaw(symbols_, source.text, written, diagnostics_);
+        if (law) program_.laws.push_back(std::move(*law));
+      }
+    }
+  }
+
+  void LowerDefinition(const Source& source, const Definition& definition, int index) {
+    Lowering lowering(symbols_, index, source.text, diagnostics_);
+    const std::size_t before = diagnostics_.size();
+    LowerDefinitionInto(program_, index, definition, lowering);
+    if (diagnostics_.size() != before) return;
+    for (std::size_t i = 0; i < definition.roles.size(); ++i) {
+      if (!lowering.RoleUsed(i)) {
+        Complain(source, definition.roles[i].place,
+                 "the role '" + definition.roles[i].name + "' is not used",
+                 "an event says something about each of its roles; leave this one out or use it");
+      }
+    }
+  }
+
+  // Depth first; a rule that is met again while its own references are followed refers to itself.
+  void Order() {
+    enum class Mark { kNew, kOpen, kDone };
+    std::vector<Mark> marks(program_.rules.size(), Mark::kNew);
+    struct Step {
+      int rule;
+      std::size_t next = 0;
+    };
+    for (std::size_t root = 0; root < program_.rules.size(); ++root) {
+      std::vector<Step> path;
+      if (marks[root] == Mark::kNew) path.push_back({static_cast<int>(root)});
+      while (!path.empty()) {
+        Step& step = path.back();
+        const Rule& rule = program_.rules[step.rule];
+        marks[step.rule] = Mark::kOpen;
+        if (step.next == rule.references.size()) {
+          marks[step.rule] = Mark::kDone;
+          program_.schedule.push_back(step.rule);
+          path.pop_back();
+          continue;
+        }
+        const int target = rule.references[step.next++].rule;
+        if (marks[target] == Mark::kOpen) {
+          std::vector<int> circle;
+          for (auto link = path.rbegin(); circle.empty() || circle.back() != target; ++link)
+            circle.push_back(link->rule);
+          return ComplainCycle({circle.rbegin(), circle.rend()});
+        }
+        if (marks[target] == Mark::kNew) path.push_back({target});
+      }
+    }
+  }
+
+  // Rules that each use the next one, and the last one the first; those made for an `any` are not
+  // told.
+  void ComplainCycle(std::vector<int> circle) {
+    std::erase_if(circle, [&](int rule) { return program_.rules[rule].hidden; });
+    const Rule& first = program_.rules[circle.front()];
+    std::string hint;
+    for (std::size_t i = 0; circle.size() > 1 && i < circle.size(); ++i) {
+      hint += (i == 0 ? "" : ", ") + program_.rules[circle[i]].name + " uses " +
+              program_.rules[circle[(i + 1) % circle.size()]].name;
+    }
+    Complain(*definitions_[circle.front() - 1].source, first.place,
+             "'" + first.name + "' refers to itself",
+             hint.empty() ? "a rule may only use rules that do not use it" : hint);
+  }
+
+  // In the grammar itself; a library may offer more than one uses.
+  void WarnOfUnused() {
+    const Source& own = sources_.back();
+    const auto warn = [&](Place place, std::string message, std::string hint) {
+      Diagnostic warning =
+          DiagnosticAt(own.text.file, own.text.text, place, std::move(message), std::move(hint));
+      warning.is_warning = true;
+      warnings_.push_back(std::move(warning));
+    };
+    for (const ast::Param& param : own.file.params) {
+      if (symbols_.used_params.contains(symbols_.params.find(param.name)->second)) continue;
+      warn(param.place, "the parameter '" + param.name + "' is not used",
+           "use it, or leave it out");
+    }
+    for (const ast::Define& define : own.file.defines) {
+      if (symbols_.used_defines.contains(define.name)) continue;
+      warn(define.place, "the definition '" + define.name + "' is not used",
+           "use it, or leave it out");
+    }
+    std::vector<bool> reached(program_.rules.size());
+    for (auto rule = program_.schedule.rbegin(); rule != program_.schedule.rend(); ++rule) {
+      if (!reached[*rule] && !program_.rules[*rule].printed) continue;
+      reached[*rule] = true;
+      for (const Reference& reference : program_.rules[*rule].references)
+        reached[reference.rule] = true;
+    }
+    for (const Definition& definition : own.file.definitions) {
+      if (reached[symbols_.rules.find(definition.name)->second]) continue;
+      warn(definition.place, "no event uses the condition '" + definition.name + "'",
+           "make it an event, use it, or leave it out");
+    }
+  }
+
+  const Includer& includer_;
+  const Overrides& overrides_;
+  const std::vector<std::string>& known_;
+  Diagnostics diagnostics_;
+  Diagnostics warnings_;
+  std::deque<Source> sources_;
+  struct Located {
+    const Source* source;
+    const Definition* definition;
+  };
+  std::vector<Located> definitions_;  // definition i is rule i + 1
+  Program program_;
+  Symbols symbols_{program_, {}, {}, {}, {}, {}, {}, {}, {}};
+};
+
+}  // namespace
+
+CompileResult Compile(const GrammarText& grammar, const Includer& includer,
+                      const Overrides& overrides) {
+  return Compile(grammar, includer, overrides, {});
+}
+
+CompileResult Compile(const GrammarText& grammar, const Includer& includer,
+                      const Overrides& overrides, const std::vector<std::string>& known) {
+  return Compiler(grammar, includer, overrides, known).Run();
+}
+
+}  // namespace prehend::grammar

@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls in expressions: of events and conditions, of definitions, of built-in signals and tests.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "grammar/compile/lower.h"
+#include "grammar/compile/value_ranges.h"
+
+namespace prehend::grammar {
+namespace {
+
+using ast::Expr;
+
+constexpr int kMaxDefineDepth = 16;
+
+std::string_view ClassOf(Argument argument) {
+  switch (argument) {
+    case Argument::kHand:
+      return "Hand";
+    case Argument::kThing:
+      return "Thing";
+    case Argument::kMovable:
+      return "Movable";
+    case Argument::kJointed:
+      return "Jointed";
+    default:
+      return "Entity";
+  }
+}
+
+}  // namespace
+
+std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wanted_class,
+                                          std::string_view callee) {
+  const int role = expr.kind == Expr::Kind::kName ? FindRole(expr.text) : kNone;
+  if (role == kNone) {
+    std::vector<std::string> names;
+    for (const RuleRole& known : rule().roles) names.push_back(known.name);
+    if (expr.text == "any") {
+      Complain(expr.place, "'any' stands only for a role of an event or condition",
+               "for example: contact(object, any), with `use contact`");
+      return std::nullopt;
+    }
+    Complain(
+        expr.place,
+        Quoted(callee) + " takes a role here" +
+            (expr.kind == Expr::Kind::kName ? ", and there is no role " + Quoted(expr.text) : ""),
+        expr.kind == Expr::Kind::kName ? Suggest(expr.text, names) : "");
+    return std::nullopt;
+  }
+  role_used_[role] = true;
+  const std::string& class_name = rule().roles[role].class_name;
+  if (!ClassesMeet(class_name, wanted_class)) {
+    Complain(expr.place,
+             Quoted(callee) + " takes a " + std::string(wanted_class) + " here, but " +
+                 Quoted(expr.text) + " is a " + class_name,
+             wanted_class == "Jointed"
+                 ? "what hangs on a slider or a hinge is Jointed: " + expr.text + ": Jointed"
+                 : "");
+    return std::nullopt;
+  }
+  return role;
+}
+
+Lowering::Typed Lowering::LowerCall(const Expr& expr) {
+  if (IsOverInterval(expr.text)) return LowerOverInterval(expr);
+  if (expr.text == "is") return LowerIs(expr);
+  if (const auto found = symbols_.rules.find(expr.text); found != symbols_.rules.end()) {
+    return LowerRuleCall(found->second, expr);
+  }
+  if (const auto found = symbols_.defines.find(expr.text); found != symbols_.defines.end()) {
+    return LowerDefine(found->second, expr);
+  }
+  if (const Builtin* builtin = FindBuiltin(expr.text)) return LowerBuiltin(*builtin, expr);
+  return Bad(expr.place, "unknown event, condition or signal " + Quoted(expr.text),
+             Suggest(expr.text, KnownNames(true)));
+}
+
+Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
+  const std::vector<RuleRole> wanted = symbols_.program.rules[rule].roles;
+  if (wanted.size() != expr.args.size()) {
+    return Bad(expr.place, Quoted(expr.text) + " takes " + std::to_string(wanted.size()) +
+                               " roles, found " + std::to_string(expr.args.size()));
+  }
+  Reference reference{.rule = rule};
+  std::vector<int> kept;
+  std::vector<std::string> classes;
+  bool narrowed = false;
+  int count = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    classes.push_back(wanted[i].class_name);
+    if (expr.args[i].kind == Expr::Kind::kName && expr.args[i].text == "any") {
+      if (expr.args[i].args.empty()) continue;
+      narrowed = true;
+      classes[i] = expr.args[i].args[0].text;
+      if (!StartsWithCapital(classes[i])) {
+        return Bad(expr.args[i].args[0].place,
+                   Quoted(classes[i]) + " is not a class; classes start with a capital letter");
+      }
+      NoteClass(symbols_.program, classes[i], source_->file, expr.args[i].args[0].place);
+      if (ClassesMeet(classes[i], wanted[i].class_name)) continue;
+      return Bad(expr.args[i].args[0].place, Quoted(expr.text) + " takes a " +
+                                                 wanted[i].class_name + " here, and no " +
+                                                 classes[i] + " is one");
+    }
+    const std::optional<int> role = RoleArgument(expr.args[i], wanted[i].class_name, expr.text);
+    if (!role) return {.bad = true};
+    if (std::find(reference.roles.begin(), reference.roles.end(), *role) != reference.roles.end()) {
+      return Bad(expr.args[i].place,
+                 "this is never true: " + Quoted(expr.args[i].text) + " cannot play two roles of " +
+                     Quoted(expr.text),
+                 "name another role, or 'any'");
+    }
+    kept.push_back(static_cast<int>(i));
+    reference.roles[count++] = *role;
+  }
+  if (kept.empty()) return Bad(expr.place, "at least one role must be named; all are 'any'");
+  // It may begin long before it is complete, so nobody can be told in time where it holds.
+  const bool composed = symbols_.program.rules[rule].form == Form::kCompose;
+  if (composed && (!part_ || narrowed || kept.size() < wanted.size())) {
+    return Bad(
+        expr.place,
+        Quoted(expr.text) +
+            " is a composition; only another composition can use it, with all its roles named",
+        "use its parts instead");
+  }
+  if (narrowed) reference.rule = NarrowedRule(rule, classes);
+  if (kept.size() < wanted.size()) reference.rule = AnyRule(reference.rule, kept);
+  return {.node = Add({.op = Op::kHolds, .slot = AddReference(reference)}), .type = Type::kTruth};
+}
+
+// The hidden rule "`rule`, but only for these classes".
+int Lowering::NarrowedRule(int rule, const std::vector<std::string>& classes) {
+  const int next = static_cast<int>(symbols_.program.rules.size());
+  const auto [entry, is_new] = symbols_.narrowed_rules.try_emplace({rule, classes}, next);
+  if (!is_new) return entry->second;
+  const Rule& source = symbols_.program.rules[rule];
+  Rule narrowed{.name = source.name,
+                .file = source.file,
+                .place = source.place,
+                .roles = source.roles,
+                .hidden = true};
+  Reference whole{.rule = rule};
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    narrowed.roles[i].class_name = classes[i];
+    whole.roles[i] = static_cast<int>(i);
+  }
+  narrowed.references = {whole};
+  narrowed.first = Add({.op = Op::kHolds, .slot = 0});
+  symbols_.program.rules.push_back(std::move(narrowed));
+  return next;
+}
+
+// The hidden rule "some binding of `rule` with these roles holds".
+int Lowering::AnyRule(int rule, const std::vector<int>& kept) {
+  const auto [entry, is_new] =
+      symbols_.any_rules.try_emplace({rule, kept}, static_cast<int>(symbols_.program.rules.size()));
+  if (is_new) {
+    const Rule& source = symbols_.program.rules[rule];
+    Rule any{.name = source.name,
+             .file = source.file,
+             .place = source.place,
+             .form = Form::kAny,
+             .hidden = true};
+    Reference guard{.rule = rule};
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      any.roles.push_back(source.roles[kept[i]]);
+      guard.roles[kept[i]] = static_cast<int>(i);
+    }
+    any.references = {guard};
+    any.guard = 0;
+    symbols_.program.rules.push_back(std::move(any));
+  }
+  return entry->second;
+}
+
+// The place of a parameter in a definition tells what it must be.
+bool Lowering::BindParameter(const DefineSource& source, std::size_t index, const Expr& arg,
+                             Scope& scope) {
+  const ast::Role& parameter = source.define->parameters[index];
+  const bool is_position = parameter.class_name == "position";
+  if (!is_position && parameter.class_name != "number") {
+    const std::optional<int> role = RoleArgument(arg, parameter.class_name, source.define->name);
+    if (role) scope.roles[parameter.name] = *role;
+    return role.has_value();
+  }
+  const Typed value = is_position ? Position(arg) : Number(arg);
+  if (value.bad) return false;
+  const Dimension& wanted = source.define->dimensions[index];
+  if (!is_position && !(value.dimension == wanted)) {
+    Complain(arg.place, Quoted(source.define->name) + " takes " + DimensionText(wanted) + " for " +
+                            Quoted(parameter.name) + ", this is " + DimensionText(value.dimension));
+    return false;
+  }
+  scope.values[parameter.name] = {.expr = &arg, .source = source_, .scope = scope_};
+  return true;
+}
+
+Lowering::Typed Lowering::LowerDefine(const DefineSource& source, const Expr& expr) {
+  const ast::Define& define = *source.define;
+  symbols_.used_defines.insert(define.name);
+  if (define.parameters.size() != expr.args.size()) {
+    return Bad(expr.place, Quoted(define.name) + " takes " +
+                               std::to_string(define.parameters.size()) + " arguments, found " +
+                               std::to_string(expr.args.size()));
+  }
+  Scope scope{
+      .define = define.name, .outer = scope_, .depth = scope_ == nullptr ? 1 : scope_->depth + 1};
+  for (const Scope* outer = scope_; outer != nullptr; outer = outer->outer) {
+    if (outer->define == define.name)
+      return Bad(expr.place, Quoted(define.name) + " refers to itself");
+  }
+  if (scope.depth > kMaxDefineDepth) {
+    return Bad(expr.place,
+               "definitions use each other more than " + std::to_string(kMaxDefineDepth) + " deep");
+  }
+  for (std::size_t i = 0; i < expr.args.size(); ++i) {
+    if (!BindParameter(source, i, expr.args[i], scope)) return {.bad = true};
+  }
+  return LowerBody(source, scope);
+}
+
+Lowering::Typed Lowering::LowerBody(const DefineSource& source, const Scope& scope) {
+  const GrammarText* const outer_source = std::exchange(source_, source.text);
+  const Scope* const outer_scope = std::exchange(scope_, &scope);
+  const Typed body = Lower(source.define->body);
+  source_ = outer_source;
+  scope_ = outer_scope;
+  return body;
+}
+
+// Where a body names a parameter, the argument is read again in the place that it comes from.
+Lowering::Typed Lowering::LowerValue(const Scope::Value& value) {
+  if (value.expr == nullptr) return value.stand_in;
+  const GrammarText* const inner_source = std::exchange(source_, value.source);
+  const Scope* const inner_scope = std::exchange(scope_, value.scope);
+  Typed typed = Lower(*value.expr);
+  if (!typed.bad && typed.type != Type::kNumber) typed = Position(*value.expr);
+  source_ = inner_source;
+  scope_ = inner_scope;
+  return typed;
+}
+
+void Lowering::Check(const DefineSource& source) {
+  checking_ = true;
+  anchors_ = {.begin = true, .end = true};
+  Scope scope{.define = source.define->name};
+  int role = 0;
+  for (std::size_t i = 0; i < source.define->parameters.size(); ++i) {
+    const ast::Role& parameter = source.define->parameters[i];
+    if (parameter.class_name == "number") {
+      const Typed stand_in = NumberNode(1, source.define->dimensions[i], parameter.place);
+      scope.values[parameter.name] = {.stand_in = stand_in};
+    } else if (parameter.class_name == "position") {
+      const int node = Add({.op = Op::kPosition, .roles = {0, kNone}});
+      scope.values[parameter.name] = {
+          .stand_in = {.node = node, .type = Type::kPosition, .dimension = kMetres}};
+    } else {
+      scope.roles[parameter.name] = role++;
+    }
+  }
+  LowerBody(source, scope);
+}
+
+// is(object, Cup): the class test.
+Lowering::Typed Lowering::LowerIs(const Expr& expr) {
+  if (expr.args.size() != 2 || expr.args[1].kind != Expr::Kind::kName) {
+    return Bad(expr.place, "'is' takes a role and the name of a class",
+               "for example: is(object, Cup)");
+  }
+  const std::optional<int> role = RoleArgument(expr.args[0], "Entity", "is");
+  if (!role) return {.bad = true};
+  // Within a definition, this depends on who calls it.
+  const std::string& class_name = rule().roles[*role].class_name;
+  const bool both_known = IsBuiltinClass(class_name) && IsBuiltinClass(expr.args[1].text);
+  if ((scope_ == nullptr || checking_) && both_known &&
+      !ClassesMeet(class_name, expr.args[1].text)) {
+    return Bad(expr.place, "this is never true: " + Quoted(expr.args[0].text) + " is a " +
+                               class_name + ", and no " + class_name + " is a " +
+                               expr.args[1].text);
+  }
+  NoteClass(symbols_.program, expr.args[1].text, source_->file, expr.args[1].place);
+  if (scope_ == nullptr && !checking_ && ClassImplies(class_name, expr.args[1].text)) {
+    Doubt(expr.place, "this is always true: " + Quoted(expr.args[0].text) + " is a " + class_name,
+          "leave it out", false);
+    return Decided(Verdict::kAlways, {static_cast<int>(doubts_.size()) - 1});
+  }
+  symbols_.program.class_names.push_back(expr.args[1].text);
+  const int slot = static_cast<int>(symbols_.program.class_names.size()) - 1;
+  return {.node = Add({.op = Op::kIsA, .roles = {*role, kNone}, .slot = slot}),
+          .type = Type::kTruth};
+}
+
+Lowering::Typed Lowering::TwiceTheSame(const Expr& role, std::string_view callee) {
+  return Bad(role.place, Quoted(callee) + " needs two different roles");
+}
+
+// A distance from itself is 0, and every region around itself has it inside.
+bool Lowering::LiesOnItself(const Node& node) {
+  const Program& program = symbols_.program;
+  const auto signature = [&](int arg) { return Signature(program, rule(), node.args[arg]); };
+  if (node.op == Op::kBoxInSphere) {
+    const Node& centre = program.nodes[node.args[0]];
+    return centre.op == Op::kPosition && centre.roles[0] == node.roles[0];
+  }
+  const bool compares =
+      node.op == Op::kDistance || node.op == Op::kInSphere || node.op == Op::kInCylinder;
+  return compares && signature(0) == signature(1);
+}
+
+// displacement, displacement_along, rise and drop compare this frame with the interval's begin.
+Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
+  if (!anchors_.begin) {
+    return Bad(expr.place, Quoted(expr.text) + " is measured over an interval; there is none here",
+               "it can be used after 'to', 'during' and 'requires'");
+  }
+  const bool is_along = expr.text == "displacement_along";
+  const bool is_displacement = is_along || expr.text == "displacement";
+  if (expr.args.size() < (is_along ? 2 : 1) || expr.args.size() > (is_displacement ? 2 : 1)) {
+    return Bad(expr.place, Quoted(expr.text) + (is_along          ? " takes two roles"
+                                                : is_displacement ? " takes one or two roles"
+                                                                  : " takes one role"));
+  }
+  Node now{.op = is_displacement ? (expr.args.size() == 2 ? Op::kPositionOn : Op::kPosition)
+                                 : Op::kHeight};
+  for (std::size_t i = 0; i < expr.args.size(); ++i) {
+    const std::optional<int> role = RoleArgument(expr.args[i], "Entity", expr.text);
+    if (!role) return {.bad = true};
+    if (i == 1 && now.roles[0] == *role) return TwiceTheSame(expr.args[i], expr.text);
+    now.roles[i] = *role;
+  }
+  if (!is_displacement) {
+    now.args[0] = Add({.op = Op::kPosition, .roles = {now.roles[0], kNone}});
+    now.roles[0] = kNone;
+  }
+  const int here = Add(now);
+  const int there = AnchorAtBegin(here);
+  const Op op = is_along ? Op::kDistanceAlong : is_displacement ? Op::kDistance : Op::kSubtract;
+  const bool falls = expr.text == "drop";
+  return {.node = Add({.op = op,
+                       .args = {falls ? there : here, falls ? here : there, kNone, kNone},
+                       .roles = {is_along ? now.roles[1] : kNone, kNone}}),
+          .type = Type::kNumber,
+          .dimension = kMetres};
+}
+
+Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr) {
+  const std::size_t most = builtin.arguments.size();
+  const std::size_t least = builtin.left_out_m > 0 ? most - 1 : most;
+  if (expr.args.size() < least || expr.args.size() > most) {
+    return Bad(expr.place,
+               Quoted(builtin.name) + " takes " +
+                   (least < most ? std::to_string(least) + " or " : std::string()) +
+                   std::to_string(most) + " arguments, found " + std::to_string(expr.args.size()),
+               std::string(builtin.name) + ": " + std::string(builtin.meaning));
+  }
+  Typed result{.type = builtin.type, .dimension = builtin.dimension};
+  Node node{.op = builtin.op};
+  int next_node = 0;
+  int next_role = 0;
+  const bool in_attribute = attribute_;
+  if (node.op == Op::kRate) attribute_ = false;  // the rate itself is what is taken at the begin
+  for (std::size_t i = 0; i < expr.args.size(); ++i) {
+    if (!LowerArgument(expr.args[i], builtin.arguments[i], builtin, node, next_node, next_role,
+                       result)) {
+      attribute_ = in_attribute;
+      return {.bad = true};
+    }
+  }
+  if (expr.args.size() < most)
+    node.args[next_node++] = NumberNode(builtin.left_out_m, kMetres, expr.place).node;
+  attribute_ = in_attribute;
+  if (node.op == Op::kRate) result.dimension = Quotient(result.dimension, kSeconds);
+  if (!checking_ && LiesOnItself(node)) {
+    return Bad(expr.args[1].place,
+               Quoted(builtin.name) + " needs two different positions, and both are the same",
+               "name another one");
+  }
+  const bool from_touch = node.op == Op::kHolds || node.op == Op::kSensorSets ||
+                          node.op == Op::kUp || node.op == Op::kForceBetween ||
+                          node.op == Op::kTouchSpeed || node.op == Op::kSensorSet;
+  if (from_touch) {
+    node.slot = AddReference(
+        {.rule = kTouchingRule, .roles = {node.roles[0], node.roles[1], kNone, kNone}});
+  }
+  result.node = AddSignal(node);
+  return result;
+}
+
+// sensor_set(hand, thumb, object), or the number of the set, from 1.
+bool Lowering::LowerSet(const Expr& arg, Node& node) {
+  constexpr int kMaxSets = 32;
+  const bool is_value = symbols_.IsParamIn(source_->file, arg.text) ||
+                        (scope_ != nullptr && scope_->values.contains(arg.text));
+  const bool is_name =
+      arg.kind == Expr::Kind::kText || (arg.kind == Expr::Kind::kName && !is_value);
+  if (is_name) {
+    node.name = NoteName(symbols_.program.sensor_sets, arg.text, source_->file, arg.place);
+    return true;
+  }
+  const std::optional<double> number = ConstantOf(arg, kPlain, "a sensor set");
+  if (!number) return false;
+  node.number = *number;
+  if (*number >= 1 && *number <= kMaxSets && *number == std::floor(*number)) {
+    NoteName(symbols_.program.numbered_sets, QuantityText({*number, kPlain}), source_->file,
+             arg.place);
+    return true;
+  }
+  Complain(arg.place, "a sensor set is a name, or a number from 1 to " + std::to_string(kMaxSets),
+           "for example: thumb");
+  return false;
+}
+
+bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Builtin& builtin, Node& node,
+                             int& next_node, int& next_role, Typed& result) {
+  switch (wanted) {
+    case Argument::kPosition: {
+      if (node.op == Op::kInSphere && next_node == 0 && arg.kind == Expr::Kind::kName &&
+          FindRole(arg.text) != kNone) {
+        node.op = Op::kBoxInSphere;
+        node.roles[next_role++] = FindRole(arg.text);
+        role_used_[node.roles[0]] = true;
+        return true;
+      }
+      const Typed position = Position(arg);
+      node.args[next_node++] = position.node;
+      return !position.bad;
+    }
+    case Argument::kLength:
+    case Argument::kNumber: {
+      const Typed number = Number(arg);
+      if (number.bad) return false;
+      if (wanted == Argument::kLength && !(number.dimension == kMetres)) {
+        Complain(arg.place, Quoted(builtin.name) + " takes a length here, this is " +
+                                DimensionText(number.dimension));
+        return false;
+      }
+      if (wanted == Argument::kNumber) result.dimension = number.dimension;
+      const bool is_size = wanted == Argument::kLength && result.type == Type::kTruth;
+      if (is_size && !checking_ && RangeOf(symbols_.program, rule(), number.node).high < 0) {
+        Complain(arg.place, "this is never true: nothing is within a negative length of something",
+                 WithParams(arg, "lengths are from 0 m on"));
+        return false;
+      }
+      node.args[next_node++] = number.node;
+      return true;
+    }
+    case Argument::kSet:
+      return LowerSet(arg, node);
+    case Argument::kWindow: {
+      const std::optional<double> window_s =
+          ConstantOf(arg, kSeconds, "the window of " + Quoted(builtin.name));
+      node.number = window_s.value_or(0);
+      if (!window_s || node.number > 0) return window_s.has_value();
+      Complain(arg.place, "the window of " + Quoted(builtin.name) + " must be longer than 0 s",
+               "for example: 100 ms");
+      return false;
+    }
+    default: {
+      const std::optional<int> role = RoleArgument(arg, ClassOf(wanted), builtin.name);
+      if (!role) return false;
+      if (next_role == 1 && node.roles[0] == *role) {
+        TwiceTheSame(arg, builtin.name);
+        return false;
+      }
+      node.roles[next_role++] = *role;
+      return true;
+    }
+  }
+}
+
+}  // namespace prehend::grammar

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/compile/lower_definition.h"
+
+#include <algorithm>
+#include <initializer_list>
+
+#include "grammar/compile/allen_network.h"
+#include "grammar/compile/contradictions.h"
+
+namespace prehend::grammar {
+namespace {
+
+using ast::Definition;
+
+/// Where a grammar does not say `onset`: a tenth of the speed below which something pauses.
+constexpr double kPausePerOnset = 10;
+
+class DefinitionLowering {
+ public:
+  DefinitionLowering(Program& program, int index, const Definition& definition, Lowering& lowering)
+      : program_(program), index_(index), d_(definition), lowering_(lowering) {}
+
+  void Run() {
+    LowerForm();
+    LowerModifiers();
+  }
+
+ private:
+  // Lowering may add rules, so the rule is looked up again after each step.
+  Rule& Here() { return program_.rules[index_]; }
+
+  void LowerForm() {
+    using Form_ = Definition::Form;
+    switch (d_.form) {
+      case Form_::kWhile: {
+        const int first = lowering_.Truth(d_.first, {});
+        const int until = d_.until ? lowering_.Truth(*d_.until, {}) : kNone;
+        Here().first = first;
+        Here().second = until;
+        CheckUntil();
+        break;
+      }
+      case Form_::kFromTo:
+        return LowerFromTo();
+      case Form_::kUntilSince:
+        return LowerUntilSince();
+      case Form_::kRestOf: {
+        const int first = lowering_.RuleCall(d_.first);
+        Here().first = first;
+        for (const ast::Expr& other : d_.outside) {
+          const int reference = lowering_.RuleCall(other);
+          Here().outside.push_back(reference);
+          CheckRest(other, reference);
+        }
+        break;
+      }
+      case Form_::kCompose:
+        return LowerCompose();
+    }
+  }
+
+  void LowerFromTo() {
+    const int first = lowering_.Instant(d_.first, {});
+    const int second = lowering_.Instant(d_.second, {.begin = true});
+    const int during = d_.during ? lowering_.Truth(*d_.during, {.begin = true}) : kNone;
+    Rule& rule = Here();
+    rule.first = first;
+    rule.second = second;
+    rule.during = during;
+    rule.or_drop = d_.or_drop || d_.absence;
+    rule.absence = d_.absence;
+    CheckBegin();
+    if (d_.within) LowerWithin(*d_.within);
+  }
+
+  // What is true and what is false at one frame, as far as it is known.
+  struct Claim {
+    int node = kNone;
+    bool negated = false;
+  };
+  bool CanBe(std::initializer_list<Claim> claims) {
+    Bounds bounds(program_, Here());
+    const auto fits = [&](const Claim& claim) {
+      return claim.node == kNone || bounds.Add(claim.node, claim.negated);
+    };
+    return std::all_of(claims.begin(), claims.end(), fits) && bounds.SomeAlternativeFits();
+  }
+
+  void CheckUntil() {
+    const Rule& rule = Here();
+    if (rule.first == kNone || rule.second == kNone || CanBe({{rule.first}, {rule.second, true}}))
+      return;
+    lowering_.ComplainOrWarn(
+        d_.until->place, "nothing ever begins: this holds wherever the condition before it does",
+        "it begins where that holds and this does not, and lasts until this holds");
+  }
+
+  void CheckBegin() {
+    const Rule& rule = Here();
+    if (rule.first == kNone || rule.second == kNone) return;
+    if (!CanBe({{rule.first}, {rule.second, true}})) {
+      lowering_.ComplainOrWarn(
+          d_.second.place, "nothing ever begins: each begin is such an end, too, at the same frame",
+          "from one X to the next is 'from X ends to X begins'");
+    } else if (!CanBe({{rule.first}, {rule.second, true}, {rule.during}})) {
+      lowering_.ComplainOrWarn(d_.during->place,
+                               "nothing ever begins: this is false wherever it would begin",
+                               "'during' must hold from the begin on");
+    }
+  }
+
+  // The frame before the end is the last one that the interval can have.
+  void CheckSince() {
+    const Rule& rule = Here();
+    if (rule.first == kNone || rule.second == kNone) return;
+    Bounds before(program_, rule);
+    if (before.Add(rule.second) && before.AddBefore(rule.first) && before.SomeAlternativeFits())
+      return;
+    lowering_.ComplainOrWarn(d_.second.place,
+                             "nothing ever begins: this is false right before each such end",
+                             "up to the frame before X begins, X is false; before X ends, true");
+  }
+
+  // Where something always ends with a moment, this is asked at that very moment.
+  void CheckRequirement() {
+    const Rule& rule = Here();
+    const bool ends_so = rule.form == Form::kUntilSince ||
+                         (rule.form == Form::kFromTo && rule.or_drop && !rule.absence);
+    const int moment = rule.form == Form::kUntilSince ? rule.first : rule.second;
+    if (!ends_so || moment == kNone || rule.requirement == kNone ||
+        CanBe({{moment}, {rule.requirement}}))
+      return;
+    lowering_.ComplainOrWarn(
+        d_.requirement->place,
+        "nothing ever begins that counts: this is false wherever an interval ends",
+        "'requires' is asked at the first frame that no longer belongs to the interval");
+  }
+
+  // Something of each interval must be left.
+  void CheckRest(const ast::Expr& other, int reference) {
+    if (Here().first == kNone || reference == kNone ||
+        !Covers(Here().references[reference], Here().references[Here().first]))
+      return;
+    lowering_.Complain(other.place, "nothing is ever left: this takes away all of it",
+                       "take away something else");
+  }
+
+  // Whatever interval one of them has, the other one has it, too: it is the same, or "some" of the
+  // same.
+  bool Covers(const Reference& other, const Reference& whole) const {
+    if (other.rule == whole.rule) return other.roles == whole.roles;
+    const Rule& some = program_.rules[other.rule];
+    if (some.form != Form::kAny || some.references[0].rule != whole.rule) return false;
+    for (std::size_t role = 0; role < kMaxRoles; ++role) {
+      const int kept = some.references[0].roles[role];
+      if (kept != kNone && other.roles[kept] != whole.roles[role]) return false;
+    }
+    return true;
+  }
+
+  void LowerWithin(const ast::Expr& within) {
+    const double within_s = lowering_.Span(within, "'within'");
+    Here().within_s = within_s;
+  }
+
+  void LowerUntilSince() {
+    const int first = lowering_.Instant(d_.first, {});
+    const int second = lowering_.Truth(d_.second, {.end = true});
+    Here().first = first;
+    Here().second = second;
+    CheckSince();
+    if (d_.approach) LowerApproach(*d_.approach);
+    const double back_s = lowering_.Span(d_.at_most_back, "'at most .. back'");
+    Here().back_s = back_s;
+  }
+
+  void LowerApproach(const ast::Approach& approach) {
+    Dimension dimension;
+    const int signal = lowering_.Signal(approach.signal, {.end = true}, dimension);
+    if (signal == kNone) return;
+    const double slack = lowering_.Constant(approach.slack, dimension, "'receding at most'");
+    int motion = kNone;
+    Dimension motion_dimension = Quotient(dimension, kSeconds);
+    double speed = 0;
+    double idle_s = -1;
+    if (approach.motion)
+      motion = lowering_.Signal(*approach.motion, {.end = true}, motion_dimension);
+    if (approach.speed) {
+      speed = lowering_.Constant(*approach.speed, motion_dimension, "'slower than'");
+      idle_s = lowering_.Constant(*approach.idle, kSeconds, "'slower than .. at most'");
+    }
+    const double onset = approach.onset
+                             ? lowering_.Constant(*approach.onset, motion_dimension, "'onset'")
+                             : speed / kPausePerOnset;
+    Rule& rule = Here();
+    rule.approach = signal;
+    rule.slack = slack;
+    rule.motion = motion;
+    rule.speed = speed;
+    rule.onset = onset;
+    rule.idle_s = idle_s;
+  }
+
+  void LowerCompose() {
+    const std::size_t before = lowering_.complaints();
+    std::vector<std::string> labels;
+    if (d_.parts.size() > kMaxParts) {
+      return lowering_.Complain(d_.parts[kMaxParts].place,
+                                "more than " + std::to_string(kMaxParts) + " parts",
+                                "compose some of them into an event of its own");
+    }
+    for (const ast::Part& part : d_.parts) {
+      if (std::find(labels.begin(), labels.end(), part.label) != labels.end()) {
+        lowering_.Complain(part.place, "the label '" + part.label + "' is used twice");
+      }
+      labels.push_back(part.label);
+      const int reference = lowering_.PartCall(part.call);
+      if (reference == kNone) continue;
+      Here().composition.parts.push_back(reference);
+    }
+    if (labels.size() != Here().composition.parts.size()) return;
+    const auto find = [&](const std::string& label, Place place) {
+      const auto found = std::find(labels.begin(), labels.end(), label);
+      if (found == labels.end()) {
+        const std::string near = NearestName(label, labels);
+        lowering_.Complain(place, "no part is labelled '" + label + "'",
+                           near.empty() ? "" : "did you mean '" + near + "'?");
+      }
+      return static_cast<int>(found - labels.begin());
+    };
+    for (const ast::Relation& relation : d_.relations) {
+      Composition::Clause clause{.left = find(relation.left, relation.place),
+                                 .right = find(relation.right, relation.place)};
+      for (const std::string& name : relation.relations) {
+        const std::optional<Allen> allen = AllenNamed(name);
+        if (!allen) {
+          lowering_.Complain(relation.place, "'" + name + "' is none of Allen's relations",
+                             "they are " + AllenNames());
+          continue;
+        }
+        clause.relations |= Bit(*allen);
+      }
+      Here().composition.clauses.push_back(clause);
+    }
+    if (lowering_.complaints() == before) CheckRelations();
+  }
+
+  void CheckRelations() {
+    constexpr AllenSet kApart =
+        Bit(Allen::kBefore) | Bit(Allen::kMeets) | Bit(Allen::kMetBy) | Bit(Allen::kAfter);
+    constexpr AllenSet kAgainstTime = Bit(Allen::kAfter) | Bit(Allen::kMetBy);
+    const Composition& composition = Here().composition;
+    const int parts = static_cast<int>(composition.parts.size());
+    AllenNetwork network(parts);
+    for (int left = 0; left < parts; ++left) {
+      for (int right = left + 1; right < parts; ++right) {  // intervals of one event do not overlap
+        if (composition.parts[left] == composition.parts[right])
+          network.Constrain(left, right, kApart | Bit(Allen::kEquals));
+      }
+    }
+    for (std::size_t i = 0; i < composition.clauses.size(); ++i) {
+      const Composition::Clause& clause = composition.clauses[i];
+      if (network.Constrain(clause.left, clause.right, clause.relations)) continue;
+      return lowering_.Complain(d_.relations[i].place,
+                                "this relation is never true together with what stands before it",
+                                "draw the parts below each other; intervals of one event do not "
+                                "overlap, and a part equals itself");
+    }
+    if (parts == 1 || network.Constrain(0, parts - 1, kAnyRelation & ~kAgainstTime)) return;
+    lowering_.Complain(d_.parts.back().place,
+                       "this is never an event: the last part, '" + d_.parts.back().label +
+                           "', ends before the first one, '" + d_.parts.front().label + "', begins",
+                       "list the parts as they follow each other in time");
+  }
+
+  void LowerModifiers() {
+    if (d_.bridging) {
+      if (d_.form != Definition::Form::kWhile) {
+        lowering_.Complain(d_.bridging->place, "'bridging' goes with 'while' only",
+                           "put the bridged part into a condition of its own");
+      }
+      const double bridging_s = lowering_.Constant(*d_.bridging, kSeconds, "'bridging'");
+      Here().bridging_s = bridging_s;
+    }
+    if (d_.lasting) {
+      const double lasting_s = lowering_.Constant(*d_.lasting, kSeconds, "'lasting'");
+      Here().lasting_s = lasting_s;
+      CheckLasting(*d_.lasting);
+    }
+    if (d_.form == Definition::Form::kCompose &&
+        (d_.requirement || d_.confirmed || d_.style || !d_.attributes.empty())) {
+      lowering_.Complain(
+          d_.place,
+          "a composition takes no 'requires', no 'confirmed by' and no attributes of its own",
+          "put it into one of the parts");
+    }
+    if (d_.requirement) {
+      const int requirement = lowering_.Truth(*d_.requirement, {.begin = true, .end = true});
+      Here().requirement = requirement;
+      CheckRequirement();
+    }
+    if (d_.confirmed) {
+      const int by = lowering_.RuleCall(d_.confirmed->by);
+      const int within = lowering_.RuleCall(d_.confirmed->within);
+      Here().confirmed_by = by;
+      Here().confirmed_within = within;
+    }
+    if (d_.drawn) CheckDrawn(*d_.drawn);
+    if (d_.style) {
+      const int role = lowering_.HandRole(*d_.style);
+      Here().style_role = role;
+    }
+    LowerAttributes();
+  }
+
+  void CheckDrawn(const ast::Drawn& drawn) {
+    const std::vector<RuleRole>& roles = Here().roles;
+    const bool has_hand = std::any_of(
+        roles.begin(), roles.end(), [](const RuleRole& role) { return role.class_name == "Hand"; });
+    const DrawnAs as = drawn.drawing.as;
+    if (!d_.is_event) {
+      lowering_.Complain(drawn.place, "a condition is not drawn", "make it an event");
+    } else if ((as == DrawnAs::kPhase || as == DrawnAs::kGrasp) && !has_hand) {
+      lowering_.Complain(drawn.place, "this is drawn of a hand, and no role is a Hand",
+                         "a phase is what a hand does, a grasp what it holds");
+    } else if ((as == DrawnAs::kGrasp || as == DrawnAs::kSupport) && roles.size() < 2) {
+      lowering_.Complain(drawn.place, "this is drawn of two, and the event has one role",
+                         "a hand and what it holds, a thing and what it stands on");
+    }
+    Here().drawing = drawn.drawing;
+  }
+
+  // A form that can say how long an interval is at most must not be asked for longer ones.
+  void CheckLasting(const ast::Expr& lasting) {
+    const Rule& rule = Here();
+    const bool looks_back = d_.form == Definition::Form::kUntilSince;
+    const double most_s = looks_back ? rule.back_s : rule.within_s;
+    if (most_s <= 0 || rule.lasting_s <= most_s) return;
+    lowering_.ComplainOrWarn(
+        lasting.place,
+        "no interval lasts so long: this one looks at most " + QuantityText({most_s, kSeconds}) +
+            (looks_back ? " back" : " ahead"),
+        looks_back ? "look further back, or ask for less" : "wait longer, or ask for less");
+  }
+
+  void LowerAttributes() {
+    if (d_.attributes.size() > kMaxAttributes) {
+      return lowering_.Complain(d_.attributes[kMaxAttributes].place,
+                                "more than " + std::to_string(kMaxAttributes) + " attributes");
+    }
+    for (const ast::Attribute& attribute : d_.attributes) {
+      const std::vector<RuleRole>& roles = Here().roles;
+      const std::vector<RuleAttribute>& others = Here().attributes;
+      const auto same = [&](const auto& named) { return named.name == attribute.name; };
+      if (std::any_of(roles.begin(), roles.end(), same) ||
+          std::any_of(others.begin(), others.end(), same)) {
+        lowering_.Complain(attribute.place,
+                           "'" + attribute.name + "' is a role or an attribute already",
+                           "choose another name");
+      }
+      Dimension dimension;
+      const int node = lowering_.Attribute(attribute.value, dimension);
+      Here().attributes.push_back({.name = attribute.name, .node = node, .dimension = dimension});
+    }
+  }
+
+  Program& program_;
+  int index_;
+  const Definition& d_;
+  Lowering& lowering_;
+};
+
+}  // namespace
+
+void LowerDefinitionInto(Program& program, int index, const ast::Definition& definition,
+                         Lowering& lowering) {
+  DefinitionLowering(program, index, definition, lowering).Run();
+}
+
+}  // namespace prehend::grammar

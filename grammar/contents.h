@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a compiled grammar names: its events, and what it expects of an episode. For everybody who
+// needs no more of a program than that. Tested by tests/grammar/contents_test.cc
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "grammar/base/diagnostic.h"
+#include "grammar/base/source.h"
+
+namespace prehend::grammar {
+
+struct Program;  // grammar/program/program.h
+
+/// As in the text: "grammar pick_and_place".
+const std::string& GrammarName(const Program& program);
+
+/// Names of the events, in the order of the files. Conditions are not among them.
+std::vector<std::string> EventNames(const Program& program);
+bool HasEvent(const Program& program, std::string_view name);
+
+/// What an event is about, as it is declared.
+struct EventSignature {
+  std::string name;
+  std::vector<std::string> roles;       ///< in the order of the head
+  std::vector<std::string> attributes;  ///< of `with NAME = value`
+  bool has_style = false;               ///< `with style = style(hand)`
+};
+/// Of the events, in the order of EventNames().
+std::vector<EventSignature> EventSignatures(const Program& program);
+
+/// What Compile() warned of.
+const Diagnostics& CompileWarnings(const Program& program);
+
+// What the grammar asks for by name and an episode may have or not, where the name first stands.
+const std::vector<NameInSource>& NamedClasses(const Program& program);  ///< none is built in
+const std::vector<NameInSource>& NamedSensorSets(const Program& program);
+/// Sensor sets that are asked for by number: "3".
+const std::vector<NameInSource>& NumberedSensorSets(const Program& program);
+
+}  // namespace prehend::grammar

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// The online engine behind Monitor.
+//
+// Needs: the same intervals as the meaning table in docs/grammar-language.md gives for the whole
+// episode, each as soon as no future can change it. Algorithm: rules are stepped in the order of
+// Program::schedule, each awake instance frame by frame, but only up to the first frame where its
+// condition is not known yet; RuleInstance::known says up to where an instance's own truth is
+// final. So an instance that waits (a gap that may be bridged, an approach that may end in a
+// landing) delays only the instances that ask about just those frames. An instance rests as soon as
+// its newest frame is decided and nothing but a change can decide otherwise: what it asks about
+// wakes it. What time alone changes is either an alarm (the end of a gap, the shortest duration)
+// or, where a value moves by itself (Evaluator::depends_on_time), keeps the instance awake. So a
+// frame costs as much as changes in it. Data structures: grammar/engine/instances.h (state per
+// binding), grammar/engine/history.h (the frames that some instance may still ask for). Tested by
+// tests/grammar/monitor_test.cc and the corpus in tests/grammar/corpus/
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "grammar/base/event.h"
+#include "grammar/engine/candidate_log.h"
+#include "grammar/engine/evaluate.h"
+#include "grammar/engine/history.h"
+#include "grammar/engine/instances.h"
+
+namespace prehend::grammar {
+
+class Engine {
+ public:
+  Engine(std::shared_ptr<const Program> program, EntityTable entity_table);
+  Engine(const Engine&) = delete;  // the members refer to each other
+  Engine& operator=(const Engine&) = delete;
+
+  const std::string& error() const { return error_; }
+  void Advance(const Frame& frame, std::vector<Event>& out);
+  void AdvanceBy(const FrameChanges& changes, std::vector<Event>& out);
+  void Finish(Tick end, std::vector<Event>& out);
+  int instances_in_use() const { return instances_.in_use(); }
+
+  // For grammar/replay_monitor.h. From now on nothing is forgotten, and what becomes of each run is
+  // noted. Before the first frame.
+  void Remember(CandidateLog& outcomes) {
+    log_ = &outcomes;
+    recalls_touches_ = keeps_touches_ = true;
+  }
+  const Program& program() const { return *program_; }
+  const EntityTable& entity_table() const { return entity_table_; }
+  const History& history() const { return history_; }
+  RuleInstances& instances() { return instances_; }
+  const Evaluator& evaluator() const { return evaluator_; }
+
+ private:
+  struct RuleTicks {
+    Tick bridging = 0;
+    Tick lasting = 0;
+    Tick idle = 0;
+    Tick back = 0;
+    Tick within = -1;  ///< the deadline
+    Tick in_time = 0;  ///< what comes so late is still in time
+  };
+  /// An instance to look at when this tick comes, and perhaps for nothing.
+  struct Alarm {
+    Tick tick = 0;
+    int instance = kNone;
+  };
+  struct IdleEntry {
+    FrameNumber since = 0;
+    int instance = kNone;
+  };
+
+  // What a frame says (grammar/engine/engine_frames.cc).
+  std::string_view WhyNoTick(Tick tick) const;
+  std::string_view WhyNotWatchable(const Frame& frame);
+  std::string_view WhyNotWatchable(const FrameChanges& changes);
+  std::string_view WhyNoTouches(std::span<const Touch> touches);
+  bool IsEntity(int entity) const { return entity >= 0 && entity < entity_count_; }
+  template <typename AnyFrame>
+  bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);
+  void EndFrame();
+  void SortNewEvents();
+  void Look(int entity, const EntitySample& look);
+  void Look(const HandSample& hand);
+  void ApplyContacts(std::span<const Touch> touches);
+  void BeginTouch(RuleInstance& touching);
+  void Part(int touching);
+  void CloseTouch(RuleInstance& touching, Moment end);
+  void Keep(RuleInstance& touching, const Touch& touch, bool swapped);
+  void NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed);
+  void Measure(RuleInstance& instance, const Watcher& as, const RuleInstance& touch) {
+    if (IsMeasured(*as.instant, as.hand, touch, as.swapped) != instance.open) BeginOrEnd(instance);
+  }
+  void BeginOrEnd(RuleInstance& instance);
+
+  // Waking and resting.
+  void Wake(int instance);
+  void WakeWatchers(const std::vector<Watch>& watchers);
+  bool MayWake(const RuleInstance& instance) const;
+  bool CanMeasure(const RuleInstance& instance) const;
+  bool IsMeasured(const RuleInstance& instance) const;
+  /// Likewise, of a grip, if there is one, and a touch, which names the two the other way round
+  /// than the rule if `swapped`.
+  bool IsMeasured(const MeasuredPart& part, int hand, const RuleInstance& touch,
+                  bool swapped) const {
+    if (hand != kNoEntity && !part.grip.Fit(grips_[hand])) return false;
+    if (!touch.open) return !part.must_touch && part.press[0].Fit(thresholds_.OfNoTouch());
+    return part.press[swapped ? 1 : 0].Fit(touch.beyond);
+  }
+  bool SaysTheSame(const RuleInstance& instance) const;
+  /// What begins with a moment does not begin at others. That moment may be told of later in this
+  /// frame; whoever tells of it asks again.
+  bool MayBegin(const RuleInstance& instance) const {
+    return instance.moment >= history_.now() && MomentMayCome(instance);
+  }
+  bool MomentMayCome(const RuleInstance& instance) const;
+  void NotifyWatchers(RuleInstance& instance);
+  void NotifyIfChanged(RuleInstance& instance);
+  void WakeAt(Tick tick, int instance);
+  void RingAlarms();
+  bool MayRest(const RuleInstance& instance);
+  void Rest(RuleInstance& instance);
+  /// Nothing of it has been looked at, as nothing can have begun, but now it may be of no more use.
+  void RestOn(RuleInstance& instance) {
+    instance.resting_since = history_.now();
+    QueueIdle(instance);
+  }
+  void QueueIdle(RuleInstance& instance) {
+    if (!instance.idle_queued) idle_queue_.PushBack() = {instance.resting_since, instance.index};
+    instance.idle_queued = true;
+  }
+  void StepRule(int rule);
+  void ForgetThePast();
+  void FreeInstances();
+  void FreeOrQueue(std::vector<int>& candidates);
+  bool CanBeFreed(const RuleInstance& instance) const;
+  bool MayOverlap(const RuleInstance& instance) const;
+
+  // The forms; each looks at one frame and says whether it could decide it.
+  void StepInstance(RuleInstance& instance);
+  bool StepFrame(RuleInstance& instance);
+  bool LooksTheSame(RuleInstance& instance);
+  bool StepWhile(RuleInstance& instance, FrameNumber frame);
+  bool StepAny(RuleInstance& instance, FrameNumber frame);
+  bool StepRun(RuleInstance& instance, FrameNumber frame, Kleene truth);
+  bool StepRest(RuleInstance& instance, FrameNumber frame);
+  bool StepFromTo(RuleInstance& instance, FrameNumber frame);
+  bool MeetDeadline(RuleInstance& instance, Moment now);
+  bool StepUntil(RuleInstance& instance, FrameNumber frame);
+
+  WalkBack ApproachBegin(RuleInstance& instance, FrameNumber end) const;
+  std::optional<double> ApproachSpeed(RuleInstance& instance, FrameNumber frame, FrameNumber end,
+                                      double way) const;
+
+  // From a run to an event.
+  [[nodiscard]] bool Open(RuleInstance& instance, FrameNumber frame);
+  void Begin(RuleInstance& instance, FrameNumber frame);
+  int StyleAt(const RuleInstance& instance, FrameNumber frame) const {
+    return RuleOf(instance).style_role == kNone
+               ? kNoEntity
+               : StyleOfHand(instance.entities[RuleOf(instance).style_role], frame);
+  }
+  int StyleOfHand(int hand, FrameNumber frame) const;
+  bool Close(RuleInstance& instance, Moment end, bool open_end = false);
+  bool Conclude(RuleInstance& instance, const Span& span);
+  void ResolvePending(RuleInstance& instance);
+  void Emit(RuleInstance& instance, const Pending& finished);
+  void Keep(RuleInstance& instance, const Span& span);
+  Tick DecidedAt(const RuleInstance& instance, const Span& span) const {
+    return RuleOf(instance).absence ? DeadlineOf(span) : decided_;
+  }
+  Tick DeadlineOf(const Span& span) const;
+  void UpdateKnown(RuleInstance& instance);
+  bool RunIsCertain(const RuleInstance& instance) const;
+  void FinishInstance(RuleInstance& instance, Moment end);
+  void Note(const RuleInstance& instance, CandidateOutcome::Kind kind, const Span& span,
+            FrameNumber cause = kNever, const WalkBack& walk = {}) {
+    if (log_ != nullptr)
+      log_->push_back({kind, instance.index, span, cause, DecidedAt(instance, span), walk});
+  }
+
+  // Compositions are told of each finished interval of their parts.
+  void NotifyCompositions(const RuleInstance& part, const Span& span);
+  FrameNumber Settled(const RuleInstance& instance) const;
+  FrameNumber PartsSettled(const RuleInstance& composition) const;
+  void StepCompose(RuleInstance& instance);
+
+  const Rule& RuleOf(const RuleInstance& instance) const { return program_->rules[instance.rule]; }
+  const RuleTicks& TicksOf(const RuleInstance& instance) const {
+    return rule_ticks_[instance.rule];
+  }
+
+  std::shared_ptr<const Program> program_;
+  EntityTable entity_table_;
+  int entity_count_ = 0;
+  History history_;
+  RuleInstances instances_;
+  Evaluator evaluator_;
+  std::vector<RuleTicks> rule_ticks_;
+  Thresholds thresholds_;
+  bool recalls_touches_ = false;     // which thresholds they were beyond
+  bool keeps_touches_ = false;       // and all that they measured
+  std::vector<ThresholdSet> grips_;  // by entity: what its grip is beyond now
+  Tick longest_look_back_ = 0;
+  std::vector<std::vector<int>> awake_;  // by rule
+  std::vector<int> touching_;            // the pairs that touch now
+  std::vector<int>
+      pressed_;  // the instances of the touches that a frame tells of, kNone: there is none yet
+  std::vector<Alarm> alarms_;         // a heap, the next one first
+  RingBuffer<IdleEntry> idle_queue_;  // in the order in which they came to rest
+  std::vector<int> scratch_;          // instances; kept for its memory
+  std::vector<int> notified_;         // likewise
+  FrameNumber oldest_needed_ = 0;     // of the awake instances
+  FrameNumber oldest_look_needed_ = 0;
+  FrameNumber first_needed_ = 0;  // and what they can look back to
+  FrameNumber first_look_needed_ = 0;
+  bool finishing_ = false;
+  Tick decided_ = 0;
+  std::vector<Event>* out_ = nullptr;  // only during Advance and Finish
+  std::size_t first_new_ = 0;          // among them, of this call
+  CandidateLog* log_ = nullptr;        // null unless they are to be remembered
+  std::string error_;
+};
+
+}  // namespace prehend::grammar

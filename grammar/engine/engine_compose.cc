@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compositions: events made of finished events by Allen's relations.
+//
+// Needs: per composition and binding the combinations, one interval of each part, whose relations
+// hold; each reaches from the begin of the first part to the end of the last. They do not overlap:
+// the one that is complete first is taken, that is, whose last interval ends first; of those the
+// one that ends first, then the one that begins last. Algorithm: parts deliver their intervals; a
+// combination is judged as soon as no interval can still come that ends before it is complete. An
+// interval that nothing to come can complete is forgotten, and of the others only the last
+// kRememberedSpans of a part are kept.
+// Tested by tests/grammar/engine/compose_test.cc
+#include <algorithm>
+#include <tuple>
+
+#include "grammar/base/allen.h"
+#include "grammar/engine/engine.h"
+
+namespace prehend::grammar {
+namespace {
+
+Interval TicksOf(const Span& span) { return {span.begin.tick, span.end.tick}; }
+
+constexpr AllenSet Bits(std::initializer_list<Allen> relations) {
+  AllenSet bits = 0;
+  for (const Allen relation : relations) bits |= Bit(relation);
+  return bits;
+}
+
+// How an interval lies to one that ends earlier, and to one that ends later.
+constexpr AllenSet kToEarlier =
+    Bits({Allen::kContains, Allen::kStartedBy, Allen::kOverlappedBy, Allen::kMetBy, Allen::kAfter});
+constexpr AllenSet kToLater =
+    Bits({Allen::kBefore, Allen::kMeets, Allen::kOverlaps, Allen::kStarts, Allen::kDuring});
+
+// Some relation to another part holds to none of the remembered intervals, nor to one that ends
+// later than all of them. Compositions come in the order in which they are complete, not in that of
+// their ends, so all may still be hoped of them.
+bool IsHopeless(const Program& program, const Rule& rule, const RuleInstance& instance, int part,
+                const Span& span) {
+  const Composition& composition = rule.composition;
+  return std::any_of(
+      composition.clauses.begin(), composition.clauses.end(),
+      [&](const Composition::Clause& clause) {
+        if (clause.left == clause.right || (clause.left != part && clause.right != part))
+          return false;
+        const bool is_left = clause.left == part;
+        const int other = is_left ? clause.right : clause.left;
+        if (program.rules[rule.references[composition.parts[other]].rule].form == Form::kCompose)
+          return false;
+        if ((clause.relations & (is_left ? kToLater : kToEarlier)) != 0) return false;
+        const std::vector<Span>& others = instance.parts[other];
+        return std::none_of(others.begin(), others.end(), [&](const Span& one) {
+          const Allen relation =
+              is_left ? Relate(TicksOf(span), TicksOf(one)) : Relate(TicksOf(one), TicksOf(span));
+          return (Bit(relation) & clause.relations) != 0;
+        });
+      });
+}
+
+// Tries all ways to complete `chosen` and keeps the best one.
+class Combinations {
+ public:
+  Combinations(const Composition& composition, const RuleInstance& instance, FrameNumber settled)
+      : composition_(composition), lane_(instance), settled_(settled) {
+    Choose(0);
+  }
+  const Span* best() const { return found_ ? &best_ : nullptr; }
+
+ private:
+  void Choose(std::size_t part) {
+    if (part == lane_.parts.size()) return Judge();
+    for (const Span& span : lane_.parts[part]) {
+      if (span.Complete().frame > settled_) continue;
+      chosen_[part] = &span;
+      if (RelationsHoldUpTo(static_cast<int>(part))) Choose(part + 1);
+    }
+  }
+
+  bool RelationsHoldUpTo(int part) const {
+    return std::all_of(
+        composition_.clauses.begin(), composition_.clauses.end(),
+        [&](const Composition::Clause& clause) {
+          if (std::max(clause.left, clause.right) != part) return true;
+          return (Bit(Relate(TicksOf(*chosen_[clause.left]), TicksOf(*chosen_[clause.right]))) &
+                  clause.relations) != 0;
+        });
+  }
+
+  void Judge() {
+    const Span& last = *chosen_[lane_.parts.size() - 1];
+    Span whole{chosen_[0]->begin, last.end, last.open_end, last.Complete()};
+    for (std::size_t part = 0; part < lane_.parts.size(); ++part) {
+      const Moment complete = chosen_[part]->Complete();
+      if (complete.tick > whole.completed.tick) whole.completed = complete;
+    }
+    if (whole.begin.frame >= whole.end.frame || whole.begin.frame < lane_.last_end) return;
+    const auto order = [](const Span& span) {
+      return std::tuple(span.completed.tick, span.end.tick, -span.begin.tick);
+    };
+    if (found_ && order(whole) >= order(best_)) return;
+    best_ = whole;
+    found_ = true;
+  }
+
+  const Composition& composition_;
+  const RuleInstance& lane_;
+  FrameNumber settled_;
+  std::array<const Span*, kMaxParts> chosen_ = {};
+  Span best_;
+  bool found_ = false;
+};
+
+}  // namespace
+
+// Roles of the composition that the part does not name are free: its interval counts for whoever
+// plays them.
+void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
+  for (const PartOf& part_of : RuleOf(part).part_of) {
+    const Rule& whole = program_->rules[part_of.rule];
+    const Reference& reference = whole.references[whole.composition.parts[part_of.part]];
+    for (int order = 0; order < (RuleOf(part).symmetric ? 2 : 1); ++order) {
+      Binding from = part.entities;
+      if (order == 1) std::swap(from[0], from[1]);
+      Binding entities = kUnbound;
+      for (std::size_t i = 0; i < RuleOf(part).roles.size(); ++i)
+        entities[reference.roles[i]] = from[i];
+      notified_.clear();
+      instances_.EnsureAll(part_of.rule, entities, notified_);
+      for (const int index : notified_) {
+        std::vector<Span>& spans = instances_[index].parts[part_of.part];
+        if (spans.size() == kRememberedSpans) spans.erase(spans.begin());
+        spans.push_back(span);
+        Wake(index);
+      }
+    }
+  }
+}
+
+// All intervals of the instance that end at or before this frame are out; of a composition, all
+// that are complete by then.
+FrameNumber Engine::Settled(const RuleInstance& instance) const {
+  // A composition rests though its parts do not, as each of their intervals wakes it.
+  if (RuleOf(instance).form == Form::kCompose && !instance.awake) return PartsSettled(instance);
+  FrameNumber settled = instance.awake ? instance.next - 1 : finishing_ ? kNever : history_.now();
+  if (instance.in_gap) settled = std::min(settled, instance.gap.frame - 1);
+  for (const Pending& pending : instance.pending)
+    settled = std::min(settled, pending.span.end.frame - 1);
+  return settled;
+}
+
+FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
+  FrameNumber settled = finishing_ ? kNever : history_.now();
+  for (const int part : RuleOf(composition).composition.parts) {
+    const int index = instances_.Find(composition, part);
+    if (index != kNone) settled = std::min(settled, Settled(instances_[index]));
+  }
+  return settled;
+}
+
+void Engine::StepCompose(RuleInstance& instance) {
+  const Rule& rule = RuleOf(instance);
+  const FrameNumber settled = PartsSettled(instance);
+  for (;;) {
+    const Combinations combinations(rule.composition, instance, settled);
+    if (combinations.best() == nullptr) break;
+    const Span whole = *combinations.best();
+    instance.last_end = whole.end.frame;
+    // The next one begins with a first part that begins, and ends with a last part that ends, later
+    // than this ends.
+    std::erase_if(instance.parts.front(),
+                  [&](const Span& span) { return span.begin.frame < instance.last_end; });
+    std::erase_if(instance.parts.back(),
+                  [&](const Span& span) { return span.end.frame <= instance.last_end; });
+    Conclude(instance, whole);
+  }
+  for (bool again = true; again;) {
+    again = false;
+    for (std::size_t part = 0; part < instance.parts.size(); ++part) {
+      again |= std::erase_if(instance.parts[part], [&](const Span& span) {
+                 return span.Complete().frame <= settled &&
+                        IsHopeless(*program_, rule, instance, static_cast<int>(part), span);
+               }) > 0;
+    }
+  }
+  instance.next = instance.known = std::min(settled, history_.now()) + 1;
+}
+
+}  // namespace prehend::grammar

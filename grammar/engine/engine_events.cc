@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a run of frames to an event: minimum duration, requirement, confirmation, and what is known
+// of it meanwhile.
+#include <algorithm>
+
+#include "grammar/engine/engine.h"
+
+namespace prehend::grammar {
+
+// False while a value is not known that must be kept from here.
+bool Engine::Open(RuleInstance& instance, FrameNumber frame) {
+  if (!RuleOf(instance).anchors.empty() && !evaluator_.CaptureAnchors(instance, frame))
+    return false;
+  Begin(instance, frame);
+  return true;
+}
+
+void Engine::Begin(RuleInstance& instance, FrameNumber frame) {
+  instance.open = true;
+  instance.in_gap = false;
+  instance.begin = history_.At(frame);
+  instance.style = StyleAt(instance, frame);
+}
+
+// A hand that no frame has shown yet has no style.
+int Engine::StyleOfHand(int entity, FrameNumber frame) const {
+  const HandAtFrame* hand = history_.Hand(entity, frame);
+  return hand == nullptr ? kNoEntity : hand->look.style;
+}
+
+// False, with nothing changed, if it is not known yet whether the run is an interval.
+bool Engine::Close(RuleInstance& instance, Moment end, bool open_end) {
+  if (!Conclude(instance, {instance.begin, end, open_end})) return false;
+  instance.open = instance.in_gap = false;
+  return true;
+}
+
+bool Engine::Conclude(RuleInstance& instance, const Span& span) {
+  const Rule& rule = RuleOf(instance);
+  if (span.end.tick - span.begin.tick < TicksOf(instance).lasting) {
+    Note(instance, CandidateOutcome::Kind::kTooShort, span);
+    return true;
+  }
+  if (rule.requirement != kNone) {
+    const FrameNumber last = std::min(span.end.frame, history_.now());
+    const Kleene required = evaluator_.Truth(rule.requirement, {instance, last, last});
+    if (required == Kleene::kUnknown) return false;
+    if (required == Kleene::kFalse) Note(instance, CandidateOutcome::Kind::kRefused, span);
+    if (required == Kleene::kFalse) return true;
+  }
+  Pending finished{.span = span, .style = instance.style, .next = span.end.frame};
+  for (std::size_t i = 0; i < rule.attributes.size(); ++i) {
+    const FrameNumber last = std::min(span.end.frame, history_.now());
+    const std::optional<double> value =
+        evaluator_.Number(rule.attributes[i].node, {instance, last, last});
+    if (!value) return false;
+    finished.attributes[i] = *value;
+  }
+  if (rule.confirmed_by != kNone) {
+    instance.pending.push_back(finished);
+  } else {
+    Emit(instance, finished);
+  }
+  return true;
+}
+
+// An interval is confirmed when the other event begins at or after its end while the episode has
+// held all the time.
+void Engine::ResolvePending(RuleInstance& instance) {
+  const Rule& rule = RuleOf(instance);
+  std::erase_if(instance.pending, [&](Pending& pending) {
+    for (; pending.next <= history_.now(); ++pending.next) {
+      const Evaluator::View view{instance, pending.next};
+      const Kleene within = evaluator_.Holds(rule.confirmed_within, view);
+      if (within == Kleene::kFalse)
+        Note(instance, CandidateOutcome::Kind::kUnconfirmed, pending.span, pending.next);
+      if (within == Kleene::kFalse) return true;
+      const Kleene begins = evaluator_.Begins(rule.confirmed_by, view);
+      if (And(within, begins) == Kleene::kTrue) {
+        Emit(instance, pending);
+        return true;
+      }
+      if (within == Kleene::kUnknown || begins == Kleene::kUnknown) return false;
+    }
+    return false;
+  });
+}
+
+void Engine::Emit(RuleInstance& instance, const Pending& finished) {
+  const Rule& rule = RuleOf(instance);
+  const Span& span = finished.span;
+  Note(instance, CandidateOutcome::Kind::kInterval, span,
+       rule.confirmed_by == kNone ? kNever : finished.next);
+  if (rule.referenced) Keep(instance, span);
+  if (!rule.part_of.empty()) NotifyCompositions(instance, span);
+  if (!rule.printed) return;
+  Event& event = out_->emplace_back();
+  event.rule = instance.rule;
+  event.roles = instance.entities;
+  event.interval = {span.begin.tick, span.end.tick};
+  event.decided = DecidedAt(instance, span);
+  event.style = finished.style;
+  event.open_end = span.open_end;
+  event.attributes = finished.attributes;
+}
+
+// As long as somebody may ask about it.
+void Engine::Keep(RuleInstance& instance, const Span& span) {
+  while (!instance.past.empty() && instance.past.front().end.frame < history_.first())
+    instance.past.PopFront();
+  instance.past.PushBack() = span;
+}
+
+// A deadline that passes between two frames decides at once; the later frame only tells that time
+// went on.
+Tick Engine::DeadlineOf(const Span& span) const {
+  const FrameNumber before = finishing_ ? history_.now() : history_.now() - 1;
+  const bool just_passed = before >= history_.first() && span.end.tick > history_.At(before).tick;
+  return just_passed ? span.end.tick : decided_;
+}
+
+bool Engine::RunIsCertain(const RuleInstance& instance) const {
+  const Rule& rule = RuleOf(instance);
+  if (rule.requirement != kNone || rule.confirmed_by != kNone || rule.or_drop || rule.within_s >= 0)
+    return false;
+  const Tick earliest_end =
+      instance.in_gap ? instance.gap.tick : history_.At(instance.next - 1).tick + 1;
+  return earliest_end - instance.begin.tick >= TicksOf(instance).lasting;
+}
+
+void Engine::UpdateKnown(RuleInstance& instance) {
+  const Rule& rule = RuleOf(instance);
+  instance.known = instance.next;
+  if (instance.open) {
+    instance.certain = RunIsCertain(instance);
+    const FrameNumber certain_end = instance.in_gap ? instance.gap.frame : instance.next;
+    instance.known = instance.certain ? certain_end : instance.begin.frame;
+  }
+  if (rule.form == Form::kUntilSince && rule.referenced && instance.next > history_.first()) {
+    // A later interval ends after the last frame seen and reaches back no further than its rule
+    // says.
+    const Tick last = history_.At(instance.next - 1).tick;
+    const FrameNumber reach = history_.FirstNotBefore(last + 1 - TicksOf(instance).back);
+    instance.known = std::min(instance.next, std::max(instance.approach_from, reach));
+  }
+  for (const Pending& pending : instance.pending)
+    instance.known = std::min(instance.known, pending.span.begin.frame);
+}
+
+// The last frames are decided, then what is open ends with the episode.
+void Engine::FinishInstance(RuleInstance& instance, Moment end) {
+  StepInstance(instance);
+  if (instance.open && TicksOf(instance).within >= 0) MeetDeadline(instance, end);
+  if (instance.open && instance.in_gap) {
+    Close(instance, instance.gap);
+  } else if (instance.open && !RuleOf(instance).or_drop) {
+    Close(instance, end, true);
+  } else if (instance.open) {
+    Note(instance, CandidateOutcome::Kind::kUnfinished, {instance.begin, end});
+  }
+  ResolvePending(instance);  // a gap that nothing bridges any more ends an interval that others may
+                             // have confirmed
+  for (const Pending& pending : instance.pending)
+    Note(instance, CandidateOutcome::Kind::kUnconfirmed, pending.span, end.frame);
+  instance.open = instance.in_gap = instance.awake = false;
+  instance.pending.clear();
+  instance.known = kNever;
+}
+
+}  // namespace prehend::grammar

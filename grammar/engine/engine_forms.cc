@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+// How each form of rule looks at one frame. The meaning of the forms is the table in
+// docs/grammar-language.md.
+#include <algorithm>
+
+#include "grammar/engine/engine.h"
+
+namespace prehend::grammar {
+
+void Engine::StepInstance(RuleInstance& instance) {
+  if (RuleOf(instance).form == Form::kCompose) return StepCompose(instance);
+  while (instance.next <= history_.now() && StepFrame(instance)) {
+  }
+  ResolvePending(instance);
+  UpdateKnown(instance);
+}
+
+// One frame, if it can be decided.
+bool Engine::StepFrame(RuleInstance& instance) {
+  bool decided = false;
+  evaluator_.ResetTimeDependence();
+  switch (RuleOf(instance).form) {
+    case Form::kTouching:
+    case Form::kCompose:
+      break;
+    case Form::kWhile:
+      decided = StepWhile(instance, instance.next);
+      break;
+    case Form::kAny:
+      decided = StepAny(instance, instance.next);
+      break;
+    case Form::kFromTo: {
+      const bool was_open = instance.open;
+      decided = StepFromTo(instance, instance.next);
+      if (was_open && !instance.open)
+        evaluator_.MarkTimeDependent();  // what may begin the next one was not asked for, so
+                                         // nothing of it would wake
+      break;
+    }
+    case Form::kUntilSince:
+      decided = StepUntil(instance, instance.next);
+      break;
+    case Form::kRestOf:
+      decided = StepRest(instance, instance.next);
+      break;
+  }
+  if (decided) ++instance.next;
+  return decided;
+}
+
+// Most looks find everything as it was: the instance rests on, and there is nothing to tell and
+// nothing to wait for. If something is new, the frame may have been stepped, and the rest is left
+// to StepInstance.
+bool Engine::LooksTheSame(RuleInstance& instance) {
+  const Rule& rule = RuleOf(instance);
+  const FrameNumber now = history_.now();
+  const auto settled = [&] {
+    return instance.pending.empty() && (!instance.open || (instance.certain && !instance.in_gap));
+  };
+  const bool waits = rule.form == Form::kCompose ||
+                     (rule.form == Form::kUntilSince && rule.referenced) || rule.within_s >= 0;
+  if (instance.next != now || waits || !settled() ||
+      (rule.referenced && instance.reported != Known(instance.open)))
+    return false;
+  const bool was_open = instance.open;
+  if (!StepFrame(instance) || evaluator_.depends_on_time()) return false;
+  return instance.open == was_open && settled() &&
+         (!instance.open || instance.begin.frame != now) && instance.last_end != now;
+}
+
+bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
+  const Rule& rule = RuleOf(instance);
+  const Evaluator::View view{instance, frame};
+  if (rule.measured.whole && frame == history_.now() && CanMeasure(instance)) {
+    return StepRun(instance, frame, Known(IsMeasured(instance)));
+  }
+  if (rule.second == kNone) return StepRun(instance, frame, evaluator_.Truth(rule.first, view));
+  // Two thresholds: what has begun goes on until the second says so.
+  const bool on = instance.open && !instance.in_gap;
+  const Kleene goes_on = Not(evaluator_.Truth(rule.second, view));
+  return StepRun(instance, frame, on ? goes_on : And(goes_on, evaluator_.Truth(rule.first, view)));
+}
+
+bool Engine::StepAny(RuleInstance& instance, FrameNumber frame) {
+  Kleene truth = Kleene::kFalse;
+  for (const int member : instance.members) {
+    truth = Or(truth, instances_.TruthAt(member, frame));
+    if (truth == Kleene::kTrue) break;
+  }
+  return StepRun(instance, frame, truth);
+}
+
+bool Engine::StepRun(RuleInstance& instance, FrameNumber frame, Kleene truth) {
+  if (truth == Kleene::kUnknown) return false;
+  const Moment now = history_.At(frame);
+  const Tick bridging = TicksOf(instance).bridging;
+  if (truth == Kleene::kTrue) {
+    if (instance.open && instance.in_gap && now.tick - instance.gap.tick > bridging &&
+        !Close(instance, instance.gap))
+      return false;
+    if (!instance.open && !Open(instance, frame)) return false;
+    instance.in_gap = false;
+  } else if (instance.open) {
+    if (!instance.in_gap) {
+      instance.in_gap = true;
+      instance.gap = now;
+    }
+    // Later frames are later by a tick at least, so a gap of this length cannot be bridged any
+    // more.
+    if (now.tick - instance.gap.tick >= bridging) return Close(instance, instance.gap);
+  }
+  return true;
+}
+
+bool Engine::StepRest(RuleInstance& instance, FrameNumber frame) {
+  const Rule& rule = RuleOf(instance);
+  const Evaluator::View view{instance, frame};
+  const Kleene whole = evaluator_.Holds(rule.first, view);
+  Kleene others = Kleene::kFalse;
+  for (const int other : rule.outside) {
+    if (whole != Kleene::kFalse) others = Or(others, evaluator_.Holds(other, view));
+  }
+  const Kleene truth = And(whole, Not(others));
+  if (truth == Kleene::kUnknown) return false;
+  // Two wholes that abut are two, and so are their rests.
+  const bool new_whole =
+      truth == Kleene::kTrue && evaluator_.Begins(rule.first, view) == Kleene::kTrue;
+  if (instance.open && (truth == Kleene::kFalse || new_whole) &&
+      !Close(instance, history_.At(frame)))
+    return false;
+  return truth != Kleene::kTrue || instance.open || Open(instance, frame);
+}
+
+bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
+  const Rule& rule = RuleOf(instance);
+  const Evaluator::View view{instance, frame};
+  const auto during = [&] {
+    return rule.during == kNone ? Kleene::kTrue : evaluator_.Truth(rule.during, view);
+  };
+  if (instance.open && TicksOf(instance).within >= 0 && !MeetDeadline(instance, history_.At(frame)))
+    return false;
+  if (instance.open) {
+    const Kleene closes = evaluator_.Truth(rule.second, view);
+    if (closes == Kleene::kTrue && rule.absence) {
+      Note(instance, CandidateOutcome::Kind::kCame, {instance.begin, history_.At(frame)}, frame);
+      instance.open = false;
+    }
+    if (closes == Kleene::kTrue) return !instance.open || Close(instance, history_.At(frame));
+    const Kleene holds = during();
+    if (holds == Kleene::kFalse && !rule.or_drop) return Close(instance, history_.At(frame));
+    if (closes == Kleene::kUnknown || holds == Kleene::kUnknown) return false;
+    if (holds == Kleene::kFalse) {
+      Note(instance, CandidateOutcome::Kind::kDropped, {instance.begin, history_.At(frame)}, frame);
+      instance.open = false;
+    }
+    return true;
+  }
+  Kleene opens = evaluator_.Truth(rule.first, view);
+  if (opens == Kleene::kFalse) return true;
+  // What `during` and `to` say of @begin refers to this very frame.
+  if (!evaluator_.CaptureAnchors(instance, frame)) return false;
+  opens = And(opens, during());
+  if (opens == Kleene::kFalse) return true;
+  if (opens == Kleene::kUnknown) return false;
+  // A begin that is an end at once is no interval.
+  const Kleene closes = evaluator_.Truth(rule.second, view);
+  if (closes == Kleene::kUnknown) return false;
+  return closes == Kleene::kTrue || Open(instance, frame);
+}
+
+// What is open, but waits no longer: without the end that it waited for, it is dropped, or that is
+// what it is about.
+bool Engine::MeetDeadline(RuleInstance& instance, Moment now) {
+  const Rule& rule = RuleOf(instance);
+  const Tick deadline = instance.begin.tick + TicksOf(instance).within;
+  if (now.tick < deadline || (now.tick == deadline && !rule.absence)) return true;
+  if (!rule.absence) {
+    Note(instance, CandidateOutcome::Kind::kTooLate, {instance.begin, {now.frame, deadline}},
+         now.frame);
+    instance.open = false;
+    return true;
+  }
+  const bool just_in_time = now.tick - instance.begin.tick <= TicksOf(instance).in_time;
+  if (just_in_time && now.frame <= history_.now()) {
+    const Kleene comes = evaluator_.Truth(rule.second, {instance, now.frame});
+    if (comes != Kleene::kFalse) return comes == Kleene::kTrue;
+  }
+  return Close(instance, {now.frame, deadline});
+}
+
+bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
+  const Rule& rule = RuleOf(instance);
+  const Kleene ends = evaluator_.Truth(rule.first, {instance, frame});
+  if (ends == Kleene::kUnknown) return false;
+  if (ends == Kleene::kTrue) {
+    const WalkBack walk = ApproachBegin(instance, frame);
+    const FrameNumber begin = walk.begin;
+    if (begin == kNever) return false;
+    const CandidateOutcome::Kind kind =
+        begin < frame ? CandidateOutcome::Kind::kWalkedBack : CandidateOutcome::Kind::kNothingBack;
+    Note(instance, kind, {history_.At(begin), history_.At(frame)}, frame, walk);
+    if (begin < frame) {
+      if (!evaluator_.CaptureAnchors(instance, begin)) return false;
+      instance.style = StyleAt(instance, begin);
+      if (!Conclude(instance, {history_.At(begin), history_.At(frame)})) return false;
+    }
+    instance.last_end = instance.approach_from = frame;
+  }
+  if (!rule.referenced) return true;
+  if (evaluator_.Truth(rule.second, {instance, frame}) == Kleene::kFalse)
+    instance.approach_from = frame + 1;
+  while (instance.approach_from < frame &&
+         evaluator_.TooFarApart(rule.second, instance, instance.approach_from, frame)) {
+    ++instance.approach_from;
+  }
+  return true;
+}
+
+// How fast it moves from this frame to the next, on which the signal falls by `way`.
+std::optional<double> Engine::ApproachSpeed(RuleInstance& instance, FrameNumber frame,
+                                            FrameNumber end, double way) const {
+  const Rule& rule = RuleOf(instance);
+  if (rule.motion != kNone) return evaluator_.Number(rule.motion, {instance, frame + 1, end});
+  return way / history_.Seconds(history_.At(frame + 1).tick - history_.At(frame).tick);
+}
+
+// Walks back from `end` to where the interval begins.
+WalkBack Engine::ApproachBegin(RuleInstance& instance, FrameNumber end) const {
+  using Stop = WalkBack::Stop;
+  const Rule& rule = RuleOf(instance);
+  const Tick end_tick = history_.At(end).tick;
+  const FrameNumber back = history_.FirstNotBefore(end_tick - TicksOf(instance).back);
+  const FrameNumber earliest = std::max({back, instance.last_end, history_.first()});
+  const Stop at_earliest = earliest == instance.last_end && earliest > 0 ? Stop::kPreviousEnd
+                           : earliest == 0                               ? Stop::kFirstFrame
+                                                                         : Stop::kTooFarBack;
+  const WalkBack unknown{.begin = kNever};
+  FrameNumber begin =
+      end;  // the earliest frame of movement; if pauses do not count, the earliest frame
+  FrameNumber turn = end;           // the movement that began from the farthest point
+  std::optional<double> after = 0;  // the signal one frame later
+  if (rule.approach != kNone) after = evaluator_.Number(rule.approach, {instance, end, end});
+  if (!after) return unknown;
+  double farthest = *after;
+  FrameNumber last_progress = end;
+  for (FrameNumber frame = end - 1; frame >= earliest; --frame) {
+    const Evaluator::View view{instance, frame, end};
+    const Kleene holds = evaluator_.Truth(rule.second, view);
+    if (holds == Kleene::kUnknown) return unknown;
+    if (holds == Kleene::kFalse) return {begin, Stop::kSince, frame};
+    if (rule.approach == kNone) {
+      begin = frame;
+      continue;
+    }
+    // Read backwards, an approach moves away from its goal.
+    const std::optional<double> here = evaluator_.Number(rule.approach, view);
+    if (!here) return unknown;
+    if (*here < farthest - rule.slack) return {turn, Stop::kReceding, frame};
+    const std::optional<double> speed = ApproachSpeed(instance, frame, end, *here - *after);
+    if (!speed) return unknown;
+    if (*speed >= rule.speed) {
+      last_progress = frame;
+    } else if (rule.idle_s >= 0 &&
+               history_.At(last_progress).tick - history_.At(frame).tick > TicksOf(instance).idle) {
+      return {begin, Stop::kIdle, last_progress};
+    }
+    // The slow start of a movement belongs to it.
+    const auto moves = [&](FrameNumber since) {
+      return *speed >= rule.speed || (since == frame + 1 && *speed > rule.onset);
+    };
+    if (*here > farthest && moves(turn)) turn = frame;
+    if (rule.idle_s < 0 || moves(begin)) begin = frame;
+    farthest = std::max(farthest, *here);
+    after = here;
+  }
+  return {begin, at_earliest, earliest};
+}
+
+}  // namespace prehend::grammar

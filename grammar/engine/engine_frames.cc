@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a frame says, and the end of the episode. A whole frame is compared with the one before it;
+// from there on there are only changes.
+#include <algorithm>
+#include <tuple>
+
+#include "grammar/engine/engine.h"
+
+namespace prehend::grammar {
+namespace {
+
+// Far enough from the limits of a Tick that times can be added and subtracted.
+constexpr Tick kLatestTick = 1'000'000'000'000'000;
+
+bool Same(const EntitySample& a, const EntitySample& b) {
+  return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() &&
+         a.v_WB_m_per_s == b.v_WB_m_per_s && a.w_WB_rad_per_s == b.w_WB_rad_per_s &&
+         a.joint_position == b.joint_position && a.joint_fraction == b.joint_fraction &&
+         a.gazes_at == b.gazes_at;
+}
+
+bool SamePose(const HandSample& a, const HandAtFrame& b) {
+  const auto same = [](const CollisionSphere& x, const CollisionSphere& y) {
+    return x.p_W_m == y.p_W_m && x.radius_m == y.radius_m;
+  };
+  return a.style == b.look.style && a.ahead_W == b.look.ahead_W &&
+         std::equal(a.collision_spheres.begin(), a.collision_spheres.end(),
+                    b.collision_spheres.begin(), b.collision_spheres.end(), same);
+}
+
+bool Same(const Touch& a, bool swapped, const TouchSample& b) {
+  return a.up_on_a == b.up[swapped ? 1 : 0] && a.up_on_b == b.up[swapped ? 0 : 1] &&
+         a.normal_force_n == b.force_n && a.vertical_speed_m_per_s == b.vertical_speed_m_per_s &&
+         a.sensor_sets == b.sensor_sets;
+}
+
+}  // namespace
+
+std::string_view Engine::WhyNoTick(Tick tick) const {
+  if (tick > kLatestTick || tick < -kLatestTick) return "a frame's tick is too large";
+  if (history_.now() >= 0 && tick <= history_.At(history_.now()).tick)
+    return "the frames are not in order of time";
+  return {};
+}
+
+std::string_view Engine::WhyNotWatchable(const Frame& frame) {
+  if (static_cast<int>(frame.entities.size()) != entity_count_)
+    return "a frame shows another number of entities than the entity table";
+  int last_hand = kNoEntity;
+  for (const HandSample& hand : frame.hands) {
+    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the entity table";
+    if (hand.entity <= last_hand)
+      return "a frame shows a hand twice, or its hands are not in the order of the entity table";
+    last_hand = hand.entity;
+  }
+  return WhyNoTouches(frame.touches);
+}
+
+std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) {
+  for (const EntityChange& change : changes.entities) {
+    if (!IsEntity(change.entity)) return "a frame shows somebody who is not in the entity table";
+  }
+  for (const HandSample& hand : changes.hands) {
+    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the entity table";
+  }
+  for (const ContactEnd& contact_end : changes.contact_ends) {
+    if (!IsEntity(contact_end.a) || !IsEntity(contact_end.b))
+      return "a frame shows a contact end of somebody not in the entity table";
+  }
+  return WhyNoTouches(changes.touches);
+}
+
+// Looks up their instances, too: one look-up does not wait for another one, as it would between
+// changes.
+std::string_view Engine::WhyNoTouches(std::span<const Touch> touches) {
+  pressed_.clear();
+  for (const Touch& touch : touches) {
+    if (touch.a < 0 || touch.a >= touch.b || touch.b >= entity_count_) {
+      return "a frame shows a touch of somebody not in the entity table";
+    }
+    const int instance = instances_.FindTouch(touch.a, touch.b);
+    if (instance != kNone) instances_.Fetch(instance);
+    pressed_.push_back(instance);
+  }
+  return {};
+}
+
+void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
+  if (!BeginFrame(frame, out)) return;
+  for (std::size_t i = 0; i < frame.entities.size(); ++i) {
+    const int entity = static_cast<int>(i);
+    if (!Same(frame.entities[i], history_.Look(entity, history_.now())))
+      Look(entity, frame.entities[i]);
+  }
+  for (const HandSample& hand : frame.hands) Look(hand);
+  ApplyContacts(frame.touches);
+  // A touch that this frame does not show has ended.
+  for (std::size_t i = touching_.size(); i-- > 0;) Part(touching_[i]);
+  EndFrame();
+}
+
+void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
+  if (!BeginFrame(changes, out)) return;
+  for (const EntityChange& change : changes.entities) Look(change.entity, change.look);
+  for (const HandSample& hand : changes.hands) Look(hand);
+  ApplyContacts(changes.touches);
+  for (const ContactEnd& contact_end : changes.contact_ends) {
+    const int index = instances_.FindTouch(contact_end.a, contact_end.b);
+    if (index != kNone && instances_[index].open) Part(index);
+  }
+  EndFrame();
+}
+
+template <typename AnyFrame>
+bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
+  if (!error_.empty() || finishing_) return false;
+  std::string_view why_not = WhyNoTick(frame.tick);
+  if (why_not.empty()) why_not = WhyNotWatchable(frame);
+  if (!why_not.empty()) {
+    error_ = why_not;
+    return false;
+  }
+  out_ = &out;
+  first_new_ = out.size();
+  decided_ = frame.tick;
+  history_.BeginFrame(frame.tick);
+  oldest_needed_ = oldest_look_needed_ = history_.now();
+  RingAlarms();
+  return true;
+}
+
+void Engine::EndFrame() {
+  for (const int rule : program_->schedule) {
+    if (!awake_[rule].empty()) StepRule(rule);
+  }
+  ForgetThePast();
+  FreeInstances();
+  if (instances_.TooMany()) error_ = instances_.WhyTooMany();
+  SortNewEvents();
+}
+
+void Engine::SortNewEvents() {
+  const auto before = [](const Event& a, const Event& b) {
+    return std::tie(a.decided, a.interval.begin, a.rule, a.roles) <
+           std::tie(b.decided, b.interval.begin, b.rule, b.roles);
+  };
+  const auto first = out_->begin() + static_cast<std::ptrdiff_t>(first_new_);
+  if (!std::is_sorted(first, out_->end(), before)) std::sort(first, out_->end(), before);
+  out_ = nullptr;
+}
+
+void Engine::Finish(Tick end, std::vector<Event>& out) {
+  if (!error_.empty() || finishing_ || history_.now() < 0) return;
+  finishing_ = true;
+  history_.Complete();
+  out_ = &out;
+  first_new_ = out.size();
+  // The episode's last frame belongs to it, so its end is later.
+  const Moment last{history_.now() + 1,
+                    std::clamp(end, history_.At(history_.now()).tick + 1, kLatestTick + 1)};
+  decided_ = last.tick;
+  for (const int touching : touching_) CloseTouch(instances_[touching], last);
+  // What rests is decided; if it is open, it ends now.
+  for (int i = 0; i < instances_.size(); ++i) {
+    RuleInstance& instance = instances_[i];
+    if (instance.rule == kNone || instance.awake || !instance.open) continue;
+    Wake(i);
+    instance.next = history_.now() + 1;
+  }
+  for (const int rule : program_->schedule) {
+    for (const int instance : awake_[rule]) FinishInstance(instances_[instance], last);
+    awake_[rule].clear();
+  }
+  SortNewEvents();
+}
+
+void Engine::Look(int entity, const EntitySample& look) {
+  history_.SetSample(entity, look);
+  WakeWatchers(instances_.PoseWatchers(entity));
+}
+
+void Engine::Look(const HandSample& hand) {
+  const HandAtFrame* before = history_.Hand(hand.entity, history_.now());
+  const bool same_grip = before != nullptr && before->look.trigger == hand.trigger;
+  const bool same_pose = before != nullptr && SamePose(hand, *before);
+  if (same_grip && same_pose) return;
+  const ThresholdSet beyond = thresholds_.OfGrip(hand.trigger);
+  const ThresholdSet crossed =
+      before == nullptr ? ~ThresholdSet{0} : kAnyChange | (beyond ^ before->beyond);
+  history_.SetHand(hand, beyond);
+  grips_[hand.entity] = beyond;
+  for (const Watch& watch : instances_.GripWatchers(hand.entity)) {
+    const RuleInstance& instance = instances_[watch.instance];
+    if (same_grip || instance.awake || (RuleOf(instance).watches_grips & crossed) == 0) continue;
+    if (MayWake(instance) && !SaysTheSame(instance)) Wake(watch.instance);
+  }
+  WakeWatchers(instances_.PoseWatchers(hand.entity));
+}
+
+void Engine::ApplyContacts(std::span<const Touch> touches) {
+  const FrameNumber now = history_.now();
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const Touch& touch = touches[i];
+    const int index =
+        pressed_[i] != kNone
+            ? pressed_[i]
+            : instances_.Ensure(kTouchingRule, {touch.a, touch.b, kNoEntity, kNoEntity});
+    if (index == kNone) continue;
+    RuleInstance& instance = instances_[index];
+    if (instance.touched == now) continue;  // said twice
+    instance.touched = now;
+    const bool swapped = instance.entities[0] != touch.a;
+    const ThresholdSet beyond = thresholds_.OfTouch(
+        swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b,
+        touch.normal_force_n, touch.vertical_speed_m_per_s, touch.sensor_sets);
+    const ThresholdSet crossed = beyond ^ instance.beyond;
+    if (instance.open &&
+        (keeps_touches_ ? Same(touch, swapped, instance.touches.back()) : crossed == 0))
+      continue;
+    instance.beyond = beyond;
+    if (recalls_touches_) Keep(instance, touch, swapped);
+    instance.open ? NotifyOfThresholds(instance, crossed | kAnyChange) : BeginTouch(instance);
+  }
+}
+
+void Engine::Keep(RuleInstance& touching, const Touch& touch, bool swapped) {
+  ForgetSamples(touching.beyonds, history_.first_look());
+  touching.beyonds.PushBack() = {history_.now(), touching.beyond};
+  if (!keeps_touches_) return;
+  ForgetSamples(touching.touches, history_.first_look());
+  TouchSample& sample = touching.touches.PushBack();
+  sample.frame = history_.now();
+  sample.up =
+      swapped ? std::array{touch.up_on_b, touch.up_on_a} : std::array{touch.up_on_a, touch.up_on_b};
+  sample.force_n = touch.normal_force_n;
+  sample.vertical_speed_m_per_s = touch.vertical_speed_m_per_s;
+  sample.sensor_sets = touch.sensor_sets;
+}
+
+void Engine::BeginTouch(RuleInstance& touching) {
+  touching.open = touching.certain = true;
+  touching.begin = history_.At(history_.now());
+  touching.touching_place = touching_.size();
+  touching_.push_back(touching.index);
+  touching.reported = Kleene::kTrue;
+  NotifyWatchers(touching);
+}
+
+// The two touch as before, but press otherwise: these thresholds were crossed.
+void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed) {
+  for (const Watcher& watcher : touch.watchers) {
+    if ((watcher.press & crossed) == 0) continue;
+    RuleInstance& watching = instances_[watcher.instance];
+    if (watching.awake) continue;
+    if (watcher.instant != nullptr) {
+      Measure(watching, watcher, touch);
+    } else if (!SaysTheSame(watching) && MayWake(watching)) {
+      Wake(watcher.instance);
+    }
+  }
+}
+
+// The rest of what a resting instance asks for is known already: hands are looked at before touches
+// are, and no touch is told of twice. So its interval begins or ends here and now, if something has
+// changed.
+void Engine::BeginOrEnd(RuleInstance& instance) {
+  const Moment now = history_.At(history_.now());
+  if (instance.open) {
+    Close(instance, now);
+    RestOn(instance);
+  } else {
+    Begin(instance, now.frame);
+    instance.certain = TicksOf(instance).lasting == 0;
+  }
+  instance.known = kNever;
+  instance.reported = Known(instance.open);
+  NotifyWatchers(instance);
+}
+
+void Engine::Part(int touching) {
+  RuleInstance& instance = instances_[touching];
+  if (instance.touched == history_.now()) return;
+  CloseTouch(instance, history_.At(history_.now()));
+  touching_[instance.touching_place] = touching_.back();
+  instances_[touching_.back()].touching_place = instance.touching_place;
+  touching_.pop_back();
+  instance.reported = Kleene::kFalse;
+  NotifyWatchers(instance);
+  RestOn(instance);
+}
+
+void Engine::CloseTouch(RuleInstance& instance, Moment end) {
+  Keep(instance, {instance.begin, end});
+  instance.open = false;
+}
+
+}  // namespace prehend::grammar

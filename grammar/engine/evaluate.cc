@@ -1,0 +1,534 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/engine/evaluate.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace prehend::grammar {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kBoundless = std::numeric_limits<double>::infinity();
+
+// From a point in the world to the oriented bounding box of an entity; 0 inside.
+double DistanceToBox(const Vector3d& p_W, const EntityInfo& member, const EntitySample& look) {
+  const Vector3d p_B = look.q_WB.conjugate() * (p_W - look.p_WB_m);
+  const Vector3d outside = ((p_B - member.p_BC_m).cwiseAbs() - member.half_size_m).cwiseMax(0);
+  return outside.norm();
+}
+
+bool IsPosition(const Program& program, int node) {
+  switch (program.nodes[node].op) {
+    case Op::kPosition:
+    case Op::kPositionOn:
+    case Op::kAhead:
+      return true;
+    case Op::kAtEnd:
+      return IsPosition(program, program.nodes[node].args[0]);
+    default:
+      return false;
+  }
+}
+
+/// Directly, or through other parts. A recording may have rings of them, hence the bound.
+bool IsPartOf(const EntityTable& entity_table, int part, int whole) {
+  for (std::size_t depth = 0; depth < entity_table.entities.size() && part != kNoEntity; ++depth) {
+    part = entity_table.entities[static_cast<std::size_t>(part)].part_of;
+    if (part == whole) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Kleene Evaluator::Truth(int index, const View& view) const {
+  const Node& node = program_.nodes[index];
+  switch (node.op) {
+    case Op::kAnd: {
+      const Kleene left = Truth(node.args[0], view);
+      return left == Kleene::kFalse ? left : And(left, Truth(node.args[1], view));
+    }
+    case Op::kOr: {
+      const Kleene left = Truth(node.args[0], view);
+      return left == Kleene::kTrue ? left : Or(left, Truth(node.args[1], view));
+    }
+    case Op::kNot:
+      return Not(Truth(node.args[0], view));
+    case Op::kHolds:
+      return Holds(node.slot, view);
+    case Op::kBegins:
+    case Op::kEnds:
+      return Edge(node, view);
+    case Op::kInSphere:
+    case Op::kBoxInSphere:
+    case Op::kInCylinder: {
+      const std::optional<Reach> reach = ReachOf(node, view);
+      return reach ? Known(reach->IsInside()) : Kleene::kUnknown;
+    }
+    case Op::kInside:
+      return Known(IsInside(node, view));
+    case Op::kPartOf:
+      return Known(IsPartOf(entity_table_, Entity(node, view, 0), Entity(node, view, 1)));
+    case Op::kGazed:
+      return Known(history_.Look(Entity(node, view, 0), view.frame).gazes_at ==
+                   Entity(node, view, 1));
+    case Op::kSensorSet:
+      return Known(SensorSet(node, view));
+    case Op::kIsA:
+      return Known(instances_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));
+    default:
+      return Compare(node, view);
+  }
+}
+
+bool Evaluator::IsInside(const Node& node, const View& view) const {
+  const auto who = static_cast<std::size_t>(Entity(node, view, 0)),
+             room = static_cast<std::size_t>(Entity(node, view, 1));
+  const EntityInfo& of = entity_table_.entities[room];
+  const EntitySample& look = history_.Look(static_cast<int>(who), view.frame);
+  const EntitySample& at = history_.Look(static_cast<int>(room), view.frame);
+  const Vector3d centre_W = look.p_WB_m + look.q_WB * entity_table_.entities[who].p_BC_m;
+  const Vector3d away_m = at.q_WB.conjugate() * (centre_W - at.p_WB_m) - of.p_BC_m;
+  if (of.round) return away_m.norm() <= of.half_size_m.x();
+  return (away_m.cwiseAbs().array() <= of.half_size_m.array()).all();
+}
+
+Kleene Evaluator::Holds(int slot, const View& view) const {
+  return instances_.TruthAt(instances_.Resolve(view.instance, slot), view.frame);
+}
+
+Kleene Evaluator::Begins(int slot, const View& view) const {
+  return AtAnInstant(instances_.BeginsAt(instances_.Resolve(view.instance, slot), view.frame));
+}
+
+// What is true here only will be false at the next frame, where its parts are as they are.
+Kleene Evaluator::AtAnInstant(Kleene truth) const {
+  depends_on_time_ = depends_on_time_ || truth == Kleene::kTrue;
+  return truth;
+}
+
+// Of a reference: one of its intervals begins or ends here. Of any other condition: it changes
+// here.
+Kleene Evaluator::Edge(const Node& node, const View& view) const {
+  const bool begins = node.op == Op::kBegins;
+  const Node& arg = program_.nodes[node.args[0]];
+  if (arg.op == Op::kHolds) {
+    const int instance = instances_.Resolve(view.instance, arg.slot);
+    return AtAnInstant(begins ? instances_.BeginsAt(instance, view.frame)
+                              : instances_.EndsAt(instance, view.frame));
+  }
+  const Kleene now = Truth(node.args[0], view);
+  const Kleene wanted = begins ? now : Not(now);
+  if (wanted == Kleene::kFalse) return wanted;
+  depends_on_time_ =
+      depends_on_time_ ||
+      now == Kleene::kUnknown;  // even if there is no change here, the next frame looks back at it
+  const bool is_first = view.frame == 0;
+  Kleene before = Kleene::kFalse;
+  if (!is_first)
+    before =
+        Truth(node.args[0], {.instance = view.instance, .frame = view.frame - 1, .end = view.end});
+  return AtAnInstant(And(wanted, begins ? Not(before) : before));
+}
+
+// What is measured was compared when it was seen.
+Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const {
+  const Node& value = program_.nodes[by.value];
+  bool swapped = false;
+  ThresholdSet beyond = 0;
+  if (value.op == Op::kTrigger) {
+    const HandAtFrame* hand = history_.Hand(Entity(value, view, 0), view.frame);
+    beyond = hand != nullptr ? hand->beyond : thresholds_.OfGrip(0);
+  } else {
+    const RuleInstance* touching = Touching(value, view, swapped);
+    const bool is_now = view.frame == history_.now() && touching != nullptr && touching->open;
+    beyond = touching == nullptr ? thresholds_.OfNoTouch()
+             : is_now            ? touching->beyond
+                                 : SampleAt(touching->beyonds, view.frame).beyond;
+  }
+  return Known((((beyond >> by.thresholds[swapped ? 1 : 0]) & 1) != 0) == by.beyond);
+}
+
+Kleene Evaluator::Compare(const Node& node, const View& view) const {
+  if (node.by_threshold.value != kNone) return CompareMeasured(node.by_threshold, view);
+  const std::optional<double> left = Number(node.args[0], view);
+  if (!left) return Kleene::kUnknown;
+  const std::optional<double> right = Number(node.args[1], view);
+  if (!right) return Kleene::kUnknown;
+  switch (node.op) {
+    case Op::kLess:
+      return Known(*left < *right);
+    case Op::kLessEqual:
+      return Known(*left <= *right);
+    case Op::kGreater:
+      return Known(*left > *right);
+    case Op::kGreaterEqual:
+      return Known(*left >= *right);
+    case Op::kEqual:
+      return Known(*left == *right);
+    default:
+      return Known(*left != *right);
+  }
+}
+
+std::optional<Evaluator::Reach> Evaluator::ReachOf(const Node& node, const View& view) const {
+  const bool box = node.op == Op::kBoxInSphere;
+  const std::optional<Vector3d> centre = Position(node.args[box ? 0 : 1], view);
+  const std::optional<double> radius = Number(node.args[box ? 1 : 2], view);
+  if (!centre || !radius) return std::nullopt;
+  if (box) {
+    const int entity = Entity(node, view, 0);
+    const double distance =
+        DistanceToBox(*centre, entity_table_.entities[entity], history_.Look(entity, view.frame));
+    return Reach{.distance_m = distance, .radius_m = *radius};
+  }
+  const std::optional<Vector3d> point = Position(node.args[0], view);
+  if (!point) return std::nullopt;
+  const Vector3d offset = *point - *centre;
+  if (node.op == Op::kInSphere) return Reach{.distance_m = offset.norm(), .radius_m = *radius};
+  const std::optional<double> height = Number(node.args[3], view);
+  if (!height) return std::nullopt;
+  return Reach{.distance_m = offset.head<2>().norm(),
+               .radius_m = *radius,
+               .height_m = std::abs(offset.z()),
+               .most_height_m = *height};
+}
+
+bool Evaluator::TooFarApart(int index, RuleInstance& instance, FrameNumber early,
+                            FrameNumber late) const {
+  const Node& node = program_.nodes[index];
+  if (node.op == Op::kAnd) {
+    return TooFarApart(node.args[0], instance, early, late) ||
+           TooFarApart(node.args[1], instance, early, late);
+  }
+  const bool sphere = node.op == Op::kInSphere;
+  if ((!sphere && node.op != Op::kInCylinder) || program_.nodes[node.args[1]].op != Op::kAtEnd)
+    return false;
+  const std::optional<Vector3d> from =
+      Position(node.args[0], {.instance = instance, .frame = early});
+  const std::optional<Vector3d> to = Position(node.args[0], {.instance = instance, .frame = late});
+  const std::optional<double> radius = Number(node.args[2], {.instance = instance, .frame = late});
+  if (!from || !to || !radius) return false;
+  const Vector3d offset = *to - *from;
+  if (sphere) return offset.norm() > 2 * *radius;
+  const std::optional<double> height = Number(node.args[3], {.instance = instance, .frame = late});
+  return height && (offset.head<2>().norm() > 2 * *radius || std::abs(offset.z()) > 2 * *height);
+}
+
+std::optional<double> Evaluator::Number(int index, const View& view) const {
+  const Node& node = program_.nodes[index];
+  switch (node.op) {
+    case Op::kNumber:
+      return node.number;
+    case Op::kAtBegin:
+      return view.instance.anchors[3 * node.slot];
+    case Op::kAtEnd:
+      if (!view.end) return std::nullopt;
+      return Number(node.args[0], {.instance = view.instance, .frame = *view.end, .end = view.end});
+    case Op::kDistance: {
+      const std::optional<Vector3d> a = Position(node.args[0], view);
+      const std::optional<Vector3d> b = Position(node.args[1], view);
+      if (!a || !b) return std::nullopt;
+      return (*a - *b).norm();
+    }
+    case Op::kDistanceAlong: {
+      const std::optional<Vector3d> a = Position(node.args[0], view);
+      const std::optional<Vector3d> b = Position(node.args[1], view);
+      if (!a || !b) return std::nullopt;
+      return (history_.Look(Entity(node, view, 0), view.frame).q_WB * (*a - *b)).head<2>().norm();
+    }
+    case Op::kHeight: {
+      const std::optional<Vector3d> position = Position(node.args[0], view);
+      if (!position) return std::nullopt;
+      return position->z();
+    }
+    case Op::kAdd:
+    case Op::kSubtract:
+    case Op::kMultiply:
+    case Op::kDivide:
+    case Op::kNegate:
+    case Op::kAbs:
+      return Arithmetic(node, view);
+    case Op::kDriftAlong:
+      return DriftAlong(node, view);
+    case Op::kTurnRate:
+      return TurnRate(node, view);
+    case Op::kRate:
+      return Rate(node, view);
+    default:
+      return SignalOf(node, view);
+  }
+}
+
+std::optional<double> Evaluator::Arithmetic(const Node& node, const View& view) const {
+  const std::optional<double> left = Number(node.args[0], view);
+  if (!left) return std::nullopt;
+  if (node.op == Op::kNegate) return -*left;
+  if (node.op == Op::kAbs) return std::abs(*left);
+  const std::optional<double> right = Number(node.args[1], view);
+  if (!right) return std::nullopt;
+  switch (node.op) {
+    case Op::kAdd:
+      return *left + *right;
+    case Op::kSubtract:
+      return *left - *right;
+    case Op::kMultiply:
+      return *left * *right;
+    default:
+      return *left / *right;
+  }
+}
+
+double Evaluator::SignalOf(const Node& node, const View& view) const {
+  const FrameNumber frame = view.frame;
+  const int a = Entity(node, view, 0);
+  const int b = node.roles[1] == kNone ? kNoEntity : Entity(node, view, 1);
+  bool swapped = false;
+  switch (node.op) {
+    case Op::kTrigger: {
+      const HandAtFrame* hand = history_.Hand(a, frame);
+      return hand == nullptr ? 0 : hand->look.trigger;
+    }
+    case Op::kSensorSets: {
+      const TouchSample* touch = Touch(node, view, swapped);
+      return touch == nullptr ? 0 : std::popcount(touch->sensor_sets);
+    }
+    case Op::kUp: {
+      const TouchSample* touch = Touch(node, view, swapped);
+      return touch == nullptr ? -1 : touch->up[swapped ? 1 : 0];
+    }
+    case Op::kForceBetween: {
+      const TouchSample* touch = Touch(node, view, swapped);
+      return touch == nullptr ? 0 : touch->force_n;
+    }
+    case Op::kTouchSpeed: {
+      const TouchSample* touch = Touch(node, view, swapped);
+      return touch == nullptr ? 0 : touch->vertical_speed_m_per_s;
+    }
+    case Op::kGap:
+      return Gap(a, b, frame);
+    case Op::kClosingSpeed:
+      return ClosingSpeed(a, b, frame);
+    case Op::kSurfaceSpeed:
+      return SurfaceSpeed(a, frame);
+    case Op::kSpeed:
+      return history_.Look(a, frame).v_WB_m_per_s.norm();
+    case Op::kVerticalSpeed:
+      return history_.Look(a, frame).v_WB_m_per_s.z();
+    case Op::kRelativeVerticalSpeed:
+      return RelativeVelocity(a, b, frame).z();
+    case Op::kSpeedAlong:
+      return RelativeVelocity(a, b, frame).head<2>().norm();
+    case Op::kTilt: {
+      const double up = (history_.Look(a, frame).q_WB * Vector3d::UnitZ()).z();
+      return std::acos(std::clamp(up, -1.0, 1.0));
+    }
+    case Op::kJointFraction:
+      return history_.Look(a, frame).joint_fraction;
+    case Op::kJointAngle:
+    case Op::kJointTravel:
+      return history_.Look(a, frame).joint_position;
+    case Op::kWeight:
+      return Weight(a);
+    case Op::kStrength:
+      return entity_table_.entities[a].strength_n > 0 ? entity_table_.entities[a].strength_n
+                                                      : kBoundless;
+    default:
+      return 0;
+  }
+}
+
+double Evaluator::Weight(int entity) const {
+  constexpr double kGravity_m_per_s2 = 9.81;
+  return instances_.IsA(entity, "Fixed")
+             ? kBoundless
+             : entity_table_.entities[entity].mass_kg * kGravity_m_per_s2;
+}
+
+bool Evaluator::SensorSet(const Node& node, const View& view) const {
+  bool swapped = false;
+  const TouchSample* touch = Touch(node, view, swapped);
+  if (touch == nullptr) return false;
+  int set = static_cast<int>(node.number) - 1;
+  if (node.name != kNone) {
+    const std::vector<std::string>& names =
+        entity_table_.entities[Entity(node, view, 0)].sensor_sets;
+    const auto found = std::find(names.begin(), names.end(), program_.sensor_sets[node.name].name);
+    set = found == names.end() ? kNone : static_cast<int>(found - names.begin());
+  }
+  return set >= 0 && set < 32 && ((touch->sensor_sets >> set) & 1U) != 0;
+}
+
+double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
+  const HandAtFrame* sample = history_.Hand(hand, frame);
+  if (sample == nullptr) return 0;
+  const EntitySample& look = history_.Look(object, frame);
+  double gap = std::numeric_limits<double>::infinity();
+  for (const CollisionSphere& collision_sphere : sample->collision_spheres) {
+    gap =
+        std::min(gap, DistanceToBox(collision_sphere.p_W_m, entity_table_.entities[object], look) -
+                          collision_sphere.radius_m);
+  }
+  return std::max(gap, 0.0);
+}
+
+double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
+  depends_on_time_ = true;
+  if (frame <= history_.first()) return 0;
+  const double seconds = history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
+  return (Gap(hand, object, frame - 1) - Gap(hand, object, frame)) / seconds;
+}
+
+double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
+  depends_on_time_ = true;
+  if (frame <= history_.first()) return 0;
+  const HandAtFrame* now = history_.Hand(hand, frame);
+  const HandAtFrame* before = history_.Hand(hand, frame - 1);
+  if (now == nullptr || before == nullptr) return 0;
+  double farthest = 0;
+  for (std::size_t i = 0;
+       i < std::min(now->collision_spheres.size(), before->collision_spheres.size()); ++i) {
+    farthest = std::max(
+        farthest, (now->collision_spheres[i].p_W_m - before->collision_spheres[i].p_W_m).norm());
+  }
+  return farthest / history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
+}
+
+// From the last frame that is half the window earlier to the first one that is half the window
+// later; at the episode's begin and end it is cut off. Nothing while the later frame is still to
+// come.
+std::optional<Evaluator::Window> Evaluator::WindowAround(FrameNumber frame, double seconds) const {
+  depends_on_time_ = true;
+  const Tick now = history_.At(frame).tick;
+  const Tick half = history_.AtLeastTicks(seconds / 2);
+  const Window window{history_.LastNotAfter(now - half),
+                      std::min(history_.FirstNotBefore(now + half), history_.now())};
+  if (history_.At(window.late).tick < now + half && !history_.complete()) return std::nullopt;
+  return window;
+}
+
+double Evaluator::SecondsBetween(FrameNumber early, FrameNumber late) const {
+  return history_.Seconds(history_.At(late).tick - history_.At(early).tick);
+}
+
+std::optional<double> Evaluator::Rate(const Node& node, const View& view) const {
+  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  if (!window) return std::nullopt;
+  if (window->early == window->late) return 0;
+  const std::optional<double> before =
+      Number(node.args[0], {.instance = view.instance, .frame = window->early, .end = view.end});
+  const std::optional<double> after =
+      Number(node.args[0], {.instance = view.instance, .frame = window->late, .end = view.end});
+  if (!before || !after) return std::nullopt;
+  return (*after - *before) / SecondsBetween(window->early, window->late);
+}
+
+// The way of a as seen from b between two frames, turned to where b is now, without its upright
+// part.
+Vector2d Evaluator::WayOn(const Node& node, const View& view, FrameNumber early,
+                          FrameNumber late) const {
+  const int a = Entity(node, view, 0);
+  const int b = Entity(node, view, 1);
+  const Vector3d way_W =
+      history_.Look(b, view.frame).q_WB * (PositionOn(a, b, late) - PositionOn(a, b, early));
+  return way_W.head<2>();
+}
+
+std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) const {
+  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  if (!window) return std::nullopt;
+  if (window->early == window->late) return 0;
+  return WayOn(node, view, window->early, window->late).norm() /
+         SecondsBetween(window->early, window->late);
+}
+
+// The angle between the way in the first and the way in the second half of the window, per time
+// between their middles.
+std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) const {
+  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  if (!window) return std::nullopt;
+  const Vector2d before = WayOn(node, view, window->early, view.frame);
+  const Vector2d after = WayOn(node, view, view.frame, window->late);
+  const std::optional<double> shortest_m = Number(node.args[0], view);
+  if (!shortest_m) return std::nullopt;
+  if (before.norm() < *shortest_m || after.norm() < *shortest_m) return 0;  // it has no direction
+  const double left_rad =
+      std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
+  return left_rad / (SecondsBetween(window->early, window->late) / 2);
+}
+
+Vector3d Evaluator::PositionOn(int a, int b, FrameNumber frame) const {
+  const EntitySample& on = history_.Look(b, frame);
+  return on.q_WB.conjugate() * (history_.Look(a, frame).p_WB_m - on.p_WB_m);
+}
+
+// Of a's origin, against the point of b that is there: turning counts, so a tray may turn under a
+// cup.
+Vector3d Evaluator::RelativeVelocity(int a, int b, FrameNumber frame) const {
+  const EntitySample& look_a = history_.Look(a, frame);
+  const EntitySample& look_b = history_.Look(b, frame);
+  const Vector3d arm = look_a.p_WB_m - look_b.p_WB_m;
+  return look_a.v_WB_m_per_s - (look_b.v_WB_m_per_s + look_b.w_WB_rad_per_s.cross(arm));
+}
+
+// Null where the two do not touch.
+const RuleInstance* Evaluator::Touching(const Node& node, const View& view, bool& swapped) const {
+  const int index = instances_.Resolve(view.instance, node.slot);
+  if (instances_.TruthAt(index, view.frame) != Kleene::kTrue) return nullptr;
+  const RuleInstance& instance = instances_[index];
+  swapped = instance.entities[0] != Entity(node, view, 0);
+  return &instance;
+}
+
+// Likewise.
+const TouchSample* Evaluator::Touch(const Node& node, const View& view, bool& swapped) const {
+  const RuleInstance* touching = Touching(node, view, swapped);
+  return touching == nullptr ? nullptr : &SampleAt(touching->touches, view.frame);
+}
+
+std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
+  const Node& node = program_.nodes[index];
+  switch (node.op) {
+    case Op::kAtBegin:
+      return Eigen::Map<const Vector3d>(view.instance.anchors.data() + 3 * node.slot);
+    case Op::kAtEnd:
+      if (!view.end) return std::nullopt;
+      return Position(node.args[0],
+                      {.instance = view.instance, .frame = *view.end, .end = view.end});
+    case Op::kPositionOn:
+      return PositionOn(Entity(node, view, 0), Entity(node, view, 1), view.frame);
+    case Op::kAhead: {
+      const int entity = Entity(node, view, 0);
+      const HandAtFrame* hand = history_.Hand(entity, view.frame);
+      const std::optional<double> distance = Number(node.args[0], view);
+      if (!distance) return std::nullopt;
+      const Vector3d ahead_W = hand == nullptr ? Vector3d(Vector3d::UnitX()) : hand->look.ahead_W;
+      return history_.Look(entity, view.frame).p_WB_m + *distance * ahead_W;
+    }
+    default:
+      return history_.Look(Entity(node, view, 0), view.frame).p_WB_m;
+  }
+}
+
+bool Evaluator::CaptureAnchors(RuleInstance& instance, FrameNumber frame) const {
+  const std::vector<int>& anchors = program_.rules[instance.rule].anchors;
+  const View view{.instance = instance, .frame = frame};
+  for (std::size_t i = 0; i < anchors.size(); ++i) {
+    if (IsPosition(program_, anchors[i])) {
+      const std::optional<Vector3d> value = Position(anchors[i], view);
+      if (!value) return false;
+      std::copy(value->data(), value->data() + 3,
+                instance.anchors.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    } else {
+      const std::optional<double> value = Number(anchors[i], view);
+      if (!value) return false;
+      instance.anchors[3 * i] = *value;
+    }
+  }
+  return true;
+}
+
+}  // namespace prehend::grammar

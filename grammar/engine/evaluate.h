@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// The value of an expression for one binding at one remembered frame.
+// Tested by tests/grammar/engine/signals_test.cc
+#pragma once
+
+#include <optional>
+
+#include "grammar/engine/instances.h"
+
+namespace prehend::grammar {
+
+class Evaluator {
+ public:
+  Evaluator(const Program& program, const EntityTable& entity_table, const History& history,
+            RuleInstances& instances)
+      : program_(program),
+        entity_table_(entity_table),
+        history_(history),
+        instances_(instances),
+        thresholds_(program.thresholds) {}
+
+  /// Whose roles, at which frame, and at which frame the interval ends, if that is known.
+  struct View {
+    RuleInstance& instance;
+    FrameNumber frame = 0;
+    std::optional<FrameNumber> end = std::nullopt;
+  };
+
+  /// kUnknown while it depends on truths that are not final, on an end that is not known, or on
+  /// frames to come.
+  Kleene Truth(int node, const View& view) const;
+  /// nullopt only for values at an end that is not known, or that depend on frames to come.
+  std::optional<double> Number(int node, const View& view) const;
+  std::optional<Eigen::Vector3d> Position(int node, const View& view) const;
+
+  /// How far something is from the centre of a region, and how far it may be; of a sphere, the
+  /// height does not count.
+  struct Reach {
+    double distance_m = 0;
+    double radius_m = 0;
+    double height_m = 0;
+    double most_height_m = 0;
+    bool IsInside() const { return distance_m <= radius_m && height_m <= most_height_m; }
+  };
+  /// Of a node that tests for a region; nullopt like Number().
+  std::optional<Reach> ReachOf(const Node& node, const View& view) const;
+
+  /// The truth of reference `slot` at the view's frame.
+  Kleene Holds(int slot, const View& view) const;
+  Kleene Begins(int slot, const View& view) const;
+
+  /// True if no interval can hold at both frames, wherever it will end: both would have to lie in
+  /// one region anchored at the end, and they are too far apart for that. False if this cannot be
+  /// told.
+  bool TooFarApart(int node, RuleInstance& instance, FrameNumber early, FrameNumber late) const;
+
+  /// Whether a value asked for since ResetTimeDependence() may change with time alone, though
+  /// nothing that it is made of changes: an instant that is over one frame later, a speed from
+  /// frame to frame, a window of time.
+  bool depends_on_time() const { return depends_on_time_; }
+  void ResetTimeDependence() { depends_on_time_ = false; }
+  void MarkTimeDependent() { depends_on_time_ = true; }
+
+  /// Keeps the values of all anchors of the instance's rule at this frame. False while one is not
+  /// known.
+  [[nodiscard]] bool CaptureAnchors(RuleInstance& instance, FrameNumber frame) const;
+
+ private:
+  Kleene AtAnInstant(Kleene truth) const;
+  Kleene Edge(const Node& node, const View& view) const;
+  Kleene Compare(const Node& node, const View& view) const;
+  Kleene CompareMeasured(const ByThreshold& by, const View& view) const;
+  std::optional<double> Arithmetic(const Node& node, const View& view) const;
+  double SignalOf(const Node& node, const View& view) const;
+  double Gap(int hand, int object, FrameNumber frame) const;
+  double ClosingSpeed(int hand, int object, FrameNumber frame) const;
+  double SurfaceSpeed(int hand, FrameNumber frame) const;
+  bool SensorSet(const Node& node, const View& view) const;
+  bool IsInside(const Node& node, const View& view) const;
+  double Weight(int entity) const;
+  struct Window {
+    FrameNumber early = 0;
+    FrameNumber late = 0;
+  };
+  std::optional<Window> WindowAround(FrameNumber frame, double seconds) const;
+  double SecondsBetween(FrameNumber early, FrameNumber late) const;
+  Eigen::Vector2d WayOn(const Node& node, const View& view, FrameNumber early,
+                        FrameNumber late) const;
+  std::optional<double> Rate(const Node& node, const View& view) const;
+  std::optional<double> DriftAlong(const Node& node, const View& view) const;
+  std::optional<double> TurnRate(const Node& node, const View& view) const;
+  Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;
+  Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;
+  const RuleInstance* Touching(const Node& node, const View& view, bool& swapped) const;
+  const TouchSample* Touch(const Node& node, const View& view, bool& swapped) const;
+  int Entity(const Node& node, const View& view, int i) const {
+    return view.instance.entities[node.roles[i]];
+  }
+
+  const Program& program_;
+  const EntityTable& entity_table_;
+  const History& history_;
+  RuleInstances& instances_;
+  Thresholds thresholds_;
+  mutable bool depends_on_time_ = false;
+};
+
+}  // namespace prehend::grammar

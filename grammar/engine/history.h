@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recent past, by frame number: ticks of frames, looks of entities and hands. A look is stored
+// only when it changed, so what is at rest takes no space and no time however long the past is
+// kept. Tested by tests/grammar/engine/history_test.cc
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "grammar/base/frame.h"
+#include "grammar/engine/ring_buffer.h"
+
+namespace prehend::grammar {
+
+/// Frames are numbered 0, 1, 2, ... as they arrive.
+using FrameNumber = std::int64_t;
+inline constexpr FrameNumber kNever = std::numeric_limits<FrameNumber>::max();
+
+struct Moment {
+  FrameNumber frame = 0;
+  Tick tick = 0;
+};
+
+/// What a hand was like from one frame on.
+struct HandAtFrame {
+  FrameNumber frame = 0;
+  HandSample look;  ///< its own span is empty, see `collision_spheres`
+  std::vector<CollisionSphere> collision_spheres;
+  std::uint64_t beyond = 0;  ///< thresholds of the grammar that its grip is beyond
+};
+
+/// The last sample at or before `frame`, or the first one; the newest is asked for most. Samples
+/// are sorted by frame, and there is one.
+template <typename Sample>
+const Sample& SampleAt(const RingBuffer<Sample>& samples, FrameNumber frame) {
+  if (samples.back().frame <= frame) return samples.back();
+  std::size_t low = 0;
+  std::size_t high = samples.size();
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    (samples[middle].frame <= frame ? low : high) = middle;
+  }
+  return samples[low];
+}
+
+/// Drops what only frames before `frame` need.
+template <typename Sample>
+void ForgetSamples(RingBuffer<Sample>& samples, FrameNumber frame) {
+  while (samples.size() > 1 && samples[1].frame <= frame) samples.PopFront();
+}
+
+class History {
+ public:
+  explicit History(const EntityTable& entity_table);
+
+  /// A new frame in which everything looks as before, until it is said otherwise.
+  void BeginFrame(Tick tick);
+  void SetSample(int entity, const EntitySample& look);
+  void SetHand(const HandSample& look, std::uint64_t beyond = 0);
+
+  /// Forgets ticks of frames before `ticks` and looks that only frames before `looks` need; of an
+  /// entity, when its next look comes.
+  void Forget(FrameNumber ticks, FrameNumber looks);
+  FrameNumber first_look() const { return first_look_; }
+
+  /// No more frames will come.
+  void Complete() { complete_ = true; }
+  bool complete() const { return complete_; }
+
+  /// Number of the newest frame; -1 before the first.
+  FrameNumber now() const { return count_ - 1; }
+  FrameNumber first() const { return count_ - static_cast<FrameNumber>(ticks_.size()); }
+  Moment At(FrameNumber frame) const {
+    return {frame, ticks_[static_cast<std::size_t>(frame - first())]};
+  }
+  /// The first remembered frame at or after `tick`; now() + 1 if there is none.
+  FrameNumber FirstNotBefore(Tick tick) const;
+  /// The last remembered frame at or before `tick`; the first one if there is none.
+  FrameNumber LastNotAfter(Tick tick) const;
+
+  const EntitySample& Look(int entity, FrameNumber frame) const {
+    static const EntitySample kNotSeenYet;
+    return looks_[entity].empty() ? kNotSeenYet : SampleAt(looks_[entity], frame).look;
+  }
+  /// Null if this entity is no hand.
+  const HandAtFrame* Hand(int entity, FrameNumber frame) const {
+    const int index = hand_of_entity_[entity];
+    return index < 0 ? nullptr : &SampleAt(hand_samples_[index], frame);
+  }
+  bool Shows(int hand) const { return hand_of_entity_[hand] >= 0; }
+  double Seconds(Tick ticks) const { return static_cast<double>(ticks) / ticks_per_second_; }
+  /// Whole ticks such that comparing differences of ticks gives the same as comparing seconds.
+  Tick AtMostTicks(double seconds) const;
+  Tick AtLeastTicks(double seconds) const;
+
+ private:
+  struct PoseAtFrame {
+    FrameNumber frame = 0;
+    EntitySample look;
+  };
+
+  double ticks_per_second_;
+  FrameNumber count_ = 0;
+  FrameNumber first_look_ = 0;
+  bool complete_ = false;
+  RingBuffer<Tick> ticks_;
+  std::vector<RingBuffer<PoseAtFrame>> looks_;         // by entity
+  std::vector<RingBuffer<HandAtFrame>> hand_samples_;  // by hand, in order of first sight
+  std::vector<int> hand_of_entity_;                    // index into hand_samples_ or -1
+};
+
+}  // namespace prehend::grammar

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// A queue in one block of memory: push at the back, drop at the front, index from the front.
+// It doubles when full and never shrinks, so that a steady load stops allocating.
+// Tested by tests/grammar/engine/ring_buffer_test.cc
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+namespace prehend::grammar {
+
+template <typename T>
+class RingBuffer {
+ public:
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+
+  T& operator[](std::size_t i) { return slots_[Slot(i)]; }
+  const T& operator[](std::size_t i) const { return slots_[Slot(i)]; }
+  T& front() { return (*this)[0]; }
+  const T& front() const { return (*this)[0]; }
+  T& back() { return (*this)[size_ - 1]; }
+  const T& back() const { return (*this)[size_ - 1]; }
+
+  /// A new last element. It holds whatever an earlier element left there, so that its memory is
+  /// used again.
+  T& PushBack() {
+    if (size_ == capacity_) Grow();
+    ++size_;
+    return back();
+  }
+
+  void PopFront() {
+    assert(size_ > 0);
+    front_ = (front_ + 1) & (capacity_ - 1);
+    --size_;
+  }
+
+  /// Keeps its memory.
+  void Clear() { front_ = size_ = 0; }
+
+ private:
+  std::uint32_t Slot(std::size_t i) const {
+    return (front_ + static_cast<std::uint32_t>(i)) & (capacity_ - 1);
+  }
+
+  void Grow() {
+    const std::uint32_t capacity = slots_ == nullptr ? 2 : 2 * capacity_;
+    std::unique_ptr<T[]> larger = std::make_unique<T[]>(capacity);
+    for (std::uint32_t i = 0; i < size_; ++i) larger[i] = std::move((*this)[i]);
+    slots_ = std::move(larger);
+    capacity_ = capacity;
+    front_ = 0;
+  }
+
+  std::unique_ptr<T[]> slots_;
+  std::uint32_t capacity_ = 0;  // a power of two, once there is one
+  std::uint32_t front_ = 0;
+  std::uint32_t size_ = 0;
+};
+
+}  // namespace prehend::grammar

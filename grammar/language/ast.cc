@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/language/ast.h"
+
+#include <string_view>
+
+namespace prehend::grammar::ast {
+namespace {
+
+std::string Joined(const std::vector<Expr>& args, const std::string& separator) {
+  std::string text;
+  for (const Expr& arg : args) text += (text.empty() ? "" : separator) + Dump(arg);
+  return text;
+}
+
+std::string DumpUntil(const Definition& d) {
+  std::string text = "until " + Dump(d.first) + " since " + Dump(d.second);
+  if (d.approach) {
+    text +=
+        " approaching " + Dump(d.approach->signal) + " receding at most " + Dump(d.approach->slack);
+    if (d.approach->speed) {
+      const std::string motion =
+          d.approach->motion ? "with " + Dump(*d.approach->motion) + " " : "";
+      text += ", " + motion + "slower than " + Dump(*d.approach->speed) + " at most " +
+              Dump(*d.approach->idle);
+      if (d.approach->onset) text += ", onset " + Dump(*d.approach->onset);
+    }
+  }
+  return text + " at most " + Dump(d.at_most_back) + " back";
+}
+
+std::string DumpCompose(const Definition& d) {
+  std::string text = "compose ";
+  for (const Part& part : d.parts)
+    text += (&part == &d.parts.front() ? "" : ", ") + part.label + ": " + Dump(part.call);
+  text += " where ";
+  for (const Relation& relation : d.relations) {
+    text += (&relation == &d.relations.front() ? "" : ", ") + relation.left + " ";
+    for (const std::string& name : relation.relations)
+      text += (&name == &relation.relations.front() ? "" : "|") + name;
+    text += " " + relation.right;
+  }
+  return text;
+}
+
+std::string DumpForm(const Definition& d) {
+  switch (d.form) {
+    case Definition::Form::kWhile:
+      return "while " + Dump(d.first) + (d.until ? " until " + Dump(*d.until) : "");
+    case Definition::Form::kFromTo: {
+      std::string text =
+          "from " + Dump(d.first) + (d.absence ? " without " : " to ") + Dump(d.second);
+      if (d.within) text += " within " + Dump(*d.within);
+      if (d.during) text += " during " + Dump(*d.during) + (d.or_drop ? " or drop" : "");
+      return text;
+    }
+    case Definition::Form::kUntilSince:
+      return DumpUntil(d);
+    case Definition::Form::kRestOf:
+      return "rest of " + Dump(d.first) + " outside " + Joined(d.outside, ", ");
+    case Definition::Form::kCompose:
+      return DumpCompose(d);
+  }
+  return {};
+}
+
+std::string DumpDrawing(const Drawing& drawing) {
+  std::string text;
+  if (drawing.as == DrawnAs::kPhase) text += " as phase";
+  if (drawing.as == DrawnAs::kGrasp) text += " as grasp";
+  if (drawing.as == DrawnAs::kSupport) text += " as support";
+  if (drawing.color) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    text += " \"#";
+    for (int shift = 20; shift >= 0; shift -= 4) text += kDigits[*drawing.color >> shift & 15];
+    text += '"';
+  }
+  if (drawing.as == DrawnAs::kNothing) text += " without row";
+  if (drawing.ghost == Ghost::kNone) text += " without ghost";
+  if (drawing.ghost == Ghost::kAtEnd) text += " with ghost at end";
+  return text;
+}
+
+std::string DumpHead(const std::string& name, const std::vector<Role>& roles) {
+  std::string text = name + "(";
+  for (const Role& role : roles)
+    text += (&role == &roles.front() ? "" : ", ") + role.name + ": " + role.class_name;
+  return text + ") ";
+}
+
+std::string DumpDefinition(const Definition& d) {
+  std::string text = d.symmetric ? "symmetric event " : d.is_event ? "event " : "condition ";
+  text += DumpHead(d.name, d.roles) + DumpForm(d);
+  if (d.bridging) text += " bridging " + Dump(*d.bridging);
+  if (d.lasting) text += " lasting " + Dump(*d.lasting);
+  if (d.requirement) text += " requires " + Dump(*d.requirement);
+  if (d.confirmed)
+    text += " confirmed by " + Dump(d.confirmed->by) + " within " + Dump(d.confirmed->within);
+  if (d.style) text += " with style = style(" + Dump(*d.style) + ")";
+  for (const Attribute& attribute : d.attributes)
+    text += " with " + attribute.name + " = " + Dump(attribute.value);
+  if (d.drawn) text += " drawn" + DumpDrawing(d.drawn->drawing);
+  return text + "\n";
+}
+
+std::string DumpDefine(const Define& define) {
+  std::string text = "define " + define.name + "(";
+  for (const Role& parameter : define.parameters) {
+    text += (&parameter == &define.parameters.front() ? "" : ", ") + parameter.name + ": " +
+            parameter.class_name;
+  }
+  return text + ") = " + Dump(define.body) + "\n";
+}
+
+}  // namespace
+
+std::string Dump(const Expr& expr) {
+  switch (expr.kind) {
+    case Expr::Kind::kQuantity:
+      return QuantityText(expr.quantity);
+    case Expr::Kind::kName:
+      return expr.text + (expr.args.empty() ? "" : " " + Dump(expr.args[0]));
+    case Expr::Kind::kText:
+      return '"' + expr.text + '"';
+    case Expr::Kind::kCall:
+      return expr.text + "(" + Joined(expr.args, ", ") + ")";
+    case Expr::Kind::kUnary:
+      return "(" + expr.text + (expr.text == "not" ? " " : "") + Dump(expr.args[0]) + ")";
+    case Expr::Kind::kBinary:
+    case Expr::Kind::kChain:
+      return "(" + Joined(expr.args, " " + expr.text + " ") + ")";
+    case Expr::Kind::kEdge:
+      return "(" + Dump(expr.args[0]) + " " + expr.text + ")";
+    case Expr::Kind::kAnchor:
+      return Dump(expr.args[0]) + "@" + expr.text;
+  }
+  return {};
+}
+
+std::string Dump(const Law& law) {
+  const std::string subjects = Joined(law.subjects, ", ");
+  switch (law.form) {
+    case Law::Form::kCovered:
+      return "rest of " + subjects + " outside " + Joined(law.others, ", ") + " is empty";
+    case Law::Form::kApart:
+      return subjects + " do not overlap";
+    case Law::Form::kRelated:
+      break;
+  }
+  std::string relations;
+  for (const std::string& name : law.relations) relations += (relations.empty() ? "" : "|") + name;
+  return subjects + " " + relations + " " + Joined(law.others, " or ");
+}
+
+std::string Dump(const File& file) {
+  std::string text = "grammar " + file.name + "\n";
+  for (const Use& use : file.uses)
+    text += "use " + (use.is_path ? '"' + use.name + '"' : use.name) + "\n";
+  for (const Param& param : file.params)
+    text += "param " + param.name + " = " + QuantityText(param.value) + "\n";
+  for (const Define& define : file.defines) text += DumpDefine(define);
+  for (const Definition& definition : file.definitions) text += DumpDefinition(definition);
+  for (const Law& law : file.laws)
+    text += "law " + DumpHead(law.name, law.roles) + Dump(law) + "\n";
+  return text;
+}
+
+}  // namespace prehend::grammar::ast

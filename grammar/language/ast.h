@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// The syntax tree of one grammar file: what was written, names not yet looked up. A value; Dump()
+// shows it as text. Tested by tests/grammar/language/parser_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grammar/base/diagnostic.h"
+#include "grammar/base/drawing.h"
+#include "grammar/base/quantity.h"
+
+namespace prehend::grammar::ast {
+
+struct Expr {
+  enum class Kind {
+    kQuantity,  ///< 25 cm
+    kName,      ///< a role, a parameter, or `any`; `any Cup` has the class as its arg
+    kText,      ///< "in quotes"
+    kCall,      ///< text(args)
+    kUnary,     ///< text is `not` or `-`
+    kBinary,    ///< text is an arithmetic operator or a comparison
+    kChain,     ///< text is `and` or `or`; two or more args
+    kEdge,      ///< text is `begins` or `ends`
+    kAnchor,    ///< text is `begin` or `end`: the arg's value there
+  };
+  Kind kind = Kind::kName;
+  Place place;
+  std::string text;
+  Quantity quantity;
+  std::vector<Expr> args;
+  int depth = 1;
+};
+
+struct Role {
+  std::string name;
+  std::string class_name;
+  Place place;
+};
+
+/// `approaching signal receding at most slack [, [with motion] slower than speed at most idle
+/// [, onset speed]]`
+struct Approach {
+  Expr signal;
+  Expr slack;
+  std::optional<Expr> motion;
+  std::optional<Expr> speed;
+  std::optional<Expr> idle;
+  std::optional<Expr> onset;
+};
+
+/// `with name = value`
+struct Attribute {
+  std::string name;
+  Place place;
+  Expr value;
+};
+
+/// `drawn as phase "#D62728" with ghost at end`
+struct Drawn {
+  Place place;
+  Drawing drawing;
+};
+
+struct Confirmation {
+  Expr by;
+  Expr within;
+};
+
+/// `label: event(roles)` of a composition.
+struct Part {
+  std::string label;
+  Place place;
+  Expr call;
+};
+
+/// `left relation|relation right` between two labels of a composition.
+struct Relation {
+  std::string left;
+  std::vector<std::string> relations;
+  std::string right;
+  Place place;
+};
+
+struct Definition {
+  enum class Form { kWhile, kFromTo, kUntilSince, kRestOf, kCompose };
+  bool is_event = true;
+  bool symmetric = false;
+  std::string name;
+  Place place;
+  std::vector<Role> roles;
+
+  Form form = Form::kWhile;
+  Expr first;                  ///< while F, from A, until A, rest of E
+  Expr second;                 ///< to B, without B, since F
+  std::optional<Expr> until;   ///< while A until B
+  bool absence = false;        ///< from A without B
+  std::optional<Expr> within;  ///< from .. within t
+  std::optional<Expr> during;
+  bool or_drop = false;  ///< `during G or drop`
+  std::optional<Approach> approach;
+  Expr at_most_back;
+  std::vector<Expr> outside;
+  std::vector<Part> parts;
+  std::vector<Relation> relations;
+
+  std::optional<Expr> bridging;
+  std::optional<Expr> lasting;
+  std::optional<Expr> requirement;
+  std::optional<Confirmation> confirmed;
+  std::optional<Expr> style;  ///< with style = style(hand)
+  std::vector<Attribute> attributes;
+  std::optional<Drawn> drawn;
+};
+
+/// `define name(parameters) = body`. A parameter's class may also be a unit, `number` or
+/// `position`.
+struct Define {
+  std::string name;
+  Place place;
+  std::vector<Role> parameters;
+  std::vector<Dimension> dimensions;  ///< of the parameters that are numbers
+  Expr body;
+};
+
+/// What must hold of the events of every episode.
+struct Law {
+  enum class Form {
+    kCovered,  ///< rest of E outside X, Y is empty
+    kRelated,  ///< E, F meets X or Y
+    kApart,    ///< E, F do not overlap
+  };
+  std::string name;
+  Place place;
+  std::vector<Role> roles;
+  Form form = Form::kCovered;
+  std::vector<Expr> subjects;          ///< events that it speaks about
+  std::vector<std::string> relations;  ///< kRelated: Allen's, or `lies inside` alone
+  Place relations_place;
+  std::vector<Expr> others;  ///< X, Y
+};
+
+struct Param {
+  std::string name;
+  Place place;
+  Quantity value;
+};
+
+struct Use {
+  std::string name;  ///< of the library, or a path as seen from this file
+  bool is_path = false;
+  Place place;
+};
+
+struct File {
+  std::string name;
+  std::vector<Use> uses;
+  std::vector<Param> params;
+  std::vector<Define> defines;
+  std::vector<Definition> definitions;
+  std::vector<Law> laws;
+};
+
+std::string Dump(const Expr& expr);
+/// What the law says, without its name and roles.
+std::string Dump(const Law& law);
+/// The whole file as fully bracketed text in SI units, one definition per line.
+std::string Dump(const File& file);
+
+}  // namespace prehend::grammar::ast

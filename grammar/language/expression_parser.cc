@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/language/expression_parser.h"
+
+#include <algorithm>
+#include <array>
+
+namespace prehend::grammar {
+
+using ast::Expr;
+
+namespace {
+
+constexpr int kMaxDepth = 64;
+
+std::vector<Expr> Args(Expr a) {
+  std::vector<Expr> args;
+  args.push_back(std::move(a));
+  return args;
+}
+
+std::vector<Expr> Args(Expr a, Expr b) {
+  std::vector<Expr> args = Args(std::move(a));
+  args.push_back(std::move(b));
+  return args;
+}
+
+}  // namespace
+
+ExpressionParser::Nested::Nested(ExpressionParser& parser) : parser_(parser) {
+  if (++parser_.depth_ <= kMaxDepth) return;
+  --parser_.depth_;
+  parser_.FailDeep();
+}
+
+void ExpressionParser::FailDeep() {
+  Fail("this is nested more than " + std::to_string(kMaxDepth) + " deep",
+       "name a part of it with `condition`");
+}
+
+Expr ExpressionParser::Make(Expr::Kind kind, Place place, std::string text,
+                            std::vector<Expr> args) {
+  int depth = 1;
+  for (const Expr& arg : args) depth = std::max(depth, arg.depth + 1);
+  if (depth > kMaxDepth) FailDeep();
+  return {.kind = kind,
+          .place = place,
+          .text = std::move(text),
+          .quantity = {},
+          .args = std::move(args),
+          .depth = depth};
+}
+
+Expr ExpressionParser::ParseChain(std::string_view word, Expr (ExpressionParser::*operand)()) {
+  Expr first = (this->*operand)();
+  if (!At(word) || AtOrDrop()) return first;
+  const Place place = Peek().place;
+  std::vector<Expr> args = Args(std::move(first));
+  while (At(word) && !AtOrDrop()) {
+    SkipOne();
+    args.push_back((this->*operand)());
+  }
+  return Make(Expr::Kind::kChain, place, std::string(word), std::move(args));
+}
+
+// `not X begins` is the moment from which X is false: `begins` and `ends` take in a `not` before
+// them.
+Expr ExpressionParser::ParseEdge() {
+  Expr expr = ParseNot();
+  if (!At("begins") && !At("ends")) return expr;
+  const Token word = Take();
+  return Make(Expr::Kind::kEdge, word.place, word.text, Args(std::move(expr)));
+}
+
+Expr ExpressionParser::ParseNot() {
+  const Place place = Peek().place;
+  if (!Accept("not")) return ParseComparison();
+  const Nested nested(*this);
+  return Make(Expr::Kind::kUnary, place, "not", Args(ParseNot()));
+}
+
+Expr ExpressionParser::ParseComparison() {
+  static constexpr std::array<std::string_view, 6> kComparisons = {
+      "<=", ">=", "==", "!=", "<", ">"};
+  Expr left = ParseSum();
+  if (std::none_of(kComparisons.begin(), kComparisons.end(),
+                   [&](std::string_view op) { return At(op); }))
+    return left;
+  const Token op = Take();
+  return Make(Expr::Kind::kBinary, op.place, op.text, Args(std::move(left), ParseSum()));
+}
+
+Expr ExpressionParser::ParseSum() {
+  Expr left = ParseProduct();
+  while (At("+") || At("-")) {
+    const Token op = Take();
+    left = Make(Expr::Kind::kBinary, op.place, op.text, Args(std::move(left), ParseProduct()));
+  }
+  return left;
+}
+
+Expr ExpressionParser::ParseProduct() {
+  Expr left = ParseNegation();
+  while (At("*") || At("/")) {
+    const Token op = Take();
+    left = Make(Expr::Kind::kBinary, op.place, op.text, Args(std::move(left), ParseNegation()));
+  }
+  return left;
+}
+
+Expr ExpressionParser::ParseNegation() {
+  const Place place = Peek().place;
+  if (!Accept("-")) return ParsePostfix();
+  const Nested nested(*this);
+  return Make(Expr::Kind::kUnary, place, "-", Args(ParseNegation()));
+}
+
+Expr ExpressionParser::ParsePostfix() {
+  Expr expr = ParsePrimary();
+  while (At("@")) {
+    const Place place = Take().place;
+    if (!At("begin") && !At("end")) Fail("expected 'begin' or 'end' after '@', found " + Found());
+    expr = Make(Expr::Kind::kAnchor, place, Take().text, Args(std::move(expr)));
+  }
+  return expr;
+}
+
+Expr ExpressionParser::ParsePrimary() {
+  const Nested nested(*this);
+  const Token token = Peek();
+  if (token.kind == Token::Kind::kNumber) {
+    Expr expr = Make(Expr::Kind::kQuantity, token.place, token.text, {});
+    expr.quantity = ParseSignedQuantity();
+    return expr;
+  }
+  if (token.kind == Token::Kind::kText)
+    return Make(Expr::Kind::kText, token.place, Take().text, {});
+  if (Accept("(")) {
+    Expr inner = ParseExpr();
+    Expect(")");
+    return inner;
+  }
+  if (Accept("any")) return ParseAny(token.place);
+  std::string name = ExpectName("a condition, a signal or a value");
+  if (Accept("(")) return ParseCall(token);
+  return Make(Expr::Kind::kName, token.place, std::move(name), {});
+}
+
+// `any`, `any Cup`.
+Expr ExpressionParser::ParseAny(Place place) {
+  std::vector<Expr> args;
+  if (Peek().kind == Token::Kind::kName && !IsReserved(Peek().text)) {
+    const Token name = Take();
+    args = Args(Make(Expr::Kind::kName, name.place, name.text, {}));
+  }
+  return Make(Expr::Kind::kName, place, "any", std::move(args));
+}
+
+Expr ExpressionParser::ParseCall(const Token& name) {
+  std::vector<Expr> args;
+  if (!At(")")) {
+    do {
+      args.push_back(ParseExpr());
+    } while (Accept(","));
+  }
+  Expect(")");
+  return Make(Expr::Kind::kCall, name.place, name.text, std::move(args));
+}
+
+Quantity ExpressionParser::ParseSignedQuantity() {
+  const bool negative = Accept("-");
+  if (Peek().kind != Token::Kind::kNumber) Fail("expected a number, found " + Found());
+  const Token token = Take();
+  Quantity quantity{negative ? -token.number : token.number, kPlain};
+  ParseUnit(quantity);
+  return quantity;
+}
+
+bool ExpressionParser::AtUnit(std::size_t ahead) const {
+  return Peek(ahead).kind == Token::Kind::kName && FindUnit(Peek(ahead).text) != nullptr;
+}
+
+// `3 cm`, `3 cm/s`, `3/s`. A name after a number can only be a unit or the next word of the
+// language.
+void ExpressionParser::ParseUnit(Quantity& quantity) {
+  const bool starts = Peek().kind == Token::Kind::kName && !IsReserved(Peek().text);
+  if (!starts && !(At("/") && AtUnit(1))) return;
+  double si = 1;
+  quantity.dimension = ParseDimension(si);
+  quantity.value *= si;
+}
+
+Dimension ExpressionParser::ParseDimension(double& si) {
+  Dimension dimension;
+  if (Peek().kind == Token::Kind::kName) {
+    const Unit* unit = FindUnit(Peek().text);
+    if (unit == nullptr) {
+      const std::string near = NearestName(Peek().text, UnitNames());
+      Fail("unknown unit '" + Peek().text + "'",
+           near.empty() ? "units are m cm mm s ms N rad deg, and their quotients like cm/s"
+                        : "did you mean '" + near + "'?");
+    }
+    SkipOne();
+    si = unit->si;
+    dimension = unit->dimension;
+  }
+  while (At("/") && AtUnit(1)) {
+    SkipOne();
+    const Unit* divisor = FindUnit(Take().text);
+    si /= divisor->si;
+    dimension = Quotient(dimension, divisor->dimension);
+  }
+  return dimension;
+}
+
+}  // namespace prehend::grammar

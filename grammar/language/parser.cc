@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/language/parser.h"
+
+#include "grammar/language/law_parser.h"
+
+namespace prehend::grammar {
+namespace {
+
+using ast::Definition;
+using ast::Expr;
+
+constexpr std::size_t kMaxDefinitions = 1000;
+
+class Parser : public LawParser {
+ public:
+  using LawParser::LawParser;
+
+  ast::File ParseFile() {
+    ast::File file;
+    try {
+      if (AtEnd()) Fail("the file is empty", "a grammar starts with `grammar NAME`");
+      Expect("grammar", "a grammar starts with `grammar NAME`");
+      file.name = ExpectName("the grammar's name");
+    } catch (const ParseStop&) {
+      SkipToItem();
+    }
+    while (!AtEnd()) {
+      try {
+        ParseItem(file);
+      } catch (const ParseStop&) {
+        SkipToItem();
+      }
+    }
+    return file;
+  }
+
+  std::optional<Quantity> ParseOnlyQuantity() {
+    try {
+      const Quantity quantity = ParseSignedQuantity();
+      if (!AtEnd()) Fail("expected nothing after the value, found " + Found());
+      return quantity;
+    } catch (const ParseStop&) {
+      return std::nullopt;
+    }
+  }
+
+ private:
+  void ParseItem(ast::File& file) {
+    const Place place = Peek().place;
+    if (Accept("use")) {
+      ParseUse(file, place);
+    } else if (Accept("param")) {
+      const Place name_place = Peek().place;
+      std::string name = ExpectName("a parameter's name");
+      Expect("=");
+      file.params.push_back({std::move(name), name_place, ParseSignedQuantity()});
+    } else if (At("define") || At("event") || At("condition") || At("symmetric") || At("law")) {
+      if (file.definitions.size() + file.defines.size() + file.laws.size() == kMaxDefinitions) {
+        SkipToEnd();
+        FailAt(place, "more than " + std::to_string(kMaxDefinitions) + " definitions in one file");
+      }
+      if (Accept("define")) {
+        file.defines.push_back(ParseDefine());
+      } else if (Accept("law")) {
+        file.laws.push_back(ParseLaw());
+      } else {
+        file.definitions.push_back(ParseDefinition());
+      }
+    } else if (Accept("grammar")) {
+      FailAt(place, "a second 'grammar' line",
+             "one file holds one grammar; `use NAME` reads another one");
+    } else {
+      Fail("expected 'use', 'param', 'define', 'condition', 'event' or 'law', found " + Found(),
+           WordHint());
+    }
+  }
+
+  void ParseUse(ast::File& file, Place place) {
+    if (Peek().kind != Token::Kind::kText) {
+      file.uses.push_back({ExpectName("a grammar's name, or its file in quotes"), false, place});
+      return;
+    }
+    if (Peek().text.empty()) Fail("an empty file name");
+    file.uses.push_back({Take().text, true, place});
+  }
+
+  // define above(a, b: Thing, gap: cm) = height(a) > height(b) + gap
+  ast::Define ParseDefine() {
+    ast::Define define;
+    define.place = Peek().place;
+    define.name = ExpectName("the name of a value or test");
+    if (Accept("(")) {
+      do {
+        ParseParameter(define);
+      } while (Accept(","));
+      Expect(")");
+    }
+    Expect("=");
+    define.body = ParseExpr();
+    return define;
+  }
+
+  void ParseParameter(ast::Define& define) {
+    ast::Role parameter{.class_name = "Entity", .place = Peek().place};
+    Dimension dimension;
+    parameter.name = ExpectName("a parameter's name");
+    if (Accept(":")) {
+      parameter.class_name = Peek().text;
+      if (Peek().kind == Token::Kind::kName && FindUnit(Peek().text) != nullptr) {
+        double si = 1;
+        dimension = ParseDimension(si);
+        parameter.class_name = "number";
+      } else {
+        ExpectName("a class, a unit, 'number' or 'position'");
+      }
+    }
+    define.parameters.push_back(std::move(parameter));
+    define.dimensions.push_back(dimension);
+  }
+
+  Definition ParseDefinition() {
+    Definition definition;
+    definition.symmetric = Accept("symmetric");
+    definition.is_event = definition.symmetric || !Accept("condition");
+    if (definition.is_event) Expect("event");
+    definition.place = Peek().place;
+    definition.name = ExpectName("the name of an event or condition");
+    definition.roles =
+        ParseRoles("an event names who takes part: event grasping(hand: Hand, object: Thing)");
+    ParseForm(definition);
+    while (ParseModifier(definition)) {
+    }
+    return definition;
+  }
+
+  void ParseForm(Definition& definition) {
+    if (Accept("while")) {
+      definition.form = Definition::Form::kWhile;
+      definition.first = ParseExpr();
+      if (Accept("until")) definition.until = ParseExpr();
+    } else if (Accept("from")) {
+      ParseFromTo(definition);
+    } else if (Accept("until")) {
+      ParseUntil(definition);
+    } else if (Accept("rest")) {
+      definition.form = Definition::Form::kRestOf;
+      Expect("of");
+      definition.first = ParsePostfix();
+      Expect("outside");
+      do {
+        definition.outside.push_back(ParsePostfix());
+      } while (Accept(","));
+    } else if (Accept("compose")) {
+      ParseCompose(definition);
+    } else {
+      Fail("expected 'while', 'from', 'until', 'rest' or 'compose', found " + Found(), WordHint());
+    }
+  }
+
+  void ParseFromTo(Definition& definition) {
+    definition.form = Definition::Form::kFromTo;
+    definition.first = ParseExpr();
+    definition.absence = Accept("without");
+    if (!definition.absence)
+      Expect("to",
+             "say what ends it: from A to B, or what must not come: from A without B within t");
+    definition.second = ParseExpr();
+    if (Accept("within")) {
+      definition.within = ParseSum();
+    } else if (definition.absence) {
+      Fail("expected 'within', found " + Found(),
+           "say how long to wait: from A without B within 2 s");
+    }
+    if (!Accept("during")) return;
+    definition.during = ParseExpr();
+    definition.or_drop = AtOrDrop();
+    if (!definition.or_drop) return;
+    SkipOne();
+    SkipOne();
+  }
+
+  void ParseUntil(Definition& definition) {
+    definition.form = Definition::Form::kUntilSince;
+    definition.first = ParseExpr();
+    Expect("since");
+    definition.second = ParseExpr();
+    if (Accept("approaching")) definition.approach = ParseApproach();
+    if (!At("at"))
+      Fail("expected 'at most .. back', found " + Found(),
+           "say how far back to look: at most 10 s back");
+    ExpectAtMost();
+    definition.at_most_back = ParseSum();
+    Expect("back");
+  }
+
+  ast::Approach ParseApproach() {
+    ast::Approach approach;
+    approach.signal = ParseSum();
+    Expect("receding");
+    ExpectAtMost();
+    approach.slack = ParseSum();
+    Accept(",");
+    if (Accept("with")) {
+      approach.motion = ParseSum();
+      if (!At("slower"))
+        Fail("expected 'slower', found " + Found(), "with surface_speed(hand) slower than 1 cm/s");
+    }
+    if (!Accept("slower")) return approach;
+    Expect("than");
+    approach.speed = ParseSum();
+    ExpectAtMost();
+    approach.idle = ParseSum();
+    if (At(",") && At("onset", 1)) {
+      SkipOne();
+      SkipOne();
+      approach.onset = ParseSum();
+    }
+    return approach;
+  }
+
+  void ParseCompose(Definition& definition) {
+    definition.form = Definition::Form::kCompose;
+    do {
+      const Place place = Peek().place;
+      std::string label = ExpectName("a label");
+      Expect(":", "a composition labels its parts: compose reach: reaching(hand, object), ...");
+      definition.parts.push_back({std::move(label), place, ParsePostfix()});
+    } while (Accept(","));
+    Expect("where", "say how the parts follow each other: where reach before|meets grasp, ...");
+    do {
+      ast::Relation relation;
+      relation.place = Peek().place;
+      relation.left = ExpectName("a label");
+      do {
+        if (At("during"))
+          Fail("expected one of Allen's relations, found 'during'",
+               "'during' is called 'inside' here, for it begins a clause of 'from .. to'");
+        relation.relations.push_back(ExpectName("one of Allen's relations"));
+      } while (Accept("|"));
+      relation.right = ExpectName("a label");
+      definition.relations.push_back(std::move(relation));
+    } while (Accept(","));
+  }
+
+  template <typename T>
+  void Once(std::optional<T>& slot, T value, const Token& word) {
+    if (slot)
+      FailAt(word.place, "a second '" + word.text + "' in one definition", "keep one of the two");
+    slot = std::move(value);
+  }
+
+  bool ParseModifier(Definition& definition) {
+    const Token word = Peek();
+    if (Accept("bridging")) {
+      Once(definition.bridging, ParseSum(), word);
+    } else if (Accept("lasting")) {
+      Once(definition.lasting, ParseSum(), word);
+    } else if (Accept("requires")) {
+      Once(definition.requirement, ParseExpr(), word);
+    } else if (Accept("confirmed")) {
+      Expect("by");
+      ast::Confirmation confirmation;
+      confirmation.by = ParsePostfix();
+      Expect(
+          "within",
+          "say how long to wait: confirmed by grasping(hand, object) within contact(hand, object)");
+      confirmation.within = ParsePostfix();
+      Once(definition.confirmed, std::move(confirmation), word);
+    } else if (Accept("with")) {
+      ParseAttribute(definition);
+    } else if (Accept("drawn")) {
+      Once(definition.drawn, ParseDrawn(word.place), word);
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  // `with name = value` may follow, so `with ghost` alone is not enough.
+  ast::Drawn ParseDrawn(Place place) {
+    ast::Drawn drawn{.place = place, .drawing = {}};
+    Drawing& drawing = drawn.drawing;
+    if (Accept("as")) drawing.as = ParseDrawnAs();
+    if (Peek().kind == Token::Kind::kText) drawing.color = ParseColor();
+    if (Accept("without")) {
+      const bool row = drawing.as == DrawnAs::kRow;
+      const bool ghost = drawing.as == DrawnAs::kPhase;
+      if (row && Accept("row")) {
+        drawing.as = DrawnAs::kNothing;
+      } else if (ghost && Accept("ghost")) {
+        drawing.ghost = Ghost::kNone;
+      } else {
+        Fail(std::string(row     ? "expected 'row'"
+                         : ghost ? "expected 'ghost'"
+                                 : "expected nothing after 'without'") +
+                 ", found " + Found(),
+             "a phase may be drawn without ghost, any other event without row");
+      }
+    } else if (At("with") && At("ghost", 1) && At("at", 2)) {
+      if (drawing.as != DrawnAs::kPhase)
+        Fail("only a phase has a ghost", "drawn as phase with ghost at end");
+      SkipOne();
+      SkipOne();
+      SkipOne();
+      if (Accept("end")) {
+        drawing.ghost = Ghost::kAtEnd;
+      } else {
+        Expect("begin", "a ghost stands where the event begins or where it ends");
+      }
+    }
+    return drawn;
+  }
+
+  DrawnAs ParseDrawnAs() {
+    if (Accept("phase")) return DrawnAs::kPhase;
+    if (Accept("grasp")) return DrawnAs::kGrasp;
+    if (Accept("support")) return DrawnAs::kSupport;
+    Fail("expected 'phase', 'grasp' or 'support', found " + Found(),
+         "any other event is drawn in a row of its own");
+  }
+
+  std::uint32_t ParseColor() {
+    const std::string& text = Peek().text;
+    const bool is_color = text.size() == 7 && text[0] == '#' &&
+                          text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+    if (!is_color)
+      Fail("expected a colour, found " + Found(), "red, green and blue in two digits: \"#D62728\"");
+    return static_cast<std::uint32_t>(std::stoul(Take().text.substr(1), nullptr, 16));
+  }
+
+  // `style` is a word of the language only because of `with style = style(hand)`.
+  void ParseAttribute(Definition& definition) {
+    const Token name = Peek();
+    if (!Accept("style")) {
+      definition.attributes.push_back({ExpectName("an attribute's name"), name.place, {}});
+      Expect("=");
+      definition.attributes.back().value = ParseSum();
+      return;
+    }
+    Expect("=");
+    Expect("style", "a style comes from the hand: with style = style(hand)");
+    Expect("(");
+    Expr role = ParsePrimary();
+    Expect(")");
+    Once(definition.style, std::move(role), name);
+  }
+};
+
+}  // namespace
+
+ast::File Parse(const GrammarText& grammar, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.size();
+  Parser parser(grammar, diagnostics);
+  if (diagnostics.size() != before) return {};
+  return parser.ParseFile();
+}
+
+std::optional<Quantity> ParseQuantity(const GrammarText& text, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.size();
+  Parser parser(text, diagnostics);
+  if (diagnostics.size() != before) return std::nullopt;
+  return parser.ParseOnlyQuantity();
+}
+
+}  // namespace prehend::grammar

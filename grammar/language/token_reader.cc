@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/language/token_reader.h"
+
+#include <algorithm>
+#include <array>
+
+namespace prehend::grammar {
+namespace {
+
+constexpr std::array<std::string_view, 8> kItemWords = {"grammar",   "use",   "param",     "define",
+                                                        "condition", "event", "symmetric", "law"};
+constexpr std::array<std::string_view, 34> kOtherWords = {
+    "while",    "from",        "to",       "during",    "until",   "since",   "at",
+    "most",     "back",        "rest",     "of",        "outside", "compose", "where",
+    "bridging", "lasting",     "requires", "confirmed", "by",      "within",  "with",
+    "without",  "approaching", "receding", "slower",    "than",    "begins",  "ends",
+    "and",      "or",          "not",      "any",       "style",   "drawn"};
+
+/// What people write who are used to other languages, and how it is said here.
+struct Habit {
+  std::string_view found;
+  std::string_view hint;
+};
+constexpr std::array<Habit, 13> kHabits = {{
+    {"for", "how long it must hold at least: lasting 2 s"},
+    {"within", "a deadline belongs to from A to B: from A to B within 2 s"},
+    {"if", "what must hold: while F"},
+    {"when", "what must hold: while F"},
+    {"rule", "what is recognised is an event, what only other rules use a condition"},
+    {"then", "one after the other: from A to B, or compose a: E, b: F where a before b"},
+    {"=", "'==' compares"},
+    {"=>", "'>=' compares"},
+    {"<", "one comparison at a time, joined by 'and': 1 cm < x and x < 2 cm"},
+    {"<=", "one comparison at a time, joined by 'and': 1 cm < x and x < 2 cm"},
+    {">", "one comparison at a time, joined by 'and': 2 cm > x and x > 1 cm"},
+    {">=", "one comparison at a time, joined by 'and': 2 cm > x and x > 1 cm"},
+    {"==", "one comparison at a time, joined by 'and'"},
+}};
+
+bool IsItemWord(std::string_view word) {
+  return std::find(kItemWords.begin(), kItemWords.end(), word) != kItemWords.end();
+}
+
+}  // namespace
+
+bool IsReserved(std::string_view word) {
+  return IsItemWord(word) ||
+         std::find(kOtherWords.begin(), kOtherWords.end(), word) != kOtherWords.end();
+}
+
+TokenReader::TokenReader(const GrammarText& grammar, Diagnostics& diagnostics)
+    : grammar_(grammar), diagnostics_(diagnostics), tokens_(Tokenize(grammar, diagnostics)) {}
+
+const Token& TokenReader::Peek(std::size_t ahead) const {
+  return tokens_[std::min(at_ + ahead, tokens_.size() - 1)];
+}
+
+bool TokenReader::At(std::string_view text, std::size_t ahead) const {
+  const Token::Kind kind = Peek(ahead).kind;
+  return kind != Token::Kind::kEnd && kind != Token::Kind::kText && Peek(ahead).text == text;
+}
+
+Token TokenReader::Take() {
+  Token token = Peek();
+  SkipOne();
+  return token;
+}
+
+bool TokenReader::Accept(std::string_view text) {
+  if (!At(text)) return false;
+  ++at_;
+  return true;
+}
+
+std::string TokenReader::Found() const {
+  if (AtEnd()) return "the end of the file";
+  return Peek().kind == Token::Kind::kText ? "\"" + Peek().text + "\"" : "'" + Peek().text + "'";
+}
+
+void TokenReader::Fail(std::string message, std::string hint) {
+  FailAt(Peek().place, std::move(message), std::move(hint));
+}
+
+void TokenReader::FailAt(Place place, std::string message, std::string hint) {
+  diagnostics_.push_back(
+      DiagnosticAt(grammar_.file, grammar_.text, place, std::move(message), std::move(hint)));
+  throw ParseStop{};
+}
+
+void TokenReader::Expect(std::string_view text, std::string hint) {
+  if (!Accept(text))
+    Fail("expected '" + std::string(text) + "', found " + Found(), std::move(hint));
+}
+
+void TokenReader::ExpectAtMost() {
+  Expect("at");
+  Expect("most");
+}
+
+std::string TokenReader::ExpectName(std::string_view what) {
+  if (Peek().kind != Token::Kind::kName)
+    Fail("expected " + std::string(what) + ", found " + Found());
+  if (IsReserved(Peek().text)) {
+    Fail("'" + Peek().text + "' is a word of the language and cannot be " + std::string(what),
+         "choose another name");
+  }
+  return Take().text;
+}
+
+std::string TokenReader::WordHint() const {
+  const std::string_view found =
+      At("=") && At(">", 1) ? std::string_view("=>") : std::string_view(Peek().text);
+  const auto habit = std::find_if(kHabits.begin(), kHabits.end(),
+                                  [&](const Habit& h) { return h.found == found; });
+  if (habit != kHabits.end()) return std::string(habit->hint);
+  std::vector<std::string> words(kItemWords.begin(), kItemWords.end());
+  words.insert(words.end(), kOtherWords.begin(), kOtherWords.end());
+  const std::string near = NearestName(Peek().text, words);
+  return near.empty() || near == Peek().text ? std::string() : "did you mean '" + near + "'?";
+}
+
+void TokenReader::SkipToItem() {
+  while (!AtEnd() && (Peek().kind != Token::Kind::kName || !IsItemWord(Peek().text))) ++at_;
+}
+
+}  // namespace prehend::grammar

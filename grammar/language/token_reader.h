@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// A grammar's tokens one after another, and what to say about one that does not fit. Part of the
+// parser. Tested by tests/grammar/language/parser_test.cc
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "grammar/language/lexer.h"
+
+namespace prehend::grammar {
+
+/// Words that cannot name a role, a parameter or a rule.
+bool IsReserved(std::string_view word);
+
+/// Thrown inside the parser only: unwinds to the next item after the complaint was written down.
+struct ParseStop {};
+
+class TokenReader {
+ public:
+  TokenReader(const GrammarText& grammar, Diagnostics& diagnostics);
+
+ protected:
+  const Token& Peek(std::size_t ahead = 0) const;
+  bool AtEnd() const { return Peek().kind == Token::Kind::kEnd; }
+  bool At(std::string_view text, std::size_t ahead = 0) const;
+  Token Take();
+  void SkipOne() {
+    if (!AtEnd()) ++at_;
+  }
+  bool Accept(std::string_view text);
+  std::string Found() const;
+
+  [[noreturn]] void Fail(std::string message, std::string hint = {});
+  [[noreturn]] void FailAt(Place place, std::string message, std::string hint = {});
+  void Expect(std::string_view text, std::string hint = {});
+  void ExpectAtMost();
+  std::string ExpectName(std::string_view what);
+  /// How it is said here when the next token is a word of other languages; "did you mean 'event'?"
+  /// when it is nearly one of this language.
+  std::string WordHint() const;
+  void SkipToItem();
+  void SkipToEnd() { at_ = tokens_.size() - 1; }
+
+ private:
+  const GrammarText& grammar_;
+  Diagnostics& diagnostics_;
+  std::vector<Token> tokens_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace prehend::grammar

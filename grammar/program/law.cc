@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grammar/program/law.h"
+
+namespace prehend::grammar {
+
+std::string Law::Head() const {
+  std::string text = "law " + name + "(";
+  for (const Role& role : roles)
+    text += (&role == &roles.front() ? "" : ", ") + role.name + ": " + role.class_name;
+  return text + ")";
+}
+
+}  // namespace prehend::grammar

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+// A compiled grammar: flat, immutable tables that any number of monitors share.
+// Expressions are trees of nodes in one array; a node names its arguments by index.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grammar/base/allen.h"
+#include "grammar/base/diagnostic.h"
+#include "grammar/base/drawing.h"
+#include "grammar/base/event.h"
+#include "grammar/base/quantity.h"
+#include "grammar/base/source.h"
+#include "grammar/program/law.h"
+#include "grammar/program/thresholds.h"
+
+namespace prehend::grammar {
+
+inline constexpr int kNone = -1;
+
+enum class Op : std::uint8_t {
+  // Truth values.
+  kAnd,
+  kOr,
+  kNot,
+  kLess,
+  kLessEqual,
+  kGreater,
+  kGreaterEqual,
+  kEqual,
+  kNotEqual,
+  kHolds,   ///< reference `slot` is true
+  kBegins,  ///< args[0] becomes true at this frame; of a reference: one of its intervals begins
+  kEnds,    ///< likewise
+  kInSphere,
+  kBoxInSphere,
+  kInCylinder,
+  kInside,
+  kPartOf,
+  kIsA,
+  kGazed,
+  kSensorSet,  ///< the set named `name`, or without a name the `number`th
+  // Numbers, SI units.
+  kNumber,
+  kAdd,
+  kSubtract,
+  kMultiply,
+  kDivide,
+  kNegate,
+  kAbs,
+  kTrigger,
+  kSensorSets,
+  kUp,
+  kForceBetween,
+  kTouchSpeed,
+  kDistanceAlong,  ///< horizontal, between the positions args[0] and args[1] as seen from roles[0]
+  kGap,
+  kClosingSpeed,
+  kSurfaceSpeed,
+  kDistance,
+  kHeight,
+  kSpeed,
+  kVerticalSpeed,
+  kRelativeVerticalSpeed,
+  kSpeedAlong,
+  kDriftAlong,  ///< over `number` seconds around the frame
+  kTilt,
+  kJointFraction,
+  kJointAngle,
+  kJointTravel,
+  kWeight,
+  kStrength,
+  kTurnRate,  ///< over `number` seconds around the frame
+  kRate,      ///< of args[0], over `number` seconds around the frame
+  // Positions in metres.
+  kPosition,
+  kPositionOn,
+  kAhead,
+  // Numbers or positions.
+  kAtBegin,  ///< the value that anchor `slot` had where the interval begins
+  kAtEnd,    ///< args[0] where the interval ends
+};
+
+/// A comparison that is answered by thresholds, when its value is measured.
+struct ByThreshold {
+  int value = kNone;  ///< node that is compared; kNone: it is not that simple
+  std::array<int, 2> thresholds = {
+      kNone,
+      kNone};  ///< of a touch between its first and second role, and of one named the other way
+  bool beyond = false;  ///< true there, and not on the near side
+};
+
+struct Node {
+  Op op = Op::kNumber;
+  std::array<int, 4> args = {kNone, kNone, kNone, kNone};  ///< nodes
+  std::array<int, 2> roles = {kNone, kNone};               ///< roles of the rule
+  int slot = kNone;                                        ///< reference, anchor or class name
+  int name = kNone;   ///< kSensorSet: index into Program::sensor_sets
+  double number = 0;  ///< kNumber, kSensorSet, and the windows of kDriftAlong, kTurnRate, kRate
+  ByThreshold by_threshold = {};
+};
+
+/// Thresholds that something measured must be beyond, and such that it must not be beyond.
+struct Limits {
+  ThresholdSet beyond = 0;
+  ThresholdSet short_of = 0;
+  bool Fit(ThresholdSet measured) const {
+    return (measured & beyond) == beyond && (measured & short_of) == 0;
+  }
+};
+
+/// What must be so of one touch and of one hand's grip for a condition to be true: answered by two
+/// sets of bits.
+struct MeasuredPart {
+  int touch = kNone;  ///< reference to the two that touch; kNone: no touch matters
+  int first =
+      kNone;  ///< role: whom `press[0]` takes for the first of the two, `press[1]` for the second
+  bool must_touch = false;
+  std::array<Limits, 2> press;
+  int hand = kNone;  ///< role; kNone: no grip matters
+  Limits grip;
+  bool whole = true;     ///< the condition is nothing else
+  bool instant = false;  ///< and nothing else decides when the rule's interval begins and ends, and
+                         ///< that it is one
+  bool is_empty() const { return touch == kNone && hand == kNone; }
+};
+
+/// One number per role.
+using Binding = std::array<int, kMaxRoles>;
+inline constexpr Binding kUnbound = {kNone, kNone, kNone, kNone};
+
+/// Another rule, bound to roles of this one: its role i is roles[i].
+struct Reference {
+  int rule = kNone;
+  Binding roles = kUnbound;
+};
+
+struct RuleRole {
+  std::string name;
+  std::string class_name;
+};
+
+enum class Form : std::uint8_t {
+  kTouching,  ///< the fact itself
+  kAny,       ///< some binding of another rule holds
+  kWhile,
+  kFromTo,
+  kUntilSince,
+  kRestOf,
+  kCompose,
+};
+
+/// More parts than this are better composed in steps.
+inline constexpr int kMaxParts = 8;
+
+/// kCompose: its parts and how they must lie to each other.
+struct Composition {
+  struct Clause {
+    int left = 0;
+    int right = 0;
+    AllenSet relations = 0;
+  };
+  std::vector<int> parts;  ///< references
+  std::vector<Clause> clauses;
+};
+
+/// `with name = value`: a number that the event carries.
+struct RuleAttribute {
+  std::string name;
+  int node = kNone;  ///< asked for where the interval ends
+  Dimension dimension;
+};
+
+/// A rule is part `part` of the composition `rule`.
+struct PartOf {
+  int rule = kNone;
+  int part = 0;
+};
+
+struct Rule {
+  std::string name;
+  std::string file;
+  Place place;
+  std::vector<RuleRole> roles;
+  Form form = Form::kWhile;
+  bool printed = false;    ///< an event, not a condition
+  bool hidden = false;     ///< made for an `any`
+  bool symmetric = false;  ///< bound once per pair, names in alphabetical order
+
+  int first = kNone;  ///< node: while, from, until; kRestOf: reference
+  int second =
+      kNone;  ///< node: to, without, since; kWhile: what ends it, kNone: that `first` is false
+  int during = kNone;    ///< node
+  bool or_drop = false;  ///< an interval that does not reach `second` is dropped
+  bool absence = false;  ///< `without`: an interval that reaches `second` is dropped
+  double within_s = -1;  ///< kFromTo: how long to wait for `second`; negative: forever
+  int approach = kNone;  ///< node: the signal that must not recede
+  double slack = 0;      ///< in the signal's unit
+  int motion = kNone;    ///< node: how fast it moves; kNone: as fast as the signal falls
+  double speed = 0;      ///< in the unit of the motion
+  double onset = 0;      ///< likewise: from which on a movement begins
+  double idle_s = -1;    ///< negative: pausing is allowed
+  double back_s = 0;
+  std::vector<int> outside;  ///< references
+  Composition composition;
+
+  double bridging_s = 0;
+  double lasting_s = 0;
+  int requirement = kNone;       ///< node
+  int confirmed_by = kNone;      ///< reference
+  int confirmed_within = kNone;  ///< reference
+  int style_role = kNone;
+  std::vector<RuleAttribute> attributes;  ///< at most kMaxAttributes
+  Drawing drawing;
+
+  std::vector<Reference> references;
+  std::vector<int> anchors;  ///< nodes whose values are kept from where an interval begins
+
+  /// While this reference is false and known, nothing of this rule begins. kNone: watch every
+  /// binding.
+  int guard = kNone;
+  bool guarded_begin =
+      false;  ///< nor where it has just ended: at each moment of beginning it must be true
+  int opened_by =
+      kNone;  ///< reference: nothing of this rule begins but where that begins; kNone: it may
+  bool opened_by_end = false;   ///< where it ends
+  std::vector<PartOf> part_of;  ///< compositions that collect its intervals
+  bool referenced = false;      ///< another rule asks for its truth
+  bool uses_looks = false;      ///< asks for poses, hands or touches of the frames it looks at
+  // What its condition asks at every frame, by role: an entity's pose; nothing but a hand's grip.
+  std::array<bool, kMaxRoles> watches_pose = {};
+  std::array<bool, kMaxRoles> watches_grip = {};
+  ThresholdSet watches_press =
+      0;  ///< what matters of how entities touch, apart from whether they do
+  ThresholdSet watches_grips = 0;  ///< what matters of how far hands are closed
+  MeasuredPart measured;  ///< kWhile and kFromTo: of what must be true where something begins
+  double looks_around_s =
+      0;  ///< its signals ask for poses so long before and after the frames it looks at
+};
+
+/// What stood in the grammar for a node, for explanations.
+struct NodeNote {
+  std::string text;  ///< "rise({1}) >= lift_rise", {1} being the rule's second role; may be empty,
+                     ///< may be cut
+  Dimension dimension;
+  std::string file;
+  Place place;
+};
+
+struct ProgramParam {
+  std::string name;
+  Quantity value;
+  bool overridden = false;
+  std::string file;
+  Place place;
+};
+
+/// Rule 0 is always `touching`. Event::rule indexes `events`; only the printed ones appear in
+/// output.
+struct Program {
+  std::string name;
+  std::vector<Rule> rules;
+  std::vector<int> schedule;  ///< rules so that each comes after those it refers to
+  std::vector<Node> nodes;
+  std::vector<NodeNote> notes;              ///< of the first so many nodes
+  std::vector<std::string> class_names;     ///< for kIsA
+  std::vector<NameInSource> sensor_sets;    ///< for kSensorSet
+  std::vector<NameInSource> numbered_sets;  ///< "3": sensor sets that are asked for by number
+  std::vector<NameInSource> named_classes;  ///< all but the built-in ones
+  Diagnostics warnings;                     ///< what Compile() warned of
+  std::vector<ProgramParam> params;
+  std::vector<Law> laws;  ///< in the order of the files
+  std::vector<Threshold>
+      thresholds;  ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
+  bool asks_touches =
+      false;  ///< for what a touch measures, apart from which thresholds it is beyond
+  bool recalls_touches = false;  ///< which thresholds it was beyond in frames before the newest
+};
+
+inline constexpr int kTouchingRule = 0;
+
+}  // namespace prehend::grammar

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A file that appears as a whole or not at all: it is written beside its place under another name,
+// and renamed at the end. Tested by tests/harness/base/atomic_file_test.cc
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace prehend::harness {
+
+/// Replaces only regular files, and follows a link to one. It is not synchronised to the disk: it
+/// is safe from a crash of the program, not from a power cut.
+class AtomicFile {
+ public:
+  /// The folder must exist. "-" is standard output, which is written directly.
+  explicit AtomicFile(const std::filesystem::path& path);
+  /// Without Commit() an older file is as it was.
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  std::ostream& stream() { return *stream_; }
+
+  /// Empty, or why the file cannot be written.
+  const std::string& problem() const { return problem_; }
+
+  /// Moves the file to its place. Returns "", or what went wrong; then an older file is as it was.
+  std::string Commit();
+
+ private:
+  std::filesystem::path path_;        ///< as the caller named it
+  std::filesystem::path target_;      ///< what it is after links
+  std::filesystem::path unfinished_;  ///< beside the target; empty for standard output
+  std::ofstream file_;
+  std::ostream* stream_ = &file_;
+  std::string problem_;
+};
+
+/// Empty, or why an AtomicFile cannot be written there; creates the folders above it. For asking
+/// before long work.
+std::string WhyNotWritable(const std::filesystem::path& path);
+
+/// Writes a file, and creates the folders above it. Returns "", or what went wrong; then an older
+/// file is as it was.
+std::string WriteTextFile(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace prehend::harness

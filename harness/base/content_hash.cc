@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/base/content_hash.h. Tested by tests/harness/base/content_hash_test.cc
+#include "harness/base/content_hash.h"
+
+#include <fmt/format.h>
+#include <link.h>
+#include <sys/stat.h>
+#include <xxhash.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace prehend::harness {
+namespace {
+
+/// For dl_iterate_phdr: adds "path size seconds" of one library. Its bytes would take too long.
+int AddLibrary(dl_phdr_info* info, std::size_t, void* text) {
+  struct stat status {};
+  if (info->dlpi_name && *info->dlpi_name && stat(info->dlpi_name, &status) == 0) {
+    *static_cast<std::string*>(text) +=
+        fmt::format("{} {} {}\n", info->dlpi_name, status.st_size, status.st_mtim.tv_sec);
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::string ContentHash(std::string_view bytes) {
+  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+}
+
+std::string FileHash(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  return file.is_open() && !file.bad() ? ContentHash(bytes.view()) : kNoFile;
+}
+
+FileHashes HashFiles(const std::vector<std::string>& paths) {
+  FileHashes hashes;
+  for (const std::string& path : paths) hashes[path] = FileHash(path);
+  return hashes;
+}
+
+std::string ProgramHash() {
+  std::string libraries;
+  dl_iterate_phdr(AddLibrary, &libraries);
+  return ContentHash(FileHash("/proc/self/exe") + libraries);
+}
+
+}  // namespace prehend::harness

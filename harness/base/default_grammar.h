@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which grammar watches where none is named: a file of grammar/library/.
+// Tested by tests/harness/read/read_scenario_test.cc
+#pragma once
+
+namespace prehend::harness {
+
+inline constexpr const char* kDefaultGrammar = "pick_and_place";
+
+}  // namespace prehend::harness

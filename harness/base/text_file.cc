@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/base/text_file.h. Tested by tests/harness/base/text_file_test.cc
+#include "harness/base/text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace prehend::harness {
+namespace {
+
+using grammar::Diagnostic;
+using grammar::Diagnostics;
+
+/// Bytes of the well-formed UTF-8 sequence that starts `text`, 0 when there is none (Unicode 15,
+/// table 3-7).
+std::size_t Utf8Length(std::string_view text) {
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const auto continues = [&](std::size_t i) { return (byte(i) & 0xC0) == 0x80; };
+  const unsigned lead = byte(0), second = byte(1);
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF) return continues(1) ? 2 : 0;
+  if (lead >= 0xE0 && lead <= 0xEF) {
+    const bool overlong = lead == 0xE0 && second < 0xA0;
+    const bool surrogate = lead == 0xED && second > 0x9F;
+    return continues(1) && continues(2) && !overlong && !surrogate ? 3 : 0;
+  }
+  if (lead >= 0xF0 && lead <= 0xF4) {
+    const bool overlong = lead == 0xF0 && second < 0x90;
+    const bool too_large = lead == 0xF4 && second > 0x8F;
+    return continues(1) && continues(2) && continues(3) && !overlong && !too_large ? 4 : 0;
+  }
+  return 0;
+}
+
+bool IsControl(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F;
+}
+
+/// Without the line itself: printing it could garble a terminal.
+Diagnostic NotText(const std::string& file, std::string_view text, std::size_t offset,
+                   std::string message) {
+  const auto before = text.substr(0, offset);
+  const auto line_start = before.rfind('\n') + 1;  // npos + 1 == 0: the first line
+  const int line = 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n'));
+  return {.file = file,
+          .place = {line, 1 + static_cast<int>(offset - line_start)},
+          .message = std::move(message),
+          .source_line = {},
+          .hint = "is this a text file, saved as UTF-8?"};
+}
+
+std::string WithUnixLineEnds(std::string text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\r' && i + 1 < text.size() && text[i + 1] == '\n') continue;
+    out += text[i];
+  }
+  return out;
+}
+
+/// Why the file at `path` cannot be read as text, found without opening it; empty when it can.
+std::string WhyNotReadable(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status))
+    return error && error != std::errc::no_such_file_or_directory
+               ? "cannot be read: " + error.message()
+               : "no such file";
+  if (std::filesystem::is_directory(status)) return "is a directory, not a file";
+  if (!std::filesystem::is_regular_file(status)) return "is not a regular file";
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) return "cannot be read: " + error.message();
+  if (size > kMaxTextFileBytes) {
+    return fmt::format("is too large: {:.1f} MiB, at most {} MiB are read",
+                       static_cast<double>(size) / (1 << 20), kMaxTextFileBytes >> 20);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string ReadableText(std::string_view bytes) {
+  std::string text;
+  text.reserve(bytes.size());
+  while (!bytes.empty()) {
+    const std::size_t length = IsControl(bytes[0]) ? 0 : Utf8Length(bytes);
+    text += length > 0 ? bytes.substr(0, length) : std::string_view("\uFFFD");
+    bytes.remove_prefix(std::max<std::size_t>(1, length));
+  }
+  return text;
+}
+
+Diagnostics CheckText(const std::string& file, std::string_view text) {
+  if (text.empty())
+    return {
+        {.file = file, .place = {}, .message = "the file is empty", .source_line = {}, .hint = {}}};
+  for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '\r') {
+      Diagnostic alone = NotText(file, text, i, "a carriage return without a line feed");
+      alone.hint = "lines end with a line feed, or with both";
+      return {std::move(alone)};
+    }
+    if (IsControl(text[i])) {
+      return {NotText(file, text, i,
+                      fmt::format("control character 0x{:02x}; this looks like a binary file",
+                                  static_cast<unsigned char>(text[i])))};
+    }
+    const std::size_t length = Utf8Length(text.substr(i));
+    if (length == 0) {
+      return {
+          NotText(file, text, i,
+                  fmt::format("byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[i])))};
+    }
+    i += length;
+  }
+  return {};
+}
+
+ReadResult<std::string> ReadTextFile(const std::string& path) {
+  const auto refuse = [&](std::string why) {
+    Diagnostic diagnostic;
+    diagnostic.file = path;
+    diagnostic.message = std::move(why);
+    return ReadResult<std::string>{std::nullopt, {diagnostic}};
+  };
+  if (auto why = WhyNotReadable(path); !why.empty()) return refuse(std::move(why));
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));
+  std::string text = WithUnixLineEnds({std::istreambuf_iterator<char>(stream), {}});
+  if (stream.bad()) return refuse("cannot be read to its end");
+  if (auto diagnostics = CheckText(path, text); !diagnostics.empty())
+    return {std::nullopt, std::move(diagnostics)};
+  return {std::move(text), {}};
+}
+
+}  // namespace prehend::harness

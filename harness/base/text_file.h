@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads a small text file that a person wrote, and refuses anything else.
+// Tested by tests/harness/base/text_file_test.cc
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "harness/base/read_result.h"
+
+namespace prehend::harness {
+
+/// Enough for 10,000 entities on a line each; a larger file is a mistake and would only cost time.
+inline constexpr std::uintmax_t kMaxTextFileBytes = 4u << 20;
+
+/// The text, without a byte order mark and with CR LF turned into LF. Reports a file that is
+/// missing, unreadable or too large (by its size, without reading it), a directory or device, and
+/// what CheckText() reports.
+ReadResult<std::string> ReadTextFile(const std::string& path);
+
+/// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file).
+grammar::Diagnostics CheckText(const std::string& file, std::string_view text);
+
+/// Bytes from elsewhere (the output of a process) as text: each byte that CheckText() would report
+/// becomes U+FFFD. XML 1.0 and JSON can carry the result.
+std::string ReadableText(std::string_view bytes);
+
+}  // namespace prehend::harness

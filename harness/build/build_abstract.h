@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies of entities without matter: regions, gaze targets, cameras, lights. Tested by
+// tests/harness/format/abstract_entities_test.cc
+#pragma once
+
+#include <string>
+
+#include "harness/format/scenario_yaml.h"
+#include "physics/scene/scene.h"
+
+namespace prehend::harness {
+
+/// The body's shape, and of a camera its pose. `entity` is abstract, the body at its place.
+void MakeAbstract(const EntityYaml& entity, physics::Body& body);
+
+/// "a region" for a body without matter, "grains" for grains; "" for a thing.
+std::string WhyNoThing(const physics::Body& body);
+
+}  // namespace prehend::harness

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/build/build_persons_test.cc
+#include "harness/build/build_person_steps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace prehend::harness {
+namespace {
+
+struct PersonStepMaker {
+  const Named<StepYaml>& step;
+  const physics::Person& person;
+  const physics::Scene& scene;
+  DiagnosticList& errors;
+
+  physics::PersonStep operator()(const WaitYaml& e) const {
+    return {0, physics::WaitStep{}, e.wait_s};
+  }
+  physics::PersonStep operator()(const LookAtYaml& e) const {
+    CheckSeen(e.look_at);
+    return {0, physics::LookAtStep{e.look_at.value}, e.over_s};
+  }
+  physics::PersonStep operator()(const LookAtPointYaml& e) const {
+    return {0, physics::LookAtStep{e.look_at_m}, e.over_s};
+  }
+  physics::PersonStep operator()(const EyesYaml& e) const {
+    return {0, physics::EyesStep{e.eyes}, e.over_s};
+  }
+  physics::PersonStep operator()(const WalkYaml& e) const {
+    return {0, physics::WalkStep{e.walk_to_m}, e.over_s};
+  }
+  physics::PersonStep operator()(const TurnYaml& e) const {
+    return {0, physics::TurnStep{e.turn_to_deg * physics::kRadPerDeg}, e.over_s};
+  }
+  physics::PersonStep operator()(const LeanYaml& e) const {
+    return {0, physics::LeanStep{e.lean_deg * physics::kRadPerDeg}, e.over_s};
+  }
+  physics::PersonStep operator()(const SwayYaml& e) const {
+    CheckBody(e.sway_by_m.where, "sway_by_m");
+    return {0, physics::SwayStep{e.sway_by_m.value}, e.over_s};
+  }
+  physics::PersonStep operator()(const MoveLimbYaml& e) const {
+    CheckFree(e.move_limb);
+    return {0, physics::MoveLimbStep{e.move_limb.value, e.to_m, e.most_n}, e.over_s};
+  }
+  physics::PersonStep operator()(const RecordingYaml& e) const {
+    if (!e.style.value.empty())
+      errors.Add(e.style.where, "style: a person's recording moves her head, no hand");
+    if (!e.figures.empty()) {
+      CheckBody(e.recording.where, "recording");
+      return {0, physics::BodyPosesStep{e.figures}, e.figures.back().t_s};
+    }
+    const double over_s = e.poses.empty() ? 0 : e.poses.back().t_s;
+    return {0, physics::HeadPosesStep{e.poses}, over_s};
+  }
+  template <class HandYaml>
+  physics::PersonStep operator()(const HandYaml&) const {
+    errors.Add(step.name_where,
+               fmt::format("'{}' is a person, and this step is for hands", step.name),
+               "persons look, walk, turn, lean, move a limb; their hands are actors of their own");
+    return {};
+  }
+
+ private:
+  /// Whether a body is her head or another part of her; those of a person follow her head.
+  bool IsHers(std::size_t body) const {
+    const auto next = std::ranges::find_if(
+        scene.persons, [&](const physics::Person& other) { return other.head > person.head; });
+    const std::size_t end =
+        next == scene.persons.end() ? scene.bodies.size() : static_cast<std::size_t>(next->head);
+    return body >= static_cast<std::size_t>(person.head) && body < end;
+  }
+
+  void CheckSeen(const Located<std::string>& name) const {
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+      if (scene.bodies[i].name == name.value && IsHers(i))
+        return errors.Add(name.where,
+                          fmt::format("look_at: '{}' cannot look at herself", person.name),
+                          "she looks at things, hands and other persons, or at a point: look_at_m");
+    }
+    std::vector<std::string> names;
+    for (const physics::Body& body : scene.bodies) names.push_back(body.name);
+    for (const physics::Hand& hand : scene.hands) names.push_back(hand.name);
+    if (std::find(names.begin(), names.end(), name.value) != names.end()) return;
+    errors.AddUnknownName(name.where, fmt::format("look_at: no entity is called '{}'", name.value),
+                          name.value, names);
+  }
+
+  bool CheckBody(const Where& where, const char* key) const {
+    if (!person.has_body)
+      errors.Add(where, fmt::format("{}: '{}' is only a head", key, person.name),
+                 "write 'person: body'");
+    return person.has_body;
+  }
+
+  void CheckFree(const Located<physics::LimbEnd>& limb) const {
+    using physics::LimbEnd;
+    if (!CheckBody(limb.where, "move_limb")) return;
+    const bool right = limb.value == LimbEnd::kRightElbow || limb.value == LimbEnd::kRightWrist;
+    const bool left = limb.value == LimbEnd::kLeftElbow || limb.value == LimbEnd::kLeftWrist;
+    const int hand = right ? person.right_hand : left ? person.left_hand : -1;
+    if (hand < 0) return;
+    errors.Add(limb.where,
+               fmt::format("move_limb: this arm follows the hand '{}'",
+                           scene.hands[static_cast<std::size_t>(hand)].name),
+               "move the hand instead");
+  }
+};
+
+}  // namespace
+
+physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,
+                                   const physics::Scene& scene, DiagnosticList& errors) {
+  const physics::Person& who = scene.persons[static_cast<std::size_t>(person)];
+  physics::PersonStep made = std::visit(PersonStepMaker{step, who, scene, errors}, step.value);
+  made.person = person;
+  return made;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// From actors to persons: their parts become bodies, their hands are found by name.
+// Tested by tests/harness/build/build_persons_test.cc
+#pragma once
+
+#include "harness/format/scenario_yaml.h"
+#include "harness/yaml/diagnostic_list.h"
+#include "physics/scene/scene.h"
+
+namespace prehend::harness {
+
+/// Adds the persons and, after all other bodies, their parts to a scene that has its hands.
+/// Complains about hands that are not there or belong to two arms, and about parts whose names are
+/// taken.
+void AddPersons(const ScenarioYaml& entry, physics::Scene& scene, DiagnosticList& errors);
+
+}  // namespace prehend::harness

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/read/read_scenario_test.cc
+#include "harness/build/build_script.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "harness/build/build_abstract.h"
+#include "harness/build/build_person_steps.h"
+#include "harness/format/limits.h"
+#include "harness/format/scenario_fields.h"
+#include "physics/scene/geometry.h"
+#include "physics/scene/joint.h"
+
+namespace prehend::harness {
+namespace {
+
+/// So far outside of a thing a point to grasp may be: written numbers are rounded.
+constexpr double kMaxOutside_m = 0.005;
+
+template <class T>
+std::vector<std::string> NamesOf(const std::vector<Named<T>>& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+int IndexOf(const std::string& name, const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+physics::TimedPose TimedPoseOf(const PoseYaml& pose) {
+  physics::TimedPose timed;
+  timed.t_s = pose.t_s;
+  timed.X_WH = PoseOf(pose);
+  timed.trigger = pose.trigger;
+  return timed;
+}
+
+/// Makes one step of each kind of entry; the names in it must be among those of the scenario.
+struct StepMaker {
+  const std::vector<std::string>& entities;
+  const physics::Scene& scene;
+  const physics::HandModel* model;  ///< null when the hand is not known
+  const Named<StepYaml>& written;
+  DiagnosticList& errors;
+
+  physics::Step operator()(const ReachYaml& e) const {
+    CheckEntity("reach", e.reach);
+    const Where where =
+        e.style.where.place.line > 0 ? e.style.where : e.reach.where;  // the default has no place
+    if (const physics::GraspStyle* style = FindStyle(e.style.value, where))
+      CheckApproach(e, *style);
+    CheckPoint(e);
+    physics::ReachStep reach{e.reach.value, e.style.value, e.from, e.offset_m.value, {}};
+    if (e.point_m) reach.point_m = e.point_m->value;
+    return {0, std::move(reach), e.over_s};
+  }
+  physics::Step operator()(const CloseYaml& e) const {
+    return {0, physics::TriggerStep{e.close_to}, e.over_s};
+  }
+  physics::Step operator()(const OpenYaml& e) const {
+    return {0, physics::TriggerStep{e.open_to}, e.over_s};
+  }
+  physics::Step operator()(const LiftYaml& e) const {
+    return {0, physics::MoveStep{{0, 0, e.lift_by_m}}, e.over_s};
+  }
+  physics::Step operator()(const MoveYaml& e) const {
+    return {0, physics::MoveStep{e.move_by_m.value}, e.over_s};
+  }
+  physics::Step operator()(const CarryYaml& e) const {
+    return {0, physics::CarryStep{e.carry_to_m.value}, e.over_s};
+  }
+  physics::Step operator()(const PlaceYaml& e) const {
+    CheckEntity("place_on", e.place_on);
+    return {0, physics::PlaceStep{e.place_on.value}, e.over_s};
+  }
+  physics::Step operator()(const RetreatYaml& e) const {
+    return {0, physics::RetreatStep{e.retreat_by_m}, e.over_s};
+  }
+  physics::Step operator()(const FollowJointYaml& e) const {
+    CheckEntity("follow_joint", e.follow_joint);
+    CheckJoint(e.follow_joint);
+    return {0, physics::FollowJointStep{e.follow_joint.value, e.to}, e.over_s};
+  }
+  physics::Step operator()(const WaitYaml& e) const { return {0, physics::WaitStep{}, e.wait_s}; }
+  physics::Step operator()(const PosesYaml& e) const {
+    physics::PosesStep step;
+    for (const PoseYaml& pose : e.poses) step.poses.push_back(TimedPoseOf(pose));
+    return Follow(std::move(step), e.style);
+  }
+  physics::Step operator()(const RecordingYaml& e) const {
+    return Follow(physics::PosesStep{e.poses}, e.style);
+  }
+  template <class PersonYaml>
+  physics::Step operator()(const PersonYaml&) const {
+    errors.Add(written.name_where,
+               fmt::format("'{}' is a hand, and this step is for persons", written.name),
+               "hands reach, close, move; persons look, walk, lean");
+    return {};
+  }
+
+ private:
+  /// Complains about what does not exist or is no thing.
+  void CheckEntity(const char* key, const Located<std::string>& name) const {
+    const auto found = std::find(entities.begin(), entities.end(), name.value);
+    if (found != entities.end()) {
+      const auto index = static_cast<std::size_t>(found - entities.begin());
+      const std::string what = index < scene.bodies.size() ? WhyNoThing(scene.bodies[index]) : "";
+      if (!what.empty())
+        errors.Add(name.where, fmt::format("{}: '{}' is {}, and no thing", key, name.value, what),
+                   what == "grains" ? "name the vessel that they are in" : "nothing touches it");
+      return;
+    }
+    errors.AddUnknownName(name.where, fmt::format("{}: no entity is called '{}'", key, name.value),
+                          name.value, entities);
+  }
+
+  /// A point to grasp has to be on the thing or in it.
+  void CheckPoint(const ReachYaml& e) const {
+    const auto found = std::find(entities.begin(), entities.end(), e.reach.value);
+    if (!e.point_m || found == entities.end()) return;
+    const auto index = static_cast<std::size_t>(found - entities.begin());
+    if (index >= scene.bodies.size() || scene.bodies[index].shapes.empty()) return;
+    const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
+    if (away_m <= kMaxOutside_m) return;
+    errors.Add(e.point_m->where,
+               fmt::format("point_m: the point is {:.1f} mm outside of '{}', more than {:g} mm",
+                           1000 * away_m, *found, 1000 * kMaxOutside_m),
+               "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
+  }
+
+  void CheckJoint(const Located<std::string>& name) const {
+    const auto found = std::find(entities.begin(), entities.end(), name.value);
+    if (found == entities.end()) return;  // was complained about
+    const int joint = physics::JointThatMoves(scene, static_cast<int>(found - entities.begin()));
+    if (joint >= 0 &&
+        scene.joints[static_cast<std::size_t>(joint)].kind != physics::JointKind::kBall)
+      return;
+    errors.Add(name.where,
+               fmt::format("follow_joint: '{}' hangs on no slider or hinge", name.value),
+               "give it one, or move the hand by 'move_by_m'");
+  }
+
+  physics::Step Follow(physics::PosesStep step, const Located<std::string>& style) const {
+    if (!style.value.empty()) FindStyle(style.value, style.where);
+    step.style = style.value;
+    const double over_s = step.poses.empty() ? 0 : step.poses.back().t_s;
+    return {0, std::move(step), over_s};
+  }
+
+  /// Null after complaining, and when the hand is not known.
+  const physics::GraspStyle* FindStyle(const std::string& name, const Where& where) const {
+    if (!model || model->styles.empty()) return nullptr;
+    const int style = physics::FindStyle(*model, name);
+    if (style >= 0) return &model->styles[static_cast<std::size_t>(style)];
+    std::vector<std::string> known;
+    for (const auto& candidate : model->styles) known.push_back(candidate.name);
+    errors.AddUnknownName(
+        where, fmt::format("style: hand '{}' has no style '{}'", model->name, name), name, known);
+    return nullptr;
+  }
+
+  void CheckApproach(const ReachYaml& e, const physics::GraspStyle& chosen) const {
+    const bool above_missing = e.from == physics::Approach::kAbove && !chosen.above;
+    const bool side_missing = e.from == physics::Approach::kSide && !chosen.side;
+    if (above_missing || side_missing) {
+      errors.Add(e.reach.where, fmt::format("style '{}' does not grasp from {}", chosen.name,
+                                            above_missing ? "above" : "the side"));
+    }
+  }
+};
+
+double DurationOf(const physics::Beat& beat) {
+  double longest_s = 0;
+  for (const physics::Step& step : beat.steps) longest_s = std::max(longest_s, step.over_s);
+  for (const physics::PersonStep& step : beat.person_steps)
+    longest_s = std::max(longest_s, step.over_s);
+  return longest_s;
+}
+
+/// Limits that concern the script as a whole, at the beat where they are passed.
+void CheckLength(const ScenarioYaml& entry, const physics::Script& script, DiagnosticList& errors) {
+  double total_s = script.settle_s;
+  std::size_t poses = 0;
+  for (std::size_t i = 0; i < script.beats.size(); ++i) {
+    for (const Named<StepYaml>& step : entry.script[i]) {
+      if (const auto* given = std::get_if<PosesYaml>(&step.value)) poses += given->poses.size();
+    }
+    total_s += DurationOf(script.beats[i]);
+    const Where where = entry.script[i].front().name_where;
+    if (total_s > kMaxDuration_s) {
+      return errors.Add(where,
+                        fmt::format("the script takes more than {} s up to here", kMaxDuration_s));
+    }
+    if (poses > kMaxPoses)
+      return errors.Add(where, fmt::format("more than {} poses up to here", kMaxPoses));
+  }
+}
+
+/// What a hand's steps so far allow the next one to take for granted.
+struct HandSoFar {
+  std::string reached;  ///< the entity last reached for
+  bool closed = false;  ///< its grip has been commanded
+};
+
+/// Steps about the held thing need a hand that may hold something.
+void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
+  std::map<std::string, HandSoFar> hands;
+  const auto check_holds = [&](const std::string& key, const Named<StepYaml>& step,
+                               const Where& where) {
+    const HandSoFar& hand = hands[step.name];
+    if (!hand.reached.empty() || hand.closed) return;
+    errors.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
+               "it has neither reached for something nor closed before");
+  };
+  for (const StageYaml& beat : script) {
+    for (const Named<StepYaml>& step : beat) {
+      HandSoFar& hand = hands[step.name];
+      if (const auto* reach = std::get_if<ReachYaml>(&step.value))
+        hand.reached = reach->reach.value;
+      if (const auto* close = std::get_if<CloseYaml>(&step.value))
+        hand.closed |= close->close_to > 0;
+      if (const auto* poses = std::get_if<PosesYaml>(&step.value)) {
+        for (const PoseYaml& pose : poses->poses) hand.closed |= pose.trigger.value_or(0) > 0;
+      }
+      if (const auto* recording = std::get_if<RecordingYaml>(&step.value)) {
+        for (const physics::TimedPose& pose : recording->poses)
+          hand.closed |= pose.trigger.value_or(0) > 0;
+      }
+      if (const auto* carry = std::get_if<CarryYaml>(&step.value)) {
+        check_holds("carry_to_m", step, carry->where);
+      }
+      if (const auto* place = std::get_if<PlaceYaml>(&step.value)) {
+        check_holds("place_on", step, place->where);
+        if (place->place_on.value == hand.reached) {
+          errors.Add(place->place_on.where,
+                     fmt::format("place_on: {} holds '{}' itself", step.name, hand.reached));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+double DurationOf(const physics::Script& script) {
+  double total_s = script.settle_s;
+  for (const physics::Beat& beat : script.beats) total_s += DurationOf(beat);
+  return total_s;
+}
+
+physics::Pose PoseOf(const PoseYaml& pose) {
+  physics::Pose X_WH{pose.at_m};
+  if (pose.rpy_deg) X_WH.q = physics::FromRollPitchYaw(*pose.rpy_deg);
+  if (const auto& q = pose.quat_wxyz)
+    X_WH.q = Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]).normalized();
+  return X_WH;
+}
+
+physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
+                            DiagnosticList& errors) {
+  const std::vector<std::string> entities = NamesOf(entry.entities), hands = NamesOf(entry.hands),
+                                 persons = NamesOf(entry.persons);
+  physics::Script script;
+  script.settle_s = entry.settle_s;
+  for (const StageYaml& beat_entry : entry.script) {
+    physics::Beat& beat = script.beats.emplace_back();
+    for (const Named<StepYaml>& named : beat_entry) {
+      const int hand = IndexOf(named.name, hands), person = IndexOf(named.name, persons);
+      if (person >= 0) {
+        beat.person_steps.push_back(MakePersonStep(named, person, scene, errors));
+        continue;
+      }
+      if (hand < 0) {
+        errors.AddUnknownName(named.name_where, fmt::format("no actor is called '{}'", named.name),
+                              named.name, NamesOf(entry.actors));
+      }
+      const bool known = hand >= 0 && hand < static_cast<int>(scene.hands.size());
+      const physics::HandModel* model =
+          known ? &scene.hands[static_cast<std::size_t>(hand)].model : nullptr;
+      physics::Step step =
+          std::visit(StepMaker{entities, scene, model, named, errors}, named.value);
+      step.hand = hand;
+      beat.steps.push_back(std::move(step));
+    }
+  }
+  CheckOrder(entry.script, errors);
+  CheckLength(entry, script, errors);
+  return script;
+}
+
+}  // namespace prehend::harness

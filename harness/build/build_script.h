@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the written steps to physics::Script: names become indices, roll-pitch-yaw becomes
+// quaternions. Tested by tests/harness/read/read_scenario_test.cc
+#pragma once
+
+#include "harness/format/scenario_yaml.h"
+#include "harness/yaml/diagnostic_list.h"
+#include "physics/scene/scene.h"
+
+namespace prehend::harness {
+
+/// Complains about unknown actors, entities and styles, about approaches a style does not have, and
+/// about a script that is too long. `scene` has the hands and persons of `entry`, in that order;
+/// hands without styles are not checked for theirs.
+physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
+                            DiagnosticList& errors);
+
+/// How long the script takes, with what is simulated after it.
+double DurationOf(const physics::Script& script);
+
+/// A way-point as the hand's pose.
+physics::Pose PoseOf(const PoseYaml& pose);
+
+}  // namespace prehend::harness

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/build/validate_planar_test.cc
+#include "harness/build/validate_planar.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "harness/build/build_scene.h"
+#include "harness/build/build_script.h"
+#include "physics/scene/planar.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr double kOnPlane_m = 1e-6;
+
+/// The hint for a place or a way.
+constexpr const char* kZeroY = "in a planar world y is 0";
+
+/// The places of the joint that an entity hangs on.
+Where JointPlace(const EntityYaml& entity) {
+  if (entity.slider) return entity.slider->where;
+  if (entity.hinge) return entity.hinge->where;
+  return entity.ball_joint ? entity.ball_joint->where : entity.where;
+}
+
+const char* RemedyFor(physics::JointKind kind) {
+  return kind == physics::JointKind::kSlider ? "axis: [x, 0, z]" : "hinge with axis: [0, 1, 0]";
+}
+
+/// Asks the steps of one actor after another whether they stay in the plane.
+struct StepCheck {
+  const physics::Scene& scene;
+  const physics::Hand& hand;
+  DiagnosticList& errors;
+
+  void operator()(const ReachYaml& e) const {
+    CheckWay("offset_m", e.offset_m.value.y(), e.offset_m.where);
+    for (const physics::Body& body : scene.bodies) {
+      if (e.point_m && body.name == e.reach.value)
+        CheckWay("point_m", (body.X_WB * e.point_m->value).y(), e.point_m->where);
+    }
+  }
+  void operator()(const MoveYaml& e) const {
+    CheckWay("move_by_m", e.move_by_m.value.y(), e.move_by_m.where);
+  }
+  void operator()(const CarryYaml& e) const {
+    CheckWay("carry_to_m", e.carry_to_m.value.y(), e.carry_to_m.where);
+  }
+  void operator()(const PosesYaml& e) const {
+    for (const PoseYaml& pose : e.poses) {
+      CheckWay("at_m", pose.at_m.y(), pose.where);
+      const Eigen::Vector3d y = PoseOf(pose).q * Eigen::Vector3d::UnitY();
+      if ((y - hand.X_WH.q * Eigen::Vector3d::UnitY()).norm() > kOnPlane_m)
+        errors.Add(pose.where, "this pose turns the hand out of the plane y = 0",
+                   "a hand turns about y only: rpy_deg: [0, pitch, 0]");
+    }
+  }
+  void operator()(const RecordingYaml& e) const {
+    errors.Add(e.recording.where, "a recorded motion does not stay in the plane y = 0",
+               "write its poses as a step of way-points: poses: [..]");
+  }
+  template <class Other>
+  void operator()(const Other&) const {}
+
+ private:
+  void CheckWay(const char* key, double y, const Where& where) const {
+    if (std::abs(y) > kOnPlane_m)
+      errors.Add(where, fmt::format("{}: it leads out of the plane y = 0", key), kZeroY);
+  }
+};
+
+void CheckBodies(const ScenarioYaml& entry, const physics::Scene& scene, DiagnosticList& errors) {
+  for (std::size_t i = 0; i < entry.entities.size(); ++i) {
+    const physics::Body& body = scene.bodies[i];
+    const std::string why = physics::WhyNotPlanar(body);
+    if (why.empty()) continue;
+    const bool beside = !body.grains && std::abs(body.X_WB.p_m.y()) > kOnPlane_m;
+    errors.Add(beside ? entry.entities[i].value.at_m.where : entry.entities[i].name_where,
+               fmt::format("'{}' does not fit a planar world: {}", body.name, why),
+               beside ? kZeroY
+                      : "turn it about y only, and give it no parts beside the plane; see "
+                        "docs/scenario-format.md");
+  }
+}
+
+void CheckJoints(const ScenarioYaml& entry, const physics::Scene& scene, DiagnosticList& errors) {
+  for (const physics::Joint& joint : scene.joints) {
+    const std::string why = physics::WhyNotPlanar(joint);
+    if (why.empty()) continue;
+    const auto& named = entry.entities[static_cast<std::size_t>(joint.body)];
+    errors.Add(JointPlace(named.value),
+               fmt::format("the joint of '{}' does not fit a planar world: {}", named.name, why),
+               RemedyFor(joint.kind));
+  }
+}
+
+void CheckHand(const Named<HandActorYaml>& actor, const physics::Hand& hand,
+               DiagnosticList& errors) {
+  if (const std::string why = physics::WhyNotPlanar(hand.model); !why.empty())
+    errors.Add(actor.value.hand.where,
+               fmt::format("hand '{}' does not fit a planar world: {}", hand.model.name, why),
+               "the hand 'planar_gripper' does");
+  if (std::abs(hand.X_WH.p_m.y()) > kOnPlane_m)
+    errors.Add(actor.value.at_m.where,
+               fmt::format("at_m: '{}' starts beside the plane y = 0", actor.name), kZeroY);
+  else if (!physics::KeepsPlane(hand.X_WH))
+    errors.Add(actor.name_where, fmt::format("'{}' is turned out of the plane y = 0", actor.name),
+               "a hand turns about y only: rpy_deg: [0, pitch, 0]");
+}
+
+}  // namespace
+
+void ValidatePlanar(const ScenarioYaml& entry, const physics::Scene& scene,
+                    DiagnosticList& errors) {
+  CheckBodies(entry, scene, errors);
+  CheckJoints(entry, scene, errors);
+  std::map<std::string, const physics::Hand*> hands;
+  for (std::size_t i = 0; i < scene.hands.size(); ++i) {
+    CheckHand(entry.hands[i], scene.hands[i], errors);
+    hands[entry.hands[i].name] = &scene.hands[i];
+  }
+  for (const Named<PersonActorYaml>& person : entry.persons)
+    errors.Add(person.name_where,
+               fmt::format("'{}' is a person, and a planar world has none", person.name),
+               "play it without 'planar: true' and in the engine bullet");
+  for (const StageYaml& beat : entry.script) {
+    for (const Named<StepYaml>& step : beat) {
+      const auto hand = hands.find(step.name);
+      if (hand != hands.end()) std::visit(StepCheck{scene, *hand->second, errors}, step.value);
+    }
+  }
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/check/last_pass.h. What is damaged or of another version counts as not there. Tested
+// by tests/harness/check/last_pass_test.cc
+#include "harness/check/last_pass.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "harness/base/atomic_file.h"
+
+namespace prehend::harness {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Discarded when there is no such file or it is no JSON.
+Json ReadJson(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) return Json(Json::value_t::discarded);
+  return Json::parse(file, nullptr, /*allow_exceptions=*/false);
+}
+
+}  // namespace
+
+std::vector<std::string> ChangedInputs(const CheckRecord& record) {
+  std::vector<std::string> changed;
+  for (const auto& [path, hash] : record.verdict.inputs) {
+    if (FileHash(path) != hash) changed.push_back(path);
+  }
+  return changed;
+}
+
+std::optional<CheckRecord> CheckRecords::Read(const std::string& scenario) const {
+  const Json json = ReadJson(folder_ / (scenario + ".json"));
+  if (json.is_discarded()) return std::nullopt;
+  try {
+    CheckRecord record{.program = json.at("program"),
+                       .passed = json.at("passed"),
+                       .pictures = json.at("pictures"),
+                       .verdict = VerdictFromJson(json.at("verdict"))};
+    if (record.verdict.scenario != scenario || record.verdict.inputs.empty()) return std::nullopt;
+    return record;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::string CheckRecords::Write(const CheckRecord& record) const {
+  const Json json = {{"program", record.program},
+                     {"passed", record.passed},
+                     {"pictures", record.pictures},
+                     {"verdict", ToJson(record.verdict)}};
+  return WriteTextFile(folder_ / (record.verdict.scenario + ".json"), json.dump(1) + "\n");
+}
+
+CheckRecords::Costs CheckRecords::ReadCosts() const {
+  const Json json = ReadJson(folder_ / "costs.json");
+  Costs costs;
+  if (!json.is_object()) return costs;
+  for (const auto& [scenario, seconds] : json.items()) {
+    if (seconds.is_number()) costs[scenario] = seconds;
+  }
+  return costs;
+}
+
+std::string CheckRecords::WriteCosts(const Costs& costs) const {
+  return WriteTextFile(folder_ / "costs.json", Json(costs).dump(1) + "\n");
+}
+
+}  // namespace prehend::harness

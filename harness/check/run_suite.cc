@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/check/run_suite.h. Tested by tests/program/runner_test.cc
+#include "harness/check/run_suite.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <random>
+
+#include "harness/base/text_file.h"
+#include "harness/check/check_scenario.h"
+#include "harness/check/last_pass.h"
+#include "harness/process/progress_counters.h"
+
+namespace prehend::harness {
+namespace {
+
+/// One run of one scenario.
+struct Turn {
+  std::size_t scenario = 0;  ///< index into the selection
+  int repetition = 0;
+};
+
+class Suite {
+ public:
+  explicit Suite(const SuiteRequest& request)
+      : request_(request),
+        scenarios_(request.selection.scenarios),
+        records_(request.root),
+        program_(ProgramHash()),
+        costs_(records_.ReadCosts()),
+        runs_(scenarios_.size()) {}
+
+  std::vector<ScenarioVerdict> Run(const SuiteProgress& progress) {
+    const std::vector<Turn> turns = Turns();
+    ProgressCounters last_ticks(turns.size());
+    std::vector<WorkerJob> jobs;
+    for (std::size_t i = 0; i < turns.size(); ++i) jobs.push_back(Job(turns[i], last_ticks[i]));
+    std::size_t done = 0;
+    RunInWorkers(jobs, request_.limits, [&](std::size_t job, const WorkerResult& result) {
+      const std::size_t scenario = turns[job].scenario;
+      runs_[scenario].push_back(VerdictOf(scenario, result, last_ticks[job]));
+      if (progress) progress(++done, jobs.size(), Id(scenario));
+    });
+    return Verdicts();
+  }
+
+ private:
+  std::string Id(std::size_t scenario) const { return IdOf(scenarios_[scenario]); }
+
+  /// Only these have goldens, and are remembered from one check to the next.
+  bool InProject(std::size_t scenario) const { return scenarios_[scenario].in_project; }
+
+  bool Changed() const {
+    return !request_.changes.grammar.empty() || !request_.changes.settings.empty();
+  }
+
+  /// The last pass, when nothing that it depended on changed since.
+  std::optional<ScenarioVerdict> Unchanged(std::size_t scenario) const {
+    if (!InProject(scenario)) return std::nullopt;
+    const auto record = records_.Read(Id(scenario));
+    const bool holds = record && record->passed && record->program == program_ &&
+                       record->pictures >= request_.pictures && ChangedInputs(*record).empty();
+    if (!holds) return std::nullopt;
+    ScenarioVerdict verdict = record->verdict;
+    verdict.verdict = Verdict::kUnchanged;
+    verdict.seconds = 0;
+    return verdict;
+  }
+
+  /// Who runs, in which order. Who is not known to be fast goes first.
+  std::vector<Turn> Turns() {
+    std::vector<Turn> turns;
+    for (std::size_t i = 0; i < scenarios_.size(); ++i) {
+      if (request_.only_changed) {
+        if (auto unchanged = Unchanged(i)) {
+          runs_[i].push_back(std::move(*unchanged));
+          continue;
+        }
+      }
+      for (int k = 0; k < request_.repeat; ++k) turns.push_back({i, k});
+    }
+    if (request_.shuffle_seed) {
+      std::mt19937_64 random(*request_.shuffle_seed);
+      std::shuffle(turns.begin(), turns.end(), random);
+      return turns;
+    }
+    const auto cost = [&](const Turn& turn) {
+      const auto known = costs_.find(Id(turn.scenario));
+      return known == costs_.end() ? std::numeric_limits<double>::infinity() : known->second;
+    };
+    std::stable_sort(turns.begin(), turns.end(),
+                     [&](const Turn& a, const Turn& b) { return cost(a) > cost(b); });
+    return turns;
+  }
+
+  WorkerJob Job(const Turn& turn, ProgressCounters::Tick& last_tick) const {
+    RunRequest run = request_.changes;
+    run.scenario_file = scenarios_[turn.scenario].path;
+    const CheckRequest check{
+        .run = std::move(run),
+        .id = Id(turn.scenario),
+        .root = request_.root,
+        .report_folder = request_.report_folder,
+        .pictures = request_.pictures && turn.repetition == 0,
+        .is_trial = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
+        .has_golden = InProject(turn.scenario),
+        .program = program_,
+        .last_tick = &last_tick};
+    return [check] { return ToJson(CheckScenario(check)).dump(); };
+  }
+
+  ScenarioVerdict VerdictOf(std::size_t scenario, const WorkerResult& result,
+                            std::int64_t last_tick) const {
+    ScenarioVerdict verdict;
+    if (result.finished) {
+      verdict = VerdictFromJson(nlohmann::ordered_json::parse(result.output));
+    } else {
+      verdict.scenario = Id(scenario);
+      verdict.exit_code = ExitCode::kFailure;
+      verdict.reason = fmt::format("its process ended: {}, {}", ReadableText(result.reason),
+                                   last_tick == ProgressCounters::kNone
+                                       ? std::string("before the first tick")
+                                       : fmt::format("last tick {}", last_tick));
+      if (!result.stderr_tail.empty())
+        verdict.details = "its standard error:\n" + ReadableText(result.stderr_tail);
+      verdict.ticks = std::max<std::int64_t>(0, last_tick);
+      verdict.command = RepeatCommand(verdict.scenario, request_.changes) + HowText();
+    }
+    verdict.seconds = result.seconds;
+    verdict.peak_memory_kib = result.peak_memory_kib;
+    return verdict;
+  }
+
+  /// The options that a worker's time and memory depend on.
+  std::string HowText() const {
+    return fmt::format("{} --time-limit-s {:g} --memory-limit-mb {}",
+                       request_.pictures ? "" : " --no-pictures", request_.limits.time_limit_s,
+                       request_.limits.memory_limit_bytes / kMegabyte);
+  }
+
+  std::vector<ScenarioVerdict> Verdicts() {
+    std::vector<ScenarioVerdict> verdicts;
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      verdicts.push_back(MergeRepeats(runs_[i]));
+      const ScenarioVerdict& merged = verdicts.back();
+      if (merged.verdict == Verdict::kUnchanged || Changed() || !InProject(i)) continue;
+      costs_[merged.scenario] = merged.seconds;
+      // Who can't write below build/ only loses time; the report, which is written there, too,
+      // complains.
+      if (merged.verdict == Verdict::kPassed) {
+        (void)records_.Write(
+            {.program = program_, .pictures = request_.pictures, .verdict = merged});
+      }
+    }
+    (void)records_.WriteCosts(costs_);
+    for (const Orphan& orphan : request_.selection.orphans) {
+      verdicts.push_back(OrphanVerdict(orphan));
+    }
+    return verdicts;
+  }
+
+  static ScenarioVerdict OrphanVerdict(const Orphan& orphan) {
+    ScenarioVerdict verdict{.scenario = orphan.scenario, .shows = {}, .verdict = Verdict::kFailed};
+    verdict.exit_code = ExitCode::kDiffers;
+    verdict.reason = "a golden without scenario";
+    verdict.details = Text(orphan);
+    verdict.command = "prehend check";
+    return verdict;
+  }
+
+  const SuiteRequest& request_;
+  const std::vector<ScenarioFile>& scenarios_;
+  const CheckRecords records_;
+  const std::string program_;
+  CheckRecords::Costs costs_;
+  std::vector<std::vector<ScenarioVerdict>> runs_;  ///< per scenario, in the order they ended
+};
+
+}  // namespace
+
+std::vector<ScenarioVerdict> RunSuite(const SuiteRequest& request, const SuiteProgress& progress) {
+  return Suite(request).Run(progress);
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/check/select_scenarios.h. Tested by tests/program/command_line_test.cc
+#include "harness/check/select_scenarios.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <iterator>
+#include <tuple>
+
+#include "harness/read/read_scenario.h"
+#include "harness/run/project_library.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr std::string_view kTag = "tag:";
+
+bool Matches(const std::string& pattern, const ScenarioFile& file) {
+  return fnmatch(pattern.c_str(), file.name.c_str(), 0) == 0 ||
+         fnmatch(pattern.c_str(), IdOf(file).c_str(), 0) == 0;
+}
+
+/// A file that cannot be read has no tags, but is checked when it is named.
+bool HasTag(const ScenarioFile& file, const std::string& tag, const ScenarioLibrary& library) {
+  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, library);
+  return scenario.value &&
+         std::count(scenario.value->tags.begin(), scenario.value->tags.end(), tag) > 0;
+}
+
+bool PassesFilter(const ScenarioFile& file, const std::string& filter,
+                  const ScenarioLibrary& library) {
+  if (filter.starts_with('!')) return !PassesFilter(file, filter.substr(1), library);
+  if (filter.starts_with(kTag)) return HasTag(file, filter.substr(kTag.size()), library);
+  return Matches(filter, file);
+}
+
+/// "" or that nothing passes a filter that is not a "not", with the nearest tag.
+std::string WhyNonePasses(const std::string& filter, const std::vector<ScenarioFile>& all,
+                          const ScenarioLibrary& library) {
+  if (filter.starts_with('!')) return "";
+  const bool some = std::ranges::any_of(
+      all, [&](const auto& file) { return PassesFilter(file, filter, library); });
+  if (some || !filter.starts_with(kTag))
+    return some ? "" : "--filter: no scenario matches '" + filter + "'";
+  std::vector<std::string> tags;
+  for (const ScenarioFile& file : all) {
+    const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, library);
+    if (scenario.value)
+      tags.insert(tags.end(), scenario.value->tags.begin(), scenario.value->tags.end());
+  }
+  const std::string tag = filter.substr(kTag.size());
+  const std::string near = grammar::NearestName(tag, tags);
+  return "--filter: no scenario has the tag '" + tag + "'" +
+         (near.empty() ? "" : "; did you mean '" + near + "'?");
+}
+
+bool IsFile(const std::string& typed) {
+  std::error_code error;
+  const bool is_there =
+      std::filesystem::exists(typed, error) && !std::filesystem::is_directory(typed, error);
+  return is_there || typed.ends_with(".yaml") || typed.ends_with(".yml");
+}
+
+/// Scenarios that nobody's pattern matches, in words. A folder is not a pattern, but its scenarios
+/// have one.
+std::string WhyNoMatch(const std::string& typed, const std::vector<ScenarioFile>& all) {
+  std::string folder = typed.starts_with("scenarios/") ? typed.substr(10) : typed;
+  if (const std::size_t slash = folder.find('/'); slash != std::string::npos) folder.resize(slash);
+  const bool is_folder = folder == typed || typed.ends_with("/" + folder) || typed.ends_with('/');
+  std::vector<std::string> skills;
+  for (const ScenarioFile& file : all) skills.push_back(file.skill);
+  std::string hint = is_folder && std::ranges::count(skills, folder) > 0
+                         ? "did you mean '" + folder + "/*'?"
+                         : HintForScenario(all, typed);
+  const std::string near = grammar::NearestName(folder, skills);
+  if (hint.empty() && !near.empty()) hint = "did you mean '" + near + "/*'?";
+  return "no scenario matches '" + typed + "'" + (hint.empty() ? "" : "; " + hint) +
+         " ('prehend list' shows all)";
+}
+
+}  // namespace
+
+std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
+                                                 const std::vector<std::string>& filters,
+                                                 const std::string& root, std::string& problem) {
+  const std::vector<ScenarioFile> all = ListScenarios(root);
+  std::vector<ScenarioFile> named = patterns.empty() ? all : std::vector<ScenarioFile>();
+  for (const std::string& pattern : patterns) {
+    const std::size_t before = named.size();
+    std::ranges::copy_if(all, std::back_inserter(named),
+                         [&](const ScenarioFile& file) { return Matches(pattern, file); });
+    if (named.size() > before) continue;
+    if (!IsFile(pattern)) {
+      problem = WhyNoMatch(pattern, all);
+      return std::nullopt;
+    }
+    named.push_back(ScenarioAt(all, pattern));
+  }
+  std::ranges::sort(named, {}, [](const ScenarioFile& file) {
+    return std::tuple(!file.in_project, file.skill, file.name, file.path);
+  });
+  const auto repeated = std::ranges::unique(named, {}, &ScenarioFile::path);
+  named.erase(repeated.begin(), repeated.end());
+  const ScenarioLibrary library = ProjectLibrary(root);
+  ScenarioSelection selection;
+  std::ranges::copy_if(named, std::back_inserter(selection.scenarios),
+                       [&](const ScenarioFile& file) {
+                         return std::ranges::all_of(filters, [&](const std::string& filter) {
+                           return PassesFilter(file, filter, library);
+                         });
+                       });
+  if (patterns.empty() && filters.empty()) selection.orphans = OrphansAmong(all, root);
+  if (!selection.scenarios.empty() || !selection.orphans.empty()) return selection;
+  problem = "no scenario is selected";
+  for (const std::string& filter : filters) {
+    if (const std::string why = WhyNonePasses(filter, all, library); !why.empty()) problem = why;
+  }
+  problem += " ('prehend list' shows all)";
+  return std::nullopt;
+}
+
+std::optional<Shard> ParseShard(std::string_view text) {
+  constexpr int kMaxShards = 10'000;
+  Shard shard;
+  const char* const end = text.data() + text.size();
+  const auto [slash, bad_number] = std::from_chars(text.data(), end, shard.number);
+  if (bad_number != std::errc() || slash == end || *slash != '/') return std::nullopt;
+  const auto [rest, bad_count] = std::from_chars(slash + 1, end, shard.count);
+  if (bad_count != std::errc() || rest != end) return std::nullopt;
+  if (shard.count > kMaxShards || shard.number < 1 || shard.number > shard.count)
+    return std::nullopt;
+  return shard;
+}
+
+void KeepShard(const Shard& shard, ScenarioSelection& selection) {
+  std::vector<ScenarioFile> kept;
+  for (std::size_t i = 0; i < selection.scenarios.size(); ++i) {
+    if (static_cast<int>(i % shard.count) == shard.number - 1)
+      kept.push_back(selection.scenarios[i]);
+  }
+  selection.scenarios = std::move(kept);
+  if (shard.number != 1) selection.orphans.clear();
+}
+
+}  // namespace prehend::harness

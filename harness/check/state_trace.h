@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a run moved, as one short hash per entity and sensed tick: enough to find the first tick, and
+// the entity, where two runs part. Kept per build below build/check/, since another compiler may
+// round otherwise. Tested by tests/harness/check/state_trace_test.cc
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "physics/scene/scene.h"
+#include "physics/scene/snapshot.h"
+
+namespace prehend::harness {
+
+struct PhysicsTrace {
+  std::vector<std::string> entities;  ///< bodies, then hands
+  std::vector<std::int64_t> ticks;
+  std::vector<std::uint32_t> hashes;  ///< for each tick one per entity
+  friend bool operator==(const PhysicsTrace&, const PhysicsTrace&) = default;
+};
+
+/// Of at most 20,000 snapshots; of a longer recording every n-th.
+PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording);
+
+struct PartingPlace {
+  std::int64_t tick = 0;
+  std::string entity;  ///< the first that differs; "" when one run has more ticks or other entities
+};
+
+/// Whether both look at the same ticks, as long as both run.
+bool SameSample(const PhysicsTrace& a, const PhysicsTrace& b);
+
+/// Nothing when the two move the same, as far as both look, and are as long.
+std::optional<PartingPlace> FirstParting(const PhysicsTrace& a, const PhysicsTrace& b);
+
+/// A text file; "" or what went wrong.
+std::string WriteTrace(const std::filesystem::path& path, const PhysicsTrace& trace);
+/// Nothing when there is none or it is damaged.
+std::optional<PhysicsTrace> ReadTrace(const std::filesystem::path& path);
+
+}  // namespace prehend::harness

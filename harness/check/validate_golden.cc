@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/check/validate_golden.h. Tested by tests/program/golden_workflow_test.cc
+#include "harness/check/validate_golden.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "grammar/base/frame.h"
+#include "grammar/contents.h"
+#include "harness/base/text_file.h"
+#include "harness/golden/golden_files.h"
+#include "harness/run/find_scenario.h"
+#include "harness/sense/entity_table.h"
+#include "harness/sense/sensing.h"
+#include "harness/timeline/event_text.h"
+
+namespace prehend::harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Names = std::vector<std::string>;
+
+class GoldenChecker {
+ public:
+  GoldenChecker(std::string_view file, std::string_view text, const LoadedRun& loaded)
+      : file_(file),
+        text_(text),
+        signatures_(EventSignatures(*loaded.program)),
+        events_(EventNames(*loaded.program)),
+        entity_table_(MakeEntityTable(loaded.scenario)) {
+    for (const grammar::EntityInfo& member : entity_table_.entities)
+      entities_.push_back(member.name);
+  }
+
+  void CheckLine(const GoldenEvent& line) {
+    const std::string& event = line.event.event;
+    const auto signature = std::ranges::find(signatures_, event, &grammar::EventSignature::name);
+    if (signature == signatures_.end())
+      return Unknown(line, event, "the grammar has no event '" + event + "'", event, events_);
+    for (const grammar::Role& role : line.event.roles) CheckRole(line, *signature, role);
+    for (const std::string& role : signature->roles) {
+      if (RoleValue(line.event, role).empty())
+        Complain(line, event,
+                 fmt::format("'{}' has a role '{}', which is missing here", event, role), "");
+    }
+    const Names& values = signature->attributes;
+    for (const grammar::NamedValue& value : line.event.values) {
+      if (std::ranges::count(values, value.name) == 0)
+        Unknown(line, value.name + "~", fmt::format("'{}' has no value '{}'", event, value.name),
+                value.name, values);
+    }
+  }
+
+  void CheckGrammar(const std::string& grammar, const std::string& watching) {
+    if (grammar == watching) return;
+    const std::size_t found = text_.find("# grammar: ");
+    const auto line = static_cast<int>(std::ranges::count(text_.substr(0, found), '\n')) + 1;
+    diagnostics_.push_back(grammar::DiagnosticAt(
+        file_, text_, {line, 12},
+        fmt::format("this golden is of the grammar '{}', but the scenario is watched by '{}'",
+                    grammar, watching),
+        "accept what that yields: prehend accept"));
+  }
+
+  grammar::Diagnostics Take() { return std::move(diagnostics_); }
+
+ private:
+  void CheckRole(const GoldenEvent& line, const grammar::EventSignature& event,
+                 const grammar::Role& role) {
+    if (IsAttribute(role)) {
+      if (!event.has_style)
+        return Complain(line, role.name + "=", fmt::format("'{}' has no style", event.name), "");
+      if (std::ranges::count(entity_table_.styles, role.value) == 0)
+        Unknown(line, role.name + "=", "no hand of the scenario has the style '" + role.value + "'",
+                role.value, entity_table_.styles);
+      return;
+    }
+    if (std::ranges::count(event.roles, role.name) == 0)
+      return Unknown(line, role.name + "=",
+                     fmt::format("'{}' has no role '{}'", event.name, role.name), role.name,
+                     event.roles);
+    if (std::ranges::count(entities_, role.value) == 0)
+      Unknown(line, role.name + "=", "the scenario has no '" + role.value + "'", role.value,
+              entities_);
+  }
+
+  void Unknown(const GoldenEvent& line, const std::string& word, std::string message,
+               const std::string& name, const Names& known) {
+    const std::string near = grammar::NearestName(name, known);
+    std::string hint = near.empty() ? "" : "did you mean '" + near + "'?";
+    if (near.empty() && !known.empty() && known.size() <= 8) {
+      hint = "known:";
+      for (const std::string& candidate : known) hint += " " + candidate;
+    }
+    Complain(line, word, std::move(message), std::move(hint));
+  }
+
+  /// At the first place where the word stands by itself.
+  void Complain(const GoldenEvent& line, const std::string& word, std::string message,
+                std::string hint) {
+    std::size_t at = line.as_written.find(word);
+    while (at != std::string::npos && at > 0 && line.as_written[at - 1] != ' ' &&
+           line.as_written[at - 1] != '\t')
+      at = line.as_written.find(word, at + 1);
+    const int column = at == std::string::npos ? 1 : static_cast<int>(at) + 1;
+    diagnostics_.push_back(grammar::DiagnosticAt(file_, text_, {line.line, column},
+                                                 std::move(message), std::move(hint)));
+  }
+
+  std::string_view file_, text_;
+  const std::vector<grammar::EventSignature> signatures_;
+  const Names events_;
+  const grammar::EntityTable entity_table_;
+  Names entities_;
+  grammar::Diagnostics diagnostics_;
+};
+
+/// skill/name of the scenario whose golden or proposal is at this path; "" when it is elsewhere.
+std::string ScenarioOfGoldenAt(const std::string& path, const std::string& root) {
+  std::error_code error;
+  const fs::path file = fs::weakly_canonical(path, error);
+  for (const char* folder : {"golden", "build/pending"}) {
+    const fs::path inside =
+        file.lexically_relative(fs::weakly_canonical(fs::path(root) / folder, error));
+    if (!inside.empty() && *inside.begin() != "..")
+      return fs::path(inside).replace_extension().generic_string();
+  }
+  return "";
+}
+
+}  // namespace
+
+grammar::Diagnostics CheckGoldenFile(const std::string& path, const std::string& id,
+                                     const LoadedRun& loaded) {
+  ReadResult<std::string> text = ReadTextFile(path);
+  if (!text.value) return std::move(text.diagnostics);
+  ReadResult<Golden> golden = ReadGolden(path, *text.value);
+  if (!golden.value) return std::move(golden.diagnostics);
+  grammar::Diagnostics other = OfAnotherScenario(path, *text.value, *golden.value, id);
+  if (!other.empty()) return other;
+  GoldenChecker checker(path, *text.value, loaded);
+  checker.CheckGrammar(golden.value->grammar, loaded.scenario.grammar);
+  for (const GoldenEvent& line : golden.value->events) checker.CheckLine(line);
+  return checker.Take();
+}
+
+grammar::Diagnostics CheckGoldenAlone(const std::string& path, const std::string& root,
+                                      std::vector<std::string>& inputs) {
+  inputs.push_back(path);
+  ReadResult<std::string> text = ReadTextFile(path);
+  if (!text.value) return std::move(text.diagnostics);
+  ReadResult<Golden> golden = ReadGolden(path, *text.value);
+  if (!golden.value) return std::move(golden.diagnostics);
+  const std::string of = ScenarioOfGoldenAt(path, root);
+  const std::string& id = of.empty() ? golden.value->scenario : of;
+  const std::vector<ScenarioFile> all = ListScenarios(root);
+  const auto scenario = std::ranges::find(all, id, IdOf);
+  if (scenario == all.end()) {
+    return {grammar::DiagnosticAt(path, *text.value, ScenarioLine(*text.value),
+                                  "there is no scenario '" + id + "'", HintForScenario(all, id))};
+  }
+  const ReadResult<LoadedRun> loaded = LoadRun({.scenario_file = scenario->path}, root, &inputs);
+  return loaded.value ? CheckGoldenFile(path, id, *loaded.value) : loaded.diagnostics;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend accept: the only thing that writes goldens. It runs the scenario itself, so that what is
+// accepted is what this build recognises now, and refuses when that is not what was shown.
+// Tested by tests/program/golden_workflow_test.cc
+#include <algorithm>
+
+#include "harness/base/content_hash.h"
+#include "harness/base/shell_quote.h"
+#include "harness/check/accept_golden.h"
+#include "harness/check/check_scenario.h"
+#include "harness/check/compare_engines.h"
+#include "harness/check/compare_with_oracle.h"
+#include "harness/check/last_pass.h"
+#include "harness/check/state_trace.h"
+#include "harness/cli/accept_pictures.h"
+#include "harness/cli/command.h"
+#include "harness/golden/compare.h"
+#include "harness/golden/golden_files.h"
+#include "harness/run/run_text.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr std::size_t kFingerprintDigits = 16;
+
+/// What is wrong with a fingerprint, or "".
+std::string FingerprintProblem(const std::string& typed) {
+  if (typed.size() == kFingerprintDigits &&
+      typed.find_first_not_of("0123456789abcdef") == std::string::npos)
+    return "";
+  return "found '" + typed + "', wanted the 16 digits from 0-9 and a-f that '" +
+         CommandText({"review"}) + "' prints, like 3fa90c11d27e5b60";
+}
+
+/// Why the command line alone is enough to refuse, or "".
+std::string Refusal(const ParsedOptions& options, const CommandContext& context) {
+  if (context.in_ci) return "accept is disabled where CI is set: a golden is a person's decision";
+  if (options.Text("--reason").find_first_not_of(" \t") == std::string::npos) {
+    return "accept needs a reason: --reason \"why this is right\"";
+  }
+  for (const char* name : {"--derived", "--reviewed"}) {
+    if (options.Has("--pictures") && options.Has(name))
+      return std::string(name) + " concerns events; --pictures accepts pictures only";
+  }
+  for (const char* name : {"--reason", "--derived"}) {
+    for (const std::string& text : options.All(name)) {
+      if (text.find_first_of("\n\r") != std::string::npos)
+        return std::string(name) + " must be a single line";
+    }
+  }
+  return "";
+}
+
+/// A finished run, and the golden that the scenario had before.
+struct Played {
+  std::string id;
+  std::optional<Golden> old;
+  LoadedRun loaded;
+  std::vector<std::string> files;  ///< all that the run depends on
+  RunResult run;
+};
+
+/// Prints what will change, and where it differs from the ground truth.
+void ShowDifference(const Played& played, const OracleComparison& truth,
+                    const CommandContext& context) {
+  if (!played.old) {
+    context.out << "new golden:\n" << RunTable(played.run);
+  } else {
+    const WorldYaml& world = played.loaded.scenario.world;
+    context.out << DifferenceText(Compare(*played.old, played.run.timeline,
+                                          DefaultTolerance(world.rate_hz, world.sensing_hz)),
+                                  ExplainCommand(played.id, {}));
+  }
+  context.out << GroundTruthText(truth);
+}
+
+/// The next difference is traced back to the run that is accepted now.
+void LeaveBaseline(const CommandContext& context, const Played& played) {
+  const CheckRecords records(context.root);
+  CheckRecord record{.program = ProgramHash(), .passed = false, .pictures = false, .verdict = {}};
+  record.verdict.scenario = played.id;
+  record.verdict.inputs = HashFiles(played.files);
+  // Without it, only the cause of the next difference stays unknown.
+  (void)records.Write(record);
+  (void)WriteTrace(records.TracePath(played.id),
+                   TraceOf(played.loaded.scenario.scene, played.run.recording));
+}
+
+/// Why `pending` is not what a person was shown (by the fingerprint, or by the pending file), or
+/// "".
+std::string NotWhatWasShown(const ParsedOptions& options, const CommandContext& context,
+                            const Golden& pending) {
+  const std::string now = Fingerprint(pending);
+  const ReadResult<Golden> waiting = GoldenFiles(context.root).ReadPendingOf(pending.scenario);
+  const std::string shown = waiting.value ? Fingerprint(*waiting.value) : now;
+  const std::string reviewed = options.Has("--reviewed") ? options.Text("--reviewed") : shown;
+  if (reviewed == now) return "";
+  if (reviewed == shown)
+    return "the pending golden is " + shown + ", but the scenario now yields " + now;
+  if (shown == now) return "the pending golden is " + now + ", not " + reviewed;
+  return "the reviewed golden was " + reviewed + ", but the scenario now yields " + now;
+}
+
+/// Prints the difference and leaves it as the pending golden.
+ExitCode Refuse(const CommandContext& context, const Played& played, const Golden& pending,
+                const OracleComparison& truth, const std::string& why) {
+  ShowDifference(played, truth, context);
+  const std::string problem = GoldenFiles(context.root).WritePending(pending);
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  return Complain(context, ExitCode::kDiffers,
+                  why + " (printed above); nothing was accepted\n  if that is right: " +
+                      AcceptCommandLine(played.id, Fingerprint(pending)));
+}
+
+ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
+  GoldenFiles(context.root).RemovePending(played.id);
+  LeaveBaseline(context, played);
+  const WorldYaml& world = played.loaded.scenario.world;
+  const std::string headroom = HeadroomText(
+      Compare(*played.old, played.run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz)));
+  context.out << "nothing to accept: the scenario agrees with "
+              << GoldenFiles(context.root).GoldenPath(played.id).string()
+              << (headroom.empty() ? "" : "; " + headroom) << "\n";
+  return ExitCode::kAgrees;
+}
+
+/// A planar scenario must have the same events in both engines: `check` would fail whatever were
+/// accepted.
+std::optional<ExitCode> RefuseUnlessEnginesAgree(const CommandContext& context,
+                                                 const Played& played) {
+  const auto compared =
+      CompareEngines(played.loaded.scenario, played.loaded.program, played.run.timeline);
+  const std::string text = compared ? EngineDifferenceText(played.loaded.scenario, *compared,
+                                                           ExplainCommand(played.id, {}))
+                                    : "";
+  (void)GoldenFiles(context.root).WriteEngineDifference(played.id, text);
+  if (text.empty()) return std::nullopt;
+  context.out << text;
+  const bool ended = compared->run.status.kind == physics::RunStatus::Kind::kCompleted;
+  return Complain(context, ended ? ExitCode::kDiffers : ExitCode::kFailure,
+                  std::string(NameOf(compared->other)) +
+                      " yields other events (printed above); nothing was accepted\n  " +
+                      kUntilEnginesAgree);
+}
+
+ExitCode AcceptEvents(const ParsedOptions& options, const CommandContext& context,
+                      const Played& played) {
+  const auto& [id, old, loaded, inputs, run] = played;
+  const GoldenFiles files(context.root);
+  const OracleComparison truth = CompareWithOracle(loaded.scenario, *loaded.program, run);
+  Proposal proposal{.scenario = id,
+                    .grammar = loaded.scenario.grammar,
+                    .derived = options.All("--derived"),
+                    .acceptance = Acceptance{context.today, options.Text("--reason")},
+                    .tolerance = truth.tolerance};
+  const bool from_people = !proposal.derived.empty();
+  if (!from_people && old) proposal.derived = old->derived;
+  proposal.derived = RenewedDerivation(proposal.derived, OracleLine(truth));
+  const bool has_new_derivation = from_people && (!old || old->derived != proposal.derived);
+  const Golden pending = PendingGolden(old, run.timeline, id, loaded.scenario.grammar, truth);
+  if (old && *old == pending && !has_new_derivation) return NothingToAccept(context, played);
+  const std::string why_not = NotWhatWasShown(options, context, pending);
+  if (!why_not.empty()) return Refuse(context, played, pending, truth, why_not);
+  ShowDifference(played, truth, context);
+  context.out << OracleLine(truth) << "\n";
+  const std::string problem = files.WriteAccepted(ProposeGolden(old, run.timeline, proposal));
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  LeaveBaseline(context, played);
+  context.out << "accepted: " << files.GoldenPath(id).string() << "\n";
+  return ExitCode::kAgrees;
+}
+
+ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) {
+  const std::string refusal = Refusal(options, context);
+  if (!refusal.empty()) return Complain(context, ExitCode::kBadInput, refusal);
+  const std::string typed = options.Text("scenario");
+  if (typed.find_first_of("*?[") != std::string::npos)
+    return Complain(
+        context, ExitCode::kBadInput,
+        "'" + typed +
+            "' may match several scenarios; accept takes one scenario at a time, by name");
+  const auto [file, not_found] = FindScenarioOrComplain(typed, context);
+  if (!file) return not_found;
+  if (!file->in_project) {
+    return Complain(context, ExitCode::kBadInput,
+                    "only scenarios in scenarios/ have goldens; move the file there and accept it "
+                    "by name");
+  }
+  Played played;
+  played.id = ScenarioId(file->skill, file->name);
+  played.files = {GoldenFiles(context.root).GoldenPath(played.id).string()};
+  ReadResult<LoadedRun> loaded =
+      LoadRun({.scenario_file = file->path}, context.root, &played.files);
+  if (!loaded.value) return Complain(context, loaded.diagnostics);
+  played.loaded = std::move(*loaded.value);
+  ReadResult<Golden> old = GoldenFiles(context.root).ReadGoldenOf(played.id);
+  if (!old.diagnostics.empty()) return Complain(context, old.diagnostics);
+  played.old = std::move(old.value);
+  if (options.Has("--pictures") && !played.old) {
+    return Complain(
+        context, ExitCode::kPending,
+        "the events of this scenario have no golden yet; accept them first, without --pictures");
+  }
+
+  played.run = RunScenario(played.loaded.scenario, played.loaded.program, {.record = true});
+  if (played.run.status.kind != physics::RunStatus::Kind::kCompleted) {
+    return Complain(context, ExitCode::kFailure,
+                    "a run that did not complete cannot be accepted: " + StatusText(played.run));
+  }
+  if (!options.Has("--pictures")) {
+    if (const auto refused = RefuseUnlessEnginesAgree(context, played)) return *refused;
+    return AcceptEvents(options, context, played);
+  }
+  return AcceptPictures(context, options.Text("--reason"), *played.old, played.loaded.scenario,
+                        played.run);
+}
+
+}  // namespace
+
+Command AcceptCommand() {
+  return {
+      .name = "accept",
+      .summary = "Make what a scenario yields now its golden, with a reason",
+      .examples =
+          {"accept milk_carton_wrap --reason \"first golden, checked against the picture\"",
+           "accept milk_carton_wrap --reviewed 3fa90c11d27e5b60 --reason \"the grasp ends "
+           "earlier\"",
+           "accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the hand's "
+           "first motion\"",
+           "accept milk_carton_wrap --pictures --reason \"the carton is seen in the hand\""},
+      .options = {{.name = "scenario", .help = "a name or skill/name", .required = true},
+                  {.name = "--reason",
+                   .help = "why this is right; is written into the golden",
+                   .placeholder = "TEXT"},
+                  {.name = "--derived",
+                   .help = "how the events follow from the definitions, one line each; the\n"
+                           "physical oracle's derivation is added; may be repeated",
+                   .placeholder = "TEXT",
+                   .repeatable = true},
+                  {.name = "--reviewed",
+                   .help = "accept only what 'review' printed with this fingerprint",
+                   .placeholder = "FINGERPRINT",
+                   .rule = {.problem = FingerprintProblem}},
+                  {.name = "--pictures",
+                   .help =
+                       "accept the pictures, not the events; they are kept beside the timeline"}},
+      .run = RunAccept};
+}
+
+}  // namespace prehend::harness

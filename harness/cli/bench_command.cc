@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend bench. Tested by tests/program/command_line_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "harness/cli/command.h"
+#include "harness/run/run_text.h"
+#include "harness/speed/measure.h"
+#include "harness/timeline/event_text.h"
+
+namespace prehend::harness {
+namespace {
+
+/// 1234567 -> "1.23 M"
+std::string Large(double value) {
+  for (const auto& [unit, size] : {std::pair{" G", 1e9}, {" M", 1e6}, {" k", 1e3}}) {
+    if (value >= size) return fmt::format("{:.3g}{}", value / size, unit);
+  }
+  return fmt::format("{:.3g}", value);
+}
+
+std::string OrDash(bool has, const std::string& text) { return has ? text : "-"; }
+
+std::vector<std::string> Cells(const SpeedFigure& f) {
+  return {f.what,
+          fmt::format("{:.3g} ns", f.seconds / f.operations * 1e9),
+          f.unit,
+          Large(f.operations / f.seconds),
+          OrDash(f.by_hand_s > 0, fmt::format("{:.2f}", f.by_hand_s / f.seconds)),
+          OrDash(f.events > 0, Large(f.events / f.seconds)),
+          OrDash(f.simulated_s > 0, Large(f.simulated_s / f.seconds)),
+          OrDash(f.physics_s > 0, fmt::format("{:.2f} %", 100 * f.seconds / f.physics_s)),
+          OrDash(f.by_hand_s > 0, f.agrees ? HashText(f.hash) : "DIFFERS")};
+}
+
+OrderedJson FigureJson(const SpeedFigure& f) {
+  OrderedJson json = {{"what", f.what},
+                      {"unit", f.unit},
+                      {"operations", f.operations},
+                      {"seconds", f.seconds},
+                      {"ns_per_operation", f.seconds / f.operations * 1e9},
+                      {"operations_per_s", f.operations / f.seconds}};
+  if (f.by_hand_s > 0) {
+    json["by_hand_s"] = f.by_hand_s;
+    json["times_by_hand"] = f.by_hand_s / f.seconds;
+    json["agrees_with_by_hand"] = f.agrees;
+  }
+  if (f.events > 0) json["events_per_s"] = f.events / f.seconds;
+  if (f.simulated_s > 0) json["times_real_time"] = f.simulated_s / f.seconds;
+  if (f.physics_s > 0) json["share_of_physics"] = f.seconds / f.physics_s;
+  if (f.by_hand_s > 0) json["hash"] = HashText(f.hash);
+  return json;
+}
+
+ExitCode RunBench(const ParsedOptions& options, const CommandContext& context) {
+  const ReadResult<std::vector<SpeedFigure>> measured =
+      MeasureSpeed(context.root, options.Has("--quick"));
+  if (!measured.value) return Complain(context, measured.diagnostics);
+  std::vector<std::vector<std::string>> rows = {{"what", "takes", "per", "per_second",
+                                                 "times_baseline", "events/s", "times_real_time",
+                                                 "of_physics", "result"}};
+  OrderedJson list = OrderedJson::array();
+  for (const SpeedFigure& figure : *measured.value) {
+    rows.push_back(Cells(figure));
+    list.push_back(FigureJson(figure));
+  }
+  if (options.Has("--json")) {
+    context.out << OrderedJson{{"figures", list}}.dump(2) << "\n";
+  } else {
+    for (const std::string& line : AlignColumns(rows)) context.out << line << "\n";
+    context.out << "On one core. times_baseline: speed relative to a hand-written baseline, which "
+                   "recognises the same events in the same run.\n";
+  }
+  const bool agrees = std::ranges::all_of(*measured.value, &SpeedFigure::agrees);
+  if (agrees) return ExitCode::kAgrees;
+  return Complain(context, ExitCode::kDiffers,
+                  "the grammar and the hand-written baseline recognise different events");
+}
+
+}  // namespace
+
+Command BenchCommand() {
+  return {.name = "bench",
+          .summary = "Measure how fast grammars are evaluated on this machine",
+          .examples = {"bench", "bench --json"},
+          .options = {{.name = "--quick",
+                       .help = "do a fraction of the work: shows that it runs, not how fast"},
+                      {.name = "--json", .help = "print one JSON object instead of a table"}},
+          .run = RunBench};
+}
+
+}  // namespace prehend::harness

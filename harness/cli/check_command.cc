@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend check: the regression suite. Tested by tests/program/command_line_test.cc and
+// tests/program/runner_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "harness/base/atomic_file.h"
+#include "harness/base/shell_quote.h"
+#include "harness/check/run_suite.h"
+#include "harness/cli/command.h"
+#include "harness/report/junit.h"
+#include "harness/report/report.h"
+
+namespace prehend::harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDefaultTimeLimit_s = 120;
+constexpr std::uint64_t kDefaultMemoryLimit_mb = 1000;
+constexpr int kMaxRepeats = 10'000;
+
+std::string FilterProblem(const std::string& filter) {
+  const bool negated = filter.starts_with('!');
+  const std::string rest = filter.substr(negated ? 1 : 0);
+  if (!rest.empty() && rest != "tag:") return "";
+  return fmt::format("found '{0}', wanted {1}, like {0}{2}", filter,
+                     rest.empty() ? "what must not match" : "a tag after it",
+                     rest.empty() ? "reach/*" : "smoke");
+}
+
+std::string ShardProblem(const std::string& shard) {
+  return ParseShard(shard) ? ""
+                           : "found '" + shard + "', wanted I/N, like 2/3 for the second of three";
+}
+
+/// Its limits are too large to be worth a place in the help.
+ValueRule AnySeed() {
+  ValueRule rule = IntegersFrom(0, std::int64_t{1} << 62);
+  rule.range.clear();
+  return rule;
+}
+
+std::vector<Option> SelectionOptions() {
+  return InGroup(
+      "Which scenarios",
+      {
+          {.name = "names",
+           .help = "names, skill/name, globs or files; default: all scenarios",
+           .repeatable = true},
+          {.name = "--filter",
+           .help = "keep those that match this glob or have the tag; with a leading '!' drop\n"
+                   "them; may be repeated, then all must hold",
+           .placeholder = "[!]GLOB|[!]tag:NAME",
+           .rule = {.problem = FilterProblem},
+           .repeatable = true},
+          {.name = "--shard",
+           .help = "keep part I of N equal parts",
+           .placeholder = "I/N",
+           .rule = {.problem = ShardProblem}},
+          {.name = "--changed",
+           .help = "skip scenarios that passed, if no file and no part of the program that\n"
+                   "they depend on changed since"},
+      });
+}
+
+std::vector<Option> RunningOptions() {
+  return InGroup(
+      "How they run",
+      {
+          {.name = "--jobs",
+           .help = "scenarios at a time; default: one per core",
+           .placeholder = "N",
+           .other_name = "-j",
+           .rule = IntegersFrom(1, kMaxJobs)},
+          {.name = "--time-limit-s",
+           .help =
+               fmt::format("seconds that one scenario may take; default: {}", kDefaultTimeLimit_s),
+           .placeholder = "S",
+           .other_name = "--time-limit",
+           .rule = NumbersFrom(0.1, 86400)},
+          {.name = "--memory-limit-mb",
+           .help = fmt::format("memory that one scenario may take; 0: no limit; default: {}",
+                               kDefaultMemoryLimit_mb),
+           .placeholder = "MB",
+           .rule = IntegersFrom(0, 1'000'000)},
+          {.name = "--repeat",
+           .help = "run each scenario N times; a scenario whose results or state hashes\n"
+                   "differ is flaky and fails",
+           .placeholder = "N",
+           .rule = IntegersFrom(1, kMaxRepeats)},
+          {.name = "--shuffle",
+           .help = "run in a random order with this seed; default: the slowest first",
+           .placeholder = "SEED",
+           .rule = AnySeed()},
+          GrammarOption(),
+          SettingsOption(),
+      });
+}
+
+std::vector<Option> ResultOptions() {
+  return InGroup("What is written",
+                 {
+                     {.name = "--report",
+                      .help = "folder for index.html and pictures; default: build/report",
+                      .placeholder = "DIR"},
+                     {.name = "--junit",
+                      .help = "also write the verdicts as JUnit XML; -: print it instead of text",
+                      .placeholder = "FILE"},
+                     {.name = "--no-pictures", .help = "draw no pictures"},
+                     {.name = "--json", .help = "print one JSON object instead of text"},
+                 });
+}
+
+std::uint64_t MemoryLimit_bytes(const ParsedOptions& options) {
+#ifdef __SANITIZE_ADDRESS__
+  (void)options;
+  return 0;  // shadow memory exceeds any limit
+#else
+  return options.UnsignedOr("--memory-limit-mb", kDefaultMemoryLimit_mb) * kMegabyte;
+#endif
+}
+
+SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& context,
+                         ScenarioSelection selection) {
+  SuiteRequest request{.selection = std::move(selection),
+                       .changes = RequestOf(options, {}),
+                       .root = context.root,
+                       .report_folder = options.TextOr(
+                           "--report", (fs::path(context.root) / "build/report").string()),
+                       .pictures = !options.Has("--no-pictures"),
+                       .only_changed = options.Has("--changed"),
+                       .repeat = options.IntOr("--repeat", 1),
+                       .shuffle_seed = {},
+                       .limits = {}};
+  if (options.Has("--shuffle")) request.shuffle_seed = options.UnsignedOr("--shuffle", 0);
+  request.limits = {.jobs = options.IntOr("--jobs", CoreCount()),
+                    .time_limit_s = options.NumberOr("--time-limit-s", kDefaultTimeLimit_s),
+                    .memory_limit_bytes = MemoryLimit_bytes(options)};
+  return request;
+}
+
+std::string Indented(const std::string& text) {
+  std::string indented;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    indented += "    " + text.substr(begin, end - begin) + "\n";
+    begin = end + 1;
+  }
+  return indented;
+}
+
+std::string Colored(Verdict verdict, bool colored) {
+  const std::string name(Name(verdict));
+  if (!colored) return name;
+  const bool good = verdict == Verdict::kPassed || verdict == Verdict::kUnchanged;
+  const int color = good ? 32 : verdict == Verdict::kPending ? 33 : 31;
+  return fmt::format("\033[{}m{}\033[0m", color, name);
+}
+
+/// `as_files_say`: the command line changed no grammar and no setting, so that a difference can be
+/// accepted.
+void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
+               const std::string& page, const CommandContext& context) {
+  for (const ScenarioVerdict& verdict : verdicts) {
+    const std::string& note = verdict.reason.empty() ? verdict.headroom : verdict.reason;
+    context.out << fmt::format("{}  {}{}{}\n", Colored(verdict.verdict, context.colored),
+                               verdict.scenario, note.empty() ? "" : "  ", note);
+    if (verdict.exit_code == ExitCode::kAgrees) continue;
+    context.out << Indented(verdict.details);
+    context.out << "    " << CommandLabel(verdict) << ": " << verdict.command << "\n";
+  }
+  const Tally tally = Count(verdicts);
+  const std::string least = LeastHeadroomText(verdicts);
+  if (!least.empty()) context.out << least << "\n";
+  context.out << "report: " << page << "\n";
+  const auto differs = [](const ScenarioVerdict& verdict) { return !verdict.differences.empty(); };
+  if (as_files_say && std::ranges::any_of(verdicts, differs))
+    context.out << "If the new behaviour is intended: " << CommandText({"review"}) << "\n";
+  if (tally.pending > 0) {
+    context.out << fmt::format(
+        "{}: review {}, then accept {} with a reason\n",
+        tally.pending == 1 ? "1 new scenario has no golden"
+                           : fmt::format("{} new scenarios have no golden", tally.pending),
+        tally.pending == 1 ? "it" : "them", tally.pending == 1 ? "it" : "each");
+  }
+  if (tally.unchanged > 0)
+    context.out << fmt::format("{} unchanged since the last pass: not run again\n",
+                               tally.unchanged);
+  context.out << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);
+}
+
+nlohmann::ordered_json SummaryJson(const std::vector<ScenarioVerdict>& verdicts,
+                                   const std::string& page) {
+  const Tally tally = Count(verdicts);
+  nlohmann::ordered_json scenarios = nlohmann::ordered_json::array();
+  for (const ScenarioVerdict& verdict : verdicts) {
+    scenarios.push_back(ToJson(verdict));
+    scenarios.back().erase("timeline_svg");
+    scenarios.back().erase("picture_differences");  // part of the details
+  }
+  return {{"passed", tally.passed},       {"failed", tally.failed}, {"pending", tally.pending},
+          {"unchanged", tally.unchanged}, {"report", page},         {"scenarios", scenarios}};
+}
+
+ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--changed") && (options.Has("--grammar") || options.Has("--set"))) {
+    return Complain(context, ExitCode::kBadInput,
+                    "--changed compares files; it cannot be combined with --grammar or --set");
+  }
+  for (const std::string& name : options.All("names")) {
+    if (const auto refused = RefuseRecording(name, context)) return *refused;
+  }
+  const std::string junit = options.Text("--junit");
+  if (junit == "-" && options.Has("--json")) {
+    return Complain(context, ExitCode::kBadInput,
+                    "--junit - contradicts --json: both would be printed");
+  }
+  std::string problem;
+  auto selection =
+      SelectScenarios(options.All("names"), options.All("--filter"), context.root, problem);
+  if (!selection) return Complain(context, ExitCode::kNothing, problem);
+  if (options.Has("--shard")) {
+    KeepShard(*ParseShard(options.Text("--shard")), *selection);
+    if (selection->scenarios.empty() && selection->orphans.empty())
+      return Complain(context, ExitCode::kNothing,
+                      "this shard is empty; fewer scenarios are selected than there are shards");
+  }
+  const SuiteRequest request = RequestFrom(options, context, std::move(*selection));
+  const std::string page = (fs::path(request.report_folder) / "index.html").string();
+  // Found out before the scenarios run, which takes long.
+  problem = WhyNotWritable(page);
+  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--report: " + problem);
+  if (options.Has("--junit")) problem = WhyNotWritable(junit);
+  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--junit: " + problem);
+  SuiteProgress progress;
+  if (context.progress) {
+    progress = [&](std::size_t done, std::size_t all, const std::string& id) {
+      context.err << fmt::format("\r\033[K[{}/{}] {}", done, all, id) << std::flush;
+      if (done == all) context.err << "\r\033[K" << std::flush;
+    };
+  }
+  const std::vector<ScenarioVerdict> verdicts = RunSuite(request, progress);
+
+  if (options.Has("--json")) {
+    context.out << SummaryJson(verdicts, page).dump(2) << "\n";
+  } else if (junit != "-") {
+    const bool as_files_say = !options.Has("--grammar") && !options.Has("--set");
+    PrintText(verdicts, as_files_say, page, context);
+  }
+  problem = WriteTextFile(page, ReportHtml(verdicts));
+  if (problem.empty() && options.Has("--junit")) problem = WriteTextFile(junit, JunitXml(verdicts));
+  return problem.empty() ? WorstOf(verdicts) : Complain(context, ExitCode::kFailure, problem);
+}
+
+}  // namespace
+
+Command CheckCommand() {
+  return {.name = "check",
+          .summary = "Run scenarios and compare them with their goldens: the regression suite",
+          .examples = {"check", "check milk_carton_wrap 'slide/*' my/scenario.yaml",
+                       "check --filter tag:smoke --filter '!reach/*' --no-pictures --jobs 1",
+                       "check --changed", "check --shard 2/3 --junit verdicts.xml",
+                       "check 'slide/*' --repeat 10", "check --grammar my/rules.grammar --json"},
+          .options = Joined(SelectionOptions(), Joined(RunningOptions(), ResultOptions())),
+          .run = RunCheck};
+}
+
+}  // namespace prehend::harness

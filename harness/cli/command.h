@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// A command of `prehend`: its name, what it accepts, what it does. Each stands in a file of its own
+// and is listed in command_line.cc. Results go to `out`, diagnostics to `err`. Tested by
+// tests/program/command_line_test.cc
+#pragma once
+
+#include <optional>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "grammar/base/diagnostic.h"
+#include "harness/base/exit_code.h"
+#include "harness/cli/options.h"
+#include "harness/run/find_scenario.h"
+#include "harness/run/load_run.h"
+#include "harness/run/open_episode.h"
+
+namespace prehend::harness {
+
+/// What a command may know about its surroundings.
+struct CommandContext {
+  std::ostream& out;
+  std::ostream& err;
+  std::string root;                ///< the project's folder
+  std::string today;               ///< YYYY-MM-DD
+  std::vector<std::string> words;  ///< what was typed after the program's name
+  bool in_ci = false;              ///< there is no person who could accept a golden
+  bool colored = false;            ///< `out` may be coloured
+  bool progress = false;           ///< `err` is a terminal
+};
+
+struct Command {
+  std::string name;
+  std::string summary;
+  std::vector<std::string> examples;  ///< without the program's name
+  std::vector<Option> options;
+  ExitCode (*run)(const ParsedOptions& options, const CommandContext& context) = nullptr;
+};
+
+Command ListCommand();
+Command ValidateCommand();
+Command RunCommand();
+Command CheckCommand();
+Command AcceptCommand();
+Command ReviewCommand();
+Command RenderCommand();
+Command NewCommand();
+Command ResegmentCommand();
+Command SchemaCommand();
+Command BenchCommand();
+Command ScoreCommand();
+Command ExplainCommand();
+Command TracksCommand();
+
+constexpr int kMaxJobs = 256;
+/// The number of processes that keep this machine busy.
+int CoreCount();
+
+// Options that several commands have.
+Option ScenarioArgument();
+Option EpisodeArgument();  ///< a scenario or a recording
+Option GrammarOption();
+Option SettingsOption();
+RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_file);
+
+/// Reports a file that is a recording where a scenario is wanted; nothing of any other.
+std::optional<ExitCode> RefuseRecording(const std::string& typed, const CommandContext& context);
+
+/// The scenario that was typed, by name or path; otherwise reports the nearest name.
+struct FoundScenario {
+  std::optional<ScenarioFile> value;
+  ExitCode exit_code = ExitCode::kAgrees;
+};
+FoundScenario FindScenarioOrComplain(const std::string& typed, const CommandContext& context);
+
+/// The episode that was typed for `scenario`, a scenario or a recording, with the run options;
+/// otherwise reports why there is none.
+struct OpenedEpisode {
+  std::optional<EpisodeSource> value;
+  ExitCode exit_code = ExitCode::kAgrees;
+};
+OpenedEpisode OpenEpisodeOrComplain(const ParsedOptions& options, const CommandContext& context);
+
+/// Prints "prehend: MESSAGE" to `err`, of a failure also the command that shows it again, and
+/// returns `code`.
+ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message);
+
+/// The same, with the words of the command that should have been typed.
+ExitCode ComplainWithCorrection(const CommandContext& context, ExitCode code,
+                                const std::string& message,
+                                const std::vector<std::string>& corrected);
+
+/// Prints what is wrong with files or with values of options. The command is printed again when
+/// there is a file to fix.
+ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& diagnostics);
+
+/// Prints warnings to `err`; nothing when there are none.
+void Warn(const CommandContext& context, const grammar::Diagnostics& warnings);
+
+}  // namespace prehend::harness

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/cli/command_line.h. Tested by tests/program/command_line_test.cc
+#include "harness/cli/command_line.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <exception>
+#include <iostream>
+
+#include "harness/base/project_paths.h"
+#include "harness/base/shell_quote.h"
+#include "harness/cli/parse_arguments.h"
+
+namespace prehend::harness {
+namespace {
+
+std::vector<Command> Commands() {
+  return {ListCommand(),      ValidateCommand(), RunCommand(),     CheckCommand(),  AcceptCommand(),
+          ReviewCommand(),    RenderCommand(),   NewCommand(),     SchemaCommand(), BenchCommand(),
+          ResegmentCommand(), ScoreCommand(),    ExplainCommand(), TracksCommand()};
+}
+
+bool IsSet(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value && *value && std::string_view(value) != "0" && std::string_view(value) != "false";
+}
+
+std::string Today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  return fmt::format("{:04}-{:02}-{:02}", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday);
+}
+
+ProgramDescription Description() {
+  return {.version = "prehend " PREHEND_VERSION,
+          .summary =
+              "Simulate manipulation, segment it with activity grammars, compare it with goldens.",
+          .footer =
+              "Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 simulation or internal "
+              "failure,\n"
+              "4 nothing was selected or found, 5 goldens wait for acceptance.\n"
+              "PREHEND_HOME names the project's folder; otherwise it is the one above the program, "
+              "or the working folder."};
+}
+
+ExitCode Report(const UsageError& error) {
+  std::cerr << "prehend: " << error.message << "\n";
+  if (!error.corrected.empty()) std::cerr << "  again: " << CommandText(error.corrected) << "\n";
+  std::vector<std::string> help = {"--help"};
+  if (!error.command.empty()) help.insert(help.begin(), error.command);
+  std::cerr << "  see: " << CommandText(help) << "\n";
+  return ExitCode::kBadInput;
+}
+
+ExitCode Print(const InfoText& info) {
+  (info.asked_for ? std::cout : std::cerr) << info.text;
+  return info.asked_for ? ExitCode::kAgrees : ExitCode::kBadInput;
+}
+
+ExitCode Run(const ChosenCommand& chosen, const std::vector<std::string>& words) {
+  CommandContext context{
+      .out = std::cout, .err = std::cerr, .root = {}, .today = Today(), .words = words};
+  context.in_ci = IsSet("CI");
+  context.colored = isatty(STDOUT_FILENO) && !IsSet("NO_COLOR");
+  context.progress = isatty(STDERR_FILENO);
+  const auto root = FindProjectRoot();
+  if (!root) {
+    const char* const home = std::getenv("PREHEND_HOME");
+    return Complain(context, ExitCode::kBadInput,
+                    home && *home
+                        ? "PREHEND_HOME is " + ShellQuoted(home) + ", which has no grammar/library"
+                        : std::string("the project's folder was not found (it has a "
+                                      "grammar/library); go there or set PREHEND_HOME"));
+  }
+  context.root = *root;
+  return chosen.command->run(chosen.options, context);
+}
+
+}  // namespace
+
+ExitCode RunCommandLine(int argc, const char* const* argv) {
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  try {
+    const std::vector<Command> commands = Commands();
+    const ParsedArguments parsed = ParseArguments(Description(), commands, words);
+    if (const auto* error = std::get_if<UsageError>(&parsed)) return Report(*error);
+    const auto* const info = std::get_if<InfoText>(&parsed);
+    const ExitCode code = info ? Print(*info) : Run(std::get<ChosenCommand>(parsed), words);
+    std::cout.flush();
+    if (std::cout) return code;
+    std::cerr << "prehend: the output could not be written\n";
+  } catch (const std::exception& problem) {
+    std::cerr << "prehend: internal error: " << problem.what()
+              << "\n  again: " << CommandText(words) << "\n";
+  }
+  return ExitCode::kFailure;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend explain: why an event has its boundaries, or why there is none.
+// Tested by tests/program/explain_command_test.cc
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/base/shell_quote.h"
+#include "harness/check/check_scenario.h"
+#include "harness/cli/command.h"
+#include "harness/explain/explain.h"
+#include "harness/explain/replay.h"
+#include "harness/run/run_text.h"
+#include "harness/timeline/event_text.h"
+
+namespace prehend::harness {
+namespace {
+
+using explain::Ask;
+using explain::WhyEvent;
+
+OrderedJson ToJson(const std::string& episode, const grammar::ReplayMonitor& past) {
+  return {{"episode", episode},
+          {"grammar", past.program().name},
+          {"ticks_per_second", past.entity_table().ticks_per_second}};
+}
+
+OrderedJson ToJson(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_second) {
+  OrderedJson list = OrderedJson::array();
+  for (const WhyEvent& why : events) list.push_back(explain::ToJson(why, ticks_per_second));
+  return list;
+}
+
+void PrintEvents(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_second,
+                 std::ostream& out) {
+  for (const WhyEvent& why : events)
+    out << (&why == &events.front() ? "" : "\n") << explain::Text(why, ticks_per_second);
+}
+
+/// Reports that no such event was recognised, with the nearest ones.
+ExitCode ComplainOfNoEvent(const ParsedOptions& options, grammar::ReplayMonitor& past,
+                           const Ask& ask, const CommandContext& context) {
+  const std::string typed = options.Text("--event");
+  const std::vector<WhyEvent> nearest = explain::NearestEvents(past, ask);
+  std::string message = fmt::format("--event: there is no '{}'{}", typed,
+                                    nearest.empty() ? " in the whole episode" : "; the nearest:");
+  for (const WhyEvent& other : nearest) {
+    message += fmt::format("\n  {}  {}", other.event,
+                           IntervalText(other.interval, past.entity_table().ticks_per_second));
+  }
+  message += fmt::format("\n  why not: {} --expected {}",
+                         ExplainCommand(options.Text("scenario"), RequestOf(options, {})),
+                         ShellQuoted(typed));
+  return Complain(context, ExitCode::kNothing, message);
+}
+
+/// What is asked for; when neither is set: all events.
+struct Question {
+  std::optional<Ask> event;
+  std::optional<Ask> expected;
+};
+
+ExitCode Answer(const ParsedOptions& options, const CommandContext& context,
+                const std::string& episode, const Question& question,
+                grammar::ReplayMonitor& past) {
+  const grammar::Tick per_second = past.entity_table().ticks_per_second;
+  const bool as_json = options.Has("--json");
+  OrderedJson json = ToJson(episode, past);
+  if (question.expected) {
+    // An event that did happen is explained like any other.
+    const std::vector<WhyEvent> there = explain::ExplainEvents(past, *question.expected);
+    if (there.empty()) {
+      const explain::WhyMissing why = explain::ExplainMissing(past, *question.expected);
+      json["missing"] = explain::ToJson(why, per_second);
+      if (!as_json) context.out << explain::Text(why, per_second);
+    } else {
+      json["events"] = ToJson(there, per_second);
+      if (!as_json) context.out << "it happened:\n";
+      if (!as_json) PrintEvents(there, per_second, context.out);
+    }
+  } else if (question.event) {
+    const std::vector<WhyEvent> events = explain::ExplainEvents(past, *question.event);
+    if (events.empty()) return ComplainOfNoEvent(options, past, *question.event, context);
+    json["events"] = ToJson(events, per_second);
+    if (!as_json) PrintEvents(events, per_second, context.out);
+  } else {
+    const std::vector<WhyEvent> events = explain::ExplainAll(past);
+    json["events"] = ToJson(events, per_second);
+    if (!as_json && events.empty())
+      context.out << "no event was recognised; --expected EVENT tells why\n";
+    if (!as_json && !events.empty()) context.out << explain::Table(events, per_second);
+  }
+  if (as_json) context.out << json.dump(2) << "\n";
+  return ExitCode::kAgrees;
+}
+
+ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--event") && options.Has("--expected")) {
+    return Complain(context, ExitCode::kBadInput,
+                    "--event contradicts --expected; give one of them");
+  }
+  const auto source = OpenEpisodeOrComplain(options, context);
+  if (!source.value) return source.exit_code;
+
+  Question question;
+  for (const auto& [option, ask] :
+       {std::pair{"--event", &question.event}, std::pair{"--expected", &question.expected}}) {
+    if (!options.Has(option)) continue;
+    const ReadResult<Ask> read = explain::ParseAsk(
+        option, options.Text(option), *source.value->program, source.value->entity_table);
+    if (!read.value) return Complain(context, read.diagnostics);
+    *ask = *read.value;
+  }
+  const explain::Watched watched = explain::Watch(*source.value);
+  if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
+  const ExitCode code = Answer(options, context, source.value->name, question, *watched.past);
+  if (watched.failure.empty() || code != ExitCode::kAgrees) return code;
+  return Complain(context, ExitCode::kFailure, watched.failure);
+}
+
+}  // namespace
+
+Command ExplainCommand() {
+  return {.name = "explain",
+          .summary =
+              "NotifyWatchers why events began and ended when they did, or why one did not happen",
+          .examples = {"explain milk_carton_wrap", "explain milk_carton_wrap --event reaching@0.5s",
+                       "explain milk_carton_wrap --expected 'sliding right_hand milk @2.0s'",
+                       "explain milk_carton_wrap --set lift_rise=40cm --expected picking_up --json",
+                       "explain milk.jsonl --event 'grasping(right_hand, milk)'"},
+          .options = {EpisodeArgument(),
+                      {.name = "--event",
+                       .help = "an event that happened: reaching@1.24s, 'sliding right_hand milk "
+                               "@2.0s'",
+                       .placeholder = "EVENT[@TIME]"},
+                      {.name = "--expected",
+                       .help = "an event that did not happen: 'sliding right_hand milk @2.0s'",
+                       .placeholder = "EVENT[@TIME]"},
+                      GrammarOption(),
+                      SettingsOption(),
+                      {.name = "--json", .help = "print one JSON object instead of text"}},
+          .run = RunExplain};
+}
+
+}  // namespace prehend::harness

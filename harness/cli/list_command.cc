@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend list. Tested by tests/program/command_line_test.cc
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/cli/command.h"
+#include "harness/read/read_scenario.h"
+#include "harness/run/project_library.h"
+#include "harness/timeline/event_text.h"
+
+namespace prehend::harness {
+namespace {
+
+ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
+  std::vector<std::vector<std::string>> rows = {{"scenario", "shows", "tags"}};
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  grammar::Diagnostics diagnostics;
+  const ScenarioLibrary library = ProjectLibrary(context.root);
+  for (const ScenarioFile& file : ListScenarios(context.root)) {
+    ReadResult<Scenario> read = ReadScenario(file.path, {}, library);
+    diagnostics.insert(diagnostics.end(), read.diagnostics.begin(), read.diagnostics.end());
+    const Scenario scenario = std::move(read.value).value_or(Scenario{.shows = "(cannot be read)"});
+    const std::string id = ScenarioId(file.skill, file.name);
+    rows.push_back({id, scenario.shows, fmt::format("{}", fmt::join(scenario.tags, " "))});
+    list.push_back({{"scenario", id},
+                    {"shows", scenario.shows},
+                    {"tags", scenario.tags},
+                    {"grammar", scenario.grammar}});
+  }
+  if (list.empty())
+    return Complain(context, ExitCode::kNothing,
+                    "there is no scenario in " + context.root + "/scenarios");
+  if (options.Has("--json")) {
+    context.out << nlohmann::ordered_json{{"scenarios", list}}.dump(2) << "\n";
+  } else {
+    for (const std::string& line : AlignColumns(rows)) context.out << line << "\n";
+  }
+  return diagnostics.empty() ? ExitCode::kAgrees : Complain(context, diagnostics);
+}
+
+}  // namespace
+
+Command ListCommand() {
+  return {.name = "list",
+          .summary = "List the scenarios: name, what each shows, tags",
+          .examples = {"list", "list --json"},
+          .options = {{.name = "--json", .help = "print one JSON object instead of a table"}},
+          .run = RunList};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend new: a commented scenario to start from. Tested by tests/program/command_line_test.cc
+#include <filesystem>
+
+#include "harness/base/atomic_file.h"
+#include "harness/base/default_grammar.h"
+#include "harness/base/shell_quote.h"
+#include "harness/base/text_file.h"
+#include "harness/cli/command.h"
+#include "harness/format/scenario_copy.h"
+#include "harness/read/read_scenario.h"
+#include "harness/run/project_library.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr const char* kDefaultSkill = kDefaultGrammar;
+
+constexpr const char* kTemplate = R"(# yaml-language-server: $schema=../scenario.schema.json
+# Every key is explained in docs/scenario-format.md. Units are the last word of a key; z is up.
+scenario: name
+shows: a carton is picked up with a wrap grasp and put down further to the right   # what it proves, as a sentence
+grammar: pick_and_place            # a file of grammar/library/, without ".grammar"
+tags: []
+
+# Things. `on` puts one onto another; then at_m gives x and y only.
+entities:
+  table: {class: Table, fixed: true, box: {size_m: [1.2, 0.8, 0.04]}, at_m: [0, 0, 0.74]}
+  carton: {class: MilkCarton, box: {size_m: [0.07, 0.07, 0.20]}, mass_kg: 0.4, friction: 0.8, on: table, at_m: [0.2, 0.1]}
+
+# Hands, and where they start.
+actors:
+  right_hand: {hand: human_right, at_m: [-0.2, -0.2, 1.05]}
+
+# One step after another. Hands named in one entry act at the same time.
+script:
+  - right_hand: {reach: carton, style: wrap, over_s: 0.8}
+  - right_hand: {close_to: 1.0, over_s: 0.6}
+  - right_hand: {lift_by_m: 0.25, over_s: 0.6}
+  - right_hand: {carry_to_m: [0.2, -0.3], over_s: 1.0}
+  - right_hand: {place_on: table, over_s: 0.6}
+  - right_hand: {open_to: 0.0, over_s: 0.45}
+  - right_hand: {retreat_by_m: 0.2, over_s: 0.6}
+
+# Pictures for the report: at an event's begin or end, or at a time in seconds.
+pictures:
+  - {at: transporting.begin, camera: three_quarter}
+)";
+
+constexpr std::string_view kModeline = "# yaml-language-server: $schema=../scenario.schema.json\n";
+
+/// The text that a new scenario starts from.
+struct Model {
+  std::string path;  ///< of the template: where it would stand in the default folder
+  std::string text = kTemplate;
+  std::string skill = kDefaultSkill;
+};
+
+/// The text of the scenario for `path`, with the line that editors look for. Errors of the model
+/// are reported in the model's own file; then nothing is returned.
+std::optional<std::string> Composed(const Model& model, const std::filesystem::path& path,
+                                    const CommandContext& context) {
+  const ScenarioLibrary library = ProjectLibrary(context.root);
+  const ReadResult<Scenario> as_it_is = ReadScenarioText(model.path, model.text, {}, library);
+  ReadResult<std::string> copy = as_it_is.value ? CopyOfScenario(model.path, model.text, path)
+                                                : ReadResult<std::string>{{}, as_it_is.diagnostics};
+  if (copy.value) {
+    const bool has_modeline = copy.value->find("yaml-language-server:") != std::string::npos;
+    if (!has_modeline) copy.value->insert(0, kModeline);
+    std::error_code error;
+    std::filesystem::create_directories(path.parent_path(), error);  // for paths that go through it
+    const ReadResult<Scenario> read = ReadScenarioText(path.string(), *copy.value, {}, library);
+    if (read.value) return copy.value;
+    std::filesystem::remove(path.parent_path(), error);  // only when it is empty
+    copy.diagnostics = read.diagnostics;
+  }
+  Complain(context, copy.diagnostics);
+  return std::nullopt;
+}
+
+/// A small letter, then small letters, digits and '_', at most 64 in all.
+bool IsName(std::string_view word) {
+  return !word.empty() && word.size() <= 64 && word.front() >= 'a' && word.front() <= 'z' &&
+         word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == word.npos;
+}
+
+ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
+  const std::string typed = options.Text("name");
+  const std::size_t slash = typed.find('/');
+  const std::string name = slash == std::string::npos ? typed : typed.substr(slash + 1);
+  const bool has_folder = slash != std::string::npos;
+  if (!IsName(name) || (has_folder && !IsName(typed.substr(0, slash)))) {
+    return Complain(
+        context, ExitCode::kBadInput,
+        "'" + typed +
+            "' is not a scenario name; wanted a small letter, then small letters, digits and '_', "
+            "at most 64 in all, like slide_then_transport; a folder may precede it, like "
+            "slide/slide_then_transport");
+  }
+  namespace fs = std::filesystem;
+  const fs::path scenarios = fs::path(context.root) / "scenarios";
+  Model model{.path = (scenarios / kDefaultSkill / "name.yaml").string()};
+  if (options.Has("--like")) {
+    const auto [like, not_found] = FindScenarioOrComplain(options.Text("--like"), context);
+    if (!like) return not_found;
+    ReadResult<std::string> read = ReadTextFile(like->path);
+    if (!read.value) return Complain(context, read.diagnostics);
+    model = {.path = like->path,
+             .text = std::move(*read.value),
+             .skill = like->skill.empty() ? kDefaultSkill : like->skill};
+  }
+  const std::string skill = has_folder ? typed.substr(0, slash) : model.skill;
+  if (skill == kShowsErrors) {
+    return Complain(context, ExitCode::kBadInput,
+                    "scenarios/invalid/ holds examples of errors, which no command reads as "
+                    "scenarios; choose another folder, like " +
+                        std::string(kDefaultSkill) + "/" + name);
+  }
+  for (const ScenarioFile& scenario : ListScenarios(context.root)) {
+    if (scenario.name == name)
+      return Complain(context, ExitCode::kBadInput,
+                      "a scenario of this name exists: " + scenario.path);
+  }
+  const fs::path path = scenarios / skill / (name + ".yaml");
+  const auto text = Composed(model, path, context);
+  if (!text) return ExitCode::kBadInput;
+  const std::string problem = WriteTextFile(path, *text);
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  const std::string id = ScenarioId(skill, name);
+  context.out << path.string() << "\nnext: edit it, then\n";
+  for (const char* command : {"validate", "run", "render", "check", "review"})
+    context.out << "  " << CommandText({command, id}) << "\n";
+  context.out << "  " << CommandText({"accept", id}) << " --reason \"...\"\n";
+  return ExitCode::kAgrees;
+}
+
+}  // namespace
+
+Command NewCommand() {
+  return {.name = "new",
+          .summary = "Write a commented, runnable scenario to start from",
+          .examples = {"new carton_is_lifted",
+                       "new slide/carton_slides_far --like carton_slides_then_is_transported"},
+          .options = {{.name = "name",
+                       .help = "what the scenario claims, like carton_slides_then_is_lifted; or "
+                               "skill/name",
+                       .required = true},
+                      {.name = "--like",
+                       .help = "start from this scenario instead of the template",
+                       .placeholder = "SCENARIO"}},
+          .run = RunNew};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend review: what is to be accepted. Reads files only: the pending ones are from `check`.
+// Tested by tests/program/golden_workflow_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "harness/base/shell_quote.h"
+#include "harness/check/accept_golden.h"
+#include "harness/check/check_scenario.h"
+#include "harness/check/compare_engines.h"
+#include "harness/check/select_scenarios.h"
+#include "harness/check/unreferenced_goldens.h"
+#include "harness/cli/command.h"
+#include "harness/golden/compare.h"
+#include "harness/golden/golden_files.h"
+#include "harness/read/read_scenario.h"
+#include "harness/run/project_library.h"
+#include "harness/timeline/event_text.h"
+
+namespace prehend::harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One thing to review.
+struct Review {
+  std::string id;
+  std::string kind;  ///< "new", "changed", "same", "engines", "picture", "unreadable", "orphan"
+  std::string text;  ///< events of a new scenario, differences, errors; several lines or empty
+  std::string fingerprint = {};  ///< of the pending golden; lets `accept` take nothing else
+  std::vector<std::string> files =
+      {};  ///< of a picture: golden, new, difference; of an orphan: what to remove
+};
+
+std::string EventLines(const Golden& golden) {
+  std::vector<std::vector<std::string>> rows;
+  std::size_t role_columns = 1;
+  for (const GoldenEvent& line : golden.events)
+    role_columns = std::max(role_columns, line.event.roles.size());
+  for (const GoldenEvent& line : golden.events) {
+    rows.push_back(EventCells(line.event, golden.ticks_per_second, role_columns));
+  }
+  std::string text;
+  for (const std::string& line : AlignColumns(rows)) text += line + "\n";
+  return text;
+}
+
+/// How it follows from the definitions, where the golden says something else.
+std::string DerivationLines(const Golden& pending, const std::vector<std::string>& before) {
+  std::string text;
+  for (const std::string& line : pending.derived) {
+    if (std::ranges::count(before, line) == 0) text += line + "\n";
+  }
+  return text;
+}
+
+Review ReviewOf(const ScenarioFile& file, const std::string& root) {
+  const GoldenFiles files(root);
+  Review review{.id = ScenarioId(file.skill, file.name), .kind = "unreadable", .text = {}};
+  const ReadResult<Golden> pending = files.ReadPendingOf(review.id);
+  const ReadResult<Golden> golden = files.ReadGoldenOf(review.id);
+  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
+  review.text =
+      Format(pending.diagnostics) + Format(golden.diagnostics) + Format(scenario.diagnostics);
+  if (!pending.value || !scenario.value || !golden.diagnostics.empty()) return review;
+  review.fingerprint = Fingerprint(*pending.value);
+  if (!golden.value) {
+    review.kind = "new";
+    review.text = EventLines(*pending.value) + DerivationLines(*pending.value, {});
+    return review;
+  }
+  const WorldYaml& world = scenario.value->world;
+  const Comparison comparison = Compare(*golden.value, ToTimeline(*pending.value),
+                                        DefaultTolerance(world.rate_hz, world.sensing_hz));
+  const std::string derivation = DerivationLines(*pending.value, golden.value->derived);
+  review.kind = comparison.Agrees() && derivation.empty() ? "same" : "changed";
+  review.text = DifferenceText(comparison, ExplainCommand(review.id, {})) + derivation;
+  return review;
+}
+
+/// A picture that differs from its golden.
+Review PictureReview(const KeptPicture& pending, const std::string& root) {
+  const GoldenFiles files(root);
+  const std::string name = pending.path.filename().string();
+  const fs::path golden = files.PicturePath(pending.scenario, name),
+                 difference = files.DifferencePath(pending.scenario, name);
+  Review review{.id = pending.scenario, .kind = "picture", .text = {}};
+  std::error_code error;
+  for (const auto& [what, file] : {std::pair("golden", golden), std::pair("new", pending.path),
+                                   std::pair("difference", difference)}) {
+    if (!fs::exists(file, error)) continue;
+    review.text += fmt::format("{:<10}  {}\n", what, file.string());
+    review.files.push_back(file.string());
+  }
+  return review;
+}
+
+/// Reviews of one scenario: its events, then its pictures.
+void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pending,
+                const std::vector<KeptPicture>& pending_pictures, std::vector<Review>& reviews) {
+  if (!file.in_project) return;
+  if (is_pending) reviews.push_back(ReviewOf(file, root));
+  if (const std::string engines = GoldenFiles(root).ReadEngineDifference(IdOf(file));
+      !engines.empty())
+    reviews.push_back({.id = IdOf(file), .kind = "engines", .text = engines});
+  for (const KeptPicture& picture : pending_pictures) {
+    if (picture.scenario == IdOf(file)) reviews.push_back(PictureReview(picture, root));
+  }
+  if (GoldenFiles(root).PicturesOf(IdOf(file)).empty()) return;
+  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
+  if (!scenario.value) return;
+  const std::size_t asked = scenario.value->pictures.size();
+  for (const fs::path& picture : UnaskedPictures(IdOf(file), asked, root))
+    reviews.push_back(
+        {IdOf(file), "orphan", UnaskedText(picture, asked) + "\n", "", {picture.string()}});
+}
+
+/// Nothing when the selection is wrong, which has been reported then.
+std::optional<std::vector<Review>> Reviews(const ParsedOptions& options,
+                                           const CommandContext& context) {
+  const std::vector<std::string> patterns = options.All("names");
+  std::string problem;
+  const auto selection = SelectScenarios(patterns, {}, context.root, problem);
+  if (!selection && !patterns.empty()) {
+    Complain(context, ExitCode::kNothing, problem);
+    return std::nullopt;
+  }
+  std::vector<std::string> pending = GoldenFiles(context.root).ListPending();
+  const std::vector<KeptPicture> pictures = GoldenFiles(context.root).PendingPictures();
+  std::vector<Review> reviews;
+  for (const ScenarioFile& file : selection ? selection->scenarios : std::vector<ScenarioFile>())
+    AddReviews(file, context.root, std::erase(pending, IdOf(file)) > 0, pictures, reviews);
+  if (!patterns.empty()) return reviews;
+  for (const std::string& id : pending) {
+    const std::string file = GoldenFiles(context.root).PendingPath(id).string();
+    reviews.push_back({id,
+                       "orphan",
+                       "the scenario of this pending golden does not exist; remove " + file + "\n",
+                       "",
+                       {file}});
+  }
+  for (const Orphan& orphan : selection ? selection->orphans : std::vector<Orphan>()) {
+    Review review{orphan.scenario, "orphan", Text(orphan)};
+    for (const fs::path& file : orphan.files) review.files.push_back(file.string());
+    reviews.push_back(std::move(review));
+  }
+  return reviews;
+}
+
+/// The next step, in one line, or "".
+std::string NextStep(const Review& review, bool engines_differ) {
+  if (review.kind == "engines" || (engines_differ && !review.fingerprint.empty()))
+    return kUntilEnginesAgree;
+  if (review.kind == "picture")
+    return "if right: " + CommandText({"accept", review.id}) + " --pictures --reason \"...\"";
+  if (review.kind != "new" && review.kind != "changed") return "";
+  return "if right: " + AcceptCommandLine(review.id, review.fingerprint);
+}
+
+void Print(const std::vector<Review>& reviews, const CommandContext& context) {
+  std::set<std::string> engines_differ;
+  for (const Review& review : reviews) {
+    if (review.kind == "engines") engines_differ.insert(review.id);
+  }
+  for (const Review& review : reviews) {
+    context.out << fmt::format("{}  {}\n", review.kind, review.id);
+    for (std::size_t begin = 0; begin < review.text.size();) {
+      const std::size_t end = review.text.find('\n', begin);
+      context.out << "    " << review.text.substr(begin, end - begin) << "\n";
+      begin = end + 1;
+    }
+    const std::string next = NextStep(review, engines_differ.contains(review.id));
+    if (!next.empty()) context.out << "    " << next << "\n";
+  }
+  if (reviews.empty())
+    context.out << "nothing is pending ('" << CommandText({"check"})
+                << "' finds what differs from its golden)\n";
+}
+
+ExitCode RunReview(const ParsedOptions& options, const CommandContext& context) {
+  const auto reviews = Reviews(options, context);
+  if (!reviews) return ExitCode::kNothing;
+  if (options.Has("--json")) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Review& review : *reviews)
+      list.push_back({{"scenario", review.id},
+                      {"kind", review.kind},
+                      {"fingerprint", review.fingerprint},
+                      {"files", review.files},
+                      {"text", review.text}});
+    context.out << nlohmann::ordered_json{{"pending", list}}.dump(2) << "\n";
+  } else {
+    Print(*reviews, context);
+  }
+  return reviews->empty() ? ExitCode::kAgrees : ExitCode::kPending;
+}
+
+}  // namespace
+
+Command ReviewCommand() {
+  return {.name = "review",
+          .summary = "Show what is pending, and how it differs from the goldens",
+          .examples = {"review", "review milk_carton_wrap 'slide/*'"},
+          .options = {{.name = "names",
+                       .help = "names, skill/name or globs; default: all that is pending",
+                       .repeatable = true},
+                      {.name = "--json", .help = "print one JSON object instead of text"}},
+          .run = RunReview};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend run. Tested by tests/program/command_line_test.cc
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/base/atomic_file.h"
+#include "harness/base/shell_quote.h"
+#include "harness/cli/command.h"
+#include "harness/run/run_text.h"
+#include "harness/run/run_trials.h"
+#include "harness/sense/entity_table.h"
+#include "harness/sense/episode_file.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr int kMaxTrials = 100000;
+
+/// The command that plays one trial again, without its number.
+std::string TrialCommand(const ParsedOptions& options) {
+  std::vector<std::string> words = {"run", options.Text("scenario")};
+  if (options.Has("--grammar")) {
+    words.push_back("--grammar");
+    words.push_back(options.Text("--grammar"));
+  }
+  for (const std::string& setting : options.All("--set")) {
+    words.push_back("--set");
+    words.push_back(setting);
+  }
+  return CommandText(words);
+}
+
+ExitCode CountTrials(const ParsedOptions& options, const RunRequest& request,
+                     const CommandContext& context) {
+  const TrialSettings settings{.count = options.IntOr("--trials", 1),
+                               .jobs = options.IntOr("--jobs", CoreCount())};
+  const auto report = RunTrials(request, context.root, settings, [&](int done) {
+    if (context.progress)
+      context.err << "\r\033[K[" << done << "/" << settings.count << "]" << std::flush;
+  });
+  if (context.progress) context.err << "\r\033[K" << std::flush;
+  if (!report.value) return Complain(context, report.diagnostics);
+  if (options.Has("--json")) {
+    context.out << TrialJson(*report.value).dump(2) << "\n";
+  } else {
+    context.out << TrialTable(*report.value, TrialCommand(options));
+  }
+  return ExitCode::kAgrees;
+}
+
+ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
+  const auto [file, not_found] = FindScenarioOrComplain(options.Text("scenario"), context);
+  if (!file) return not_found;
+  RunRequest request = RequestOf(options, file->path);
+  for (const char* of_one_run : {"--trial", "--record", "--measure"}) {
+    if (options.Has("--trials") && options.Has(of_one_run))
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("{} needs a single run; --trials makes many", of_one_run));
+  }
+  if (options.Has("--trials")) return CountTrials(options, request, context);
+  if (options.Has("--trial")) {
+    auto varied = RequestOfTrial(request, context.root, options.IntOr("--trial", 1));
+    if (!varied.value) return Complain(context, varied.diagnostics);
+    for (std::size_t i = request.settings.size(); i < varied.value->settings.size(); ++i)
+      context.err << "sampled: " << varied.value->settings[i] << "\n";
+    request = std::move(*varied.value);
+  }
+  const bool record_is_output = options.Text("--record") == "-";
+  for (const char* of_output : {"--json", "--measure"}) {
+    if (record_is_output && options.Has(of_output))
+      return Complain(
+          context, ExitCode::kBadInput,
+          fmt::format("--record - and {} contradict each other: both are printed", of_output));
+  }
+  const ReadResult<LoadedRun> loaded = LoadRun(request, context.root);
+  if (!loaded.value) return Complain(context, loaded.diagnostics);
+  Warn(context, loaded.value->warnings);
+
+  const bool measure = options.Has("--measure");
+  RunOptions how{.judge = !loaded.value->scenario.outcomes.empty(), .measure = measure};
+  std::optional<AtomicFile> record;
+  std::optional<EpisodeWriter> recorder;
+  if (options.Has("--record")) {
+    record.emplace(options.Text("--record"));
+    if (!record->problem().empty())
+      return Complain(context, ExitCode::kBadInput, "--record: " + record->problem());
+    const Scenario& scenario = loaded.value->scenario;
+    recorder.emplace(record->stream(),
+                     EpisodeHeader{scenario.name, scenario.grammar, MakeEntityTable(scenario)});
+    how.watch = [&](const grammar::Frame& frame) { recorder->Write(frame); };
+  }
+  const RunResult run = RunScenario(loaded.value->scenario, loaded.value->program, how);
+  for (const std::string& note : NoteLines(loaded.value->scenario, run))
+    context.err << note << "\n";
+  std::string not_recorded;
+  if (recorder) {
+    recorder->Finish(run.ticks + 1);
+    not_recorded = record->Commit();
+  }
+  if (options.Has("--json")) {
+    OrderedJson json = RunJson(loaded.value->scenario, run);
+    if (measure) json["measured"] = MeasurementJson(Measure(run));
+    context.out << json.dump(2) << "\n";
+  } else if (!record_is_output) {
+    context.out << RunTable(run);
+    if (measure) context.out << MeasurementText(Measure(run));
+  }
+  if (!not_recorded.empty())
+    return Complain(context, ExitCode::kFailure, "--record: " + not_recorded);
+  if (run.status.kind == physics::RunStatus::Kind::kCompleted) return ExitCode::kAgrees;
+  return Complain(context, ExitCode::kFailure, StatusText(run));
+}
+
+}  // namespace
+
+Command RunCommand() {
+  return {
+      .name = "run",
+      .summary = "Simulate one scenario and print the events that its grammar recognises",
+      .examples = {"run milk_carton_wrap", "run milk_carton_wrap --json",
+                   "run milk_carton_wrap --record milk.jsonl",
+                   "run milk_carton_wrap --set entities.milk.mass_kg=8",
+                   "run milk_carton_wrap --set lift_rise=10cm --measure",
+                   "run furniture/drawer_is_opened_with_hook --trials 50",
+                   "run furniture/drawer_is_opened_with_hook --trial 17",
+                   "run my/scenario.yaml --grammar my/rules.grammar"},
+      .options =
+          {ScenarioArgument(),
+           GrammarOption(),
+           SettingsOption(),
+           {.name = "--trials",
+            .help = "simulate N variations of the scenario and count the outcomes",
+            .placeholder = "N",
+            .rule = IntegersFrom(1, kMaxTrials)},
+           {.name = "--trial",
+            .help = "simulate variation K only",
+            .placeholder = "K",
+            .rule = IntegersFrom(1, kMaxTrials)},
+           {.name = "--jobs",
+            .help = "trials at a time; default: one per core",
+            .placeholder = "N",
+            .rule = IntegersFrom(1, kMaxJobs)},
+           {.name = "--json", .help = "print one JSON object instead of a table"},
+           {.name = "--record",
+            .help = "write the episode to FILE, for 'resegment'; -: print it instead of the table",
+            .placeholder = "FILE"},
+           {.name = "--measure", .help = "print where the time went, and the peak memory"}},
+      .run = RunOne};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend tracks: conditions and signals over time, as CSV or JSON.
+// Tested by tests/program/explain_command_test.cc
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "grammar/contents.h"
+#include "harness/base/atomic_file.h"
+#include "harness/cli/command.h"
+#include "harness/explain/replay.h"
+#include "harness/explain/tracks.h"
+
+namespace prehend::harness {
+namespace {
+
+/// Which of the names the grammar does not know; "" when it knows all.
+std::string UnknownTrack(const std::vector<std::string>& only, const grammar::Program& program) {
+  const std::vector<std::string> known = explain::TrackNames(program);
+  for (const std::string& name : only) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string near = grammar::NearestName(name, known);
+    return fmt::format(
+        "--only: found '{}', wanted an event, condition or signal of grammar '{}'; {}", name,
+        GrammarName(program),
+        near.empty() ? fmt::format("known: {}", fmt::join(known, ", "))
+                     : fmt::format("did you mean '{}'?", near));
+  }
+  return "";
+}
+
+ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) {
+  std::string output = options.Text("--output");
+  if (output == "-") output.clear();
+  const bool as_json = options.Has("--json") || output.ends_with(".json");
+  if (!output.empty() && !output.ends_with(".json") && !output.ends_with(".csv")) {
+    return Complain(
+        context, ExitCode::kBadInput,
+        fmt::format("--output: found '{}', wanted a file that ends with .csv or .json", output));
+  }
+  if (options.Has("--json") && output.ends_with(".csv")) {
+    return Complain(context, ExitCode::kBadInput,
+                    "--json contradicts an --output that ends with .csv");
+  }
+  const OpenedEpisode source = OpenEpisodeOrComplain(options, context);
+  if (!source.value) return source.exit_code;
+  const std::vector<std::string> only = options.All("--only");
+  const std::string unknown = UnknownTrack(only, *source.value->program);
+  if (!unknown.empty()) return Complain(context, ExitCode::kBadInput, unknown);
+
+  // Found out before the episode is played.
+  std::optional<AtomicFile> file;
+  if (!output.empty()) file.emplace(output);
+  if (file && !file->problem().empty())
+    return Complain(context, ExitCode::kBadInput, "--output: " + file->problem());
+
+  const explain::Watched watched = explain::Watch(*source.value);
+  if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
+  const explain::Tracks tracks = explain::CollectTracks(*watched.past, {only.begin(), only.end()});
+  if (!tracks.problem.empty()) return Complain(context, ExitCode::kBadInput, tracks.problem);
+  std::ostream& out = file ? file->stream() : context.out;
+  if (as_json) {
+    explain::WriteJson(tracks, source.value->name, GrammarName(*source.value->program), out);
+  } else {
+    explain::WriteCsv(tracks, out);
+  }
+  if (file) {
+    const std::string problem = file->Commit();
+    if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--output: " + problem);
+    context.out << fmt::format("{}: {} tracks, {} frames\n", output, tracks.tracks.size(),
+                               tracks.ticks.size());
+  }
+  return watched.failure.empty() ? ExitCode::kAgrees
+                                 : Complain(context, ExitCode::kFailure, watched.failure);
+}
+
+}  // namespace
+
+Command TracksCommand() {
+  return {.name = "tracks",
+          .summary = "Write conditions and signals over time, for plots",
+          .examples = {"tracks milk_carton_wrap -o milk.csv",
+                       "tracks milk_carton_wrap --only grasping --only speed_along",
+                       "tracks milk.jsonl --grammar my/rules.grammar -o milk.json"},
+          .options = {EpisodeArgument(),
+                      {.name = "--output",
+                       .help = "the file to write, .csv or .json; - or nothing: print CSV",
+                       .placeholder = "FILE",
+                       .other_name = "-o"},
+                      {.name = "--only",
+                       .help = "an event, condition or signal (speed_along); may be repeated;\n"
+                               "default: all",
+                       .placeholder = "NAME",
+                       .repeatable = true},
+                      GrammarOption(),
+                      SettingsOption(),
+                      {.name = "--json", .help = "print JSON instead of CSV"}},
+          .run = RunTracks};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/explain/replay.h. Tested by tests/harness/explain/explain_test.cc
+#include "harness/explain/replay.h"
+
+#include <fmt/format.h>
+
+namespace prehend::harness::explain {
+
+Watched Watch(const EpisodeSource& source) {
+  Watched watched;
+  watched.past = std::make_unique<grammar::ReplayMonitor>(source.program, source.entity_table);
+  grammar::ReplayMonitor& past = *watched.past;
+  bool too_long = false;
+  const EpisodeSource::Played played = source.play([&](const grammar::Frame& frame) {
+    too_long = too_long || past.frames() >= kMaxFrames;
+    if (!too_long) past.Advance(frame);
+  });
+  past.Finish(played.end);
+  watched.failure = played.failure;
+  if (!past.error().empty()) {
+    watched.problem = "the grammar cannot watch this episode: " + past.error();
+  } else if (too_long) {
+    watched.problem = fmt::format(
+        "the episode has more than {} frames, and all of them would have to be remembered",
+        kMaxFrames);
+  } else if (past.frames() == 0) {
+    watched.problem = "the episode has no frames";
+  }
+  return watched;
+}
+
+}  // namespace prehend::harness::explain

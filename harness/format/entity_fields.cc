@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/format/scenario_fields_test.cc
+#include <fmt/format.h>
+
+#include <functional>
+
+#include "harness/format/limits.h"
+#include "harness/format/scenario_fields.h"
+#include "harness/format/scenario_formats.h"
+#include "harness/scenario/classes.h"
+#include "harness/yaml/struct_format.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr std::size_t kMaxParts = 256;
+constexpr double kMaxResistance = 1e5;
+constexpr double kMaxSlide_m = 10;
+constexpr double kMaxTurn_deg = 170;  // at half a turn the two ways could not be told apart
+
+/// A joint's range is [least, most] and holds 0, where it was placed.
+void CheckRange(const YamlNode&, const JointYaml& joint, DiagnosticList& errors) {
+  const Eigen::Vector2d& range = joint.range.value;
+  if (range[0] <= 0 && range[1] >= 0 && range[0] < range[1]) return;
+  errors.Add(joint.range.where,
+             fmt::format("expected a range [least, most] with 0, where it is placed, between "
+                         "or at them, found [{}, {}]",
+                         range[0], range[1]));
+}
+
+Record<JointYaml> JointRecord(const std::string& noun) {
+  using J = JointYaml;
+  return Record<J>(noun).Required("to", &J::to, Identifier(), "The entity that it hangs on.");
+}
+
+Format<Eigen::Vector3d> Axis() { return Vector<3>(-1, 1); }
+
+void CheckAxis(const YamlNode& node, const JointYaml& joint, DiagnosticList& errors) {
+  if (joint.axis.norm() > 1e-6) return;
+  errors.Add(node.Find("axis")->where, "axis: expected a direction other than [0, 0, 0]");
+}
+
+/// A rest without a spring would do nothing; one of no stiffness is somebody's choice.
+std::function<void(const YamlNode&, const JointYaml&, DiagnosticList&)> SpringPullsTo(
+    const char* rest, const char* spring) {
+  return [rest, spring](const YamlNode& node, const JointYaml&, DiagnosticList& errors) {
+    const YamlNode* given = node.Find(rest);
+    if (!given || node.Find(spring)) return;
+    errors.Add(given->key_where, fmt::format("{}: there is no spring that pulls to it", rest),
+               fmt::format("give it {}", spring));
+  };
+}
+
+Format<JointYaml> SliderFormat() {
+  using J = JointYaml;
+  return JointRecord("a slider")
+      .Required("axis", &J::axis, Axis(),
+                "The direction in which it opens, in the world, as placed.")
+      .Required("range_m", &J::range, Vector<2>(-kMaxSlide_m, kMaxSlide_m),
+                "How far it goes from where it is placed: [least, most].")
+      .Optional("friction_n", &J::friction, Number(0, kMaxResistance),
+                "Largest force that it holds against.")
+      .Optional("damping_n_s_per_m", &J::damping, Number(0, kMaxResistance),
+                "Force against its speed.")
+      .Optional("spring_n_per_m", &J::spring, Number(0, kMaxResistance),
+                "Force that pulls it to rest_m.")
+      .Optional("rest_m", &J::rest, Number(-kMaxSlide_m, kMaxSlide_m), "Where its spring is slack.")
+      .Check(CheckAxis)
+      .Check(CheckRange)
+      .Check(SpringPullsTo("rest_m", "spring_n_per_m"))
+      .format();
+}
+
+Format<JointYaml> HingeFormat() {
+  using J = JointYaml;
+  return JointRecord("a hinge")
+      .Required("at_m", &J::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                "A point of its axis, in the world, as placed.")
+      .Required("axis", &J::axis, Axis(),
+                "The direction of its axis; it opens the way that a right-handed screw turns.")
+      .Required("range_deg", &J::range, Vector<2>(-kMaxTurn_deg, kMaxTurn_deg),
+                "How far it turns from where it is placed: [least, most].")
+      .Optional("friction_nm", &J::friction, Number(0, kMaxResistance),
+                "Largest torque that it holds against.")
+      .Optional("damping_nm_s_per_rad", &J::damping, Number(0, kMaxResistance),
+                "Torque against its speed.")
+      .Optional("spring_nm_per_rad", &J::spring, Number(0, kMaxResistance),
+                "Torque that turns it to rest_deg.")
+      .Optional("rest_deg", &J::rest, Number(-kMaxTurn_deg, kMaxTurn_deg),
+                "Where its spring is slack.")
+      .Check(CheckAxis)
+      .Check(CheckRange)
+      .Check(SpringPullsTo("rest_deg", "spring_nm_per_rad"))
+      .format();
+}
+
+Format<JointYaml> BallJointFormat() {
+  return JointRecord("a ball joint")
+      .Required("at_m", &JointYaml::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                "The point about which it turns any way, in the world, as placed.")
+      .format();
+}
+
+void CheckClass(const EntityYaml& entity, DiagnosticList& errors) {
+  if (!IsScenarioBuiltinClass(entity.class_name.value)) return;
+  errors.Add(entity.class_name.where,
+             "class: '" + entity.class_name.value + "' is built in and given anyway",
+             "name what the thing is, for example Cup");
+}
+
+/// What hangs on a joint moves, and what is fixed to something has its surface.
+void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
+  const std::string title = "entity '" + node.key + "'";
+  for (const char* key : {"fixed_to", "slider", "hinge", "ball_joint"}) {
+    const YamlNode* joint = node.Find(key);
+    if (joint && entity.fixed) {
+      errors.Add(joint->key_where, title + " is fixed: it cannot hang on a joint",
+                 "remove fixed or " + std::string(key));
+    }
+  }
+  if (!entity.fixed_to) return;
+  for (const char* key : {"friction", "rolling_friction", "restitution", "linear_damping_per_s",
+                          "angular_damping_per_s"}) {
+    const YamlNode* surface = node.Find(key);
+    if (surface) {
+      errors.Add(surface->key_where,
+                 std::string(key) + ": what is fixed to something has its surface",
+                 "give it to '" + entity.fixed_to->value + "'");
+    }
+  }
+}
+
+/// Grains lie in a vessel, and nothing else does. They are many: what one thing has, they have not.
+void CheckGrains(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
+  const std::string title = "entity '" + node.key + "'";
+  if (entity.in && !entity.grains)
+    errors.Add(entity.in->where, "in: only grains are put into something",
+               "for a thing: 'on', with at_m: [x, y]");
+  if (!entity.grains) return;
+  if (!entity.in)
+    errors.Add(node.key_where, title + " is grains: it needs the key 'in'",
+               "the vessel that they fill");
+  for (const char* key : {"fixed", "part_of", "fixed_to", "slider", "hinge", "ball_joint", "on",
+                          "at_m", "rpy_deg", "yaw_deg"}) {
+    if (const YamlNode* given = node.Find(key))
+      errors.Add(given->key_where,
+                 std::string(key) + ": grains have none; they lie loose in their vessel");
+  }
+}
+
+void CheckEntity(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
+  CheckClass(entity, errors);
+  CheckJoint(node, entity, errors);
+  CheckGrains(node, entity, errors);
+  CheckAbstract(node, entity, errors);
+  const bool abstract = AbstractOf(entity) != physics::Abstract::kNot;
+  const std::string title = "entity '" + node.key + "'";
+  if (entity.fixed && entity.mass_kg) {
+    errors.Add(entity.mass_kg->where, title + " is fixed: it cannot have a mass",
+               "remove fixed or mass_kg");
+  }
+  if (!entity.fixed && !entity.mass_kg && !abstract) {
+    errors.Add(node.key_where, title + " can move: it needs the key 'mass_kg'", "or 'fixed: true'");
+  }
+  const std::size_t wanted = entity.on && !abstract ? 2 : 3;
+  if (!entity.in && !entity.grains && entity.at_m.value.size() != wanted) {
+    errors.Add(entity.at_m.where,
+               wanted == 2 ? "at_m: with 'on' expected [x, y], found 3 numbers"
+                           : "at_m: expected [x, y, z], the centre, found 2 numbers",
+               wanted == 2 ? "z follows from the top of the support"
+               : abstract  ? ""
+                           : "or [x, y] together with 'on: SUPPORT'");
+  }
+}
+
+}  // namespace
+
+Format<EntityYaml> EntityFormat() {
+  using E = EntityYaml;
+  return Record<E>("entity")
+      .NamedByKey()
+      .Optional("class", &E::class_name,
+                Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'"),
+                "What it is; grammars select roles by class.")
+      .Optional("part_of", &E::part_of, Identifier(),
+                "The entity that it is a part of, as a handle is of a door.")
+      .Optional("box", &E::box, BoxFormat(), "Its shape: a box.")
+      .Optional("sphere", &E::sphere, SphereFormat(), "Its shape: a sphere.")
+      .Optional("cylinder", &E::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")
+      .Optional("capsule", &E::capsule, CapsuleFormat(),
+                "Its shape: a cylinder with half spheres at its ends, axis along z.")
+      .Optional("hull", &E::hull, HullFormat(), "Its shape: a solid of flat faces, by its corners.")
+      .Optional("tray", &E::tray, TrayFormat(), "Its shape: a flat box without a lid.")
+      .Optional("mug", &E::mug, MugFormat(), "Its shape: a round cup, perhaps with a handle.")
+      .Optional("bowl", &E::bowl, BowlFormat(), "Its shape: a round dish.")
+      .Optional("shelf", &E::shelf, ShelfFormat(),
+                "Its shape: boards between two sides; a cupboard has two.")
+      .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMaxParts),
+                "Its shape: several shapes, rigidly together.")
+      .Optional("grains", &E::grains, GrainsFormat(),
+                "Many loose balls in a vessel, seen as one entity.")
+      .Optional("region", &E::region, RegionFormat(), "No matter: a box or a ball of space.")
+      .Optional("gaze_target", &E::gaze_target, GazeTargetFormat(),
+                "No matter: a place that eyes can look at.")
+      .Optional("camera", &E::camera, CameraFormat(), "No matter: from where pictures can be made.")
+      .Optional("light", &E::light, LightFormat(),
+                "No matter: from where the light of pictures comes.")
+      .Optional("fixed", &E::fixed, Flag(), "True: never moves and has no mass.")
+      .Optional("mass_kg", &E::mass_kg, Number(0.001, 1000),
+                "Mass; required unless fixed or abstract. Of grains: of all together.")
+      .Optional("friction", &E::friction, Number(0, 5),
+                "Coulomb friction; that of two bodies is multiplied. Default 0.8.")
+      .Optional("rolling_friction", &E::rolling_friction, Number(0, 1),
+                "Slows rolling; default 0.006 for a sphere and for grains, 0 for the others.")
+      .Optional("restitution", &E::restitution, Number(0, 1),
+                "0: does not bounce. 1: bounces without loss.")
+      .Optional("linear_damping_per_s", &E::linear_damping_per_s, Number(0, 100),
+                "Rate at which its speed decays.")
+      .Optional("angular_damping_per_s", &E::angular_damping_per_s, Number(0, 100),
+                "Rate at which its turning decays.")
+      .Optional("on", &E::on, Identifier(), "The entity it stands on; then at_m is [x, y].")
+      .Optional("in", &E::in, Identifier(),
+                "Of grains: the vessel that they fill; instead of at_m.")
+      .Optional("fixed_to", &E::fixed_to, Identifier(),
+                "The entity that it is glued to: both move as one.")
+      .Optional("slider", &E::slider, SliderFormat(),
+                "It slides on another entity, as a drawer does.")
+      .Optional("hinge", &E::hinge, HingeFormat(), "It turns on another entity, as a door does.")
+      .Optional("ball_joint", &E::ball_joint, BallJointFormat(),
+                "It swings any way about a point of another entity.")
+      .Optional("at_m", &E::at_m, ListOf(Number(-kMaxDistance_m, kMaxDistance_m), 2, 3),
+                "World coordinates of its centre: [x, y, z], or [x, y] with 'on'.")
+      .Optional("rpy_deg", &E::rpy_deg, Vector<3>(-360, 360),
+                "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis.")
+      .Optional("yaw_deg", &E::yaw_deg, Number(-360, 360), "Turn about the vertical, degrees.")
+      .ExactlyOneOf({"box", "sphere", "cylinder", "capsule", "hull", "tray", "mug", "bowl", "shelf",
+                     "parts", "grains", "region", "gaze_target", "camera", "light"})
+      .ExactlyOneOf({"at_m", "in"})
+      .AtMostOneOf({"rpy_deg", "yaw_deg"})
+      .AtMostOneOf({"fixed_to", "slider", "hinge", "ball_joint"})
+      .Check(CheckEntity)
+      .format();
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Limits on the size of a scenario, so that a typing error does not cost an hour. Tested by
+// tests/harness/read/read_scenario_test.cc and tests/harness/format/scenario_errors_test.cc
+#pragma once
+
+#include <cstddef>
+
+#include "physics/scene/run_limits.h"
+
+namespace prehend::harness {
+
+/// How far from the origin a scenario may put or send anything.
+inline constexpr double kMaxDistance_m = physics::kMaxDistance_m;
+
+inline constexpr std::size_t kMaxEntities = 10'000;
+inline constexpr std::size_t kMaxActors = 16;
+inline constexpr std::size_t kMaxBeats = 1'000;
+inline constexpr std::size_t kMaxPoses = 10'000;  ///< in all steps together
+inline constexpr std::size_t kMaxPictures = 32;
+inline constexpr double kMaxDuration_s = 3'600;
+inline constexpr std::size_t kMaxVariations = 64;
+inline constexpr std::size_t kMaxOutcomes = 16;
+
+}  // namespace prehend::harness

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/format/scenario_fields_test.cc
+#include "harness/format/scenario_fields.h"
+
+#include "harness/format/limits.h"
+#include "harness/format/scenario_formats.h"
+#include "harness/yaml/struct_format.h"
+#include "harness/yaml/yaml_scalar.h"
+
+namespace prehend::harness {
+namespace {
+
+Format<WorldYaml> WorldFormat() {
+  using W = WorldYaml;
+  using physics::Engine;
+  return Record<W>("the world")
+      .Optional("engine", &W::engine,
+                Choice<Engine>({{"bullet", Engine::kBullet},
+                                {"box2d", Engine::kBox2d},
+                                {"bullet_stock", Engine::kBulletStock}}),
+                "The physics engine. box2d is planar; bullet_stock is Bullet without this "
+                "project's changes, to compare.")
+      .Optional("planar", &W::planar, Flag(),
+                "Everything stays in the plane y = 0; always so with box2d, else not unless given.")
+      .Optional("rate_hz", &W::rate_hz, Integer<int>(60, 4800), "Physics steps per second.")
+      .Optional("sensing_hz", &W::sensing_hz, Integer<int>(1, 4800),
+                "Looks of the grammar per second, at most rate_hz.")
+      .Optional("bearing_share", &W::bearing_share, Number(0, 0.5),
+                "Of the load between two that touch: a point of contact with a smaller share bears "
+                "nothing, so its normal does not say what is held from below.")
+      .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
+                "Seed of all randomness.")
+      .Check([](const YamlNode&, const W& world, DiagnosticList& errors) {
+        if (world.engine != Engine::kBox2d || !world.planar || world.planar->value) return;
+        errors.Add(world.planar->where, "planar: engine box2d knows nothing but the plane",
+                   "planar: true, or engine: bullet");
+      })
+      .Check([](const YamlNode& node, const W& world, DiagnosticList& errors) {
+        if (world.sensing_hz <= world.rate_hz) return;
+        const std::string sensing = std::to_string(world.sensing_hz),
+                          rate = std::to_string(world.rate_hz);
+        if (const YamlNode* written = node.Find("sensing_hz")) {
+          errors.Add(written->where, "sensing_hz " + sensing + " is above rate_hz " + rate);
+        } else {
+          errors.Add(
+              node.Find("rate_hz")->where,
+              "rate_hz " + rate + " is below sensing_hz, which is " + sensing + " unless given",
+              "add sensing_hz: " + rate);
+        }
+      })
+      .format();
+}
+
+constexpr std::size_t kMaxClasses = 100;
+
+Format<std::string> ClassName() {
+  return Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'");
+}
+
+/// A moment is an event's boundary or a time; PictureYaml keeps both as text.
+Format<std::string> MomentFormat() {
+  const auto seconds = Number(0, kMaxDuration_s);
+  const auto boundary =
+      Word("[a-z][a-z0-9_]*\\.(begin|end)", "a time in seconds, or an event like 'reaching.begin'");
+  return {.schema = {{"anyOf", {seconds.schema, boundary.schema}}},
+          .read =
+              [=](const YamlNode& node, DiagnosticList& errors, std::string& moment) {
+                double time_s = 0;
+                const bool is_time = node.kind == YamlNode::Kind::kScalar && MeaningOf(node).number;
+                if (!is_time) return boundary.read(node, errors, moment);
+                moment = node.text;
+                return seconds.read(node, errors, time_s);
+              },
+          .show = {}};
+}
+
+Format<PictureYaml> PictureFormat() {
+  return Record<PictureYaml>("a picture")
+      .Required("at", &PictureYaml::at, MomentFormat(),
+                "When: an event's 'begin' or 'end', or seconds.")
+      .Optional(
+          "camera", &PictureYaml::camera, Identifier(),
+          "From where: front, left, right, top, three_quarter, or an entity that is a camera.")
+      .format();
+}
+
+Format<ScenarioYaml> BuildScenarioFormat() {
+  using S = ScenarioYaml;
+  return Record<S>("the scenario")
+      .Required("scenario", &S::name, Identifier(), "Its name: that of the file without '.yaml'.")
+      .Required("shows", &S::shows, Text(), "One sentence: what happens and what it proves.")
+      .Optional("grammar", &S::grammar, Identifier(),
+                "The grammar that watches, from grammar/library.")
+      .Optional("tags", &S::tags, ListOf(Identifier(), 0, 32), "Words to select scenarios by.")
+      .Optional("world", &S::world, WorldFormat(), "Engine, rates and seed.")
+      .Required("entities", &S::entities, MapOf(Identifier(), EntityFormat(), 1, kMaxEntities),
+                "The things in the world, by name.")
+      .Optional("classes", &S::classes, MapOf(ClassName(), WithPlace(ClassName()), 0, kMaxClasses),
+                "Classes, and the class that each is a kind of: {Cup: Container}.")
+      .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors),
+                "The hands, by name.")
+      .Optional("script", &S::script,
+                ListOf(MapOf(Identifier(), StepFormat(), 1, kMaxActors), 0, kMaxBeats),
+                "What the hands do: beats, one after another; in a beat one step per named actor.")
+      .Optional("settle_s", &S::settle_s, Number(0, 60), "Simulated on after the last beat.")
+      .Optional("vary", &S::vary, ListOf(VariationFormat(), 0, kMaxVariations),
+                "What differs from trial to trial of 'prehend run --trials'.")
+      .Optional("outcomes", &S::outcomes, MapOf(Identifier(), OutcomeFormat(), 0, kMaxOutcomes),
+                "How a trial can end, by name; the first one is the one that is wanted.")
+      .Optional("pictures", &S::pictures, ListOf(PictureFormat(), 0, kMaxPictures),
+                "Which pictures are drawn.")
+      .format();
+}
+
+}  // namespace
+
+const Format<ScenarioYaml>& ScenarioFormat() {
+  static const Format<ScenarioYaml> format = BuildScenarioFormat();
+  return format;
+}
+
+std::string ScenarioSchema() {
+  Json schema = {
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+      {"title", "prehend scenario, version 1"},
+      {"description",
+       "Generated by 'prehend schema'. The reader checks more: see docs/scenario-format.md."}};
+  schema.update(ScenarioFormat().schema);
+  return schema.dump(1) + "\n";
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scenario as it is written, before names are resolved and places computed.
+// harness/format/scenario_fields.cc says how each field is called and bounded;
+// harness/build/build_scene.h and harness/build/build_script.h make bodies, hands and steps of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "harness/base/default_grammar.h"
+#include "harness/scenario/scenario.h"
+#include "harness/yaml/value_format.h"
+#include "physics/motion/script.h"
+#include "physics/scene/compounds.h"
+#include "physics/scene/scene.h"
+
+namespace prehend::harness {
+
+/// One of the shapes of a compound; exactly one of the first five is given.
+struct PartYaml {
+  std::optional<physics::Box> box;
+  std::optional<physics::Sphere> sphere;
+  std::optional<physics::Cylinder> cylinder;
+  std::optional<physics::Capsule> capsule;
+  std::optional<physics::Hull> hull;
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
+};
+
+/// Loose balls that lie in a vessel.
+struct GrainsYaml {
+  int count = 0;
+  double radius_m = 0;
+};
+
+// What is abstract: it has a place, and no matter.
+struct RegionYaml {
+  std::optional<Eigen::Vector3d> size_m;  ///< of a box
+  std::optional<double> radius_m;         ///< of a ball
+};
+struct GazeTargetYaml {
+  double radius_m = 0.02;
+};
+struct CameraYaml {
+  Located<Eigen::Vector3d> toward_m{Eigen::Vector3d::Zero(), {}};
+  double view_deg = physics::Body{}.view_deg;
+};
+struct LightYaml {};
+
+/// A joint to another entity; which numbers are read depends on its kind.
+struct JointYaml {
+  Located<std::string> to;
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  Located<Eigen::Vector2d> range{Eigen::Vector2d::Zero(), {}};  ///< metres or degrees
+  double friction = 0;
+  double damping = 0;
+  double spring = 0;  ///< per metre or per radian
+  double rest = 0;    ///< metres or degrees
+};
+
+struct EntityYaml {
+  Where where;
+  Located<std::string> class_name{"Object", {}};
+  std::optional<Located<std::string>> part_of;
+  std::optional<physics::Box> box;
+  std::optional<physics::Sphere> sphere;
+  std::optional<physics::Cylinder> cylinder;
+  std::optional<physics::Capsule> capsule;
+  std::optional<physics::Hull> hull;
+  std::optional<physics::Tray> tray;
+  std::optional<physics::Mug> mug;
+  std::optional<physics::Bowl> bowl;
+  std::optional<physics::Shelf> shelf;
+  std::vector<PartYaml> parts;
+  std::optional<GrainsYaml> grains;
+  std::optional<RegionYaml> region;
+  std::optional<GazeTargetYaml> gaze_target;
+  std::optional<CameraYaml> camera;
+  std::optional<LightYaml> light;
+  bool fixed = false;
+  std::optional<Located<double>> mass_kg;
+  std::optional<Located<double>> friction;  ///< default: that of physics::Body
+  std::optional<double> rolling_friction;
+  double restitution = 0;
+  double linear_damping_per_s = 0;
+  double angular_damping_per_s = 0;
+  std::optional<Located<std::string>> fixed_to;
+  std::optional<Located<JointYaml>> slider, hinge, ball_joint;
+  std::optional<Located<std::string>> on;
+  std::optional<Located<std::string>> in;  ///< the vessel of grains, which have no at_m
+  Located<std::vector<double>> at_m;
+  std::optional<Eigen::Vector3d> rpy_deg;
+  std::optional<double> yaw_deg;
+};
+
+inline physics::Abstract AbstractOf(const EntityYaml& entity) {
+  using enum physics::Abstract;
+  return entity.region        ? kRegion
+         : entity.gaze_target ? kGazeTarget
+         : entity.camera      ? kCamera
+         : entity.light       ? kLight
+                              : kNot;
+}
+
+/// "a region", and so on; "" for what is not abstract.
+inline const char* NounOf(physics::Abstract abstract) {
+  using physics::Abstract;
+  switch (abstract) {
+    case Abstract::kNot:
+      return "";
+    case Abstract::kRegion:
+      return "a region";
+    case Abstract::kGazeTarget:
+      return "a gaze target";
+    case Abstract::kCamera:
+      return "a camera";
+    case Abstract::kLight:
+      return "a light";
+  }
+  return "";
+}
+
+/// Where it is said where it is.
+inline const Where& PlaceOf(const EntityYaml& entity) {
+  return entity.in ? entity.in->where : entity.at_m.where;
+}
+
+/// What is not given keeps the value of the hand file.
+struct PidOverride {
+  std::optional<double> proportional, derivative, integral, limit;
+};
+struct GainsOverride {
+  PidOverride translation, rotation;
+};
+
+struct HandActorYaml {
+  Where where;
+  Located<std::string> hand;
+  std::vector<Located<std::string>>
+      grasps;  ///< paths of grasp files, seen from the scenario's folder
+  Located<Eigen::Vector3d> at_m;
+  Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
+  std::optional<Located<GainsOverride>> gains;
+  std::optional<Located<physics::TrackerSettings>> tracking;
+};
+
+enum class PersonKind { kHead, kBody };
+
+struct PersonActorYaml {
+  Where where;
+  PersonKind person = PersonKind::kBody;
+  Located<Eigen::Vector3d> at_m;
+  double yaw_deg = 0;
+  double height_m = physics::Person{}.height_m;
+  physics::Eyes eyes = physics::Eyes::kLead;
+  std::optional<Located<std::string>> right_hand, left_hand;
+};
+using ActorYaml = std::variant<HandActorYaml, PersonActorYaml>;
+
+// The steps of the script. Default durations are human-like (docs/scenario-format.md).
+struct ReachYaml {
+  Located<std::string> reach;
+  Located<std::string> style{"wrap", {}};
+  physics::Approach from = physics::Approach::kAuto;
+  Located<Eigen::Vector3d> offset_m{Eigen::Vector3d::Zero(), {}};
+  std::optional<Located<Eigen::Vector3d>> point_m;
+  double over_s = 0.8;
+};
+struct CloseYaml {
+  double close_to = 1;
+  double over_s = 0.6;
+};
+struct OpenYaml {
+  double open_to = 0;
+  double over_s = 0.45;
+};
+struct LiftYaml {
+  double lift_by_m = 0;
+  double over_s = 0.6;
+};
+struct MoveYaml {
+  Located<Eigen::Vector3d> move_by_m{Eigen::Vector3d::Zero(), {}};
+  double over_s = 0.8;
+};
+struct CarryYaml {
+  Where where;
+  Located<Eigen::Vector2d> carry_to_m{Eigen::Vector2d::Zero(), {}};
+  double over_s = 1.0;
+};
+struct PlaceYaml {
+  Where where;
+  Located<std::string> place_on;
+  double over_s = 0.6;
+};
+struct RetreatYaml {
+  double retreat_by_m = 0;
+  double over_s = 0.6;
+};
+struct FollowJointYaml {
+  Located<std::string> follow_joint;
+  double to = 1;
+  double over_s = 1.5;
+};
+struct WaitYaml {
+  double wait_s = 0;
+};
+struct PoseYaml {
+  Where where;
+  double t_s = 0;
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> rpy_deg;
+  std::optional<Eigen::Vector4d> quat_wxyz;
+  std::optional<double> trigger;
+};
+struct PosesYaml {
+  std::vector<PoseYaml> poses;
+  Located<std::string> style;  ///< "": stays
+};
+struct RecordingYaml {
+  Located<std::string> recording;
+  std::optional<Located<std::string>> device;
+  std::optional<Located<int>> button;
+  double press_s = 0.25;
+  Located<std::string> style;
+  Located<double> from_s;
+  std::optional<Located<double>> to_s;
+  std::optional<Eigen::Vector3d> start_at_m;
+  double yaw_deg = 0;
+  Eigen::Vector3d palm_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d palm_rpy_deg = Eigen::Vector3d::Zero();
+  double join_s = 0.5;
+  double most_gap_s = 0.25;
+  double most_jump_m = 0.1;
+  std::optional<Located<double>> scale;  ///< metres per unit of a .bvh file
+  // What harness/read/place_recordings.h makes of the file: poses of the palm or head, or figures
+  // of a body.
+  std::vector<physics::TimedPose> poses;
+  std::vector<physics::TimedFigure> figures;
+};
+// Steps of persons.
+struct LookAtYaml {
+  Located<std::string> look_at;
+  double over_s = 0.5;
+};
+struct LookAtPointYaml {
+  Eigen::Vector3d look_at_m = Eigen::Vector3d::Zero();
+  double over_s = 0.5;
+};
+struct EyesYaml {
+  physics::Eyes eyes = physics::Eyes::kLead;
+  double over_s = 0.5;
+};
+struct WalkYaml {
+  Eigen::Vector2d walk_to_m = Eigen::Vector2d::Zero();
+  double over_s = 1.0;
+};
+struct TurnYaml {
+  double turn_to_deg = 0;
+  double over_s = 0.8;
+};
+struct LeanYaml {
+  double lean_deg = 0;
+  double over_s = 0.8;
+};
+struct SwayYaml {
+  Located<Eigen::Vector2d> sway_by_m{Eigen::Vector2d::Zero(), {}};
+  double over_s = 0.8;
+};
+struct MoveLimbYaml {
+  Located<physics::LimbEnd> move_limb;
+  std::optional<Eigen::Vector3d> to_m;
+  std::optional<double> most_n;
+  double over_s = 0.8;
+};
+
+using StepYaml =
+    std::variant<WaitYaml, ReachYaml, CloseYaml, OpenYaml, LiftYaml, MoveYaml, CarryYaml, PlaceYaml,
+                 RetreatYaml, FollowJointYaml, PosesYaml, RecordingYaml, LookAtYaml,
+                 LookAtPointYaml, EyesYaml, WalkYaml, TurnYaml, LeanYaml, SwayYaml, MoveLimbYaml>;
+
+/// One item of the script: what each named actor does at the same time.
+using StageYaml = std::vector<Named<StepYaml>>;
+
+struct ScenarioYaml {
+  Where where;
+  Located<std::string> name;
+  std::string shows;
+  Located<std::string> grammar{kDefaultGrammar, {}};
+  std::vector<std::string> tags;
+  WorldYaml world;
+  std::vector<Named<EntityYaml>> entities;
+  std::vector<Named<Located<std::string>>> classes;  ///< and what each is a kind of
+  std::vector<Named<ActorYaml>> actors;
+  std::vector<Named<HandActorYaml>> hands;      ///< those of the actors; see SortActors()
+  std::vector<Named<PersonActorYaml>> persons;  ///< the others
+  std::vector<StageYaml> script;
+  double settle_s = physics::Script{}.settle_s;
+  std::vector<VariationYaml> vary;
+  std::vector<Named<std::vector<ConditionYaml>>> outcomes;
+  std::vector<PictureYaml> pictures;
+};
+
+/// Fills in `hands` and `persons`, in the order of the actors.
+void SortActors(ScenarioYaml& entry);
+
+}  // namespace prehend::harness

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/read/sample_variations_test.cc and tests/harness/run/outcome_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/format/limits.h"
+#include "harness/format/scenario_fields.h"
+#include "harness/format/scenario_formats.h"
+#include "harness/yaml/struct_format.h"
+#include "harness/yaml/yaml_scalar.h"
+
+namespace prehend::harness {
+namespace {
+
+/// A text, or a number or flag as it is written: what a field can be set to.
+Format<std::string> Value() {
+  const Format<std::string> text = Text();
+  return {.schema = {{"type", {"string", "number", "boolean"}}},
+          .read =
+              [text](const YamlNode& node, DiagnosticList& errors, std::string& value) {
+                const bool plain = node.kind == YamlNode::Kind::kScalar &&
+                                   (NumberOf(node) || node.text == "true" || node.text == "false");
+                if (!plain) return text.read(node, errors, value);
+                value = node.text;
+                return true;
+              },
+          .show = {}};
+}
+
+/// What can never hold, or always does.
+void CheckCondition(const YamlNode& node, const ConditionYaml& wanted, DiagnosticList& errors) {
+  const auto report = [&](const char* key, const std::string& message) {
+    errors.Add(node.Find(key)->where, std::string(key) + ": " + message);
+  };
+  const auto nothing_between = [&](const char* above, const std::optional<double>& least,
+                                   const char* below, const std::optional<double>& most) {
+    if (least && most && *least >= *most)
+      report(below, fmt::format("nothing is between '{}' and '{}'", above, below));
+  };
+  nothing_between("above_m", wanted.above_m, "below_m", wanted.below_m);
+  nothing_between("tilt_above_deg", wanted.tilt_above_deg, "tilt_below_deg", wanted.tilt_below_deg);
+  nothing_between("joint_above", wanted.joint_above, "joint_below", wanted.joint_below);
+  if (node.Find("within_m") && !wanted.near_m) report("within_m", "there is no 'near_m'");
+  if (node.Find("share") && !wanted.inside) report("share", "there is no 'inside'");
+  const auto says_nothing = [](const YamlNode& field) {
+    return field.key == "entity" || field.key == "at_s";
+  };
+  if (std::ranges::all_of(node.children, says_nothing))
+    errors.Add(node.where, "a condition: it always holds", "say what, as above_m: 0.9");
+}
+
+Format<ConditionYaml> ConditionFormat() {
+  using C = ConditionYaml;
+  const auto height = Number(-kMaxDistance_m, kMaxDistance_m);
+  const auto angle = Number(0, 180);
+  const auto fraction = Number(0, 1);
+  return Record<C>("a condition")
+      .Required("entity", &C::entity, Identifier(), "The entity that it is about.")
+      .Optional("at_s", &C::at_s, Number(0, kMaxDuration_s), "When; default: when the run ends.")
+      .Optional("near_m", &C::near_m, ListOf(height, 2, 3),
+                "Its centre is near [x, y] or [x, y, z] ...")
+      .Optional("within_m", &C::within_m, Number(0, kMaxDistance_m), "... as near as this.")
+      .Optional("above_m", &C::above_m, height, "Its centre is higher than this.")
+      .Optional("below_m", &C::below_m, height, "Its centre is lower than this.")
+      .Optional("tilt_below_deg", &C::tilt_below_deg, angle,
+                "It is tilted less than this since it was placed.")
+      .Optional("tilt_above_deg", &C::tilt_above_deg, angle,
+                "It is tilted more than this since it was placed.")
+      .Optional("slower_than_m_per_s", &C::slower_than_m_per_s, Number(0, 100),
+                "It moves slower than this.")
+      .Optional("joint_above", &C::joint_above, fraction,
+                "Its joint stands above this fraction of its range.")
+      .Optional("joint_below", &C::joint_below, fraction,
+                "Its joint stands below this fraction of its range.")
+      .Optional("inside", &C::inside, Identifier(),
+                "Its centre is in the bounding box of this entity.")
+      .Optional("share", &C::share, fraction, "Of grains: at least this share of them is inside.")
+      .Check(CheckCondition)
+      .format();
+}
+
+}  // namespace
+
+Format<VariationYaml> VariationFormat() {
+  using V = VariationYaml;
+  const auto range = Vector<2>(-kMaxNumber, kMaxNumber);
+  return Record<V>("a variation")
+      .Required(
+          "fields", &V::fields,
+          ListOf(Word("[a-z0-9_]+(\\.[a-z0-9_]+)*", "a field like 'entities.milk.mass_kg'", 255), 1,
+                 64),
+          "The fields that get the same draw, written as for --set.")
+      .Optional("uniform", &V::uniform, range, "Anything between [least, most].")
+      .Optional("normal", &V::normal, range, "[mean, standard deviation].")
+      .Optional("plus", &V::plus, range, "What is written, plus anything between [least, most].")
+      .Optional("times", &V::times, range, "What is written, times anything between [least, most].")
+      .Optional("choose", &V::choose, ListOf(Value(), 1, 64), "One of these values.")
+      .ExactlyOneOf({"uniform", "normal", "plus", "times", "choose"})
+      .Check([](const YamlNode& node, const V& variation, DiagnosticList& errors) {
+        for (const char* key : {"uniform", "plus", "times"}) {
+          const YamlNode* written = node.Find(key);
+          if (!written) continue;
+          const auto& given = variation.uniform ? variation.uniform
+                              : variation.plus  ? variation.plus
+                                                : variation.times;
+          if ((*given)[0] != (*given)[1]) CheckLeastMost(key, *given, written->where, errors);
+        }
+        if (variation.normal && (*variation.normal)[1] < 0)
+          errors.Add(node.Find("normal")->where,
+                     fmt::format("normal: expected [mean, deviation], and no deviation below 0, "
+                                 "found [{}, {}]",
+                                 (*variation.normal)[0], (*variation.normal)[1]));
+      })
+      .format();
+}
+
+Format<std::vector<ConditionYaml>> OutcomeFormat() { return ListOf(ConditionFormat(), 1, 32); }
+
+}  // namespace prehend::harness

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where goldens and what waits to become one are kept: golden/SKILL/NAME.timeline and
+// build/pending/SKILL/NAME.timeline. Tested by tests/harness/golden/golden_files_test.cc
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/base/atomic_file.h"
+#include "harness/golden/golden.h"
+
+namespace prehend::harness {
+
+/// A picture in golden/ or in build/pending/: NAME.png is the first of its scenario, NAME-2.png the
+/// second.
+struct KeptPicture {
+  std::string scenario;  ///< skill/name
+  int number = 1;
+  std::filesystem::path path;
+};
+
+/// That a golden says of itself that it is of another scenario; nothing when it does not.
+grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view text,
+                                       const Golden& golden, const std::string& scenario);
+
+/// Where the name stands in the line "# scenario: ..".
+grammar::Place ScenarioLine(std::string_view text);
+
+class GoldenFiles {
+ public:
+  explicit GoldenFiles(std::filesystem::path project_root) : root_(std::move(project_root)) {}
+
+  /// `scenario` is its id, skill/name, here and below.
+  std::filesystem::path GoldenPath(const std::string& scenario) const;
+  std::filesystem::path PendingPath(const std::string& scenario) const;
+
+  /// No value and no diagnostics: there is no golden yet, or nothing pending.
+  ReadResult<Golden> ReadGoldenOf(const std::string& scenario) const;
+  ReadResult<Golden> ReadPendingOf(const std::string& scenario) const;
+
+  /// All return "" or what went wrong. Accepting a golden removes what was pending.
+  std::string WritePending(const Golden& golden) const;
+  std::string WriteGoldenFile(const Golden& golden) const;
+  std::string WriteAccepted(const Golden& golden) const;
+  void RemovePending(const std::string& scenario) const;
+
+  /// How a planar scenario differs between the engines, as `check` saw it last; "" where it does
+  /// not. Writing "" removes it.
+  std::filesystem::path EngineDifferencePath(const std::string& scenario) const;
+  std::string ReadEngineDifference(const std::string& scenario) const;
+  std::string WriteEngineDifference(const std::string& scenario, const std::string& text) const;
+
+  /// Ids of all goldens, and of all that is pending, sorted.
+  std::vector<std::string> List() const;
+  std::vector<std::string> ListPending() const;
+
+  /// Where the golden of a picture is kept; `file` is its name, as in golden/slide/NAME-2.png.
+  std::filesystem::path PicturePath(const std::string& scenario, const std::string& file) const {
+    return GoldenPath(scenario).parent_path() / file;
+  }
+  /// The goldens of a scenario's pictures, by their numbers; and of all scenarios.
+  std::vector<KeptPicture> PicturesOf(const std::string& scenario) const;
+  std::vector<KeptPicture> Pictures() const;
+
+  /// A picture that differs from its golden waits there, and beside it what shows where.
+  std::filesystem::path PendingPicturePath(const std::string& scenario,
+                                           const std::string& file) const {
+    return PendingPath(scenario).parent_path() / file;
+  }
+  std::filesystem::path DifferencePath(const std::string& scenario, const std::string& file) const;
+  std::vector<KeptPicture> PendingPictures() const;
+  void RemovePendingPicture(const std::string& scenario, const std::string& file) const;
+
+ private:
+  std::filesystem::path root_;
+};
+
+}  // namespace prehend::harness

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/golden/timeline_svg.h. Tested by
+// tests/harness/report/report_test.cc
+#include "harness/golden/timeline_svg.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "harness/base/markup.h"
+#include "harness/timeline/event_text.h"
+
+namespace prehend::harness {
+namespace {
+
+using grammar::Interval;
+using grammar::NamedEvent;
+using grammar::Tick;
+
+// Layout in SVG units; the page scales the whole.
+constexpr double kLabelWidth = 260;
+constexpr double kChartWidth = 720;
+constexpr double kMargin = 10;
+constexpr double kRowHeight = 26;
+constexpr double kBarHeight = 8;
+constexpr double kAxisHeight = 22;
+constexpr double kNarrowestBar = 1.5;
+
+struct Row {
+  std::string label;
+  std::vector<const Pairing*> pairings;
+};
+
+/// Rows in the order in which they first begin.
+std::vector<Row> RowsOf(const Comparison& comparison) {
+  std::vector<Row> rows;
+  std::map<std::string, std::size_t> row_of;
+  for (const Pairing& pairing : comparison.pairings) {
+    const std::string label = pairing.event().Label();
+    const auto [found, is_new] = row_of.try_emplace(label, rows.size());
+    if (is_new) rows.push_back({label, {}});
+    rows[found->second].pairings.push_back(&pairing);
+  }
+  return rows;
+}
+
+class Drawing {
+ public:
+  Drawing(const Comparison& comparison, Tick end, const EventDrawings& drawings)
+      : comparison_(comparison),
+        end_(std::max<Tick>(1, end)),
+        drawings_(drawings),
+        rows_(RowsOf(comparison)) {}
+
+  std::string Draw() {
+    const double height = kAxisHeight + kRowHeight * static_cast<double>(rows_.size()) + kMargin;
+    svg_ = AddElement(
+        document_, "svg",
+        {{"class", "timeline"},
+         {"viewBox", fmt::format("0 0 {:g} {:g}", kLabelWidth + kChartWidth + 2 * kMargin, height)},
+         {"role", "img"}});
+    DrawAxis(height);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      DrawRow(rows_[i], kAxisHeight + kRowHeight * static_cast<double>(i));
+    return ToText(document_, Layout::kAsItIs);
+  }
+
+ private:
+  double X(Tick tick) const {
+    return kLabelWidth + kChartWidth * static_cast<double>(std::clamp<Tick>(tick, 0, end_)) /
+                             static_cast<double>(end_);
+  }
+
+  /// A line per second, or per 1, 2, 5, 10, .. seconds so that there are at most 12.
+  void DrawAxis(double height) {
+    const double end_s =
+        static_cast<double>(end_) / static_cast<double>(comparison_.ticks_per_second);
+    double step_s = std::pow(10, std::floor(std::log10(std::max(end_s, 1e-3) / 12)));
+    for (const double factor : {2.0, 5.0, 10.0}) {
+      if (end_s / step_s <= 12) break;
+      if (end_s / (step_s * factor) <= 12) {
+        step_s *= factor;
+        break;
+      }
+    }
+    for (int i = 0; i * step_s <= end_s; ++i) {
+      const std::string x =
+          fmt::format("{:.1f}", X(TickAt(i * step_s, comparison_.ticks_per_second)));
+      AddElement(svg_, "line",
+                 {{"class", "grid"},
+                  {"x1", x},
+                  {"y1", fmt::format("{:g}", kAxisHeight - 4)},
+                  {"x2", x},
+                  {"y2", fmt::format("{:.1f}", height - kMargin)}});
+      AddElement(svg_, "text",
+                 {{"class", "axis"},
+                  {"x", x},
+                  {"y", fmt::format("{:g}", kAxisHeight - 8)},
+                  {"text-anchor", "middle"}},
+                 fmt::format("{:g} s", i * step_s));
+    }
+  }
+
+  void DrawRow(const Row& row, double y) {
+    const bool agrees = std::all_of(
+        row.pairings.begin(), row.pairings.end(),
+        [](const Pairing* pairing) { return pairing->agreement == LineVerdict::kMatched; });
+    AddElement(svg_, "text",
+               {{"class", agrees ? "row" : "row differs"},
+                {"x", fmt::format("{:g}", kLabelWidth - 8)},
+                {"y", fmt::format("{:g}", y + 17)},
+                {"text-anchor", "end"}},
+               row.label);
+    for (const Pairing* pairing : row.pairings) {
+      if (pairing->expected) DrawBar("golden", *pairing->expected, y + 4, *pairing);
+      if (pairing->actual) DrawBar("actual", *pairing->actual, y + 5 + kBarHeight, *pairing);
+    }
+  }
+
+  void DrawBar(const char* side, const NamedEvent& event, double y, const Pairing& pairing) {
+    const double x = X(event.interval.begin);
+    const double width = std::max(kNarrowestBar, X(event.interval.end) - x);
+    const bool agrees = pairing.agreement == LineVerdict::kMatched;
+    const pugi::xml_node bar =
+        AddElement(svg_, "rect",
+                   {{"class", std::string(side) + (agrees ? "" : " differs")},
+                    {"x", fmt::format("{:.2f}", x)},
+                    {"y", fmt::format("{:g}", y)},
+                    {"width", fmt::format("{:.2f}", width)},
+                    {"height", fmt::format("{:g}", kBarHeight)},
+                    {"fill", fmt::format("#{:06x}", drawings_.Of(event.event).color)}});
+    AddElement(bar, "title", {},
+               fmt::format("{} {}, {}: {}", side, event.Label(),
+                           IntervalText(event.interval, comparison_.ticks_per_second),
+                           Name(pairing.agreement)));
+  }
+
+  const Comparison& comparison_;
+  Tick end_;
+  const EventDrawings& drawings_;
+  std::vector<Row> rows_;
+  pugi::xml_document document_;
+  pugi::xml_node svg_;
+};
+
+}  // namespace
+
+std::string TimelineSvg(const Comparison& comparison, Tick end, const EventDrawings& drawings) {
+  return Drawing(comparison, end, drawings).Draw();
+}
+
+}  // namespace prehend::harness

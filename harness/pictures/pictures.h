@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of a recorded run: what the scenario asks for, composed from the recording and its
+// timeline. Built with the render room (harness/pictures/pictures_with_render.cc) or without it
+// (harness/pictures/pictures_without_render.cc). Tested by tests/program/acceptance_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/run/run_scenario.h"
+#include "harness/scenario/scenario.h"
+
+namespace prehend::harness {
+
+struct WrittenPicture {
+  std::string file;     ///< path as written
+  std::string caption;  ///< "reaching.begin, 0.412 s"
+  std::string missed;   ///< empty, or why the end is shown instead of the moment that was asked for
+};
+
+struct PictureResult {
+  std::vector<WrittenPicture> pictures;
+  std::string error;  ///< empty, or why (some) pictures could not be drawn
+};
+
+/// Whether this build can draw at all.
+bool CanDrawPictures();
+
+/// Draws the scenario's pictures from a run made with RunOptions::record, as
+/// DIRECTORY/NAME[-2..].png. The directory must exist.
+PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
+                           const std::string& directory);
+
+/// One picture into one file.
+PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureYaml& entry,
+                          const std::string& file);
+
+/// Whether a picture is as its golden: at most 1 % of the pixels may differ, by more than 24 of 255
+/// in some colour (smoothed edges and another rasteriser do less). "" or what is different.
+std::string PictureDifference(const std::string& golden_file, const std::string& drawn_file);
+
+/// Writes the golden in pale grey with every pixel that differs in red; both must have one size.
+/// False when it cannot.
+bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,
+                            const std::string& file);
+
+}  // namespace prehend::harness

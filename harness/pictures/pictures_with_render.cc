@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstdlib>
+
+#include "harness/pictures/compose_picture.h"
+#include "harness/pictures/pictures.h"
+#include "harness/run/event_time.h"
+
+namespace prehend::harness {
+
+namespace {
+
+/// Draws one entry; returns an error text or "".
+std::string DrawOne(render::Painter& painter, const Scenario& scenario, const RunResult& run,
+                    const PictureYaml& entry, const std::string& file,
+                    std::vector<WrittenPicture>& written) {
+  if (!painter.error().empty()) return painter.error();
+  if (run.recording.empty()) return "the run recorded nothing to draw";
+  const render::Picture picture = ComposePicture(scenario, run, entry);
+  const render::Image image = painter.Draw(picture);
+  if (image.rgb.empty()) return painter.error();
+  if (!render::WritePng(image, file)) return "cannot write " + file;
+  written.push_back({file, picture.title, FindEventTime(entry.at.value, run).missed});
+  return "";
+}
+
+bool SameSize(const render::Image& a, const render::Image& b) {
+  return a.width_px == b.width_px && a.height_px == b.height_px;
+}
+
+/// The pixel whose red is the i-th byte.
+bool Differs(const render::Image& golden, const render::Image& drawn, std::size_t i) {
+  constexpr int kMaxColourDifference = 24;
+  const auto far_apart = [&](std::size_t k) {
+    return std::abs(int{golden.rgb[k]} - int{drawn.rgb[k]}) > kMaxColourDifference;
+  };
+  return far_apart(i) || far_apart(i + 1) || far_apart(i + 2);
+}
+
+}  // namespace
+
+bool CanDrawPictures() { return true; }
+
+PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
+                           const std::string& directory) {
+  PictureResult result;
+  if (scenario.pictures.empty()) return result;
+  render::Painter painter;
+  for (std::size_t i = 0; i < scenario.pictures.size(); ++i) {
+    const std::string suffix = i == 0 ? "" : fmt::format("-{}", i + 1);
+    const std::string file = fmt::format("{}/{}{}.png", directory, scenario.name, suffix);
+    const std::string error =
+        DrawOne(painter, scenario, run, scenario.pictures[i], file, result.pictures);
+    if (!error.empty() && result.error.empty()) result.error = error;
+  }
+  return result;
+}
+
+PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureYaml& entry,
+                          const std::string& file) {
+  PictureResult result;
+  render::Painter painter;
+  result.error = DrawOne(painter, scenario, run, entry, file, result.pictures);
+  return result;
+}
+
+std::string PictureDifference(const std::string& golden_file, const std::string& drawn_file) {
+  constexpr double kMaxPixelShare = 0.01;
+  const render::Image golden = render::ReadPng(golden_file), drawn = render::ReadPng(drawn_file);
+  if (golden.rgb.empty()) return golden_file + " cannot be read";
+  if (!SameSize(golden, drawn)) {
+    return fmt::format("it has {} x {} pixels, its golden {} x {}", drawn.width_px, drawn.height_px,
+                       golden.width_px, golden.height_px);
+  }
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < golden.rgb.size(); i += 3) differing += Differs(golden, drawn, i);
+  const double share =
+      static_cast<double>(differing) / (static_cast<double>(golden.rgb.size()) / 3);
+  if (share <= kMaxPixelShare) return "";
+  return fmt::format("{:.1f} % of its pixels differ, at most {:g} % may", 100 * share,
+                     100 * kMaxPixelShare);
+}
+
+bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,
+                            const std::string& file) {
+  render::Image golden = render::ReadPng(golden_file);
+  const render::Image drawn = render::ReadPng(drawn_file);
+  if (golden.rgb.empty() || !SameSize(golden, drawn)) return false;
+  for (std::size_t i = 0; i < golden.rgb.size(); i += 3) {
+    const bool differs = Differs(golden, drawn, i);
+    const int grey = (golden.rgb[i] + golden.rgb[i + 1] + golden.rgb[i + 2]) / 3;
+    const auto pale = static_cast<std::uint8_t>(160 + grey * 3 / 8);
+    golden.rgb[i] = differs ? 220 : pale;
+    golden.rgb[i + 1] = golden.rgb[i + 2] = differs ? 20 : pale;
+  }
+  return render::WritePng(golden, file);
+}
+
+}  // namespace prehend::harness

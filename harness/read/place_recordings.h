@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recorded motions as steps of a script: finds the files, cuts the recordings, and puts them where
+// the scenario wants them. Tested by tests/harness/read/place_recordings_test.cc
+#pragma once
+
+#include <string>
+
+#include "harness/format/scenario_yaml.h"
+#include "harness/read/scenario_library.h"
+#include "harness/yaml/diagnostic_list.h"
+
+namespace prehend::harness {
+
+/// Fills in the poses of every recording step of the script; the files' paths start at the folder
+/// of `scenario_file`. Complains about steps that don't fit their recording. What is wrong in a
+/// recording, and warnings about it, go to `in_recordings`.
+void ReadRecordings(const std::string& scenario_file, ScenarioYaml& entry,
+                    const ScenarioLibrary& library, DiagnosticList& errors,
+                    grammar::Diagnostics& in_recordings);
+
+}  // namespace prehend::harness

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads a hand, its strengths, gains and sensor sets from a .hand.yaml file, its grasp styles from
+// there or from .grasps.yaml files. Tested by tests/harness/read/read_hand_model_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/base/read_result.h"
+#include "physics/scene/hand_model.h"
+
+namespace prehend::harness {
+
+/// The styles of `more_grasps`, paths of grasp files, come after those of the hand; one of the same
+/// name as an earlier one takes its place. Of a mirror image they are written for the hand that it
+/// mirrors. `files` is told of every file that was looked at.
+ReadResult<physics::HandModel> ReadHandModel(const std::string& path,
+                                             const std::vector<std::string>& more_grasps = {},
+                                             std::vector<std::string>* files = nullptr);
+
+}  // namespace prehend::harness

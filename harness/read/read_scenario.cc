@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/read/read_scenario_test.cc
+#include "harness/read/read_scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "harness/base/text_file.h"
+#include "harness/build/build_joints.h"
+#include "harness/build/build_outcomes.h"
+#include "harness/build/build_persons.h"
+#include "harness/build/build_scene.h"
+#include "harness/build/build_script.h"
+#include "harness/build/validate_classes.h"
+#include "harness/build/validate_planar.h"
+#include "harness/format/scenario_fields.h"
+#include "harness/format/scenario_formats.h"
+#include "harness/read/place_recordings.h"
+#include "harness/read/validate_variations.h"
+
+namespace prehend::harness {
+namespace {
+
+using grammar::Diagnostics;
+using std::filesystem::path;
+
+bool Contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void CheckNames(const std::string& file, const ScenarioYaml& entry, const ScenarioLibrary& library,
+                DiagnosticList& errors) {
+  const std::string stem = path(file).stem().string();
+  if (!entry.name.value.empty() && entry.name.value != stem) {
+    errors.Add(entry.name.where,
+               fmt::format("scenario: the name is '{}', but the file is called '{}'",
+                           entry.name.value, path(file).filename().string()),
+               "rename one of them");
+  }
+  if (!Contains(library.grammars, entry.grammar.value)) {
+    errors.AddUnknownName(entry.grammar.where,
+                          fmt::format("grammar: no grammar is called '{}'", entry.grammar.value),
+                          entry.grammar.value, library.grammars);
+  }
+  for (const auto& actor : entry.actors) {
+    const bool taken = std::any_of(entry.entities.begin(), entry.entities.end(),
+                                   [&](const auto& entity) { return entity.name == actor.name; });
+    if (taken)
+      errors.Add(actor.name_where,
+                 fmt::format("'{}' is already the name of an entity", actor.name));
+  }
+}
+
+/// The actor's model, or an empty one after complaining; what is wrong in a hand's file goes to
+/// `in_hand_files`.
+physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
+                            const ScenarioLibrary& library, DiagnosticList& errors,
+                            Diagnostics& in_hand_files) {
+  const Located<std::string>& hand = actor.hand;
+  const bool is_file = hand.value.ends_with(".yaml");
+  if (!is_file && !Contains(library.hands, hand.value)) {
+    errors.AddUnknownName(hand.where, fmt::format("hand: no hand is called '{}'", hand.value),
+                          hand.value, library.hands);
+    return {};
+  }
+  const auto beside = [&](const std::string& other) {
+    return (path(file).parent_path() / other).string();
+  };
+  std::vector<std::string> grasps;
+  std::set<path> seen;
+  for (const auto& more : actor.grasps) {
+    grasps.push_back(beside(more.value));
+    if (!seen.insert(path(grasps.back()).lexically_normal()).second)
+      errors.Add(more.where, fmt::format("grasps: '{}' is given twice", more.value));
+  }
+  auto model = library.read_hand(is_file ? beside(hand.value) : hand.value, grasps);
+  if (model.value) return std::move(*model.value);
+  // Blamed is the file where something is wrong. What has no place could not be opened.
+  const auto blame = [&](const char* key, const Located<std::string>& named, bool is_open) {
+    errors.Add(named.where, fmt::format("{}: '{}' cannot be used, see below", key, named.value),
+               is_open ? "" : "its path starts at the folder of the scenario");
+  };
+  std::map<std::string, bool> bad;  ///< and whether they could be opened
+  for (const grammar::Diagnostic& found : model.diagnostics) bad[found.file] = found.place.line > 0;
+  for (std::size_t i = 0; i < grasps.size(); ++i) {
+    const auto file_of_grasps = bad.extract(grasps[i]);
+    if (file_of_grasps) blame("grasps", actor.grasps[i], file_of_grasps.mapped());
+  }
+  if (!bad.empty()) blame("hand", hand, !is_file || bad.begin()->second);
+  in_hand_files.insert(in_hand_files.end(), model.diagnostics.begin(), model.diagnostics.end());
+  return {};
+}
+
+std::string SkillOf(const std::string& file) {
+  const path folder = path(file).parent_path();
+  return folder.parent_path().filename() == "scenarios" ? folder.filename().string() : "";
+}
+
+/// A person is her head; her other parts are part of it.
+void AddPersonClasses(Scenario& scenario) {
+  for (std::size_t i = scenario.body_classes.size(); i < scenario.scene.bodies.size(); ++i) {
+    const auto& persons = scenario.scene.persons;
+    const auto owner = std::find_if(
+        persons.rbegin(), persons.rend(),
+        [&](const physics::Person& person) { return static_cast<std::size_t>(person.head) <= i; });
+    const bool is_head = static_cast<std::size_t>(owner->head) == i;
+    scenario.body_classes.push_back(is_head ? "Person" : "BodyPart");
+    scenario.body_part_of.push_back(is_head ? grammar::kNoEntity : owner->head);
+  }
+}
+
+ReadResult<Scenario> AllOf(const DiagnosticList& errors, const Diagnostics& in_other_files) {
+  Diagnostics diagnostics = errors.Sorted();
+  diagnostics.insert(diagnostics.end(), in_other_files.begin(), in_other_files.end());
+  return {std::nullopt, std::move(diagnostics)};
+}
+
+ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& document,
+                             const ScenarioLibrary& library) {
+  DiagnosticList errors(document);
+  ScenarioYaml entry;
+  const bool well_formed = ScenarioFormat().read(document.root, errors, entry);
+  SortActors(entry);
+  CheckNames(file, entry, library, errors);
+  Diagnostics in_other_files;
+  if (!well_formed) {
+    // Names can be looked up without the rest.
+    for (const auto& actor : entry.hands) {
+      if (!actor.value.hand.value.empty())
+        FindHand(file, actor.value, library, errors, in_other_files);
+    }
+    return AllOf(errors, in_other_files);
+  }
+  ReadRecordings(file, entry, library, errors, in_other_files);
+  Scenario scenario;
+  physics::Scene& scene = scenario.scene;
+  scene.world.rate_hz = entry.world.rate_hz;
+  scene.world.seed = entry.world.seed;
+  scene.world.engine = entry.world.engine;
+  scene.world.planar = entry.world.planar ? entry.world.planar->value
+                                          : entry.world.engine == physics::Engine::kBox2d;
+  scene.bodies = PlaceBodies(entry, errors);
+  scene.joints = BuildJoints(entry, errors);
+  scenario.body_part_of = PartsOf(entry, errors);
+  for (const auto& actor : entry.hands) {
+    physics::HandModel model = FindHand(file, actor.value, library, errors, in_other_files);
+    const bool known = !model.name.empty();
+    scene.hands.push_back(known ? PlaceHand(actor, std::move(model), entry.world.rate_hz, errors)
+                                : physics::Hand{actor.name, {}, {}});
+  }
+  AddPersons(entry, scene, errors);
+  scenario.script = BuildScript(entry, scene, errors);
+  scenario.outcomes = BuildOutcomes(entry.outcomes, scene, scenario.script, errors);
+  ValidateClasses(entry, errors);
+  ValidateVariations(document, entry.vary, errors);
+  if (scene.world.planar) ValidatePlanar(entry, scene, errors);
+  if (errors.empty()) ValidateDistances(entry, scene, errors);
+  if (errors.empty()) ValidatePlacement(entry, scene, errors);
+  if (!errors.empty()) return AllOf(errors, in_other_files);
+
+  scenario.name = entry.name.value;
+  scenario.file = file;
+  scenario.skill = SkillOf(file);
+  scenario.shows = entry.shows;
+  scenario.grammar = entry.grammar.value;
+  scenario.tags = std::move(entry.tags);
+  scenario.world = entry.world;
+  for (const auto& entity : entry.entities)
+    scenario.body_classes.push_back(entity.value.class_name.value);
+  AddPersonClasses(scenario);
+  for (const auto& kind : entry.classes) scenario.kinds.push_back({kind.name, kind.value.value});
+  scenario.variations = std::move(entry.vary);
+  scenario.pictures = std::move(entry.pictures);
+  for (const PictureYaml& picture : scenario.pictures) {
+    const std::string& camera = picture.camera.value;
+    if (WhyNoCamera(scenario, camera))
+      errors.AddUnknownName(picture.camera.where,
+                            fmt::format("camera: no camera is called '{}'", camera), camera,
+                            CamerasOf(scenario));
+  }
+  if (!errors.empty()) return AllOf(errors, in_other_files);
+  scenario.warnings = std::move(in_other_files);
+  return {std::move(scenario), {}};
+}
+
+ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocument> document,
+                                    const std::vector<std::string>& overrides,
+                                    const ScenarioLibrary& library) {
+  if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
+  for (const std::string& assignment : overrides) {
+    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema, *document.value);
+        !bad.empty())
+      return {std::nullopt, std::move(bad)};
+  }
+  ReadResult<Scenario> scenario = Resolve(file, *document.value, library);
+  if (!scenario.value) return scenario;
+  Diagnostics unreadable = CheckDraws(
+      *document.value, scenario.value->variations,
+      [&](const YamlDocument& varied) { return Resolve(file, varied, library).diagnostics; });
+  if (!unreadable.empty()) return {std::nullopt, std::move(unreadable)};
+  return scenario;
+}
+
+}  // namespace
+
+ReadResult<Scenario> ReadScenario(const std::string& file,
+                                  const std::vector<std::string>& overrides,
+                                  const ScenarioLibrary& library) {
+  return ReadDocumentAs(file, ReadYamlFile(file), overrides, library);
+}
+
+ReadResult<Scenario> ReadScenarioText(const std::string& file, std::string text,
+                                      const std::vector<std::string>& overrides,
+                                      const ScenarioLibrary& library) {
+  return ReadDocumentAs(file, ParseYaml(file, std::move(text)), overrides, library);
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/report/junit.h. Tested by tests/harness/report/junit_test.cc
+#include "harness/report/junit.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/base/markup.h"
+
+namespace prehend::harness {
+namespace {
+
+// The element of a case that tells its outcome; a pass has none.
+constexpr const char* kPassed = "";
+constexpr const char* kSkipped = "skipped";
+constexpr const char* kFailure = "failure";
+constexpr const char* kError = "error";
+
+const char* Element(const ScenarioVerdict& verdict) {
+  if (verdict.verdict == Verdict::kPassed) return kPassed;
+  if (verdict.verdict == Verdict::kUnchanged) return kSkipped;
+  const bool broken =
+      verdict.exit_code == ExitCode::kFailure || verdict.exit_code == ExitCode::kBadInput;
+  return broken ? kError : kFailure;
+}
+
+/// "0.0042..0.3021 s", or "nothing".
+std::string SideText(const nlohmann::ordered_json& side) {
+  if (side.is_null()) return "nothing";
+  return fmt::format("{:.4f}..{:.4f} s", side.at("begin_s").get<double>(),
+                     side.at("end_s").get<double>());
+}
+
+/// "supported_by(carton, table)"
+std::string LabelOf(const nlohmann::ordered_json& difference) {
+  const nlohmann::ordered_json& side =
+      difference.at(difference.at("expected").is_null() ? "recognised" : "expected");
+  std::vector<std::string> roles;
+  for (const auto& [name, value] : side.at("roles").items())
+    roles.push_back(value.get<std::string>());
+  return fmt::format("{}({})", difference.at("event").get<std::string>(), fmt::join(roles, ", "));
+}
+
+/// What servers show first: the reason, and of differences the first one, with its numbers.
+std::string Message(const ScenarioVerdict& verdict) {
+  if (verdict.differences.empty()) {
+    const std::string first = verdict.details.substr(0, verdict.details.find('\n'));
+    return first.empty() ? verdict.reason : verdict.reason + "; first: " + first;
+  }
+  const nlohmann::ordered_json& difference = verdict.differences.front();
+  std::string text =
+      fmt::format("{}; first: {} {}: expected {}, recognised {}", verdict.reason,
+                  difference.at("kind").get<std::string>(), LabelOf(difference),
+                  SideText(difference.at("expected")), SideText(difference.at("recognised")));
+  if (!difference.at("begin_ms").is_null())
+    text +=
+        fmt::format(", begin {:+.1f} ms, end {:+.1f} ms", difference.at("begin_ms").get<double>(),
+                    difference.at("end_ms").get<double>());
+  for (const auto& change : difference.at("changes")) text += ", " + change.get<std::string>();
+  return text;
+}
+
+void AddOutcome(pugi::xml_node test_case, const ScenarioVerdict& verdict) {
+  const char* const element = Element(verdict);
+  if (element == kPassed) return;
+  if (element == kSkipped) {
+    AddElement(test_case, element, {{"message", "nothing changed since it passed"}});
+    return;
+  }
+  AddElement(test_case, element,
+             {{"type", std::string(Name(verdict.verdict))}, {"message", Message(verdict)}},
+             fmt::format("{}{}: {}\n", verdict.details, CommandLabel(verdict), verdict.command));
+}
+
+void AddCase(pugi::xml_node suite, const ScenarioVerdict& verdict) {
+  const std::size_t slash = verdict.scenario.rfind('/');
+  const bool has_skill = slash != std::string::npos;
+  const pugi::xml_node test_case =
+      AddElement(suite, "testcase",
+                 {{"classname", has_skill ? verdict.scenario.substr(0, slash) : "scenarios"},
+                  {"name", has_skill ? verdict.scenario.substr(slash + 1) : verdict.scenario},
+                  {"time", fmt::format("{:.3f}", verdict.seconds)}});
+  AddOutcome(test_case, verdict);
+  if (!verdict.headroom.empty()) AddElement(test_case, "system-out", {}, verdict.headroom);
+}
+
+}  // namespace
+
+std::string JunitXml(const std::vector<ScenarioVerdict>& verdicts) {
+  double seconds = 0;
+  for (const ScenarioVerdict& verdict : verdicts) seconds += verdict.seconds;
+  const auto count = [&](const char* element) {
+    return std::to_string(std::ranges::count(verdicts, element, Element));
+  };
+  const std::string tests = std::to_string(verdicts.size()), time = fmt::format("{:.3f}", seconds);
+
+  pugi::xml_document document;
+  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  declaration.append_attribute("version").set_value("1.0");
+  declaration.append_attribute("encoding").set_value("UTF-8");
+  const pugi::xml_node suites = AddElement(document, "testsuites",
+                                           {{"name", "prehend"},
+                                            {"tests", tests},
+                                            {"failures", count(kFailure)},
+                                            {"errors", count(kError)},
+                                            {"time", time}});
+  const pugi::xml_node suite = AddElement(suites, "testsuite",
+                                          {{"name", "prehend check"},
+                                           {"tests", tests},
+                                           {"failures", count(kFailure)},
+                                           {"errors", count(kError)},
+                                           {"skipped", count(kSkipped)},
+                                           {"time", time}});
+  for (const ScenarioVerdict& verdict : verdicts) AddCase(suite, verdict);
+  return ToText(document, Layout::kIndented);
+}
+
+}  // namespace prehend::harness

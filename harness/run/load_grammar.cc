@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/run/load_grammar.h. Tested by tests/program/command_line_test.cc
+#include "harness/run/load_grammar.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "grammar/compile/compile.h"
+#include "grammar/contents.h"
+#include "harness/base/project_paths.h"
+#include "harness/base/text_file.h"
+#include "harness/run/find_scenario.h"
+#include "harness/run/project_library.h"
+
+namespace prehend::harness {
+
+namespace fs = std::filesystem;
+
+std::string GrammarFile(const std::string& root, const std::string& name_or_path) {
+  const bool is_path =
+      name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".grammar");
+  return is_path ? name_or_path : GrammarPath(root, name_or_path);
+}
+
+grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
+                                   const grammar::Overrides& overrides,
+                                   std::vector<std::string>* files) {
+  const auto note = [files](const std::string& path) {
+    if (files) files->push_back(path);
+  };
+  const std::string file = GrammarFile(root, name_or_path);
+  note(file);
+  ReadResult<std::string> text = ReadTextFile(file);
+  const std::vector<std::string> known = ProjectLibrary(root).grammars;
+  if (!text.value) {
+    const bool is_name = file != name_or_path;
+    if (is_name && std::ranges::count(known, name_or_path) == 0) {
+      const std::string near = grammar::NearestName(name_or_path, known);
+      text.diagnostics.front().hint = near.empty()
+                                          ? fmt::format("there are: {}", fmt::join(known, ", "))
+                                          : fmt::format("did you mean '{}'?", near);
+    }
+    return {nullptr, std::move(text.diagnostics)};
+  }
+  const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
+    const std::string name(used);
+    const std::string beside = (fs::path(file).parent_path() / (name + ".grammar")).string();
+    const std::vector<std::string> candidates = name.ends_with(".grammar")
+                                                    ? std::vector{name}
+                                                    : std::vector{beside, GrammarPath(root, name)};
+    for (const std::string& candidate : candidates) {
+      note(candidate);
+      ReadResult<std::string> found = ReadTextFile(candidate);
+      if (found.value) return grammar::GrammarText{candidate, std::move(*found.value)};
+    }
+    return std::nullopt;
+  };
+  return grammar::Compile({file, std::move(*text.value)}, include, overrides, known);
+}
+
+namespace {
+
+// What the grammar names and nobody in the episode has.
+void WarnOfStrangers(const std::vector<grammar::NameInSource>& names,
+                     const std::set<std::string>& known, std::string_view message,
+                     const std::string& remedy, grammar::Diagnostics& warnings) {
+  for (const grammar::NameInSource& named : names) {
+    if (known.contains(named.name)) continue;
+    const bool is_number = named.name.find_first_not_of("0123456789") == std::string::npos;
+    const std::string near =
+        is_number ? "" : grammar::NearestName(named.name, {known.begin(), known.end()});
+    warnings.push_back(
+        grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value.value_or(""), named.place,
+                              fmt::format("{} '{}'", message, named.name),
+                              near.empty() ? remedy : "did you mean '" + near + "'?"));
+    warnings.back().is_warning = true;
+  }
+}
+
+}  // namespace
+
+grammar::Diagnostics Warnings(const grammar::Program& program,
+                              const grammar::EntityTable& entity_table) {
+  std::set<std::string> classes;
+  std::set<std::string> sensor_sets;
+  std::set<std::string> numbers;
+  for (const grammar::EntityInfo& member : entity_table.entities) {
+    classes.insert(member.classes.begin(), member.classes.end());
+    sensor_sets.insert(member.sensor_sets.begin(), member.sensor_sets.end());
+    for (std::size_t i = 1; i <= member.sensor_sets.size(); ++i) numbers.insert(std::to_string(i));
+  }
+  grammar::Diagnostics warnings = CompileWarnings(program);
+  WarnOfStrangers(NamedClasses(program), classes, "nobody in this episode is a", "", warnings);
+  WarnOfStrangers(
+      NamedSensorSets(program), sensor_sets, "no hand of this episode has a sensor set",
+      sensor_sets.empty() ? "" : fmt::format("there are: {}", fmt::join(sensor_sets, ", ")),
+      warnings);
+  WarnOfStrangers(NumberedSensorSets(program), numbers, "no hand of this episode has a sensor set",
+                  fmt::format("a hand has {} of them here at most", numbers.size()), warnings);
+  return warnings;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/run/load_run.h. Tested by tests/program/command_line_test.cc
+#include "harness/run/load_run.h"
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+
+#include "grammar/contents.h"
+#include "harness/base/text_file.h"
+#include "harness/format/scenario_fields.h"
+#include "harness/read/read_scenario.h"
+#include "harness/run/event_time.h"
+#include "harness/run/find_scenario.h"
+#include "harness/run/load_grammar.h"
+#include "harness/run/project_library.h"
+#include "harness/sense/entity_table.h"
+
+namespace prehend::harness {
+namespace {
+
+struct Settings {
+  std::vector<std::string> of_scenario;
+  grammar::Overrides of_grammar;
+  grammar::Diagnostics diagnostics;
+};
+
+/// `is_field`: whether a name means a field of the scenario.
+Settings Split(const std::vector<std::string>& settings,
+               const std::function<bool(const std::string&)>& is_field) {
+  Settings split;
+  std::set<std::string> seen;
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    const std::string name = setting.substr(0, equals);
+    const auto report = [&](const char* message, const std::string& hint) {
+      split.diagnostics.push_back(grammar::DiagnosticAt("--set", setting, {1, 1}, message, hint));
+    };
+    if (equals == std::string::npos || name.empty() || equals + 1 == setting.size()) {
+      report("expected NAME=VALUE", "--set reach_radius=25cm, --set entities.milk.mass_kg=8");
+    } else if (!seen.insert(name).second) {
+      report("the same name is set twice", "give each --set a name of its own");
+    } else if (is_field(name)) {
+      split.of_scenario.push_back(setting);
+    } else {
+      split.of_grammar[name] = setting.substr(equals + 1);
+    }
+  }
+  return split;
+}
+
+/// The scenario's own grammar must have the events that pictures ask for.
+grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Program& program) {
+  grammar::Diagnostics diagnostics;
+  for (const PictureYaml& picture : scenario.pictures) {
+    const auto problem = WhyNoEventTime(picture.at.value, program);
+    if (!problem) continue;
+    const bool in_file = picture.at.where.source == 0;
+    const ReadResult<std::string> text =
+        in_file ? ReadTextFile(scenario.file) : ReadResult<std::string>{};
+    diagnostics.push_back(grammar::DiagnosticAt(in_file ? scenario.file : "--set",
+                                                text.value.value_or(""), picture.at.where.place,
+                                                "at: " + problem->message, problem->hint));
+  }
+  return diagnostics;
+}
+
+/// The grammar that a scenario asks for which cannot be read, so that all that is wrong is told at
+/// once; "" when that is not known, or when there is none of this name, which the reader has said.
+std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
+  const ReadResult<YamlDocument> document = ReadYamlFile(request.scenario_file);
+  const bool is_set = std::ranges::any_of(
+      request.settings, [](const auto& set) { return set.starts_with("grammar="); });
+  if (!document.value || is_set) return "";
+  const YamlNode* node = document.value->root.Find("grammar");
+  const std::string name = node ? node->text : ScenarioYaml{}.grammar.value;
+  return std::ranges::count(ProjectLibrary(root).grammars, name) > 0 ? name : "";
+}
+
+}  // namespace
+
+bool IsFieldOfScenario(const std::string& name) {
+  return name.find('.') != std::string::npos ||
+         ScenarioFormat().schema.at("properties").contains(name);
+}
+
+ReadResult<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                              std::vector<std::string>* files) {
+  Settings settings = Split(request.settings, IsFieldOfScenario);
+  if (!settings.diagnostics.empty()) return {std::nullopt, std::move(settings.diagnostics)};
+  if (files) files->push_back(request.scenario_file);
+  ReadResult<Scenario> scenario =
+      ReadScenario(request.scenario_file, settings.of_scenario, ProjectLibrary(root, files));
+  const std::string grammar = !request.grammar.empty() ? request.grammar
+                              : scenario.value         ? scenario.value->grammar
+                                                       : GrammarNamedIn(request, root);
+  grammar::CompileResult compiled = grammar.empty()
+                                        ? grammar::CompileResult{}
+                                        : LoadGrammar(root, grammar, settings.of_grammar, files);
+  if (!scenario.value || !compiled.program) {
+    grammar::Diagnostics diagnostics = std::move(scenario.diagnostics);
+    std::ranges::move(compiled.diagnostics, std::back_inserter(diagnostics));
+    return {std::nullopt, std::move(diagnostics)};
+  }
+  if (request.grammar.empty()) {
+    grammar::Diagnostics pictures = CheckPictures(*scenario.value, *compiled.program);
+    if (!pictures.empty()) return {std::nullopt, std::move(pictures)};
+  }
+  scenario.value->grammar = GrammarName(*compiled.program);
+  grammar::Diagnostics warnings = scenario.value->warnings;
+  std::ranges::move(Warnings(*compiled.program, MakeEntityTable(*scenario.value)),
+                    std::back_inserter(warnings));
+  return {LoadedRun{std::move(*scenario.value), std::move(compiled.program), std::move(warnings)},
+          {}};
+}
+
+ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings) {
+  Settings split = Split(settings, [](const std::string&) { return false; });
+  if (!split.diagnostics.empty()) return {std::nullopt, std::move(split.diagnostics)};
+  return {std::move(split.of_grammar), {}};
+}
+
+std::string ScenarioId(const std::string& skill, const std::string& name) {
+  return skill.empty() ? name : skill + "/" + name;
+}
+
+}  // namespace prehend::harness

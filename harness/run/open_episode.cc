@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/run/open_episode.h. Tested by tests/program/explain_command_test.cc
+#include "harness/run/open_episode.h"
+
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "harness/run/load_grammar.h"
+#include "harness/run/load_run.h"
+#include "harness/run/run_text.h"
+#include "harness/sense/entity_table.h"
+#include "harness/sense/episode_file.h"
+
+namespace prehend::harness {
+
+bool IsRecording(const std::string& typed) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(typed, error)) return typed.ends_with(".jsonl");
+  if (typed.ends_with(".yaml") || typed.ends_with(".yml")) return false;
+  std::ifstream file(typed, std::ios::binary);
+  return file.get() == '{';
+}
+
+ReadResult<EpisodeSource> OpenScenario(const std::string& file, const std::string& grammar,
+                                       const std::vector<std::string>& settings,
+                                       const std::string& root) {
+  ReadResult<LoadedRun> loaded = LoadRun({file, grammar, settings}, root);
+  if (!loaded.value) return {std::nullopt, std::move(loaded.diagnostics)};
+  const Scenario& scenario = loaded.value->scenario;
+  EpisodeSource source{.name = scenario.name,
+                       .program = loaded.value->program,
+                       .entity_table = MakeEntityTable(scenario),
+                       .play = {}};
+  source.play = [run = std::move(*loaded.value)](const EpisodeSource::Watcher& watch) {
+    const RunResult result = RunScenario(run.scenario, run.program, {.watch = watch});
+    const bool completed = result.status.kind == physics::RunStatus::Kind::kCompleted;
+    return EpisodeSource::Played{result.ticks + 1, completed ? "" : StatusText(result)};
+  };
+  return {std::move(source), {}};
+}
+
+ReadResult<EpisodeSource> OpenRecording(const std::string& file, const std::string& grammar,
+                                        const std::vector<std::string>& settings,
+                                        const std::string& root) {
+  ReadResult<Episode> episode = ReadEpisode(file);
+  if (!episode.value) return {std::nullopt, std::move(episode.diagnostics)};
+  ReadResult<grammar::Overrides> parameters = ParameterSettings(settings);
+  if (!parameters.value) return {std::nullopt, std::move(parameters.diagnostics)};
+  const EpisodeHeader& header = episode.value->header;
+  grammar::CompileResult compiled =
+      LoadGrammar(root, grammar.empty() ? header.grammar : grammar, *parameters.value);
+  if (!compiled.program) return {std::nullopt, std::move(compiled.diagnostics)};
+  EpisodeSource source{.name = header.episode,
+                       .program = std::move(compiled.program),
+                       .entity_table = header.entity_table,
+                       .play = {}};
+  source.play = [recorded = std::move(*episode.value)](const EpisodeSource::Watcher& watch) {
+    for (EpisodeFrame frame : recorded.frames) watch(frame.View());
+    return EpisodeSource::Played{recorded.end_tick, ""};
+  };
+  return {std::move(source), {}};
+}
+
+}  // namespace prehend::harness

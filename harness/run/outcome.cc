@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/run/outcome_test.cc
+#include "harness/run/outcome.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "physics/scene/geometry.h"
+
+namespace prehend::harness {
+namespace {
+
+double TiltDeg(const physics::Pose& placed, const physics::Pose& now) {
+  const Eigen::Vector3d up = now.q * (placed.q.conjugate() * Eigen::Vector3d::UnitZ());
+  return std::acos(std::clamp(up.z(), -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+bool Within(const std::vector<double>& wanted, double within_m, const Eigen::Vector3d& p) {
+  const auto size = static_cast<Eigen::Index>(wanted.size());
+  return (Eigen::Map<const Eigen::VectorXd>(wanted.data(), size) - p.head(size)).norm() <= within_m;
+}
+
+}  // namespace
+
+OutcomeWatch::OutcomeWatch(const physics::Scene& scene, const std::vector<Outcome>& outcomes)
+    : scene_(scene), outcomes_(outcomes) {
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    for (std::size_t k = 0; k < outcomes[i].conditions.size(); ++k) {
+      const auto& at_s = outcomes[i].conditions[k].wanted.at_s;
+      if (at_s) moments_.push_back({std::llround(*at_s * scene.world.rate_hz), i, k, false});
+    }
+  }
+}
+
+void OutcomeWatch::Look(const physics::Snapshot& snapshot) {
+  for (Moment& moment : moments_) {
+    if (moment.tick == snapshot.tick)
+      moment.holds = Holds(outcomes_[moment.outcome].conditions[moment.condition], snapshot);
+  }
+}
+
+std::string OutcomeWatch::Judge(const physics::Snapshot& last) const {
+  for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+    bool holds = true;
+    for (const auto& condition : outcomes_[i].conditions)
+      holds &= condition.wanted.at_s || Holds(condition, last);
+    for (const Moment& moment : moments_) holds &= moment.outcome != i || moment.holds;
+    if (holds) return outcomes_[i].name;
+  }
+  return kOtherOutcome;
+}
+
+bool OutcomeWatch::Holds(const Outcome::Condition& condition,
+                         const physics::Snapshot& snapshot) const {
+  const ConditionYaml& wanted = condition.wanted;
+  const auto index = static_cast<std::size_t>(condition.body);
+  const physics::Body& body = scene_.bodies[index];
+  const physics::BodyState& state = snapshot.bodies[index];
+  const Eigen::Vector3d centre = state.X_WB * physics::BoundingBox(body).p_BC_m;
+  const double tilt_deg = TiltDeg(body.X_WB, state.X_WB);
+  const double fraction =
+      condition.joint < 0 ? 0 : snapshot.joints[static_cast<std::size_t>(condition.joint)].fraction;
+  return (!wanted.near_m || Within(*wanted.near_m, wanted.within_m, centre)) &&
+         (!wanted.above_m || centre.z() > *wanted.above_m) &&
+         (!wanted.below_m || centre.z() < *wanted.below_m) &&
+         (!wanted.tilt_below_deg || tilt_deg < *wanted.tilt_below_deg) &&
+         (!wanted.tilt_above_deg || tilt_deg > *wanted.tilt_above_deg) &&
+         (!wanted.slower_than_m_per_s || state.v_WB_m_per_s.norm() < *wanted.slower_than_m_per_s) &&
+         (!wanted.joint_above || fraction > *wanted.joint_above) &&
+         (!wanted.joint_below || fraction < *wanted.joint_below) &&
+         (!wanted.inside || ShareInside(condition, snapshot) >= wanted.share);
+}
+
+/// 0 or 1 of what is one thing.
+double OutcomeWatch::ShareInside(const Outcome::Condition& condition,
+                                 const physics::Snapshot& snapshot) const {
+  const auto index = static_cast<std::size_t>(condition.body),
+             in = static_cast<std::size_t>(condition.vessel);
+  const physics::Body& vessel = scene_.bodies[in];
+  const physics::Pose& X_WV = snapshot.bodies[in].X_WB;
+  const physics::Body& body = scene_.bodies[index];
+  if (!body.grains) {
+    const Eigen::Vector3d p_W_m = snapshot.bodies[index].X_WB * physics::BoundingBox(body).p_BC_m;
+    return physics::IsInside(vessel, X_WV, p_W_m) ? 1 : 0;
+  }
+  const std::span<const Eigen::Vector3d> grains = physics::GrainsOf(scene_, index, snapshot);
+  const auto inside = std::count_if(
+      grains.begin(), grains.end(),
+      [&](const Eigen::Vector3d& p_W_m) { return physics::IsInside(vessel, X_WV, p_W_m); });
+  return static_cast<double>(inside) / static_cast<double>(grains.size());
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/run/run_trials_test.cc
+#include "harness/run/run_trials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "harness/format/scenario_fields.h"
+#include "harness/process/worker_pool.h"
+#include "harness/read/sample_variations.h"
+#include "harness/run/outcome.h"
+#include "physics/simulation.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr const char* kFailed = "failed";
+constexpr double kTimeLimit_s = 600;
+constexpr std::size_t kMaxListed = 20;
+
+/// What trials are drawn from; the file is looked at once, before the first of them.
+struct Nominal {
+  LoadedRun run;
+  YamlDocument document;
+};
+
+ReadResult<Nominal> ReadNominal(const RunRequest& request, const std::string& root) {
+  ReadResult<LoadedRun> loaded = LoadRun(request, root);
+  if (!loaded.value) return {std::nullopt, std::move(loaded.diagnostics)};
+  ReadResult<YamlDocument> document = ReadYamlFile(request.scenario_file);
+  if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
+  for (const std::string& setting : request.settings) {
+    if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
+      (void)ApplyOverride(setting, ScenarioFormat().schema,
+                          *document.value);  // LoadRun() has accepted it
+  }
+  return {Nominal{std::move(*loaded.value), std::move(*document.value)}, {}};
+}
+
+/// What the command line sets is not varied.
+RunRequest WithDraws(const RunRequest& request, const Nominal& nominal, int trial) {
+  const Scenario& scenario = nominal.run.scenario;
+  RunRequest varied = request;
+  for (std::string& drawn :
+       SampleTrial(nominal.document, scenario.variations, scenario.world.seed, trial)) {
+    const std::string field = drawn.substr(0, drawn.find('=') + 1);
+    const bool set = std::ranges::any_of(
+        request.settings, [&](const std::string& given) { return given.starts_with(field); });
+    if (!set) varied.settings.push_back(std::move(drawn));
+  }
+  return varied;
+}
+
+/// Simulates one trial; nobody watches but the outcomes.
+TrialResult RunTrial(const Scenario& scenario, int trial) {
+  physics::Simulation simulation(scenario.scene, scenario.script);
+  OutcomeWatch watch(scenario.scene, scenario.outcomes);
+  while (simulation.Step()) watch.Look(simulation.snapshot());
+  const physics::RunStatus& status = simulation.status();
+  if (status.kind == physics::RunStatus::Kind::kFailed)
+    return {trial, kFailed, status.entity + ": " + status.reason};
+  return {trial, watch.Judge(simulation.snapshot()), {}};
+}
+
+std::string ToJson(const TrialResult& result) {
+  return nlohmann::json{{"outcome", result.outcome}, {"reason", result.reason}}.dump();
+}
+
+TrialResult FromWorker(int trial, const WorkerResult& worker) {
+  if (!worker.finished) return {trial, kFailed, worker.reason};
+  const auto json = nlohmann::json::parse(worker.output);
+  return {trial, json["outcome"], json["reason"]};
+}
+
+/// A whole percentage is enough for hundreds of trials.
+std::string TableLine(const std::string& outcome, std::size_t count, std::size_t of) {
+  return fmt::format("{:<24} {:>5}  {:>5.1f} %\n", outcome, count,
+                     100.0 * static_cast<double>(count) / static_cast<double>(of));
+}
+
+std::vector<std::string> AllOutcomes(const TrialReport& report) {
+  std::vector<std::string> names = report.outcomes;
+  names.insert(names.end(), {kOtherOutcome, kFailed});
+  return names;
+}
+
+std::size_t CountOf(const std::string& outcome, const TrialReport& report) {
+  return static_cast<std::size_t>(
+      std::ranges::count(report.results, outcome, &TrialResult::outcome));
+}
+
+}  // namespace
+
+ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root,
+                                      int trial) {
+  const ReadResult<Nominal> nominal = ReadNominal(request, root);
+  if (!nominal.value) return {std::nullopt, nominal.diagnostics};
+  return {WithDraws(request, *nominal.value, trial), {}};
+}
+
+ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
+                                  const TrialSettings& settings,
+                                  const std::function<void(int done)>& progress) {
+  const ReadResult<Nominal> nominal = ReadNominal(request, root);
+  if (!nominal.value) return {std::nullopt, nominal.diagnostics};
+  const Scenario& scenario = nominal.value->run.scenario;
+  if (scenario.outcomes.empty()) {
+    return {std::nullopt,
+            {grammar::DiagnosticAt(request.scenario_file, "", {1, 1},
+                                   "the scenario has no outcomes, so trials cannot be judged",
+                                   "outcomes: {lifted: [{entity: milk, above_m: 0.9}]}")}};
+  }
+  std::vector<WorkerJob> jobs;
+  for (int trial = 1; trial <= settings.count; ++trial) {
+    jobs.push_back([&, trial]() -> std::string {
+      const auto loaded = LoadRun(WithDraws(request, *nominal.value, trial), root);
+      if (!loaded.value)
+        return ToJson(
+            {trial, kFailed, "it cannot be read:\n" + grammar::Format(loaded.diagnostics)});
+      return ToJson(RunTrial(loaded.value->scenario, trial));
+    });
+  }
+  int done = 0;
+  const auto workers = RunInWorkers(jobs, {.jobs = settings.jobs, .time_limit_s = kTimeLimit_s},
+                                    [&](std::size_t, const WorkerResult&) {
+                                      if (progress) progress(++done);
+                                    });
+  TrialReport report;
+  for (const Outcome& outcome : scenario.outcomes) report.outcomes.push_back(outcome.name);
+  for (std::size_t i = 0; i < workers.size(); ++i)
+    report.results.push_back(FromWorker(static_cast<int>(i) + 1, workers[i]));
+  return {std::move(report), {}};
+}
+
+nlohmann::ordered_json TrialJson(const TrialReport& report) {
+  nlohmann::ordered_json outcomes, results = nlohmann::ordered_json::array();
+  for (const std::string& name : AllOutcomes(report)) outcomes[name] = CountOf(name, report);
+  for (const TrialResult& result : report.results)
+    results.push_back(
+        {{"trial", result.trial}, {"outcome", result.outcome}, {"reason", result.reason}});
+  return {{"trials", report.results.size()},
+          {"outcomes", std::move(outcomes)},
+          {"results", std::move(results)}};
+}
+
+std::string TrialTable(const TrialReport& report, const std::string& command) {
+  const std::vector<TrialResult>& results = report.results;
+  const std::vector<std::string> names = AllOutcomes(report);
+  std::string table;
+  for (const std::string& name : names) {
+    const std::size_t count = CountOf(name, report);
+    const bool own = name != kOtherOutcome && name != kFailed;
+    if (own || count > 0) table += TableLine(name, count, results.size());
+  }
+  // The worst first: those that failed, then the outcomes from the last to the first.
+  std::size_t listed = 0, more = 0;
+  for (std::size_t i = names.size(); i-- > 1;) {
+    for (const TrialResult& result : results) {
+      if (result.outcome != names[i]) continue;
+      if (++listed > kMaxListed) {
+        ++more;
+        continue;
+      }
+      const std::string reason = result.reason.empty() ? "" : " (" + result.reason + ")";
+      table += fmt::format("trial {}: {}{}\n  again: {} --trial {}\n", result.trial, result.outcome,
+                           reason, command, result.trial);
+    }
+  }
+  if (more > 0) table += fmt::format("and {} more\n", more);
+  return table;
+}
+
+}  // namespace prehend::harness

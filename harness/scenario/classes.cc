@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/build/classes_test.cc
+#include "harness/scenario/classes.h"
+
+#include <algorithm>
+#include <set>
+
+namespace prehend::harness {
+namespace {
+
+/// What hangs on a joint is neither fixed nor can it be picked up.
+const char* MobilityOf(const physics::Scene& scene, int body) {
+  if (scene.bodies[static_cast<std::size_t>(body)].fixed) return "Fixed";
+  return physics::MovesFreely(scene, body) ? "Movable" : "Jointed";
+}
+
+std::vector<std::string> BuiltInClassesOf(const physics::Scene& scene, std::size_t body) {
+  using physics::Abstract;
+  const physics::Body& is = scene.bodies[body];
+  switch (is.abstract) {
+    case Abstract::kRegion:
+      return {"Region", "Abstract", "Entity"};
+    case Abstract::kGazeTarget:
+      return {"GazeTarget", "Abstract", "Entity"};
+    case Abstract::kCamera:
+      return {"Camera", "Abstract", "Entity"};
+    case Abstract::kLight:
+      return {"Light", "Abstract", "Entity"};
+    case Abstract::kNot:
+      break;
+  }
+  if (is.grains) return {"Grains", "Entity"};
+  if (!physics::IsThing(is)) return {"Entity"};
+  return {MobilityOf(scene, static_cast<int>(body)), "Thing", "Entity"};
+}
+
+}  // namespace
+
+bool IsScenarioBuiltinClass(const std::string& name) {
+  static const std::set<std::string> names = {
+      "Entity",   "Thing",  "Movable",  "Fixed",  "Jointed",    "Hand",   "Person",
+      "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera", "Light"};
+  return names.contains(name);
+}
+
+std::vector<std::string> WithBaseClasses(const std::string& class_name,
+                                         const std::vector<BaseClass>& kinds) {
+  std::vector<std::string> all = {class_name};
+  while (all.size() <= kinds.size()) {
+    const auto found = std::ranges::find(kinds, all.back(), &BaseClass::name);
+    if (found == kinds.end()) break;
+    all.push_back(found->of);
+  }
+  return all;
+}
+
+std::vector<std::string> ClassesOf(const Scenario& scenario, std::size_t body) {
+  std::vector<std::string> classes = WithBaseClasses(scenario.body_classes[body], scenario.kinds);
+  for (std::string& given : BuiltInClassesOf(scenario.scene, body))
+    classes.push_back(std::move(given));
+  return classes;
+}
+
+}  // namespace prehend::harness

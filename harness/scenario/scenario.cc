@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/read/read_scenario_test.cc
+#include "harness/scenario/scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace prehend::harness {
+
+const std::vector<std::string>& CameraWords() {
+  static const std::vector<std::string> words = {"front", "left", "right", "top", "three_quarter"};
+  return words;
+}
+
+std::vector<std::string> CamerasOf(const Scenario& scenario) {
+  std::vector<std::string> cameras = CameraWords();
+  for (const physics::Body& body : scenario.scene.bodies) {
+    if (body.abstract == physics::Abstract::kCamera) cameras.push_back(body.name);
+  }
+  return cameras;
+}
+
+std::optional<std::string> WhyNoCamera(const Scenario& scenario, const std::string& camera) {
+  const std::vector<std::string> cameras = CamerasOf(scenario);
+  if (std::ranges::find(cameras, camera) != cameras.end()) return std::nullopt;
+  return fmt::format("camera: expected one of {}, found '{}'", fmt::join(cameras, ", "), camera);
+}
+
+}  // namespace prehend::harness

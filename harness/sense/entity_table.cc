@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/read/read_scenario_test.cc and tests/harness/sense/sensing_test.cc
+#include "harness/sense/entity_table.h"
+
+#include <algorithm>
+
+#include "harness/scenario/classes.h"
+
+namespace prehend::harness {
+
+std::vector<std::string> StyleNames(const physics::Scene& scene) {
+  std::vector<std::string> names;
+  for (const physics::Hand& hand : scene.hands) {
+    for (const physics::GraspStyle& style : hand.model.styles) {
+      if (std::ranges::find(names, style.name) == names.end()) names.push_back(style.name);
+    }
+  }
+  return names;
+}
+
+grammar::EntityTable MakeEntityTable(const Scenario& scenario) {
+  grammar::EntityTable entity_table;
+  entity_table.ticks_per_second = scenario.scene.world.rate_hz;
+  for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
+    const physics::Body& body = scenario.scene.bodies[i];
+    const physics::LocalBox box = physics::BoundingBox(body);
+    grammar::EntityInfo& member = entity_table.entities.emplace_back();
+    member.name = body.name;
+    member.classes = ClassesOf(scenario, i);
+    member.part_of = scenario.body_part_of[i];
+    member.p_BC_m = box.p_BC_m;
+    member.half_size_m = box.half_size_m;
+    member.round = body.abstract == physics::Abstract::kRegion &&
+                   std::holds_alternative<physics::Sphere>(body.shapes.front().shape);
+    member.mass_kg = body.fixed ? 0 : body.mass_kg;
+  }
+  for (const physics::Hand& hand : scenario.scene.hands) {
+    grammar::EntityInfo& member = entity_table.entities.emplace_back();
+    member.name = hand.name;
+    member.classes = {"Hand", "Entity"};
+    member.half_size_m = hand.model.palm_size_m / 2;
+    member.sensor_sets = hand.model.sensor_sets;
+    member.strength_n = hand.model.translation.limit;
+  }
+  entity_table.styles = StyleNames(scenario.scene);
+  return entity_table;
+}
+
+}  // namespace prehend::harness

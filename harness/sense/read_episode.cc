@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads an episode line by line with the same field tables and complaints as a scenario: JSON is
+// YAML, too. Tested by tests/harness/sense/episode_file_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <variant>
+
+#include "harness/base/default_grammar.h"
+#include "harness/base/text_file.h"
+#include "harness/scenario/classes.h"
+#include "harness/sense/episode_file.h"
+#include "harness/yaml/struct_format.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr double kMaxPosition_m = 1e4;
+constexpr double kMaxVelocity = 1e4;
+constexpr std::int64_t kLatestTick = 1'000'000'000'000;
+constexpr std::size_t kMaxMembers = 10'000;
+constexpr std::size_t kMaxFeelers = 1000;
+constexpr std::size_t kMaxSets = 32;
+constexpr std::size_t kMaxClasses = 100;
+
+struct MemberEntry {
+  std::string class_name = "Object";
+  bool fixed = false;
+  bool jointed = false;
+  bool grains = false;
+  bool person = false;
+  bool hand = false;
+  bool round = false;
+  std::string abstract;            ///< which class of those that are Abstract; "": none
+  std::vector<std::string> kinds;  ///< what the class is a kind of
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  double mass_kg = 0, strength_n = 0;
+  std::optional<Located<std::string>> part_of;
+  std::vector<std::string> sensor_sets = {"fingers", "thumb", "palm"};
+};
+struct HeaderEntry {
+  int version = kEpisodeVersion;
+  std::string episode;
+  std::string grammar = kDefaultGrammar;
+  std::int64_t ticks_per_second = 0;
+  std::vector<std::string> styles;
+  std::vector<Named<MemberEntry>> entities;
+};
+struct LookEntry {
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+  std::optional<Located<Eigen::Vector4d>> quat_wxyz;
+  std::optional<Eigen::Vector3d> v_m_per_s, w_rad_per_s;
+  bool asleep = false;
+  double joint_position = 0, joint_fraction = 0;
+  std::optional<Located<std::string>> gazes_at;
+};
+struct HandYaml {
+  double trigger = 0;
+  std::optional<Eigen::Vector3d> ahead;
+  std::vector<Eigen::Vector4d> feelers_m;
+  std::optional<Located<std::string>> style;
+};
+struct TouchEntry {
+  Located<std::string> a, b;
+  double up_on_a = 0;
+  std::optional<double> up_on_b;
+  double force_n = 0;
+  std::optional<double> vertical_speed_m_per_s;
+  std::vector<Located<std::string>> sensor_sets;
+};
+struct FrameEntry {
+  Located<std::int64_t> tick;
+  std::vector<Named<LookEntry>> looks;
+  std::vector<Named<HandYaml>> hands;
+  std::vector<TouchEntry> touches;
+};
+struct EndEntry {
+  Located<std::int64_t> end_tick;
+};
+using LineEntry = std::variant<FrameEntry, EndEntry>;
+
+Format<std::string> Name() { return Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'"); }
+Format<std::string> ClassName() { return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"); }
+Format<Eigen::Vector3d> Position() { return Vector<3>(-kMaxPosition_m, kMaxPosition_m); }
+Format<Eigen::Vector3d> Velocity() { return Vector<3>(-kMaxVelocity, kMaxVelocity); }
+
+Format<HeaderEntry> HeaderFormat() {
+  using M = MemberEntry;
+  const Format<M> member =
+      Record<M>("entity")
+          .NamedByKey()
+          .Optional("class", &M::class_name, ClassName(), "")
+          .Optional("fixed", &M::fixed, Flag(), "")
+          .Optional("jointed", &M::jointed, Flag(), "")
+          .Optional("person", &M::person, Flag(), "")
+          .Optional("grains", &M::grains, Flag(), "")
+          .Optional("abstract", &M::abstract, Choice({"Region", "GazeTarget", "Camera", "Light"}),
+                    "")
+          .Optional("round", &M::round, Flag(), "")
+          .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxClasses), "")
+          .Optional("hand", &M::hand, Flag(), "")
+          .Optional("centre_m", &M::centre_m, Position(), "")
+          .Required("size_m", &M::size_m, Vector<3>(0, kMaxPosition_m), "")
+          .Optional("mass_kg", &M::mass_kg, Number(0, 1e6), "")
+          .Optional("strength_n", &M::strength_n, Number(0, 1e6), "")
+          .Optional("part_of", &M::part_of, Name(), "")
+          .Optional("sensor_sets", &M::sensor_sets, ListOf(Name(), 1, kMaxSets), "")
+          .format();
+  using H = HeaderEntry;
+  return Record<H>("the first line")
+      .Required("recording", &H::version, Integer<int>(kEpisodeVersion, kEpisodeVersion), "")
+      .Required("episode", &H::episode, Name(), "")
+      .Optional("grammar", &H::grammar, Name(), "")
+      .Required("ticks_per_second", &H::ticks_per_second, Integer64(1, 1'000'000), "")
+      .Optional("styles", &H::styles, ListOf(Name(), 0, 1000), "")
+      .Required("entities", &H::entities, MapOf(Name(), member, 1, kMaxMembers), "")
+      .format();
+}
+
+Format<LineEntry> LineFormat() {
+  using L = LookEntry;
+  const Format<L> look = Record<L>("look")
+                             .NamedByKey()
+                             .Required("at_m", &L::at_m, Position(), "")
+                             .Optional("quat_wxyz", &L::quat_wxyz, UnitQuaternion(), "")
+                             .Optional("v_m_per_s", &L::v_m_per_s, Velocity(), "")
+                             .Optional("w_rad_per_s", &L::w_rad_per_s, Velocity(), "")
+                             .Optional("asleep", &L::asleep, Flag(), "")
+                             .Optional("joint_position", &L::joint_position, Number(-1e4, 1e4), "")
+                             .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
+                             .Optional("gazes_at", &L::gazes_at, Name(), "")
+                             .format();
+  using H = HandYaml;
+  const Format<H> hand =
+      Record<H>("hand")
+          .NamedByKey()
+          .Optional("trigger", &H::trigger, Number(0, 1), "")
+          .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
+          .Optional("feelers_m", &H::feelers_m,
+                    ListOf(Vector<4>(-kMaxPosition_m, kMaxPosition_m), 1, kMaxFeelers), "")
+          .Optional("style", &H::style, Name(), "")
+          .format();
+  using T = TouchEntry;
+  const Format<T> touch =
+      Record<T>("a touch")
+          .Required("a", &T::a, Name(), "")
+          .Required("b", &T::b, Name(), "")
+          .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
+          .Optional("up_on_b", &T::up_on_b, Number(-1, 1), "")
+          .Optional("force_n", &T::force_n, Number(0, 1e9), "")
+          .Optional("vertical_speed_m_per_s", &T::vertical_speed_m_per_s, Number(0, 1e9), "")
+          .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
+          .format();
+  using F = FrameEntry;
+  const auto tick = Integer64(-kLatestTick, kLatestTick);
+  return ByKey<LineEntry>(
+      "a line",
+      {{"tick", AsAlternative<LineEntry>(
+                    Record<F>("a frame")
+                        .Required("tick", &F::tick, tick, "")
+                        .Optional("looks", &F::looks, MapOf(Name(), look, 0, kMaxMembers), "")
+                        .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
+                        .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
+                        .format())},
+       {"end_tick",
+        AsAlternative<LineEntry>(Record<EndEntry>("the last line")
+                                     .Required("end_tick", &EndEntry::end_tick, tick, "")
+                                     .format())}});
+}
+
+/// Reads line after line into an episode; the first line that is wrong ends it.
+class EpisodeReader {
+ public:
+  explicit EpisodeReader(std::string file) : file_(std::move(file)), line_format_(LineFormat()) {}
+
+  grammar::Diagnostics diagnostics;
+  Episode episode;
+
+  void TakeLine(const std::string& text) {
+    ++line_;
+    if (text.find_first_not_of(" \r") == std::string::npos) return;
+    auto document = ParseYaml(file_, text);
+    if (!document.value) return Report(std::move(document.diagnostics));
+    DiagnosticList errors(*document.value);
+    if (!header_) {
+      HeaderEntry header;
+      if (HeaderFormat().read(document.value->root, errors, header)) TakeHeader(header, errors);
+      header_ = true;
+    } else {
+      LineEntry line;
+      if (line_format_.read(document.value->root, errors, line)) {
+        std::visit([&](const auto& entry) { Take(entry, errors); }, line);
+      }
+    }
+    if (!errors.empty()) Report(errors.Sorted());
+  }
+
+  void Finish() {
+    if (!diagnostics.empty()) return;
+    if (!header_) return Report("the file is empty", "");
+    if (episode.frames.empty())
+      return Report("the recording has no frames",
+                    "each line after the first is one: {\"tick\": 0, ...}");
+    if (!ended_) episode.end_tick = episode.frames.back().tick + 1;
+  }
+
+  void Report(std::string message, std::string hint) {
+    diagnostics.push_back({.file = file_,
+                           .place = {std::max(line_, 1), 1},
+                           .message = std::move(message),
+                           .source_line = {},
+                           .hint = std::move(hint)});
+  }
+
+ private:
+  void Report(grammar::Diagnostics found) {
+    for (grammar::Diagnostic& diagnostic : found) diagnostic.place.line = line_;
+    diagnostics = std::move(found);
+  }
+
+  void TakeHeader(const HeaderEntry& header, DiagnosticList& errors) {
+    episode.header.episode = header.episode;
+    episode.header.grammar = header.grammar;
+    grammar::EntityTable& entity_table = episode.header.entity_table;
+    entity_table.ticks_per_second = header.ticks_per_second;
+    entity_table.styles = header.styles;
+    for (const Named<MemberEntry>& entry : header.entities) names_.push_back(entry.name);
+    for (const Named<MemberEntry>& entry : header.entities) {
+      const MemberEntry& m = entry.value;
+      grammar::EntityInfo& member = entity_table.entities.emplace_back();
+      member.name = entry.name;
+      member.p_BC_m = m.centre_m;
+      member.half_size_m = m.size_m / 2;
+      member.round = m.round;
+      member.mass_kg = m.mass_kg;
+      member.strength_n = m.strength_n;
+      if (m.part_of) member.part_of = IndexOf(m.part_of->value, m.part_of->where, errors);
+      if (m.hand) {
+        member.classes = {"Hand", "Entity"};
+        member.sensor_sets = m.sensor_sets;
+        hands_.push_back(static_cast<int>(entity_table.entities.size()) - 1);
+      } else {
+        member.classes = ClassesOf(m);
+      }
+    }
+    now_.entities.resize(names_.size());
+    for (const int hand : hands_) now_.hands.push_back({.entity = hand, .collision_spheres = {}});
+    now_.collision_spheres.resize(hands_.size());
+  }
+
+  /// Of what is no hand.
+  static std::vector<std::string> ClassesOf(const MemberEntry& m) {
+    std::vector<std::string> classes = {m.class_name};
+    classes.insert(classes.end(), m.kinds.begin(), m.kinds.end());
+    if (!m.abstract.empty()) {
+      classes.insert(classes.end(), {m.abstract, "Abstract"});
+    } else if (m.grains) {
+      classes.emplace_back("Grains");
+    } else if (!m.person) {
+      classes.insert(classes.end(), {m.fixed     ? "Fixed"
+                                     : m.jointed ? "Jointed"
+                                                 : "Movable",
+                                     "Thing"});
+    }
+    classes.emplace_back("Entity");
+    return classes;
+  }
+
+  /// The entity of this name, or kNoEntity after complaining.
+  int IndexOf(const std::string& name, const Where& where, DiagnosticList& errors) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    if (found != names_.end()) return static_cast<int>(found - names_.begin());
+    errors.AddUnknownName(where, fmt::format("no entity is called '{}'", name), name, names_);
+    return grammar::kNoEntity;
+  }
+
+  void Take(const EndEntry& entry, DiagnosticList& errors) {
+    ended_ = true;
+    episode.end_tick = entry.end_tick.value;
+    if (!episode.frames.empty() && episode.end_tick <= episode.frames.back().tick) {
+      errors.Add(
+          entry.end_tick.where,
+          fmt::format("end_tick: expected more than {}, the tick of the last frame, found {}",
+                      episode.frames.back().tick, episode.end_tick));
+    }
+  }
+
+  void Take(const FrameEntry& entry, DiagnosticList& errors) {
+    const grammar::Tick before = now_.tick, tick = entry.tick.value;
+    const bool first = episode.frames.empty();
+    if (ended_) return errors.Add(entry.tick.where, "a frame after the line with 'end_tick'");
+    if (!first && tick <= before) {
+      return errors.Add(entry.tick.where,
+                        fmt::format("the ticks must increase: {} comes after {}", tick, before));
+    }
+    const double dt_s = static_cast<double>(tick - before) /
+                        static_cast<double>(episode.header.entity_table.ticks_per_second);
+    now_.tick = tick;
+    for (grammar::EntitySample& look : now_.entities)
+      look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
+    for (const Named<LookEntry>& look : entry.looks) {
+      const int index = IndexOf(look.name, look.name_where, errors);
+      if (index == grammar::kNoEntity) continue;
+      TakeSample(look.value, first ? 0 : dt_s, now_.entities[index]);
+      if (const auto& gazes_at = look.value.gazes_at) {
+        now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, errors);
+      }
+    }
+    for (const Named<HandYaml>& hand : entry.hands) TakeHand(hand, errors);
+    now_.touches.clear();
+    for (const TouchEntry& touch : entry.touches) TakeTouch(touch, errors);
+    std::sort(now_.touches.begin(), now_.touches.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.a, a.b) < std::pair(b.a, b.b);
+    });
+    episode.frames.push_back(now_);
+    if (episode.frames.size() > kMaxEpisodeFrames)
+      errors.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
+  }
+
+  /// Velocities that are not given are those from the previous look to this one.
+  static void TakeSample(const LookEntry& entry, double dt_s, grammar::EntitySample& look) {
+    const grammar::EntitySample before = look;
+    look.p_WB_m = entry.at_m;
+    if (entry.quat_wxyz) {
+      const Eigen::Vector4d& q = entry.quat_wxyz->value;
+      look.q_WB = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+    }
+    look.asleep = entry.asleep;
+    look.joint_position = entry.joint_position;
+    look.joint_fraction = entry.joint_fraction;
+    look.gazes_at = grammar::kNoEntity;
+    if (dt_s > 0) {
+      look.v_WB_m_per_s = (look.p_WB_m - before.p_WB_m) / dt_s;
+      const Eigen::AngleAxisd turn(look.q_WB * before.q_WB.conjugate());
+      look.w_WB_rad_per_s = turn.axis() * turn.angle() / dt_s;
+    }
+    if (entry.v_m_per_s) look.v_WB_m_per_s = *entry.v_m_per_s;
+    if (entry.w_rad_per_s) look.w_WB_rad_per_s = *entry.w_rad_per_s;
+  }
+
+  void TakeHand(const Named<HandYaml>& named, DiagnosticList& errors) {
+    const int entity = IndexOf(named.name, named.name_where, errors);
+    if (entity == grammar::kNoEntity) return;
+    const auto found = std::find(hands_.begin(), hands_.end(), entity);
+    if (found == hands_.end())
+      return errors.Add(named.name_where, fmt::format("'{}' is no hand", named.name),
+                        "its entity has no 'hand: true'");
+    const auto slot = static_cast<std::size_t>(found - hands_.begin());
+    const HandYaml& entry = named.value;
+    const grammar::EntitySample& look = now_.entities[static_cast<std::size_t>(entity)];
+    grammar::HandSample& hand = now_.hands[slot];
+    hand.trigger = entry.trigger;
+    hand.ahead_W = entry.ahead && !entry.ahead->isZero() ? entry.ahead->normalized()
+                                                         : look.q_WB * Eigen::Vector3d::UnitX();
+    if (entry.style) {
+      const std::vector<std::string>& styles = episode.header.entity_table.styles;
+      const auto style = std::find(styles.begin(), styles.end(), entry.style->value);
+      if (style == styles.end())
+        errors.AddUnknownName(entry.style->where,
+                              fmt::format("no style is called '{}'", entry.style->value),
+                              entry.style->value, styles);
+      hand.style = static_cast<int>(style - styles.begin());
+    }
+    std::vector<grammar::CollisionSphere>& collision_spheres = now_.collision_spheres[slot];
+    collision_spheres.clear();
+    for (const Eigen::Vector4d& f : entry.feelers_m)
+      collision_spheres.push_back({f.head<3>(), std::max(f[3], 0.0)});
+    if (collision_spheres.empty()) collision_spheres.push_back({look.p_WB_m, 0});
+  }
+
+  void TakeTouch(const TouchEntry& entry, DiagnosticList& errors) {
+    int a = IndexOf(entry.a.value, entry.a.where, errors),
+        b = IndexOf(entry.b.value, entry.b.where, errors);
+    if (a == grammar::kNoEntity || b == grammar::kNoEntity) return;
+    if (a == b)
+      return errors.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
+    grammar::Touch touch{.a = a,
+                         .b = b,
+                         .up_on_a = entry.up_on_a,
+                         .up_on_b = entry.up_on_b.value_or(-entry.up_on_a),
+                         .normal_force_n = entry.force_n};
+    touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(SpeedAtTheUpper(touch));
+    for (const Located<std::string>& set : entry.sensor_sets)
+      touch.sensor_sets |= SetBit(set, a, b, errors);
+    if (a > b) {
+      std::swap(touch.a, touch.b);
+      std::swap(touch.up_on_a, touch.up_on_b);
+    }
+    const bool twice =
+        std::any_of(now_.touches.begin(), now_.touches.end(),
+                    [&](const grammar::Touch& t) { return t.a == touch.a && t.b == touch.b; });
+    if (twice)
+      return errors.Add(entry.a.where, fmt::format("'{}' and '{}' are said to touch twice",
+                                                   entry.a.value, entry.b.value));
+    now_.touches.push_back(touch);
+  }
+
+  /// Where the two touch is not known; the place of the one that the other bears is near it.
+  double SpeedAtTheUpper(const grammar::Touch& touch) const {
+    const grammar::EntitySample &a = now_.entities[static_cast<std::size_t>(touch.a)],
+                                &b = now_.entities[static_cast<std::size_t>(touch.b)];
+    return grammar::VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
+  }
+
+  std::uint32_t SetBit(const Located<std::string>& set, int a, int b,
+                       DiagnosticList& errors) const {
+    const std::vector<grammar::EntityInfo>& members = episode.header.entity_table.entities;
+    const std::vector<std::string>& sets =
+        !members[a].sensor_sets.empty() ? members[a].sensor_sets : members[b].sensor_sets;
+    const auto found = std::find(sets.begin(), sets.end(), set.value);
+    if (found != sets.end()) return std::uint32_t{1} << (found - sets.begin());
+    errors.AddUnknownName(set.where, fmt::format("no sensor set is called '{}'", set.value),
+                          set.value, sets);
+    return 0;
+  }
+
+  std::string file_;
+  Format<LineEntry> line_format_;
+  int line_ = 0;
+  bool header_ = false, ended_ = false;
+  std::vector<std::string> names_;
+  std::vector<int> hands_;
+  EpisodeFrame now_;
+};
+
+}  // namespace
+
+grammar::Frame EpisodeFrame::View() {
+  for (std::size_t i = 0; i < hands.size(); ++i) hands[i].collision_spheres = collision_spheres[i];
+  return {tick, entities, hands, touches};
+}
+
+ReadResult<Episode> ReadEpisode(const std::string& path) {
+  EpisodeReader reader(path);
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    reader.diagnostics.push_back(
+        {.file = path,
+         .place = {},
+         .message = std::filesystem::exists(path, error) ? "is not a regular file" : "no such file",
+         .source_line = {},
+         .hint = {}});
+    return {std::nullopt, std::move(reader.diagnostics)};
+  }
+  if (const auto size = std::filesystem::file_size(path, error); error || size > kMaxEpisodeBytes) {
+    reader.diagnostics.push_back(
+        {.file = path,
+         .place = {},
+         .message = fmt::format("is larger than {} MiB", kMaxEpisodeBytes >> 20),
+         .source_line = {},
+         .hint = {}});
+    return {std::nullopt, std::move(reader.diagnostics)};
+  }
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    reader.diagnostics.push_back({.file = path,
+                                  .place = {},
+                                  .message = std::string("cannot be read: ") + std::strerror(errno),
+                                  .source_line = {},
+                                  .hint = {}});
+    return {std::nullopt, std::move(reader.diagnostics)};
+  }
+  for (std::string line; reader.diagnostics.empty() && std::getline(stream, line);) {
+    if (line.ends_with('\r')) line.pop_back();  // written on Windows
+    if (line.size() > kMaxEpisodeLineBytes) {
+      reader.TakeLine(" ");
+      reader.Report(
+          fmt::format("a line of {} bytes; at most {} are read", line.size(), kMaxEpisodeLineBytes),
+          "one frame per line");
+      break;
+    }
+    reader.TakeLine(line);
+  }
+  reader.Finish();
+  if (!reader.diagnostics.empty()) return {std::nullopt, std::move(reader.diagnostics)};
+  return {std::move(reader.episode), {}};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Four rules of the kind that other monitors are measured with, as a grammar, and what came of
+// watching a world with them. four_automata.h has the same rules by hand. Tested by
+// tests/harness/speed/workload_test.cc
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "grammar/monitor.h"
+#include "harness/speed/change_log.h"
+
+namespace prehend::harness {
+
+/// A grasp; a support, for a while; a touch without a grasp, for a while; a grasped thing that
+/// leaves its support.
+struct FourRules {
+  enum Number { kGrasping, kSupported, kUnanswered, kPickingUp, kCount };
+  static constexpr double kGripOn = 0.3;  ///< of the commanded grip
+  static constexpr int kSides = 2;        ///< sensor sets that touch
+  static constexpr double kLevel = 0.5;   ///< cosine between a contact normal and up
+  static constexpr int kSupport_ms = 100;
+  static constexpr int kUnanswered_ms = 500;
+  static constexpr double kRegion_m = 0.09;
+};
+std::shared_ptr<const grammar::Program> CompileFourRules();
+
+/// What was recognised: order does not matter, everything else does.
+struct Recognised {
+  std::uint64_t events = 0;
+  std::uint64_t hash = 0;
+  void Add(int rule, int hand, int object, grammar::Interval interval);
+  friend bool operator==(const Recognised&, const Recognised&) = default;
+};
+
+struct Watched {
+  Recognised recognised;     ///< all of it
+  std::uint64_t events = 0;  ///< among them, those after the warm-up
+  double seconds = 0;        ///< that the frames after the warm-up took
+};
+
+/// Plays a log of worlds.h to a monitor of the four rules. The first frames are `warm_up`: what is
+/// new is bound, and memory is taken.
+Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::size_t warm_up = 0);
+
+}  // namespace prehend::harness

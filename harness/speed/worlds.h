@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Made-up worlds for the speed figures: what is new in each frame, and no physics.
+// Tested by tests/harness/speed/workload_test.cc
+#pragma once
+
+#include <cstdint>
+
+#include "harness/speed/change_log.h"
+
+namespace prehend::harness {
+
+inline constexpr grammar::Tick kWorldRate_hz = 240;  ///< a frame is a tick
+
+/// `objects` objects on a table, each with a hand of its own that takes it up and puts it down
+/// again once in `period_s`; in between both rest. Entities: hands, objects, the table.
+ChangeLog MakeStations(int objects, int frames, double period_s, std::uint64_t seed = 1);
+
+/// Touches that flicker, `per_frame` a frame, one object after the other.
+enum class Flicker {
+  kPressure,  ///< from one sensor set to another one: no rule can tell
+  kFact,      ///< from one sensor set to two and back, by a hand that is open: `sensor_sets >= 2`
+              ///< changes, nothing begins
+  kGrasp,     ///< likewise, by a hand that is closed: each is the begin or the end of a grasp
+};
+ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker);
+
+}  // namespace prehend::harness

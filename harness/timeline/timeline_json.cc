@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/run/run_text_test.cc
+#include "harness/timeline/timeline_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "harness/timeline/event_text.h"
+
+namespace prehend::harness {
+
+using Json = nlohmann::ordered_json;
+
+Json EventJson(const grammar::NamedEvent& event, grammar::Tick ticks_per_second) {
+  const auto seconds = [&](grammar::Tick tick) {
+    return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
+  };
+  Json roles = Json::object(), attributes = Json::object();
+  for (const grammar::Role& role : event.roles)
+    (IsAttribute(role) ? attributes : roles)[role.name] = role.value;
+  for (const grammar::NamedValue& value : event.values) attributes[value.name] = value.value;
+  return {{"event", event.event},
+          {"roles", std::move(roles)},
+          {"attributes", std::move(attributes)},
+          {"begin_tick", event.interval.begin},
+          {"end_tick", event.interval.end},
+          {"begin_s", seconds(event.interval.begin)},
+          {"end_s", seconds(event.interval.end)},
+          {"decided_tick", event.decided},
+          {"open_end", event.open_end}};
+}
+
+Json TimelineJson(const grammar::Timeline& timeline) {
+  Json events = Json::array();
+  for (const grammar::NamedEvent& event : timeline.events)
+    events.push_back(EventJson(event, timeline.ticks_per_second));
+  return {{"ticks_per_second", timeline.ticks_per_second}, {"events", std::move(events)}};
+}
+
+grammar::Timeline TimelineFromJson(const Json& json) {
+  grammar::Timeline timeline{.ticks_per_second = json.at("ticks_per_second"), .events = {}};
+  for (const Json& event : json.at("events")) {
+    grammar::NamedEvent& named = timeline.events.emplace_back();
+    named.event = event.at("event");
+    for (const char* part : {"roles", "attributes"}) {
+      for (const auto& [name, value] : event.at(part).items()) {
+        if (value.is_number()) {
+          named.values.push_back({name, value, ""});
+        } else {
+          named.roles.push_back({name, value});
+        }
+      }
+    }
+    named.interval = {event.at("begin_tick"), event.at("end_tick")};
+    named.decided = event.at("decided_tick");
+    named.open_end = event.at("open_end");
+  }
+  return timeline;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Collects what is wrong with one document while it is read, in any order, and hands it over sorted
+// by place. Tested by tests/harness/yaml/struct_format_test.cc
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/yaml/located_yaml.h"
+
+namespace prehend::harness {
+
+class DiagnosticList {
+ public:
+  /// The document outlives this object.
+  explicit DiagnosticList(const YamlDocument& document) : document_(document) {}
+
+  void Add(Where where, std::string message, std::string hint = {});
+  /// For example "did you mean 'mass_kg'?", or the list of candidates when nothing is near.
+  void AddUnknownName(Where where, std::string message, const std::string& name,
+                      const std::vector<std::string>& candidates);
+
+  bool empty() const { return found_.empty(); }
+  /// Sorted by place; complaints about one place in the order they came.
+  grammar::Diagnostics Sorted() const;
+
+ private:
+  const YamlDocument& document_;
+  std::vector<std::pair<Where, grammar::Diagnostic>> found_;
+};
+
+}  // namespace prehend::harness

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// YAML as a tree in which every key and value knows where it stands. A strict subset: one document
+// of plain mappings, sequences and scalars. What makes YAML ambiguous or dangerous is refused with
+// its place: duplicate keys, `<<` merges, anchors and aliases, tags, several documents, tabs, deep
+// nesting. What the scalars mean is decided by harness/yaml/value_format.h. Tested by
+// tests/harness/yaml/located_yaml_test.cc
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/base/located.h"
+#include "harness/base/read_result.h"
+
+namespace prehend::harness {
+
+inline constexpr int kMaxYamlDepth = 64;
+
+struct YamlNode {
+  enum class Kind { kNull, kScalar, kSequence, kMapping };
+  Kind kind = Kind::kNull;
+  Where where;
+  std::string text;     ///< of a scalar; of a null how it is spelled: "", "~", "null"
+  bool quoted = false;  ///< a scalar in quotes or a block scalar: always a string
+  std::string
+      key;  ///< in a mapping: its key. In a sequence: the sequence's key and index, `size_m[2]`
+  Where key_where;  ///< of the key; in a sequence the same as `where`
+  std::vector<YamlNode> children;
+
+  /// The value of `name` in this mapping, or null.
+  const YamlNode* Find(std::string_view name) const;
+};
+
+/// The child called `step` of a mapping, or of a sequence the one with this index; null when there
+/// is none.
+const YamlNode* ChildOf(const YamlNode& node, std::string_view step);
+
+/// A text that nodes come from: the file, or one `--set` from the command line.
+struct YamlSource {
+  std::string name;
+  std::string text;
+};
+
+struct YamlDocument {
+  std::vector<YamlSource> sources;  ///< the file first
+  YamlNode root;
+};
+
+/// Parses `text`, which CheckText() has passed or will refuse here.
+ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text);
+/// ReadTextFile() and ParseYaml().
+ReadResult<YamlDocument> ReadYamlFile(const std::string& path);
+
+/// Replaces (or adds) a value: `entities.milk.mass_kg=8`, `pictures.0.camera=left`. The value is
+/// YAML, too. The new node's place is in a source called `--set`. Complains when the path leads
+/// nowhere; a mapping that is left out in the file is made when the JSON Schema knows a field of
+/// that name there.
+grammar::Diagnostics ApplyOverride(const std::string& assignment,
+                                   const nlohmann::ordered_json& schema, YamlDocument& document);
+
+/// Whether the field that `path` leads to takes whole numbers only, says the JSON Schema.
+bool IsWholeNumber(const std::string& path, const nlohmann::ordered_json& schema,
+                   const YamlDocument& document);
+
+}  // namespace prehend::harness

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/yaml/struct_format_test.cc
+#include "harness/yaml/struct_format.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "harness/yaml/yaml_scalar.h"
+
+namespace prehend::harness {
+namespace {
+
+/// The key without its unit: "mass_kg" -> "mass". Units are the last words of a key.
+std::string WithoutUnit(const std::string& key) {
+  static constexpr std::string_view kUnits[] = {
+      "_m",   "_mm",  "_cm", "_km", "_kg", "_g",    "_s",      "_ms",     "_hz",      "_n",
+      "_deg", "_rad", "_nm", "_in", "_lb", "_inch", "_meters", "_metres", "_seconds", "_degrees"};
+  for (const std::string_view unit : kUnits) {
+    if (key.size() > unit.size() && key.ends_with(unit))
+      return key.substr(0, key.size() - unit.size());
+  }
+  return key;
+}
+
+/// Returns the known key that was probably meant, or "".
+std::string ReportUnknownKey(const YamlNode& child, const std::string& title,
+                             const std::vector<std::string>& known, DiagnosticList& errors) {
+  const std::string message = fmt::format("unknown key '{}' in {}", child.key, title);
+  const auto same_stem = std::find_if(known.begin(), known.end(), [&](const std::string& key) {
+    return WithoutUnit(key) == WithoutUnit(child.key);
+  });
+  if (same_stem != known.end()) {
+    errors.Add(child.key_where, message, fmt::format("did you mean '{}'?", *same_stem));
+    return *same_stem;
+  }
+  if (const std::string remedy = LookAlikeRemedy(child.key); !remedy.empty()) {
+    errors.Add(child.key_where, message, remedy);
+    return "";
+  }
+  const bool is_number = child.key.find_first_not_of("0123456789") == std::string::npos;
+  if (is_number && child.kind == YamlNode::Kind::kNull) {
+    errors.Add(child.key_where, message, "decimals have a point: 0.5");
+    return "";
+  }
+  errors.AddUnknownName(child.key_where, message, child.key, known);
+  return grammar::NearestName(child.key, known);
+}
+
+/// Where a complaint about the whole of a mapping is best seen: at its name, if it has one.
+Where HeadOf(const YamlNode& node) {
+  const bool in_list = node.key.ends_with(']');
+  return node.key.empty() || in_list || node.key_where.place.line == 0 ? node.where
+                                                                       : node.key_where;
+}
+
+std::vector<std::string> KeysPresent(const YamlNode& node, const std::vector<std::string>& keys) {
+  std::vector<std::string> present;
+  for (const YamlNode& child : node.children) {
+    if (std::find(keys.begin(), keys.end(), child.key) != keys.end()) present.push_back(child.key);
+  }
+  return present;
+}
+
+Json Requires(const std::vector<std::string>& keys) { return {{"required", keys}}; }
+
+}  // namespace
+
+std::string RecordRules::TitleOf(const YamlNode& node) const {
+  return named_by_key && !node.key.empty() ? fmt::format("{} '{}'", noun, node.key) : noun;
+}
+
+Json RecordRules::Schema() const {
+  Json schema = {
+      {"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+  Json required = Json::array();
+  for (const Field& field : fields) {
+    schema["properties"][field.key] = field.schema;
+    if (field.required) required.push_back(field.key);
+  }
+  if (!required.empty()) schema["required"] = std::move(required);
+  Json all_of = Json::array();
+  for (const auto& keys : exactly_one) {
+    Json one_of = Json::array();
+    for (const std::string& key : keys) one_of.push_back(Requires({key}));
+    all_of.push_back({{"oneOf", std::move(one_of)}});
+  }
+  for (const auto& keys : at_most_one) {
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      for (std::size_t j = i + 1; j < keys.size(); ++j)
+        all_of.push_back({{"not", Requires({keys[i], keys[j]})}});
+    }
+  }
+  if (!all_of.empty()) schema["allOf"] = std::move(all_of);
+  return schema;
+}
+
+bool RecordRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const {
+  if (node.kind != YamlNode::Kind::kMapping) {
+    return ReportExpected(node, errors,
+                          fmt::format("a mapping with the fields of {}", TitleOf(node)));
+  }
+  std::vector<std::string> known;
+  for (const Field& field : fields) known.push_back(field.key);
+  bool good = true;
+  std::set<std::string> meant;  // but misspelt: not to be called missing, too
+  for (const YamlNode& child : node.children) {
+    if (std::find(known.begin(), known.end(), child.key) != known.end()) continue;
+    meant.insert(ReportUnknownKey(child, TitleOf(node), known, errors));
+    good = false;
+  }
+  for (const Field& field : fields) {
+    if (!field.required || node.Find(field.key) || meant.contains(field.key)) continue;
+    errors.Add(HeadOf(node), fmt::format("{} needs the key '{}'", TitleOf(node), field.key));
+    good = false;
+  }
+  for (const auto& keys : exactly_one) {
+    const bool misspelt =
+        std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return meant.contains(key); });
+    if (misspelt || !KeysPresent(node, keys).empty()) continue;
+    errors.Add(HeadOf(node),
+               fmt::format("{} needs one of the keys {}", TitleOf(node), fmt::join(keys, ", ")));
+    good = false;
+  }
+  for (const auto* groups : {&exactly_one, &at_most_one}) {
+    for (const auto& keys : *groups) {
+      const auto present = KeysPresent(node, keys);
+      if (present.size() < 2) continue;
+      errors.Add(
+          node.Find(present[1])->key_where,
+          fmt::format("{} cannot have both '{}' and '{}'", TitleOf(node), present[0], present[1]));
+      good = false;
+    }
+  }
+  return good;
+}
+
+std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& noun,
+                                    const std::vector<std::string>& cases, DiagnosticList& errors) {
+  if (node.kind != YamlNode::Kind::kMapping) {
+    ReportExpected(node, errors, fmt::format("a mapping with the fields of {}", noun));
+    return std::nullopt;
+  }
+  const auto present = KeysPresent(node, cases);
+  if (present.size() == 1) {
+    return static_cast<std::size_t>(std::find(cases.begin(), cases.end(), present[0]) -
+                                    cases.begin());
+  }
+  if (present.size() > 1) {
+    errors.Add(node.Find(present[1])->key_where,
+               fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
+    return std::nullopt;
+  }
+  const std::string first = node.children.empty() ? "" : node.children[0].key;
+  errors.AddUnknownName(
+      node.children.empty() ? node.where : node.children[0].key_where,
+      fmt::format("{} needs one of the keys {}", noun, fmt::join(cases, ", ")), first,
+      grammar::NearestName(first, cases).empty() ? std::vector<std::string>{} : cases);
+  return std::nullopt;
+}
+
+}  // namespace prehend::harness

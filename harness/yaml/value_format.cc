@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/yaml/struct_format_test.cc
+#include "harness/yaml/value_format.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <regex.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+
+#include "harness/yaml/yaml_scalar.h"
+
+namespace prehend::harness {
+namespace {
+
+std::string LabelOf(const YamlNode& node) { return node.key.empty() ? "" : node.key + ": "; }
+
+/// POSIX, since std::regex recurses once per character, and since pattern and text are short. Null
+/// for no pattern.
+std::shared_ptr<const regex_t> Compiled(const std::string& pattern) {
+  auto compiled = std::make_unique<regex_t>();
+  if (regcomp(compiled.get(), pattern.c_str(), REG_EXTENDED | REG_NOSUB) != 0) return nullptr;
+  return {compiled.release(), [](regex_t* unused) {
+            regfree(unused);
+            delete unused;
+          }};
+}
+
+/// Characters below a blank can only come from escapes in quotes; a NUL would hide the rest of the
+/// text.
+bool Matches(const regex_t* pattern, const std::string& text) {
+  return pattern && text.find('\0') == std::string::npos &&
+         regexec(pattern, text.c_str(), 0, nullptr, 0) == 0;
+}
+
+/// From escapes like "\x1b" in quotes; they would garble a terminal.
+bool HasControlCharacters(const std::string& text) {
+  return std::any_of(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7F;
+  });
+}
+
+/// The node's text when it is unmistakably a string, else a complaint.
+std::optional<std::string> StringOf(const YamlNode& node, DiagnosticList& errors,
+                                    const std::string& wanted) {
+  if (node.kind == YamlNode::Kind::kScalar) {
+    ScalarMeaning meaning = MeaningOf(node);
+    if (meaning.string && HasControlCharacters(*meaning.string)) {
+      errors.Add(node.where,
+                 fmt::format("{}expected {}, found control characters", LabelOf(node), wanted));
+      return std::nullopt;
+    }
+    if (meaning.string) return std::move(meaning.string);
+    if (meaning.number || meaning.flag) {
+      errors.Add(node.where,
+                 fmt::format("{}expected {}, found the {} {}", LabelOf(node), wanted,
+                             meaning.number ? "number" : "flag", node.text),
+                 fmt::format("put it in quotes if text is meant: '{}'", node.text));
+      return std::nullopt;
+    }
+  }
+  ReportExpected(node, errors, wanted);
+  return std::nullopt;
+}
+
+std::optional<ScalarMeaning> NumericMeaning(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kScalar) return std::nullopt;
+  ScalarMeaning meaning = MeaningOf(node);
+  if (!meaning.number) return std::nullopt;
+  return meaning;
+}
+
+/// What to do about a text where a number is wanted: "0.3kg", "0,3".
+std::string NumberRemedy(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kScalar || node.quoted) return "";
+  const std::string& text = node.text;
+  const std::size_t end = std::min(text.find_first_not_of("+-.0123456789eE"), text.size());
+  double ignored = 0;
+  const bool begins_with_number =
+      end < text.size() &&
+      std::from_chars(text.data(), text.data() + end, ignored).ec == std::errc();
+  if (!begins_with_number) return "";
+  return text[end] == ',' ? "decimals have a point: 0.5"
+                          : "write the number alone; its unit is the last word of the key";
+}
+
+bool ReportExpectedNumber(const YamlNode& node, DiagnosticList& errors, const std::string& wanted) {
+  const std::string remedy = NumberRemedy(node);
+  if (remedy.empty() || !MeaningOf(node).string) return ReportExpected(node, errors, wanted);
+  errors.Add(node.where,
+             fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)), remedy);
+  return false;
+}
+
+bool HasSize(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most) {
+  const std::size_t size = node.children.size();
+  if (size >= least && size <= most) return true;
+  const std::string wanted = least == most  ? fmt::format("{} items", least)
+                             : size < least ? fmt::format("at least {}", least)
+                                            : fmt::format("at most {}", most);
+  errors.Add(node.where, fmt::format("{}expected {}, found {}", LabelOf(node), wanted, size));
+  return false;
+}
+
+Json ShowString(const std::string& value) { return Json(value); }
+
+}  // namespace
+
+bool ReportExpected(const YamlNode& node, DiagnosticList& errors, const std::string& wanted) {
+  std::string message =
+      fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node));
+  std::string hint;
+  if (node.kind == YamlNode::Kind::kScalar) {
+    const ScalarMeaning meaning = MeaningOf(node);
+    if (!meaning.ambiguous.empty()) message += fmt::format(" ({})", meaning.ambiguous);
+    hint = meaning.remedy.empty() ? LookAlikeRemedy(node.text) : meaning.remedy;
+  }
+  errors.Add(node.where, std::move(message), std::move(hint));
+  return false;
+}
+
+bool IsListOf(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most) {
+  if (node.kind == YamlNode::Kind::kSequence) return HasSize(node, errors, least, most);
+  const std::string wanted = least == most ? fmt::format("a list of {}", least) : "a list";
+  if (node.kind != YamlNode::Kind::kMapping) return ReportExpected(node, errors, wanted);
+  errors.Add(node.where, fmt::format("{}expected {}, found a mapping", LabelOf(node), wanted),
+             "each item on a line of its own begins with '- ', or all are in [..]");
+  return false;
+}
+
+bool IsMappingOf(const YamlNode& node, DiagnosticList& errors, std::size_t least,
+                 std::size_t most) {
+  if (node.kind == YamlNode::Kind::kMapping) return HasSize(node, errors, least, most);
+  if (node.kind != YamlNode::Kind::kSequence)
+    return ReportExpected(node, errors, "a mapping from names");
+  errors.Add(node.where,
+             fmt::format("{}expected a mapping from names, found a list", LabelOf(node)),
+             "lines 'NAME: ..' without '- ' before them");
+  return false;
+}
+
+Format<double> Number(double lowest, double highest) {
+  const std::string wanted = fmt::format("a number from {} to {}", lowest, highest);
+  return {.schema = {{"type", "number"}, {"minimum", lowest}, {"maximum", highest}},
+          .read =
+              [=](const YamlNode& node, DiagnosticList& errors, double& value) {
+                const auto meaning = NumericMeaning(node);
+                if (!meaning || !(*meaning->number >= lowest && *meaning->number <= highest)) {
+                  return ReportExpectedNumber(node, errors, wanted);
+                }
+                value = *meaning->number;
+                return true;
+              },
+          .show = [](const double& value) { return Json(value); }};
+}
+
+Format<std::int64_t> Integer64(std::int64_t lowest, std::int64_t highest) {
+  const std::string wanted = fmt::format("a whole number from {} to {}", lowest, highest);
+  return {.schema = {{"type", "integer"}, {"minimum", lowest}, {"maximum", highest}},
+          .read =
+              [=](const YamlNode& node, DiagnosticList& errors, std::int64_t& value) {
+                const auto meaning = NumericMeaning(node);
+                constexpr double kExactInDouble = 9007199254740992.0;  // 2^53
+                if (!meaning || !meaning->integer || std::abs(*meaning->number) > kExactInDouble) {
+                  return ReportExpected(node, errors, wanted);
+                }
+                const auto whole = static_cast<std::int64_t>(*meaning->number);
+                if (whole < lowest || whole > highest) return ReportExpected(node, errors, wanted);
+                value = whole;
+                return true;
+              },
+          .show = [](const std::int64_t& value) { return Json(value); }};
+}
+
+Format<bool> Flag() {
+  return {.schema = {{"type", "boolean"}},
+          .read =
+              [](const YamlNode& node, DiagnosticList& errors, bool& value) {
+                if (node.kind != YamlNode::Kind::kScalar || !MeaningOf(node).flag) {
+                  return ReportExpected(node, errors, "true or false");
+                }
+                value = *MeaningOf(node).flag;
+                return true;
+              },
+          .show = [](const bool& value) { return Json(value); }};
+}
+
+Format<std::string> Text(std::size_t max_length) {
+  const std::string wanted = fmt::format("text of 1 to {} bytes", max_length);
+  return {.schema = {{"type", "string"}, {"minLength", 1}, {"maxLength", max_length}},
+          .read =
+              [=](const YamlNode& node, DiagnosticList& errors, std::string& value) {
+                auto text = StringOf(node, errors, wanted);
+                if (!text) return false;
+                if (text->empty() || text->size() > max_length)
+                  return ReportExpected(node, errors, wanted);
+                value = std::move(*text);
+                return true;
+              },
+          .show = ShowString};
+}
+
+Format<std::string> Word(const std::string& pattern, const std::string& wanted,
+                         std::size_t max_length) {
+  const std::string whole = "^(" + pattern + ")$";
+  return {.schema = {{"type", "string"}, {"pattern", whole}, {"maxLength", max_length}},
+          .read =
+              [=, matcher = Compiled(whole)](const YamlNode& node, DiagnosticList& errors,
+                                             std::string& value) {
+                auto text = StringOf(node, errors, wanted);
+                if (!text) return false;
+                if (text->size() > max_length) {
+                  return ReportExpected(node, errors,
+                                        fmt::format("{} of at most {} bytes", wanted, max_length));
+                }
+                if (!Matches(matcher.get(), *text)) return ReportExpected(node, errors, wanted);
+                value = std::move(*text);
+                return true;
+              },
+          .show = ShowString};
+}
+
+void CheckLeastMost(const std::string& key, const Eigen::Vector2d& range, Where where,
+                    DiagnosticList& errors) {
+  if (range[0] < range[1]) return;
+  errors.Add(where,
+             fmt::format("{}: expected [least, most], found [{}, {}]", key, range[0], range[1]));
+}
+
+Format<Eigen::Vector4d> UnitQuaternion() {
+  const auto vector = Vector<4>(-1, 1);
+  return {.schema = vector.schema,
+          .read =
+              [vector](const YamlNode& node, DiagnosticList& errors, Eigen::Vector4d& value) {
+                constexpr double kTolerance = 0.01;  // two written digits
+                if (!vector.read(node, errors, value)) return false;
+                if (std::abs(value.norm() - 1) <= kTolerance) return true;
+                errors.Add(node.where,
+                           fmt::format("{}expected a unit quaternion [w, x, y, z], found one "
+                                       "of length {:.4g}",
+                                       LabelOf(node), value.norm()));
+                return false;
+              },
+          .show = vector.show};
+}
+
+Format<std::string> Identifier() { return Word("[a-z][a-z0-9_]*", "a name like 'milk_carton'"); }
+
+Format<std::string> Choice(std::vector<std::string> words) {
+  const std::string wanted = words.size() == 1 ? fmt::format("'{}'", words[0])
+                                               : fmt::format("one of {}", fmt::join(words, ", "));
+  return {.schema = {{"type", "string"}, {"enum", words}},
+          .read =
+              [=](const YamlNode& node, DiagnosticList& errors, std::string& value) {
+                auto text = StringOf(node, errors, wanted);
+                if (!text) return false;
+                if (std::find(words.begin(), words.end(), *text) == words.end()) {
+                  const std::string near = grammar::NearestName(*text, words);
+                  errors.Add(
+                      node.where,
+                      fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
+                      near.empty() ? "" : fmt::format("did you mean '{}'?", near));
+                  return false;
+                }
+                value = std::move(*text);
+                return true;
+              },
+          .show = ShowString};
+}
+
+}  // namespace prehend::harness

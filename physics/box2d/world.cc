@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Needs: Box2D 2.4.1. The order of creation matters for determinism: bodies first, then hands, in
+// scene order; one step per tick. Tested by tests/physics/box2d/world_test.cc
+#include "physics/box2d/world.h"
+
+#include "physics/box2d/contacts.h"
+#include "physics/box2d/hand.h"
+#include "physics/box2d/joint.h"
+#include "physics/scene/joint.h"
+#include "physics/scene/joint_spring.h"
+#include "physics/scene/welded_bodies.h"
+#include "physics/world/sleep_tracker.h"
+
+namespace prehend::physics {
+namespace {
+
+constexpr int kVelocityIterations = 16;
+constexpr int kPositionIterations = 6;
+
+class Box2dWorld final : public World {
+ public:
+  Box2dWorld(const Scene& scene, const std::vector<int>& styles);
+
+  void Step(const std::vector<HandCommand>& commands) override;
+  void Describe(Snapshot& snapshot) const override;
+
+ private:
+  void AddBodies();
+  void AddJoints();
+
+  struct Place {
+    std::size_t rigid = 0;   ///< index into rigids_
+    std::size_t member = 0;  ///< index into that rigid body's members
+  };
+  const Scene scene_;
+  const double dt_s_;
+  std::int64_t tick_ = 0;
+  Box2dMixing mixing_;
+  b2World world_;
+  FixtureTable table_;
+  std::vector<Box2dBody> rigids_;
+  std::vector<Place> places_;  ///< one per body of the scene
+  std::vector<Box2dJoint> joints_;
+  std::vector<Box2dHand> hands_;
+  Stillness stillness_;
+  TouchingPairs touching_;
+};
+
+Box2dWorld::Box2dWorld(const Scene& scene, const std::vector<int>& styles)
+    : scene_(scene),
+      dt_s_(1.0 / scene.world.rate_hz),
+      world_(ToBox2d({0, 0, -scene.world.gravity_m_per_s2})),
+      stillness_(scene.bodies.size()) {
+  // As in Bullet: the run's checks report bodies that are too fast for the tick.
+  world_.SetContinuousPhysics(false);
+  world_.SetContactListener(&mixing_);
+  AddBodies();
+  AddJoints();
+  for (std::size_t i = 0; i < scene_.hands.size(); ++i)
+    hands_.emplace_back(scene_.hands[i], static_cast<int>(i), styles[i], world_, table_);
+}
+
+void Box2dWorld::AddBodies() {
+  places_.resize(scene_.bodies.size());
+  for (const auto& group : RigidGroups(scene_)) {
+    std::vector<const Body*> bodies;
+    for (const std::size_t i : group) {
+      places_[i] = {rigids_.size(), bodies.size()};
+      bodies.push_back(&scene_.bodies[i]);
+    }
+    rigids_.emplace_back(bodies, group, world_, table_);
+  }
+}
+
+void Box2dWorld::AddJoints() {
+  const auto rigid = [&](int body) -> b2Body& {
+    return rigids_[places_[static_cast<std::size_t>(body)].rigid].rigid();
+  };
+  for (const Joint& joint : scene_.joints) {
+    if (joint.kind == JointKind::kFixed) continue;
+    joints_.emplace_back(joint, SpringsOnOneBody(scene_, joint), rigid(joint.base),
+                         rigid(joint.body), world_);
+  }
+}
+
+void Box2dWorld::Step(const std::vector<HandCommand>& commands) {
+  for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i].Drive(commands[i], dt_s_);
+  for (Box2dJoint& joint : joints_) joint.Pull(dt_s_);
+  world_.Step(static_cast<float>(dt_s_), kVelocityIterations, kPositionIterations);
+  stillness_.Update(++tick_, [this](std::size_t i) { return rigids_[places_[i].rigid].rests(); });
+  touching_.BeginTick(stillness_.rests());
+  ReadContacts(world_, table_, touching_);
+  touching_.EndTick();
+  ResistRolling(world_, table_);
+}
+
+void Box2dWorld::Describe(Snapshot& snapshot) const {
+  stillness_.Describe(snapshot, [this](std::size_t i) {
+    return rigids_[places_[i].rigid].State(places_[i].member);
+  });
+  snapshot.tick = tick_;
+  DescribeJoints(scene_, snapshot);
+  snapshot.hands.resize(hands_.size());
+  for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i].Describe(snapshot.hands[i]);
+  touching_.Describe(snapshot);
+}
+
+}  // namespace
+
+std::unique_ptr<World> MakeBox2dWorld(const Scene& scene, const std::vector<int>& styles) {
+  return std::make_unique<Box2dWorld>(scene, styles);
+}
+
+}  // namespace prehend::physics

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bullet's own list of moving bodies holds only the awake ones while it steps. Tested by
+// tests/physics/world/world_test.cc
+#include "physics/bullet/core/dynamics_world.h"
+
+#include <btBulletCollisionCommon.h>
+
+namespace prehend::physics {
+
+void BulletDynamics::updateAabbs() {
+  for (int i = 0; i < m_collisionObjects.size(); ++i) {
+    btCollisionObject& object = *m_collisionObjects[i];
+    if (!object.isActive()) continue;
+    if (object.getUserIndex2() == kTightBox)
+      SetTightBox(object);
+    else
+      updateSingleAabb(&object);
+  }
+}
+
+void BulletDynamics::SetTightBox(btCollisionObject& object) {
+  btVector3 least, most;
+  object.getCollisionShape()->getAabb(object.getWorldTransform(), least, most);
+  getBroadphase()->setAabb(object.getBroadphaseHandle(), least, most, getDispatcher());
+}
+
+void BulletDynamics::internalSingleStepSimulation(btScalar dt_s) {
+  if (moving_.empty())
+    for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i)
+      moving_.push_back(m_nonStaticRigidBodies[i]);
+  stepped_.assign(moving_.size(), 0);
+  m_nonStaticRigidBodies.resize(0);
+  for (std::size_t i = 0; i < moving_.size(); ++i) {
+    if (!moving_[i]->isActive()) continue;
+    stepped_[i] = 1;
+    m_nonStaticRigidBodies.push_back(moving_[i]);
+  }
+  btMultiBodyDynamicsWorld::internalSingleStepSimulation(dt_s);
+}
+
+void BulletDynamics::solveConstraints(btContactSolverInfo& info) {
+  btMultiBodyDynamicsWorld::solveConstraints(info);
+  // Islands were woken as a whole, and a body that fell asleep with its island still has to lose
+  // its speed.
+  woke_any_ = false;
+  m_nonStaticRigidBodies.resize(0);
+  for (std::size_t i = 0; i < moving_.size(); ++i) {
+    const bool woken = !stepped_[i] && moving_[i]->isActive();
+    woke_any_ |= woken;
+    if (stepped_[i] || woken) m_nonStaticRigidBodies.push_back(moving_[i]);
+  }
+}
+
+}  // namespace prehend::physics

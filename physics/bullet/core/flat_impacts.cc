@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Method: further points are found by tilting the smaller body a little, an idea of van den Bergen
+// that Bullet's btConvexConvexAlgorithm (zlib licence) applies to all contacts or to none. Tested
+// by tests/physics/world/bounce_test.cc
+#include "physics/bullet/core/flat_impacts.h"
+
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+
+#include <cmath>
+
+#include "physics/bullet/core/restitution.h"
+
+namespace prehend::physics {
+namespace {
+
+/// Three directions of tilt: their points enclose the middle of a face.
+constexpr int kTilts = 3;
+/// The smallest tilt that finds a rim: a round body is touched that much beside its lowest line.
+constexpr btScalar kTilt_rad = 0.005;
+/// Least cosine between normals of one face; the normal of an edge tilts with the body.
+constexpr btScalar kSameNormal = 0.9995;
+constexpr int kMostPoints = 4;
+/// The point that Bullet finds is the deepest one; deeper ones are errors of its search.
+constexpr btScalar kSlack_m = 1e-4;
+
+/// Converts points of the tilted body to points of the body as it is.
+class PointsOfTilted final : public btManifoldResult {
+ public:
+  /// `back` undoes the tilt of the point's first or second body.
+  PointsOfTilted(const btManifoldResult& found, bool tilted_is_first, const btTransform& back,
+                 const btManifoldPoint& deepest)
+      : btManifoldResult(found),
+        tilted_is_first_(tilted_is_first),
+        back_(back),
+        deepest_(deepest) {}
+
+  void addContactPoint(const btVector3& normal_W, const btVector3& p_W,
+                       btScalar distance) override {
+    if (normal_W.dot(deepest_.m_normalWorldOnB) < kSameNormal) return;
+    if (getPersistentManifold()->getNumContacts() >= kMostPoints) return;
+    btVector3 on_a = p_W + normal_W * distance, on_b = p_W;
+    btVector3& moved = tilted_is_first_ ? on_a : on_b;
+    moved = back_ * moved;
+    const btScalar apart = (on_a - on_b).dot(normal_W);
+    if (apart < deepest_.getDistance() - kSlack_m) return;
+    btManifoldResult::addContactPoint(normal_W, on_a - normal_W * apart, apart);
+  }
+
+ private:
+  const bool tilted_is_first_;
+  const btTransform back_;
+  const btManifoldPoint deepest_;
+};
+
+/// A person's parts are round and have no restitution to distribute over points.
+bool CanMeetFlat(const btCollisionObjectWrapper& side) {
+  const btCollisionObject& object = *side.getCollisionObject();
+  return object.getInternalType() == btCollisionObject::CO_RIGID_BODY &&
+         !object.isKinematicObject() &&
+         side.getCollisionShape()->getShapeType() != SPHERE_SHAPE_PROXYTYPE;
+}
+
+class ImpactAlgorithm final : public btConvexConvexAlgorithm {
+ public:
+  ImpactAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
+                  const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                  btConvexPenetrationDepthSolver* deep)
+      : btConvexConvexAlgorithm(info.m_manifold, info, a, b, deep, 0, 0) {}
+
+  void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                        const btDispatcherInfo& info, btManifoldResult* found) override {
+    btConvexConvexAlgorithm::processCollision(a, b, info, found);
+    const btPersistentManifold& manifold = *found->getPersistentManifold();
+    const int count = manifold.getNumContacts();
+    if (count == 0 || count > 2 || !CanMeetFlat(*a) || !CanMeetFlat(*b)) return;
+    if (ApproachSpeed(manifold, manifold.getContactPoint(0)) < kSlowestImpact_m_per_s) return;
+    const btManifoldPoint deepest = manifold.getContactPoint(0);
+    for (int i = 0; i < kTilts; ++i) Tilt(*a, *b, info, deepest, SIMD_2_PI * i / kTilts, *found);
+  }
+
+ private:
+  void Tilt(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
+            const btDispatcherInfo& info, const btManifoldPoint& deepest, btScalar way_rad,
+            const btManifoldResult& found) {
+    const bool a_is_smaller = a.getCollisionShape()->getAngularMotionDisc() <
+                              b.getCollisionShape()->getAngularMotionDisc();
+    const btCollisionObjectWrapper& smaller = a_is_smaller ? a : b;
+    btVector3 across_W, also_across_W;
+    btPlaneSpace1(deepest.m_normalWorldOnB, across_W, also_across_W);
+    const btVector3 axis_W = across_W * std::cos(way_rad) + also_across_W * std::sin(way_rad);
+    const btTransform& X_WS = smaller.getWorldTransform();
+    const btTransform tilted(btQuaternion(axis_W, kTilt_rad) * X_WS.getRotation(),
+                             X_WS.getOrigin());
+    const btCollisionObjectWrapper side(smaller.m_parent, smaller.m_shape,
+                                        smaller.m_collisionObject, tilted, smaller.m_partId,
+                                        smaller.m_index);
+    PointsOfTilted points(found, a_is_smaller, X_WS * tilted.inverse(), deepest);
+    btConvexConvexAlgorithm::processCollision(a_is_smaller ? &side : &a, a_is_smaller ? &b : &side,
+                                              info, &points);
+  }
+};
+
+btDefaultCollisionConstructionInfo WithRoomForImpacts() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_customCollisionAlgorithmMaxElementSize = sizeof(ImpactAlgorithm);
+  return info;
+}
+
+}  // namespace
+
+ImpactConfiguration::ImpactConfiguration()
+    : btDefaultCollisionConfiguration(WithRoomForImpacts()), impacts_(m_pdSolver) {}
+
+btCollisionAlgorithmCreateFunc* ImpactConfiguration::getCollisionAlgorithmCreateFunc(int type0,
+                                                                                     int type1) {
+  btCollisionAlgorithmCreateFunc* const maker =
+      btDefaultCollisionConfiguration::getCollisionAlgorithmCreateFunc(type0, type1);
+  return maker == m_convexConvexCreateFunc ? &impacts_ : maker;
+}
+
+btCollisionAlgorithm* ImpactConfiguration::Impacts::CreateCollisionAlgorithm(
+    btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+    const btCollisionObjectWrapper* b) {
+  void* const place = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(ImpactAlgorithm));
+  return new (place) ImpactAlgorithm(info, a, b, m_pdSolver);
+}
+
+}  // namespace prehend::physics

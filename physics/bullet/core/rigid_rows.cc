@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Method and rows: btSequentialImpulseConstraintSolver of Bullet 3.24 (zlib licence). The results
+// are the same, bit by bit. Tested by tests/physics/bullet/solver_test.cc
+#include "physics/bullet/core/rigid_rows.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace prehend::physics {
+namespace {
+
+constexpr btScalar kNoLimit = std::numeric_limits<btScalar>::infinity();
+
+std::size_t At(int index) { return static_cast<std::size_t>(index); }
+
+}  // namespace
+
+void RigidRows::Setup(const Pools& pools) {
+  const std::size_t body_count = At(pools.bodies.size());
+  speeds_.resize(body_count);
+  pushes_.resize(body_count);
+  for (int i = 0; i < pools.bodies.size(); ++i) {
+    btSolverBody& body = pools.bodies[i];
+    speeds_[At(i)] =
+        SixOf(body.internalGetDeltaLinearVelocity(), body.internalGetDeltaAngularVelocity());
+    pushes_[At(i)] = SixOf(body.internalGetPushVelocity(), body.internalGetTurnVelocity());
+  }
+  others_.clear();
+  Flatten(pools, pools.joints, joints_);
+  Flatten(pools, pools.contacts, contacts_);
+  for (Row& row : contacts_) row.most = kNoLimit;
+  pressures_.resize(contacts_.size());
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    pressures_[At(order_[i])] = &contacts_[i].impulse;
+  TakePenetrations(pools);
+  for (auto [sources, rows] :
+       {std::pair(&pools.frictions, &frictions_), std::pair(&pools.rolling, &rolling_)}) {
+    Flatten(pools, *sources, *rows);
+    for (Row& row : *rows) row.pressure = pressures_[At(row.source->m_frictionIndex)];
+  }
+}
+
+void RigidRows::Arrange(const btConstraintArray& sources,
+                        const btAlignedObjectArray<btSolverBody>& bodies) {
+  const std::size_t count = At(sources.size());
+  // The level of a row is one above the highest earlier row that shares a moving body with it.
+  bodys_level_.assign(At(bodies.size()), -1);
+  level_.resize(count);
+  next_.assign(count + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const btSolverConstraint& source = sources[static_cast<int>(i)];
+    int level = 0;
+    for (const int body : {source.m_solverBodyIdA, source.m_solverBodyIdB})
+      if (Moves(bodies[body])) level = std::max(level, bodys_level_[At(body)] + 1);
+    bodys_level_[At(source.m_solverBodyIdA)] = bodys_level_[At(source.m_solverBodyIdB)] = level;
+    level_[i] = level;
+    ++next_[At(level) + 1];
+  }
+  for (std::size_t level = 1; level <= count; ++level) next_[level] += next_[level - 1];
+  order_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) order_[At(next_[At(level_[i])]++)] = static_cast<int>(i);
+}
+
+void RigidRows::Flatten(const Pools& pools, const btConstraintArray& sources, Rows& rows) {
+  Arrange(sources, pools.bodies);
+  rows.clear();
+  for (const int i : order_) rows.push_back(MakeRow(sources[i], pools, speeds_));
+}
+
+RigidRows::Row RigidRows::MakeRow(const btSolverConstraint& source, const Pools& pools,
+                                  std::vector<Six>& speeds) {
+  const int a = source.m_solverBodyIdA, b = source.m_solverBodyIdB;
+  const RigidSide side_a = MakeRigidSide(pools.bodies[a], speeds[At(a)], source.m_contactNormal1,
+                                         source.m_relpos1CrossNormal, source.m_angularComponentA);
+  const RigidSide side_b = MakeRigidSide(pools.bodies[b], speeds[At(b)], source.m_contactNormal2,
+                                         source.m_relpos2CrossNormal, source.m_angularComponentB);
+  Row row{.side = side_a.speeds ? side_a : side_b,
+          .wanted = source.m_rhs,
+          .softness = source.m_cfm,
+          .inverse_mass = source.m_jacDiagABInv,
+          .mass = 1 / source.m_jacDiagABInv,
+          .least = source.m_lowerLimit,
+          .most = source.m_upperLimit,
+          .friction = source.m_friction,
+          .impulse = source.m_appliedImpulse,
+          .pressure = nullptr,
+          .iterations = source.m_overrideNumSolverIterations,
+          .source = &source};
+  if (side_a.speeds && side_b.speeds) {
+    row.other = static_cast<int>(others_.size());
+    others_.push_back(side_b);
+  }
+  return row;
+}
+
+void RigidRows::TakePenetrations(const Pools& pools) {
+  penetrations_.clear();
+  for (const Row& contact : contacts_) {
+    const btSolverConstraint& source = *contact.source;
+    if (source.m_rhsPenetration == 0) continue;
+    Row& row = penetrations_.emplace_back(MakeRow(source, pools, pushes_));
+    row.wanted = source.m_rhsPenetration;
+    row.impulse = source.m_appliedPushImpulse;
+    row.most = kNoLimit;
+  }
+}
+
+btScalar RigidRows::Solve(Row& row) {
+  const RigidSide* other = row.other < 0 ? nullptr : &others_[At(row.other)];
+  btScalar change = row.wanted - row.impulse * row.softness;
+  change -= row.side.SpeedAlong() * row.inverse_mass;
+  if (other) change -= other->SpeedAlong() * row.inverse_mass;
+  btScalar sum = row.impulse + change;
+  if (sum < row.least) {
+    change = row.least - row.impulse;
+    sum = row.least;
+  } else if (sum > row.most) {
+    change = row.most - row.impulse;
+    sum = row.most;
+  }
+  row.impulse = sum;
+  row.side.Push(change);
+  if (other) other->Push(change);
+  const btScalar speed = change * row.mass;
+  return speed * speed;
+}
+
+btScalar RigidRows::Solve(int iteration, int contact_iterations) {
+  btScalar largest = 0;
+  for (Row& row : joints_)
+    if (iteration < row.iterations) largest = std::max(largest, Solve(row));
+  if (iteration >= contact_iterations) return largest;
+  for (Row& row : contacts_) largest = std::max(largest, Solve(row));
+  const auto solve_pressed = [&](Row& row, btScalar limit) {
+    row.least = -limit;
+    row.most = limit;
+    largest = std::max(largest, Solve(row));
+  };
+  for (Row& row : frictions_)
+    if (*row.pressure > 0) solve_pressed(row, row.friction * *row.pressure);
+  for (Row& row : rolling_)
+    if (*row.pressure > 0) solve_pressed(row, std::min(row.friction * *row.pressure, row.friction));
+  return largest;
+}
+
+btScalar RigidRows::SolvePenetrations() {
+  btScalar largest = 0;
+  for (Row& row : penetrations_) largest = std::max(largest, Solve(row));
+  return largest;
+}
+
+void RigidRows::WriteBack(const Pools& pools) const {
+  for (const Rows* rows : {&joints_, &contacts_, &frictions_, &rolling_})
+    for (const Row& row : *rows) row.source->m_appliedImpulse = row.impulse;
+  for (int i = 0; i < pools.bodies.size(); ++i) {
+    btSolverBody& body = pools.bodies[i];
+    if (!Moves(body)) continue;
+    const Six &v = speeds_[At(i)], &push = pushes_[At(i)];
+    body.internalGetDeltaLinearVelocity().setValue(v[0], v[1], v[2]);
+    body.internalGetDeltaAngularVelocity().setValue(v[3], v[4], v[5]);
+    body.internalGetPushVelocity().setValue(push[0], push[1], push[2]);
+    body.internalGetTurnVelocity().setValue(push[3], push[4], push[5]);
+  }
+}
+
+}  // namespace prehend::physics

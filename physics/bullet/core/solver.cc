@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// Method and order of rows: btMultiBodyConstraintSolver of Bullet 3.24 (zlib licence). The results
+// are the same, bit by bit. Tested by tests/physics/bullet/solver_test.cc
+#include "physics/bullet/core/solver.h"
+
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/bullet/core/restitution.h"
+
+namespace prehend::physics {
+namespace {
+
+void AddScaled(const btScalar* __restrict what, btScalar scale, int count,
+               btScalar* __restrict sum) {
+  for (int i = 0; i < count; ++i) sum[i] += what[i] * scale;
+}
+
+/// Clamps an impulse that changes from `old` by `change` to `sum`.
+void Clamp(btScalar least, btScalar most, btScalar old, btScalar& sum, btScalar& change) {
+  if (sum < least) {
+    change = least - old;
+    sum = least;
+  } else if (sum > most) {
+    change = most - old;
+    sum = most;
+  }
+}
+
+}  // namespace
+
+btScalar BulletSolver::solveGroupCacheFriendlySetup(
+    btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+    int manifold_count, btTypedConstraint** constraints, int constraint_count,
+    const btContactSolverInfo& info, btIDebugDraw* drawer) {
+  const btScalar result = btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(
+      bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
+  rigid_.Setup(RigidPools());
+  // No row of a multibody is warm-started: its speeds start at zero here, and their final values
+  // are added to the multibody.
+  terms_.clear();
+  met_.clear();
+  Flatten(m_multiBodyNonContactConstraints, joints_);
+  Flatten(m_multiBodyNormalContactConstraints, normals_);
+  Flatten(m_multiBodyFrictionContactConstraints, frictions_);
+  Flatten(m_multiBodyTorsionalFrictionContactConstraints, rolling_);
+  Flatten(m_multiBodySpinningFrictionContactConstraints, spinning_);
+  return result;
+}
+
+void BulletSolver::convertContacts(btPersistentManifold** manifolds, int count,
+                                   const btContactSolverInfo& info) {
+  const TimelyBounces bounces(manifolds, count, info.m_timeStep,
+                              info.m_restitutionVelocityThreshold);
+  btMultiBodyConstraintSolver::convertContacts(manifolds, count, info);
+}
+
+void BulletSolver::Flatten(btMultiBodyConstraintArray& sources, Rows& rows) {
+  rows.clear();
+  for (int i = 0; i < sources.size(); ++i) {
+    btMultiBodySolverConstraint& source = sources[i];
+    rows.push_back({.a = MakeSide(source.m_multiBodyA, source.m_solverBodyIdA, source.m_jacAindex,
+                                  source.m_deltaVelAindex, source.m_contactNormal1,
+                                  source.m_relpos1CrossNormal, source.m_angularComponentA),
+                    .b = MakeSide(source.m_multiBodyB, source.m_solverBodyIdB, source.m_jacBindex,
+                                  source.m_deltaVelBindex, source.m_contactNormal2,
+                                  source.m_relpos2CrossNormal, source.m_angularComponentB),
+                    .wanted = source.m_rhs,
+                    .softness = source.m_cfm,
+                    .inverse_mass = source.m_jacDiagABInv,
+                    .least = source.m_lowerLimit,
+                    .most = source.m_upperLimit,
+                    .friction = source.m_friction,
+                    .impulse = source.m_appliedImpulse,
+                    .normal = source.m_frictionIndex,
+                    .source = &source});
+  }
+}
+
+BulletSolver::Side BulletSolver::MakeSide(btMultiBody* multibody, int solver_body, int jacobian,
+                                          int speeds, const btVector3& linear,
+                                          const btVector3& angular,
+                                          const btVector3& angular_response) {
+  Side side;
+  if (multibody) {
+    Meet(*multibody, speeds);
+    side.speeds = speeds;
+    side.response = jacobian;
+    side.speed_count = multibody->getNumDofs() + 6;
+    side.first_term = static_cast<int>(terms_.size());
+    for (int i = 0; i < side.speed_count; ++i)
+      if (m_data.m_jacobians[jacobian + i] != 0)
+        terms_.push_back({speeds + i, m_data.m_jacobians[jacobian + i]});
+    side.end_term = static_cast<int>(terms_.size());
+  } else if (solver_body >= 0) {
+    side.rigid = MakeRigidSide(m_tmpSolverBodyPool[solver_body], rigid_.SpeedsOf(solver_body),
+                               linear, angular, angular_response);
+  }
+  return side;
+}
+
+void BulletSolver::Meet(btMultiBody& multibody, int speeds) {
+  const auto known = [&](const Met& met) { return met.multibody == &multibody; };
+  if (std::any_of(met_.begin(), met_.end(), known)) return;
+  multibody.setPosUpdated(false);
+  met_.push_back({&multibody, speeds});
+}
+
+btScalar BulletSolver::SpeedAlong(const Side& side) const {
+  btScalar speed = side.rigid.SpeedAlong();
+  for (int i = side.first_term; i < side.end_term; ++i) {
+    const Term& term = terms_[static_cast<std::size_t>(i)];
+    speed += term.factor * m_data.m_deltaVelocities[term.speed];
+  }
+  return speed;
+}
+
+btScalar BulletSolver::Pressure(const Row& friction) const {
+  return normals_[static_cast<std::size_t>(friction.normal)].impulse;
+}
+
+btScalar BulletSolver::WantedChange(const Row& row) const {
+  btScalar change = row.wanted - row.impulse * row.softness;
+  change -= SpeedAlong(row.a) * row.inverse_mass;
+  change -= SpeedAlong(row.b) * row.inverse_mass;
+  return change;
+}
+
+void BulletSolver::Push(const Side& side, btScalar impulse) {
+  side.rigid.Push(impulse);
+  if (side.speed_count > 0)
+    AddScaled(&m_data.m_deltaVelocitiesUnitImpulse[side.response], impulse, side.speed_count,
+              &m_data.m_deltaVelocities[side.speeds]);
+}
+
+void BulletSolver::Push(const Row& row, btScalar impulse) {
+  if (impulse == 0) return;
+  Push(row.a, impulse);
+  Push(row.b, impulse);
+}
+
+btScalar BulletSolver::Solve(Row& row) {
+  btScalar change = WantedChange(row);
+  btScalar sum = row.impulse + change;
+  Clamp(row.least, row.most, row.impulse, sum, change);
+  row.impulse = sum;
+  Push(row, change);
+  return change * change;
+}
+
+btScalar BulletSolver::SolveCone(Row& first, Row& second) {
+  const btScalar limit = first.friction * Pressure(first);
+  const btScalar second_limit = second.friction * Pressure(second);
+  if (limit == 0 && first.impulse == 0 && second.impulse == 0) return 0;
+  btScalar second_change = WantedChange(second);
+  btScalar second_sum = second.impulse + second_change;
+  btScalar first_change = WantedChange(first);
+  btScalar first_sum = first.impulse + first_change;
+  if (first_sum * first_sum + second_sum * second_sum >= limit * second_limit) {
+    const btScalar angle = std::atan2(first_sum, second_sum);
+    const btScalar first_most = std::fabs(limit * std::sin(angle));
+    const btScalar second_most = std::fabs(second_limit * std::cos(angle));
+    Clamp(-first_most, first_most, first.impulse, first_sum, first_change);
+    Clamp(-second_most, second_most, second.impulse, second_sum, second_change);
+  }
+  first.impulse = first_sum;
+  second.impulse = second_sum;
+  Push(first, first_change);
+  Push(second, second_change);
+  return std::max(first_change * first_change, second_change * second_change);
+}
+
+btScalar BulletSolver::SolvePairs(Rows& rows, bool only_pressed) {
+  btScalar largest = 0;
+  for (std::size_t i = 0; i + 1 < rows.size(); i += 2)
+    if (!only_pressed || Pressure(rows[i]) > 0)
+      largest = std::max(largest, SolveCone(rows[i], rows[i + 1]));
+  return largest;
+}
+
+RigidRows::Pools BulletSolver::RigidPools() {
+  return {.bodies = m_tmpSolverBodyPool,
+          .joints = m_tmpSolverNonContactConstraintPool,
+          .contacts = m_tmpSolverContactConstraintPool,
+          .frictions = m_tmpSolverContactFrictionConstraintPool,
+          .rolling = m_tmpSolverContactRollingFrictionConstraintPool};
+}
+
+void BulletSolver::solveGroupCacheFriendlySplitImpulseIterations(btCollisionObject**, int,
+                                                                 btPersistentManifold**, int,
+                                                                 btTypedConstraint**, int,
+                                                                 const btContactSolverInfo& info,
+                                                                 btIDebugDraw*) {
+  if (!info.m_splitImpulse) return;
+  for (int i = 0; i < info.m_numIterations; ++i)
+    if (rigid_.SolvePenetrations() <= info.m_leastSquaresResidualThreshold) return;
+}
+
+btScalar BulletSolver::solveSingleIteration(int iteration, btCollisionObject**, int,
+                                            btPersistentManifold**, int, btTypedConstraint**, int,
+                                            const btContactSolverInfo& info, btIDebugDraw*) {
+  btScalar largest = rigid_.Solve(iteration, info.m_numIterations);
+  // Joints are solved forwards and backwards in turn, as in Bullet.
+  const std::size_t joint_count = joints_.size();
+  for (std::size_t i = 0; i < joint_count; ++i)
+    largest = std::max(largest, Solve(joints_[iteration & 1 ? i : joint_count - 1 - i]));
+  for (Row& row : normals_) largest = std::max(largest, Solve(row));
+  for (Row& row : spinning_) {
+    const btScalar pressure = Pressure(row);
+    if (pressure <= 0) continue;
+    row.most = row.friction * pressure;
+    row.least = -row.most;
+    largest = std::max(largest, Solve(row));
+  }
+  largest = std::max(largest, SolvePairs(rolling_, /*only_pressed=*/true));
+  return std::max(largest, SolvePairs(frictions_, /*only_pressed=*/false));
+}
+
+btScalar BulletSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
+                                                     const btContactSolverInfo& info) {
+  for (const Rows* rows : {&joints_, &normals_, &frictions_, &rolling_, &spinning_})
+    for (const Row& row : *rows) row.source->m_appliedImpulse = row.impulse;
+  rigid_.WriteBack(RigidPools());
+  for (const Met& met : met_)
+    met.multibody->applyDeltaVeeMultiDof2(&m_data.m_deltaVelocities[met.speeds], 1);
+  return btMultiBodyConstraintSolver::solveGroupCacheFriendlyFinish(bodies, body_count, info);
+}
+
+}  // namespace prehend::physics

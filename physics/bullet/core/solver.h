@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bullet's solver of multibodies, made faster for hands (physics/bullet/core/rigid_rows.h does the
+// same for rigid bodies). Same rows, same order, same arithmetic, hence the same bits unless a body
+// bounces. But every row is first written out flat, with the few non-zero elements of its Jacobian
+// (a joint motor has one, a finger's contact 10 of 22); rows whose impulse does not change write
+// nothing; and velocities are written to the multibody once per step. Tested by
+// tests/physics/bullet/solver_test.cc
+#pragma once
+
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+
+#include <vector>
+
+#include "physics/bullet/core/rigid_rows.h"
+
+namespace prehend::physics {
+
+/// Projected Gauss-Seidel over the rows of btMultiBodyConstraintSolver. Requires two friction
+/// directions, an implicit friction cone (Bullet's default for multibodies), and `m_numIterations`
+/// iterations for every row.
+class BulletSolver final : public btMultiBodyConstraintSolver {
+ public:
+  btScalar solveGroupCacheFriendlySetup(btCollisionObject** bodies, int body_count,
+                                        btPersistentManifold** manifolds, int manifold_count,
+                                        btTypedConstraint** constraints, int constraint_count,
+                                        const btContactSolverInfo& info,
+                                        btIDebugDraw* drawer) override;
+  void solveGroupCacheFriendlySplitImpulseIterations(
+      btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+      int manifold_count, btTypedConstraint** constraints, int constraint_count,
+      const btContactSolverInfo& info, btIDebugDraw* drawer) override;
+  /// Bullet's version within TimelyBounces (physics/bullet/core/restitution.h).
+  void convertContacts(btPersistentManifold** manifolds, int count,
+                       const btContactSolverInfo& info) override;
+  /// Largest squared change of an impulse of all rows; zero if nothing changed.
+  btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
+                                btPersistentManifold** manifolds, int manifold_count,
+                                btTypedConstraint** constraints, int constraint_count,
+                                const btContactSolverInfo& info, btIDebugDraw* drawer) override;
+  btScalar solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
+                                         const btContactSolverInfo& info) override;
+
+ private:
+  /// A non-zero element of a Jacobian.
+  struct Term {
+    int speed;  ///< index into m_data.m_deltaVelocities
+    btScalar factor;
+  };
+  /// One of the two bodies of a row: a multibody, a rigid body, or none.
+  struct Side {
+    int first_term = 0, end_term = 0;  ///< in terms_
+    int speeds = 0;                    ///< of the multibody, in m_data.m_deltaVelocities
+    int response = 0;     ///< to a unit impulse, in m_data.m_deltaVelocitiesUnitImpulse
+    int speed_count = 0;  ///< degrees of freedom; 0 unless it is a multibody
+    RigidSide rigid;
+  };
+  struct Row {
+    Side a, b;
+    btScalar wanted, softness, inverse_mass, least, most, friction;
+    btScalar impulse;
+    int normal;  ///< of a friction row: index of its contact row
+    btMultiBodySolverConstraint* source;
+  };
+  using Rows = std::vector<Row>;
+
+  RigidRows::Pools RigidPools();
+  void Flatten(btMultiBodyConstraintArray& sources, Rows& rows);
+  Side MakeSide(btMultiBody* multibody, int solver_body, int jacobian, int speeds,
+                const btVector3& linear, const btVector3& angular,
+                const btVector3& angular_response);
+  btScalar SpeedAlong(const Side& side) const;
+  /// Impulse of the contact of a friction row.
+  btScalar Pressure(const Row& friction) const;
+  btScalar WantedChange(const Row& row) const;
+  void Push(const Side& side, btScalar impulse);
+  void Push(const Row& row, btScalar impulse);
+  btScalar Solve(Row& row);
+  btScalar SolveCone(Row& first, Row& second);
+  btScalar SolvePairs(Rows& rows, bool only_pressed);
+  /// Remembers where this multibody's speeds are.
+  void Meet(btMultiBody& multibody, int speeds);
+
+  struct Met {
+    btMultiBody* multibody;
+    int speeds;  ///< index of its first in m_data.m_deltaVelocities
+  };
+  RigidRows rigid_;
+  Rows joints_, normals_, frictions_, rolling_, spinning_;
+  std::vector<Term> terms_;
+  std::vector<Met> met_;
+};
+
+}  // namespace prehend::physics

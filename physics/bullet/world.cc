@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// Needs: Bullet 3.24 built with double precision. The order of creation matters for determinism:
+// bodies first, then hands, in scene order. One step of dt per tick, never Bullet's own
+// sub-stepping, whose remainder can drop time. Tested by tests/physics/world/world_test.cc
+#include "physics/bullet/world.h"
+
+#include <btBulletDynamicsCommon.h>
+
+#include <map>
+
+#include "physics/bullet/body.h"
+#include "physics/bullet/contacts.h"
+#include "physics/bullet/convert.h"
+#include "physics/bullet/core/dynamics_world.h"
+#include "physics/bullet/core/flat_impacts.h"
+#include "physics/bullet/core/parts.h"
+#include "physics/bullet/grains.h"
+#include "physics/bullet/hand.h"
+#include "physics/bullet/joint.h"
+#include "physics/bullet/sight_ray.h"
+#include "physics/scene/joint.h"
+#include "physics/scene/joint_spring.h"
+#include "physics/scene/welded_bodies.h"
+#include "physics/world/sleep_tracker.h"
+
+// The only process-wide setting of Bullet that is changed; every world sets the same constant.
+extern btScalar gDbvtMargin;
+
+namespace prehend::physics {
+namespace {
+
+/// Margin of bounding boxes in the broad phase, metres. Bullet's 50 mm joins neighbours into one
+/// island, which is ten times slower.
+constexpr double kBroadphaseMargin_m = 0.002;
+/// With fewer iterations friction grasps fail: 20 iterations placed 28 of 40 objects.
+constexpr int kSolverIterations = 50;
+constexpr double kErrorReduction = 0.2;
+/// Penetration deeper than this is corrected without adding velocity.
+constexpr double kSplitImpulseThreshold_m = -0.0005;
+/// Islands are solved one by one and not merged into batches: a sleeping neighbour must not change
+/// a result.
+constexpr int kSolverBatch = 2;
+
+// Collision groups. Fixed bodies do not collide with each other; every hand has its own bit, from
+// kFirstHandGroup on.
+constexpr int kNoGroup = 0;  // abstract bodies touch nothing and are not seen
+constexpr int kFixedGroup = 1;
+constexpr int kMovingGroup = 2;
+constexpr int kFirstHandGroup = 4;
+// Persons push moving bodies only: they pass through fixed bodies and hands.
+constexpr int kPersonGroup = 1 << 30;
+
+class BulletWorld final : public World {
+ public:
+  BulletWorld(const Scene& scene, const std::vector<int>& styles);
+  ~BulletWorld() override;
+
+  void Step(const std::vector<HandCommand>& commands) override;
+  void Describe(Snapshot& snapshot) const override;
+  void MoveKinematic(int body, const Pose& X_WB) override;
+  Sight Look(const SightLine& line) const override;
+
+ private:
+  void Configure();
+  void AddBodies();
+  /// Adds one rigid body made of these bodies of the scene, the root first.
+  void AddRigid(const std::vector<std::size_t>& group);
+  void AddGrains(std::size_t body);
+  void AddJoints();
+  void AddHands(const std::vector<Hand>& hands, const std::vector<int>& styles);
+
+  const Scene scene_;
+  const double dt_s_;
+  std::int64_t tick_ = 0;
+  const std::unique_ptr<BulletEngine> engine_;
+  btMultiBodyDynamicsWorld& world_;
+  struct Place {
+    std::size_t rigid = 0;   ///< index into rigids_
+    std::size_t member = 0;  ///< index into that rigid body's members
+  };
+  std::vector<std::unique_ptr<BulletBody>> rigids_;
+  std::vector<Place> places_;                   ///< one per body of the scene; unused for grains
+  std::map<std::size_t, BulletGrains> grains_;  ///< by index of the body
+  std::vector<BulletJoint> joints_;
+  std::vector<std::unique_ptr<BulletHand>> hands_;
+  ContactSides sides_;
+  Stillness stillness_;
+  TouchingPairs touching_;
+};
+
+BulletWorld::BulletWorld(const Scene& scene, const std::vector<int>& styles)
+    : scene_(scene),
+      dt_s_(1.0 / scene.world.rate_hz),
+      engine_(MakeBulletEngine(scene.world.engine == Engine::kBulletStock
+                                   ? BulletParts::kStock
+                                   : BulletParts::kReplaced)),
+      world_(engine_->world()),
+      stillness_(scene.bodies.size()) {
+  Configure();
+  AddBodies();
+  AddJoints();
+  AddHands(scene.hands, styles);
+}
+
+BulletWorld::~BulletWorld() {
+  hands_.clear();
+  for (BulletJoint& joint : joints_) world_.removeConstraint(&joint.constraint());
+  for (auto& rigid : rigids_) world_.removeRigidBody(&rigid->rigid());
+  for (auto& [body, grains] : grains_)
+    for (const auto& grain : grains.rigids()) world_.removeRigidBody(grain.get());
+}
+
+void BulletWorld::Configure() {
+  gDbvtMargin = kBroadphaseMargin_m;
+  world_.setGravity({0, 0, -scene_.world.gravity_m_per_s2});
+  world_.setForceUpdateAllAabbs(false);
+  world_.setLatencyMotionStateInterpolation(false);
+  world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
+  world_.getDispatchInfo().m_useContinuous = false;
+  engine_->solver().setRandSeed(0);
+  btContactSolverInfo& info = world_.getSolverInfo();
+  info.m_numIterations = kSolverIterations;
+  info.m_erp = kErrorReduction;
+  info.m_erp2 = kErrorReduction;
+  info.m_splitImpulse = true;
+  info.m_splitImpulsePenetrationThreshold = kSplitImpulseThreshold_m;
+  info.m_restitutionVelocityThreshold = kSlowestImpact_m_per_s;
+  info.m_minimumSolverBatchSize = kSolverBatch;
+  info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+  info.m_solverMode &= ~SOLVER_RANDMIZE_ORDER;
+}
+
+void BulletWorld::AddBodies() {
+  places_.resize(scene_.bodies.size());
+  for (const auto& group : RigidGroups(scene_)) AddRigid(group);
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
+    if (scene_.bodies[i].grains) AddGrains(i);
+}
+
+void BulletWorld::AddGrains(std::size_t body) {
+  const BulletGrains& grains = grains_.try_emplace(body, scene_.bodies[body]).first->second;
+  for (const auto& grain : grains.rigids()) {
+    grain->setUserIndex(static_cast<int>(sides_.size()));
+    grain->setUserIndex2(kTightBox);
+    world_.addRigidBody(grain.get(), kMovingGroup, -1);
+  }
+  sides_.push_back({{.body = static_cast<int>(body)}});
+}
+
+void BulletWorld::AddRigid(const std::vector<std::size_t>& group) {
+  std::vector<const Body*> bodies;
+  for (const std::size_t i : group) {
+    places_[i] = {rigids_.size(), bodies.size()};
+    bodies.push_back(&scene_.bodies[i]);
+  }
+  auto made = std::make_unique<BulletBody>(bodies);
+  made->rigid().setUserIndex(static_cast<int>(sides_.size()));
+  std::vector<ContactSide>& sides = sides_.emplace_back();
+  for (const std::size_t owner : made->owners())
+    sides.push_back({.body = static_cast<int>(group[owner])});
+  if (scene_.world.planar) made->KeepInPlane();
+  if (bodies.front()->abstract != Abstract::kNot)
+    world_.addRigidBody(&made->rigid(), kNoGroup, kNoGroup);
+  else if (bodies.front()->kinematic)
+    world_.addRigidBody(&made->rigid(), kPersonGroup, kMovingGroup);
+  else if (bodies.front()->fixed)
+    world_.addRigidBody(&made->rigid(), kFixedGroup, ~kFixedGroup);
+  else
+    world_.addRigidBody(&made->rigid(), kMovingGroup, -1);
+  rigids_.push_back(std::move(made));
+}
+
+void BulletWorld::AddJoints() {
+  const auto rigid = [&](int body) -> btRigidBody& {
+    return rigids_[places_[static_cast<std::size_t>(body)].rigid]->rigid();
+  };
+  for (const Joint& joint : scene_.joints) {
+    if (joint.kind == JointKind::kFixed) continue;
+    BulletJoint& made = joints_.emplace_back(joint, SpringsOnOneBody(scene_, joint),
+                                             rigid(joint.base), rigid(joint.body));
+    world_.addConstraint(&made.constraint(), /*disableCollisionsBetweenLinkedBodies=*/true);
+  }
+}
+
+void BulletWorld::AddHands(const std::vector<Hand>& hands, const std::vector<int>& styles) {
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    auto hand = std::make_unique<BulletHand>(hands[i], styles[i], kFirstHandGroup << i, world_);
+    for (auto& collider : hand->colliders()) {
+      collider->setUserIndex(static_cast<int>(sides_.size()));
+      sides_.push_back({{.hand = static_cast<int>(i), .link = collider->m_link}});
+    }
+    hands_.push_back(std::move(hand));
+  }
+}
+
+void BulletWorld::Step(const std::vector<HandCommand>& commands) {
+  for (std::size_t i = 0; i < hands_.size(); ++i)
+    hands_[i]->Drive(commands[i], dt_s_, scene_.world.gravity_m_per_s2);
+  for (BulletJoint& joint : joints_) joint.Prepare(dt_s_);
+  for (BulletJoint& joint : joints_) joint.Pull();
+  world_.stepSimulation(dt_s_, 0);
+  for (auto& [body, grains] : grains_) grains.StopLost();
+  stillness_.Update(++tick_, [this](std::size_t i) {
+    return scene_.bodies[i].grains ? grains_.at(i).rests() : rigids_[places_[i].rigid]->rests();
+  });
+  touching_.BeginTick(stillness_.rests());
+  ReadContacts(engine_->ChangedManifolds(), sides_, touching_);
+  touching_.EndTick();
+}
+
+void BulletWorld::MoveKinematic(int body, const Pose& X_WB) {
+  // Bullet derives the velocity from the previous pose and this one when it steps.
+  const Place& place = places_[static_cast<std::size_t>(body)];
+  rigids_[place.rigid]->rigid().setWorldTransform(ToBullet(X_WB));
+}
+
+Sight BulletWorld::Look(const SightLine& line) const { return FirstInSight(world_, sides_, line); }
+
+void BulletWorld::Describe(Snapshot& snapshot) const {
+  stillness_.Describe(snapshot, [this](std::size_t i) {
+    return scene_.bodies[i].grains ? grains_.at(i).Mean()
+                                   : rigids_[places_[i].rigid]->State(places_[i].member);
+  });
+  snapshot.tick = tick_;
+  snapshot.grains.clear();
+  for (const auto& [body, grains] : grains_) grains.AppendCentres(snapshot.grains);
+  DescribeJoints(scene_, snapshot);
+  snapshot.hands.resize(hands_.size());
+  for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i]->Describe(snapshot.hands[i]);
+  touching_.Describe(snapshot);
+}
+
+}  // namespace
+
+std::unique_ptr<World> MakeBulletWorld(const Scene& scene, const std::vector<int>& styles) {
+  return std::make_unique<BulletWorld>(scene, styles);
+}
+
+}  // namespace prehend::physics

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Distances are exact for spheres against the shapes of physics/scene/geometry.h. Tested by
+// tests/physics/hand/reach_planner_test.cc
+#include "physics/hand/hand_clearance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/scene/geometry.h"
+
+namespace prehend::physics {
+namespace {
+
+constexpr int kBallsPerPalmEdge = 5;
+constexpr int kLeastBallsPerLink = 3;
+/// Largest distance between neighbouring spheres on a link, in radii.
+constexpr double kBallsApart_radii = 4;
+/// Radius of the spheres at the corners of a jaw's end, which is not round like a fingertip.
+constexpr double kCorner_m = 0.001;
+/// Time step of the samples: one centimetre at 1.5 m/s, the peak speed of a long reach.
+constexpr int kLooks = 120;
+/// Distances are cut off here; larger ones do not matter.
+constexpr double kFar_m = 0.1;
+
+}  // namespace
+
+HandClearance::HandClearance(const HandModel& model, const std::vector<double>& joints) {
+  const Eigen::Vector3d half = model.palm_size_m / 2;
+  const double palm_radius = half.z();
+  for (int i = 0; i < kBallsPerPalmEdge; ++i) {
+    for (int k = 0; k < kBallsPerPalmEdge; ++k) {
+      const double x = 2.0 * i / (kBallsPerPalmEdge - 1) - 1,
+                   y = 2.0 * k / (kBallsPerPalmEdge - 1) - 1;
+      balls_.push_back(
+          {{x * (half.x() - palm_radius), y * (half.y() - palm_radius), 0}, palm_radius});
+    }
+  }
+  const std::vector<Pose> X_HL = LinkPoses(model, joints);
+  for (std::size_t i = 0; i < X_HL.size(); ++i) {
+    const HandLink& link = model.links[i];
+    const double radius = link.half_thickness_m;
+    const double half_length = std::max(link.length_m / 2 - radius, 0.0);
+    const int gaps = static_cast<int>(std::ceil(2 * half_length / (kBallsApart_radii * radius)));
+    const int last = std::max(gaps, kLeastBallsPerLink - 1);
+    for (int k = 0; k <= last; ++k) {
+      const double x = half_length * (2.0 * k / last - 1);
+      balls_.push_back({X_HL[i] * Eigen::Vector3d(x, 0, 0), radius});
+    }
+    if (!link.slides) continue;
+    for (const double side : {-1.0, 1.0}) {
+      const Eigen::Vector3d corner(link.length_m / 2 - kCorner_m, 0,
+                                   side * (link.half_thickness_m - kCorner_m));
+      balls_.push_back({X_HL[i] * corner, kCorner_m});
+    }
+  }
+  for (const Ball& ball : balls_) reach_m_ = std::max(reach_m_, ball.p_H_m.norm() + ball.radius_m);
+}
+
+double HandClearance::At(const Pose& X_WH, const Scene& scene, const Snapshot& now) const {
+  double least = kFar_m;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (scene.bodies[b].abstract != Abstract::kNot) continue;
+    for (const PlacedShape& placed : scene.bodies[b].shapes) {
+      const Pose X_SH = (now.bodies[b].X_WB * placed.X_BS).inverse() * X_WH;
+      if (SignedDistance(placed.shape, X_SH.p_m) > reach_m_ + least) continue;
+      for (const Ball& ball : balls_)
+        least = std::min(least, SignedDistance(placed.shape, X_SH * ball.p_H_m) - ball.radius_m);
+    }
+  }
+  return least;
+}
+
+double HandClearance::Along(const Segment& segment, const Scene& scene, const Snapshot& now) const {
+  Trajectory trajectory({});
+  trajectory.Append(segment);
+  double least = kFar_m;
+  for (int i = 1; i <= kLooks; ++i) {
+    const Pose X_WH = trajectory.At(segment.duration_s * i / kLooks).X_WH;
+    least = std::min(least, At(X_WH, scene, now));
+  }
+  return least;
+}
+
+}  // namespace prehend::physics

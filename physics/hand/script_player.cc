@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+// One Resolver per step turns the step into a trajectory. Tested by
+// tests/physics/hand/script_player_test.cc
+#include "physics/hand/script_player.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "physics/hand/reach_planner.h"
+#include "physics/scene/geometry.h"
+#include "physics/scene/joint.h"
+
+namespace prehend::physics {
+namespace {
+
+/// How far the target goes below the first contact when an object is put down, so that it stands
+/// firmly before the hand opens. With the palm's spring this makes 5 N; more would squeeze the
+/// object.
+constexpr double kPress_m = 0.002;
+/// The integral of the palm's PID carries the object's weight and takes a second to decay: the
+/// target goes lower by the extension of the palm's spring under that weight, at most this much.
+constexpr double kMostSpring_m = 0.01;
+/// Share of a put-down's time after which the motion ends; the object settles in the rest.
+constexpr double kLoweringShare = 0.85;
+/// The open hand is approximated by spheres, which protrude by less than this.
+constexpr double kNotedTouch_m = 0.005;
+/// An excess width below this is ignored, because notes round lengths to millimetres.
+constexpr double kNotedWidth_m = 0.0005;
+/// Number of way-points on the arc of a joint: between two of them the arc deviates from a straight
+/// line by 0.1 mm at most.
+constexpr int kJointWaypoints = 40;
+
+double DurationOf(const Step& step) {
+  const auto* poses = std::get_if<PosesStep>(&step.action);
+  return poses && !poses->poses.empty() ? poses->poses.back().t_s : step.over_s;
+}
+
+double DurationOf(const PersonStep& step) {
+  const auto* head = std::get_if<HeadPosesStep>(&step.action);
+  return head && !head->poses.empty() ? head->poses.back().t_s : step.over_s;
+}
+
+double DurationOf(const Beat& beat) {
+  double longest = 0;
+  for (const Step& step : beat.steps) longest = std::max(longest, DurationOf(step));
+  for (const PersonStep& step : beat.person_steps) longest = std::max(longest, DurationOf(step));
+  return longest;
+}
+
+/// Number of hands that touch a body; at least 1.
+int HandsOn(int body, const Snapshot& now) {
+  std::set<int> hands;
+  for (const ContactPoint& contact : now.contacts) {
+    if (contact.a.body == body && contact.b.hand >= 0) hands.insert(contact.b.hand);
+    if (contact.b.body == body && contact.a.hand >= 0) hands.insert(contact.a.hand);
+  }
+  return std::max(static_cast<int>(hands.size()), 1);
+}
+
+std::string Millimetres(double length_m) {
+  return std::to_string(std::lround(1000 * length_m)) + " mm";
+}
+
+/// Remarks on a reach that is executed in spite of problems; empty if there are none.
+std::string NoteAbout(const ReachPlan& plan, const ReachStep& reach, const GraspStyle& style) {
+  std::string notes;
+  const auto add = [&](const std::string& note) { notes += (notes.empty() ? "" : "; ") + note; };
+  if (plan.beside_m > kAtPoint_m)
+    add("no grip of " + reach.object + " in style " + style.name +
+        " is at point_m: the nearest is " + Millimetres(plan.beside_m) + " beside it");
+  if (plan.too_wide_m > kNotedWidth_m && reach.offset_m.isZero())
+    add("style " + style.name + " opens " + Millimetres(style.opening_m) + ", and " + reach.object +
+        " is " + Millimetres(style.opening_m + plan.too_wide_m) +
+        " wide there: the hand will not close around it");
+  else if (!plan.found && plan.clearance_m < -kNotedTouch_m)
+    add("no way to grasp " + reach.object +
+        " keeps clear of everything: the open hand will push against something");
+  return notes;
+}
+
+}  // namespace
+
+/// Turns one step into a motion. An empty `problem` afterwards means success.
+class ScriptPlayer::Resolver {
+ public:
+  Resolver(const Scene& scene, const Snapshot& now, const Step& step, HandState& hand)
+      : scene_(scene), now_(now), step_(step), hand_(hand) {}
+
+  std::string Resolve() {
+    std::visit(*this, step_.action);
+    return problem_;
+  }
+  /// The remark on this step; empty if there is none.
+  const std::string& note() const { return note_; }
+
+  void operator()(const WaitStep&) {}
+  void operator()(const ReachStep& reach);
+  void operator()(const TriggerStep& trigger);
+  void operator()(const MoveStep& move) { MoveBy(move.by_m, step_.over_s); }
+  void operator()(const CarryStep& carry);
+  void operator()(const PlaceStep& place);
+  void operator()(const RetreatStep& retreat);
+  void operator()(const FollowJointStep& follow);
+  void operator()(const PosesStep& poses);
+
+ private:
+  void MoveBy(const Eigen::Vector3d& by_m, double duration_s);
+  void Follow(const Segment& segment);
+  void Follow(const std::vector<TimedPose>& poses);
+  int HeldBody() const;
+
+  const Scene& scene_;
+  const Snapshot& now_;
+  const Step& step_;
+  HandState& hand_;
+  std::string problem_, note_;
+};
+
+void ScriptPlayer::Resolver::Follow(const Segment& segment) {
+  hand_.motion = Trajectory(hand_.target);
+  hand_.motion.Append(segment);
+  hand_.target = hand_.motion.At(hand_.motion.duration_s());
+}
+
+void ScriptPlayer::Resolver::Follow(const std::vector<TimedPose>& poses) {
+  hand_.motion = WaypointTrajectory(hand_.target, poses);
+  hand_.target = hand_.motion.At(hand_.motion.duration_s());
+}
+
+void ScriptPlayer::Resolver::MoveBy(const Eigen::Vector3d& by_m, double duration_s) {
+  Pose to = hand_.target.X_WH;
+  to.p_m += by_m;
+  Follow(StraightSegment(hand_.target, to, duration_s));
+}
+
+void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
+  const HandModel& model = scene_.hands[static_cast<std::size_t>(step_.hand)].model;
+  const int object = FindBody(scene_, reach.object);
+  const int style = FindStyle(model, reach.style);
+  if (object < 0) {
+    problem_ = "reach: there is no entity '" + reach.object + "'";
+  } else if (style < 0) {
+    problem_ = "reach: hand '" + model.name + "' has no style '" + reach.style + "'";
+  } else {
+    const ReachPlan plan = PlanReach(scene_, now_,
+                                     {.hand = step_.hand,
+                                      .object = object,
+                                      .style = style,
+                                      .approach = reach.approach,
+                                      .offset_m = reach.offset_m,
+                                      .point_m = reach.point_m,
+                                      .from = hand_.target,
+                                      .over_s = step_.over_s});
+    hand_.style = style;
+    hand_.object = object;
+    hand_.came_along_W = plan.toward_W;
+    note_ = NoteAbout(plan, reach, model.styles[static_cast<std::size_t>(style)]);
+    Follow(plan.segment);
+  }
+}
+
+void ScriptPlayer::Resolver::operator()(const TriggerStep& trigger) {
+  Segment segment = StraightSegment(hand_.target, hand_.target.X_WH, step_.over_s);
+  segment.trigger_end = trigger.trigger;
+  Follow(segment);
+}
+
+/// The body last reached for; without a reach, the movable body that is pressed most; -1: none.
+int ScriptPlayer::Resolver::HeldBody() const {
+  if (hand_.object >= 0) return hand_.object;
+  std::vector<double> impulse(scene_.bodies.size(), 0);
+  for (const ContactPoint& contact : now_.contacts) {
+    const ContactSide &body = contact.a.body >= 0 ? contact.a : contact.b,
+                      &hand = contact.a.body >= 0 ? contact.b : contact.a;
+    if (body.body < 0 || hand.hand != step_.hand || !MovesFreely(scene_, body.body)) continue;
+    impulse[static_cast<std::size_t>(body.body)] += contact.normal_impulse_n_s;
+  }
+  const auto most = std::max_element(impulse.begin(), impulse.end());
+  return most == impulse.end() || *most <= 0 ? -1 : static_cast<int>(most - impulse.begin());
+}
+
+void ScriptPlayer::Resolver::operator()(const CarryStep& carry) {
+  Eigen::Vector3d centre = hand_.target.X_WH.p_m;
+  if (const int held = HeldBody(); held >= 0) {
+    const auto index = static_cast<std::size_t>(held);
+    centre = now_.bodies[index].X_WB * BoundingBox(scene_.bodies[index]).p_BC_m;
+  }
+  MoveBy({carry.to_m.x() - centre.x(), carry.to_m.y() - centre.y(), 0}, step_.over_s);
+}
+
+void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
+  const int held = HeldBody(), support = FindBody(scene_, place.support);
+  if (support < 0) {
+    problem_ = "place_on: there is no entity '" + place.support + "'";
+  } else if (held < 0) {
+    problem_ = "place_on: the hand holds nothing and has not reached for anything";
+  } else {
+    const auto h = static_cast<std::size_t>(held), s = static_cast<std::size_t>(support);
+    const Eigen::AlignedBox3d object = WorldBounds(scene_.bodies[h], now_.bodies[h].X_WB);
+    const double drop = object.min().z() - HighestBelow(scene_.bodies[s], now_.bodies[s].X_WB,
+                                                        scene_.bodies[h], now_.bodies[h].X_WB);
+    const double stiffness =
+        scene_.hands[static_cast<std::size_t>(step_.hand)].model.translation.proportional;
+    const double weight_n =
+        scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / HandsOn(held, now_);
+    const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMostSpring_m);
+    MoveBy({0, 0, -drop - kPress_m - spring}, kLoweringShare * step_.over_s);
+  }
+}
+
+void ScriptPlayer::Resolver::operator()(const RetreatStep& retreat) {
+  // A hand that never reached moves in the direction of its back.
+  const bool came = !hand_.came_along_W.isZero();
+  const Eigen::Vector3d back =
+      came ? Eigen::Vector3d(-hand_.came_along_W) : hand_.target.X_WH.q * Eigen::Vector3d::UnitZ();
+  MoveBy(back * retreat.by_m, step_.over_s);
+}
+
+void ScriptPlayer::Resolver::operator()(const PosesStep& poses) {
+  if (!poses.style.empty()) {
+    const HandModel& model = scene_.hands[static_cast<std::size_t>(step_.hand)].model;
+    hand_.style = FindStyle(model, poses.style);
+    if (hand_.style < 0)
+      problem_ = "poses: hand '" + model.name + "' has no style '" + poses.style + "'";
+  }
+  if (problem_.empty() && !poses.poses.empty()) Follow(poses.poses);
+}
+
+void ScriptPlayer::Resolver::operator()(const FollowJointStep& follow) {
+  const int body = FindBody(scene_, follow.entity);
+  const int index = body < 0 ? -1 : JointThatMoves(scene_, body);
+  if (index < 0) {
+    problem_ = "follow_joint: no joint moves '" + follow.entity + "'";
+    return;
+  }
+  const Joint& joint = scene_.joints[static_cast<std::size_t>(index)];
+  const Pose& X_WBase = now_.bodies[static_cast<std::size_t>(joint.base)].X_WB;
+  const double to = joint.lower + follow.to * (joint.upper - joint.lower);
+  const double change = to - now_.joints[static_cast<std::size_t>(index)].position;
+  std::vector<TimedPose> poses;
+  for (int i = 1; i <= kJointWaypoints; ++i) {
+    const double x = static_cast<double>(i) / kJointWaypoints;
+    const Pose motion = MotionAlong(scene_, joint, X_WBase, MinimumJerk(x) * change);
+    poses.push_back({.t_s = x * step_.over_s, .X_WH = motion * hand_.target.X_WH, .trigger = {}});
+  }
+  hand_.came_along_W = MotionAlong(scene_, joint, X_WBase, change).q * hand_.came_along_W;
+  Follow(poses);
+}
+
+ScriptPlayer::ScriptPlayer(const Scene& scene, Script script)
+    : scene_(scene), script_(std::move(script)) {
+  const std::vector<int> styles = FirstStyles(scene_, script_);
+  for (std::size_t i = 0; i < scene_.hands.size(); ++i) {
+    HandState hand{.target = {.X_WH = scene_.hands[i].X_WH}, .style = styles[i]};
+    hand.motion = Trajectory(hand.target);
+    hands_.push_back(hand);
+  }
+}
+
+std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& script) {
+  std::vector<int> styles(scene.hands.size(), -1);
+  for (const Beat& beat : script.beats) {
+    for (const Step& step : beat.steps) {
+      const auto* reach = std::get_if<ReachStep>(&step.action);
+      const auto* poses = std::get_if<PosesStep>(&step.action);
+      const std::string style = reach ? reach->style : poses ? poses->style : std::string();
+      const auto hand = static_cast<std::size_t>(step.hand);
+      if (!style.empty() && styles[hand] < 0)
+        styles[hand] = FindStyle(scene.hands[hand].model, style);
+    }
+  }
+  for (int& style : styles) style = std::max(style, 0);
+  return styles;
+}
+
+void ScriptPlayer::StartBeat(const Snapshot& now) {
+  const double rate_hz = scene_.world.rate_hz;
+  for (HandState& hand : hands_) hand.motion = Trajectory(hand.target);
+  tick_in_beat_ = 0;
+  if (beat_ == script_.beats.size()) {
+    settling_ = true;
+    beat_ticks_ = std::llround(script_.settle_s * rate_hz);
+    return;
+  }
+  begun_.push_back(beat_);
+  const Beat& beat = script_.beats[beat_++];
+  beat_ticks_ = std::llround(DurationOf(beat) * rate_hz);
+  for (const Step& step : beat.steps) {
+    Resolver resolver(scene_, now, step, hands_[static_cast<std::size_t>(step.hand)]);
+    problem_ = resolver.Resolve();
+    if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
+    problem_hand_ = step.hand;
+    if (!problem_.empty()) return;
+  }
+}
+
+const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
+  commands_.clear();
+  begun_.clear();
+  while (tick_in_beat_ == beat_ticks_ && !settling_ && problem_.empty()) StartBeat(now);
+  if (!problem_.empty() || tick_in_beat_ == beat_ticks_) return nullptr;
+  ++tick_in_beat_;
+  const double t_s = static_cast<double>(tick_in_beat_) / scene_.world.rate_hz;
+  for (const HandState& hand : hands_) commands_.push_back({hand.motion.At(t_s), hand.style});
+  return &commands_;
+}
+
+double DurationOf(const Script& script) {
+  double sum_s = script.settle_s;
+  for (const Beat& beat : script.beats) sum_s += DurationOf(beat);
+  return sum_s;
+}
+
+}  // namespace prehend::physics

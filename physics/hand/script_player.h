@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plays a script for the hands. When a stage starts, each of its steps is resolved into a motion of
+// a hand's tracked target, from the state of the world at that time. Hands without a step keep
+// their target. Tested by tests/physics/hand/script_player_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "physics/motion/script.h"
+#include "physics/motion/trajectory.h"
+#include "physics/scene/scene.h"
+#include "physics/scene/snapshot.h"
+#include "physics/world/world.h"
+
+namespace prehend::physics {
+
+/// A remark on a step that was executed but perhaps not as its author intended.
+struct ScriptNote {
+  std::int64_t tick = 0;
+  int hand = 0;  ///< index into Scene::hands
+  std::string text;
+};
+
+class ScriptPlayer {
+ public:
+  /// `scene` must outlive the player.
+  ScriptPlayer(const Scene& scene, Script script);
+
+  /// Style of every hand at the first tick: that of its first reach, so that fingers do not jump.
+  static std::vector<int> FirstStyles(const Scene& scene, const Script& script);
+
+  /// The commands for the tick after `now`, one per hand. Null if the script has ended or cannot
+  /// continue (see problem()).
+  const std::vector<HandCommand>* Advance(const Snapshot& now);
+
+  /// The stages that began with the last Advance(), as indices into Script::beats.
+  const std::vector<std::size_t>& begun() const { return begun_; }
+  const Script& script() const { return script_; }
+
+  /// Why the script cannot continue; empty if it can.
+  const std::string& problem() const { return problem_; }
+  /// Index of the hand that has the problem.
+  int problem_hand() const { return problem_hand_; }
+  /// Remarks on all steps so far.
+  const std::vector<ScriptNote>& notes() const { return notes_; }
+
+ private:
+  struct HandState {
+    TargetState target;  ///< present target, or the one at the end of the motion
+    Trajectory motion{TargetState{}};
+    int style = 0;
+    int object = -1;  ///< the body last reached for, or -1
+    Eigen::Vector3d came_along_W =
+        Eigen::Vector3d::Zero();  ///< direction of the last arrival; zero before the first reach
+  };
+  class Resolver;
+
+  void StartBeat(const Snapshot& now);
+
+  const Scene& scene_;
+  Script script_;
+  std::vector<HandState> hands_;
+  std::vector<HandCommand> commands_;
+  std::size_t beat_ = 0;  ///< the next stage to start
+  std::int64_t tick_in_beat_ = 0;
+  std::int64_t beat_ticks_ = 0;
+  std::vector<std::size_t> begun_;
+  bool settling_ = false;
+  std::string problem_;
+  int problem_hand_ = -1;
+  std::vector<ScriptNote> notes_;
+};
+
+/// Simulated length of a script, seconds: all stages and the settling time.
+double DurationOf(const Script& script);
+
+}  // namespace prehend::physics

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// What hands and persons do: a list of stages. In one stage every named hand performs one step, and
+// the stage ends with its longest step. Steps move the *tracked target* that the hand's PIDs follow
+// (minimum jerk, Flash & Hogan 1985). A step is resolved into way-points when it starts, from the
+// poses in the world at that time. Tested by tests/physics/hand/script_player_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "physics/motion/posture.h"
+#include "physics/motion/trajectory.h"
+#include "physics/scene/pose.h"
+#include "physics/scene/scene.h"
+
+namespace prehend::physics {
+
+enum class Approach { kAuto, kAbove, kSide };
+
+struct ReachStep {  ///< move to where the closed grasp would hold the object
+  std::string object;
+  std::string style = "wrap";
+  Approach approach = Approach::kAuto;
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< added to the grasp pose, world axes
+  std::optional<Eigen::Vector3d>
+      point_m;  ///< what to grasp, in the object's frame; else the centre
+};
+struct TriggerStep {  ///< close_to, open_to: the trigger goes linearly to this value, 0..1
+  double trigger = 0;
+};
+struct MoveStep {  ///< lift_by_m (z only), move_by_m: relative, world axes
+  Eigen::Vector3d by_m = Eigen::Vector3d::Zero();
+};
+struct CarryStep {  ///< carry_to_m: the held object's centre goes to x, y at its height
+  Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
+};
+struct PlaceStep {  ///< place_on: lower the held object to the support's top
+  std::string support;
+};
+struct RetreatStep {  ///< retreat_by_m: back along the last direction of arrival
+  double by_m = 0.2;
+};
+struct FollowJointStep {  ///< the target moves along the free axis of the entity's joint
+  std::string entity;
+  double to = 1;  ///< to this fraction of the joint's range
+};
+struct WaitStep {};
+struct PosesStep {  ///< 6D way-points
+  std::vector<TimedPose> poses;
+  std::string style = {};  ///< new grasp style; empty: unchanged
+};
+using StepAction = std::variant<WaitStep, ReachStep, TriggerStep, MoveStep, CarryStep, PlaceStep,
+                                RetreatStep, FollowJointStep, PosesStep>;
+
+struct Step {
+  int hand = 0;  ///< index into Scene::hands
+  StepAction action;
+  double over_s = 0.5;
+};
+
+struct LookAtStep {
+  std::variant<std::string, Eigen::Vector3d> target;  ///< an entity or a point of the world
+};
+struct EyesStep {  ///< ends a LookAtStep
+  Eyes eyes = Eyes::kLead;
+};
+struct WalkStep {  ///< her stance moves there
+  Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
+};
+struct TurnStep {
+  double to_rad = 0;  ///< yaw of her stance
+};
+struct LeanStep {
+  double to_rad = 0;  ///< lean of the trunk, forwards
+};
+struct SwayStep {  ///< her hips move ahead and to her left, her feet do not
+  Eigen::Vector2d by_m = Eigen::Vector2d::Zero();
+};
+/// The points of a body that can be moved to a position.
+enum class LimbEnd { kRightElbow, kLeftElbow, kRightWrist, kLeftWrist, kRightFoot, kLeftFoot };
+struct MoveLimbStep {
+  LimbEnd limb = LimbEnd::kRightFoot;
+  std::optional<Eigen::Vector3d> to_m = std::nullopt;  ///< none: back to its rest position
+  /// If set, the limb yields: it slows down so that it pushes with no more than this force,
+  /// newtons.
+  std::optional<double> most_n = std::nullopt;
+};
+struct HeadPosesStep {  ///< recorded head; the eyes look along its x
+  std::vector<TimedPose> poses;
+};
+struct BodyPosesStep {  ///< recorded whole body
+  std::vector<TimedFigure> figures;
+};
+using PersonAction = std::variant<WaitStep, LookAtStep, EyesStep, WalkStep, TurnStep, LeanStep,
+                                  SwayStep, MoveLimbStep, HeadPosesStep, BodyPosesStep>;
+
+struct PersonStep {
+  int person = 0;  ///< index into Scene::persons
+  PersonAction action;
+  double over_s = 0.5;
+};
+
+struct Beat {
+  std::vector<Step> steps;                    ///< at most one per hand
+  std::vector<PersonStep> person_steps = {};  ///< at most one per person
+};
+
+struct Script {
+  std::vector<Beat> beats;
+  double settle_s = 0.5;  ///< simulated time after the last stage
+};
+
+}  // namespace prehend::physics

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// The head approaches the eyes' direction exponentially. Tested by
+// tests/physics/person/gaze_test.cc
+#include "physics/person/gaze.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "physics/motion/trajectory.h"
+#include "physics/scene/geometry.h"
+
+namespace prehend::physics {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSaccadeBase_s = 0.021;
+constexpr double kSaccade_s_per_deg = 0.0022;
+/// A target that moves by more than this within one tick counts as a new one.
+constexpr double kSaccadeFrom_deg = 2;
+/// Time after which the head has covered 63 % of its way.
+constexpr double kHeadLag_s = 0.15;
+
+double AngleDeg(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
+}
+
+Vector3d Between(const Vector3d& from, const Vector3d& to, double x) {
+  const Eigen::Quaterniond turn = RotationBetween(from, to);
+  return (Eigen::Quaterniond::Identity().slerp(x, turn) * from).normalized();
+}
+
+}  // namespace
+
+std::optional<Vector3d> PointOf(const GazeTarget& target, const Scene& scene, const Snapshot& now) {
+  const auto index = static_cast<std::size_t>(target.index);
+  switch (target.kind) {
+    case GazeTarget::Kind::kAhead:
+      return std::nullopt;
+    case GazeTarget::Kind::kBody:
+      return now.bodies[index].X_WB * BoundingBox(scene.bodies[index]).p_BC_m;
+    case GazeTarget::Kind::kHand:
+      return now.hands[index].palm.X_WB.p_m;
+    case GazeTarget::Kind::kPoint:
+      return target.p_W_m;
+  }
+  return std::nullopt;
+}
+
+std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaze,
+                                        const SightLine& line) {
+  std::optional<TargetSeen> seen;
+  double nearest_m = gaze.body < 0 && gaze.hand < 0 ? line.length_m : gaze.distance_m;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (body.abstract != Abstract::kGazeTarget) continue;
+    const double reach_m = std::get<Sphere>(body.shapes.front().shape).radius_m + line.radius_m;
+    const Vector3d way = body.X_WB.p_m - gaze.p_WE_m;
+    const double along_m = way.dot(gaze.toward_W), beside2 = way.squaredNorm() - along_m * along_m;
+    if (along_m < 0 || beside2 > reach_m * reach_m) continue;
+    const double distance_m =
+        std::max(0.0, along_m - std::sqrt(reach_m * reach_m - std::max(0.0, beside2)));
+    if (distance_m >= nearest_m) continue;
+    nearest_m = distance_m;
+    seen = TargetSeen{static_cast<int>(i), distance_m};
+  }
+  return seen;
+}
+
+GazeLeader::GazeLeader(const Scene& scene, const Script& script, const Person& person)
+    : scene_(scene), script_(script), person_(person), reached_(scene.hands.size(), -1) {}
+
+void GazeLeader::Begin(std::size_t beat, const Snapshot& now) {
+  // The right hand first: she looks at one of two hands that do different things.
+  for (const int hand : {person_.right_hand, person_.left_hand}) {
+    for (const Step& step : script_.beats[beat].steps) {
+      if (hand < 0 || step.hand != hand) continue;
+      if (const auto target = TargetOf(step, beat, now)) {
+        target_ = *target;
+        return;
+      }
+    }
+  }
+}
+
+/// Nullopt if the step gives no target: then the eyes stay.
+std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t beat,
+                                               const Snapshot& now) {
+  int& reached = reached_[static_cast<std::size_t>(step.hand)];
+  const auto body = [](int index) {
+    return GazeTarget{.kind = GazeTarget::Kind::kBody, .index = index};
+  };
+  if (const auto* reach = std::get_if<ReachStep>(&step.action)) {
+    reached = FindBody(scene_, reach->object);
+    return body(reached);
+  }
+  if (const auto* carry = std::get_if<CarryStep>(&step.action)) {
+    if (const auto place = LandingPlace(*carry, step.hand, beat, now))
+      return GazeTarget{.kind = GazeTarget::Kind::kPoint, .p_W_m = *place};
+  }
+  if (std::holds_alternative<RetreatStep>(step.action)) return GazeTarget{};
+  const bool moves = !std::holds_alternative<WaitStep>(step.action) &&
+                     !std::holds_alternative<PlaceStep>(step.action);
+  if (!moves) return std::nullopt;
+  if (reached >= 0) return body(reached);
+  return GazeTarget{.kind = GazeTarget::Kind::kHand, .index = step.hand};
+}
+
+/// The place on the support of the next put-down; nullopt if none follows.
+std::optional<Vector3d> GazeLeader::LandingPlace(const CarryStep& carry, int hand, std::size_t beat,
+                                                 const Snapshot& now) const {
+  for (std::size_t later = beat + 1; later < script_.beats.size(); ++later) {
+    for (const Step& step : script_.beats[later].steps) {
+      const auto* place = std::get_if<PlaceStep>(&step.action);
+      const int support = place && step.hand == hand ? FindBody(scene_, place->support) : -1;
+      if (support < 0) continue;
+      const auto s = static_cast<std::size_t>(support);
+      const double top = WorldBounds(scene_.bodies[s], now.bodies[s].X_WB).max().z();
+      return Vector3d(carry.to_m.x(), carry.to_m.y(), top);
+    }
+  }
+  return std::nullopt;
+}
+
+void EyesAndHead::Set(const Vector3d& toward_W) {
+  eyes_W_ = head_W_ = from_W_ = toward_W;
+  saccade_s_ = 0;
+}
+
+void EyesAndHead::Turn(const Vector3d& wanted_W, double dt_s) {
+  if (saccade_s_ == 0) {
+    const double way_deg = AngleDeg(eyes_W_, wanted_W);
+    if (way_deg > kSaccadeFrom_deg) {
+      saccade_s_ = kSaccadeBase_s + kSaccade_s_per_deg * way_deg;
+      since_s_ = 0;
+      from_W_ = eyes_W_;
+    }
+  }
+  since_s_ += dt_s;
+  if (saccade_s_ > 0 && since_s_ < saccade_s_) {
+    eyes_W_ = Between(from_W_, wanted_W, MinimumJerk(since_s_ / saccade_s_));
+  } else {
+    saccade_s_ = 0;
+    eyes_W_ = wanted_W;
+  }
+  head_W_ = Between(head_W_, eyes_W_, 1 - std::exp(-dt_s / kHeadLag_s));
+}
+
+}  // namespace prehend::physics

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// Motions start at stages of the script; every tick turns them into a posture and that into places.
+// Tested by tests/physics/person/person_player_test.cc
+#include "physics/person/person_player.h"
+
+#include <cmath>
+
+#include "physics/motion/trajectory.h"
+#include "physics/scene/geometry.h"
+
+namespace prehend::physics {
+
+using Eigen::Vector3d;
+
+double PersonPlayer::Motion::At(double t_s) const {
+  if (duration_s <= 0) return to;
+  return from + (to - from) * MinimumJerk((t_s - begin_s) / duration_s);
+}
+
+/// Starts the motion of one step.
+class PersonPlayer::Resolver {
+ public:
+  Resolver(PersonPlayer& player, double over_s) : player_(player), over_s_(over_s) {}
+
+  void operator()(const WaitStep&) {}
+  void operator()(const LookAtStep& look) {
+    if (const auto* name = std::get_if<std::string>(&look.target)) {
+      const int body = FindBody(player_.scene_, *name);
+      player_.told_ = GazeTarget{.kind = GazeTarget::Kind::kBody, .index = body};
+      for (std::size_t i = 0; i < player_.scene_.hands.size(); ++i) {
+        if (player_.scene_.hands[i].name == *name)
+          player_.told_ = GazeTarget{.kind = GazeTarget::Kind::kHand, .index = static_cast<int>(i)};
+      }
+    } else {
+      player_.told_ =
+          GazeTarget{.kind = GazeTarget::Kind::kPoint, .p_W_m = std::get<Vector3d>(look.target)};
+    }
+  }
+  void operator()(const EyesStep& step) {
+    player_.eyes_ = step.eyes;
+    player_.told_ = std::nullopt;
+  }
+  void operator()(const WalkStep& walk) {
+    Start(player_.x_, walk.to_m.x());
+    Start(player_.y_, walk.to_m.y());
+  }
+  void operator()(const TurnStep& turn) { Start(player_.yaw_, turn.to_rad); }
+  void operator()(const LeanStep& lean) { Start(player_.lean_, lean.to_rad); }
+  void operator()(const SwayStep& sway) {
+    Start(player_.sway_ahead_, sway.by_m.x());
+    Start(player_.sway_left_, sway.by_m.y());
+  }
+  void operator()(const MoveLimbStep& move) {
+    const Pose X_SW = player_.posture_.X_WS.inverse();
+    LimbMotion& limb = player_.limbs_[static_cast<std::size_t>(LimbOf(move.limb))];
+    limb.end = move.limb;
+    limb.from_S_m = X_SW * PlaceOf(move.limb, player_.person_, player_.posture_);
+    if (LimbOf(move.limb) < 2)
+      limb.forearm_S = X_SW.q * ForearmOf(move.limb, player_.person_, player_.posture_);
+    limb.to_rest = !move.to_m;
+    if (move.to_m) limb.to_S_m = X_SW * *move.to_m;
+    limb.progress = {0, 1, player_.t_s_, over_s_};
+    limb.most_n = move.most_n;
+    limb.pace = 1;
+    limb.behind_s = 0;
+  }
+  void operator()(const HeadPosesStep& head) {
+    const TargetState from{.X_WH = player_.posture_.X_WHead};
+    player_.head_ = {WaypointTrajectory(from, head.poses), player_.t_s_};
+  }
+  void operator()(const BodyPosesStep& body) {
+    const Figure from = FigureOf(player_.person_, player_.posture_);
+    player_.body_ = RecordedBody{FigureTrack(from, body.figures), player_.t_s_};
+    player_.leaving_.reset();
+  }
+
+ private:
+  void Start(Motion& motion, double to) {
+    motion = {motion.At(player_.t_s_), to, player_.t_s_, over_s_};
+  }
+
+  PersonPlayer& player_;
+  double over_s_;
+};
+
+PersonPlayer::PersonPlayer(const Scene& scene, const Script& script, int person)
+    : scene_(scene),
+      script_(script),
+      person_(scene.persons[static_cast<std::size_t>(person)]),
+      index_(person),
+      posture_(Standing(scene, person_)),
+      places_(PlacesOf(person_, posture_, {})),
+      leader_(scene, script, person_),
+      eyes_(person_.eyes),
+      gaze_(posture_.X_WHead.q * Vector3d::UnitX()) {
+  const Vector3d ahead = person_.X_WS.q * Vector3d::UnitX();
+  x_.to = person_.X_WS.p_m.x();
+  y_.to = person_.X_WS.p_m.y();
+  yaw_.to = std::atan2(ahead.y(), ahead.x());
+  for (int limb = 0; limb < 4; ++limb)
+    limbs_[static_cast<std::size_t>(limb)].end = RestOf(limb, person_, posture_).end;
+}
+
+void PersonPlayer::Begin(std::size_t beat, const Snapshot& now) {
+  leader_.Begin(beat, now);
+  for (const PersonStep& step : script_.beats[beat].person_steps) {
+    if (step.person != index_) continue;
+    head_.reset();
+    if (body_) {
+      leaving_ = Leaving{*posture_.figure, {0, 1, t_s_, step.over_s}};
+      body_.reset();
+    }
+    Resolver resolver(*this, step.over_s);
+    std::visit(resolver, step.action);
+  }
+}
+
+Posture::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
+  const int hand = limb == 0 ? person_.right_hand : limb == 1 ? person_.left_hand : -1;
+  const Posture::Limb rest = RestOf(limb, person_, posture_);
+  if (hand >= 0) {
+    const auto h = static_cast<std::size_t>(hand);
+    return {rest.end, now.hands[h].palm.X_WB * WristInHand(person_, scene_.hands[h].model)};
+  }
+  const LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
+  const double progress =
+      motion.progress.duration_s > 0 ? motion.progress.At(t_s_ - motion.behind_s) : 1;
+  if (motion.to_rest && progress == 1) return rest;
+  Vector3d to_W = posture_.X_WS * motion.to_S_m;
+  Vector3d forearm_W = FoldedForearm(motion.end, posture_.X_WS);
+  if (motion.to_rest) {
+    Posture resting = posture_;
+    resting.limbs[static_cast<std::size_t>(limb)] = rest;
+    to_W = PlaceOf(motion.end, person_, resting);
+    if (limb < 2) forearm_W = ForearmOf(motion.end, person_, resting);
+  }
+  const Vector3d from_W = posture_.X_WS * motion.from_S_m;
+  const Eigen::Quaterniond turn = RotationBetween(posture_.X_WS.q * motion.forearm_S, forearm_W);
+  const Eigen::Quaterniond turned = Eigen::Quaterniond::Identity().slerp(progress, turn);
+  return {motion.end, from_W + progress * (to_W - from_W),
+          turned * (posture_.X_WS.q * motion.forearm_S)};
+}
+
+double PersonPlayer::ResistanceTo(int limb, const Snapshot& now) const {
+  const LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
+  const Vector3d way = posture_.X_WS * motion.to_S_m - posture_.X_WS * motion.from_S_m;
+  if (way.norm() < 1e-6) return 0;
+  const PartRange parts = PartsOfLimb(person_, limb);
+  const auto is_part = [&](const ContactSide& side) {
+    return side.body >= person_.head + parts.begin && side.body < person_.head + parts.end;
+  };
+  double against_n_s = 0;
+  for (const ContactPoint& contact : now.contacts) {
+    const double into_a = is_part(contact.a) ? 1 : is_part(contact.b) ? -1 : 0;
+    against_n_s -= into_a * contact.normal_impulse_n_s * contact.nhat_BA_W.dot(way.normalized());
+  }
+  return std::max(0.0, against_n_s) * scene_.world.rate_hz;
+}
+
+void PersonPlayer::Yield(int limb, const Snapshot& now) {
+  // Resistance in the solver grows with speed, so the pace is divided by the excess. It then grows
+  // back exponentially from where it was: a resistance that was met at a slow pace is met at a slow
+  // pace again.
+  constexpr double kGrow_s = 0.1, kLeastPace = 0.01;
+  const double dt_s = 1.0 / scene_.world.rate_hz;
+  LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
+  if (!motion.most_n) return;
+  const double resistance_n = ResistanceTo(limb, now);
+  motion.pace = resistance_n > *motion.most_n
+                    ? motion.pace * *motion.most_n / resistance_n
+                    : std::min(1.0, std::max(motion.pace, kLeastPace) * (1 + dt_s / kGrow_s));
+  motion.behind_s += (1 - motion.pace) * dt_s;
+}
+
+void PersonPlayer::StandBelow(const Figure& figure) {
+  const auto rest = [](double at) { return Motion{at, at, 0, 0}; };
+  const Vector3d& left = figure.ways_W[Figure::kAcrossHips];
+  x_ = rest(figure.hips_W_m.x());
+  y_ = rest(figure.hips_W_m.y());
+  if (std::hypot(left.x(), left.y()) > 1e-6) yaw_ = rest(std::atan2(-left.x(), left.y()));
+  lean_ = sway_ahead_ = sway_left_ = rest(0);
+  for (int limb = 0; limb < 4; ++limb)
+    limbs_[static_cast<std::size_t>(limb)] = LimbMotion{.end = RestOf(limb, person_, posture_).end};
+}
+
+void PersonPlayer::HoldFigure() {
+  if (body_) {
+    const Figure figure = body_->track.At(t_s_ - body_->begin_s);
+    StandBelow(figure);
+    posture_.figure = figure;
+  } else if (leaving_) {
+    const double share = leaving_->progress.At(t_s_);
+    if (share < 1)
+      posture_.figure = Mix(leaving_->from, FigureOf(person_, posture_), share);
+    else
+      leaving_.reset();
+  }
+}
+
+void PersonPlayer::TurnHead(const Snapshot& now) {
+  if (body_) {
+    posture_.X_WHead = HeadOfFigure(person_, posture_);
+    gaze_.Set(posture_.X_WHead.q * Vector3d::UnitX());
+    return;
+  }
+  const Vector3d neck = NeckTop(person_, posture_);
+  if (head_) {
+    posture_.X_WHead = head_->first.At(t_s_ - head_->second).X_WH;
+    gaze_.Set(posture_.X_WHead.q * Vector3d::UnitX());
+    return;
+  }
+  const GazeTarget target = told_ ? *told_ : eyes_ == Eyes::kLead ? leader_.target() : GazeTarget{};
+  Vector3d toward = posture_.X_WS.q * Vector3d::UnitX();
+  if (const auto point = PointOf(target, scene_, now)) {
+    const Vector3d way = *point - EyesOf(person_, posture_.X_WHead);
+    if (way.norm() > 1e-3) toward = way.normalized();
+  }
+  gaze_.Turn(toward, 1.0 / scene_.world.rate_hz);
+  posture_.X_WHead = HeadToward(person_, neck, gaze_.head_W());
+}
+
+void PersonPlayer::Advance(const Snapshot& now, World& world) {
+  t_s_ = static_cast<double>(++tick_) / scene_.world.rate_hz;
+  posture_.figure.reset();
+  posture_.X_WS = {{x_.At(t_s_), y_.At(t_s_), person_.X_WS.p_m.z()},
+                   Eigen::Quaterniond(Eigen::AngleAxisd(yaw_.At(t_s_), Vector3d::UnitZ()))};
+  posture_.lean_rad = lean_.At(t_s_);
+  posture_.sway_m = {sway_ahead_.At(t_s_), sway_left_.At(t_s_)};
+  for (int limb = 0; limb < 4; ++limb) {
+    Yield(limb, now);
+    posture_.limbs[static_cast<std::size_t>(limb)] = LimbAt(limb, now);
+  }
+  HoldFigure();
+  TurnHead(now);
+  places_ = PlacesOf(person_, posture_, places_);
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    world.MoveKinematic(person_.head + static_cast<int>(i), places_[i]);
+}
+
+GazeState PersonPlayer::See(const World& world) const {
+  GazeState gaze{.p_WE_m = EyesOf(person_, posture_.X_WHead), .toward_W = gaze_.eyes_W()};
+  const Sight sight = world.Look({.from_W_m = gaze.p_WE_m,
+                                  .toward_W = gaze.toward_W,
+                                  .ignore_from = person_.head,
+                                  .ignore_to = person_.head + static_cast<int>(places_.size())});
+  gaze.body = sight.body;
+  gaze.hand = sight.hand;
+  gaze.distance_m = sight.distance_m;
+  if (const auto target = TargetInSight(scene_, gaze))
+    gaze.body = target->body, gaze.hand = -1, gaze.distance_m = target->distance_m;
+  return gaze;
+}
+
+}  // namespace prehend::physics

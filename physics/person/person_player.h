@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plays the steps of a script for one person: where she stands, how she leans, where her limbs go
+// and where she looks. Her arms follow the hands of the scene. Nothing pushes her back: a person is
+// kinematic. Tested by tests/physics/person/person_player_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "physics/motion/posture.h"
+#include "physics/motion/trajectory.h"
+#include "physics/person/gaze.h"
+#include "physics/person/skeleton.h"
+#include "physics/world/world.h"
+
+namespace prehend::physics {
+
+class PersonPlayer {
+ public:
+  /// `scene` and `script` must outlive the player. `person` is an index into Scene::persons.
+  PersonPlayer(const Scene& scene, const Script& script, int person);
+
+  /// This stage of the script begins with the tick after `now`.
+  void Begin(std::size_t beat, const Snapshot& now);
+  /// Moves her parts for the tick after `now`.
+  void Advance(const Snapshot& now, World& world);
+  /// What she sees in a world that has stepped since her last Advance().
+  GazeState See(const World& world) const;
+
+  const Posture& posture() const { return posture_; }
+
+ private:
+  /// A minimum-jerk motion of one quantity.
+  struct Motion {
+    double from = 0, to = 0;
+    double begin_s = 0, duration_s = 0;
+    double At(double t_s) const;
+  };
+  struct LimbMotion {
+    LimbEnd end = LimbEnd::kRightWrist;
+    Eigen::Vector3d from_S_m = Eigen::Vector3d::Zero();  ///< in the frame of her stance
+    Eigen::Vector3d to_S_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d forearm_S = Eigen::Vector3d::UnitZ();  ///< when the step began
+    bool to_rest = true;
+    Motion progress;
+    std::optional<double> most_n;  ///< force above which the limb yields
+    double pace = 1;               ///< share of the full speed, less than 1 under resistance
+    double behind_s = 0;           ///< delay that yielding has caused
+  };
+  struct RecordedBody {
+    FigureTrack track;
+    double begin_s = 0;
+  };
+  struct Leaving {  ///< the transition from the end of a recording
+    Figure from;
+    Motion progress;
+  };
+  class Resolver;
+
+  Posture::Limb LimbAt(int limb, const Snapshot& now) const;
+  /// Slows a limb down that meets too much resistance, and speeds it up again afterwards.
+  void Yield(int limb, const Snapshot& now);
+  double ResistanceTo(int limb, const Snapshot& now) const;
+  void HoldFigure();
+  void StandBelow(const Figure& figure);
+  void TurnHead(const Snapshot& now);
+
+  const Scene& scene_;
+  const Script& script_;
+  const Person& person_;
+  int index_ = 0;
+  double t_s_ = 0;  ///< since the first tick
+  std::int64_t tick_ = 0;
+  Motion x_, y_, yaw_, lean_, sway_ahead_, sway_left_;
+  std::array<LimbMotion, 4> limbs_;
+  Posture posture_;
+  std::vector<Pose> places_;
+  GazeLeader leader_;
+  Eyes eyes_;
+  std::optional<GazeTarget> told_;                     ///< the script's target; overrides her own
+  std::optional<std::pair<Trajectory, double>> head_;  ///< recorded motion and its begin, seconds
+  std::optional<RecordedBody> body_;
+  std::optional<Leaving> leaving_;
+  EyesAndHead gaze_;
+};
+
+}  // namespace prehend::physics

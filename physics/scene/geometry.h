@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sizes of shapes and distances to them, as needed to plan motions. No engine involved. Tested by
+// tests/physics/scene/geometry_test.cc
+#pragma once
+
+#include <vector>
+
+#include "physics/scene/scene.h"
+
+namespace prehend::physics {
+
+/// Index into Scene::bodies, or -1 if no body has this name.
+int FindBody(const Scene& scene, const std::string& name);
+
+/// Extent of the body from the centre of its bounding box in a world direction (unit), metres.
+double HalfWidthAlong(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& direction_W);
+
+/// Whether the point is inside a body at X_WB: inside its bounding box, or for a region inside the
+/// region itself.
+bool IsInside(const Body& body, const Pose& X_WB, const Eigen::Vector3d& p_W_m);
+
+/// Bounding box, aligned with the world's axes, of a shape at X_WS, metres.
+Eigen::AlignedBox3d WorldBounds(const Shape& shape, const Pose& X_WS);
+
+/// Bounding box, aligned with the world's axes, of a whole body, metres.
+Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB);
+
+/// Height of the surface that carries an object at X_WO, metres: the top of the highest part of
+/// `support` below it, or the top of the whole support if no part is below it.
+double HighestBelow(const Body& support, const Pose& X_WS, const Body& object, const Pose& X_WO);
+
+/// Distance of a point (in the shape's frame) from the surface, metres; negative inside.
+double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S);
+
+/// The part of a body that is nearest to a point in the body's frame.
+const PlacedShape& PartAt(const Body& body, const Eigen::Vector3d& p_B_m);
+
+/// Distance of a point (in the body's frame) from the nearest surface, metres; negative inside.
+double DistanceTo(const Body& body, const Eigen::Vector3d& p_B_m);
+
+/// Volume, cubic metres.
+double VolumeOf(const Shape& shape);
+
+/// Whether the body is rotationally symmetric about the vertical: true for spheres and for upright
+/// cylinders and capsules.
+bool IsRoundAboutVertical(const Body& body, const Pose& X_WB);
+
+}  // namespace prehend::physics

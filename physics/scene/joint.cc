@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// A position is read along or about the joint's axis, as placed. Tested by
+// tests/physics/scene/joint_test.cc
+#include "physics/scene/joint.h"
+
+#include <algorithm>
+
+namespace prehend::physics {
+namespace {
+
+const Body& BodyAt(const Scene& scene, int body) {
+  return scene.bodies[static_cast<std::size_t>(body)];
+}
+
+/// Index of the body's own joint, or -1.
+int JointOf(const Scene& scene, int body) {
+  const auto it = std::find_if(scene.joints.begin(), scene.joints.end(),
+                               [&](const Joint& joint) { return joint.body == body; });
+  return it == scene.joints.end() ? -1 : static_cast<int>(it - scene.joints.begin());
+}
+
+double Position(const Scene& scene, const Joint& joint, const Pose& X_WBase, const Pose& X_WB) {
+  const Pose placed = BodyAt(scene, joint.base).X_WB.inverse() * BodyAt(scene, joint.body).X_WB;
+  const Pose now = X_WBase.inverse() * X_WB;
+  const Eigen::Vector3d axis_base = BodyAt(scene, joint.base).X_WB.q.conjugate() * joint.axis_W;
+  if (joint.kind == JointKind::kSlider) return axis_base.dot(now.p_m - placed.p_m);
+  if (joint.kind == JointKind::kHinge)
+    return axis_base.dot(RotationVector(now.q * placed.q.conjugate()));
+  return 0;
+}
+
+}  // namespace
+
+bool IsThing(const Body& body) {
+  return !body.kinematic && !body.grains && body.abstract == Abstract::kNot;
+}
+
+std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body,
+                                          const Snapshot& snapshot) {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < body; ++i)
+    if (const auto& other = scene.bodies[i].grains) first += other->p_WG_m.size();
+  const std::vector<Eigen::Vector3d>& placed = scene.bodies[body].grains->p_WG_m;
+  if (first + placed.size() > snapshot.grains.size()) return placed;
+  return std::span(snapshot.grains).subspan(first, placed.size());
+}
+
+bool MovesFreely(const Scene& scene, int body) {
+  const Body& moved = BodyAt(scene, body);
+  return !moved.fixed && IsThing(moved) && JointOf(scene, body) < 0;
+}
+
+JointState StateOf(const Scene& scene, const Joint& joint, const Pose& X_WBase, const Pose& X_WB) {
+  const double position = Position(scene, joint, X_WBase, X_WB);
+  const double range = joint.upper - joint.lower;
+  return {position, range > 0 ? std::clamp((position - joint.lower) / range, 0.0, 1.0) : 0};
+}
+
+void DescribeJoints(const Scene& scene, Snapshot& snapshot) {
+  const auto X_WB = [&](int body) { return snapshot.bodies[static_cast<std::size_t>(body)].X_WB; };
+  snapshot.joints.resize(scene.joints.size());
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    const Joint& joint = scene.joints[i];
+    snapshot.joints[i] = StateOf(scene, joint, X_WB(joint.base), X_WB(joint.body));
+  }
+}
+
+Pose MotionAlong(const Scene& scene, const Joint& joint, const Pose& X_WBase, double change) {
+  const Pose since_placed = X_WBase * BodyAt(scene, joint.base).X_WB.inverse();
+  const Eigen::Vector3d axis_W = since_placed.q * joint.axis_W;
+  if (joint.kind == JointKind::kSlider) return {axis_W * change};
+  if (joint.kind != JointKind::kHinge) return {};
+  const Eigen::Vector3d pivot_W_m = since_placed * joint.pivot_W_m;
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(change, axis_W));
+  return {pivot_W_m - turn * pivot_W_m, turn};
+}
+
+int JointThatMoves(const Scene& scene, int body) { return JointOf(scene, RootOf(scene, body)); }
+
+bool NeverTouch(const Scene& scene, int body, int other) {
+  const int a = RootOf(scene, body), b = RootOf(scene, other);
+  return a == b || std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& joint) {
+           const int on = RootOf(scene, joint.base), hangs = RootOf(scene, joint.body);
+           return (on == a && hangs == b) || (on == b && hangs == a);
+         });
+}
+
+int RootOf(const Scene& scene, int body) {
+  for (int joint = JointOf(scene, body); joint >= 0; joint = JointOf(scene, body)) {
+    const Joint& j = scene.joints[static_cast<std::size_t>(joint)];
+    if (j.kind != JointKind::kFixed) break;
+    body = j.base;
+  }
+  return body;
+}
+
+}  // namespace prehend::physics

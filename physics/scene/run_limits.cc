@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Limits of speed, distance and penetration depth, and the advice for each. Tested by
+// tests/physics/scene/run_limits_test.cc
+#include "physics/scene/run_limits.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+namespace prehend::physics {
+namespace {
+
+/// No object thrown by a hand is faster; one ejected by an unstable contact is.
+constexpr double kMaxSpeed_m_per_s = 50;
+/// Touching bodies overlap by tenths of a millimetre; this much means tunnelling or overlapping
+/// initial poses.
+constexpr double kMaxPenetration_m = 0.02;
+
+std::string Say(const char* format, double value) {
+  char text[128];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::optional<RunProblem> CheckState(const std::string& name, const BodyState& state) {
+  const bool finite = state.X_WB.p_m.allFinite() && state.X_WB.q.coeffs().allFinite() &&
+                      state.v_WB_m_per_s.allFinite() && state.w_WB_rad_per_s.allFinite();
+  if (!finite)
+    return RunProblem{name, "its state is not finite",
+                      "look for zero sizes, extreme masses or gains just before this tick"};
+  if (const double speed = state.v_WB_m_per_s.norm(); speed > kMaxSpeed_m_per_s)
+    return RunProblem{name, Say("it moves at %.0f m/s", speed),
+                      "it was probably squeezed or started inside another body; give it room or "
+                      "lower the strength"};
+  if (const double distance = state.X_WB.p_m.norm(); distance > kMaxDistance_m)
+    return RunProblem{name, Say("it is %.0f m from the origin", distance),
+                      "it left the world; put a floor under it or end the script earlier"};
+  return std::nullopt;
+}
+
+/// The iterative solver does not converge if one of two bodies pressed together is so many times
+/// heavier.
+constexpr double kMostMassRatio = 1000;
+
+double MassOf(const Scene& scene, const ContactSide& side) {
+  if (side.hand >= 0) return 0;
+  const Body& body = scene.bodies[static_cast<std::size_t>(side.body)];
+  return body.fixed ? 0 : body.mass_kg;
+}
+
+/// The advice for two bodies that overlap deeply. A heavy body also presses a light one into a
+/// third.
+std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const ContactPoint& deep) {
+  double least_kg = std::numeric_limits<double>::infinity(), most_kg = 0;
+  for (const ContactPoint& contact : snapshot.contacts) {
+    const bool is_near =
+        contact.a == deep.a || contact.a == deep.b || contact.b == deep.a || contact.b == deep.b;
+    for (const ContactSide& side : {contact.a, contact.b}) {
+      const double mass_kg = MassOf(scene, side);
+      if (!is_near || mass_kg <= 0) continue;
+      least_kg = std::min(least_kg, mass_kg);
+      most_kg = std::max(most_kg, mass_kg);
+    }
+  }
+  if (most_kg > kMostMassRatio * least_kg)
+    return Say("a mass presses on one that is %.0f times smaller; make them more similar",
+               most_kg / least_kg);
+  return scene.hands.empty() ? "start them apart, or let them meet more slowly"
+                             : "start them apart, or let the hand come more slowly";
+}
+
+const std::string& NameOf(const Scene& scene, const ContactSide& side) {
+  return side.hand >= 0 ? scene.hands[static_cast<std::size_t>(side.hand)].name
+                        : scene.bodies[static_cast<std::size_t>(side.body)].name;
+}
+
+}  // namespace
+
+std::optional<RunProblem> CheckSnapshot(const Scene& scene, const Snapshot& snapshot) {
+  for (std::size_t i = 0; i < snapshot.bodies.size(); ++i) {
+    if (!snapshot.MayHaveMoved(i, snapshot.tick - 1))
+      continue;  // it was checked when it last moved
+    if (auto problem = CheckState(scene.bodies[i].name, snapshot.bodies[i])) return problem;
+  }
+  for (std::size_t i = 0; i < snapshot.hands.size(); ++i) {
+    if (auto problem = CheckState(scene.hands[i].name, snapshot.hands[i].palm)) return problem;
+  }
+  for (const ContactPoint& contact : snapshot.contacts) {
+    if (contact.distance_m > -kMaxPenetration_m) continue;
+    return RunProblem{
+        NameOf(scene, contact.a),
+        Say("it is %.0f mm deep", -1000 * contact.distance_m) + " in " + NameOf(scene, contact.b),
+        AdviceFor(scene, snapshot, contact)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace prehend::physics

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state of the world after one tick, as a value. Bodies and hands are named by their index in
+// the Scene.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "physics/scene/pose.h"
+
+namespace prehend::physics {
+
+/// State of a body; for grains the mean.
+struct BodyState {
+  Pose X_WB;
+  Eigen::Vector3d v_WB_m_per_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d w_WB_rad_per_s = Eigen::Vector3d::Zero();
+  bool asleep = false;
+};
+
+/// Position of a joint, in the order of Scene::joints. A fixed or ball joint is always at 0.
+struct JointState {
+  double position = 0;  ///< metres or radians from the initial position
+  double fraction = 0;  ///< of its range: 0 at the lower limit, 1 at the upper limit
+};
+
+struct HandState {
+  BodyState palm;  ///< never asleep
+  std::vector<Pose>
+      X_WL;  ///< box centre of every link, local x along it; order of HandModel::links
+  std::vector<double> joints;  ///< radians, or metres of links that slide
+  Pose X_WTarget;              ///< pose of the tracked target
+  double trigger = 0;
+  int style = 0;  ///< index into HandModel::styles
+};
+
+/// One side of a contact: a body (hand == -1) or a link of a hand (link == -1 is the palm).
+struct ContactSide {
+  int body = -1;
+  int hand = -1;
+  int link = -1;
+  friend auto operator<=>(const ContactSide&, const ContactSide&) = default;
+};
+
+/// A contact point in the sense of docs/physics.md: with an impulse in this tick or shortly before.
+struct ContactPoint {
+  ContactSide a, b;
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d nhat_BA_W = Eigen::Vector3d::UnitZ();  ///< from b into a
+  double distance_m = 0;  ///< before the tick (Bullet) or after it (Box2D); negative: penetration
+  double normal_impulse_n_s = 0;  ///< over this tick
+};
+
+/// Where a person looks, in the order of Scene::persons.
+struct GazeState {
+  Eigen::Vector3d p_WE_m = Eigen::Vector3d::Zero();     ///< between the eyes
+  Eigen::Vector3d toward_W = Eigen::Vector3d::UnitX();  ///< unit
+  int body = -1;                                        ///< index of the body that she sees, or -1
+  int hand = -1;                                        ///< index of the hand that she sees, or -1
+  double distance_m = 0;                                ///< to the surface that she sees
+};
+
+struct Snapshot {
+  std::int64_t tick = 0;  ///< physics steps done; 0 is the scene as placed
+  std::vector<BodyState> bodies;
+  std::vector<Eigen::Vector3d> grains;  ///< centres in the world, body by body
+  std::vector<JointState> joints;
+  std::vector<HandState> hands;
+  std::vector<GazeState> gazes;
+  std::vector<ContactPoint> contacts;  ///< of pairs that may move, sorted by (a, b, point); a < b
+  /// Contact points between bodies that rest (fixed or asleep), sorted likewise. They do not
+  /// change, so snapshots share them until a body falls asleep or wakes. Null: there are none.
+  std::shared_ptr<const std::vector<ContactPoint>> resting;
+  /// By body, the last tick at which it may have moved. Empty: unknown.
+  std::vector<std::int64_t> moved_tick;
+
+  /// False only if the state of the body is certainly the same as after the tick `since`.
+  bool MayHaveMoved(std::size_t body, std::int64_t since) const {
+    return body >= moved_tick.size() || moved_tick[body] > since;
+  }
+  /// All contact points, in two parts.
+  std::array<std::span<const ContactPoint>, 2> AllContacts() const {
+    return {contacts, resting ? std::span(*resting) : std::span<const ContactPoint>()};
+  }
+};
+
+struct Scene;
+/// Centres of the grains of a body; their initial positions if the snapshot has none.
+std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body,
+                                          const Snapshot& snapshot);
+
+}  // namespace prehend::physics

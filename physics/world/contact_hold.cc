@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs move between the two maps when a body falls asleep or wakes. Tested by
+// tests/physics/world/world_test.cc
+#include "physics/world/contact_hold.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace prehend::physics {
+namespace {
+
+/// A contact survives this many ticks without an impulse: 8 ms at 480 Hz.
+constexpr int kHoldTicks = 4;
+
+/// A ball in the seam of two shapes touches both at one point, so the position alone does not
+/// define an order.
+bool PointLess(const ContactPoint& l, const ContactPoint& r) {
+  const auto key = [](const ContactPoint& point) {
+    return std::tuple(point.p_W_m.x(), point.p_W_m.y(), point.p_W_m.z(), point.normal_impulse_n_s,
+                      point.distance_m);
+  };
+  return key(l) < key(r);
+}
+
+}  // namespace
+
+void TouchingPairs::BeginTick(const std::vector<char>& rests) {
+  if (rests != rests_) {
+    rests_ = rests;
+    // A body that has just fallen asleep was simulated in this tick: its last points are still to
+    // come.
+    rested_.resize(rests.size(), 0);
+    for (std::size_t i = 0; i < rests.size(); ++i) rested_[i] &= rests[i];
+    if (MovePairs(resting_, pairs_, false)) ShareResting();
+  }
+  for (auto& [key, pair] : pairs_) pair.seen = false;
+}
+
+void TouchingPairs::Add(ContactPoint point) {
+  if (point.normal_impulse_n_s <= 0) return;
+  if (point.b < point.a) {
+    std::swap(point.a, point.b);
+    point.nhat_BA_W = -point.nhat_BA_W;
+  }
+  Pair& pair = pairs_[{point.a, point.b}];
+  if (!pair.seen) pair = {.points = {}, .quiet_ticks = 0, .seen = true};
+  pair.points.push_back(point);
+}
+
+void TouchingPairs::EndTick() {
+  for (auto& [key, pair] : pairs_) {
+    if (pair.seen) {
+      std::sort(pair.points.begin(), pair.points.end(), PointLess);
+      continue;
+    }
+    ++pair.quiet_ticks;
+    for (ContactPoint& point : pair.points) point.normal_impulse_n_s = 0;
+  }
+  std::erase_if(pairs_, [](const auto& entry) { return entry.second.quiet_ticks > kHoldTicks; });
+  if (rested_ == rests_) return;
+  rested_ = rests_;
+  if (MovePairs(pairs_, resting_, true)) ShareResting();
+}
+
+/// Returns whether there were any.
+bool TouchingPairs::MovePairs(Pairs& from, Pairs& to, bool that_rest) {
+  const std::size_t before = from.size();
+  for (auto it = from.begin(); it != from.end();) {
+    const auto next = std::next(it);
+    if (Rest(it->first.first, it->first.second) == that_rest) to.insert(from.extract(it));
+    it = next;
+  }
+  return from.size() != before;
+}
+
+void TouchingPairs::ShareResting() {
+  auto points = std::make_shared<std::vector<ContactPoint>>();
+  for (const auto& [key, pair] : resting_)
+    points->insert(points->end(), pair.points.begin(), pair.points.end());
+  shared_ = points->empty() ? nullptr : std::move(points);
+}
+
+void TouchingPairs::Describe(Snapshot& snapshot) const {
+  snapshot.contacts.clear();
+  for (const auto& [key, pair] : pairs_)
+    snapshot.contacts.insert(snapshot.contacts.end(), pair.points.begin(), pair.points.end());
+  snapshot.resting = shared_;
+}
+
+}  // namespace prehend::physics

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Defines contact, the same for every engine. Two surfaces are in contact in a tick in which
+// momentum passed between them, whatever their distance was before and after it: a bounce is over
+// within one tick. A contact lasts until no impulse has passed for a few ticks, because the impulse
+// of a resting contact flickers. Contacts between two resting bodies do not change and cost no
+// time. Tested by tests/physics/world/world_test.cc, tests/physics/world/bounce_test.cc
+#pragma once
+
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "physics/scene/snapshot.h"
+
+namespace prehend::physics {
+
+class TouchingPairs {
+ public:
+  /// Call before the points of a tick are added. `rests`: by body of the scene, whether it is fixed
+  /// or asleep after this tick.
+  void BeginTick(const std::vector<char>& rests);
+  /// Whether both rest and did so in the tick before: then there is no point to add.
+  bool Rest(const ContactSide& a, const ContactSide& b) const { return Rests(a) && Rests(b); }
+  /// Adds a contact point of the engine; a point without impulse is ignored. The sides may be in
+  /// any order.
+  void Add(ContactPoint point);
+  /// Call after the last point of the tick.
+  void EndTick();
+  /// Writes contacts, sorted by (a, b, point), and the resting ones.
+  void Describe(Snapshot& snapshot) const;
+
+ private:
+  struct Pair {
+    std::vector<ContactPoint> points;  ///< of the last tick with an impulse
+    int quiet_ticks = 0;
+    bool seen = false;  ///< in the present tick
+  };
+  using Pairs = std::map<std::pair<ContactSide, ContactSide>, Pair>;
+
+  bool Rests(const ContactSide& side) const {
+    return side.hand < 0 && static_cast<std::size_t>(side.body) < rested_.size() &&
+           rested_[static_cast<std::size_t>(side.body)] != 0;
+  }
+  bool MovePairs(Pairs& from, Pairs& to, bool that_rest);
+  void ShareResting();
+
+  Pairs pairs_;               ///< pairs of which one side may move
+  Pairs resting_;             ///< all other pairs
+  std::vector<char> rests_;   ///< by body, after this tick
+  std::vector<char> rested_;  ///< by body, after this tick and the one before
+  std::shared_ptr<const std::vector<ContactPoint>> shared_;  ///< the points of `resting_`
+};
+
+}  // namespace prehend::physics

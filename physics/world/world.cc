@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// Defaults for engines without persons. Tested by tests/physics/world/world_test.cc
+#include "physics/world/world.h"
+
+namespace prehend::physics {
+
+void World::MoveKinematic(int, const Pose&) {}
+Sight World::Look(const SightLine&) const { return {}; }
+
+}  // namespace prehend::physics

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The interface to a physics engine: a world takes hand commands, steps, and writes its state into
+// a Snapshot. One world per run, never reset. Implementations: physics/bullet/world.h and, for
+// planar scenes, physics/box2d/world.h. Tested by tests/physics/world/world_test.cc
+#pragma once
+
+#include <vector>
+
+#include "physics/motion/trajectory.h"
+#include "physics/scene/snapshot.h"
+
+namespace prehend::physics {
+
+/// Command to one hand for one tick.
+struct HandCommand {
+  TargetState target;
+  int style = 0;  ///< index into HandModel::styles
+};
+
+/// A line of sight: the path of a sphere.
+struct SightLine {
+  Eigen::Vector3d from_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d toward_W = Eigen::Vector3d::UnitX();  ///< unit
+  double radius_m = 0.015;
+  double length_m = 10;
+  int ignore_from = 0, ignore_to = 0;  ///< bodies that are transparent: [from, to)
+};
+struct Sight {
+  int body = -1;
+  int hand = -1;
+  double distance_m = 0;
+};
+
+class World {
+ public:
+  virtual ~World() = default;
+
+  /// Advances one tick; one command per hand of the scene.
+  virtual void Step(const std::vector<HandCommand>& commands) = 0;
+  /// Writes the present state, reusing the vectors of `snapshot`.
+  virtual void Describe(Snapshot& snapshot) const = 0;
+
+  /// Moves a kinematic body there during the next step. Only for scenes with persons.
+  virtual void MoveKinematic(int body, const Pose& X_WB);
+  /// The first surface that the sphere meets. Only for scenes with persons.
+  virtual Sight Look(const SightLine& line) const;
+};
+
+}  // namespace prehend::physics

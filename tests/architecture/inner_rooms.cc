@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// See tests/architecture/inner_rooms.h. Tested by tests/architecture/inner_rooms_test.cc
+#include "tests/architecture/inner_rooms.h"
+
+#include <functional>
+#include <vector>
+
+namespace prehend::architecture {
+
+const Arrows& ProjectArrows() {
+  static const Arrows arrows = {
+      {"grammar/base", {}},
+      {"grammar/language", {"grammar/base"}},
+      {"grammar/program", {"grammar/base"}},
+      {"grammar/compile", {"grammar/base", "grammar/language", "grammar/program"}},
+      {"grammar/engine", {"grammar/base", "grammar/program"}},
+      {"grammar", {"grammar/base", "grammar/compile", "grammar/engine", "grammar/program"}},
+
+      {"physics/scene", {}},
+      {"physics/motion", {"physics/scene"}},
+      {"physics/world", {"physics/motion", "physics/scene"}},
+      {"physics/hand", {"physics/motion", "physics/scene", "physics/world"}},
+      {"physics/person", {"physics/motion", "physics/scene", "physics/world"}},
+      {"physics/bullet/core", {}},
+      {"physics/bullet", {"physics/bullet/core", "physics/hand", "physics/scene", "physics/world"}},
+      {"physics/box2d", {"physics/hand", "physics/scene", "physics/world"}},
+      {"physics",
+       {"physics/box2d", "physics/bullet", "physics/hand", "physics/motion", "physics/person",
+        "physics/scene"}},
+
+      {"render", {"physics/scene"}},
+
+      {"harness/base", {"grammar/base"}},
+      {"harness/process", {}},
+      {"harness/timeline", {"grammar/base", "grammar/program"}},
+      // A witness of its own: it never sees what it judges.
+      {"harness/oracle", {"grammar/base", "physics/scene"}},
+      {"harness/scenario", {"grammar/base", "harness/base", "physics/motion", "physics/scene"}},
+      {"harness/yaml", {"harness/base"}},
+      {"harness/golden", {"grammar/base", "harness/base", "harness/timeline"}},
+      {"harness/motion", {"harness/base", "harness/yaml", "physics/motion", "physics/scene"}},
+      {"harness/sense",
+       {"grammar/base", "harness/base", "harness/scenario", "harness/yaml", "physics/scene"}},
+      {"harness/format",
+       {"harness/base", "harness/scenario", "harness/yaml", "physics/motion", "physics/scene"}},
+      {"harness/build",
+       {"harness/format", "harness/scenario", "harness/yaml", "physics/motion", "physics/person",
+        "physics/scene"}},
+      {"harness/read",
+       {"harness/base", "harness/build", "harness/format", "harness/motion", "harness/scenario",
+        "harness/yaml", "physics/person", "physics/scene"}},
+      {"harness/run",
+       {"grammar", "grammar/base", "grammar/compile", "grammar/program", "harness/base",
+        "harness/format", "harness/process", "harness/read", "harness/scenario", "harness/sense",
+        "harness/timeline", "physics", "physics/scene"}},
+      {"harness/explain",
+       {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/run",
+        "harness/timeline"}},
+      {"harness/pictures", {"harness/run", "harness/scenario", "harness/timeline", "render"}},
+      {"harness/score",
+       {"grammar/base", "harness/base", "harness/oracle", "harness/run", "harness/timeline"}},
+      {"harness/speed",
+       {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/run",
+        "harness/scenario", "harness/sense"}},
+      {"harness/check",
+       {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/golden",
+        "harness/oracle", "harness/pictures", "harness/process", "harness/read", "harness/run",
+        "harness/scenario", "harness/sense", "harness/timeline", "physics/scene"}},
+      {"harness/report", {"harness/base", "harness/check"}},
+      {"harness/cli",
+       {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/check",
+        "harness/explain", "harness/format", "harness/golden", "harness/oracle", "harness/pictures",
+        "harness/process", "harness/read", "harness/report", "harness/run", "harness/score",
+        "harness/sense", "harness/speed", "harness/timeline"}},
+  };
+  return arrows;
+}
+
+std::string InnerRoomOf(const std::string& path) { return path.substr(0, path.rfind('/')); }
+
+std::string CircleIn(const Arrows& arrows) {
+  std::set<std::string> finished;
+  std::vector<std::string> way;
+  const std::function<std::string(const std::string&)> visit = [&](const std::string& room) {
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      if (way[i] != room) continue;
+      std::string circle;
+      for (; i < way.size(); ++i) circle += way[i] + " -> ";
+      return circle + room;
+    }
+    if (!finished.insert(room).second || !arrows.contains(room)) return std::string();
+    way.push_back(room);
+    for (const std::string& next : arrows.at(room)) {
+      if (std::string circle = visit(next); !circle.empty()) return circle;
+    }
+    way.pop_back();
+    return std::string();
+  };
+  for (const auto& [room, ignored] : arrows) {
+    if (std::string circle = visit(room); !circle.empty()) return circle;
+  }
+  return "";
+}
+
+}  // namespace prehend::architecture

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compositions on drawn facts: which combinations are taken and when they are certain.
+#include "tests/grammar/scene.h"
+
+namespace prehend::grammar {
+namespace {
+
+using testing::Scene;
+
+constexpr const char* kGrammar = R"(
+grammar t
+condition held(hand: Hand, cup: Cup) while touching(hand, cup)
+condition placed(hand: Hand, cup: Cup, tray: Movable) while touching(cup, tray) and distance(hand, tray) < 10 m
+event served(hand: Hand, cup: Cup, tray: Movable)
+  compose take: reached(hand, cup, tray), put: placed(hand, cup, tray)
+  where take before|meets put
+event taken(hand: Hand, cup: Cup, tray: Movable) compose take: reached(hand, cup, tray) where take equals take
+event served_taken(hand: Hand, cup: Cup, tray: Movable)
+  compose take: taken(hand, cup, tray), put: placed(hand, cup, tray)
+  where take before|meets put
+event reached(hand: Hand, cup: Cup, tray: Movable) while held(hand, cup) and distance(hand, tray) < 10 m bridging 2 ms
+)";
+
+// One character per tick. A composition of a part alone is that part, and whoever is made of it
+// waits for it as well.
+std::string Served(const std::string& held, const std::string& placed) {
+  const auto program = testing::CompileText(kGrammar);
+  Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  for (std::size_t t = 0; t < held.size(); ++t) {
+    scene.touches.clear();
+    if (held[t] == '#') scene.touches.push_back({.a = 0, .b = 1});
+    if (placed[t] == '#') scene.touches.push_back({.a = 1, .b = 2});
+    monitor.Advance(scene.At(static_cast<Tick>(t)), events);
+  }
+  monitor.Finish(static_cast<Tick>(held.size()), events);
+  const auto text = [&](const std::string& name) {
+    std::string found;
+    for (const Event& e : events) {
+      if (program->rules[e.rule].name != name) continue;
+      found += "[" + std::to_string(e.interval.begin) + "," + std::to_string(e.interval.end) +
+               ")@" + std::to_string(e.decided) + " ";
+    }
+    return found;
+  };
+  EXPECT_EQ(text("served_taken"), text("served"));
+  return text("served");
+}
+
+TEST(Compose, JoinsPartsWhoseRelationsHold) {
+  EXPECT_EQ(Served("###.........", "......##...."), "[0,8)@8 ");
+  EXPECT_EQ(Served("###.........", "...##......."), "[0,5)@5 ");
+  EXPECT_EQ(Served("###.........", "..##........"), "");
+}
+
+TEST(Compose, TakesTheLatestBeginAndNeverOverlaps) {
+  EXPECT_EQ(Served("##...##.......", ".........##..."), "[5,11)@11 ");
+  EXPECT_EQ(Served("##.......##......", "....##......##..."), "[0,6)@6 [9,14)@14 ");
+  EXPECT_EQ(Served("##...............", "....##......##..."), "[0,6)@6 ");
+}
+
+// The gap at 9 may be bridged, so whether a later take has ended before the put is open until it is
+// not.
+TEST(Compose, WaitsUntilNoBetterPartCanCome) {
+  EXPECT_EQ(Served("#....####.......", ".........#......"), "[5,10)@11 ");
+}
+
+TEST(Compose, ClosesAtTheEndOfTheEpisode) { EXPECT_EQ(Served("##......", "....####"), "[0,8)@8 "); }
+
+}  // namespace
+}  // namespace prehend::grammar

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Deadlines, attributes, definitions and sensor sets on frames written by hand;
+// tests/grammar/reference/reference_test.cc has the meaning of the forms on many streams.
+#include "tests/grammar/scene.h"
+
+namespace prehend::grammar {
+namespace {
+
+using testing::Scene;
+
+std::vector<Event> WatchTouch(const std::string& text, const std::vector<Tick>& ticks,
+                              Tick touch_until) {
+  Scene scene;
+  scene.touches = {
+      {.a = Scene::kHand, .b = Scene::kCup, .normal_force_n = 3, .sensor_sets = 0b101}};
+  Monitor monitor(testing::CompileText("grammar t\n" + text), scene.entity_table);
+  std::vector<Event> events;
+  for (const Tick tick : ticks) {
+    scene.looks[Scene::kCup].p_WB_m.z() = static_cast<double>(tick) / 1000;
+    if (tick >= touch_until) scene.touches.clear();
+    monitor.Advance(scene.At(tick), events);
+  }
+  monitor.Finish(100, events);
+  EXPECT_EQ(monitor.error(), "");
+  return events;
+}
+
+constexpr const char* kMissed =
+    "event missed(h: Hand, c: Cup) from touching(h, c) begins without touching(h, c) ends within "
+    "25 ms";
+
+TEST(Forms, ADeadlineBetweenTwoFramesDecidesAtItself) {
+  const std::vector<Event> events = WatchTouch(kMissed, {0, 10, 20, 40}, 90);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].interval, (Interval{0, 25}));
+  EXPECT_EQ(events[0].decided, 25);
+}
+
+TEST(Forms, ADeadlineThatPassesBeforeTheEndOfTheEpisodeCounts) {
+  EXPECT_EQ(WatchTouch(kMissed, {0, 10}, 90).size(), 1u);
+  EXPECT_EQ(WatchTouch("event missed(h: Hand, c: Cup) from touching(h, c) begins without "
+                       "touching(h, c) ends within 101 ms",
+                       {0, 10}, 90)
+                .size(),
+            0u);
+}
+
+TEST(Forms, WhatComesAtTheDeadlineIsInTime) {
+  EXPECT_EQ(WatchTouch(kMissed, {0, 10, 25}, 25).size(), 0u);
+  EXPECT_EQ(WatchTouch(kMissed, {0, 10, 26}, 26).size(), 1u);
+}
+
+// "From A to t later" is not over before t is, and what comes later than t is not in time.
+TEST(Forms, ADeadlineBetweenTwoTicksIsTheLaterOne) {
+  const std::string missed =
+      "event missed(h: Hand, c: Cup) from touching(h, c) begins without touching(h, c) ends within "
+      "24.6 ms lasting 24.6 ms";
+  for (const Tick touch_until : {25, 90}) {
+    const std::vector<Event> events = WatchTouch(missed, {0, 10, 25, 40}, touch_until);
+    ASSERT_EQ(events.size(), 1u) << touch_until;
+    EXPECT_EQ(events[0].interval, (Interval{0, 25}));
+  }
+  EXPECT_EQ(WatchTouch(missed, {0, 10, 24, 40}, 24).size(), 0u);
+}
+
+// The gap at 20 is too long at 40, but only at 90 is it known whether anything is true there.
+TEST(Forms, WhatIsDecidedLateIsAskedForWhereItEnded) {
+  const std::vector<Event> events = WatchTouch(
+      "condition high(c: Cup) while height(c) > 35 mm lasting 50 ms\n"
+      "event held(h: Hand, c: Cup) while touching(h, c) or high(c) bridging 4 ms requires "
+      "height(c) < 20.5 mm",
+      {0, 10, 20, 21, 22, 23, 40, 50, 60, 70, 80, 90}, 20);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].interval, (Interval{0, 20}));
+}
+
+// At the first begin nobody needs to ask for the tray, so nothing of it would wake the rule later.
+TEST(Forms, WhatWasNotAskedForBeforeBeginsTheNextOne) {
+  Scene scene;
+  Monitor monitor(
+      testing::CompileText("grammar t\nevent e(h: Hand, c: Cup, t: Movable)\n"
+                           "from touching(h, c) begins or touching(h, t) begins\n"
+                           "to touching(h, c) ends during height(c) >= height(c)@begin or drop"),
+      scene.entity_table);
+  const Touch cup{.a = Scene::kHand, .b = Scene::kCup};
+  const Touch tray{.a = Scene::kHand, .b = Scene::kTray};
+  const std::vector<std::vector<Touch>> touches = {{cup}, {cup}, {cup}, {cup, tray}, {tray}};
+  std::vector<Event> events;
+  for (Tick tick = 0; tick < 5; ++tick) {
+    scene.looks[Scene::kCup].p_WB_m.z() = tick < 2 ? 1 : 0;  // dropped at 2
+    scene.touches = touches[tick];
+    monitor.Advance(scene.At(tick), events);
+  }
+  monitor.Finish(5, events);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].interval, (Interval{3, 4}));
+}
+
+TEST(Forms, AttributesAreTakenAtTheBeginUnlessTheySayOtherwise) {
+  const std::vector<Event> events = WatchTouch(
+      "event held(h: Hand, c: Cup) while touching(h, c)\n"
+      "with force = force(h, c) with low = height(c) with high = height(c)@end with lift = rise(c) "
+      "* 2",
+      {10, 20, 30}, 30);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_DOUBLE_EQ(events[0].attributes[0], 3);
+  EXPECT_DOUBLE_EQ(events[0].attributes[1], 0.01);
+  EXPECT_DOUBLE_EQ(events[0].attributes[2], 0.03);
+  EXPECT_DOUBLE_EQ(events[0].attributes[3], 0.04);
+}
+
+TEST(Forms, DefinitionsStandForTheirBodies) {
+  const std::string above = "define above(a, level: m) = height(a) > level\n";
+  const std::string twice = "define well_above(b: Cup, level: m) = above(b, 2 * level)\n";
+  const std::vector<Event> events = WatchTouch(
+      above + twice + "event high(c: Cup) while well_above(c, 1 cm)", {0, 10, 20, 30, 40}, 0);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].interval, (Interval{30, 100}));
+}
+
+TEST(Forms, SensorSetsHaveNamesAndNumbers) {
+  const auto count = [](const std::string& set) {
+    return WatchTouch("event e(h: Hand, c: Cup) while sensor_set(h, " + set + ", c)", {0, 10}, 90)
+        .size();
+  };
+  EXPECT_EQ(count("fingers"), 1u);
+  EXPECT_EQ(count("\"palm\""), 1u);
+  EXPECT_EQ(count("thumb"), 0u);
+  EXPECT_EQ(count("1"), 1u);
+  EXPECT_EQ(count("2"), 0u);
+  EXPECT_EQ(count("nose"), 0u);
+}
+
+}  // namespace
+}  // namespace prehend::grammar

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every signal and test of the language, with its unit, on a scene whose values are known by hand.
+#include <numbers>
+
+#include "grammar/compile/builtins.h"
+#include "tests/grammar/corpus.h"
+#include "tests/grammar/scene.h"
+
+namespace prehend::grammar {
+namespace {
+
+using testing::Scene;
+
+// A tray that turns by 1 rad/s about z at the origin and rises by 5 cm/s; a cup 0.4 m to its left,
+// 10 cm long each way, that moves straight up by 6 cm/s; a hand 1 m in front, closing by 10 mm per
+// frame of 10 ms.
+Scene KnownScene() {
+  Scene s;
+  s.entity_table.entities[Scene::kCup].half_size_m = {0.05, 0.05, 0.05};
+  s.entity_table.entities[Scene::kCup].p_BC_m = {0, 0, 0.05};
+  s.looks[Scene::kTray].v_WB_m_per_s = {0, 0, 0.05};
+  s.looks[Scene::kTray].w_WB_rad_per_s = {0, 0, 1};
+  s.looks[Scene::kTray].q_WB = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+  s.looks[Scene::kCup].p_WB_m = {0, 0.4, 0.2};
+  s.looks[Scene::kCup].q_WB = Eigen::AngleAxisd(std::numbers::pi / 6, Eigen::Vector3d::UnitX());
+  s.looks[Scene::kCup].v_WB_m_per_s = {0, 0, 0.06};
+  s.looks[Scene::kHand].p_WB_m = {1, 0, 0.2};
+  s.hand.ahead_W = {-1, 0, 0};
+  s.hand.trigger = 0.7;
+  s.hand.style = 1;
+  s.collision_sphere = {.p_W_m = {0.55, 0.4, 0.2}, .radius_m = 0.01};
+  s.touches = {{.a = Scene::kHand,
+                .b = Scene::kCup,
+                .up_on_a = -0.2,
+                .up_on_b = 0.1,
+                .normal_force_n = 3,
+                .sensor_sets = 0b101},
+               {.a = Scene::kCup,
+                .b = Scene::kTray,
+                .up_on_a = 0.9,
+                .up_on_b = -0.9,
+                .normal_force_n = 4,
+                .vertical_speed_m_per_s = 0.03}};
+  return s;
+}
+
+bool HoldsInScene(const std::string& condition) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent e(hand: Hand, cup: Cup, tray: Movable) while distance(hand, cup) < 100 m "
+      "and "
+      "distance(cup, tray) < 100 m and " +
+      condition);
+  if (!program) return false;
+  Scene scene = KnownScene();
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  monitor.Advance(scene.At(0), events);
+  scene.collision_sphere.p_W_m.x() -= 0.01;
+  monitor.Advance(scene.At(10), events);
+  monitor.Finish(20, events);
+  // The last frame decides: closing_speed has no value before there are two.
+  return !events.empty() && events.back().interval.end == 20;
+}
+
+TEST(Signals, HaveTheirDocumentedValues) {
+  const struct {
+    const char* signal;
+    double value;
+    const char* unit;
+  } cases[] = {
+      {"trigger(hand)", 0.7, ""},
+      {"sensor_sets(hand, cup)", 2, ""},
+      {"sensor_sets(hand, tray)", 0, ""},
+      {"up(cup, tray)", 0.9, ""},
+      {"up(tray, cup)", -0.9, ""},
+      {"up(cup, hand)", 0.1, ""},
+      {"up(hand, tray)", -1, ""},
+      {"force(tray, cup)", 4, "N"},
+      {"touch_speed(tray, cup)", 0.03, "m/s"},
+      {"touch_speed(hand, tray)", 0, "m/s"},
+      {"gap(hand, cup)", 0.48, "m"},
+      {"closing_speed(hand, cup)", 1, "m/s"},
+      {"surface_speed(hand)", 1, "m/s"},
+      {"distance(hand, position(tray))", std::sqrt(1.04), "m"},
+      {"height(cup)", 0.2, "m"},
+      {"height(ahead(hand, 0.3 m))", 0.2, "m"},
+      {"distance(hand, ahead(hand, 30 cm))", 0.3, "m"},
+      {"speed(cup)", 0.06, "m/s"},
+      {"vertical_speed(cup)", 0.06, "m/s"},
+      {"relative_vertical_speed(cup, tray)", 0.01, "m/s"},
+      {"speed_along(cup, tray)", 0.4, "m/s"},
+      {"tilt(cup)", std::numbers::pi / 6, "rad"},
+      {"height(position_on(cup, tray))", 0.2, "m"},
+      {"abs(up(hand, tray))", 1, ""},
+      {"(2 * height(cup) - 10 cm)", 0.3, "m"},
+      {"height(cup) / 0.1 s", 2, "m/s"},
+  };
+  // A bound beyond what a signal can be is refused; of a product with the cup's height nobody knows
+  // what it can be.
+  constexpr const char* kTimesOne = " * (height(cup) / 20 cm) ";
+  for (const auto& c : cases) {
+    const auto compare = [&](const char* op, double value) {
+      std::ostringstream text;
+      text.precision(17);
+      text << c.signal << kTimesOne << op << ' ' << value << ' ' << c.unit;
+      return HoldsInScene(text.str());
+    };
+    EXPECT_TRUE(compare(">", c.value - 1e-9)) << c.signal;
+    EXPECT_TRUE(compare("<", c.value + 1e-9)) << c.signal;
+  }
+}
+
+// Where `drift_along` of the cup on the tray is above 1 cm/s, when the cup is at x_m(t) and a frame
+// comes every step ms.
+template <typename Where>
+std::vector<Interval> Drifting(Where&& x_m, Tick step, Tick end, double tray_m_per_s = 0) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 1 "
+      "cm/s");
+  Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  std::vector<Interval> drifting;
+  for (Tick t = 0; t < end; t += step) {
+    const double tray_m = tray_m_per_s * static_cast<double>(t) / 1000;
+    scene.looks[Scene::kTray].p_WB_m.x() = tray_m;
+    scene.looks[Scene::kCup].p_WB_m.x() = tray_m + x_m(t);
+    monitor.Advance(scene.At(t), events);
+  }
+  monitor.Finish(end, events);
+  for (const Event& event : events) drifting.push_back(event.interval);
+  return drifting;
+}
+
+TEST(Signals, DriftIsTheWayOverAWindow) {
+  using Intervals = std::vector<Interval>;
+  // A jump by 2 mm is 2 cm/s over every window that contains it, whoever carries the tray.
+  const auto jump = [](Tick t) { return t < 500 ? 0.0 : 0.002; };
+  EXPECT_EQ(Drifting(jump, 10, 1000), (Intervals{{450, 550}}));
+  EXPECT_EQ(Drifting(jump, 10, 1000, 0.3), (Intervals{{450, 550}}));
+  // The window reaches to the next frames that are far enough away: 60 ms here.
+  EXPECT_EQ(Drifting([](Tick t) { return t < 510 ? 0.0 : 0.002; }, 30, 990),
+            (Intervals{{450, 570}}));
+  // Trembling gets nowhere: 0.4 mm to and fro is 4 cm/s.
+  EXPECT_EQ(
+      Drifting([](Tick t) { return 0.0004 * static_cast<double>(t / 10 % 2); }, 10, 1000, 0.3),
+      (Intervals{}));
+  // At the episode's begin and end the window is cut off and the time with it.
+  EXPECT_EQ(Drifting([](Tick t) { return t < 10 ? 0.0 : 0.0009; }, 10, 1000), (Intervals{{0, 40}}));
+  EXPECT_EQ(Drifting([](Tick t) { return t < 990 ? 0.0 : 0.0009; }, 10, 1000),
+            (Intervals{{960, 1000}}));
+  EXPECT_EQ(Drifting(jump, 10, 10), (Intervals{}));
+}
+
+TEST(Signals, DriftIsKnownWhenItsWindowIsComplete) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 1 "
+      "cm/s\n"
+      "event jumped(cup: Cup, tray: Movable) from drift_along(cup, tray, 100 ms) > 1 cm/s begins\n"
+      "  to drift_along(cup, tray, 100 ms) < drift_along(cup, tray, 100 ms)@begin / 2 begins");
+  Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  for (Tick t = 0; t < 1000; t += 10) {
+    scene.looks[Scene::kCup].p_WB_m.x() = t < 500 ? 0 : 0.002;
+    monitor.Advance(scene.At(t), events);
+  }
+  ASSERT_EQ(events.size(), 2u);
+  for (const Event& event : events) {
+    EXPECT_EQ(event.interval, (Interval{450, 550}));
+    EXPECT_EQ(event.decided, 600);
+  }
+}
+
+TEST(Signals, TestsHoldAsDocumented) {
+  const std::pair<const char*, bool> cases[] = {
+      {"touching(hand, cup)", true},
+      {"touching(cup, hand)", true},
+      {"touching(hand, tray)", false},
+      {"is(cup, Cup)", true},
+      {"is(tray, Cup)", false},
+      {"part_of(cup, tray)", true},
+      {"part_of(tray, cup)", false},
+      {"in_sphere(position(cup), tray, 0.45 m)", true},
+      {"in_sphere(position(cup), tray, 0.44 m)", false},
+      {"in_sphere(cup, tray, 0.40 m)", true},  // its box reaches nearer than its origin
+      {"in_cylinder(cup, tray, 0.41 m, 0.21 m)", true},
+      {"in_cylinder(cup, tray, 0.39 m, 0.21 m)", false},
+      {"in_cylinder(cup, tray, 0.41 m, 0.19 m)", false},
+      {"in_cylinder(tray, cup, 0.41 m, 0.21 m)", true},  // above and below
+  };
+  for (const auto& [condition, holds] : cases)
+    EXPECT_EQ(HoldsInScene(condition), holds) << condition;
+}
+
+TEST(Signals, APartOfAPartIsAPartOfTheWhole) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent e(part: Entity, whole: Entity) while part_of(part, whole)");
+  Scene scene;
+  scene.entity_table.entities[Scene::kTray].part_of =
+      Scene::kHand;  // and the cup is a part of the tray
+  const auto pairs = [&] {
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    monitor.Advance(scene.At(0), events);
+    monitor.Finish(10, events);
+    return events.size();
+  };
+  EXPECT_EQ(pairs(), 3u);
+  scene.entity_table.entities[Scene::kHand].part_of =
+      Scene::kCup;  // a ring ends, too: each is a part of both others
+  EXPECT_EQ(pairs(), 6u);
+}
+
+TEST(Signals, InsideAsksTheCentreOfTheBox) {
+  const auto program =
+      testing::CompileText("grammar t\nevent e(cup: Cup, tray: Movable) while inside(cup, tray)");
+  Scene scene;
+  EntityInfo& room = scene.entity_table.entities[Scene::kTray];
+  room.half_size_m = {0.5, 0.5, 0.1};
+  room.p_BC_m = {0, 0, 0.1};
+  scene.entity_table.entities[Scene::kCup].p_BC_m = {0, 0, 0.05};
+  const auto holds = [&](const Eigen::Vector3d& p_W_m) {
+    scene.looks[Scene::kCup].p_WB_m = p_W_m;
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    monitor.Advance(scene.At(0), events);
+    monitor.Finish(10, events);
+    return !events.empty();
+  };
+  EXPECT_TRUE(holds({0.49, 0.49, 0.14}));
+  EXPECT_FALSE(holds({0.49, 0.49, 0.16})) << "the centre is 5 cm above the origin";
+  scene.looks[Scene::kTray].q_WB =
+      Eigen::AngleAxisd(std::numbers::pi / 4, Eigen::Vector3d::UnitZ());
+  EXPECT_FALSE(holds({0.49, 0.49, 0.05})) << "the tray has turned";
+  EXPECT_TRUE(holds({0.69, 0, 0.05}));
+  room.half_size_m.setConstant(0.5);
+  room.round = true;
+  EXPECT_FALSE(holds({0.3, 0.3, 0.4})) << "a ball has no corners";
+  EXPECT_TRUE(holds({0.3, 0.3, 0.1}));
+}
+
+// Users look signals up in the reference; it lists each of them.
+TEST(Signals, AreAllDocumented) {
+  const std::string docs = testing::ReadFile(PREHEND_SOURCE_DIR "/docs/grammar-language.md");
+  for (const Builtin& builtin : Builtins()) {
+    EXPECT_NE(docs.find("| `" + std::string(builtin.name) + "("), std::string::npos)
+        << builtin.name;
+  }
+}
+
+}  // namespace
+}  // namespace prehend::grammar

@@ -1,0 +1,543 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/grammar/reference/random_grammar.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "grammar/base/allen.h"
+
+namespace prehend::grammar::testing {
+namespace {
+
+using reference::Anchored;
+using reference::Runs;
+using reference::Stream;
+using Kind = Term::Kind;
+using Form = RandomRule::Form;
+
+constexpr int kRoles = 3;  // p, q, r; x has a part in everything
+constexpr unsigned kP = 1;
+constexpr std::array<const char*, kRoles> kNames = {"p", "q", "r"};
+constexpr std::array<const char*, kRoles> kClasses = {"P", "Q", "R"};
+
+unsigned RolesOf(const Term& term) {
+  unsigned roles = term.kind == Kind::kTouch  ? 1U << term.which
+                   : term.kind == Kind::kRule ? term.named
+                                              : 0;
+  for (const Term& arg : term.args) roles |= RolesOf(arg);
+  return roles;
+}
+
+std::string Head(int rule, unsigned roles, unsigned named, bool classes) {
+  std::string text = "rule" + std::to_string(rule) + (classes ? "(x: X" : "(x");
+  for (int i = 0; i < kRoles; ++i) {
+    if (!(roles >> i & 1)) continue;
+    text += std::string(", ") + (named >> i & 1 ? kNames[i] : "any") +
+            (classes ? std::string(": ") + kClasses[i] : "");
+  }
+  return text + ")";
+}
+
+// Draws rules one after another; each may use those before it.
+class Maker {
+ public:
+  Maker(std::mt19937_64& random, std::vector<RandomRule>& rules) : random_(random), rules_(rules) {}
+
+  void Add() {
+    RandomRule rule;
+    const unsigned form = Below(rules_.size() < 2 ? 4 : 6);
+    rule.form = static_cast<Form>(form);
+    if (rule.form == Form::kRest) MakeRest(rule);
+    if (rule.form == Form::kCompose) MakeCompose(rule);
+    if (form < 4) MakeConditions(rule);
+    if (Below(3) == 0) rule.lasting = static_cast<Tick>(Below(6));
+    if (rule.within >= 0) rule.lasting = std::min(rule.lasting, rule.within);
+    if (rule.form == Form::kUntil) rule.lasting = std::min(rule.lasting, rule.back);
+    rule.halves = Sometimes();
+    if (rule.form != Form::kCompose) MakeConditionsOfTheWhole(rule);
+    rule.roles = RolesOf(rule.first) | RolesOf(rule.second) | RolesOf(rule.during) |
+                 RolesOf(rule.requirement) | RolesOf(rule.by) | RolesOf(rule.episode);
+    for (const Term& call : rule.calls) rule.roles |= RolesOf(call);
+    rules_.push_back(std::move(rule));
+  }
+
+ private:
+  unsigned Below(std::size_t limit) { return static_cast<unsigned>(random_() % limit); }
+  bool Sometimes() { return Below(3) == 0; }
+
+  void MakeConditions(RandomRule& rule) {
+    if (rule.form == Form::kWhile) {
+      rule.first = Condition(3);
+      rule.has_second = Sometimes();
+      if (rule.has_second) rule.second = Condition(2);
+      if (Sometimes()) rule.bridging = 1 + static_cast<Tick>(Below(4));
+      return;
+    }
+    rule.first = Moment("");
+    if (rule.form == Form::kUntil) {
+      rule.second = Condition(2, "end");
+      rule.back = 1 + static_cast<Tick>(Below(20));
+      rule.approaches = Sometimes();
+      rule.slack_m = static_cast<int>(Below(2));
+      rule.idles = rule.approaches && Sometimes();
+      rule.speed_m_per_s = rule.idles ? 370 : 0;
+      rule.idle = static_cast<Tick>(Below(5));
+      rule.onset_m_per_s = rule.idle % 2 == 1 ? 120 : rule.speed_m_per_s / 10;
+      return;
+    }
+    rule.second = Moment("begin");
+    rule.has_during = Sometimes();
+    if (rule.has_during) rule.during = Condition(2, "begin");
+    rule.or_drop = rule.form == Form::kFromTo && rule.has_during && Below(2) == 0;
+    if (rule.form == Form::kWithout || Sometimes()) rule.within = 1 + static_cast<Tick>(Below(9));
+  }
+
+  void MakeConditionsOfTheWhole(RandomRule& rule) {
+    rule.has_requirement = Sometimes();
+    rule.requires_at_end = Below(2) == 0;
+    if (rule.has_requirement)
+      rule.requirement = Condition(2, rule.requires_at_end ? "end" : "begin");
+    rule.is_confirmed = !rules_.empty() && Below(5) == 0;
+    if (!rule.is_confirmed) return;
+    rule.by = Call();
+    rule.episode = Call();
+  }
+
+  void MakeRest(RandomRule& rule) {
+    const unsigned others = 1 + Below(2);
+    for (unsigned i = 0; i <= others; ++i) rule.calls.push_back(Call());
+  }
+
+  int AnyRule() { return static_cast<int>(Below(rules_.size())); }
+
+  void MakeCompose(RandomRule& rule) {
+    const unsigned parts = 1 + Below(3);
+    unsigned common = 0;
+    const bool each_its_own = Sometimes();
+    const auto loses_roles = [&](const Term& part) {  // a composition's roles are all named
+      return !each_its_own && rules_[part.which].form == Form::kCompose &&
+             rules_[part.which].roles != common;
+    };
+    do {
+      rule.calls.clear();
+      common = ~0U;
+      for (unsigned i = 0; i < parts; ++i) {
+        rule.calls.push_back({.kind = Kind::kRule, .which = AnyRule()});
+        common &= rules_[rule.calls.back().which].roles;
+      }
+    } while (std::ranges::any_of(rule.calls, loses_roles));
+    for (Term& part : rule.calls) part.named = each_its_own ? rules_[part.which].roles : common;
+    const unsigned clauses = 1 + Below(parts);
+    for (unsigned i = 0; i < clauses; ++i) {
+      rule.clauses.push_back({.left = Below(parts),
+                              .right = Below(parts),
+                              .relations = 1 + Below((1U << kAllenNames.size()) - 1)});
+    }
+  }
+
+  // Instants are allowed wherever conditions are.
+  Term Condition(int depth, const std::string& anchor = "") {
+    const unsigned choice = Below(depth > 0 ? 10 : 5);
+    switch (choice) {
+      case 0:
+      case 1:
+        return Touch();
+      case 2:
+        return {.kind = Kind::kHigh,
+                .value =
+                    static_cast<int>(Below(3)) + (Below(2) == 0 ? 1 : 0) - (anchor.empty() ? 0 : 1),
+                .anchor = anchor};
+      case 3:
+      case 4:
+        return rules_.empty() ? Touch() : Call();
+      case 5:
+        return {.kind = Kind::kNot, .args = {Condition(depth - 1, anchor)}};
+      case 6:
+        return Below(4) == 0 ? Moment(anchor) : Touch();
+      default:
+        return {.kind = choice == 7 ? Kind::kOr : Kind::kAnd,
+                .args = {Condition(depth - 1, anchor), Condition(depth - 1, anchor)}};
+    }
+  }
+
+  Term Moment(const std::string& anchor) {
+    Term edge{.kind = Kind::kEdge, .begins = Below(2) == 0, .args = {State(anchor)}};
+    if (Below(4) != 0) return edge;
+    Term other = Below(2) == 0 ? Moment(anchor) : State(anchor);
+    const bool both = other.kind != Kind::kEdge || Below(2) == 0;
+    return {.kind = both ? Kind::kAnd : Kind::kOr, .args = {std::move(edge), std::move(other)}};
+  }
+
+  // What can begin and end: it has no moments in it.
+  Term State(const std::string& anchor) {
+    switch (Below(6)) {
+      case 0:
+        return {.kind = Kind::kHigh, .value = static_cast<int>(Below(3)), .anchor = anchor};
+      case 1:
+        return {.kind = Kind::kNot, .args = {Touch()}};
+      case 2:
+        return {.kind = Kind::kOr, .args = {Touch(), rules_.empty() ? Touch() : Call()}};
+      case 3:
+        return Touch();
+      default:
+        return rules_.empty() ? Touch() : Call();
+    }
+  }
+
+  Term Touch() { return {.kind = Kind::kTouch, .which = static_cast<int>(Below(kRoles))}; }
+
+  Term Call() {
+    Term call{.kind = Kind::kRule, .which = AnyRule()};
+    while (rules_[call.which].form == Form::kCompose)
+      call.which = AnyRule();  // the first rule is none
+    const unsigned roles = rules_[call.which].roles;
+    call.named = Below(3) == 0 ? roles & Below(8) : roles;
+    return call;
+  }
+
+  std::mt19937_64& random_;
+  std::vector<RandomRule>& rules_;
+};
+
+// Writes rules down.
+class Writer {
+ public:
+  explicit Writer(const std::vector<RandomRule>& rules) : rules_(rules) {}
+
+  std::string Text() const {
+    std::string text = "grammar random\n";
+    for (std::size_t i = 0; i < rules_.size(); ++i) text += RuleText(static_cast<int>(i));
+    return text;
+  }
+
+ private:
+  std::string TermText(const Term& term) const {
+    switch (term.kind) {
+      case Kind::kTouch:
+        return std::string("touching(x, ") + kNames[term.which] + ")";
+      case Kind::kHigh: {
+        const std::string value = std::to_string(term.value) + " m";
+        return term.anchor.empty() ? "height(x) >= " + value
+                                   : "height(x) >= height(x)@" + term.anchor + " + " + value;
+      }
+      case Kind::kRule:
+        return Head(term.which, rules_[term.which].roles, term.named, false);
+      case Kind::kNot:
+        return "(not " + TermText(term.args[0]) + ")";
+      case Kind::kEdge:
+        return "(" + TermText(term.args[0]) + (term.begins ? " begins)" : " ends)");
+      default:
+        return "(" + TermText(term.args[0]) + (term.kind == Kind::kAnd ? " and " : " or ") +
+               TermText(term.args[1]) + ")";
+    }
+  }
+
+  std::string RuleText(int index) const {
+    const RandomRule& rule = rules_[index];
+    // As written; in whole ticks the same as without the half.
+    const std::string half = rule.halves ? ".5 ms" : " ms";
+    const auto at_most = [&](Tick ticks) { return std::to_string(ticks) + half; };
+    const auto at_least = [&](Tick ticks) {
+      return std::to_string(ticks - (rule.halves ? 1 : 0)) + half;
+    };
+    std::string text = "event " + Head(index, rule.roles, rule.roles, true) + "\n ";
+    switch (rule.form) {
+      case Form::kWhile:
+        text += " while " + TermText(rule.first) +
+                (rule.has_second ? " until " + TermText(rule.second) : "");
+        break;
+      case Form::kFromTo:
+      case Form::kWithout:
+        text += " from " + TermText(rule.first) +
+                (rule.form == Form::kWithout ? " without " : " to ") + TermText(rule.second) +
+                (rule.within < 0               ? ""
+                 : rule.form == Form::kWithout ? " within " + at_least(rule.within)
+                                               : " within " + at_most(rule.within)) +
+                (rule.has_during ? " during " + TermText(rule.during) : "") +
+                (rule.or_drop ? " or drop" : "");
+        break;
+      case Form::kUntil:
+        text += " until " + TermText(rule.first) + " since " + TermText(rule.second) +
+                ApproachText(rule) + " at most " + at_most(rule.back) + " back";
+        break;
+      case Form::kRest:
+        text += " rest of " + TermText(rule.calls[0]) + " outside " + TermText(rule.calls[1]);
+        for (std::size_t i = 2; i < rule.calls.size(); ++i) text += ", " + TermText(rule.calls[i]);
+        break;
+      case Form::kCompose:
+        text += ComposeText(rule);
+        break;
+    }
+    if (rule.bridging > 0) text += " bridging " + at_most(rule.bridging);
+    if (rule.lasting > 0) text += " lasting " + at_least(rule.lasting);
+    if (rule.has_requirement) text += " requires " + TermText(rule.requirement);
+    if (rule.is_confirmed)
+      text += " confirmed by " + TermText(rule.by) + " within " + TermText(rule.episode);
+    return text + "\n";
+  }
+
+  static std::string ApproachText(const RandomRule& rule) {
+    if (!rule.approaches) return {};
+    const std::string text =
+        " approaching height(x) receding at most " + std::to_string(rule.slack_m) + ".5 m";
+    if (!rule.idles) return text;
+    return text + ", slower than 370 m/s at most " + std::to_string(rule.idle) + " ms" +
+           (rule.onset_m_per_s == 120 ? ", onset 120 m/s" : "");
+  }
+
+  std::string ComposeText(const RandomRule& rule) const {
+    std::string text = " compose ";
+    for (std::size_t i = 0; i < rule.calls.size(); ++i) {
+      text += (i == 0 ? "a" : ", a") + std::to_string(i) + ": " + TermText(rule.calls[i]);
+    }
+    text += " where ";
+    for (const RandomRule::Clause& clause : rule.clauses) {
+      text += (&clause == &rule.clauses.front() ? "a" : ", a") + std::to_string(clause.left) + " ";
+      std::string names;
+      for (std::size_t i = 0; i < kAllenNames.size(); ++i) {
+        if (clause.relations >> i & 1)
+          names += (names.empty() ? "" : "|") + std::string(kAllenNames[i]);
+      }
+      text += names + " a" + std::to_string(clause.right);
+    }
+    return text;
+  }
+
+  const std::vector<RandomRule>& rules_;
+};
+
+// Says what the rules mean for one episode, for both bindings of p.
+class Meaning {
+ public:
+  Meaning(const std::vector<RandomRule>& rules, const RandomEpisode& episode)
+      : rules_(rules), e_(episode), n_(episode.frames()) {
+    for (std::size_t i = 0; i < rules.size(); ++i) {
+      found_.emplace_back();
+      for (int p = 0; p < 2; ++p) found_.back()[p] = Find(rules[i], p);
+    }
+  }
+
+  using Found = std::vector<reference::Timed>;
+  const Found& Of(std::size_t rule, int p) const { return found_[rule][p]; }
+
+ private:
+  Found InTicks(const Runs& runs) const { return reference::InTicks(runs, e_.ticks); }
+
+  // The intervals that a call stands for.
+  Found Intervals(const Term& term, int p) const {
+    const bool own = term.kind == Kind::kRule && term.named == rules_[term.which].roles;
+    if (own) return found_[term.which][p];
+    return InTicks(
+        While(Truth(term, p, 0)));  // of somebody: where one goes on when another ends, it is one
+  }
+  Runs CallRuns(const Term& term, int p) const { return reference::RunsOf(Intervals(term, p)); }
+  Runs While(const Stream& stream) const { return reference::While(stream, e_.ticks, 0); }
+
+  Stream Truth(const Term& term, int p, int anchor) const {
+    switch (term.kind) {
+      case Kind::kTouch:
+        return e_.touches[term.which == 0 ? p : term.which + 1];
+      case Kind::kHigh: {
+        const int base = term.anchor.empty() ? 0 : e_.height_m[std::min(anchor, n_ - 1)];
+        Stream high(n_);
+        for (int i = 0; i < n_; ++i) high[i] = e_.height_m[i] >= base + term.value;
+        return high;
+      }
+      case Kind::kRule: {
+        const bool anybody = (rules_[term.which].roles & kP & ~term.named) != 0;
+        const Stream own =
+            reference::Truth(reference::RunsOf(found_[term.which][anybody ? 0 : p]), n_);
+        return anybody ? reference::Or(
+                             own, reference::Truth(reference::RunsOf(found_[term.which][1]), n_))
+                       : own;
+      }
+      case Kind::kAnd:
+        return reference::And(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
+      case Kind::kOr:
+        return reference::Or(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
+      case Kind::kNot:
+        return reference::Not(Truth(term.args[0], p, anchor));
+      case Kind::kEdge: {
+        const Term& arg = term.args[0];
+        const bool has_intervals = arg.kind == Kind::kRule || arg.kind == Kind::kTouch;
+        const Runs runs = has_intervals ? CallRuns(arg, p) : While(Truth(arg, p, anchor));
+        return term.begins ? reference::Begins(runs, n_) : reference::Ends(runs, n_);
+      }
+    }
+    return {};
+  }
+
+  Anchored AnchoredTruth(const Term& term, int p) const {
+    return Anchored(
+        std::function<Stream(int)>([this, &term, p](int frame) { return Truth(term, p, frame); }));
+  }
+
+  Found FindForm(const RandomRule& rule, int p) const {
+    const Anchored during =
+        rule.has_during ? AnchoredTruth(rule.during, p) : Anchored(Stream(n_, true));
+    switch (rule.form) {
+      case Form::kWhile: {
+        const Stream on = Truth(rule.first, p, 0);
+        return InTicks(
+            reference::While(rule.has_second ? reference::Hold(on, Truth(rule.second, p, 0)) : on,
+                             e_.ticks, rule.bridging));
+      }
+      case Form::kFromTo:
+        return InTicks(reference::FromTo(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
+                                         during, rule.or_drop, e_.ticks, rule.within));
+      case Form::kWithout:
+        return reference::FromWithout(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
+                                      during, e_.ticks,
+                                      static_cast<double>(rule.within) - (rule.halves ? 0.5 : 0));
+      case Form::kUntil: {
+        reference::Approach approach{.signal = {e_.height_m.begin(), e_.height_m.end()},
+                                     .slack = rule.slack_m + 0.5,
+                                     .speed = rule.speed_m_per_s,
+                                     .onset = rule.onset_m_per_s,
+                                     .idle = rule.idles ? rule.idle : -1};
+        return InTicks(reference::UntilSince(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
+                                             e_.ticks, rule.back,
+                                             rule.approaches ? &approach : nullptr));
+      }
+      case Form::kRest: {
+        std::vector<Stream> outside;
+        for (std::size_t i = 1; i < rule.calls.size(); ++i)
+          outside.push_back(Truth(rule.calls[i], p, 0));
+        return InTicks(reference::RestOf(CallRuns(rule.calls[0], p), outside));
+      }
+      case Form::kCompose: {
+        std::vector<Found> parts;
+        for (const Term& call : rule.calls) parts.push_back(Intervals(call, p));
+        return reference::Compose(parts, [&](const std::vector<Interval>& chosen) {
+          return std::ranges::all_of(rule.clauses, [&](const RandomRule::Clause& clause) {
+            return (Bit(Relate(chosen[clause.left], chosen[clause.right])) & clause.relations) != 0;
+          });
+        });
+      }
+    }
+    return {};
+  }
+
+  Found Find(const RandomRule& rule, int p) const {
+    Found kept;
+    for (const reference::Timed& one : FindForm(rule, p)) {
+      if (one.ticks.end - one.ticks.begin < rule.lasting) continue;
+      if (Meets(rule, one.run, p) && IsConfirmed(rule, one.run, p)) kept.push_back(one);
+    }
+    return kept;
+  }
+
+  bool Meets(const RandomRule& rule, const reference::Run& run, int p) const {
+    if (!rule.has_requirement) return true;
+    return Truth(rule.requirement, p,
+                 rule.requires_at_end ? run.end : run.begin)[std::min(run.end, n_ - 1)];
+  }
+
+  bool IsConfirmed(const RandomRule& rule, const reference::Run& run, int p) const {
+    if (!rule.is_confirmed) return true;
+    return !reference::ConfirmedBy({run}, CallRuns(rule.by, p), Truth(rule.episode, p, 0)).empty();
+  }
+
+  const std::vector<RandomRule>& rules_;
+  const RandomEpisode& e_;
+  int n_;
+  std::vector<std::array<Found, 2>> found_;
+};
+
+}  // namespace
+
+RandomEpisode MakeEpisode(std::mt19937_64& random, int frames, unsigned calm) {
+  RandomEpisode episode;
+  std::array<bool, 4> touches = {};
+  int height = 0;
+  Tick tick = static_cast<Tick>(random() % 5);
+  const bool uneven = random() % 2 == 0;
+  for (int i = 0; i < frames; ++i) {
+    for (std::size_t k = 0; k < touches.size(); ++k) {
+      if (random() % calm == 0) touches[k] = !touches[k];
+      episode.touches[k].push_back(touches[k]);
+    }
+    if (random() % calm == 0) height = static_cast<int>(random() % 4);
+    episode.height_m.push_back(height);
+    episode.ticks.push_back(tick);
+    tick += 1 + static_cast<Tick>(uneven && random() % 4 == 0 ? random() % 6 : 0);
+  }
+  episode.ticks.push_back(tick);
+  return episode;
+}
+
+std::string Drawn(const RandomEpisode& episode) {
+  static constexpr std::array<const char*, 4> kFacts = {"p1 ", "p2 ", "q  ", "r  "};
+  std::string text;
+  for (std::size_t k = 0; k < kFacts.size(); ++k) {
+    text += kFacts[k];
+    for (const bool b : episode.touches[k]) text += b ? '#' : '.';
+    text += '\n';
+  }
+  text += "z  ";
+  for (const int height : episode.height_m) text += std::to_string(height);
+  text += "\nticks";
+  for (const Tick tick : episode.ticks) text += " " + std::to_string(tick);
+  return text + "\n";
+}
+
+EntityTable RandomEntityTable() {
+  EntityTable entity_table{.ticks_per_second = 1000};
+  const std::pair<const char*, const char*> all[] = {
+      {"x", "X"}, {"p1", "P"}, {"p2", "P"}, {"q", "Q"}, {"r", "R"}};
+  for (const auto& [name, class_name] : all)
+    entity_table.entities.push_back({.name = name, .classes = {class_name, "Thing", "Entity"}});
+  return entity_table;
+}
+
+void EpisodeFeed::Step(bool as_changes, std::vector<Event>& events) {
+  const int frame = next_++;
+  if (frame == episode_.frames()) return monitor_.Finish(episode_.ticks.back(), events);
+  std::vector<ContactEnd> contact_ends;
+  touches_.clear();
+  for (std::size_t k = 0; k < episode_.touches.size(); ++k) {
+    const int whom = static_cast<int>(k) + 1;
+    if (episode_.touches[k][frame]) touches_.push_back({.a = 0, .b = whom});
+    if (!episode_.touches[k][frame] && frame > 0 && episode_.touches[k][frame - 1])
+      contact_ends.push_back({whom, 0});
+  }
+  looks_[0].p_WB_m.z() = episode_.height_m[frame];
+  const EntityChange change{.entity = 0, .look = looks_[0]};
+  if (!as_changes)
+    return monitor_.Advance(
+        {.tick = episode_.ticks[frame], .entities = looks_, .hands = {}, .touches = touches_},
+        events);
+  monitor_.AdvanceBy({.tick = episode_.ticks[frame],
+                      .entities = {&change, 1},
+                      .hands = {},
+                      .touches = touches_,
+                      .contact_ends = contact_ends},
+                     events);
+}
+
+RandomGrammar::RandomGrammar(std::mt19937_64& random, int rules) {
+  Maker maker(random, rules_);
+  for (int i = 0; i < rules; ++i) maker.Add();
+  text_ = Writer(rules_).Text();
+}
+
+std::map<std::string, std::vector<Interval>> RandomGrammar::Expected(
+    const RandomEpisode& episode) const {
+  const Meaning meaning(rules_, episode);
+  std::map<std::string, std::vector<Interval>> expected;
+  for (std::size_t i = 0; i < rules_.size(); ++i) {
+    const bool two = (rules_[i].roles & kP) != 0;
+    for (int p = 0; p < (two ? 2 : 1); ++p) {
+      std::vector<Interval> intervals;
+      for (const reference::Timed& one : meaning.Of(i, p)) intervals.push_back(one.ticks);
+      if (intervals.empty()) continue;
+      std::sort(intervals.begin(), intervals.end(),
+                [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+      expected["rule" + std::to_string(i) + (two ? "(p" + std::to_string(p + 1) + ")" : "")] =
+          std::move(intervals);
+    }
+  }
+  return expected;
+}
+
+}  // namespace prehend::grammar::testing

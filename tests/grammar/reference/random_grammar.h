@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Well-formed grammars made at random, and what they mean according to
+// tests/grammar/reference/reference.h: every form, with rules that use rules, `any`, values at the
+// begin and at the end, confirmations and compositions. Tested by
+// tests/grammar/reference/reference_test.cc
+#pragma once
+
+#include <array>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "grammar/monitor.h"
+#include "tests/grammar/reference/reference.h"
+
+namespace prehend::grammar::testing {
+
+/// What happens to x: whom it touches (p1, p2, q, r) and how high it is. One tick is 1 ms.
+struct RandomEpisode {
+  std::array<reference::Stream, 4> touches;
+  std::vector<int> height_m;
+  reference::Ticks ticks;  ///< and the end
+
+  int frames() const { return static_cast<int>(height_m.size()); }
+};
+
+/// `calm`: about how many frames a fact stays as it is.
+RandomEpisode MakeEpisode(std::mt19937_64& random, int frames, unsigned calm);
+/// The facts as rows of characters, for messages.
+std::string Drawn(const RandomEpisode& episode);
+
+EntityTable RandomEntityTable();
+
+/// Shows an episode to a monitor, frame by frame, as whole frames or as what is new in them.
+class EpisodeFeed {
+ public:
+  EpisodeFeed(const RandomEpisode& episode, Monitor& monitor)
+      : episode_(episode), monitor_(monitor), looks_(5) {}
+  bool done() const { return next_ > episode_.frames(); }
+  /// The next frame, or after the last one the end.
+  void Step(bool as_changes, std::vector<Event>& events);
+
+ private:
+  const RandomEpisode& episode_;
+  Monitor& monitor_;
+  std::vector<EntitySample> looks_;
+  std::vector<Touch> touches_;
+  int next_ = 0;
+};
+
+/// A truth value made of facts and rules.
+struct Term {
+  enum class Kind { kTouch, kHigh, kRule, kAnd, kOr, kNot, kEdge };
+  Kind kind = Kind::kHigh;
+  int which = 0;       ///< kTouch: role; kRule: rule
+  unsigned named = 0;  ///< kRule: roles that are named; the others are `any`
+  int value = 0;       ///< kHigh: height(x) >= value metres, from `anchor` on if there is one
+  std::string anchor;  ///< kHigh: "begin", "end" or nothing
+  bool begins = true;  ///< kEdge
+  std::vector<Term> args;
+};
+
+/// One rule; which members count depends on the form.
+struct RandomRule {
+  enum class Form { kWhile, kFromTo, kWithout, kUntil, kRest, kCompose };
+  struct Clause {
+    std::size_t left = 0, right = 0;
+    unsigned relations = 0;
+  };
+  Form form = Form::kWhile;
+  unsigned roles = 0;  ///< of p, q, r; x has a part in all
+  Term first, second, during;
+  bool has_second = false, has_during = false, or_drop = false, approaches = false, idles = false;
+  int slack_m = 0;
+  double speed_m_per_s = 0;
+  double onset_m_per_s = 0;  ///< 120 where the text says it, a tenth of the speed where it does not
+  Tick bridging = 0, lasting = 0, within = -1, back = 0, idle = 0;
+  bool halves = false;      ///< its durations are half a tick off what they are in whole ticks
+  std::vector<Term> calls;  ///< kRest: the whole and the others; kCompose: the parts
+  std::vector<Clause> clauses;
+  bool has_requirement = false, requires_at_end = false, is_confirmed = false;
+  Term requirement, by, episode;
+};
+
+class RandomGrammar {
+ public:
+  RandomGrammar(std::mt19937_64& random, int rules);
+
+  const std::string& text() const { return text_; }
+  /// Intervals by "rule(roles)", those with intervals only, sorted.
+  std::map<std::string, std::vector<Interval>> Expected(const RandomEpisode& episode) const;
+
+ private:
+  std::vector<RandomRule> rules_;
+  std::string text_;
+};
+
+}  // namespace prehend::grammar::testing

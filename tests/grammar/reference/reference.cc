@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/grammar/reference/reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace prehend::grammar::reference {
+
+Stream And(const Stream& a, const Stream& b) {
+  Stream both(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) both[i] = a[i] && b[i];
+  return both;
+}
+
+Stream Or(const Stream& a, const Stream& b) {
+  Stream either(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) either[i] = a[i] || b[i];
+  return either;
+}
+
+Stream Not(const Stream& a) {
+  Stream other(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) other[i] = !a[i];
+  return other;
+}
+
+Stream Truth(const Runs& runs, int frames) {
+  Stream truth(frames, false);
+  for (const Run& run : runs) {
+    for (int i = run.begin; i < run.end; ++i) truth[i] = true;
+  }
+  return truth;
+}
+
+Stream Begins(const Runs& runs, int frames) {
+  Stream begins(frames, false);
+  for (const Run& run : runs) begins[run.begin] = true;
+  return begins;
+}
+
+Stream Ends(const Runs& runs, int frames) {
+  Stream ends(frames, false);
+  for (const Run& run : runs) {
+    if (run.end < frames) ends[run.end] = true;
+  }
+  return ends;
+}
+
+Runs While(const Stream& f, const Ticks& ticks, Tick bridging) {
+  Runs runs;
+  const int frames = static_cast<int>(f.size());
+  for (int i = 0; i < frames; ++i) {
+    if (!f[i]) continue;
+    const bool goes_on = !runs.empty() && ticks[i] - ticks[runs.back().end] <= bridging;
+    if (!goes_on && (runs.empty() || runs.back().end != i)) runs.push_back({i, i});
+    runs.back().end = i + 1;
+  }
+  return runs;
+}
+
+Stream Hold(const Stream& on, const Stream& off) {
+  Stream holds(on.size());
+  for (std::size_t i = 0; i < on.size(); ++i)
+    holds[i] = !off[i] && (on[i] || (i > 0 && holds[i - 1]));
+  return holds;
+}
+
+Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool or_drop,
+            const Ticks& ticks, Tick within) {
+  Runs runs;
+  const int frames = static_cast<int>(from.size());
+  for (int i = 0; i < frames; ++i) {
+    if (!from[i]) continue;
+    const Stream ends = to.at(i);
+    const Stream holds = during.at(i);
+    if (!holds[i] || ends[i]) continue;
+    int end = i + 1;
+    const auto in_time = [&] { return within < 0 || ticks[end] - ticks[i] <= within; };
+    while (end < frames && in_time() && !ends[end] && holds[end]) ++end;
+    const bool reached = in_time() && end < frames && ends[end];
+    if (reached || (in_time() && !or_drop)) runs.push_back({i, end});
+    i = end - (end < frames && in_time()
+                   ? 0
+                   : 1);  // what ends one does not begin the next; a frame after the deadline may
+  }
+  return runs;
+}
+
+std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during,
+                               const Ticks& ticks, double within) {
+  std::vector<Timed> found;
+  const int frames = static_cast<int>(from.size());
+  for (int i = 0; i < frames; ++i) {
+    if (!from[i]) continue;
+    const Stream comes = without.at(i);
+    const Stream holds = during.at(i);
+    if (!holds[i] || comes[i]) continue;
+    const Tick deadline = ticks[i] + static_cast<Tick>(std::ceil(within));
+    int end = i + 1;
+    while (end < frames && ticks[end] < deadline && !comes[end] && holds[end]) ++end;
+    const bool waited = ticks[end] >= deadline;
+    const bool in_time = static_cast<double>(ticks[end] - ticks[i]) <= within;
+    const bool just_in_time = waited && end < frames && in_time && comes[end];
+    if (waited && !just_in_time) found.push_back({{i, end}, {ticks[i], deadline}});
+    i = end - (waited && !just_in_time ? 1 : 0);
+  }
+  return found;
+}
+
+namespace {
+
+// Where an approach that reaches `end` begins; `earliest` is as far back as anything else allows.
+int ApproachBegin(const Approach& a, const Ticks& ticks, int earliest, int end) {
+  const auto speed = [&](int i) {
+    return (a.signal[i] - a.signal[i + 1]) / (static_cast<double>(ticks[i + 1] - ticks[i]) / 1000);
+  };
+  const auto largest_after = [&](int i) {
+    return *std::max_element(a.signal.begin() + i + 1, a.signal.begin() + end + 1);
+  };
+  // How far back it goes before it recedes or pauses.
+  int limit = end;
+  bool receded = false;
+  for (Tick moved = ticks[end]; limit > earliest; --limit) {
+    const int i = limit - 1;
+    receded = a.signal[i] < largest_after(i) - a.slack;
+    if (receded) break;
+    if (speed(i) >= a.speed) moved = ticks[i];
+    if (a.idle >= 0 && moved - ticks[i] > a.idle) break;
+  }
+  if (a.idle < 0 && !receded) return limit;
+  // Movement, or the slow start of one; after receding only where the signal is larger than ever
+  // after.
+  int begin = end;
+  for (int i = end - 1; i >= limit; --i) {
+    const bool moves = speed(i) >= a.speed || (begin == i + 1 && speed(i) > a.onset);
+    if (moves && (!receded || a.signal[i] > largest_after(i))) begin = i;
+  }
+  return begin;
+}
+
+}  // namespace
+
+Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, Tick back,
+                const Approach* approach) {
+  Runs runs;
+  const int frames = static_cast<int>(until.size());
+  int previous = 0;
+  for (int end = 0; end < frames; ++end) {
+    if (!until[end]) continue;
+    const Stream holds = since.at(end);
+    int begin = end;
+    while (begin > previous && holds[begin - 1] && ticks[end] - ticks[begin - 1] <= back) --begin;
+    if (approach != nullptr) begin = ApproachBegin(*approach, ticks, begin, end);
+    if (begin < end) runs.push_back({begin, end});
+    previous = end;
+  }
+  return runs;
+}
+
+Runs RestOf(const Runs& whole, const std::vector<Stream>& outside) {
+  Runs runs;
+  for (const Run& run : whole) {
+    bool open = false;
+    for (int i = run.begin; i < run.end; ++i) {
+      const bool covered =
+          std::any_of(outside.begin(), outside.end(), [&](const Stream& s) { return s[i]; });
+      if (!covered && !open) runs.push_back({i, i});
+      open = !covered;
+      if (open) runs.back().end = i + 1;
+    }
+  }
+  return runs;
+}
+
+std::vector<Timed> InTicks(const Runs& runs, const Ticks& ticks) {
+  std::vector<Timed> timed;
+  for (const Run& run : runs) timed.push_back({run, {ticks[run.begin], ticks[run.end]}});
+  return timed;
+}
+
+Runs RunsOf(const std::vector<Timed>& timed) {
+  Runs runs;
+  for (const Timed& one : timed) runs.push_back(one.run);
+  return runs;
+}
+
+Runs Lasting(const Runs& runs, const Ticks& ticks, Tick lasting) {
+  Runs kept;
+  for (const Run& run : runs) {
+    if (ticks[run.end] - ticks[run.begin] >= lasting) kept.push_back(run);
+  }
+  return kept;
+}
+
+Runs ConfirmedBy(const Runs& runs, const Runs& by, const Stream& within) {
+  Runs kept;
+  const int frames = static_cast<int>(within.size());
+  const Stream begins = Begins(by, frames);
+  for (const Run& run : runs) {
+    for (int i = run.end; i < frames && within[i]; ++i) {
+      if (!begins[i]) continue;
+      kept.push_back(run);
+      break;
+    }
+  }
+  return kept;
+}
+
+std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
+                           const std::function<bool(const std::vector<Interval>&)>& fits) {
+  std::vector<Timed> all;
+  std::vector<Timed> chosen(parts.size());
+  const std::function<void(std::size_t)> choose = [&](std::size_t part) {
+    if (part < parts.size()) {
+      for (const Timed& one : parts[part]) {
+        chosen[part] = one;
+        choose(part + 1);
+      }
+      return;
+    }
+    const Timed& first = chosen.front();
+    const Timed& last = chosen.back();
+    Timed whole{{first.run.begin, last.run.end}, {first.ticks.begin, last.ticks.end}};
+    std::vector<Interval> intervals;
+    for (const Timed& one : chosen) {
+      intervals.push_back(one.ticks);
+      whole.completed = std::max(whole.completed, one.Complete());
+    }
+    if (first.ticks.begin < last.ticks.end && fits(intervals)) all.push_back(whole);
+  };
+  choose(0);
+  std::sort(all.begin(), all.end(), [](const Timed& a, const Timed& b) {
+    return std::tuple(a.completed, a.ticks.end, -a.ticks.begin) <
+           std::tuple(b.completed, b.ticks.end, -b.ticks.begin);
+  });
+  std::vector<Timed> kept;
+  for (const Timed& one : all) {
+    if (kept.empty() || one.ticks.begin >= kept.back().ticks.end) kept.push_back(one);
+  }
+  return kept;
+}
+
+}  // namespace prehend::grammar::reference

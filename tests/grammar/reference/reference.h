@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// The meaning table of docs/grammar-language.md as code: slow, obvious, and over whole episodes at
+// once. It shares nothing with the engine but the words.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "grammar/base/frame.h"
+
+namespace prehend::grammar::reference {
+
+/// Truth per frame.
+using Stream = std::vector<bool>;
+
+/// Frames [begin, end); end == number of frames: it lasts until the end of the episode.
+struct Run {
+  int begin = 0;
+  int end = 0;
+  friend bool operator==(const Run&, const Run&) = default;
+};
+using Runs = std::vector<Run>;
+
+/// Ticks of all frames, and after them the end of the episode.
+using Ticks = std::vector<Tick>;
+
+Stream And(const Stream& a, const Stream& b);
+Stream Or(const Stream& a, const Stream& b);
+Stream Not(const Stream& a);
+/// True inside the runs.
+Stream Truth(const Runs& runs, int frames);
+/// True where a run begins; where one ends.
+Stream Begins(const Runs& runs, int frames);
+Stream Ends(const Runs& runs, int frames);
+
+/// Maximal runs; gaps of at most `bridging` ticks are closed.
+Runs While(const Stream& f, const Ticks& ticks, Tick bridging);
+/// True from where `on` holds, without `off`, until `off` holds.
+Stream Hold(const Stream& on, const Stream& off);
+
+/// Truth per frame, as it is for an interval that begins (of `until`: ends) at a frame.
+struct Anchored {
+  Anchored(Stream fixed)
+      : at([fixed = std::move(fixed)](int) { return fixed; }) {}  // NOLINT: the usual case
+  explicit Anchored(std::function<Stream(int frame)> from) : at(std::move(from)) {}
+  std::function<Stream(int frame)> at;
+};
+
+/// `from .. to [within] [during]`; `within` < 0: no deadline. What has not ended in time is
+/// dropped.
+Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool or_drop,
+            const Ticks& ticks, Tick within = -1);
+
+/// An interval in frames and in ticks. A deadline may lie between two frames: the run ends with the
+/// first frame at or after it, the interval with itself.
+struct Timed {
+  Run run;
+  Interval ticks;
+  Tick completed = 0;  ///< of a composition: when its last part has ended
+
+  Tick Complete() const { return std::max(completed, ticks.end); }
+};
+std::vector<Timed> InTicks(const Runs& runs, const Ticks& ticks);
+Runs RunsOf(const std::vector<Timed>& timed);
+
+/// `from .. without .. within [during]`; `within` in ticks, and perhaps not a whole number of them.
+std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during,
+                               const Ticks& ticks, double within);
+
+/// `approaching signal receding at most slack [, slower than speed at most idle]`, one tick being 1
+/// ms.
+struct Approach {
+  std::vector<double> signal;
+  double slack = 0;
+  double speed = 0;
+  double onset = 0;
+  Tick idle = -1;
+};
+Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, Tick back,
+                const Approach* approach = nullptr);
+
+/// `compose`: `fits` judges one interval of each part.
+std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
+                           const std::function<bool(const std::vector<Interval>&)>& fits);
+Runs RestOf(const Runs& whole, const std::vector<Stream>& outside);
+
+Runs Lasting(const Runs& runs, const Ticks& ticks, Tick lasting);
+Runs ConfirmedBy(const Runs& runs, const Runs& by, const Stream& within);
+
+}  // namespace prehend::grammar::reference

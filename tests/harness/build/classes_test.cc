@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "harness/build/validate_classes.h"
+#include "harness/read/read_scenario.h"
+#include "harness/sense/entity_table.h"
+#include "tests/harness/scenario_fixture.h"
+
+namespace prehend::harness {
+namespace {
+
+/// A mug on a table, and what the classes are kinds of, in line 6.
+ReadResult<Scenario> Read(const std::string& classes) {
+  return ReadScenarioText(
+      "probe.yaml",
+      "scenario: probe\nshows: probe\nentities:\n"
+      "  table: {class: Table, fixed: true, box: {size_m: [1, 1, 0.1]}, at_m: [0, 0, 0.7]}\n"
+      "  mug: {class: Mug, box: {size_m: [0.1, 0.1, 0.1]}, mass_kg: 0.1, on: table, at_m: [0, 0]}\n"
+      "classes: " +
+          classes + "\n",
+      {}, ProbeLibrary());
+}
+
+TEST(Kinds, AMugIsACupIsAContainer) {
+  const auto read = Read("{Mug: Cup, Cup: Container}");
+  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
+  const grammar::EntityTable entity_table = MakeEntityTable(*read.value);
+  EXPECT_EQ(entity_table.entities[0].classes,
+            (std::vector<std::string>{"Table", "Fixed", "Thing", "Entity"}));
+  EXPECT_EQ(entity_table.entities[1].classes,
+            (std::vector<std::string>{"Mug", "Cup", "Container", "Movable", "Thing", "Entity"}));
+}
+
+TEST(Kinds, MistakesHaveTheirPlace) {
+  EXPECT_EQ(Brief(Read("{Mag: Cup}").diagnostics),
+            "6:11: classes: no entity is of the class 'Mag' | did you mean 'Mug'?\n");
+  EXPECT_EQ(Brief(Read("{Mug: Cup, Cup: Mug}").diagnostics),
+            "6:16: classes: 'Mug' is, directly or not, a kind of itself\n6:26: classes: 'Cup' is, "
+            "directly or not, a kind of itself\n");
+  EXPECT_EQ(Brief(Read("{Mug: Movable}").diagnostics),
+            "6:16: classes: 'Movable' is built in and given anyway | kinds are classes of your "
+            "own: 'Cup: Container'\n");
+  EXPECT_EQ(Brief(Read("{Mug: cup}").diagnostics),
+            "6:16: Mug: expected a class name like 'MilkCarton', found 'cup'\n");
+}
+
+}  // namespace
+}  // namespace prehend::harness

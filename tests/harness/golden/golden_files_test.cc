@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Goldens on disk: where they are, what is refused, what is pending.
+#include "harness/golden/golden_files.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "harness/check/unreferenced_goldens.h"
+
+namespace prehend::harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+class GoldenFilesTest : public testing::Test {
+ protected:
+  GoldenFilesTest() { fs::remove_all(root_); }
+  ~GoldenFilesTest() override { fs::remove_all(root_); }
+
+  const fs::path root_ =
+      fs::path(testing::TempDir()) /
+      ("golden_files_" +
+       std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const GoldenFiles files_{root_};
+  const Golden golden_{.scenario = "slide/x", .grammar = "g"};
+};
+
+TEST_F(GoldenFilesTest, NoneYetIsNotAnError) {
+  const auto result = files_.ReadGoldenOf("slide/x");
+  EXPECT_FALSE(result.value);
+  EXPECT_TRUE(result.diagnostics.empty());
+  EXPECT_TRUE(files_.List().empty());
+}
+
+TEST_F(GoldenFilesTest, AcceptingRemovesWhatWasPending) {
+  EXPECT_EQ(files_.WritePending(golden_), "");
+  EXPECT_TRUE(fs::exists(root_ / "build/pending/slide/x.timeline"));
+  EXPECT_FALSE(fs::exists(root_ / "golden"));
+  EXPECT_EQ(files_.WriteAccepted(golden_), "");
+  EXPECT_FALSE(fs::exists(root_ / "build/pending/slide/x.timeline"));
+  EXPECT_EQ(files_.ReadGoldenOf("slide/x").value, golden_);
+  EXPECT_EQ(files_.List(), std::vector<std::string>{"slide/x"});
+}
+
+TEST_F(GoldenFilesTest, AGoldenOfAnotherScenarioIsRefused) {
+  ASSERT_EQ(files_.WriteAccepted(golden_), "");
+  fs::copy(root_ / "golden/slide/x.timeline", root_ / "golden/slide/y.timeline");
+  const auto result = files_.ReadGoldenOf("slide/y");
+  ASSERT_EQ(result.diagnostics.size(), 1u);
+  EXPECT_EQ(result.diagnostics[0].message, "this golden says it is of 'slide/x', not of 'slide/y'");
+}
+
+TEST_F(GoldenFilesTest, PicturesBelongToAScenarioAndAPictureOfIt) {
+  for (const char* file : {"golden/slide/x.png", "golden/slide/x-3.png", "golden/slide/x-two.png",
+                           "golden/y-12.png", "golden/slide/x_on.png", "build/pending/slide/x.png",
+                           "build/pending/slide/x.difference.png"}) {
+    ASSERT_EQ(WriteTextFile(root_ / file, "a picture"), "");
+  }
+  const std::vector<ScenarioFile> all = {{.skill = "slide", .name = "x", .path = {}}};
+  ASSERT_EQ(files_.PicturesOf("slide/x").size(), 2u);
+  EXPECT_EQ(files_.PicturesOf("slide/x")[1].number, 3);
+  EXPECT_EQ(files_.PendingPictures().size(), 1u) << "what differs is no picture of the scenario";
+  EXPECT_EQ(UnaskedPictures("slide/x", 2, root_),
+            std::vector<fs::path>{root_ / "golden/slide/x-3.png"});
+  const std::vector<Orphan> orphans = OrphansAmong(all, root_);
+  ASSERT_EQ(orphans.size(), 2u);
+  EXPECT_EQ(orphans[0].scenario, "slide/x_on");
+  EXPECT_EQ(Text(orphans[1]),
+            (root_ / "golden/y-12.png").string() +
+                " belongs to no scenario: remove it, or bring scenarios/y.yaml back\n");
+  files_.RemovePendingPicture("slide/x", "x.png");
+  EXPECT_TRUE(fs::is_empty(root_ / "build/pending/slide"));
+}
+
+TEST_F(GoldenFilesTest, WhatCannotBeWrittenIsSaid) {
+  ASSERT_EQ(WriteTextFile(root_ / "golden", "a file where a folder should be"), "");
+  EXPECT_NE(files_.WriteAccepted(golden_), "");
+}
+
+}  // namespace
+}  // namespace prehend::harness

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The web page holds what a person needs, and nothing that a scenario's text could break.
+#include "harness/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include "harness/golden/timeline_svg.h"
+
+namespace prehend::harness {
+namespace {
+
+std::vector<ScenarioVerdict> Verdicts() {
+  return {{.scenario = "slide/good",
+           .shows = "it <slides>",
+           .verdict = Verdict::kPassed,
+           .headroom = "headroom: 1 of 2 ms",
+           .command = "prehend check slide/good",
+           .pictures = {{.file = "pictures/slide/good.png", .caption = "sliding.begin"}},
+           .timeline_svg = "<svg></svg>"},
+          {.scenario = "slide/bad",
+           .verdict = Verdict::kFailed,
+           .exit_code = ExitCode::kDiffers,
+           .reason = "1 of 9 events differ",
+           .details = "shifted sliding(hand, cup)\n",
+           .command = "prehend check slide/bad"},
+          {.scenario = "slide/new",
+           .verdict = Verdict::kPending,
+           .exit_code = ExitCode::kPending,
+           .reason = "no golden yet"}};
+}
+
+int CountOf(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++count;
+  return count;
+}
+
+TEST(Report, HasVerdictsTimelinesPicturesDifferencesAndCommands) {
+  const std::string html = ReportHtml(Verdicts());
+  for (const char* part :
+       {"1 passed", "1 failed", "1 pending", "href=\"#slide/good\"", "<section id=\"slide/bad\">",
+        "src=\"pictures/slide/good.png\"", "<svg/>", "In every row", "shifted sliding(hand, cup)",
+        "prehend check slide/bad", "it &lt;slides&gt;", "headroom: 1 of 2 ms", "no golden yet"}) {
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(html.find("<slides>"), std::string::npos);
+  EXPECT_EQ(CountOf(html, "<section"), CountOf(html, "</section>"));
+  EXPECT_EQ(html.find("http"), std::string::npos) << "the page must not need the network";
+}
+
+TEST(TimelineSvg, DrawsTheGoldenAboveWhatWasRecognised) {
+  Golden golden{.scenario = "s/x", .grammar = "g", .ticks_per_second = 100};
+  const grammar::NamedEvent event{
+      .event = "sliding", .roles = {{"hand", "h"}, {"object", "cup"}}, .interval = {100, 200}};
+  golden.events.push_back({.event = event, .tolerance_ms = {}, .because = {}, .comments = {}});
+  grammar::NamedEvent late = event;
+  late.interval.begin = 150;
+  const std::string svg =
+      TimelineSvg(Compare(golden, {.ticks_per_second = 100, .events = {late}}, 2), 400, {});
+  EXPECT_EQ(CountOf(svg, "<rect"), 2);
+  EXPECT_EQ(CountOf(svg, "class=\"row differs\""), 1);
+  EXPECT_NE(svg.find("golden sliding(h, cup), 1.0000..2.0000 s: shifted"), std::string::npos);
+  EXPECT_NE(svg.find("actual sliding(h, cup), 1.5000..2.0000 s: shifted"), std::string::npos);
+  EXPECT_EQ(CountOf(svg, "class=\"axis\""), 9) << "every half second of four";
+}
+
+TEST(TimelineSvg, AnEmptyTimelineIsAPictureToo) {
+  const std::string svg = TimelineSvg(Comparison{}, 0, {});
+  EXPECT_TRUE(svg.starts_with("<svg class=\"timeline\"")) << svg;
+  EXPECT_EQ(CountOf(svg, "</svg>"), 1);
+  EXPECT_EQ(CountOf(svg, "<rect"), 0);
+}
+
+}  // namespace
+}  // namespace prehend::harness

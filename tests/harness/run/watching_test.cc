@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Watching changes nothing: every shipped scenario moves the same, to the bit, and has the same
+// timeline, whether it is recorded, watched frame by frame and drawn, or none of these. Whatever
+// ran or was drawn before in the same process does not matter either. `prehend check` plays each
+// scenario once and relies on it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "harness/pictures/pictures.h"
+#include "harness/run/find_scenario.h"
+#include "harness/run/load_run.h"
+#include "harness/run/run_scenario.h"
+#include "harness/sense/episode_file.h"
+#include "harness/timeline/timeline_json.h"
+
+namespace prehend::harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Each part has every kParts-th scenario; ctest plays the parts side by side.
+constexpr int kParts = 12;
+
+class Watching : public testing::TestWithParam<int> {
+ protected:
+  Watching() { fs::create_directories(folder_); }
+  ~Watching() override { fs::remove_all(folder_); }
+
+  /// Everything at once that a command can ask of a run: `run --record`, `check`, `render`.
+  RunResult PlayWatched(const LoadedRun& loaded) {
+    const Scenario& scenario = loaded.scenario;
+    std::ostringstream episode;
+    EpisodeWriter writer(episode, {scenario.name, scenario.grammar, MakeEntityTable(scenario)});
+    RunOptions options{.record = true,
+                       .watch = [&](const grammar::Frame& frame) { writer.Write(frame); },
+                       .judge = !scenario.outcomes.empty(),
+                       .measure = true};
+    RunResult run = RunScenario(scenario, loaded.program, options);
+    EXPECT_FALSE(run.recording.empty());
+    EXPECT_FALSE(episode.str().empty());
+    if (CanDrawPictures()) {
+      const PictureResult drawn = DrawPictures(scenario, run, folder_.string());
+      EXPECT_EQ(drawn.error, "");
+      EXPECT_EQ(drawn.pictures.size(), scenario.pictures.size());
+    }
+    return run;
+  }
+
+ private:
+  const fs::path folder_ =
+      fs::path(PREHEND_BINARY_DIR) / "watching_test" / std::to_string(GetParam());
+};
+
+TEST_P(Watching, ChangesNothing) {
+  const std::vector<ScenarioFile> all = ListScenarios(PREHEND_SOURCE_DIR);
+  ASSERT_GE(all.size(), static_cast<std::size_t>(kParts));
+  for (std::size_t i = static_cast<std::size_t>(GetParam()); i < all.size(); i += kParts) {
+    SCOPED_TRACE(IdOf(all[i]));
+    const ReadResult<LoadedRun> loaded =
+        LoadRun({.scenario_file = all[i].path}, PREHEND_SOURCE_DIR);
+    ASSERT_TRUE(loaded.value) << Format(loaded.diagnostics);
+    const RunResult watched = PlayWatched(*loaded.value);
+    const RunResult plain = RunScenario(loaded.value->scenario, loaded.value->program);
+    EXPECT_EQ(watched.status.kind, plain.status.kind);
+    EXPECT_EQ(watched.ticks, plain.ticks);
+    EXPECT_EQ(watched.state_hash, plain.state_hash) << "it moves differently when it is watched";
+    EXPECT_EQ(TimelineJson(watched.timeline).dump(1), TimelineJson(plain.timeline).dump(1));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Library, Watching, testing::Range(0, kParts));
+
+}  // namespace
+}  // namespace prehend::harness

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/sense/episode_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "tests/harness/scenario_fixture.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr const char* kHeader =
+    R"({"recording": 1, "episode": "cup", "ticks_per_second": 100, "styles": ["wrap", "pinch"], "entities": {)"
+    R"("table": {"class": "Table", "fixed": true, "size_m": [1, 1, 0.1]}, "cup": {"class": "Cup", "size_m": [0.1, 0.1, 0.1]}, )"
+    R"("hand": {"hand": true, "size_m": [0.1, 0.1, 0.03]}}})"
+    "\n";
+
+ReadResult<Episode> ReadText(const std::string& text) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("prehend_episode_" + std::to_string(getpid()) + ".jsonl");
+  std::ofstream(file, std::ios::binary) << text;
+  return ReadEpisode(file.string());
+}
+
+/// Without the file's name.
+std::string Complaint(const std::string& frames) {
+  std::string all = Brief(ReadText(kHeader + frames).diagnostics);
+  return all.substr(std::min(all.find(".jsonl:"), all.size() - 7) + 7);
+}
+
+TEST(EpisodeFile, WhatIsLeftOutHasADefault) {
+  const auto episode = ReadText(
+      std::string(kHeader) +
+      R"({"tick": 0, "looks": {"cup": {"at_m": [0, 0, 1]}, "hand": {"at_m": [0, 0, 2]}}, "hands": {"hand": {}}})"
+      "\n"
+      R"({"tick": 10, "looks": {"cup": {"at_m": [0, 0, 1.2]}}, )"
+      R"("touches": [{"a": "hand", "b": "cup", "up_on_a": 0.5, "sensor_sets": ["thumb"]}]})");
+  ASSERT_TRUE(episode.value) << Brief(episode.diagnostics);
+  const EpisodeFrame& last = episode.value->frames[1];
+  EXPECT_DOUBLE_EQ(last.entities[1].v_WB_m_per_s.z(), 2);
+  EXPECT_EQ(last.entities[2].p_WB_m.z(), 2) << "what is not mentioned stays where it was";
+  EXPECT_EQ(last.touches[0].a, 1) << "the pair is in the order of the entities";
+  EXPECT_EQ(last.touches[0].up_on_b, 0.5);
+  EXPECT_EQ(last.touches[0].up_on_a, -0.5);
+  EXPECT_EQ(last.touches[0].sensor_sets, 2u);
+  EXPECT_EQ(last.collision_spheres[0].size(), 1u);
+  EXPECT_EQ(episode.value->end_tick, 11);
+  EXPECT_EQ(episode.value->header.grammar, "pick_and_place");
+}
+
+TEST(EpisodeFile, IsReadAsItWasWritten) {
+  const auto read = ReadText(
+      std::string(kHeader) +
+      R"({"tick": 3, "looks": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.6, 0.8, 0, 0], "asleep": true, "joint_fraction": 0.25}}, )"
+      R"("hands": {"hand": {"trigger": 0.4, "style": "pinch", "ahead": [0, 0, -1], "feelers_m": [[1, 2, 3, 0.01]]}}, )"
+      R"("touches": [{"a": "table", "b": "cup", "up_on_b": 1, "force_n": 2}]})"
+      "\n{\"end_tick\": 9}\n");
+  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
+  Episode episode = *read.value;
+  std::ostringstream written;
+  EpisodeWriter writer(written, episode.header);
+  for (EpisodeFrame& frame : episode.frames) writer.Write(frame.View());
+  writer.Finish(episode.end_tick);
+  const auto again = ReadText(written.str());
+  ASSERT_TRUE(again.value) << Brief(again.diagnostics);
+  EXPECT_EQ(again.value->end_tick, 9);
+  const EpisodeFrame &a = episode.frames[0], &b = again.value->frames[0];
+  EXPECT_EQ(b.entities[1].p_WB_m, a.entities[1].p_WB_m);
+  EXPECT_TRUE(b.entities[1].q_WB.isApprox(a.entities[1].q_WB));
+  EXPECT_TRUE(b.entities[1].asleep);
+  EXPECT_EQ(b.entities[1].joint_fraction, 0.25);
+  EXPECT_EQ(b.hands[0].style, 1);
+  EXPECT_EQ(b.hands[0].trigger, 0.4);
+  EXPECT_EQ(b.collision_spheres[0][0].radius_m, 0.01);
+  EXPECT_EQ(b.touches[0].up_on_b, 1);
+  EXPECT_EQ(b.touches[0].normal_force_n, 2);
+}
+
+TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
+  EXPECT_EQ(
+      Complaint(""),
+      "1:1: the recording has no frames | each line after the first is one: {\"tick\": 0, ...}\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"tick\": 1}\n"),
+            "3:10: the ticks must increase: 1 comes after 1\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1, \"looks\": {\"cip\": {\"at_m\": [0, 0, 0]}}}\n"),
+            "2:23: no entity is called 'cip' | did you mean 'cup'?\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1, \"hands\": {\"cup\": {}}}\n"),
+            "2:23: 'cup' is no hand | its entity has no 'hand: true'\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1, \"touches\": [{\"a\": \"cup\", \"b\": \"cup\"}]}\n"),
+            "2:43: 'cup' cannot touch itself\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1, \"toches\": []}\n"),
+            "2:13: unknown key 'toches' in a frame | did you mean 'touches'?\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"end_tick\": 1}\n"),
+            "3:14: end_tick: expected more than 1, the tick of the last frame, found 1\n");
+  EXPECT_NE(Complaint("{\"tick\": 1, \"looks\": {\"cup\": {\"at_m\": [0, 0, 1e99]}}}\n")
+                .find(" at_m[2]: expected a number"),
+            std::string::npos);
+  EXPECT_NE(Complaint("{\"tick\": 1").find("2:"), std::string::npos);
+  EXPECT_NE(Brief(ReadText("").diagnostics).find("1:1: the file is empty"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace prehend::harness

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The speed figures measure the same thing twice: the grammar and the automata by hand recognise
+// the same.
+#include "harness/speed/workload.h"
+
+#include <gtest/gtest.h>
+
+namespace prehend::harness {
+namespace {
+
+Recognised Watch(const ChangeLog& log) {
+  grammar::Monitor monitor(CompileFourRules(), log.entity_table);
+  const Recognised recognised = WatchByGrammar(log, monitor, log.size() / 2).recognised;
+  EXPECT_EQ(monitor.error(), "");
+  return recognised;
+}
+
+TEST(Speed, GrammarAndAutomataByHandRecogniseTheSame) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    const ChangeLog log = MakeStations(40, 5000, 3, seed);
+    const Recognised by_grammar = Watch(log);
+    EXPECT_GT(by_grammar.events, 900u);
+    EXPECT_EQ(by_grammar, WatchByHand(log).recognised);
+  }
+  for (const Flicker flicker : {Flicker::kPressure, Flicker::kFact, Flicker::kGrasp}) {
+    const ChangeLog log = MakeFlicker(10, 200, 3, flicker);
+    const Recognised by_grammar = Watch(log);
+    EXPECT_EQ(by_grammar, WatchByHand(log).recognised);
+    EXPECT_EQ(by_grammar.events, flicker == Flicker::kGrasp ? 300u : 10u);
+  }
+}
+
+TEST(Speed, TheHashSeesEveryPartOfAnEvent) {
+  const auto hash = [](int rule, int hand, int object, grammar::Interval interval) {
+    Recognised recognised;
+    recognised.Add(rule, hand, object, interval);
+    return recognised.hash;
+  };
+  const std::uint64_t one = hash(1, 2, 3, {4, 5});
+  EXPECT_NE(one, hash(0, 2, 3, {4, 5}));
+  EXPECT_NE(one, hash(1, 3, 2, {4, 5}));
+  EXPECT_NE(one, hash(1, 2, 3, {4, 6}));
+  EXPECT_NE(one, hash(1, 2, 3, {3, 5}));
+}
+
+}  // namespace
+}  // namespace prehend::harness

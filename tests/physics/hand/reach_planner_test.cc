@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "physics/hand/reach_planner.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/physics/tabletop.h"
+
+namespace prehend::physics {
+namespace {
+
+using Eigen::Vector3d;
+
+ReachPlan Plan(const Scene& scene, const std::string& style, Approach approach,
+               Vector3d offset_m = Vector3d::Zero()) {
+  Simulation simulation(scene, {});
+  return PlanReach(scene, simulation.snapshot(),
+                   {.object = kObject,
+                    .style = FindStyle(scene.hands[0].model, style),
+                    .approach = approach,
+                    .offset_m = offset_m,
+                    .from = {.X_WH = scene.hands[0].X_WH}});
+}
+
+TEST(ReachPlannerTest, ArrivesAlongTheApproachWithThePalmTowardsTheObject) {
+  const Scene scene = MakeScene({});
+  const ReachPlan above = Plan(scene, "wrap", Approach::kAbove);
+  EXPECT_LT((above.toward_W + Vector3d::UnitZ()).norm(), 1e-9);
+  EXPECT_GT(above.segment.curve_m[3].z(), kTop_m + 0.2);
+
+  const ReachPlan side = Plan(scene, "wrap", Approach::kSide);
+  EXPECT_NEAR(side.toward_W.z(), 0, 1e-9);
+  EXPECT_LT((side.segment.q_end * -Vector3d::UnitZ() - side.toward_W).norm(), 1e-9);
+  EXPECT_NEAR(side.segment.curve_m[3].z(), kTop_m + 0.1, 0.01);
+  // From where the hand starts, not around the object.
+  EXPECT_GT(side.toward_W.dot(Vector3d(0.4, 0.3, 0)), 0);
+}
+
+TEST(ReachPlannerTest, AutoTakesTallThingsFromTheSideAndLowOnesFromAbove) {
+  EXPECT_NEAR(Plan(MakeScene({}), "wrap", Approach::kAuto).toward_W.z(), 0, 1e-9);
+  const Scene low = MakeScene({.shape = Box{{0.06, 0.06, 0.06}}});
+  EXPECT_NEAR(Plan(low, "wrap", Approach::kAuto).toward_W.z(), -1, 1e-9);
+}
+
+TEST(ReachPlannerTest, TheGripIsSquareToATurnedBox) {
+  for (const double yaw : {0.3, 1.0, -0.6}) {
+    const Scene scene = MakeScene({.yaw_rad = yaw});
+    const ReachPlan plan = Plan(scene, "wrap", Approach::kAbove);
+    const Vector3d grip = plan.segment.q_end * Vector3d::UnitX();
+    const double relative =
+        std::remainder(std::atan2(grip.y(), grip.x()) - yaw, std::numbers::pi / 2);
+    EXPECT_NEAR(relative, 0, 1e-9) << yaw;
+  }
+}
+
+TEST(ReachPlannerTest, ALongBoxIsGrippedAcross) {
+  const Scene scene = MakeScene({.shape = Box{{0.15, 0.06, 0.06}}});
+  const ReachPlan plan = Plan(scene, "wrap", Approach::kAbove);
+  EXPECT_NEAR(std::abs((plan.segment.q_end * Vector3d::UnitX()).y()), 1, 1e-9);
+}
+
+TEST(ReachPlannerTest, TheWayIsClearFromManySidesAndEndsWithTheHandOverTheTable) {
+  for (double angle = 0; angle < 6.2; angle += 0.7) {
+    const Vector3d start(0.2 + 0.45 * std::cos(angle), 0.1 + 0.45 * std::sin(angle), 1.05);
+    for (const Approach approach : {Approach::kAbove, Approach::kSide}) {
+      const ReachPlan plan = Plan(MakeScene({.hand_at_m = start}), "wrap", approach);
+      EXPECT_GE(plan.clearance_m, 0.002) << angle;
+    }
+  }
+}
+
+TEST(ReachPlannerTest, APointOnAPartIsGraspedThere) {
+  Scene scene = MakeScene({});
+  // A wide board with a thin rod on it: only the rod can be gripped.
+  scene.bodies[kObject].shapes = {{Box{{0.3, 0.3, 0.02}}, {}},
+                                  {Box{{0.2, 0.02, 0.02}}, {{0, 0.1, 0.05}}}};
+  Simulation simulation(scene, {});
+  const auto plan = [&](const Vector3d& point_m) {
+    return PlanReach(scene, simulation.snapshot(),
+                     {.object = kObject,
+                      .style = FindStyle(scene.hands[0].model, "wrap"),
+                      .approach = Approach::kAbove,
+                      .point_m = point_m,
+                      .from = {.X_WH = scene.hands[0].X_WH}});
+  };
+  const ReachPlan left = plan({-0.06, 0.1, 0.05}), right = plan({0.06, 0.1, 0.05});
+  EXPECT_NEAR(std::abs((left.segment.q_end * Vector3d::UnitX()).y()), 1, 1e-9);
+  EXPECT_LT((right.segment.curve_m[3] - left.segment.curve_m[3] - Vector3d(0.12, 0, 0)).norm(),
+            1e-9);
+  // Beside the rod's middle line, the middle counts.
+  EXPECT_LT((plan({0.06, 0.105, 0.05}).segment.curve_m[3] - right.segment.curve_m[3]).norm(), 1e-9);
+}
+
+TEST(ReachPlannerTest, TheHandStaysAboveWhatIsBelowItAndOnlyThat) {
+  Scene scene = MakeScene({.shape = Box{{0.06, 0.06, 0.04}}});
+  Body& object = scene.bodies[kObject];
+  const auto above_its_middle_m = [&] {
+    return Plan(scene, "wrap", Approach::kSide).segment.curve_m[3].z() - object.X_WB.p_m.z();
+  };
+  EXPECT_NEAR(above_its_middle_m(), 0.055 - 0.02, 1e-9) << "on the table";
+  object.X_WB.p_m.z() += 0.15;
+  EXPECT_NEAR(above_its_middle_m(), 0, 1e-9) << "in the air";
+
+  Body stand{.name = "stand", .shapes = {{Cylinder{0.015, 0.15}, {}}}, .fixed = true};
+  stand.X_WB.p_m = object.X_WB.p_m - Vector3d(0, 0, 0.02 + 0.075);
+  scene.bodies.push_back(stand);
+  EXPECT_NEAR(above_its_middle_m(), 0, 1e-9) << "on a foot that is narrower than itself";
+  scene.bodies.back().shapes = {{Box{{0.06, 0.06, 0.15}}, {}}};
+  EXPECT_NEAR(above_its_middle_m(), 0.055 - 0.02, 1e-9) << "on a box as wide as itself";
+}
+
+TEST(ReachPlannerTest, AnOffsetMovesTheEnd) {
+  const Scene scene = MakeScene({});
+  const Vector3d offset(0, -0.15, 0);
+  const Vector3d difference = Plan(scene, "wrap", Approach::kAbove, offset).segment.curve_m[3] -
+                              Plan(scene, "wrap", Approach::kAbove).segment.curve_m[3];
+  EXPECT_LT((difference - offset).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace prehend::physics

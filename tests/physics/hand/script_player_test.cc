@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "physics/hand/script_player.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/physics/tabletop.h"
+
+namespace prehend::physics {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+Beat One(StepAction action, double over_s) { return {{{0, std::move(action), over_s}}}; }
+
+/// The target at the end of a script, in a world that does not move.
+TargetState EndOf(const Scene& scene, Script script, int* ticks = nullptr) {
+  Simulation still(scene, {});
+  ScriptPlayer player(scene, std::move(script));
+  TargetState last;
+  int count = 0;
+  while (const auto* commands = player.Advance(still.snapshot())) {
+    last = commands->front().target;
+    ++count;
+  }
+  EXPECT_EQ(player.problem(), "");
+  if (ticks) *ticks = count;
+  return last;
+}
+
+TEST(ScriptPlayerTest, MovesAreRelativeAndTriggersLast) {
+  const Scene scene = MakeScene({});
+  int ticks = 0;
+  const TargetState end =
+      EndOf(scene,
+            {.beats = {One(MoveStep{{0.1, 0, 0}}, 0.5), One(TriggerStep{0.7}, 0.25),
+                       One(MoveStep{{0, 0, 0.2}}, 0.5)},
+             .settle_s = 0.25},
+            &ticks);
+  EXPECT_EQ(ticks, 720);
+  EXPECT_LT((end.X_WH.p_m - (scene.hands[0].X_WH.p_m + Eigen::Vector3d(0.1, 0, 0.2))).norm(),
+            1e-12);
+  EXPECT_NEAR(end.trigger, 0.7, 1e-12);
+  EXPECT_EQ(end.v_m_per_s, Eigen::Vector3d::Zero());
+}
+
+TEST(ScriptPlayerTest, CarryBringsTheObjectsCentreThere) {
+  const Scene scene = MakeScene({});
+  const Beat reach = One(ReachStep{"object"}, 0.5);
+  const TargetState reached = EndOf(scene, {.beats = {reach}});
+  const TargetState carried = EndOf(scene, {.beats = {reach, One(CarryStep{{0.2, -0.4}}, 0.5)}});
+  // The object stands at (0.2, 0.1).
+  EXPECT_LT((carried.X_WH.p_m - reached.X_WH.p_m - Eigen::Vector3d(0, -0.5, 0)).norm(), 1e-9);
+}
+
+TEST(ScriptPlayerTest, RetreatGoesBackTheWayItCame) {
+  const Scene scene = MakeScene({});
+  const Beat reach = One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5);
+  const TargetState reached = EndOf(scene, {.beats = {reach}});
+  const TargetState retreated = EndOf(scene, {.beats = {reach, One(RetreatStep{0.2}, 0.5)}});
+  EXPECT_LT((retreated.X_WH.p_m - reached.X_WH.p_m - Eigen::Vector3d(0, 0, 0.2)).norm(), 1e-9);
+}
+
+/// What is said of the first beat.
+Texts NotesOf(const Scene& scene, const Beat& beat) {
+  const Script script{.beats = {beat}};
+  Simulation still(scene, {});
+  ScriptPlayer player(scene, script);
+  player.Advance(still.snapshot());
+  Texts texts;
+  for (const auto& note : player.notes()) texts.push_back(note.text);
+  return texts;
+}
+
+TEST(ScriptPlayerTest, NotesAReachThatCannotKeepClear) {
+  const Beat from_above = One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5);
+  Scene scene = MakeScene({});
+  EXPECT_EQ(NotesOf(scene, from_above), Texts{});
+  Body roof{.name = "roof", .shapes = {{Box{{1, 1, 0.02}}, {}}}, .fixed = true};
+  roof.X_WB.p_m = {0.2, 0.1, 1.05};
+  scene.bodies.push_back(roof);
+  EXPECT_EQ(NotesOf(scene, from_above),
+            Texts{"no way to grasp object keeps clear of everything: the open hand will "
+                  "push against something"});
+}
+
+TEST(ScriptPlayerTest, NotesAThingThatIsTooWideForTheStyle) {
+  Scene scene = MakeScene({});
+  scene.bodies[1].shapes = {{Box{{0.14, 0.20, 0.10}}, {}}};
+  ReachStep reach{"object", "wrap", Approach::kAbove};
+  EXPECT_EQ(NotesOf(scene, One(reach, 0.5)),
+            Texts{"style wrap opens 85 mm, and object is 140 mm wide there: the hand will "
+                  "not close around it"});
+  Scene as_wide = MakeScene({});
+  as_wide.bodies[1].shapes = {{Box{{0.0852, 0.20, 0.10}}, {}}};  // within a rounding of 85 mm
+  EXPECT_EQ(NotesOf(as_wide, One(reach, 0.5)), Texts{});
+  reach.offset_m = {-0.1, 0, 0.1};  // to miss on purpose
+  EXPECT_EQ(NotesOf(scene, One(reach, 0.5)), Texts{});
+}
+
+TEST(ScriptPlayerTest, ABeatLastsAsLongAsItsLongestStep) {
+  Scene scene = MakeScene({});
+  scene.hands.push_back({"other", LibraryHand("human_left"), {{-0.3, 0.3, 1.1}}});
+  int ticks = 0;
+  EndOf(scene, {.beats = {{{{0, WaitStep{}, 0.1}, {1, WaitStep{}, 0.3}}}}, .settle_s = 0}, &ticks);
+  EXPECT_EQ(ticks, 144);
+}
+
+TEST(ScriptPlayerTest, SayWhatIsUnknown) {
+  const Scene scene = MakeScene({});
+  Simulation still(scene, {});
+  const std::pair<StepAction, const char*> cases[] = {{ReachStep{"ghost"}, "'ghost'"},
+                                                      {ReachStep{"object", "claw"}, "'claw'"},
+                                                      {PlaceStep{"shelf"}, "'shelf'"},
+                                                      {PlaceStep{"table"}, "holds nothing"}};
+  for (const auto& [action, said] : cases) {
+    ScriptPlayer player(scene, {.beats = {One(action, 0.5)}});
+    EXPECT_EQ(player.Advance(still.snapshot()), nullptr);
+    EXPECT_NE(player.problem().find(said), std::string::npos) << player.problem();
+    EXPECT_EQ(player.problem_hand(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace prehend::physics

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "physics/scene/run_limits.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+namespace prehend::physics {
+namespace {
+
+struct CheckCase {
+  const char* reason;
+  std::function<void(Snapshot&)> spoil;
+};
+
+TEST(RunChecksTest, EveryDisasterIsNamedWithItsEntity) {
+  Scene scene;
+  scene.bodies = {{.name = "table"}, {.name = "cup"}};
+  Snapshot good;
+  good.bodies.resize(2);
+  EXPECT_FALSE(CheckSnapshot(scene, good).has_value());
+
+  const CheckCase cases[] = {
+      {"not finite",
+       [](Snapshot& s) {
+         s.bodies[1].v_WB_m_per_s.x() = std::numeric_limits<double>::quiet_NaN();
+       }},
+      {"60 m/s", [](Snapshot& s) { s.bodies[1].v_WB_m_per_s.z() = 60; }},
+      {"25 m from", [](Snapshot& s) { s.bodies[1].X_WB.p_m.y() = -25; }},
+      {"30 mm deep in table",
+       [](Snapshot& s) {
+         s.contacts = {{.a = {.body = 1}, .b = {.body = 0}, .distance_m = -0.03}};
+       }},
+  };
+  for (const CheckCase& c : cases) {
+    Snapshot bad = good;
+    c.spoil(bad);
+    const auto problem = CheckSnapshot(scene, bad);
+    ASSERT_TRUE(problem.has_value()) << c.reason;
+    EXPECT_EQ(problem->entity, "cup");
+    EXPECT_NE(problem->reason.find(c.reason), std::string::npos) << problem->reason;
+    EXPECT_FALSE(problem->advice.empty());
+  }
+}
+
+TEST(RunChecksTest, WhatIsPressedIntoAnotherByAHugeMassIsAdvisedOfIt) {
+  Scene scene;
+  scene.bodies = {{.name = "table", .fixed = true},
+                  {.name = "feather", .mass_kg = 0.001},
+                  {.name = "anvil", .mass_kg = 1000}};
+  Snapshot now;
+  now.bodies.resize(3);
+  now.contacts = {{.a = {.body = 0}, .b = {.body = 1}, .distance_m = -0.03}};
+  EXPECT_EQ(CheckSnapshot(scene, now)->advice, "start them apart, or let them meet more slowly");
+  now.contacts.push_back({.a = {.body = 1}, .b = {.body = 2}});
+  EXPECT_EQ(CheckSnapshot(scene, now)->advice,
+            "a mass presses on one that is 1000000 times smaller; make them more similar");
+}
+
+}  // namespace
+}  // namespace prehend::physics

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recorded episodes and scores, as a person uses them.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+TEST(Recording, ResegmentingGivesTheSameTimelineAndOtherGrammarsTheirs) {
+  const auto file = (FreshFolder("recording") / "milk.jsonl").string();
+  const Said played = Prehend({"run", "milk_carton_wrap", "--json", "--record", file});
+  ASSERT_EQ(played.exit_code, 0) << played.err;
+  const Said again = Prehend({"resegment", file, "--json"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
+  EXPECT_EQ(first["events"], second["events"]);
+  EXPECT_EQ(second["scenario"], "milk_carton_wrap");
+  EXPECT_FALSE(first["events"].empty());
+
+  const Said contacts = Prehend({"resegment", file, "--grammar", "contact", "--json"});
+  for (const auto& event : nlohmann::json::parse(contacts.out)["events"]) {
+    EXPECT_TRUE(event["event"] == "contact" || event["event"] == "supported_by") << event;
+  }
+  const Said higher = Prehend({"resegment", file, "--set", "lift_rise=10m"});
+  EXPECT_EQ(higher.out.find("picking_up"), std::string::npos) << higher.out;
+}
+
+TEST(Recording, ADashPrintsIt) {
+  const auto file = (FreshFolder("printed_recording") / "rests.jsonl").string();
+  ASSERT_EQ(Prehend({"run", "carton_rests", "--record", file}).exit_code, 0);
+  const Said printed = Prehend({"run", "carton_rests", "--record", "-"});
+  EXPECT_EQ(printed.exit_code, 0);
+  EXPECT_EQ(printed.out, ReadFile(file));
+  const Said both = Prehend({"run", "carton_rests", "--record", "-", "--json"});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_EQ(both.out, "");
+  EXPECT_EQ(
+      both.err,
+      "prehend: --record - and --json contradict each other: both are printed\n  again: prehend "
+      "run carton_rests --record - --json\n");
+}
+
+TEST(Recording, ADeviceIsNotReplacedByAFile) {
+  const Said said = Prehend({"run", "carton_rests", "--record", "/dev/full"});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_EQ(said.out, "");
+  EXPECT_EQ(said.err,
+            "prehend: --record: cannot write /dev/full: it is a device or a pipe, wanted a file; "
+            "standard output is written as '-'\n  again: prehend run carton_rests --record "
+            "/dev/full\n");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(Recording, TheDocumentedExampleIsRead) {
+  std::ifstream document(std::string(PREHEND_SOURCE_DIR) + "/docs/recording-format.md");
+  const std::string text{std::istreambuf_iterator<char>(document), {}};
+  const std::string fence = "```json\n";
+  const std::size_t begin = text.find(fence) + fence.size();
+  const auto file = FreshFolder("recording") / "example.jsonl";
+  WriteFile(file, text.substr(begin, text.find("```", begin) - begin));
+  const Said said = Prehend({"resegment", file.string(), "--json"});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(nlohmann::json::parse(said.out)["events"].size(), 3) << said.out;
+}
+
+TEST(Grammar, TheFirstDocumentedExampleRecognisesItsEvent) {
+  std::ifstream document(std::string(PREHEND_SOURCE_DIR) + "/docs/grammar-language.md");
+  const std::string text{std::istreambuf_iterator<char>(document), {}};
+  const std::size_t begin = text.find("```\n") + 4;
+  const auto file = FreshFolder("grammar") / "carrying.grammar";
+  WriteFile(file, text.substr(begin, text.find("```", begin) - begin));
+  const Said said = Prehend({"run", "milk_carton_wrap", "--grammar", file.string()});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("carried"), std::string::npos) << said.out;
+}
+
+TEST(Recording, BadOnesEndWithExitCodeTwo) {
+  const auto folder = FreshFolder("recording");
+  WriteFile(folder / "bad.jsonl", "{\"recording\": 1}\n");
+  for (const std::string& file :
+       {(folder / "bad.jsonl").string(), (folder / "none.jsonl").string(), folder.string()}) {
+    const Said said = Prehend({"resegment", file});
+    EXPECT_EQ(said.exit_code, 2) << said.err;
+    EXPECT_EQ(said.out, "");
+    EXPECT_NE(said.err.find(file), std::string::npos) << said.err;
+  }
+  EXPECT_EQ(Prehend({"run", "milk_carton_wrap", "--record", "no/such/folder/x.jsonl"}).exit_code,
+            2);
+}
+
+TEST(Score, ATruthfulGrammarScoresFullMarksAndAChangedOneLess) {
+  const Said said = Prehend({"score", "milk_carton_wrap", "--grammar", "pick_and_place", "--json"});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const auto total = nlohmann::json::parse(said.out)["grammars"][0]["total"];
+  EXPECT_EQ(total["f1_50"], 1.0) << total;
+  EXPECT_GT(total["true"], 8);
+  EXPECT_EQ(Prehend({"score", "--grammar", "pick_and_plaice"}).exit_code, 2);
+  EXPECT_EQ(Prehend({"score", "no_such_scenario", "--grammar", "pick_and_place"}).exit_code, 4);
+}
+
+}  // namespace
+}  // namespace prehend::house

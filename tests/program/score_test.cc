@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores as a person meets them: every grammar on the same truth, and nothing left out in silence.
+#include <nlohmann/json.hpp>
+
+#include "tests/program/small_project.h"
+
+namespace prehend::house {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kMisspelt = R"(grammar misspelt
+use contact
+event suported_by(object: Movable, support: Thing) while supported_by(object, support)
+)";
+constexpr const char* kSilent = R"(grammar silent
+event touching_it(object: Movable, support: Thing) while touching(object, support)
+)";
+
+class ScoreCommand : public SmallProject {
+ protected:
+  ScoreCommand() {
+    WriteFile(root_ / "misspelt.grammar", kMisspelt);
+    WriteFile(root_ / "silent.grammar", kSilent);
+  }
+  std::string GrammarOption(const std::string& name) const {
+    return " --grammar " + (root_ / (name + ".grammar")).string();
+  }
+};
+
+TEST_F(ScoreCommand, EveryGrammarIsScoredOnTheSameTruth) {
+  const Said said = Do("score --json --grammar contact" + GrammarOption("silent"));
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const Json grammars = Json::parse(said.out)["grammars"];
+  EXPECT_EQ(grammars[0]["total"]["true"], 2) << "a contact and a support";
+  EXPECT_EQ(grammars[0]["total"]["f1_50"], 1.0);
+  EXPECT_EQ(grammars[0]["total"]["further"]["psds"], 1.0);
+  EXPECT_EQ(grammars[1]["total"]["true"], 2) << "also when the grammar speaks of neither";
+  EXPECT_EQ(grammars[1]["total"]["ward"]["deleted"], 2);
+  EXPECT_EQ(grammars[1]["total"]["f1_50"], 0.0);
+  EXPECT_EQ(grammars[1]["not_spoken_of"][0], "contact");
+  EXPECT_EQ(grammars[1]["not_judged"]["touching_it"], 1);
+}
+
+TEST_F(ScoreCommand, WhatIsMisspeltIsListedByName) {
+  const Said said = Do("score" + GrammarOption("misspelt"));
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(
+      said.out.find("\nnot judged: suported_by (1 found); docs/events.md does not define them\n"),
+      std::string::npos)
+      << said.out;
+  const Said other = Do("score" + GrammarOption("silent"));
+  EXPECT_NE(other.out.find(
+                "\nnot spoken of: contact (1 true), supported_by (1 true), grasping (0 true), "),
+            std::string::npos)
+      << other.out;
+  EXPECT_NE(other.out.find("; no rule prints them, they count as missed\n"), std::string::npos);
+}
+
+TEST_F(ScoreCommand, EventsCanBeChosen) {
+  const Said said = Do("score --json --events supported_by" + GrammarOption("silent"));
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const Json score = Json::parse(said.out)["grammars"][0];
+  EXPECT_EQ(score["total"]["true"], 1);
+  EXPECT_EQ(score["not_spoken_of"], Json::array({"supported_by"}));
+  const Said wrong = Do("score --events contact,suported_by");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_EQ(wrong.out, "");
+  EXPECT_NE(wrong.err.find("defines no 'suported_by'; did you mean 'supported_by'?"),
+            std::string::npos)
+      << wrong.err;
+}
+
+TEST_F(ScoreCommand, EveryCommaHasNamesBesideIt) {
+  for (const char* events : {"reaching,,", ",reaching", "reaching,,grasping"}) {
+    const Said wrong = Do(std::string("score --events ") + events);
+    EXPECT_EQ(wrong.exit_code, 2) << events;
+    EXPECT_NE(wrong.err.find("--events: a name is missing next to a comma; write NAME,NAME"),
+              std::string::npos)
+        << wrong.err;
+  }
+}
+
+TEST_F(ScoreCommand, WhatCannotBeReadIsBadInputAndNoTable) {
+  const std::string path = (root_ / "broken.yaml").string();
+  WriteFile(path, "scenario: broken\nentities: [\n");
+  const Said said = Do("score " + path);
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_EQ(said.out, "");
+  EXPECT_NE(said.err.find("was not scored"), std::string::npos) << said.err;
+}
+
+}  // namespace
+}  // namespace prehend::house
