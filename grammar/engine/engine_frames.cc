@@ -85,7 +85,7 @@ bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
   decided_ = frame.tick;
   history_.BeginFrame(frame.tick);
   past_.BeginFrame(history_.now());
-  alarms_.Ring(decided_, [this](int instance) { Wake(instance); });
+  alarms_.RingBuffer(decided_, [this](int instance) { Wake(instance); });
   return true;
 }
 

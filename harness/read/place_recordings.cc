@@ -70,8 +70,8 @@ std::vector<physics::TimedPose> Place(const RecordingYaml& entry, const MotionTr
 
 /// The person in the world, at every frame: as tall as she is, and where she stands lowest, her
 /// ankle is as high as when she stands.
-std::vector<physics::TimedFigure> Place(const RecordingYaml& entry, const BodyTrack& track,
-                                        const PersonActorYaml& person, double scale) {
+std::vector<physics::TimedPosture> Place(const RecordingYaml& entry, const BodyTrack& track,
+                                         const PersonActorYaml& person, double scale) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const BodySample& sample : track.samples)
     lowest =
@@ -80,16 +80,16 @@ std::vector<physics::TimedFigure> Place(const RecordingYaml& entry, const BodyTr
   const Eigen::Quaterniond yaw = physics::FromRollPitchYaw({0, 0, entry.yaw_deg});
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
   if (entry.start_at_m)
-    shift_m = *entry.start_at_m - yaw * (scale * track.samples.front().figure.hips_W_m);
+    shift_m = *entry.start_at_m - yaw * (scale * track.samples.front().posture.hips_W_m);
   shift_m.z() = floor_m + physics::AnkleHeight(person.height_m) - scale * lowest;
-  std::vector<physics::TimedFigure> figures;
+  std::vector<physics::TimedPosture> postures;
   for (const BodySample& sample : track.samples) {
-    physics::Figure figure = sample.figure;
-    figure.hips_W_m = yaw * (scale * figure.hips_W_m) + shift_m;
-    for (Eigen::Vector3d& way : figure.ways_W) way = yaw * way;
-    figures.push_back({entry.join_s + sample.t_s, figure});
+    physics::Posture posture = sample.posture;
+    posture.hips_W_m = yaw * (scale * posture.hips_W_m) + shift_m;
+    for (Eigen::Vector3d& way : posture.directions_W) way = yaw * way;
+    postures.push_back({entry.join_s + sample.t_s, posture});
   }
-  return figures;
+  return postures;
 }
 
 /// More would say the same again.
@@ -172,9 +172,9 @@ class RecordingReader {
     if (!CheckScale(entry, scale * track.value->leg_units, person->value)) return;
     if (!Accept(entry, CheckBodyTrack(*track.value, entry, scale))) return;
     if (!HasRoom(entry, track.value->samples.size())) return;
-    entry.figures = Place(entry, *track.value, person->value, scale);
-    for (std::size_t i = 0; i < entry.figures.size(); ++i) {
-      if (entry.figures[i].figure.hips_W_m.norm() <= kMaxDistance_m) continue;
+    entry.postures = Place(entry, *track.value, person->value, scale);
+    for (std::size_t i = 0; i < entry.postures.size(); ++i) {
+      if (entry.postures[i].posture.hips_W_m.norm() <= kMaxDistance_m) continue;
       return Refuse(
           entry,
           {grammar::DiagnosticAt(

@@ -49,10 +49,11 @@ Vector3d SwayOf(const Person& person, const Pose& X_WS, const Eigen::Vector2d& s
 }
 
 Torso TorsoOf(const Person& person, const BodyTargets& targets) {
-  if (targets.figure) {
-    const Figure& figure = *targets.figure;
-    return {figure.hips_W_m, figure.ways_W[Figure::kTrunk], figure.ways_W[Figure::kNeck],
-            figure.ways_W[Figure::kAcrossHips], figure.ways_W[Figure::kAcrossShoulders]};
+  if (targets.posture) {
+    const Posture& posture = *targets.posture;
+    return {posture.hips_W_m, posture.directions_W[Posture::kTrunk],
+            posture.directions_W[Posture::kNeck], posture.directions_W[Posture::kAcrossHips],
+            posture.directions_W[Posture::kAcrossShoulders]};
   }
   const double h = person.height_m;
   const Eigen::Quaterniond& q = targets.X_WS.q;
@@ -111,7 +112,7 @@ bool FollowsHand(const Person& person, bool right) {
 }
 
 Vector3d WayOf(const BodyTargets& targets, std::size_t way, bool right) {
-  return targets.figure->ways_W[way + (right ? 0 : 1)];
+  return targets.posture->directions_W[way + (right ? 0 : 1)];
 }
 
 Arm ArmOf(const Person& person, const BodyTargets& targets, bool right) {
@@ -122,10 +123,10 @@ Arm ArmOf(const Person& person, const BodyTargets& targets, bool right) {
           .elbow = {},
           .wrist = {},
           .palm_toward = {}};
-  if (targets.figure && !FollowsHand(person, right)) {
-    arm.elbow = arm.shoulder + kUpperArm * h * WayOf(targets, Figure::kUpperArm, right);
-    arm.wrist = arm.elbow + kForearm * h * WayOf(targets, Figure::kForearm, right);
-    arm.palm_toward = WayOf(targets, Figure::kHand, right);
+  if (targets.posture && !FollowsHand(person, right)) {
+    arm.elbow = arm.shoulder + kUpperArm * h * WayOf(targets, Posture::kUpperArm, right);
+    arm.wrist = arm.elbow + kForearm * h * WayOf(targets, Posture::kForearm, right);
+    arm.palm_toward = WayOf(targets, Posture::kHand, right);
     return arm;
   }
   if (limb.end == LimbEnd::kRightElbow || limb.end == LimbEnd::kLeftElbow) {
@@ -158,11 +159,11 @@ Leg LegOf(const Person& person, const BodyTargets& targets, bool right) {
   const double h = person.height_m;
   const Eigen::Quaterniond& q = targets.X_WS.q;
   const Vector3d hip = HipOf(person, TorsoOf(person, targets), right);
-  if (targets.figure) {
-    const Vector3d knee = hip + kThigh * h * WayOf(targets, Figure::kThigh, right);
-    const Vector3d ankle = knee + kShank * h * WayOf(targets, Figure::kShank, right);
-    return {hip, knee, ankle, WayOf(targets, Figure::kFoot, right),
-            WayOf(targets, Figure::kSole, right)};
+  if (targets.posture) {
+    const Vector3d knee = hip + kThigh * h * WayOf(targets, Posture::kThigh, right);
+    const Vector3d ankle = knee + kShank * h * WayOf(targets, Posture::kShank, right);
+    return {hip, knee, ankle, WayOf(targets, Posture::kFoot, right),
+            WayOf(targets, Posture::kSole, right)};
   }
   const Vector3d wanted = targets.limbs[right ? 2 : 3].p_W_m - q * FootFromAnkle(h);
   const TwoBones bones =
@@ -302,9 +303,9 @@ Pose HeadToward(const Person& person, const Vector3d& p_W_neck, const Vector3d& 
   return {p_W_neck + q * Vector3d(0, 0, kHeadCentre * person.height_m), q};
 }
 
-Pose HeadOfFigure(const Person& person, const BodyTargets& targets) {
-  const Vector3d& crown = targets.figure->ways_W[Figure::kCrown];
-  const Vector3d& face = targets.figure->ways_W[Figure::kFace];
+Pose HeadOfPosture(const Person& person, const BodyTargets& targets) {
+  const Vector3d& crown = targets.posture->directions_W[Posture::kCrown];
+  const Vector3d& face = targets.posture->directions_W[Posture::kFace];
   const Vector3d level = face - face.dot(crown) * crown;
   Eigen::Matrix3d axes;
   axes.col(0) = level.norm() > 1e-6 ? Vector3d(level.normalized()) : crown.unitOrthogonal();
@@ -314,30 +315,30 @@ Pose HeadOfFigure(const Person& person, const BodyTargets& targets) {
           Eigen::Quaterniond(axes).normalized()};
 }
 
-Figure FigureOf(const Person& person, const BodyTargets& targets) {
-  if (targets.figure) return *targets.figure;
+Posture PostureOf(const Person& person, const BodyTargets& targets) {
+  if (targets.posture) return *targets.posture;
   const Torso torso = TorsoOf(person, targets);
-  Figure figure{.hips_W_m = torso.hips, .ways_W = {}};
-  auto& ways = figure.ways_W;
-  ways[Figure::kTrunk] = torso.trunk_up;
-  ways[Figure::kNeck] = torso.neck_up;
-  ways[Figure::kFace] = targets.X_WHead.q * Vector3d::UnitX();
-  ways[Figure::kCrown] = targets.X_WHead.q * Vector3d::UnitZ();
-  ways[Figure::kAcrossHips] = torso.hips_left;
-  ways[Figure::kAcrossShoulders] = torso.shoulders_left;
+  Posture posture{.hips_W_m = torso.hips, .directions_W = {}};
+  auto& ways = posture.directions_W;
+  ways[Posture::kTrunk] = torso.trunk_up;
+  ways[Posture::kNeck] = torso.neck_up;
+  ways[Posture::kFace] = targets.X_WHead.q * Vector3d::UnitX();
+  ways[Posture::kCrown] = targets.X_WHead.q * Vector3d::UnitZ();
+  ways[Posture::kAcrossHips] = torso.hips_left;
+  ways[Posture::kAcrossShoulders] = torso.shoulders_left;
   for (const bool right : {true, false}) {
     const std::size_t side = right ? 0 : 1;
     const Arm arm = ArmOf(person, targets, right);
-    ways[Figure::kUpperArm + side] = (arm.elbow - arm.shoulder).normalized();
-    ways[Figure::kForearm + side] = (arm.wrist - arm.elbow).normalized();
-    ways[Figure::kHand + side] = arm.palm_toward;
+    ways[Posture::kUpperArm + side] = (arm.elbow - arm.shoulder).normalized();
+    ways[Posture::kForearm + side] = (arm.wrist - arm.elbow).normalized();
+    ways[Posture::kHand + side] = arm.palm_toward;
     const Leg leg = LegOf(person, targets, right);
-    ways[Figure::kThigh + side] = (leg.knee - leg.hip).normalized();
-    ways[Figure::kShank + side] = (leg.ankle - leg.knee).normalized();
-    ways[Figure::kFoot + side] = leg.foot_ahead;
-    ways[Figure::kSole + side] = leg.sole_down;
+    ways[Posture::kThigh + side] = (leg.knee - leg.hip).normalized();
+    ways[Posture::kShank + side] = (leg.ankle - leg.knee).normalized();
+    ways[Posture::kFoot + side] = leg.foot_ahead;
+    ways[Posture::kSole + side] = leg.sole_down;
   }
-  return figure;
+  return posture;
 }
 
 double LegLength(double height_m) { return (kThigh + kShank) * height_m; }
@@ -356,7 +357,7 @@ namespace {
 
 /// Targets of a standing person with hanging arms, without the head's pose.
 BodyTargets Resting(const Person& person) {
-  BodyTargets targets{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}, .figure = {}};
+  BodyTargets targets{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}, .posture = {}};
   for (int limb = 0; limb < 4; ++limb)
     targets.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, targets);
   return targets;
