@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Anti-aliased drawing on an image: rounded rectangles, lines, text. Coordinates are pixels, y
-// down; drawing is clipped to the image.
-// Tested by tests/render/canvas_test.cc
+// down. Drawing is clipped to the image. Labels need no more than this, so there is no dependency
+// on cairo. Tested by tests/render/canvas_test.cc
 #pragma once
 
 #include <string>

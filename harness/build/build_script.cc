@@ -98,7 +98,7 @@ struct StepMaker {
   template <class PersonYaml>
   physics::Step operator()(const PersonYaml&) const {
     errors.Add(written.name_where,
-               fmt::format("'{}' is a hand, and this step is for persons", written.name),
+               fmt::format("'{}' is a hand; this step is for persons", written.name),
                "hands reach, close, move; persons look, walk, lean");
     return {};
   }
@@ -111,8 +111,9 @@ struct StepMaker {
       const auto index = static_cast<std::size_t>(found - entities.begin());
       const std::string what = index < scene.bodies.size() ? WhyNoThing(scene.bodies[index]) : "";
       if (!what.empty())
-        errors.Add(name.where, fmt::format("{}: '{}' is {}, and no thing", key, name.value, what),
-                   what == "grains" ? "name the vessel that they are in" : "nothing touches it");
+        errors.Add(name.where,
+                   fmt::format("{}: '{}' is {}, not a physical object", key, name.value, what),
+                   what == "grains" ? "name the vessel that holds them" : "hands cannot touch it");
       return;
     }
     errors.AddUnknownName(name.where, fmt::format("{}: no entity is called '{}'", key, name.value),
@@ -128,7 +129,7 @@ struct StepMaker {
     const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
     if (away_m <= kMaxOutside_m) return;
     errors.Add(e.point_m->where,
-               fmt::format("point_m: the point is {:.1f} mm outside of '{}', more than {:g} mm",
+               fmt::format("point_m: the point is {:.1f} mm outside '{}', more than {:g} mm",
                            1000 * away_m, *found, 1000 * kMaxOutside_m),
                "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
   }
@@ -140,9 +141,8 @@ struct StepMaker {
     if (joint >= 0 &&
         scene.joints[static_cast<std::size_t>(joint)].kind != physics::JointKind::kBall)
       return;
-    errors.Add(name.where,
-               fmt::format("follow_joint: '{}' hangs on no slider or hinge", name.value),
-               "give it one, or move the hand by 'move_by_m'");
+    errors.Add(name.where, fmt::format("follow_joint: '{}' has no slider or hinge", name.value),
+               "give it one, or use 'move_by_m'");
   }
 
   physics::Step Follow(physics::PosesStep step, const Located<std::string>& style) const {
@@ -193,11 +193,11 @@ void CheckLength(const ScenarioYaml& entry, const physics::Script& script, Diagn
     total_s += DurationOf(script.stages[i]);
     const Where where = entry.script[i].front().name_where;
     if (total_s > kMaxDuration_s) {
-      return errors.Add(where,
-                        fmt::format("the script takes more than {} s up to here", kMaxDuration_s));
+      return errors.Add(
+          where, fmt::format("the script is longer than {} s at this point", kMaxDuration_s));
     }
     if (poses > kMaxPoses)
-      return errors.Add(where, fmt::format("more than {} poses up to here", kMaxPoses));
+      return errors.Add(where, fmt::format("more than {} poses at this point", kMaxPoses));
   }
 }
 
@@ -215,7 +215,7 @@ void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
     const HandSoFar& hand = hands[step.name];
     if (!hand.reached.empty() || hand.closed) return;
     errors.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
-               "it has neither reached for something nor closed before");
+               "no step before this one reaches for something or closes the hand");
   };
   for (const StageYaml& stage : script) {
     for (const Named<StepYaml>& step : stage) {
@@ -238,7 +238,8 @@ void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
         check_holds("place_on", step, place->where);
         if (place->place_on.value == hand.reached) {
           errors.Add(place->place_on.where,
-                     fmt::format("place_on: {} holds '{}' itself", step.name, hand.reached));
+                     fmt::format("place_on: {} holds '{}' and cannot place it on itself", step.name,
+                                 hand.reached));
         }
       }
     }

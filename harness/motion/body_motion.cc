@@ -117,7 +117,7 @@ class TrackMaker {
         joint = Find(sided, joints);
         if (joint >= 0) continue;
         const char* side = right ? "right" : "left";
-        Complain(fmt::format("no joint is a person's {} {}: wanted '{}' with one of {}", side,
+        Complain(fmt::format("no joint is a person's {} {}: expected '{}' with one of {}", side,
                              wanted.called, side, fmt::join(wanted.names, ", ")),
                  kNamesHint);
       }
@@ -152,7 +152,7 @@ class TrackMaker {
                          2;
     }
     if (left.norm() < 1e-9 || track.leg_units < 1e-9)
-      return Complain("the offsets put both hips, or hips and ankles, in one place",
+      return Complain("the offsets put both hips, or hips and ankles, at the same point",
                       "the hierarchy's offsets are the person's bones");
     ahead_ = left.normalized().cross(Vector3d::UnitY());
   }

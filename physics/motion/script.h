@@ -85,7 +85,7 @@ struct MoveLimbStep {
   std::optional<Eigen::Vector3d> to_m = std::nullopt;  ///< none: back to its rest position
   /// If set, the limb yields: it slows down so that it pushes with no more than this force,
   /// newtons.
-  std::optional<double> most_n = std::nullopt;
+  std::optional<double> max_force_n = std::nullopt;
 };
 struct HeadPosesStep {  ///< recorded head; the eyes look along its x
   std::vector<TimedPose> poses;

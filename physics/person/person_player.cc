@@ -60,7 +60,7 @@ class PersonPlayer::Resolver {
     limb.to_rest = !move.to_m;
     if (move.to_m) limb.to_S_m = X_SW * *move.to_m;
     limb.progress = {0, 1, player_.t_s_, over_s_};
-    limb.most_n = move.most_n;
+    limb.max_force_n = move.max_force_n;
     limb.pace = 1;
     limb.behind_s = 0;
   }
@@ -164,10 +164,10 @@ void PersonPlayer::Yield(int limb, const Snapshot& now) {
   constexpr double kGrow_s = 0.1, kMinPace = 0.01;
   const double dt_s = 1.0 / scene_.world.rate_hz;
   LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
-  if (!motion.most_n) return;
+  if (!motion.max_force_n) return;
   const double resistance_n = ResistanceTo(limb, now);
-  motion.pace = resistance_n > *motion.most_n
-                    ? motion.pace * *motion.most_n / resistance_n
+  motion.pace = resistance_n > *motion.max_force_n
+                    ? motion.pace * *motion.max_force_n / resistance_n
                     : std::min(1.0, std::max(motion.pace, kMinPace) * (1 + dt_s / kGrow_s));
   motion.behind_s += (1 - motion.pace) * dt_s;
 }

@@ -43,9 +43,9 @@ class PersonPlayer {
     Eigen::Vector3d forearm_S = Eigen::Vector3d::UnitZ();  ///< when the step began
     bool to_rest = true;
     Motion progress;
-    std::optional<double> most_n;  ///< force above which the limb yields
-    double pace = 1;               ///< share of the full speed, less than 1 under resistance
-    double behind_s = 0;           ///< delay that yielding has caused
+    std::optional<double> max_force_n;  ///< force above which the limb yields
+    double pace = 1;                    ///< share of the full speed, less than 1 under resistance
+    double behind_s = 0;                ///< delay that yielding has caused
   };
   struct RecordedBody {
     PostureTrack track;

@@ -108,7 +108,7 @@ TEST(BodyTrackTest, SaysWhichJointIsMissing) {
   names.shin = "Tail";
   const std::string said =
       Brief(Read(Person(names) + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill)).diagnostics);
-  EXPECT_NE(said.find(":2:6: no joint is a person's right knee: wanted 'right' with one of leg, "
+  EXPECT_NE(said.find(":2:6: no joint is a person's right knee: expected 'right' with one of leg, "
                       "lowerleg, lowleg, shin, calf, knee | like "),
             std::string::npos)
       << said;
@@ -121,7 +121,7 @@ TEST(BodyTrackTest, BonesWithoutLength) {
   for (std::size_t at; (at = flat.find("-40")) != std::string::npos;) flat.replace(at, 3, "0");
   const std::string said =
       Brief(Read(flat + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill)).diagnostics);
-  EXPECT_NE(said.find("the offsets put both hips, or hips and ankles, in one place"),
+  EXPECT_NE(said.find("the offsets put both hips, or hips and ankles, at the same point"),
             std::string::npos)
       << said;
 }

@@ -30,7 +30,7 @@ TEST(ReadScenario, TheProbe) {
   const Scenario scenario = Read(kProbe, {}, "some/scenarios/lift/probe.yaml");
   EXPECT_EQ(scenario.name, "probe");
   EXPECT_EQ(scenario.skill, "lift");
-  EXPECT_EQ(scenario.world.sensing_hz, 240);
+  EXPECT_EQ(scenario.sensing.sensing_hz, 240);
   ASSERT_EQ(scenario.scene.bodies.size(), 2u);
   const physics::Body& milk = scenario.scene.bodies[1];
   EXPECT_EQ(milk.name, "milk");
@@ -152,7 +152,7 @@ TEST(ReadScenario, LimitsOnTheWhole) {
   std::string stages;
   for (int i = 0; i < 7; ++i) stages += "  - right_hand: {wait_s: 600}\n";
   EXPECT_EQ(ErrorsAbout(ProbeWith("pictures:\n", stages + "pictures:\n")),
-            "18:5: the script takes more than 3600 s up to here\n");
+            "18:5: the script is longer than 3600 s at this point\n");
 
   std::string many;
   for (std::size_t i = 0; i <= kMaxBeats; ++i) many += "  - right_hand: {wait_s: 0.01}\n";

@@ -134,7 +134,7 @@ TEST(PersonPlayerTest, ALimbYieldsToWhatResistsMoreThanItMayPush) {
   scene.bodies[kBlock].friction = 2;  // 60 kg * 9.81 * 2 * 0.8: it takes some 940 N to slide it
   const Vector3d there(0.33, -0.09, 0.4);
   std::vector<PersonStep> steps = Kick(there);
-  std::get<MoveLimbStep>(steps[1].action).most_n = 60;
+  std::get<MoveLimbStep>(steps[1].action).max_force_n = 60;
   const Played yielding = Play(scene, steps);
   // The first blow has the speed of the limb.
   EXPECT_LT(std::abs(yielding.end.bodies[kBlock].X_WB.p_m.x() - 0.45), 0.03);
@@ -146,7 +146,7 @@ TEST(PersonPlayerTest, ALimbYieldsToWhatResistsMoreThanItMayPush) {
 TEST(PersonPlayerTest, ALimbThatMayYieldStillPushesWhatIsLight) {
   const Scene scene = Before({0.45, -0.09, 0.4});
   std::vector<PersonStep> steps = Kick({0.35, -0.09, 0.4});
-  std::get<MoveLimbStep>(steps[1].action).most_n = 60;
+  std::get<MoveLimbStep>(steps[1].action).max_force_n = 60;
   EXPECT_GT(Play(scene, steps).end.bodies[kBlock].X_WB.p_m.x(), 0.52);
 }
 
