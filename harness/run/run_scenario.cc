@@ -50,14 +50,13 @@ struct ScenarioRun::State {
 ScenarioRun::ScenarioRun(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                          const RunOptions& options) {
   const grammar::EntityTable entity_table = MakeEntityTable(scenario);
-  state_.reset(new State{
-      .simulation = {scenario.scene, scenario.script},
-      .sensing = {scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share},
-      .program = program,
-      .entity_table = entity_table,
-      .monitor = {program, entity_table},
-      .clock = LapClock(options.measure),
-      .record = options.record});
+  state_.reset(new State{.simulation = {scenario.scene, scenario.script},
+                         .sensing = {scenario.scene, scenario.sensing},
+                         .program = program,
+                         .entity_table = entity_table,
+                         .monitor = {program, entity_table},
+                         .clock = LapClock(options.measure),
+                         .record = options.record});
 }
 
 ScenarioRun::~ScenarioRun() = default;
@@ -116,7 +115,7 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
 
 grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
                             std::shared_ptr<const grammar::Program> program, grammar::Tick end) {
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
+  Sensing sensing(scenario.scene, scenario.sensing);
   const grammar::EntityTable entity_table = MakeEntityTable(scenario);
   grammar::Monitor monitor(program, entity_table);
   std::vector<grammar::Event> events;
