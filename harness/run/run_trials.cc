@@ -44,7 +44,7 @@ RunRequest WithDraws(const RunRequest& request, const Nominal& nominal, int tria
   const Scenario& scenario = nominal.run.scenario;
   RunRequest varied = request;
   for (std::string& drawn :
-       SampleTrial(nominal.document, scenario.variations, scenario.world.seed, trial)) {
+       SampleTrial(nominal.document, scenario.variations, scenario.scene.world.seed, trial)) {
     const std::string field = drawn.substr(0, drawn.find('=') + 1);
     const bool set = std::ranges::any_of(
         request.settings, [&](const std::string& given) { return given.starts_with(field); });

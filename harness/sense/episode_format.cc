@@ -71,7 +71,7 @@ ValueFormat<LineEntry> LineFormat() {
           .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
           .Optional("gazes_at", &L::gazes_at, Name(), "")
           .format();
-  using H = HandEntry;
+  using H = HandYaml;
   const ValueFormat<H> hand =
       StructFormat<H>("hand")
           .NamedByKey()

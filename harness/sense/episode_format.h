@@ -55,7 +55,7 @@ struct SampleEntry {
 };
 
 /// How a hand is, in a frame.
-struct HandEntry {
+struct HandYaml {
   double trigger = 0;
   std::optional<Eigen::Vector3d> ahead;
   std::vector<Eigen::Vector4d> feelers_m;
@@ -76,7 +76,7 @@ struct TouchEntry {
 struct FrameEntry {
   Located<std::int64_t> tick;
   std::vector<Named<SampleEntry>> looks;
-  std::vector<Named<HandEntry>> hands;
+  std::vector<Named<HandYaml>> hands;
   std::vector<TouchEntry> touches;
 };
 

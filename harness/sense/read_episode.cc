@@ -21,7 +21,7 @@ namespace {
 
 using episode::EndEntry;
 using episode::FrameEntry;
-using episode::HandEntry;
+using episode::HandYaml;
 using episode::HeaderEntry;
 using episode::LineEntry;
 using episode::MemberEntry;
@@ -168,7 +168,7 @@ class EpisodeReader {
         now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, errors);
       }
     }
-    for (const Named<HandEntry>& hand : entry.hands) TakeHand(hand, errors);
+    for (const Named<HandYaml>& hand : entry.hands) TakeHand(hand, errors);
     now_.touches.clear();
     for (const TouchEntry& touch : entry.touches) TakeTouch(touch, errors);
     std::sort(now_.touches.begin(), now_.touches.end(), [](const auto& a, const auto& b) {
@@ -200,7 +200,7 @@ class EpisodeReader {
     if (entry.w_rad_per_s) look.w_WB_rad_per_s = *entry.w_rad_per_s;
   }
 
-  void TakeHand(const Named<HandEntry>& named, DiagnosticList& errors) {
+  void TakeHand(const Named<HandYaml>& named, DiagnosticList& errors) {
     const int entity = IndexOf(named.name, named.name_where, errors);
     if (entity == grammar::kNoEntity) return;
     const auto found = std::find(hands_.begin(), hands_.end(), entity);
@@ -208,7 +208,7 @@ class EpisodeReader {
       return errors.Add(named.name_where, fmt::format("'{}' is not a hand", named.name),
                         "its entity has no 'hand: true'");
     const auto slot = static_cast<std::size_t>(found - hands_.begin());
-    const HandEntry& entry = named.value;
+    const HandYaml& entry = named.value;
     const grammar::EntitySample& look = now_.entities[static_cast<std::size_t>(entity)];
     grammar::HandSample& hand = now_.hands[slot];
     hand.trigger = entry.trigger;

@@ -78,10 +78,10 @@ bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
 
 }  // namespace
 
-Sensing::Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share)
+Sensing::Sensing(const physics::Scene& scene, const SensingSettings& settings)
     : rate_hz_(scene.world.rate_hz),
-      sensing_hz_(sensing_hz),
-      bearing_share_(bearing_share),
+      sensing_hz_(settings.sensing_hz),
+      bearing_share_(settings.bearing_share),
       body_count_(static_cast<int>(scene.bodies.size())) {
   const std::vector<std::string> styles = StyleNames(scene);
   for (const physics::Hand& hand : scene.hands) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
+#include "harness/scenario/scenario.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 
@@ -19,11 +20,11 @@ namespace prehend::harness {
 
 class Sensing {
  public:
-  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). `sensing_hz` must not
-  /// exceed the scene's rate. A contact point decides about support only if it carries at least
-  /// `bearing_share` of the pair's load; otherwise an idle corner point with a skewed normal would
-  /// decide.
-  Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share);
+  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). The settings'
+  /// `sensing_hz` must not exceed the scene's rate. A contact point decides about support only if
+  /// it carries at least `bearing_share` of the pair's load; otherwise an idle corner point with a
+  /// skewed normal would decide.
+  Sensing(const physics::Scene& scene, const SensingSettings& settings);
 
   /// Whether the snapshot of this tick is sensed: at each tick that completes another 1/sensing_hz.
   /// Computed on integers, so that any rate works without drift.

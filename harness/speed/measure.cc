@@ -132,7 +132,7 @@ double TimePhysics(const Scenario& scenario) {
 /// Sensing and grammar alone, on recorded snapshots.
 double TimeWatching(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                     std::span<const physics::Snapshot> recording) {
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
+  Sensing sensing(scenario.scene, scenario.sensing);
   grammar::Monitor monitor(std::move(program), MakeEntityTable(scenario));
   std::vector<grammar::Event> events;
   const Stopwatch watch;
@@ -149,7 +149,7 @@ SpeedFigure WatchCarton(const LoadedRun& carton, bool quick) {
   const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
   figure.operations = static_cast<double>(run.ticks);
   figure.events = static_cast<double>(run.timeline.events.size());
-  figure.simulated_s = figure.operations / carton.scenario.world.rate_hz;
+  figure.simulated_s = figure.operations / carton.scenario.scene.world.rate_hz;
   figure.seconds = figure.physics_s = std::numeric_limits<double>::infinity();
   for (int i = 0; i < (quick ? 1 : kRuns); ++i) {
     figure.physics_s = std::min(figure.physics_s, TimePhysics(carton.scenario));
@@ -165,7 +165,7 @@ SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool 
   const int boxes = quick ? 50 : 5000, ticks = quick ? 20 : 400;
   const Scenario scenario = BoxesOnAFloor(boxes, kRate_hz);
   physics::Simulation simulation(scenario.scene, scenario.script);
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
+  Sensing sensing(scenario.scene, scenario.sensing);
   grammar::Monitor monitor(std::move(program), MakeEntityTable(scenario));
   std::vector<grammar::Event> events;
   while (simulation.snapshot().tick < kUntilAsleep_s * kRate_hz && simulation.Step())
