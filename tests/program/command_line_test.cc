@@ -262,7 +262,7 @@ TEST_F(CommandLine, WarningsOfAGrammarStopNothing) {
             "grammar odd\nparam unused = 1 cm\nevent high(c: Cartoon) while height(c) > 1 m\n");
   const std::string file = (root_ / "odd.grammar").string();
   const std::string unused = file + ":2:7: warning: the parameter 'unused' is not used\n";
-  const std::string nobody = file + ":3:12: warning: nobody in this episode is a 'Cartoon'\n";
+  const std::string nobody = file + ":3:12: warning: no entity of this episode is a 'Cartoon'\n";
   const Said validated = Do("validate " + file);
   EXPECT_EQ(validated.exit_code, 0);
   EXPECT_NE(validated.err.find(unused), std::string::npos) << validated.err;
