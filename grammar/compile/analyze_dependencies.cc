@@ -174,7 +174,7 @@ bool UsesLooks(const Program& program, int index) {
                                         [&](int arg) { return UsesLooks(program, arg); });
 }
 
-// For what a touch measures, apart from which thresholds it is beyond.
+// For values of a touch, not only for thresholds that it has crossed.
 bool AsksTouches(const Program& program, int index) {
   if (index == kNone) return false;
   const Node& node = program.nodes[index];
@@ -259,12 +259,12 @@ void FindThreshold(Program& program, Node& node) {
   const auto measured = MeasuredBy(program.nodes[value].op);
   if (number.op != Op::kNumber || !measured) return;
   const bool strict = op == Op::kGreater || op == Op::kLessEqual;
-  const bool beyond = op == Op::kGreater || op == Op::kGreaterEqual;
+  const bool when_crossed = op == Op::kGreater || op == Op::kGreaterEqual;
   const double at_least = strict ? NextLarger(number.number) : number.number;
   const int as_named = Enter(program, {(*measured)[0], at_least});
   const int swapped = Enter(program, {(*measured)[1], at_least});
   if (as_named != kNone && swapped != kNone)
-    node.by_threshold = {value, {as_named, swapped}, beyond};
+    node.by_threshold = {value, {as_named, swapped}, when_crossed};
 }
 
 // Only these thresholds matter of what is measured.
@@ -280,7 +280,7 @@ void WatchThresholds(const Program& program, Rule& rule, const ByThreshold& by) 
 bool AddMeasured(const Program& program, MeasuredPart& part, const ByThreshold& by) {
   const Node& value = program.nodes[by.value];
   const auto add = [&](Limits& limits, int threshold) {
-    (by.beyond ? limits.beyond : limits.short_of) |= ThresholdSet{1} << threshold;
+    (by.when_crossed ? limits.crossed : limits.not_crossed) |= ThresholdSet{1} << threshold;
   };
   if (value.op == Op::kTrigger) {
     if (part.hand != kNone && part.hand != value.roles[0]) return false;

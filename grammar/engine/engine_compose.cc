@@ -35,7 +35,7 @@ constexpr AllenSet kToLater =
 // Some relation to another part holds to none of the remembered intervals, nor to one that ends
 // later than all of them. Compositions come in the order in which they are complete, not in that of
 // their ends, so all may still be hoped of them.
-bool IsHopeless(const Program& program, const Rule& rule, const RuleInstance& instance, int part,
+bool IsHopeless(const Program& program, const Rule& rule, const ComposeState& state, int part,
                 const Span& span) {
   const ComposeRule& composition = rule.As<ComposeRule>();
   return std::any_of(
@@ -48,7 +48,7 @@ bool IsHopeless(const Program& program, const Rule& rule, const RuleInstance& in
         if (program.rules[rule.references[composition.parts[other]].rule].form() == Form::kCompose)
           return false;
         if ((clause.relations & (is_left ? kToLater : kToEarlier)) != 0) return false;
-        const std::vector<Span>& others = instance.parts[other];
+        const std::vector<Span>& others = state.parts[other];
         return std::none_of(others.begin(), others.end(), [&](const Span& one) {
           const Allen relation =
               is_left ? Relate(TicksOf(span), TicksOf(one)) : Relate(TicksOf(one), TicksOf(span));
@@ -60,16 +60,16 @@ bool IsHopeless(const Program& program, const Rule& rule, const RuleInstance& in
 // Tries all ways to complete `chosen` and keeps the best one.
 class Combinations {
  public:
-  Combinations(const ComposeRule& composition, const RuleInstance& instance, FrameNumber settled)
-      : composition_(composition), lane_(instance), settled_(settled) {
+  Combinations(const ComposeRule& composition, const ComposeState& state, FrameNumber settled)
+      : composition_(composition), state_(state), settled_(settled) {
     Choose(0);
   }
   const Span* best() const { return found_ ? &best_ : nullptr; }
 
  private:
   void Choose(std::size_t part) {
-    if (part == lane_.parts.size()) return Judge();
-    for (const Span& span : lane_.parts[part]) {
+    if (part == state_.parts.size()) return Judge();
+    for (const Span& span : state_.parts[part]) {
       if (span.Complete().frame > settled_) continue;
       chosen_[part] = &span;
       if (RelationsHoldUpTo(static_cast<int>(part))) Choose(part + 1);
@@ -87,13 +87,13 @@ class Combinations {
   }
 
   void Judge() {
-    const Span& last = *chosen_[lane_.parts.size() - 1];
+    const Span& last = *chosen_[state_.parts.size() - 1];
     Span whole{chosen_[0]->begin, last.end, last.open_end, last.Complete()};
-    for (std::size_t part = 0; part < lane_.parts.size(); ++part) {
+    for (std::size_t part = 0; part < state_.parts.size(); ++part) {
       const Moment complete = chosen_[part]->Complete();
       if (complete.tick > whole.completed.tick) whole.completed = complete;
     }
-    if (whole.begin.frame >= whole.end.frame || whole.begin.frame < lane_.last_end) return;
+    if (whole.begin.frame >= whole.end.frame || whole.begin.frame < state_.last_end) return;
     const auto order = [](const Span& span) {
       return std::tuple(span.completed.tick, span.end.tick, -span.begin.tick);
     };
@@ -103,7 +103,7 @@ class Combinations {
   }
 
   const ComposeRule& composition_;
-  const RuleInstance& lane_;
+  const ComposeState& state_;
   FrameNumber settled_;
   std::array<const Span*, kMaxParts> chosen_ = {};
   Span best_;
@@ -127,7 +127,7 @@ void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
       notified_.clear();
       instances_.EnsureAll(part_of.rule, entities, notified_);
       for (const int index : notified_) {
-        std::vector<Span>& spans = instances_[index].parts[part_of.part];
+        std::vector<Span>& spans = instances_[index].As<ComposeState>().parts[part_of.part];
         if (spans.size() == kRememberedSpans) spans.erase(spans.begin());
         spans.push_back(span);
         Wake(index);
@@ -159,26 +159,27 @@ FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
 
 void Engine::StepCompose(RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
+  auto& state = instance.As<ComposeState>();
   const FrameNumber settled = PartsSettled(instance);
   for (;;) {
-    const Combinations combinations(rule.As<ComposeRule>(), instance, settled);
+    const Combinations combinations(rule.As<ComposeRule>(), state, settled);
     if (combinations.best() == nullptr) break;
     const Span whole = *combinations.best();
-    instance.last_end = whole.end.frame;
+    state.last_end = whole.end.frame;
     // The next one begins with a first part that begins, and ends with a last part that ends, later
     // than this ends.
-    std::erase_if(instance.parts.front(),
-                  [&](const Span& span) { return span.begin.frame < instance.last_end; });
-    std::erase_if(instance.parts.back(),
-                  [&](const Span& span) { return span.end.frame <= instance.last_end; });
+    std::erase_if(state.parts.front(),
+                  [&](const Span& span) { return span.begin.frame < state.last_end; });
+    std::erase_if(state.parts.back(),
+                  [&](const Span& span) { return span.end.frame <= state.last_end; });
     Conclude(instance, whole);
   }
   for (bool again = true; again;) {
     again = false;
-    for (std::size_t part = 0; part < instance.parts.size(); ++part) {
-      again |= std::erase_if(instance.parts[part], [&](const Span& span) {
+    for (std::size_t part = 0; part < state.parts.size(); ++part) {
+      again |= std::erase_if(state.parts[part], [&](const Span& span) {
                  return span.Complete().frame <= settled &&
-                        IsHopeless(*program_, rule, instance, static_cast<int>(part), span);
+                        IsHopeless(*program_, rule, state, static_cast<int>(part), span);
                }) > 0;
     }
   }

@@ -146,7 +146,8 @@ void Engine::UpdateKnown(RuleInstance& instance) {
     // says.
     const Tick last = history_.At(instance.next - 1).tick;
     const FrameNumber reach = history_.FirstNotBefore(last + 1 - TicksOf(instance).back);
-    instance.known = std::min(instance.next, std::max(instance.approach_from, reach));
+    instance.known =
+        std::min(instance.next, std::max(instance.As<UntilSinceState>().approach_from, reach));
   }
   for (const Pending& pending : instance.pending)
     instance.known = std::min(instance.known, pending.span.begin.frame);

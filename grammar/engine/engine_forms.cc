@@ -3,6 +3,7 @@
 // docs/grammar-language.md.
 #include <algorithm>
 
+#include "grammar/engine/backward_walk.h"
 #include "grammar/engine/engine.h"
 
 namespace prehend::grammar {
@@ -65,8 +66,10 @@ bool Engine::LooksTheSame(RuleInstance& instance) {
     return false;
   const bool was_open = instance.open;
   if (!StepFrame(instance) || evaluator_.depends_on_time()) return false;
+  const auto* looks_back = instance.If<UntilSinceState>();
+  const bool ended_here = looks_back != nullptr && looks_back->last_end == now;
   return instance.open == was_open && settled() &&
-         (!instance.open || instance.begin.frame != now) && instance.last_end != now;
+         (!instance.open || instance.begin.frame != now) && !ended_here;
 }
 
 bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
@@ -85,7 +88,7 @@ bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
 
 bool Engine::StepAny(RuleInstance& instance, FrameNumber frame) {
   Kleene truth = Kleene::kFalse;
-  for (const int member : instance.members) {
+  for (const int member : instance.As<AnyState>().members) {
     truth = Or(truth, instances_.TruthAt(member, frame));
     if (truth == Kleene::kTrue) break;
   }
@@ -192,10 +195,11 @@ bool Engine::MeetDeadline(RuleInstance& instance, Moment now) {
 
 bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
   const auto& [until, since, approach, back_s] = RuleOf(instance).As<UntilSinceRule>();
+  auto& state = instance.As<UntilSinceState>();
   const Kleene ends = evaluator_.Truth(until, {instance, frame});
   if (ends == Kleene::kUnknown) return false;
   if (ends == Kleene::kTrue) {
-    const WalkBack walk = ApproachBegin(instance, frame);
+    const WalkBack walk = BeginOfWalk(instance, frame);
     const FrameNumber begin = walk.begin;
     if (begin == kNever) return false;
     const CandidateOutcome::Kind kind =
@@ -206,78 +210,30 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
       instance.style = StyleAt(instance, begin);
       if (!Conclude(instance, {history_.At(begin), history_.At(frame)})) return false;
     }
-    instance.last_end = instance.approach_from = frame;
+    state.last_end = state.approach_from = frame;
   }
   if (!RuleOf(instance).referenced) return true;
-  if (evaluator_.Truth(since, {instance, frame}) == Kleene::kFalse)
-    instance.approach_from = frame + 1;
-  while (instance.approach_from < frame &&
-         evaluator_.TooFarApart(since, instance, instance.approach_from, frame)) {
-    ++instance.approach_from;
+  if (evaluator_.Truth(since, {instance, frame}) == Kleene::kFalse) state.approach_from = frame + 1;
+  while (state.approach_from < frame &&
+         evaluator_.TooFarApart(since, instance, state.approach_from, frame)) {
+    ++state.approach_from;
   }
   return true;
 }
 
-// How fast it moves from this frame to the next, on which the signal falls by `way`.
-std::optional<double> Engine::ApproachSpeed(RuleInstance& instance, FrameNumber frame,
-                                            FrameNumber end, double way) const {
-  const Approach& approach = *RuleOf(instance).As<UntilSinceRule>().approach;
-  if (approach.motion != kNone)
-    return evaluator_.Number(approach.motion, {instance, frame + 1, end});
-  return way / history_.Seconds(history_.At(frame + 1).tick - history_.At(frame).tick);
-}
-
-// Walks back from `end` to where the interval begins.
-WalkBack Engine::ApproachBegin(RuleInstance& instance, FrameNumber end) const {
+// Where the interval that ends here begins.
+WalkBack Engine::BeginOfWalk(RuleInstance& instance, FrameNumber end) const {
   using Stop = WalkBack::Stop;
-  const UntilSinceRule& rule = RuleOf(instance).As<UntilSinceRule>();
-  const std::optional<Approach>& approach = rule.approach;
-  const Tick end_tick = history_.At(end).tick;
-  const FrameNumber back = history_.FirstNotBefore(end_tick - TicksOf(instance).back);
-  const FrameNumber earliest = std::max({back, instance.last_end, history_.first()});
-  const Stop at_earliest = earliest == instance.last_end && earliest > 0 ? Stop::kPreviousEnd
-                           : earliest == 0                               ? Stop::kFirstFrame
-                                                                         : Stop::kTooFarBack;
-  const WalkBack unknown{.begin = kNever};
-  FrameNumber begin =
-      end;  // the earliest frame of movement; if pauses do not count, the earliest frame
-  FrameNumber turn = end;           // the movement that began from the farthest point
-  std::optional<double> after = 0;  // the signal one frame later
-  if (approach) after = evaluator_.Number(approach->signal, {instance, end, end});
-  if (!after) return unknown;
-  double farthest = *after;
-  FrameNumber last_progress = end;
-  for (FrameNumber frame = end - 1; frame >= earliest; --frame) {
-    const Evaluator::View view{instance, frame, end};
-    const Kleene holds = evaluator_.Truth(rule.since, view);
-    if (holds == Kleene::kUnknown) return unknown;
-    if (holds == Kleene::kFalse) return {begin, Stop::kSince, frame};
-    if (!approach) {
-      begin = frame;
-      continue;
-    }
-    // Read backwards, an approach moves away from its goal.
-    const std::optional<double> here = evaluator_.Number(approach->signal, view);
-    if (!here) return unknown;
-    if (*here < farthest - approach->slack) return {turn, Stop::kReceding, frame};
-    const std::optional<double> speed = ApproachSpeed(instance, frame, end, *here - *after);
-    if (!speed) return unknown;
-    if (*speed >= approach->speed) {
-      last_progress = frame;
-    } else if (approach->idle_s >= 0 &&
-               history_.At(last_progress).tick - history_.At(frame).tick > TicksOf(instance).idle) {
-      return {begin, Stop::kIdle, last_progress};
-    }
-    // The slow start of a movement belongs to it.
-    const auto moves = [&](FrameNumber since) {
-      return *speed >= approach->speed || (since == frame + 1 && *speed > approach->onset);
-    };
-    if (*here > farthest && moves(turn)) turn = frame;
-    if (approach->idle_s < 0 || moves(begin)) begin = frame;
-    farthest = std::max(farthest, *here);
-    after = here;
-  }
-  return {begin, at_earliest, earliest};
+  const FrameNumber last_end = instance.As<UntilSinceState>().last_end;
+  const FrameNumber back = history_.FirstNotBefore(history_.At(end).tick - TicksOf(instance).back);
+  const FrameNumber first = std::max({back, last_end, history_.first()});
+  const WalkLimits limits{.first = first,
+                          .at_first = first == last_end && first > 0 ? Stop::kPreviousEnd
+                                      : first == 0                   ? Stop::kFirstFrame
+                                                                     : Stop::kTooFarBack,
+                          .idle = TicksOf(instance).idle};
+  return WalkBackFrom(end, RuleOf(instance).As<UntilSinceRule>(), instance, limits, evaluator_,
+                      history_);
 }
 
 }  // namespace prehend::grammar

@@ -93,7 +93,7 @@ struct ByThreshold {
   std::array<int, 2> thresholds = {
       kNone,
       kNone};  ///< of a touch between its first and second role, and of one named the other way
-  bool beyond = false;  ///< true there, and not on the near side
+  bool when_crossed = false;  ///< true where the threshold is crossed, else where it is not
 };
 
 struct Node {
@@ -106,12 +106,12 @@ struct Node {
   ByThreshold by_threshold = {};
 };
 
-/// Thresholds that something measured must be beyond, and such that it must not be beyond.
+/// Thresholds that something measured must have crossed, and such that it must not have.
 struct Limits {
-  ThresholdSet beyond = 0;
-  ThresholdSet short_of = 0;
+  ThresholdSet crossed = 0;
+  ThresholdSet not_crossed = 0;
   bool Fit(ThresholdSet measured) const {
-    return (measured & beyond) == beyond && (measured & short_of) == 0;
+    return (measured & crossed) == crossed && (measured & not_crossed) == 0;
   }
 };
 
@@ -336,9 +336,8 @@ struct Program {
   std::vector<Law> laws;  ///< in the order of the files
   std::vector<Threshold>
       thresholds;  ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
-  bool asks_touches =
-      false;  ///< for what a touch measures, apart from which thresholds it is beyond
-  bool recalls_touches = false;  ///< which thresholds it was beyond in frames before the newest
+  bool asks_touches = false;     ///< for values of a touch, not only for thresholds it has crossed
+  bool recalls_touches = false;  ///< for thresholds that it had crossed in earlier frames
 };
 
 inline constexpr int kTouchingRule = 0;
