@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <set>
 
 #include "grammar/contents.h"
 #include "harness/base/text_file.h"

@@ -10,11 +10,11 @@ namespace {
 
 constexpr const char* kGrammar = R"(grammar kitchen
 condition near(hand: Hand, object: Cup) while distance(hand, object) < 10 cm
-event holding(hand: Hand, object: Cup) while sensor_set(hand, object, "palm")
+event holding(hand: Hand, object: Cup) while sensor_set(hand, "palm", object)
   with style = style(hand)
   with force = force(hand, object)
 symmetric event meeting(a: Thing, b: Thing) while touching(a, b)
-event pinching(hand: Hand, object: Cup) while sensor_set(hand, object, 3)
+event pinching(hand: Hand, object: Cup) while sensor_set(hand, 3, object)
 )";
 
 std::vector<std::string> NamesOf(const std::vector<NameInSource>& names) {
