@@ -103,7 +103,7 @@ TEST(Sensing, AStrayPointWithoutLoadDoesNotHold) {
   physics::Snapshot snapshot = StillSnapshot(2);
   snapshot.contacts = {Point(kTable, kBox, 0, 1.0), Point(kTable, kBox, -1, 0.001)};
   EXPECT_NEAR(sensing.Sense(snapshot).touches[0].up_on_b, 0, 1e-12);
-  Sensing to_the_last_point(scene, 240, 0);
+  Sensing to_the_last_point(scene, {.sensing_hz = 240, .bearing_share = 0});
   EXPECT_NEAR(to_the_last_point.Sense(snapshot).touches[0].up_on_b, 1, 1e-12);
 }
 
