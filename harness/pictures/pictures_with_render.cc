@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Draws and compares pictures, with render/. Tested by tests/program/acceptance_test.cc
 #include <fmt/format.h>
 
 #include <cstdint>

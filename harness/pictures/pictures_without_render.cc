@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Answers of a build without render/: it cannot draw.
 #include "harness/pictures/pictures.h"
 
 namespace prehend::harness {
