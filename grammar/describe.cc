@@ -52,11 +52,13 @@ class Waits {
     if (rule.confirmed_within != kNone) {
       end.until_end_of.insert(program_.rules[rule.references[rule.confirmed_within].rule].name);
     }
-    if (rule.form == Form::kUntilSince) {
-      if (const auto edge = EdgeOf(program_, rule, rule.first))
+    const auto* from_to = rule.If<FromToRule>();
+    const auto* looks_back = rule.If<UntilSinceRule>();
+    if (looks_back != nullptr) {
+      if (const auto edge = EdgeOf(program_, rule, looks_back->until))
         settled_[index] = Settled{*edge, end};
-    } else if (rule.form == Form::kRestOf) {
-      if (const Settled* whole = SettledBy(rule.references[rule.first]))
+    } else if (const auto* rest = rule.If<RestOfRule>()) {
+      if (const Settled* whole = SettledBy(rule.references[rest->whole]))
         settled_[index] = Settled{whole->edge, WaitOf(rule, whole->edge)};
     }
     // The truth at a frame may have to wait for more than the end's decision: see
@@ -64,9 +66,10 @@ class Waits {
     Wait& truth = truth_[index];
     truth = end;
     if (settling) Include(truth, WaitOf(rule, std::nullopt));
-    truth.seconds += rule.lasting_s + rule.back_s + std::max(rule.within_s, 0.0);
-    const bool decided_at_its_end =
-        rule.or_drop || (rule.requirement != kNone && rule.form != Form::kUntilSince);
+    truth.seconds += rule.lasting_s + (looks_back != nullptr ? looks_back->back_s : 0) +
+                     (from_to != nullptr ? std::max(from_to->within_s, 0.0) : 0);
+    const bool decided_at_its_end = (from_to != nullptr && from_to->or_drop) ||
+                                    (rule.requirement != kNone && looks_back == nullptr);
     if (decided_at_its_end) truth.until_end_of.insert(rule.name);
   }
 
@@ -88,8 +91,9 @@ class Waits {
 
   // `to R ends`, R ending at such an A: what looks back from the same A needs no time there.
   std::optional<Edge> SettlesWhereItEnds(const Rule& rule) const {
-    if (rule.form != Form::kFromTo || rule.absence) return std::nullopt;
-    const auto to = EdgeOf(program_, rule, rule.second);
+    const auto* from_to = rule.If<FromToRule>();
+    if (from_to == nullptr || from_to->absence) return std::nullopt;
+    const auto to = EdgeOf(program_, rule, from_to->to);
     if (!to || to->op != Op::kEnds) return std::nullopt;
     const Settled* settled = SettledBy({.rule = to->rule, .roles = to->roles});
     return settled != nullptr ? std::optional(settled->edge) : std::nullopt;
@@ -99,7 +103,7 @@ class Waits {
   // other rule for truths.
   Wait WaitOf(const Rule& rule, const std::optional<Edge>& settling) const {
     Wait wait;
-    const bool composes = rule.form == Form::kCompose;
+    const bool composes = rule.form() == Form::kCompose;
     for (const Reference& reference : rule.references) {
       const Settled* settled = settling ? SettledBy(reference) : nullptr;
       const bool is_settled = settled != nullptr && settled->edge == *settling;
@@ -108,7 +112,8 @@ class Waits {
                                : truth_[reference.rule]);
       if (composes) wait.until_end_of.insert(program_.rules[reference.rule].name);
     }
-    wait.seconds += rule.bridging_s + rule.looks_around_s;
+    const auto* holds = rule.If<WhileRule>();
+    wait.seconds += (holds != nullptr ? holds->bridging_s : 0) + rule.looks_around_s;
     return wait;
   }
 
@@ -126,14 +131,15 @@ std::string Watched(const Program& program, const Rule& rule) {
     return text;
   }
   const Rule& guard = program.rules[rule.references[rule.guard].rule];
-  return guard.form == Form::kTouching ? "pairs that touch" : "while " + guard.name;
+  return guard.form() == Form::kTouching ? "pairs that touch" : "while " + guard.name;
 }
 
 // A composition remembers so many intervals of each part.
 std::size_t BytesPerBinding(const Rule& rule) {
+  const auto* composition = rule.If<ComposeRule>();
+  const std::size_t parts = composition != nullptr ? composition->parts.size() : 0;
   return sizeof(RuleInstance) + rule.references.size() * sizeof(int) +
-         rule.anchors.size() * 3 * sizeof(double) +
-         rule.composition.parts.size() * kRememberedSpans * sizeof(Span);
+         rule.anchors.size() * 3 * sizeof(double) + parts * kRememberedSpans * sizeof(Span);
 }
 
 std::string Head(const Rule& rule) {
@@ -185,8 +191,11 @@ GrammarDescription Describe(const Program& program) {
   const Waits waits(program);
   for (std::size_t i = 0; i < program.rules.size(); ++i) {
     const Rule& rule = program.rules[i];
-    description.history_s = std::max(description.history_s, rule.back_s + rule.looks_around_s);
-    if (rule.form == Form::kTouching || rule.hidden) continue;
+    const auto* looks_back = rule.If<UntilSinceRule>();
+    description.history_s =
+        std::max(description.history_s,
+                 (looks_back != nullptr ? looks_back->back_s : 0) + rule.looks_around_s);
+    if (rule.form() == Form::kTouching || rule.hidden) continue;
     description.rules.push_back({.head = Head(rule),
                                  .printed = rule.printed,
                                  .latency = waits.OfEnd(static_cast<int>(i)),

@@ -70,6 +70,11 @@ std::vector<int> ReplayMonitor::InstancesOf(int rule) {
   return instances;
 }
 
+std::vector<int> ReplayMonitor::MembersOf(int instance) {
+  const auto* any = At(instance).If<AnyState>();
+  return any != nullptr ? any->members : std::vector<int>();
+}
+
 const std::vector<CandidateOutcome>& ReplayMonitor::OutcomesOf(int instance) const {
   static const std::vector<CandidateOutcome> kNoOutcomes;
   return instance >= 0 && instance < static_cast<int>(by_instance_.size()) ? by_instance_[instance]

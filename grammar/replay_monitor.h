@@ -47,6 +47,8 @@ class ReplayMonitor {
     return engine_.instances().Resolve(engine_.instances()[instance], slot);
   }
   const RuleInstance& At(int instance) { return engine_.instances()[instance]; }
+  /// Of a binding made for an `any`: the bindings of which one must hold. None for other rules.
+  std::vector<int> MembersOf(int instance);
   const Rule& RuleOf(int instance) { return program().rules[At(instance).rule]; }
   /// All bindings of a rule that were ever looked at, by entities.
   std::vector<int> InstancesOf(int rule);

@@ -76,29 +76,29 @@ int MostSpecific(const Rule& rule, const std::vector<int>& candidates) {
 
 int ChooseGuard(const Program& program, const Rule& rule) {
   std::vector<int> candidates;
-  switch (rule.form) {
+  switch (rule.form()) {
     case Form::kTouching:
       return kNone;
     case Form::kAny:
       return 0;
     case Form::kWhile:
-      CollectNecessary(program, rule.first, candidates);
+      CollectNecessary(program, rule.As<WhileRule>().condition, candidates);
       break;
     case Form::kFromTo:
-      CollectNecessary(program, rule.during, candidates);
-      CollectNecessary(program, rule.first, candidates);
+      CollectNecessary(program, rule.As<FromToRule>().during, candidates);
+      CollectNecessary(program, rule.As<FromToRule>().from, candidates);
       break;
     case Form::kUntilSince:
       // If nobody asks where it is not, it is enough to wake at its end; else its truth must be
       // known at all times. It ends a frame later than that what leads to it holds.
-      CollectNecessary(program, rule.second, candidates, false);
-      if (!rule.referenced) CollectNecessary(program, rule.first, candidates);
+      CollectNecessary(program, rule.As<UntilSinceRule>().since, candidates, false);
+      if (!rule.referenced) CollectNecessary(program, rule.As<UntilSinceRule>().until, candidates);
       break;
     case Form::kRestOf:
-      candidates.push_back(rule.first);
+      candidates.push_back(rule.As<RestOfRule>().whole);
       break;
     case Form::kCompose:
-      return rule.composition.parts.front();  // and woken by each interval of a part
+      return rule.As<ComposeRule>().parts.front();  // and woken by each interval of a part
   }
   return MostSpecific(rule, candidates);
 }
@@ -106,9 +106,12 @@ int ChooseGuard(const Program& program, const Rule& rule) {
 // Whether the guard must be true in the very frame in which something begins.
 bool GuardsBegin(const Program& program, const Rule& rule) {
   std::vector<int> needed;
-  if (rule.form == Form::kFromTo) CollectNecessary(program, rule.during, needed, false);
-  if (rule.form == Form::kFromTo || rule.form == Form::kUntilSince)
-    CollectNecessary(program, rule.first, needed, false);
+  if (const auto* from_to = rule.If<FromToRule>()) {
+    CollectNecessary(program, from_to->during, needed, false);
+    CollectNecessary(program, from_to->from, needed, false);
+  }
+  if (const auto* looks_back = rule.If<UntilSinceRule>())
+    CollectNecessary(program, looks_back->until, needed, false);
   return std::find(needed.begin(), needed.end(), rule.guard) != needed.end();
 }
 
@@ -171,7 +174,7 @@ bool UsesLooks(const Program& program, int index) {
                                         [&](int arg) { return UsesLooks(program, arg); });
 }
 
-// For what a touch measures, apart from which thresholds it is beyond.
+// For values of a touch, not only for thresholds that it has crossed.
 bool AsksTouches(const Program& program, int index) {
   if (index == kNone) return false;
   const Node& node = program.nodes[index];
@@ -256,12 +259,12 @@ void FindThreshold(Program& program, Node& node) {
   const auto measured = MeasuredBy(program.nodes[value].op);
   if (number.op != Op::kNumber || !measured) return;
   const bool strict = op == Op::kGreater || op == Op::kLessEqual;
-  const bool beyond = op == Op::kGreater || op == Op::kGreaterEqual;
+  const bool when_crossed = op == Op::kGreater || op == Op::kGreaterEqual;
   const double at_least = strict ? NextLarger(number.number) : number.number;
   const int as_named = Enter(program, {(*measured)[0], at_least});
   const int swapped = Enter(program, {(*measured)[1], at_least});
   if (as_named != kNone && swapped != kNone)
-    node.by_threshold = {value, {as_named, swapped}, beyond};
+    node.by_threshold = {value, {as_named, swapped}, when_crossed};
 }
 
 // Only these thresholds matter of what is measured.
@@ -277,7 +280,7 @@ void WatchThresholds(const Program& program, Rule& rule, const ByThreshold& by) 
 bool AddMeasured(const Program& program, MeasuredPart& part, const ByThreshold& by) {
   const Node& value = program.nodes[by.value];
   const auto add = [&](Limits& limits, int threshold) {
-    (by.beyond ? limits.beyond : limits.short_of) |= ThresholdSet{1} << threshold;
+    (by.when_crossed ? limits.crossed : limits.not_crossed) |= ThresholdSet{1} << threshold;
   };
   if (value.op == Op::kTrigger) {
     if (part.hand != kNone && part.hand != value.roles[0]) return false;
@@ -319,8 +322,9 @@ bool IsKnownAtOnce(const Rule& rule) {
 
 // And nothing else has a say in when its intervals begin and end, and whether they are any.
 bool IsInstant(const Rule& rule) {
-  return IsKnownAtOnce(rule) && rule.measured.touch != kNone && rule.bridging_s == 0 &&
-         (rule.lasting_s == 0 || !rule.referenced);
+  const auto* part = rule.If<WhileRule>();
+  return IsKnownAtOnce(rule) && rule.measured.touch != kNone && part != nullptr &&
+         part->bridging_s == 0 && (rule.lasting_s == 0 || !rule.referenced);
 }
 
 // A value where the interval begins or ends is not asked for at every frame.
@@ -360,14 +364,42 @@ void WatchEntities(const Program& program, Rule& rule, int index) {
 // A composition is told of finished intervals; every other rule asks for the truth at a frame.
 void MarkReferenced(Program& program, int index) {
   const Rule& rule = program.rules[index];
-  if (rule.form != Form::kCompose) {
+  const auto* composition = rule.If<ComposeRule>();
+  if (composition == nullptr) {
     for (const Reference& reference : rule.references)
       program.rules[reference.rule].referenced = true;
     return;
   }
-  for (std::size_t part = 0; part < rule.composition.parts.size(); ++part) {
-    const int target = rule.references[rule.composition.parts[part]].rule;
+  for (std::size_t part = 0; part < composition->parts.size(); ++part) {
+    const int target = rule.references[composition->parts[part]].rule;
     program.rules[target].part_of.push_back({index, static_cast<int>(part)});
+  }
+}
+
+// Where something of the rule begins, if that can be the moment of an event.
+void FindOpening(const Program& program, Rule& rule) {
+  if (const auto* from_to = rule.If<FromToRule>()) FindOpening(program, rule, from_to->from);
+  // An `until` that others ask about must know at all times how far back a later one can reach.
+  if (const auto* looks_back = rule.If<UntilSinceRule>(); looks_back != nullptr && !rule.referenced)
+    FindOpening(program, rule, looks_back->until);
+}
+
+void FindMeasured(const Program& program, Rule& rule) {
+  const auto* holds = rule.If<WhileRule>();
+  const auto* from_to = rule.If<FromToRule>();
+  if (holds == nullptr && from_to == nullptr) return;
+  FindMeasured(program, rule, rule.measured, holds != nullptr ? holds->condition : from_to->from);
+  rule.measured.whole = rule.measured.whole && holds != nullptr && holds->until == kNone;
+  rule.measured.instant = IsInstant(rule);
+}
+
+// What it asks of entities at every frame. `since` is asked for when the end is there, unless
+// others must know at all times.
+void WatchEntities(const Program& program, Rule& rule) {
+  const auto* looks_back = rule.If<UntilSinceRule>();
+  for (const int node : ConditionsOf(rule)) {
+    const bool later = looks_back != nullptr && node == looks_back->since && !rule.referenced;
+    if (!later) WatchEntities(program, rule, node);
   }
 }
 
@@ -380,31 +412,20 @@ void ChooseGuards(Program& program) {
   for (Rule& rule : program.rules) {
     rule.guard = ChooseGuard(program, rule);
     rule.guarded_begin = GuardsBegin(program, rule);
-    // An `until` that others ask about must know at all times how far back a later one can reach.
-    const bool waits =
-        rule.form == Form::kFromTo || (rule.form == Form::kUntilSince && !rule.referenced);
-    if (waits) FindOpening(program, rule, rule.first);
-    rule.uses_looks = rule.style_role != kNone || rule.approach != kNone || !rule.anchors.empty() ||
-                      (rule.form != Form::kRestOf && UsesLooks(program, rule.first)) ||
-                      UsesLooks(program, rule.second) || UsesLooks(program, rule.during) ||
-                      UsesLooks(program, rule.requirement) || !rule.attributes.empty();
-    if (rule.form != Form::kRestOf) WatchEntities(program, rule, rule.first);
-    // The approach to an end is looked at when the end is there, unless others must know at all
-    // times.
-    if (rule.form != Form::kUntilSince || rule.referenced)
-      WatchEntities(program, rule, rule.second);
-    WatchEntities(program, rule, rule.during);
-    if (rule.form == Form::kWhile || rule.form == Form::kFromTo) {
-      FindMeasured(program, rule, rule.measured, rule.first);
-      rule.measured.whole =
-          rule.measured.whole && rule.form == Form::kWhile && rule.second == kNone;
-      rule.measured.instant = IsInstant(rule);
-    }
-    std::vector<int> nodes = rule.anchors;
+    FindOpening(program, rule);
+    WatchEntities(program, rule);
+    FindMeasured(program, rule);
+
+    const Approach* const approach = ApproachOf(rule);
+    std::vector<int> nodes = ConditionsOf(rule);
+    nodes.push_back(rule.requirement);
+    rule.uses_looks =
+        rule.style_role != kNone || approach != nullptr || !rule.anchors.empty() ||
+        !rule.attributes.empty() ||
+        std::ranges::any_of(nodes, [&](int node) { return UsesLooks(program, node); });
+    nodes.insert(nodes.end(), rule.anchors.begin(), rule.anchors.end());
     for (const RuleAttribute& attribute : rule.attributes) nodes.push_back(attribute.node);
-    nodes.insert(nodes.end(),
-                 {rule.second, rule.during, rule.approach, rule.motion, rule.requirement});
-    if (rule.form != Form::kRestOf) nodes.push_back(rule.first);
+    if (approach != nullptr) nodes.insert(nodes.end(), {approach->signal, approach->motion});
     for (const int node : nodes) {
       rule.looks_around_s = std::max(rule.looks_around_s, LooksAround(program, node));
       program.asks_touches = program.asks_touches || AsksTouches(program, node);

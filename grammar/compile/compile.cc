@@ -166,8 +166,8 @@ class Compiler {
   void CollectHeads() {
     program_.rules.push_back({.name = "touching",
                               .roles = {{"a", "Entity"}, {"b", "Entity"}},
-                              .form = Form::kTouching,
-                              .symmetric = true});
+                              .symmetric = true,
+                              .of_form = TouchingRule()});
     for (const Source& source : sources_) {
       for (const Definition& definition : source.file.definitions) CollectHead(source, definition);
     }
@@ -198,7 +198,7 @@ class Compiler {
     Rule rule{.name = definition.name, .file = source.text.file, .place = definition.place};
     rule.printed = definition.is_event;
     rule.symmetric = definition.symmetric;
-    rule.form = FormOf(definition.form);  // others must know before it is lowered
+    rule.of_form = FormOf(definition.form);  // others must know before it is lowered
     CheckRoles(source, definition.roles);
     CheckSymmetry(source, definition);
     for (const ast::Role& role : definition.roles)
@@ -207,20 +207,20 @@ class Compiler {
     definitions_.push_back({&source, &definition});
   }
 
-  static Form FormOf(Definition::Form form) {
+  static RuleForm FormOf(Definition::Form form) {
     switch (form) {
       case Definition::Form::kWhile:
-        return Form::kWhile;
+        return WhileRule();
       case Definition::Form::kFromTo:
-        return Form::kFromTo;
+        return FromToRule();
       case Definition::Form::kUntilSince:
-        return Form::kUntilSince;
+        return UntilSinceRule();
       case Definition::Form::kRestOf:
-        return Form::kRestOf;
+        return RestOfRule();
       case Definition::Form::kCompose:
         break;
     }
-    return Form::kCompose;
+    return ComposeRule();
   }
 
   static bool IsBuiltin(std::string_view name) {

@@ -89,7 +89,7 @@ bool Bounds::AddBefore(int moment) {
 bool Bounds::MayFollowAtOnce(int index) const {
   const Node& node = program_.nodes[index];
   if (node.op != Op::kHolds) return false;
-  const Form form = program_.rules[rule_.references[node.slot].rule].form;
+  const Form form = program_.rules[rule_.references[node.slot].rule].form();
   return form != Form::kTouching && form != Form::kAny && form != Form::kWhile;
 }
 

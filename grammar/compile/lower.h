@@ -195,8 +195,8 @@ class Lowering {
   int FindParam(std::string_view name) const;
   std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class,
                                   std::string_view callee);
-  int AnyRule(int rule, const std::vector<int>& kept);
-  int NarrowedRule(int rule, const std::vector<std::string>& classes);
+  int MakeAnyRule(int rule, const std::vector<int>& kept);
+  int MakeNarrowedRule(int rule, const std::vector<std::string>& classes);
   std::vector<std::string> KnownNames(bool calls) const;
 
   Symbols& symbols_;

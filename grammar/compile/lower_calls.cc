@@ -117,7 +117,7 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
   }
   if (kept.empty()) return Bad(expr.place, "at least one role must be named; all are 'any'");
   // It may begin long before it is complete, so nobody can be told in time where it holds.
-  const bool composed = symbols_.program.rules[rule].form == Form::kCompose;
+  const bool composed = symbols_.program.rules[rule].form() == Form::kCompose;
   if (composed && (!part_ || narrowed || kept.size() < wanted.size())) {
     return Bad(
         expr.place,
@@ -125,13 +125,13 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
             " is a composition; only another composition can use it, with all its roles named",
         "use its parts instead");
   }
-  if (narrowed) reference.rule = NarrowedRule(rule, classes);
-  if (kept.size() < wanted.size()) reference.rule = AnyRule(reference.rule, kept);
+  if (narrowed) reference.rule = MakeNarrowedRule(rule, classes);
+  if (kept.size() < wanted.size()) reference.rule = MakeAnyRule(reference.rule, kept);
   return {.node = Add({.op = Op::kHolds, .slot = AddReference(reference)}), .type = Type::kTruth};
 }
 
 // The hidden rule "`rule`, but only for these classes".
-int Lowering::NarrowedRule(int rule, const std::vector<std::string>& classes) {
+int Lowering::MakeNarrowedRule(int rule, const std::vector<std::string>& classes) {
   const int next = static_cast<int>(symbols_.program.rules.size());
   const auto [entry, is_new] = symbols_.narrowed_rules.try_emplace({rule, classes}, next);
   if (!is_new) return entry->second;
@@ -147,13 +147,13 @@ int Lowering::NarrowedRule(int rule, const std::vector<std::string>& classes) {
     whole.roles[i] = static_cast<int>(i);
   }
   narrowed.references = {whole};
-  narrowed.first = Add({.op = Op::kHolds, .slot = 0});
+  narrowed.of_form = WhileRule{.condition = Add({.op = Op::kHolds, .slot = 0})};
   symbols_.program.rules.push_back(std::move(narrowed));
   return next;
 }
 
 // The hidden rule "some binding of `rule` with these roles holds".
-int Lowering::AnyRule(int rule, const std::vector<int>& kept) {
+int Lowering::MakeAnyRule(int rule, const std::vector<int>& kept) {
   const auto [entry, is_new] =
       symbols_.any_rules.try_emplace({rule, kept}, static_cast<int>(symbols_.program.rules.size()));
   if (is_new) {
@@ -161,8 +161,8 @@ int Lowering::AnyRule(int rule, const std::vector<int>& kept) {
     Rule any{.name = source.name,
              .file = source.file,
              .place = source.place,
-             .form = Form::kAny,
-             .hidden = true};
+             .hidden = true,
+             .of_form = AnyRule()};
     Reference guard{.rule = rule};
     for (std::size_t i = 0; i < kept.size(); ++i) {
       any.roles.push_back(source.roles[kept[i]]);

@@ -28,15 +28,18 @@ class DefinitionLowering {
  private:
   // Lowering may add rules, so the rule is looked up again after each step.
   Rule& Here() { return program_.rules[index_]; }
+  template <typename Part>
+  Part& As() {
+    return Here().As<Part>();
+  }
 
   void LowerForm() {
     using Form_ = Definition::Form;
     switch (d_.form) {
       case Form_::kWhile: {
-        const int first = lowering_.Truth(d_.first, {});
+        const int condition = lowering_.Truth(d_.first, {});
         const int until = d_.until ? lowering_.Truth(*d_.until, {}) : kNone;
-        Here().first = first;
-        Here().second = until;
+        As<WhileRule>() = {.condition = condition, .until = until};
         CheckUntil();
         break;
       }
@@ -45,11 +48,11 @@ class DefinitionLowering {
       case Form_::kUntilSince:
         return LowerUntilSince();
       case Form_::kRestOf: {
-        const int first = lowering_.RuleCall(d_.first);
-        Here().first = first;
+        const int whole = lowering_.RuleCall(d_.first);
+        As<RestOfRule>().whole = whole;
         for (const ast::Expr& other : d_.outside) {
           const int reference = lowering_.RuleCall(other);
-          Here().outside.push_back(reference);
+          As<RestOfRule>().outside.push_back(reference);
           CheckRest(other, reference);
         }
         break;
@@ -60,15 +63,14 @@ class DefinitionLowering {
   }
 
   void LowerFromTo() {
-    const int first = lowering_.Instant(d_.first, {});
-    const int second = lowering_.Instant(d_.second, {.begin = true});
+    const int from = lowering_.Instant(d_.first, {});
+    const int to = lowering_.Instant(d_.second, {.begin = true});
     const int during = d_.during ? lowering_.Truth(*d_.during, {.begin = true}) : kNone;
-    Rule& rule = Here();
-    rule.first = first;
-    rule.second = second;
-    rule.during = during;
-    rule.or_drop = d_.or_drop || d_.absence;
-    rule.absence = d_.absence;
+    As<FromToRule>() = {.from = from,
+                        .to = to,
+                        .during = during,
+                        .or_drop = d_.or_drop || d_.absence,
+                        .absence = d_.absence};
     CheckBegin();
     if (d_.within) LowerWithin(*d_.within);
   }
@@ -87,8 +89,9 @@ class DefinitionLowering {
   }
 
   void CheckUntil() {
-    const Rule& rule = Here();
-    if (rule.first == kNone || rule.second == kNone || CanBe({{rule.first}, {rule.second, true}}))
+    const WhileRule& rule = As<WhileRule>();
+    if (rule.condition == kNone || rule.until == kNone ||
+        CanBe({{rule.condition}, {rule.until, true}}))
       return;
     lowering_.ComplainOrWarn(
         d_.until->place, "nothing ever begins: this holds wherever the condition before it does",
@@ -96,13 +99,13 @@ class DefinitionLowering {
   }
 
   void CheckBegin() {
-    const Rule& rule = Here();
-    if (rule.first == kNone || rule.second == kNone) return;
-    if (!CanBe({{rule.first}, {rule.second, true}})) {
+    const FromToRule& rule = As<FromToRule>();
+    if (rule.from == kNone || rule.to == kNone) return;
+    if (!CanBe({{rule.from}, {rule.to, true}})) {
       lowering_.ComplainOrWarn(
           d_.second.place, "nothing ever begins: each begin is such an end, too, at the same frame",
           "from one X to the next is 'from X ends to X begins'");
-    } else if (!CanBe({{rule.first}, {rule.second, true}, {rule.during}})) {
+    } else if (!CanBe({{rule.from}, {rule.to, true}, {rule.during}})) {
       lowering_.ComplainOrWarn(d_.during->place,
                                "nothing ever begins: this is false wherever it would begin",
                                "'during' must hold from the begin on");
@@ -111,10 +114,10 @@ class DefinitionLowering {
 
   // The frame before the end is the last one that the interval can have.
   void CheckSince() {
-    const Rule& rule = Here();
-    if (rule.first == kNone || rule.second == kNone) return;
-    Bounds before(program_, rule);
-    if (before.Add(rule.second) && before.AddBefore(rule.first) && before.SomeAlternativeFits())
+    const UntilSinceRule& rule = As<UntilSinceRule>();
+    if (rule.until == kNone || rule.since == kNone) return;
+    Bounds before(program_, Here());
+    if (before.Add(rule.since) && before.AddBefore(rule.until) && before.SomeAlternativeFits())
       return;
     lowering_.ComplainOrWarn(d_.second.place,
                              "nothing ever begins: this is false right before each such end",
@@ -124,11 +127,12 @@ class DefinitionLowering {
   // Where something always ends with a moment, this is asked at that very moment.
   void CheckRequirement() {
     const Rule& rule = Here();
-    const bool ends_so = rule.form == Form::kUntilSince ||
-                         (rule.form == Form::kFromTo && rule.or_drop && !rule.absence);
-    const int moment = rule.form == Form::kUntilSince ? rule.first : rule.second;
-    if (!ends_so || moment == kNone || rule.requirement == kNone ||
-        CanBe({{moment}, {rule.requirement}}))
+    int moment = kNone;
+    if (const UntilSinceRule* looks_back = rule.If<UntilSinceRule>()) moment = looks_back->until;
+    if (const FromToRule* from_to = rule.If<FromToRule>();
+        from_to != nullptr && from_to->or_drop && !from_to->absence)
+      moment = from_to->to;
+    if (moment == kNone || rule.requirement == kNone || CanBe({{moment}, {rule.requirement}}))
       return;
     lowering_.ComplainOrWarn(
         d_.requirement->place,
@@ -138,8 +142,9 @@ class DefinitionLowering {
 
   // Something of each interval must be left.
   void CheckRest(const ast::Expr& other, int reference) {
-    if (Here().first == kNone || reference == kNone ||
-        !Covers(Here().references[reference], Here().references[Here().first]))
+    const int whole = As<RestOfRule>().whole;
+    if (whole == kNone || reference == kNone ||
+        !Covers(Here().references[reference], Here().references[whole]))
       return;
     lowering_.Complain(other.place, "nothing is ever left: this takes away all of it",
                        "take away something else");
@@ -150,7 +155,7 @@ class DefinitionLowering {
   bool Covers(const Reference& other, const Reference& whole) const {
     if (other.rule == whole.rule) return other.roles == whole.roles;
     const Rule& some = program_.rules[other.rule];
-    if (some.form != Form::kAny || some.references[0].rule != whole.rule) return false;
+    if (some.form() != Form::kAny || some.references[0].rule != whole.rule) return false;
     for (std::size_t role = 0; role < kMaxRoles; ++role) {
       const int kept = some.references[0].roles[role];
       if (kept != kNone && other.roles[kept] != whole.roles[role]) return false;
@@ -160,18 +165,18 @@ class DefinitionLowering {
 
   void LowerWithin(const ast::Expr& within) {
     const double within_s = lowering_.Span(within, "'within'");
-    Here().within_s = within_s;
+    As<FromToRule>().within_s = within_s;
   }
 
   void LowerUntilSince() {
-    const int first = lowering_.Instant(d_.first, {});
-    const int second = lowering_.Truth(d_.second, {.end = true});
-    Here().first = first;
-    Here().second = second;
+    const int until = lowering_.Instant(d_.first, {});
+    const int since = lowering_.Truth(d_.second, {.end = true});
+    As<UntilSinceRule>().until = until;
+    As<UntilSinceRule>().since = since;
     CheckSince();
     if (d_.approach) LowerApproach(*d_.approach);
     const double back_s = lowering_.Span(d_.at_most_back, "'at most .. back'");
-    Here().back_s = back_s;
+    As<UntilSinceRule>().back_s = back_s;
   }
 
   void LowerApproach(const ast::Approach& approach) {
@@ -192,13 +197,12 @@ class DefinitionLowering {
     const double onset = approach.onset
                              ? lowering_.Constant(*approach.onset, motion_dimension, "'onset'")
                              : speed / kPausePerOnset;
-    Rule& rule = Here();
-    rule.approach = signal;
-    rule.slack = slack;
-    rule.motion = motion;
-    rule.speed = speed;
-    rule.onset = onset;
-    rule.idle_s = idle_s;
+    As<UntilSinceRule>().approach = Approach{.signal = signal,
+                                             .slack = slack,
+                                             .motion = motion,
+                                             .speed = speed,
+                                             .onset = onset,
+                                             .idle_s = idle_s};
   }
 
   void LowerCompose() {
@@ -216,9 +220,9 @@ class DefinitionLowering {
       labels.push_back(part.label);
       const int reference = lowering_.PartCall(part.call);
       if (reference == kNone) continue;
-      Here().composition.parts.push_back(reference);
+      As<ComposeRule>().parts.push_back(reference);
     }
-    if (labels.size() != Here().composition.parts.size()) return;
+    if (labels.size() != As<ComposeRule>().parts.size()) return;
     const auto find = [&](const std::string& label, Place place) {
       const auto found = std::find(labels.begin(), labels.end(), label);
       if (found == labels.end()) {
@@ -229,7 +233,7 @@ class DefinitionLowering {
       return static_cast<int>(found - labels.begin());
     };
     for (const ast::Relation& relation : d_.relations) {
-      Composition::Clause clause{.left = find(relation.left, relation.place),
+      ComposeRule::Clause clause{.left = find(relation.left, relation.place),
                                  .right = find(relation.right, relation.place)};
       for (const std::string& name : relation.relations) {
         const std::optional<Allen> allen = AllenNamed(name);
@@ -240,7 +244,7 @@ class DefinitionLowering {
         }
         clause.relations |= Bit(*allen);
       }
-      Here().composition.clauses.push_back(clause);
+      As<ComposeRule>().clauses.push_back(clause);
     }
     if (lowering_.complaints() == before) CheckRelations();
   }
@@ -249,7 +253,7 @@ class DefinitionLowering {
     constexpr AllenSet kApart =
         Bit(Allen::kBefore) | Bit(Allen::kMeets) | Bit(Allen::kMetBy) | Bit(Allen::kAfter);
     constexpr AllenSet kAgainstTime = Bit(Allen::kAfter) | Bit(Allen::kMetBy);
-    const Composition& composition = Here().composition;
+    const ComposeRule& composition = As<ComposeRule>();
     const int parts = static_cast<int>(composition.parts.size());
     AllenNetwork network(parts);
     for (int left = 0; left < parts; ++left) {
@@ -259,7 +263,7 @@ class DefinitionLowering {
       }
     }
     for (std::size_t i = 0; i < composition.clauses.size(); ++i) {
-      const Composition::Clause& clause = composition.clauses[i];
+      const ComposeRule::Clause& clause = composition.clauses[i];
       if (network.Constrain(clause.left, clause.right, clause.relations)) continue;
       return lowering_.Complain(d_.relations[i].place,
                                 "this relation is never true together with what stands before it",
@@ -280,7 +284,7 @@ class DefinitionLowering {
                            "put the bridged part into a condition of its own");
       }
       const double bridging_s = lowering_.Constant(*d_.bridging, kSeconds, "'bridging'");
-      Here().bridging_s = bridging_s;
+      if (d_.form == Definition::Form::kWhile) As<WhileRule>().bridging_s = bridging_s;
     }
     if (d_.lasting) {
       const double lasting_s = lowering_.Constant(*d_.lasting, kSeconds, "'lasting'");
@@ -334,7 +338,10 @@ class DefinitionLowering {
   void CheckLasting(const ast::Expr& lasting) {
     const Rule& rule = Here();
     const bool looks_back = d_.form == Definition::Form::kUntilSince;
-    const double most_s = looks_back ? rule.back_s : rule.within_s;
+    const FromToRule* const from_to = rule.If<FromToRule>();
+    const double most_s = looks_back           ? As<UntilSinceRule>().back_s
+                          : from_to != nullptr ? from_to->within_s
+                                               : 0;
     if (most_s <= 0 || rule.lasting_s <= most_s) return;
     lowering_.ComplainOrWarn(
         lasting.place,

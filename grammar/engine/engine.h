@@ -18,14 +18,17 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "grammar/base/event.h"
+#include "grammar/engine/alarms.h"
 #include "grammar/engine/candidate_log.h"
 #include "grammar/engine/evaluate.h"
 #include "grammar/engine/history.h"
+#include "grammar/engine/idle_queue.h"
 #include "grammar/engine/instances.h"
+#include "grammar/engine/remembered_past.h"
+#include "grammar/engine/rule_ticks.h"
 
 namespace prehend::grammar {
 
@@ -54,30 +57,8 @@ class Engine {
   const Evaluator& evaluator() const { return evaluator_; }
 
  private:
-  struct RuleTicks {
-    Tick bridging = 0;
-    Tick lasting = 0;
-    Tick idle = 0;
-    Tick back = 0;
-    Tick within = -1;  ///< the deadline
-    Tick in_time = 0;  ///< what comes so late is still in time
-  };
-  /// An instance to look at when this tick comes, and perhaps for nothing.
-  struct Alarm {
-    Tick tick = 0;
-    int instance = kNone;
-  };
-  struct IdleEntry {
-    FrameNumber since = 0;
-    int instance = kNone;
-  };
-
   // What a frame says (grammar/engine/engine_frames.cc).
-  std::string_view WhyNoTick(Tick tick) const;
-  std::string_view WhyNotWatchable(const Frame& frame);
-  std::string_view WhyNotWatchable(const FrameChanges& changes);
-  std::string_view WhyNoTouches(std::span<const Touch> touches);
-  bool IsEntity(int entity) const { return entity >= 0 && entity < entity_count_; }
+  void LookUp(std::span<const Touch> touches);
   template <typename AnyFrame>
   bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);
   void EndFrame();
@@ -88,10 +69,10 @@ class Engine {
   void BeginTouch(RuleInstance& touching);
   void Part(int touching);
   void CloseTouch(RuleInstance& touching, Moment end);
-  void Keep(RuleInstance& touching, const Touch& touch, bool swapped);
-  void NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed);
+  void Keep(TouchingState& touching, const Touch& touch, bool swapped);
+  void NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed);
   void Measure(RuleInstance& instance, const Watcher& as, const RuleInstance& touch) {
-    if (IsMeasured(*as.instant, as.hand, touch, as.swapped) != instance.open) BeginOrEnd(instance);
+    if (IsMeasured(*as.measured, as.hand, touch, as.swapped) != instance.open) BeginOrEnd(instance);
   }
   void BeginOrEnd(RuleInstance& instance);
 
@@ -107,7 +88,7 @@ class Engine {
                   bool swapped) const {
     if (hand != kNoEntity && !part.grip.Fit(grips_[hand])) return false;
     if (!touch.open) return !part.must_touch && part.press[0].Fit(thresholds_.OfNoTouch());
-    return part.press[swapped ? 1 : 0].Fit(touch.beyond);
+    return part.press[swapped ? 1 : 0].Fit(touch.As<TouchingState>().crossed_thresholds);
   }
   bool SaysTheSame(const RuleInstance& instance) const;
   /// What begins with a moment does not begin at others. That moment may be told of later in this
@@ -118,25 +99,14 @@ class Engine {
   bool MomentMayCome(const RuleInstance& instance) const;
   void NotifyWatchers(RuleInstance& instance);
   void NotifyIfChanged(RuleInstance& instance);
-  void WakeAt(Tick tick, int instance);
-  void RingAlarms();
   bool MayRest(const RuleInstance& instance);
   void Rest(RuleInstance& instance);
   /// Nothing of it has been looked at, as nothing can have begun, but now it may be of no more use.
   void RestOn(RuleInstance& instance) {
     instance.resting_since = history_.now();
-    QueueIdle(instance);
-  }
-  void QueueIdle(RuleInstance& instance) {
-    if (!instance.idle_queued) idle_queue_.PushBack() = {instance.resting_since, instance.index};
-    instance.idle_queued = true;
+    idle_.Queue(instance);
   }
   void StepRule(int rule);
-  void ForgetThePast();
-  void FreeInstances();
-  void FreeOrQueue(std::vector<int>& candidates);
-  bool CanBeFreed(const RuleInstance& instance) const;
-  bool MayOverlap(const RuleInstance& instance) const;
 
   // The forms; each looks at one frame and says whether it could decide it.
   void StepInstance(RuleInstance& instance);
@@ -150,9 +120,7 @@ class Engine {
   bool MeetDeadline(RuleInstance& instance, Moment now);
   bool StepUntil(RuleInstance& instance, FrameNumber frame);
 
-  WalkBack ApproachBegin(RuleInstance& instance, FrameNumber end) const;
-  std::optional<double> ApproachSpeed(RuleInstance& instance, FrameNumber frame, FrameNumber end,
-                                      double way) const;
+  WalkBack BeginOfWalk(RuleInstance& instance, FrameNumber end) const;
 
   // From a run to an event.
   [[nodiscard]] bool Open(RuleInstance& instance, FrameNumber frame);
@@ -169,11 +137,13 @@ class Engine {
   void Emit(RuleInstance& instance, const Pending& finished);
   void Keep(RuleInstance& instance, const Span& span);
   Tick DecidedAt(const RuleInstance& instance, const Span& span) const {
-    return RuleOf(instance).absence ? DeadlineOf(span) : decided_;
+    const auto* from_to = RuleOf(instance).If<FromToRule>();
+    return from_to != nullptr && from_to->absence ? DeadlineOf(span) : decided_;
   }
   Tick DeadlineOf(const Span& span) const;
   void UpdateKnown(RuleInstance& instance);
   bool RunIsCertain(const RuleInstance& instance) const;
+  static bool MayBeDropped(const Rule& rule);
   void FinishInstance(RuleInstance& instance, Moment end);
   void Note(const RuleInstance& instance, CandidateOutcome::Kind kind, const Span& span,
             FrameNumber cause = kNever, const WalkBack& walk = {}) {
@@ -200,22 +170,17 @@ class Engine {
   Evaluator evaluator_;
   std::vector<RuleTicks> rule_ticks_;
   Thresholds thresholds_;
-  bool recalls_touches_ = false;     // which thresholds they were beyond
-  bool keeps_touches_ = false;       // and all that they measured
-  std::vector<ThresholdSet> grips_;  // by entity: what its grip is beyond now
-  Tick longest_look_back_ = 0;
+  bool recalls_touches_ = false;         // which thresholds they had crossed
+  bool keeps_touches_ = false;           // and all that they measured
+  std::vector<ThresholdSet> grips_;      // by entity: what its grip has crossed
   std::vector<std::vector<int>> awake_;  // by rule
   std::vector<int> touching_;            // the pairs that touch now
-  std::vector<int>
-      pressed_;  // the instances of the touches that a frame tells of, kNone: there is none yet
-  std::vector<Alarm> alarms_;         // a heap, the next one first
-  RingBuffer<IdleEntry> idle_queue_;  // in the order in which they came to rest
-  std::vector<int> scratch_;          // instances; kept for its memory
-  std::vector<int> notified_;         // likewise
-  FrameNumber oldest_needed_ = 0;     // of the awake instances
-  FrameNumber oldest_look_needed_ = 0;
-  FrameNumber first_needed_ = 0;  // and what they can look back to
-  FrameNumber first_look_needed_ = 0;
+  std::vector<int> contacts_;  // the instances of the touches of this frame, kNone: none yet
+  Alarms alarms_;
+  IdleQueue idle_;
+  RememberedPast past_;
+  std::vector<int> scratch_;   // instances; kept for its memory
+  std::vector<int> notified_;  // likewise
   bool finishing_ = false;
   Tick decided_ = 0;
   std::vector<Event>* out_ = nullptr;  // only during Advance and Finish

@@ -35,20 +35,20 @@ constexpr AllenSet kToLater =
 // Some relation to another part holds to none of the remembered intervals, nor to one that ends
 // later than all of them. Compositions come in the order in which they are complete, not in that of
 // their ends, so all may still be hoped of them.
-bool IsHopeless(const Program& program, const Rule& rule, const RuleInstance& instance, int part,
+bool IsHopeless(const Program& program, const Rule& rule, const ComposeState& state, int part,
                 const Span& span) {
-  const Composition& composition = rule.composition;
+  const ComposeRule& composition = rule.As<ComposeRule>();
   return std::any_of(
       composition.clauses.begin(), composition.clauses.end(),
-      [&](const Composition::Clause& clause) {
+      [&](const ComposeRule::Clause& clause) {
         if (clause.left == clause.right || (clause.left != part && clause.right != part))
           return false;
         const bool is_left = clause.left == part;
         const int other = is_left ? clause.right : clause.left;
-        if (program.rules[rule.references[composition.parts[other]].rule].form == Form::kCompose)
+        if (program.rules[rule.references[composition.parts[other]].rule].form() == Form::kCompose)
           return false;
         if ((clause.relations & (is_left ? kToLater : kToEarlier)) != 0) return false;
-        const std::vector<Span>& others = instance.parts[other];
+        const std::vector<Span>& others = state.parts[other];
         return std::none_of(others.begin(), others.end(), [&](const Span& one) {
           const Allen relation =
               is_left ? Relate(TicksOf(span), TicksOf(one)) : Relate(TicksOf(one), TicksOf(span));
@@ -60,16 +60,16 @@ bool IsHopeless(const Program& program, const Rule& rule, const RuleInstance& in
 // Tries all ways to complete `chosen` and keeps the best one.
 class Combinations {
  public:
-  Combinations(const Composition& composition, const RuleInstance& instance, FrameNumber settled)
-      : composition_(composition), lane_(instance), settled_(settled) {
+  Combinations(const ComposeRule& composition, const ComposeState& state, FrameNumber settled)
+      : composition_(composition), state_(state), settled_(settled) {
     Choose(0);
   }
   const Span* best() const { return found_ ? &best_ : nullptr; }
 
  private:
   void Choose(std::size_t part) {
-    if (part == lane_.parts.size()) return Judge();
-    for (const Span& span : lane_.parts[part]) {
+    if (part == state_.parts.size()) return Judge();
+    for (const Span& span : state_.parts[part]) {
       if (span.Complete().frame > settled_) continue;
       chosen_[part] = &span;
       if (RelationsHoldUpTo(static_cast<int>(part))) Choose(part + 1);
@@ -79,7 +79,7 @@ class Combinations {
   bool RelationsHoldUpTo(int part) const {
     return std::all_of(
         composition_.clauses.begin(), composition_.clauses.end(),
-        [&](const Composition::Clause& clause) {
+        [&](const ComposeRule::Clause& clause) {
           if (std::max(clause.left, clause.right) != part) return true;
           return (Bit(Relate(TicksOf(*chosen_[clause.left]), TicksOf(*chosen_[clause.right]))) &
                   clause.relations) != 0;
@@ -87,13 +87,13 @@ class Combinations {
   }
 
   void Judge() {
-    const Span& last = *chosen_[lane_.parts.size() - 1];
+    const Span& last = *chosen_[state_.parts.size() - 1];
     Span whole{chosen_[0]->begin, last.end, last.open_end, last.Complete()};
-    for (std::size_t part = 0; part < lane_.parts.size(); ++part) {
+    for (std::size_t part = 0; part < state_.parts.size(); ++part) {
       const Moment complete = chosen_[part]->Complete();
       if (complete.tick > whole.completed.tick) whole.completed = complete;
     }
-    if (whole.begin.frame >= whole.end.frame || whole.begin.frame < lane_.last_end) return;
+    if (whole.begin.frame >= whole.end.frame || whole.begin.frame < state_.last_end) return;
     const auto order = [](const Span& span) {
       return std::tuple(span.completed.tick, span.end.tick, -span.begin.tick);
     };
@@ -102,8 +102,8 @@ class Combinations {
     found_ = true;
   }
 
-  const Composition& composition_;
-  const RuleInstance& lane_;
+  const ComposeRule& composition_;
+  const ComposeState& state_;
   FrameNumber settled_;
   std::array<const Span*, kMaxParts> chosen_ = {};
   Span best_;
@@ -117,7 +117,7 @@ class Combinations {
 void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
   for (const PartOf& part_of : RuleOf(part).part_of) {
     const Rule& whole = program_->rules[part_of.rule];
-    const Reference& reference = whole.references[whole.composition.parts[part_of.part]];
+    const Reference& reference = whole.references[whole.As<ComposeRule>().parts[part_of.part]];
     for (int order = 0; order < (RuleOf(part).symmetric ? 2 : 1); ++order) {
       Binding from = part.entities;
       if (order == 1) std::swap(from[0], from[1]);
@@ -127,7 +127,7 @@ void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
       notified_.clear();
       instances_.EnsureAll(part_of.rule, entities, notified_);
       for (const int index : notified_) {
-        std::vector<Span>& spans = instances_[index].parts[part_of.part];
+        std::vector<Span>& spans = instances_[index].As<ComposeState>().parts[part_of.part];
         if (spans.size() == kRememberedSpans) spans.erase(spans.begin());
         spans.push_back(span);
         Wake(index);
@@ -140,7 +140,7 @@ void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
 // that are complete by then.
 FrameNumber Engine::Settled(const RuleInstance& instance) const {
   // A composition rests though its parts do not, as each of their intervals wakes it.
-  if (RuleOf(instance).form == Form::kCompose && !instance.awake) return PartsSettled(instance);
+  if (RuleOf(instance).form() == Form::kCompose && !instance.awake) return PartsSettled(instance);
   FrameNumber settled = instance.awake ? instance.next - 1 : finishing_ ? kNever : history_.now();
   if (instance.in_gap) settled = std::min(settled, instance.gap.frame - 1);
   for (const Pending& pending : instance.pending)
@@ -150,7 +150,7 @@ FrameNumber Engine::Settled(const RuleInstance& instance) const {
 
 FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
   FrameNumber settled = finishing_ ? kNever : history_.now();
-  for (const int part : RuleOf(composition).composition.parts) {
+  for (const int part : RuleOf(composition).As<ComposeRule>().parts) {
     const int index = instances_.Find(composition, part);
     if (index != kNone) settled = std::min(settled, Settled(instances_[index]));
   }
@@ -159,26 +159,27 @@ FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
 
 void Engine::StepCompose(RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
+  auto& state = instance.As<ComposeState>();
   const FrameNumber settled = PartsSettled(instance);
   for (;;) {
-    const Combinations combinations(rule.composition, instance, settled);
+    const Combinations combinations(rule.As<ComposeRule>(), state, settled);
     if (combinations.best() == nullptr) break;
     const Span whole = *combinations.best();
-    instance.last_end = whole.end.frame;
+    state.last_end = whole.end.frame;
     // The next one begins with a first part that begins, and ends with a last part that ends, later
     // than this ends.
-    std::erase_if(instance.parts.front(),
-                  [&](const Span& span) { return span.begin.frame < instance.last_end; });
-    std::erase_if(instance.parts.back(),
-                  [&](const Span& span) { return span.end.frame <= instance.last_end; });
+    std::erase_if(state.parts.front(),
+                  [&](const Span& span) { return span.begin.frame < state.last_end; });
+    std::erase_if(state.parts.back(),
+                  [&](const Span& span) { return span.end.frame <= state.last_end; });
     Conclude(instance, whole);
   }
   for (bool again = true; again;) {
     again = false;
-    for (std::size_t part = 0; part < instance.parts.size(); ++part) {
-      again |= std::erase_if(instance.parts[part], [&](const Span& span) {
+    for (std::size_t part = 0; part < state.parts.size(); ++part) {
+      again |= std::erase_if(state.parts[part], [&](const Span& span) {
                  return span.Complete().frame <= settled &&
-                        IsHopeless(*program_, rule, instance, static_cast<int>(part), span);
+                        IsHopeless(*program_, rule, state, static_cast<int>(part), span);
                }) > 0;
     }
   }

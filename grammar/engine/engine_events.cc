@@ -119,10 +119,15 @@ Tick Engine::DeadlineOf(const Span& span) const {
   return just_passed ? span.end.tick : decided_;
 }
 
+// An open run may be given up for what comes or does not come.
+bool Engine::MayBeDropped(const Rule& rule) {
+  const auto* from_to = rule.If<FromToRule>();
+  return from_to != nullptr && (from_to->or_drop || from_to->within_s >= 0);
+}
+
 bool Engine::RunIsCertain(const RuleInstance& instance) const {
   const Rule& rule = RuleOf(instance);
-  if (rule.requirement != kNone || rule.confirmed_by != kNone || rule.or_drop || rule.within_s >= 0)
-    return false;
+  if (rule.requirement != kNone || rule.confirmed_by != kNone || MayBeDropped(rule)) return false;
   const Tick earliest_end =
       instance.in_gap ? instance.gap.tick : history_.At(instance.next - 1).tick + 1;
   return earliest_end - instance.begin.tick >= TicksOf(instance).lasting;
@@ -136,12 +141,13 @@ void Engine::UpdateKnown(RuleInstance& instance) {
     const FrameNumber certain_end = instance.in_gap ? instance.gap.frame : instance.next;
     instance.known = instance.certain ? certain_end : instance.begin.frame;
   }
-  if (rule.form == Form::kUntilSince && rule.referenced && instance.next > history_.first()) {
+  if (rule.form() == Form::kUntilSince && rule.referenced && instance.next > history_.first()) {
     // A later interval ends after the last frame seen and reaches back no further than its rule
     // says.
     const Tick last = history_.At(instance.next - 1).tick;
     const FrameNumber reach = history_.FirstNotBefore(last + 1 - TicksOf(instance).back);
-    instance.known = std::min(instance.next, std::max(instance.approach_from, reach));
+    instance.known =
+        std::min(instance.next, std::max(instance.As<UntilSinceState>().approach_from, reach));
   }
   for (const Pending& pending : instance.pending)
     instance.known = std::min(instance.known, pending.span.begin.frame);
@@ -150,10 +156,11 @@ void Engine::UpdateKnown(RuleInstance& instance) {
 // The last frames are decided, then what is open ends with the episode.
 void Engine::FinishInstance(RuleInstance& instance, Moment end) {
   StepInstance(instance);
+  const auto* from_to = RuleOf(instance).If<FromToRule>();
   if (instance.open && TicksOf(instance).within >= 0) MeetDeadline(instance, end);
   if (instance.open && instance.in_gap) {
     Close(instance, instance.gap);
-  } else if (instance.open && !RuleOf(instance).or_drop) {
+  } else if (instance.open && (from_to == nullptr || !from_to->or_drop)) {
     Close(instance, end, true);
   } else if (instance.open) {
     Note(instance, CandidateOutcome::Kind::kUnfinished, {instance.begin, end});

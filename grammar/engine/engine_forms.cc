@@ -3,12 +3,13 @@
 // docs/grammar-language.md.
 #include <algorithm>
 
+#include "grammar/engine/backward_walk.h"
 #include "grammar/engine/engine.h"
 
 namespace prehend::grammar {
 
 void Engine::StepInstance(RuleInstance& instance) {
-  if (RuleOf(instance).form == Form::kCompose) return StepCompose(instance);
+  if (RuleOf(instance).form() == Form::kCompose) return StepCompose(instance);
   while (instance.next <= history_.now() && StepFrame(instance)) {
   }
   ResolvePending(instance);
@@ -19,7 +20,7 @@ void Engine::StepInstance(RuleInstance& instance) {
 bool Engine::StepFrame(RuleInstance& instance) {
   bool decided = false;
   evaluator_.ResetTimeDependence();
-  switch (RuleOf(instance).form) {
+  switch (RuleOf(instance).form()) {
     case Form::kTouching:
     case Form::kCompose:
       break;
@@ -57,15 +58,18 @@ bool Engine::LooksTheSame(RuleInstance& instance) {
   const auto settled = [&] {
     return instance.pending.empty() && (!instance.open || (instance.certain && !instance.in_gap));
   };
-  const bool waits = rule.form == Form::kCompose ||
-                     (rule.form == Form::kUntilSince && rule.referenced) || rule.within_s >= 0;
+  const bool waits = rule.form() == Form::kCompose ||
+                     (rule.form() == Form::kUntilSince && rule.referenced) ||
+                     TicksOf(instance).within >= 0;
   if (instance.next != now || waits || !settled() ||
       (rule.referenced && instance.reported != Known(instance.open)))
     return false;
   const bool was_open = instance.open;
   if (!StepFrame(instance) || evaluator_.depends_on_time()) return false;
+  const auto* looks_back = instance.If<UntilSinceState>();
+  const bool ended_here = looks_back != nullptr && looks_back->last_end == now;
   return instance.open == was_open && settled() &&
-         (!instance.open || instance.begin.frame != now) && instance.last_end != now;
+         (!instance.open || instance.begin.frame != now) && !ended_here;
 }
 
 bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
@@ -74,16 +78,17 @@ bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
   if (rule.measured.whole && frame == history_.now() && CanMeasure(instance)) {
     return StepRun(instance, frame, Known(IsMeasured(instance)));
   }
-  if (rule.second == kNone) return StepRun(instance, frame, evaluator_.Truth(rule.first, view));
+  const auto& [condition, until, bridging_s] = rule.As<WhileRule>();
+  if (until == kNone) return StepRun(instance, frame, evaluator_.Truth(condition, view));
   // Two thresholds: what has begun goes on until the second says so.
   const bool on = instance.open && !instance.in_gap;
-  const Kleene goes_on = Not(evaluator_.Truth(rule.second, view));
-  return StepRun(instance, frame, on ? goes_on : And(goes_on, evaluator_.Truth(rule.first, view)));
+  const Kleene goes_on = Not(evaluator_.Truth(until, view));
+  return StepRun(instance, frame, on ? goes_on : And(goes_on, evaluator_.Truth(condition, view)));
 }
 
 bool Engine::StepAny(RuleInstance& instance, FrameNumber frame) {
   Kleene truth = Kleene::kFalse;
-  for (const int member : instance.members) {
+  for (const int member : instance.As<AnyState>().members) {
     truth = Or(truth, instances_.TruthAt(member, frame));
     if (truth == Kleene::kTrue) break;
   }
@@ -113,9 +118,9 @@ bool Engine::StepRun(RuleInstance& instance, FrameNumber frame, Kleene truth) {
 }
 
 bool Engine::StepRest(RuleInstance& instance, FrameNumber frame) {
-  const Rule& rule = RuleOf(instance);
+  const RestOfRule& rule = RuleOf(instance).As<RestOfRule>();
   const Evaluator::View view{instance, frame};
-  const Kleene whole = evaluator_.Holds(rule.first, view);
+  const Kleene whole = evaluator_.Holds(rule.whole, view);
   Kleene others = Kleene::kFalse;
   for (const int other : rule.outside) {
     if (whole != Kleene::kFalse) others = Or(others, evaluator_.Holds(other, view));
@@ -124,7 +129,7 @@ bool Engine::StepRest(RuleInstance& instance, FrameNumber frame) {
   if (truth == Kleene::kUnknown) return false;
   // Two wholes that abut are two, and so are their rests.
   const bool new_whole =
-      truth == Kleene::kTrue && evaluator_.Begins(rule.first, view) == Kleene::kTrue;
+      truth == Kleene::kTrue && evaluator_.Begins(rule.whole, view) == Kleene::kTrue;
   if (instance.open && (truth == Kleene::kFalse || new_whole) &&
       !Close(instance, history_.At(frame)))
     return false;
@@ -132,7 +137,7 @@ bool Engine::StepRest(RuleInstance& instance, FrameNumber frame) {
 }
 
 bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
-  const Rule& rule = RuleOf(instance);
+  const FromToRule& rule = RuleOf(instance).As<FromToRule>();
   const Evaluator::View view{instance, frame};
   const auto during = [&] {
     return rule.during == kNone ? Kleene::kTrue : evaluator_.Truth(rule.during, view);
@@ -140,7 +145,7 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
   if (instance.open && TicksOf(instance).within >= 0 && !MeetDeadline(instance, history_.At(frame)))
     return false;
   if (instance.open) {
-    const Kleene closes = evaluator_.Truth(rule.second, view);
+    const Kleene closes = evaluator_.Truth(rule.to, view);
     if (closes == Kleene::kTrue && rule.absence) {
       Note(instance, CandidateOutcome::Kind::kCame, {instance.begin, history_.At(frame)}, frame);
       instance.open = false;
@@ -155,7 +160,7 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
     }
     return true;
   }
-  Kleene opens = evaluator_.Truth(rule.first, view);
+  Kleene opens = evaluator_.Truth(rule.from, view);
   if (opens == Kleene::kFalse) return true;
   // What `during` and `to` say of @begin refers to this very frame.
   if (!evaluator_.CaptureAnchors(instance, frame)) return false;
@@ -163,7 +168,7 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
   if (opens == Kleene::kFalse) return true;
   if (opens == Kleene::kUnknown) return false;
   // A begin that is an end at once is no interval.
-  const Kleene closes = evaluator_.Truth(rule.second, view);
+  const Kleene closes = evaluator_.Truth(rule.to, view);
   if (closes == Kleene::kUnknown) return false;
   return closes == Kleene::kTrue || Open(instance, frame);
 }
@@ -171,7 +176,7 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
 // What is open, but waits no longer: without the end that it waited for, it is dropped, or that is
 // what it is about.
 bool Engine::MeetDeadline(RuleInstance& instance, Moment now) {
-  const Rule& rule = RuleOf(instance);
+  const FromToRule& rule = RuleOf(instance).As<FromToRule>();
   const Tick deadline = instance.begin.tick + TicksOf(instance).within;
   if (now.tick < deadline || (now.tick == deadline && !rule.absence)) return true;
   if (!rule.absence) {
@@ -182,18 +187,19 @@ bool Engine::MeetDeadline(RuleInstance& instance, Moment now) {
   }
   const bool just_in_time = now.tick - instance.begin.tick <= TicksOf(instance).in_time;
   if (just_in_time && now.frame <= history_.now()) {
-    const Kleene comes = evaluator_.Truth(rule.second, {instance, now.frame});
+    const Kleene comes = evaluator_.Truth(rule.to, {instance, now.frame});
     if (comes != Kleene::kFalse) return comes == Kleene::kTrue;
   }
   return Close(instance, {now.frame, deadline});
 }
 
 bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
-  const Rule& rule = RuleOf(instance);
-  const Kleene ends = evaluator_.Truth(rule.first, {instance, frame});
+  const auto& [until, since, approach, back_s] = RuleOf(instance).As<UntilSinceRule>();
+  auto& state = instance.As<UntilSinceState>();
+  const Kleene ends = evaluator_.Truth(until, {instance, frame});
   if (ends == Kleene::kUnknown) return false;
   if (ends == Kleene::kTrue) {
-    const WalkBack walk = ApproachBegin(instance, frame);
+    const WalkBack walk = BeginOfWalk(instance, frame);
     const FrameNumber begin = walk.begin;
     if (begin == kNever) return false;
     const CandidateOutcome::Kind kind =
@@ -204,76 +210,30 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
       instance.style = StyleAt(instance, begin);
       if (!Conclude(instance, {history_.At(begin), history_.At(frame)})) return false;
     }
-    instance.last_end = instance.approach_from = frame;
+    state.last_end = state.approach_from = frame;
   }
-  if (!rule.referenced) return true;
-  if (evaluator_.Truth(rule.second, {instance, frame}) == Kleene::kFalse)
-    instance.approach_from = frame + 1;
-  while (instance.approach_from < frame &&
-         evaluator_.TooFarApart(rule.second, instance, instance.approach_from, frame)) {
-    ++instance.approach_from;
+  if (!RuleOf(instance).referenced) return true;
+  if (evaluator_.Truth(since, {instance, frame}) == Kleene::kFalse) state.approach_from = frame + 1;
+  while (state.approach_from < frame &&
+         evaluator_.TooFarApart(since, instance, state.approach_from, frame)) {
+    ++state.approach_from;
   }
   return true;
 }
 
-// How fast it moves from this frame to the next, on which the signal falls by `way`.
-std::optional<double> Engine::ApproachSpeed(RuleInstance& instance, FrameNumber frame,
-                                            FrameNumber end, double way) const {
-  const Rule& rule = RuleOf(instance);
-  if (rule.motion != kNone) return evaluator_.Number(rule.motion, {instance, frame + 1, end});
-  return way / history_.Seconds(history_.At(frame + 1).tick - history_.At(frame).tick);
-}
-
-// Walks back from `end` to where the interval begins.
-WalkBack Engine::ApproachBegin(RuleInstance& instance, FrameNumber end) const {
+// Where the interval that ends here begins.
+WalkBack Engine::BeginOfWalk(RuleInstance& instance, FrameNumber end) const {
   using Stop = WalkBack::Stop;
-  const Rule& rule = RuleOf(instance);
-  const Tick end_tick = history_.At(end).tick;
-  const FrameNumber back = history_.FirstNotBefore(end_tick - TicksOf(instance).back);
-  const FrameNumber earliest = std::max({back, instance.last_end, history_.first()});
-  const Stop at_earliest = earliest == instance.last_end && earliest > 0 ? Stop::kPreviousEnd
-                           : earliest == 0                               ? Stop::kFirstFrame
-                                                                         : Stop::kTooFarBack;
-  const WalkBack unknown{.begin = kNever};
-  FrameNumber begin =
-      end;  // the earliest frame of movement; if pauses do not count, the earliest frame
-  FrameNumber turn = end;           // the movement that began from the farthest point
-  std::optional<double> after = 0;  // the signal one frame later
-  if (rule.approach != kNone) after = evaluator_.Number(rule.approach, {instance, end, end});
-  if (!after) return unknown;
-  double farthest = *after;
-  FrameNumber last_progress = end;
-  for (FrameNumber frame = end - 1; frame >= earliest; --frame) {
-    const Evaluator::View view{instance, frame, end};
-    const Kleene holds = evaluator_.Truth(rule.second, view);
-    if (holds == Kleene::kUnknown) return unknown;
-    if (holds == Kleene::kFalse) return {begin, Stop::kSince, frame};
-    if (rule.approach == kNone) {
-      begin = frame;
-      continue;
-    }
-    // Read backwards, an approach moves away from its goal.
-    const std::optional<double> here = evaluator_.Number(rule.approach, view);
-    if (!here) return unknown;
-    if (*here < farthest - rule.slack) return {turn, Stop::kReceding, frame};
-    const std::optional<double> speed = ApproachSpeed(instance, frame, end, *here - *after);
-    if (!speed) return unknown;
-    if (*speed >= rule.speed) {
-      last_progress = frame;
-    } else if (rule.idle_s >= 0 &&
-               history_.At(last_progress).tick - history_.At(frame).tick > TicksOf(instance).idle) {
-      return {begin, Stop::kIdle, last_progress};
-    }
-    // The slow start of a movement belongs to it.
-    const auto moves = [&](FrameNumber since) {
-      return *speed >= rule.speed || (since == frame + 1 && *speed > rule.onset);
-    };
-    if (*here > farthest && moves(turn)) turn = frame;
-    if (rule.idle_s < 0 || moves(begin)) begin = frame;
-    farthest = std::max(farthest, *here);
-    after = here;
-  }
-  return {begin, at_earliest, earliest};
+  const FrameNumber last_end = instance.As<UntilSinceState>().last_end;
+  const FrameNumber back = history_.FirstNotBefore(history_.At(end).tick - TicksOf(instance).back);
+  const FrameNumber first = std::max({back, last_end, history_.first()});
+  const WalkLimits limits{.first = first,
+                          .at_first = first == last_end && first > 0 ? Stop::kPreviousEnd
+                                      : first == 0                   ? Stop::kFirstFrame
+                                                                     : Stop::kTooFarBack,
+                          .idle = TicksOf(instance).idle};
+  return WalkBackFrom(end, RuleOf(instance).As<UntilSinceRule>(), instance, limits, evaluator_,
+                      history_);
 }
 
 }  // namespace prehend::grammar

@@ -5,12 +5,10 @@
 #include <tuple>
 
 #include "grammar/engine/engine.h"
+#include "grammar/engine/frame_checks.h"
 
 namespace prehend::grammar {
 namespace {
-
-// Far enough from the limits of a Tick that times can be added and subtracted.
-constexpr Tick kLatestTick = 1'000'000'000'000'000;
 
 bool Same(const EntitySample& a, const EntitySample& b) {
   return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() &&
@@ -36,53 +34,14 @@ bool Same(const Touch& a, bool swapped, const TouchSample& b) {
 
 }  // namespace
 
-std::string_view Engine::WhyNoTick(Tick tick) const {
-  if (tick > kLatestTick || tick < -kLatestTick) return "a frame's tick is too large";
-  if (history_.now() >= 0 && tick <= history_.At(history_.now()).tick)
-    return "the frames are not in order of time";
-  return {};
-}
-
-std::string_view Engine::WhyNotWatchable(const Frame& frame) {
-  if (static_cast<int>(frame.entities.size()) != entity_count_)
-    return "a frame shows another number of entities than the entity table";
-  int last_hand = kNoEntity;
-  for (const HandSample& hand : frame.hands) {
-    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the entity table";
-    if (hand.entity <= last_hand)
-      return "a frame shows a hand twice, or its hands are not in the order of the entity table";
-    last_hand = hand.entity;
-  }
-  return WhyNoTouches(frame.touches);
-}
-
-std::string_view Engine::WhyNotWatchable(const FrameChanges& changes) {
-  for (const EntityChange& change : changes.entities) {
-    if (!IsEntity(change.entity)) return "a frame shows somebody who is not in the entity table";
-  }
-  for (const HandSample& hand : changes.hands) {
-    if (!IsEntity(hand.entity)) return "a frame shows a hand that is not in the entity table";
-  }
-  for (const ContactEnd& contact_end : changes.contact_ends) {
-    if (!IsEntity(contact_end.a) || !IsEntity(contact_end.b))
-      return "a frame shows a contact end of somebody not in the entity table";
-  }
-  return WhyNoTouches(changes.touches);
-}
-
-// Looks up their instances, too: one look-up does not wait for another one, as it would between
-// changes.
-std::string_view Engine::WhyNoTouches(std::span<const Touch> touches) {
-  pressed_.clear();
+// All at once: so one look-up does not wait for another one, as it would between changes.
+void Engine::LookUp(std::span<const Touch> touches) {
+  contacts_.clear();
   for (const Touch& touch : touches) {
-    if (touch.a < 0 || touch.a >= touch.b || touch.b >= entity_count_) {
-      return "a frame shows a touch of somebody not in the entity table";
-    }
     const int instance = instances_.FindTouch(touch.a, touch.b);
     if (instance != kNone) instances_.Fetch(instance);
-    pressed_.push_back(instance);
+    contacts_.push_back(instance);
   }
-  return {};
 }
 
 void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
@@ -114,18 +73,19 @@ void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
 template <typename AnyFrame>
 bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
   if (!error_.empty() || finishing_) return false;
-  std::string_view why_not = WhyNoTick(frame.tick);
-  if (why_not.empty()) why_not = WhyNotWatchable(frame);
+  std::string_view why_not = WhyNoTick(frame.tick, history_);
+  if (why_not.empty()) why_not = WhyNotWatchable(frame, entity_count_);
   if (!why_not.empty()) {
     error_ = why_not;
     return false;
   }
+  LookUp(frame.touches);
   out_ = &out;
   first_new_ = out.size();
   decided_ = frame.tick;
   history_.BeginFrame(frame.tick);
-  oldest_needed_ = oldest_look_needed_ = history_.now();
-  RingAlarms();
+  past_.BeginFrame(history_.now());
+  alarms_.RingBuffer(decided_, [this](int instance) { Wake(instance); });
   return true;
 }
 
@@ -133,8 +93,10 @@ void Engine::EndFrame() {
   for (const int rule : program_->schedule) {
     if (!awake_[rule].empty()) StepRule(rule);
   }
-  ForgetThePast();
-  FreeInstances();
+  if (log_ == nullptr) {
+    past_.Forget(history_);
+    idle_.FreeOld();
+  }
   if (instances_.TooMany()) error_ = instances_.WhyTooMany();
   SortNewEvents();
 }
@@ -184,14 +146,14 @@ void Engine::Look(const HandSample& hand) {
   const bool same_grip = before != nullptr && before->look.trigger == hand.trigger;
   const bool same_pose = before != nullptr && SamePose(hand, *before);
   if (same_grip && same_pose) return;
-  const ThresholdSet beyond = thresholds_.OfGrip(hand.trigger);
-  const ThresholdSet crossed =
-      before == nullptr ? ~ThresholdSet{0} : kAnyChange | (beyond ^ before->beyond);
-  history_.SetHand(hand, beyond);
-  grips_[hand.entity] = beyond;
+  const ThresholdSet crossed = thresholds_.OfGrip(hand.trigger);
+  const ThresholdSet changed =
+      before == nullptr ? ~ThresholdSet{0} : kAnyChange | (crossed ^ before->crossed_thresholds);
+  history_.SetHand(hand, crossed);
+  grips_[hand.entity] = crossed;
   for (const Watch& watch : instances_.GripWatchers(hand.entity)) {
     const RuleInstance& instance = instances_[watch.instance];
-    if (same_grip || instance.awake || (RuleOf(instance).watches_grips & crossed) == 0) continue;
+    if (same_grip || instance.awake || (RuleOf(instance).watches_grips & changed) == 0) continue;
     if (MayWake(instance) && !SaysTheSame(instance)) Wake(watch.instance);
   }
   WakeWatchers(instances_.PoseWatchers(hand.entity));
@@ -202,30 +164,35 @@ void Engine::ApplyContacts(std::span<const Touch> touches) {
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Touch& touch = touches[i];
     const int index =
-        pressed_[i] != kNone
-            ? pressed_[i]
+        contacts_[i] != kNone
+            ? contacts_[i]
             : instances_.Ensure(kTouchingRule, {touch.a, touch.b, kNoEntity, kNoEntity});
     if (index == kNone) continue;
     RuleInstance& instance = instances_[index];
-    if (instance.touched == now) continue;  // said twice
-    instance.touched = now;
+    auto& state = instance.As<TouchingState>();
+    if (state.touched == now) continue;  // said twice
+    state.touched = now;
     const bool swapped = instance.entities[0] != touch.a;
-    const ThresholdSet beyond = thresholds_.OfTouch(
+    const ThresholdSet crossed = thresholds_.OfTouch(
         swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b,
         touch.normal_force_n, touch.vertical_speed_m_per_s, touch.sensor_sets);
-    const ThresholdSet crossed = beyond ^ instance.beyond;
+    const ThresholdSet changed = crossed ^ state.crossed_thresholds;
     if (instance.open &&
-        (keeps_touches_ ? Same(touch, swapped, instance.touches.back()) : crossed == 0))
+        (keeps_touches_ ? Same(touch, swapped, state.touches.back()) : changed == 0))
       continue;
-    instance.beyond = beyond;
-    if (recalls_touches_) Keep(instance, touch, swapped);
-    instance.open ? NotifyOfThresholds(instance, crossed | kAnyChange) : BeginTouch(instance);
+    state.crossed_thresholds = crossed;
+    if (recalls_touches_) Keep(state, touch, swapped);
+    if (instance.open) {
+      NotifyOfThresholds(instance, changed | kAnyChange);
+    } else {
+      BeginTouch(instance);
+    }
   }
 }
 
-void Engine::Keep(RuleInstance& touching, const Touch& touch, bool swapped) {
-  ForgetSamples(touching.beyonds, history_.first_look());
-  touching.beyonds.PushBack() = {history_.now(), touching.beyond};
+void Engine::Keep(TouchingState& touching, const Touch& touch, bool swapped) {
+  ForgetSamples(touching.crossings, history_.first_look());
+  touching.crossings.PushBack() = {history_.now(), touching.crossed_thresholds};
   if (!keeps_touches_) return;
   ForgetSamples(touching.touches, history_.first_look());
   TouchSample& sample = touching.touches.PushBack();
@@ -240,19 +207,19 @@ void Engine::Keep(RuleInstance& touching, const Touch& touch, bool swapped) {
 void Engine::BeginTouch(RuleInstance& touching) {
   touching.open = touching.certain = true;
   touching.begin = history_.At(history_.now());
-  touching.touching_place = touching_.size();
+  touching.As<TouchingState>().place = touching_.size();
   touching_.push_back(touching.index);
   touching.reported = Kleene::kTrue;
   NotifyWatchers(touching);
 }
 
 // The two touch as before, but press otherwise: these thresholds were crossed.
-void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet crossed) {
+void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed) {
   for (const Watcher& watcher : touch.watchers) {
-    if ((watcher.press & crossed) == 0) continue;
+    if ((watcher.thresholds & changed) == 0) continue;
     RuleInstance& watching = instances_[watcher.instance];
     if (watching.awake) continue;
-    if (watcher.instant != nullptr) {
+    if (watcher.kind == Watcher::Kind::kMeasured) {
       Measure(watching, watcher, touch);
     } else if (!SaysTheSame(watching) && MayWake(watching)) {
       Wake(watcher.instance);
@@ -279,10 +246,11 @@ void Engine::BeginOrEnd(RuleInstance& instance) {
 
 void Engine::Part(int touching) {
   RuleInstance& instance = instances_[touching];
-  if (instance.touched == history_.now()) return;
+  const auto& state = instance.As<TouchingState>();
+  if (state.touched == history_.now()) return;
   CloseTouch(instance, history_.At(history_.now()));
-  touching_[instance.touching_place] = touching_.back();
-  instances_[touching_.back()].touching_place = instance.touching_place;
+  touching_[state.place] = touching_.back();
+  instances_[touching_.back()].As<TouchingState>().place = state.place;
   touching_.pop_back();
   instance.reported = Kleene::kFalse;
   NotifyWatchers(instance);

@@ -138,18 +138,19 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
 Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const {
   const Node& value = program_.nodes[by.value];
   bool swapped = false;
-  ThresholdSet beyond = 0;
+  ThresholdSet crossed = 0;
   if (value.op == Op::kTrigger) {
     const HandAtFrame* hand = history_.Hand(Entity(value, view, 0), view.frame);
-    beyond = hand != nullptr ? hand->beyond : thresholds_.OfGrip(0);
+    crossed = hand != nullptr ? hand->crossed_thresholds : thresholds_.OfGrip(0);
   } else {
-    const RuleInstance* touching = Touching(value, view, swapped);
-    const bool is_now = view.frame == history_.now() && touching != nullptr && touching->open;
-    beyond = touching == nullptr ? thresholds_.OfNoTouch()
-             : is_now            ? touching->beyond
-                                 : SampleAt(touching->beyonds, view.frame).beyond;
+    const RuleInstance* instance = Touching(value, view, swapped);
+    const TouchingState* touch = instance == nullptr ? nullptr : &instance->As<TouchingState>();
+    const bool is_now = view.frame == history_.now() && instance != nullptr && instance->open;
+    crossed = touch == nullptr ? thresholds_.OfNoTouch()
+              : is_now         ? touch->crossed_thresholds
+                               : SampleAt(touch->crossings, view.frame).crossed;
   }
-  return Known((((beyond >> by.thresholds[swapped ? 1 : 0]) & 1) != 0) == by.beyond);
+  return Known((((crossed >> by.thresholds[swapped ? 1 : 0]) & 1) != 0) == by.when_crossed);
 }
 
 Kleene Evaluator::Compare(const Node& node, const View& view) const {
@@ -486,7 +487,8 @@ const RuleInstance* Evaluator::Touching(const Node& node, const View& view, bool
 // Likewise.
 const TouchSample* Evaluator::Touch(const Node& node, const View& view, bool& swapped) const {
   const RuleInstance* touching = Touching(node, view, swapped);
-  return touching == nullptr ? nullptr : &SampleAt(touching->touches, view.frame);
+  return touching == nullptr ? nullptr
+                             : &SampleAt(touching->As<TouchingState>().touches, view.frame);
 }
 
 std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {

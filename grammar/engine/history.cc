@@ -31,7 +31,7 @@ void History::SetSample(int entity, const EntitySample& look) {
   sample.look = look;
 }
 
-void History::SetHand(const HandSample& look, std::uint64_t beyond) {
+void History::SetHand(const HandSample& look, std::uint64_t crossed_thresholds) {
   int& index = hand_of_entity_[look.entity];
   if (index < 0) {
     index = static_cast<int>(hand_samples_.size());
@@ -43,7 +43,7 @@ void History::SetHand(const HandSample& look, std::uint64_t beyond) {
   sample.look = look;
   sample.collision_spheres.assign(look.collision_spheres.begin(), look.collision_spheres.end());
   sample.look.collision_spheres = {};
-  sample.beyond = beyond;
+  sample.crossed_thresholds = crossed_thresholds;
 }
 
 void History::Forget(FrameNumber ticks, FrameNumber looks) {

@@ -27,7 +27,7 @@ struct HandAtFrame {
   FrameNumber frame = 0;
   HandSample look;  ///< its own span is empty, see `collision_spheres`
   std::vector<CollisionSphere> collision_spheres;
-  std::uint64_t beyond = 0;  ///< thresholds of the grammar that its grip is beyond
+  std::uint64_t crossed_thresholds = 0;  ///< of the grammar, by its grip
 };
 
 /// The last sample at or before `frame`, or the first one; the newest is asked for most. Samples
@@ -57,7 +57,7 @@ class History {
   /// A new frame in which everything looks as before, until it is said otherwise.
   void BeginFrame(Tick tick);
   void SetSample(int entity, const EntitySample& look);
-  void SetHand(const HandSample& look, std::uint64_t beyond = 0);
+  void SetHand(const HandSample& look, std::uint64_t crossed_thresholds = 0);
 
   /// Forgets ticks of frames before `ticks` and looks that only frames before `looks` need; of an
   /// entity, when its next look comes.

@@ -10,7 +10,31 @@ namespace {
 // More bindings than this are a mistake in the grammar or need another machine: see docs/speed.md.
 constexpr int kMaxInstances = 1'000'000;
 
+FormState StateFor(Form form) {
+  switch (form) {
+    case Form::kTouching:
+      return TouchingState();
+    case Form::kAny:
+      return AnyState();
+    case Form::kUntilSince:
+      return UntilSinceState();
+    case Form::kCompose:
+      return ComposeState();
+    case Form::kWhile:
+    case Form::kFromTo:
+    case Form::kRestOf:
+      break;
+  }
+  return NoState();
+}
+
 }  // namespace
+
+void TouchingState::Reset() {
+  touched = -1;
+  crossings.Clear();
+  touches.Clear();
+}
 
 RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_table)
     : program_(program),
@@ -22,7 +46,7 @@ RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_t
   for (const int index : program.schedule) {
     const Rule& rule = program.rules[index];
     // Compositions are made when a part has an interval for them.
-    if (rule.guard != kNone && rule.form != Form::kCompose)
+    if (rule.guard != kNone && rule.form() != Form::kCompose)
       guarded_[rule.references[rule.guard].rule].push_back(index);
   }
   for (const Rule& rule : program.rules) {
@@ -50,7 +74,7 @@ bool RuleInstances::IsA(int entity, const std::string& class_name) const {
 
 void RuleInstances::BindUnguarded() {
   for (const int rule : program_.schedule) {
-    if (program_.rules[rule].form == Form::kTouching || program_.rules[rule].guard != kNone)
+    if (program_.rules[rule].form() == Form::kTouching || program_.rules[rule].guard != kNone)
       continue;
     double bindings = 1;
     for (const std::vector<bool>& role : fits_[rule]) {
@@ -121,25 +145,37 @@ bool RuleInstances::Fits(int rule, const Binding& entities) const {
   return true;
 }
 
+// A place that is free, with a state for this form.
+RuleInstance& RuleInstances::UnusedFor(Form form) {
+  FormState fresh = StateFor(form);
+  std::vector<int>& free = free_[fresh.index()];
+  if (free.empty()) {
+    const int index = size();
+    RuleInstance& instance = instances_.PushBack();
+    instance.index = index;
+    instance.of_form = std::move(fresh);
+    return instance;
+  }
+  RuleInstance& instance = instances_[free.back()];
+  free.pop_back();
+  --free_count_;
+  return instance;
+}
+
 int RuleInstances::Make(const InstanceKey& key) {
   if (!Fits(key.rule, key.entities)) return kNone;
   if (in_use() >= kMaxInstances) {
     too_many_ = key.rule;
     return kNone;
   }
-  if (free_.empty()) {
-    free_.push_back(size());
-    instances_.PushBack();
-  }
-  RuleInstance& instance = instances_[free_.back()];
-  instance.index = free_.back();
-  free_.pop_back();
+  const Rule& r = program_.rules[key.rule];
+  RuleInstance& instance = UnusedFor(r.form());
   instance.rule = key.rule;
   instance.entities = key.entities;
-  const Rule& r = program_.rules[key.rule];
   instance.references.assign(r.references.size(), kNone);
   instance.anchors.assign(3 * r.anchors.size(), 0);
-  instance.parts.resize(r.composition.parts.size());
+  if (const auto* composition = r.If<ComposeRule>())
+    instance.As<ComposeState>().parts.resize(composition->parts.size());
   if (key.rule == kTouchingRule) {
     touches_.Insert(instance.index, PairKey(key.entities[0], key.entities[1]));
   } else {
@@ -176,12 +212,11 @@ void RuleInstances::MakeDependents(int instance, std::vector<int>& made) {
 void RuleInstances::LinkToGuard(int index, int guard) {
   RuleInstance& instance = instances_[index];
   const Rule& rule = program_.rules[instance.rule];
-  if (rule.form == Form::kAny) {
-    if (std::find(instance.members.begin(), instance.members.end(), guard) !=
-        instance.members.end())
-      return;
-    instance.members.push_back(guard);
-    instances_[guard].watchers.push_back({.instance = index, .guarded = true});
+  if (rule.form() == Form::kAny) {
+    std::vector<int>& members = instance.As<AnyState>().members;
+    if (std::find(members.begin(), members.end(), guard) != members.end()) return;
+    members.push_back(guard);
+    instances_[guard].watchers.push_back({.instance = index, .kind = Watcher::Kind::kGuard});
   } else if (instance.references[rule.guard] == kNone) {
     Refer(instance, rule.guard, guard);
   }
@@ -194,18 +229,21 @@ void RuleInstances::Refer(RuleInstance& instance, int slot, int target) {
   const Rule& rule = program_.rules[instance.rule];
   const MeasuredPart& part = rule.measured;
   RuleInstance& watched = instances_[target];
-  const bool guarded = slot == rule.guard, opened = slot == rule.opened_by,
-             instant = part.instant && slot == part.touch;
+  const bool opened = slot == rule.opened_by;
+  const bool measured = part.instant && slot == part.touch;
+  using Kind = Watcher::Kind;
   watched.watchers.push_back(
       {.instance = instance.index,
-       .guarded = guarded,
-       .guarded_begin = guarded && rule.guarded_begin,
+       .kind = measured             ? Kind::kMeasured
+               : slot != rule.guard ? Kind::kCondition
+               : rule.guarded_begin ? Kind::kBeginGuard
+                                    : Kind::kGuard,
        .opened = opened,
        .swapped =
-           instant && part.first != kNone && watched.entities[0] != instance.entities[part.first],
-       .press = rule.watches_press,
-       .instant = instant ? &part : nullptr,
-       .hand = instant && part.hand != kNone ? instance.entities[part.hand] : kNoEntity});
+           measured && part.first != kNone && watched.entities[0] != instance.entities[part.first],
+       .thresholds = rule.watches_press,
+       .measured = measured ? &part : nullptr,
+       .hand = measured && part.hand != kNone ? instance.entities[part.hand] : kNoEntity});
   if (opened && !watched.awake) instance.moment = -1;  // else it may be on its way
 }
 
@@ -253,28 +291,27 @@ void RuleInstances::Free(int index, std::vector<int>& orphans) {
   for (const int reference : instance.references) {
     if (reference != kNone) Unlink(reference, index, orphans);
   }
-  for (const int member : instance.members) Unlink(member, index, orphans);
-  for (const Watcher& any : instance.watchers) std::erase(instances_[any.instance].members, index);
-  instance.members.clear();
+  if (const auto* any = instance.If<AnyState>()) {
+    for (const int member : any->members) Unlink(member, index, orphans);
+  }
+  for (const Watcher& any : instance.watchers)
+    std::erase(instances_[any.instance].As<AnyState>().members, index);
+  std::visit([](auto& state) { state.Reset(); }, instance.of_form);
   instance.watchers.clear();
   instance.past.Clear();
-  instance.touches.Clear();
-  instance.beyonds.Clear();
   instance.dependents_made = false;
   instance.reported = Kleene::kFalse;
   instance.moment = kNever;
-  instance.last_end = 0;
-  instance.touched = -1;
   instance.style = kNoEntity;
   instance.rule = kNone;
-  free_.push_back(index);
+  free_[instance.of_form.index()].push_back(index);
+  ++free_count_;
 }
 
 bool RuleInstances::GuardRests(const RuleInstance& instance) const {
   const Rule& rule = program_.rules[instance.rule];
   const auto rests = [&](int guard) { return !instances_[guard].awake && !instances_[guard].open; };
-  if (rule.form == Form::kAny)
-    return std::all_of(instance.members.begin(), instance.members.end(), rests);
+  if (rule.form() == Form::kAny) return std::ranges::all_of(instance.As<AnyState>().members, rests);
   if (rule.guard == kNone) return false;
   const int guard = instance.references[rule.guard];
   return guard == kNone || rests(guard);

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// RuleInstances: one per rule and binding, each with the state of its rule for these entities.
+// Monitor instances: one per rule and binding, each with the state of its rule for these entities.
 //
-// An instance is *awake* while there is something to look at in the next frame, else it rests: its
-// condition is what it was, and nobody looks at it until something it is made of changes. So each
-// instance knows who asks about it (its watchers), and each entity which instances look at it. An
-// instance exists from when its guard first held, or when somebody first asked, until nothing about
-// it is true, open, undecided or within the remembered past. Its place is used again. Tested by
-// tests/grammar/monitor_test.cc and tests/grammar/engine/changes_test.cc
+// An instance is *awake* while there is something to look at in the next frame; else it rests: its
+// condition is what it was, and it is not looked at until something that it is made of changes. So
+// each instance knows the instances that ask about it (its watchers), and each entity the instances
+// that look at it. An instance exists from when its guard first held, or when another one first
+// asked about it, until nothing about it is true, open, undecided or within the remembered past.
+// Its place is used again, by a rule with the same kind of state, so that memory is used again too.
+// Tested by tests/grammar/monitor_test.cc and tests/grammar/engine/changes_test.cc
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "grammar/base/check.h"
 #include "grammar/engine/history.h"
 #include "grammar/engine/instance_index.h"
 #include "grammar/engine/stable_blocks.h"
@@ -48,24 +51,29 @@ struct TouchSample {
   std::uint32_t sensor_sets = 0;
 };
 
-/// Which thresholds that is beyond.
-struct BeyondSample {
+/// Which thresholds it has crossed.
+struct ThresholdSample {
   FrameNumber frame = 0;
-  ThresholdSet beyond = 0;
+  ThresholdSet crossed = 0;
 };
 
-/// An instance that asks about another one, and as what: all that is needed to see that it need not
-/// be looked at.
+/// An instance that asks about another one, the watched one: all that is needed to see whether it
+/// has to be looked at.
 struct Watcher {
+  /// What the watched one is to it.
+  enum class Kind : std::uint8_t {
+    kMeasured,    ///< its touch, and `measured` alone decides when its interval begins and ends
+    kGuard,       ///< its guard: nothing begins while that is false
+    kBeginGuard,  ///< its guard, and that must hold at the very frame in which something begins
+    kCondition,   ///< anything else that it asks for
+  };
   int instance = kNone;
-  bool guarded = false;        ///< the other one is its guard
-  bool guarded_begin = false;  ///< likewise, see Rule
-  bool opened = false;         ///< nothing of it begins but with a moment of the other one
-  bool swapped = false;        ///< `instant` names the two of the touch the other way round
-  ThresholdSet press = 0;      ///< what matters to it of how the two touch
-  const MeasuredPart* instant =
-      nullptr;           ///< of its rule, if that is instant and the other one is its touch
-  int hand = kNoEntity;  ///< whose grip `instant` asks for
+  Kind kind = Kind::kCondition;
+  bool opened = false;          ///< nothing of it begins but with a moment of the watched one
+  bool swapped = false;         ///< `measured` names the two of the touch the other way round
+  ThresholdSet thresholds = 0;  ///< which of them matter to it, of how the two touch
+  const MeasuredPart* measured = nullptr;  ///< kMeasured only
+  int hand = kNoEntity;                    ///< the hand that `measured` asks for
 };
 
 /// A finished interval that waits for its confirmation.
@@ -76,7 +84,48 @@ struct Pending {
   std::array<double, kMaxAttributes> attributes = {};
 };
 
-/// What every look at an instance needs comes first, so that it shares a line of the cache or two.
+// What instances of one form remember, and those of other forms do not. Reset() forgets it and
+// keeps the memory.
+
+/// An instance of `touching`.
+struct TouchingState {
+  FrameNumber touched = -1;               ///< the last frame that said so
+  ThresholdSet crossed_thresholds = 0;    ///< of the newest sample, while it is open
+  RingBuffer<ThresholdSample> crossings;  ///< where they change
+  RingBuffer<TouchSample> touches;        ///< where they change, if a rule asks for them
+  std::size_t place = 0;                  ///< in the list of those that touch now
+  void Reset();
+};
+
+/// An instance made for an `any`.
+struct AnyState {
+  std::vector<int> members;  ///< the instances of which one must hold
+  void Reset() { members.clear(); }
+};
+
+/// An instance of `until .. since`.
+struct UntilSinceState {
+  FrameNumber approach_from = 0;  ///< no later interval reaches back before this frame
+  FrameNumber last_end = 0;       ///< frame of the previous `until`
+  void Reset() { last_end = 0; }
+};
+
+/// An instance of a composition.
+struct ComposeState {
+  FrameNumber last_end = 0;              ///< end of the previous one
+  std::vector<std::vector<Span>> parts;  ///< finished intervals of each part
+  void Reset() { last_end = 0; }
+};
+
+/// The other forms need no more than the head.
+struct NoState {
+  void Reset() {}
+};
+
+using FormState = std::variant<NoState, TouchingState, AnyState, UntilSinceState, ComposeState>;
+
+/// The head stands first, in the order in which a frame needs it: what every look at an instance
+/// needs shares a line of the cache or two.
 struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is free
   int index = kNone;
   bool awake = false;
@@ -91,29 +140,42 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
   FrameNumber moment =
       kNever;  ///< Rule::opened_by: nothing begins after this frame until its next change
   // The second line: what a touch is looked at for.
-  FrameNumber touched = -1;          ///< kTouching only: the last frame that said so
-  ThresholdSet beyond = 0;           ///< kTouching only, while it is open: of the newest sample
-  std::vector<Watcher> watchers;     ///< instances to wake when the truth of this one changes
-  RingBuffer<BeyondSample> beyonds;  ///< kTouching only, where they change
+  std::vector<Watcher> watchers;  ///< instances to wake when the truth of this one changes
+  FormState of_form;
   // The third line: what instances are stepped with.
   FrameNumber next = 0;  ///< first frame not yet looked at; nothing while at rest
   FrameNumber resting_since = 0;
-  RingBuffer<Span> past;        ///< intervals, as long as somebody may ask
+  RingBuffer<Span> past;        ///< intervals, as long as they may be asked for
   std::vector<int> references;  ///< instances, one per Rule::references; kNone: not asked for yet
   // The rest.
   std::vector<Pending> pending;
   Moment gap;
-  std::vector<double> anchors;      ///< three numbers per Rule::anchors
-  RingBuffer<TouchSample> touches;  ///< kTouching only, where they change, if a rule asks for them
-  std::size_t touching_place = 0;   ///< kTouching only: where among those that touch now
+  std::vector<double> anchors;  ///< three numbers per Rule::anchors
   int style = kNoEntity;
   std::array<int, kMaxRoles> watch_places =
-      kUnbound;                   ///< by role: where in the list of the entity's watchers
-  FrameNumber approach_from = 0;  ///< kUntilSince: no later interval reaches back before this frame
-  FrameNumber last_end =
-      0;  ///< kUntilSince: frame of the previous `until`; kCompose: end of the previous one
-  std::vector<int> members;              ///< kAny only: the instances of which one must hold
-  std::vector<std::vector<Span>> parts;  ///< kCompose: finished intervals of each part
+      kUnbound;  ///< by role: where in the list of the entity's watchers
+
+  /// The state of its form; the rule must have it. Asks for nothing, not even for the form.
+  template <typename State>
+  State& As() {
+    PREHEND_DCHECK(std::holds_alternative<State>(of_form));
+    State* const state = std::get_if<State>(&of_form);
+    if (state == nullptr) __builtin_unreachable();
+    return *state;
+  }
+  template <typename State>
+  const State& As() const {
+    return const_cast<RuleInstance&>(*this).As<State>();
+  }
+  /// Null if the rule is of another form.
+  template <typename State>
+  State* If() {
+    return std::get_if<State>(&of_form);
+  }
+  template <typename State>
+  const State* If() const {
+    return std::get_if<State>(&of_form);
+  }
 };
 
 /// An instance that looks at an entity in one of its roles.
@@ -153,7 +215,7 @@ class RuleInstances {
   }
   /// Numbers of instances are below this, free ones included.
   int size() const { return static_cast<int>(instances_.size()); }
-  int in_use() const { return static_cast<int>(instances_.size() - free_.size()); }
+  int in_use() const { return size() - free_count_; }
 
   /// The instance that reference `slot` of `instance` means, made if need be; from now on its
   /// changes wake this one.
@@ -205,6 +267,7 @@ class RuleInstances {
     return {rule, swap ? Binding{entities[1], entities[0], entities[2], entities[3]} : entities};
   }
   int Make(const InstanceKey& key);
+  RuleInstance& UnusedFor(Form form);
   int Find(const InstanceKey& key) const {
     return key.rule == kTouchingRule ? FindTouch(key.entities[0], key.entities[1])
                                      : index_.Find(key);
@@ -227,7 +290,8 @@ class RuleInstances {
   const Program& program_;
   const EntityTable& entity_table_;
   StableBlocks<RuleInstance> instances_;  // an instance stays where it is when others are made
-  std::vector<int> free_;
+  std::array<std::vector<int>, std::variant_size_v<FormState>> free_;  // by kind of state
+  int free_count_ = 0;
   InstanceIndex<InstanceKey> index_;
   InstanceIndex<PairKey> touches_;                    // the instances of kTouchingRule
   std::vector<std::vector<int>> guarded_;             // by rule: the rules it guards

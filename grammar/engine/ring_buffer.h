@@ -4,11 +4,12 @@
 // Tested by tests/grammar/engine/ring_buffer_test.cc
 #pragma once
 
-#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <utility>
+
+#include "grammar/base/check.h"
 
 namespace prehend::grammar {
 
@@ -18,8 +19,14 @@ class RingBuffer {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
-  T& operator[](std::size_t i) { return slots_[Slot(i)]; }
-  const T& operator[](std::size_t i) const { return slots_[Slot(i)]; }
+  T& operator[](std::size_t i) {
+    PREHEND_DCHECK(i < size_);
+    return slots_[Slot(i)];
+  }
+  const T& operator[](std::size_t i) const {
+    PREHEND_DCHECK(i < size_);
+    return slots_[Slot(i)];
+  }
   T& front() { return (*this)[0]; }
   const T& front() const { return (*this)[0]; }
   T& back() { return (*this)[size_ - 1]; }
@@ -34,7 +41,7 @@ class RingBuffer {
   }
 
   void PopFront() {
-    assert(size_ > 0);
+    PREHEND_DCHECK(size_ > 0);
     front_ = (front_ + 1) & (capacity_ - 1);
     --size_;
   }

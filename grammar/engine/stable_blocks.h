@@ -8,14 +8,22 @@
 #include <memory>
 #include <vector>
 
+#include "grammar/base/check.h"
+
 namespace prehend::grammar {
 
 template <typename T>
 class StableBlocks {
  public:
   std::size_t size() const { return size_; }
-  T& operator[](std::size_t i) { return (*blocks_[i / kBlock])[i % kBlock]; }
-  const T& operator[](std::size_t i) const { return (*blocks_[i / kBlock])[i % kBlock]; }
+  T& operator[](std::size_t i) {
+    PREHEND_DCHECK(i < size_);
+    return (*blocks_[i / kBlock])[i % kBlock];
+  }
+  const T& operator[](std::size_t i) const {
+    PREHEND_DCHECK(i < size_);
+    return (*blocks_[i / kBlock])[i % kBlock];
+  }
 
   T& PushBack() {
     if (size_ == kBlock * blocks_.size())

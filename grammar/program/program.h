@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "grammar/base/allen.h"
+#include "grammar/base/check.h"
 #include "grammar/base/diagnostic.h"
 #include "grammar/base/drawing.h"
 #include "grammar/base/event.h"
@@ -91,7 +93,7 @@ struct ByThreshold {
   std::array<int, 2> thresholds = {
       kNone,
       kNone};  ///< of a touch between its first and second role, and of one named the other way
-  bool beyond = false;  ///< true there, and not on the near side
+  bool when_crossed = false;  ///< true where the threshold is crossed, else where it is not
 };
 
 struct Node {
@@ -104,12 +106,12 @@ struct Node {
   ByThreshold by_threshold = {};
 };
 
-/// Thresholds that something measured must be beyond, and such that it must not be beyond.
+/// Thresholds that something measured must have crossed, and such that it must not have.
 struct Limits {
-  ThresholdSet beyond = 0;
-  ThresholdSet short_of = 0;
+  ThresholdSet crossed = 0;
+  ThresholdSet not_crossed = 0;
   bool Fit(ThresholdSet measured) const {
-    return (measured & beyond) == beyond && (measured & short_of) == 0;
+    return (measured & crossed) == crossed && (measured & not_crossed) == 0;
   }
 };
 
@@ -144,9 +146,10 @@ struct RuleRole {
   std::string class_name;
 };
 
+/// The forms of rules, in the order of RuleForm.
 enum class Form : std::uint8_t {
-  kTouching,  ///< the fact itself
-  kAny,       ///< some binding of another rule holds
+  kTouching,
+  kAny,
   kWhile,
   kFromTo,
   kUntilSince,
@@ -154,11 +157,58 @@ enum class Form : std::uint8_t {
   kCompose,
 };
 
+/// `touching`: the fact itself, as frames tell it.
+struct TouchingRule {};
+
+/// Made for an `any`: some binding of the rule of references[0] holds.
+struct AnyRule {};
+
+/// `while condition until until`
+struct WhileRule {
+  int condition = kNone;  ///< node
+  int until = kNone;      ///< node; kNone: until `condition` is false
+  double bridging_s = 0;  ///< gaps up to this length do not end an interval
+};
+
+/// `from from to to during during`, or `without` in place of `to`.
+struct FromToRule {
+  int from = kNone;      ///< node
+  int to = kNone;        ///< node
+  int during = kNone;    ///< node; kNone: nothing has to hold
+  bool or_drop = false;  ///< an interval that does not reach `to` is dropped
+  bool absence = false;  ///< `without`: an interval that reaches `to` is dropped
+  double within_s = -1;  ///< how long to wait for `to`; negative: forever
+};
+
+/// `approaching`: a signal that must not recede on the way to the end of the interval.
+struct Approach {
+  int signal = kNone;  ///< node
+  double slack = 0;    ///< how far it may recede, in the signal's unit
+  int motion = kNone;  ///< node: the speed of the movement; kNone: as fast as the signal falls
+  double speed = 0;    ///< slower is a pause; in the unit of the motion
+  double onset = 0;    ///< likewise: from this speed on a movement begins
+  double idle_s = -1;  ///< a longer pause ends the way back; negative: pauses may last
+};
+
+/// `until until since since`: looks back from where `until` becomes true.
+struct UntilSinceRule {
+  int until = kNone;  ///< node
+  int since = kNone;  ///< node
+  std::optional<Approach> approach;
+  double back_s = 0;  ///< how far it looks back
+};
+
+/// `rest of whole outside outside, ..`
+struct RestOfRule {
+  int whole = kNone;         ///< reference
+  std::vector<int> outside;  ///< references
+};
+
 /// More parts than this are better composed in steps.
 inline constexpr int kMaxParts = 8;
 
-/// kCompose: its parts and how they must lie to each other.
-struct Composition {
+/// `compose`: its parts and how they must lie to each other.
+struct ComposeRule {
   struct Clause {
     int left = 0;
     int right = 0;
@@ -167,6 +217,10 @@ struct Composition {
   std::vector<int> parts;  ///< references
   std::vector<Clause> clauses;
 };
+
+/// What a rule of one form has and the others have not.
+using RuleForm = std::variant<TouchingRule, AnyRule, WhileRule, FromToRule, UntilSinceRule,
+                              RestOfRule, ComposeRule>;
 
 /// `with name = value`: a number that the event carries.
 struct RuleAttribute {
@@ -186,29 +240,29 @@ struct Rule {
   std::string file;
   Place place;
   std::vector<RuleRole> roles;
-  Form form = Form::kWhile;
   bool printed = false;    ///< an event, not a condition
-  bool hidden = false;     ///< made for an `any`
+  bool hidden = false;     ///< made by the compiler
   bool symmetric = false;  ///< bound once per pair, names in alphabetical order
 
-  int first = kNone;  ///< node: while, from, until; kRestOf: reference
-  int second =
-      kNone;  ///< node: to, without, since; kWhile: what ends it, kNone: that `first` is false
-  int during = kNone;    ///< node
-  bool or_drop = false;  ///< an interval that does not reach `second` is dropped
-  bool absence = false;  ///< `without`: an interval that reaches `second` is dropped
-  double within_s = -1;  ///< kFromTo: how long to wait for `second`; negative: forever
-  int approach = kNone;  ///< node: the signal that must not recede
-  double slack = 0;      ///< in the signal's unit
-  int motion = kNone;    ///< node: how fast it moves; kNone: as fast as the signal falls
-  double speed = 0;      ///< in the unit of the motion
-  double onset = 0;      ///< likewise: from which on a movement begins
-  double idle_s = -1;    ///< negative: pausing is allowed
-  double back_s = 0;
-  std::vector<int> outside;  ///< references
-  Composition composition;
+  RuleForm of_form;
+  Form form() const { return static_cast<Form>(of_form.index()); }
+  /// The part of this form; the rule must have it.
+  template <typename Part>
+  const Part& As() const {
+    PREHEND_DCHECK(std::holds_alternative<Part>(of_form));
+    return *std::get_if<Part>(&of_form);
+  }
+  template <typename Part>
+  Part& As() {
+    PREHEND_DCHECK(std::holds_alternative<Part>(of_form));
+    return *std::get_if<Part>(&of_form);
+  }
+  /// Null if the rule has another form.
+  template <typename Part>
+  const Part* If() const {
+    return std::get_if<Part>(&of_form);
+  }
 
-  double bridging_s = 0;
   double lasting_s = 0;
   int requirement = kNone;       ///< node
   int confirmed_by = kNone;      ///< reference
@@ -237,10 +291,16 @@ struct Rule {
   ThresholdSet watches_press =
       0;  ///< what matters of how entities touch, apart from whether they do
   ThresholdSet watches_grips = 0;  ///< what matters of how far hands are closed
-  MeasuredPart measured;  ///< kWhile and kFromTo: of what must be true where something begins
+  MeasuredPart measured;           ///< of what must be true where something begins; may be empty
   double looks_around_s =
       0;  ///< its signals ask for poses so long before and after the frames it looks at
 };
+
+/// The nodes of the conditions that make its form: `while`, `from`, `to`, `during`, `until`,
+/// `since`. None for the forms that are made of other rules.
+std::vector<int> ConditionsOf(const Rule& rule);
+/// Null if nothing is approached.
+const Approach* ApproachOf(const Rule& rule);
 
 /// What stood in the grammar for a node, for explanations.
 struct NodeNote {
@@ -259,7 +319,7 @@ struct ProgramParam {
   Place place;
 };
 
-/// Rule 0 is always `touching`. Event::rule indexes `events`; only the printed ones appear in
+/// Rule 0 is always `touching`. Event::rule indexes `rules`; only the printed ones appear in
 /// output.
 struct Program {
   std::string name;
@@ -276,9 +336,8 @@ struct Program {
   std::vector<Law> laws;  ///< in the order of the files
   std::vector<Threshold>
       thresholds;  ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
-  bool asks_touches =
-      false;  ///< for what a touch measures, apart from which thresholds it is beyond
-  bool recalls_touches = false;  ///< which thresholds it was beyond in frames before the newest
+  bool asks_touches = false;     ///< for values of a touch, not only for thresholds it has crossed
+  bool recalls_touches = false;  ///< for thresholds that it had crossed in earlier frames
 };
 
 inline constexpr int kTouchingRule = 0;

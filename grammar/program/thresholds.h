@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of a grammar's thresholds a touch or a grip is beyond: what is measured is compared once,
-// where it is seen. Tested by tests/grammar/program/thresholds_test.cc
+// Which of a grammar's thresholds a touch or a grip has crossed: a measured value is compared once,
+// when a frame tells it. Tested by tests/grammar/program/thresholds_test.cc
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace prehend::grammar {
 
-/// A number that a measured value is compared with: it is beyond the threshold if it is at least
-/// that number (for `> x`, the next larger one). While a value stays on the same side of every
-/// threshold, whatever is said by comparing it stays as it is.
+/// A number that a measured value is compared with. The value has crossed the threshold if it is at
+/// least that number (for `> x`, the next larger one). While a value stays on the same side of
+/// every threshold, every comparison of it keeps its result.
 struct Threshold {
   enum class Value : std::uint8_t {
     kSensorSets,
@@ -47,16 +47,16 @@ class Thresholds {
                        double vertical_speed_m_per_s, std::uint32_t sensor_sets) const {
     const std::array<double, 4> measured = {up_on_first, up_on_second, force_n,
                                             vertical_speed_m_per_s};
-    ThresholdSet beyond = sensor_sets < sets_.size() ? sets_[sensor_sets] : OfSets(sensor_sets);
-    for (const Cut& cut : touches_) beyond |= measured[cut.value] >= cut.at_least ? cut.bit : 0;
-    return beyond;
+    ThresholdSet crossed = sensor_sets < sets_.size() ? sets_[sensor_sets] : OfSets(sensor_sets);
+    for (const Cut& cut : touches_) crossed |= measured[cut.value] >= cut.at_least ? cut.bit : 0;
+    return crossed;
   }
   ThresholdSet OfNoTouch() const { return no_touch_; }
   /// Of how far a hand is closed; likewise.
   ThresholdSet OfGrip(double trigger) const {
-    ThresholdSet beyond = 0;
-    for (const Cut& cut : grips_) beyond |= trigger >= cut.at_least ? cut.bit : 0;
-    return beyond;
+    ThresholdSet crossed = 0;
+    for (const Cut& cut : grips_) crossed |= trigger >= cut.at_least ? cut.bit : 0;
+    return crossed;
   }
 
  private:
@@ -89,10 +89,10 @@ class Thresholds {
     }
   }
   ThresholdSet OfSets(std::uint32_t sensor_sets) const {
-    ThresholdSet beyond = 0;
+    ThresholdSet crossed = 0;
     for (const Cut& cut : set_counts_)
-      beyond |= std::popcount(sensor_sets) >= cut.at_least ? cut.bit : 0;
-    return beyond;
+      crossed |= std::popcount(sensor_sets) >= cut.at_least ? cut.bit : 0;
+    return crossed;
   }
 
   std::vector<Cut> touches_;

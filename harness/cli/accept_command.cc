@@ -66,10 +66,11 @@ void ShowDifference(const Played& played, const OracleComparison& truth,
   if (!played.old) {
     context.out << "new golden:\n" << RunTable(played.run);
   } else {
-    const WorldYaml& world = played.loaded.scenario.world;
-    context.out << DifferenceText(Compare(*played.old, played.run.timeline,
-                                          DefaultTolerance(world.rate_hz, world.sensing_hz)),
-                                  ExplainCommand(played.id, {}));
+    context.out << DifferenceText(
+        Compare(*played.old, played.run.timeline,
+                DefaultTolerance(played.loaded.scenario.scene.world.rate_hz,
+                                 played.loaded.scenario.sensing.sensing_hz)),
+        ExplainCommand(played.id, {}));
   }
   context.out << GroundTruthText(truth);
 }
@@ -115,9 +116,10 @@ ExitCode Refuse(const CommandContext& context, const Played& played, const Golde
 ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
   GoldenFiles(context.root).RemovePending(played.id);
   LeaveBaseline(context, played);
-  const WorldYaml& world = played.loaded.scenario.world;
-  const std::string headroom = HeadroomText(
-      Compare(*played.old, played.run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz)));
+  const std::string headroom =
+      HeadroomText(Compare(*played.old, played.run.timeline,
+                           DefaultTolerance(played.loaded.scenario.scene.world.rate_hz,
+                                            played.loaded.scenario.sensing.sensing_hz)));
   context.out << "nothing to accept: the scenario agrees with "
               << GoldenFiles(context.root).GoldenPath(played.id).string()
               << (headroom.empty() ? "" : "; " + headroom) << "\n";

@@ -73,9 +73,9 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
     review.text = EventLines(*pending.value) + DerivationLines(*pending.value, {});
     return review;
   }
-  const WorldYaml& world = scenario.value->world;
-  const Comparison comparison = Compare(*golden.value, ToTimeline(*pending.value),
-                                        DefaultTolerance(world.rate_hz, world.sensing_hz));
+  const Comparison comparison = Compare(
+      *golden.value, ToTimeline(*pending.value),
+      DefaultTolerance(scenario.value->scene.world.rate_hz, scenario.value->sensing.sensing_hz));
   const std::string derivation = DerivationLines(*pending.value, golden.value->derived);
   review.kind = comparison.Agrees() && derivation.empty() ? "same" : "changed";
   review.text = DifferenceText(comparison, ExplainCommand(review.id, {})) + derivation;

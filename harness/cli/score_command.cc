@@ -107,9 +107,9 @@ std::string UnknownEvent(const std::vector<std::string>& events) {
   return "";
 }
 
-/// The scored events that no rule of the grammar reports.
-std::vector<std::string> NotSpokenOf(const grammar::Program& program,
-                                     const std::vector<std::string>& events) {
+/// Of the judged events those that no rule of the grammar prints.
+std::vector<std::string> NotCovered(const grammar::Program& program,
+                                    const std::vector<std::string>& events) {
   std::vector<std::string> silent;
   for (const std::string_view event : OracleEvents()) {
     const bool judged = events.empty() || std::ranges::find(events, event) != events.end();
@@ -135,11 +135,11 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   const std::vector<std::string> events = NamesIn(options.All("--events"));
   if (const std::string unknown = UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);
-  std::vector<std::vector<std::string>> not_spoken_of;
+  std::vector<std::vector<std::string>> not_covered;
   for (const std::string& name : grammars) {
     const grammar::CompileResult compiled = LoadGrammar(context.root, name);
     if (!compiled.program) return Complain(context, compiled.diagnostics);
-    not_spoken_of.push_back(NotSpokenOf(*compiled.program, events));
+    not_covered.push_back(NotCovered(*compiled.program, events));
   }
   for (const std::string& name : options.All("names")) {
     if (const auto refused = RefuseRecording(name, context)) return *refused;
@@ -156,7 +156,7 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   std::vector<score::Score> scores;
   for (std::size_t g = 0; g < grammars.size(); ++g) {
     scores.push_back(ScoreOf(grammars[g], by_grammar[g], collar_s));
-    scores.back().not_spoken_of = not_spoken_of[g];
+    scores.back().not_covered = not_covered[g];
   }
   if (options.Has("--json"))
     context.out << ScoresJson(scores, collar_s).dump(2) << "\n";

@@ -130,7 +130,7 @@ Reason Clauses::Boundary(int instance, const CandidateOutcome& outcome, bool end
           .how = end          ? "ended"
                  : frame == 0 ? "held from the first frame on"
                               : "began",
-          .where = rule.form == grammar::Form::kTouching ? "" : Source(rule.file, rule.place),
+          .where = rule.form() == grammar::Form::kTouching ? "" : Source(rule.file, rule.place),
           .tick = past_.TickOf(frame),
           .reading = {},
           .because = follow ? follow(instance, outcome, end) : Reasons{}};
@@ -282,11 +282,11 @@ Reasons Clauses::State(int node, const Moment& at, bool truth) {
 
 double Clauses::NearestMember(int any_instance, FrameNumber frame, int depth) {
   double nearest = 0;
-  for (const int member : past_.At(any_instance).members) {
-    const grammar::Rule& rule = past_.RuleOf(member);
-    if (rule.form != grammar::Form::kWhile) continue;
-    nearest = std::max(
-        nearest, 0.9 * Nearness(rule.first, {.instance = member, .frame = frame}, true, depth));
+  for (const int member : past_.MembersOf(any_instance)) {
+    const auto* holds = past_.RuleOf(member).If<grammar::WhileRule>();
+    if (holds == nullptr) continue;
+    nearest = std::max(nearest, 0.9 * Nearness(holds->condition,
+                                               {.instance = member, .frame = frame}, true, depth));
   }
   return nearest;
 }
@@ -305,10 +305,11 @@ double Clauses::Nearness(int node, const Moment& at, bool truth, int depth) {
     const int target = past_.Referred(at.instance, n.slot);
     if (!truth || target == kNone || depth == kMaxDepth) return 0;
     const grammar::Rule& rule = past_.RuleOf(target);
-    if (rule.form == grammar::Form::kWhile) {
-      return 0.9 * Nearness(rule.first, {.instance = target, .frame = at.frame}, true, depth + 1);
+    if (const auto* holds = rule.If<grammar::WhileRule>()) {
+      return 0.9 *
+             Nearness(holds->condition, {.instance = target, .frame = at.frame}, true, depth + 1);
     }
-    return rule.form == grammar::Form::kAny ? NearestMember(target, at.frame, depth + 1) : 0;
+    return rule.form() == grammar::Form::kAny ? NearestMember(target, at.frame, depth + 1) : 0;
   }
   const std::optional<Measured> measured = Measure(node, at);
   if (!measured) return 0;

@@ -65,7 +65,7 @@ const std::string& RuleName(ReplayMonitor& past, int instance) {
 std::string Label(ReplayMonitor& past, int instance) {
   const Rule& rule = past.RuleOf(instance);
   const auto& entities = past.At(instance).entities;
-  const bool is_any = rule.form == grammar::Form::kAny;
+  const bool is_any = rule.form() == grammar::Form::kAny;
   const Rule& named = is_any ? past.program().rules[rule.references[0].rule] : rule;
   std::string roles;
   for (std::size_t i = 0; i < named.roles.size(); ++i) {

@@ -51,11 +51,11 @@ void CollectSignals(const Program& program, int node, std::vector<Signal>& signa
 
 std::vector<Signal> SignalsOf(const Program& program, const Rule& rule) {
   std::vector<Signal> signals;
-  if (rule.form != grammar::Form::kRestOf) CollectSignals(program, rule.first, signals);
-  for (const int node : {rule.second, rule.during, rule.requirement})
-    CollectSignals(program, node, signals);
-  for (const int node : {rule.approach, rule.motion}) {
-    if (node != kNone) signals.push_back({node});
+  for (const int node : ConditionsOf(rule)) CollectSignals(program, node, signals);
+  CollectSignals(program, rule.requirement, signals);
+  if (const grammar::Approach* approach = ApproachOf(rule)) {
+    signals.push_back({approach->signal});
+    if (approach->motion != kNone) signals.push_back({approach->motion});
   }
   for (const grammar::RuleAttribute& attribute : rule.attributes)
     signals.push_back({attribute.node});

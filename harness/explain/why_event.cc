@@ -16,10 +16,14 @@ namespace prehend::harness::explain {
 using grammar::CandidateOutcome;
 using grammar::Form;
 using grammar::FrameNumber;
+using grammar::FromToRule;
 using grammar::kNone;
+using grammar::RestOfRule;
 using grammar::Rule;
 using grammar::Tick;
+using grammar::UntilSinceRule;
 using grammar::WalkBack;
+using grammar::WhileRule;
 using Mark = Reason::Mark;
 
 namespace {
@@ -64,21 +68,21 @@ Reasons EventReasons::Change(int node, const Moment& at, bool truth, int depth) 
 Reasons EventReasons::Begin(int instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const FrameNumber begin = outcome.span.begin.frame;
-  switch (rule.form) {
+  switch (rule.form()) {
     case Form::kTouching:
       return {};
     case Form::kAny:
       return BeginOrEndOfAny(instance, begin, false, depth);
     case Form::kWhile: {
       const Moment at{.instance = instance, .frame = begin};
-      Reasons reasons = Change(rule.first, at, true, depth);
-      AddNew(Change(rule.second, at, false, depth), reasons);
+      Reasons reasons = Change(rule.As<WhileRule>().condition, at, true, depth);
+      AddNew(Change(rule.As<WhileRule>().until, at, false, depth), reasons);
       return reasons;
     }
     case Form::kFromTo: {
       const Moment at{.instance = instance, .frame = begin, .begin = begin};
-      Reasons reasons = Change(rule.first, at, true, depth);
-      AddNew(Change(rule.during, at, true, kMaxDepth), reasons);
+      Reasons reasons = Change(rule.As<FromToRule>().from, at, true, depth);
+      AddNew(Change(rule.As<FromToRule>().during, at, true, kMaxDepth), reasons);
       return reasons;
     }
     case Form::kUntilSince:
@@ -96,25 +100,29 @@ Reasons EventReasons::End(int instance, const CandidateOutcome& outcome, int dep
   const FrameNumber begin = outcome.span.begin.frame;
   const FrameNumber end = outcome.span.end.frame;
   // That B did not come is decided by time alone; what comes in that frame comes too late.
-  if (rule.absence) return {Remark("nothing came within " + Seconds(rule.within_s))};
+  const auto* from_to = rule.If<FromToRule>();
+  if (from_to != nullptr && from_to->absence)
+    return {Remark("nothing came within " + Seconds(from_to->within_s))};
   if (end >= past_.frames()) return {Remark("the episode ends here")};
-  switch (rule.form) {
+  switch (rule.form()) {
     case Form::kTouching:
       return {};
     case Form::kAny:
       return BeginOrEndOfAny(instance, end, true, depth);
     case Form::kWhile: {
-      const bool hysteresis = rule.second != kNone;
-      return Change(hysteresis ? rule.second : rule.first, {.instance = instance, .frame = end},
+      const WhileRule& part = rule.As<WhileRule>();
+      const bool hysteresis = part.until != kNone;
+      return Change(hysteresis ? part.until : part.condition, {.instance = instance, .frame = end},
                     hysteresis, depth);
     }
     case Form::kFromTo: {
       const Moment at{.instance = instance, .frame = end, .begin = begin};
-      const bool closed = past_.Truth(rule.second, at);
-      return Change(closed ? rule.second : rule.during, at, closed, depth);
+      const bool closed = past_.Truth(from_to->to, at);
+      return Change(closed ? from_to->to : from_to->during, at, closed, depth);
     }
     case Form::kUntilSince:
-      return Change(rule.first, {.instance = instance, .frame = end}, true, depth);
+      return Change(rule.As<UntilSinceRule>().until, {.instance = instance, .frame = end}, true,
+                    depth);
     case Form::kRestOf:
       return BeginOrEndOfRest(instance, end, false, depth);
     case Form::kCompose: {
@@ -131,16 +139,17 @@ Reasons EventReasons::End(int instance, const CandidateOutcome& outcome, int dep
 
 // What stopped the walk back from the end.
 Reasons EventReasons::BeginOfWalk(int instance, const CandidateOutcome& outcome, int depth) {
-  const Rule& rule = past_.RuleOf(instance);
+  const UntilSinceRule& rule = past_.RuleOf(instance).As<UntilSinceRule>();
+  const std::optional<grammar::Approach>& approach = rule.approach;
   const FrameNumber begin = outcome.span.begin.frame;
   const FrameNumber end = outcome.span.end.frame;
   const FrameNumber at = outcome.walk.at;
   const auto signal = [&](FrameNumber frame) {
-    return past_.Number(rule.approach, {.instance = instance, .frame = frame, .end = end})
+    return past_.Number(approach->signal, {.instance = instance, .frame = frame, .end = end})
         .value_or(0);
   };
   const auto text = [&](double value) {
-    return QuantityText(value, NoteOf(past_.program(), rule.approach).dimension);
+    return QuantityText(value, NoteOf(past_.program(), approach->signal).dimension);
   };
   Reasons reasons;
   switch (outcome.walk.stop) {
@@ -155,39 +164,40 @@ Reasons EventReasons::BeginOfWalk(int instance, const CandidateOutcome& outcome,
       break;
     case WalkBack::Stop::kSince:
       reasons =
-          Change(rule.second, {.instance = instance, .frame = at + 1, .end = end}, true, depth);
+          Change(rule.since, {.instance = instance, .frame = at + 1, .end = end}, true, depth);
       break;
     case WalkBack::Stop::kReceding:
-      reasons = {Remark(
-          "the approach turns here: " + ClauseText(past_, instance, rule.approach),
-          fmt::format("is {}; at {} it was {}, and it may recede by at most {}",
-                      text(signal(begin)), clauses_.Time(at), text(signal(at)), text(rule.slack)))};
+      reasons = {Remark("the approach turns here: " + ClauseText(past_, instance, approach->signal),
+                        fmt::format("is {}; at {} it was {}, and it may recede by at most {}",
+                                    text(signal(begin)), clauses_.Time(at), text(signal(at)),
+                                    text(approach->slack)))};
       reasons.front().mark = Mark::kTurned;
       break;
     case WalkBack::Stop::kIdle:
-      reasons = {Remark("it paused before", fmt::format("for more than {}", Seconds(rule.idle_s)))};
+      reasons = {
+          Remark("it paused before", fmt::format("for more than {}", Seconds(approach->idle_s)))};
       reasons.front().mark = Mark::kTurned;
       break;
   }
   const bool later = outcome.walk.stop != WalkBack::Stop::kReceding &&
                      outcome.walk.stop != WalkBack::Stop::kIdle &&
                      begin > at + (outcome.walk.stop == WalkBack::Stop::kSince ? 1 : 0);
-  if (!later || rule.approach == kNone) return reasons;
-  const grammar::Dimension of_signal = NoteOf(past_.program(), rule.approach).dimension;
-  const grammar::Dimension dimension = rule.motion == kNone
+  if (!later || !approach) return reasons;
+  const grammar::Dimension of_signal = NoteOf(past_.program(), approach->signal).dimension;
+  const grammar::Dimension dimension = approach->motion == kNone
                                            ? grammar::Quotient(of_signal, grammar::kSeconds)
-                                           : NoteOf(past_.program(), rule.motion).dimension;
-  Reason moved =
-      Remark(ClauseText(past_, instance, rule.motion == kNone ? rule.approach : rule.motion) +
-                 " moves from here on",
-             "not slower than " + QuantityText(rule.speed, dimension));
+                                           : NoteOf(past_.program(), approach->motion).dimension;
+  Reason moved = Remark(
+      ClauseText(past_, instance, approach->motion == kNone ? approach->signal : approach->motion) +
+          " moves from here on",
+      "not slower than " + QuantityText(approach->speed, dimension));
   moved.mark = Mark::kTurned;
   reasons.insert(reasons.begin(), std::move(moved));
   return reasons;
 }
 
 Reasons EventReasons::BeginOrEndOfRest(int instance, FrameNumber frame, bool begins, int depth) {
-  const Rule& rule = past_.RuleOf(instance);
+  const RestOfRule& rule = past_.RuleOf(instance).As<RestOfRule>();
   Reasons reasons;
   const auto add = [&](int slot, bool truth) {
     const int target = past_.Referred(instance, slot);
@@ -196,7 +206,7 @@ Reasons EventReasons::BeginOrEndOfRest(int instance, FrameNumber frame, bool beg
     Reason reason = clauses_.Reference(instance, slot, frame, truth, FollowFrom(depth));
     if (!brief_ || reason.mark == Mark::kTurned) reasons.push_back(std::move(reason));
   };
-  add(rule.first, begins);
+  add(rule.whole, begins);
   for (const int other : rule.outside) add(other, !begins);
   return reasons;
 }
@@ -204,7 +214,7 @@ Reasons EventReasons::BeginOrEndOfRest(int instance, FrameNumber frame, bool beg
 // The bindings that begin or end here; of several that hold, others go on.
 Reasons EventReasons::BeginOrEndOfAny(int instance, FrameNumber frame, bool end, int depth) {
   Reasons reasons;
-  std::vector<int> members = past_.At(instance).members;
+  std::vector<int> members = past_.MembersOf(instance);
   std::sort(members.begin(), members.end(),
             [&](int a, int b) { return past_.At(a).entities < past_.At(b).entities; });
   for (const int member : members) {
@@ -212,13 +222,14 @@ Reasons EventReasons::BeginOrEndOfAny(int instance, FrameNumber frame, bool end,
       const FrameNumber boundary = end ? outcome.span.end.frame : outcome.span.begin.frame;
       if (outcome.kind != CandidateOutcome::Kind::kInterval || boundary != frame) continue;
       const Rule& rule = past_.RuleOf(member);
-      reasons.push_back({.mark = Mark::kTurned,
-                         .what = Label(past_, member),
-                         .how = end ? "ended" : "began",
-                         .where = rule.form == Form::kTouching ? "" : Source(rule.file, rule.place),
-                         .tick = past_.TickOf(frame),
-                         .reading = {},
-                         .because = FollowFrom(depth)(member, outcome, end)});
+      reasons.push_back(
+          {.mark = Mark::kTurned,
+           .what = Label(past_, member),
+           .how = end ? "ended" : "began",
+           .where = rule.form() == Form::kTouching ? "" : Source(rule.file, rule.place),
+           .tick = past_.TickOf(frame),
+           .reading = {},
+           .because = FollowFrom(depth)(member, outcome, end)});
     }
   }
   return reasons;
@@ -226,7 +237,7 @@ Reasons EventReasons::BeginOrEndOfAny(int instance, FrameNumber frame, bool end,
 
 bool EventReasons::ChooseParts(int instance, const CandidateOutcome& whole,
                                std::vector<const CandidateOutcome*>& chosen) {
-  const grammar::Composition& composition = past_.RuleOf(instance).composition;
+  const auto& composition = past_.RuleOf(instance).As<grammar::ComposeRule>();
   const std::size_t part = chosen.size();
   if (part == composition.parts.size()) return true;
   const int target = past_.Referred(instance, composition.parts[part]);
@@ -236,7 +247,7 @@ bool EventReasons::ChooseParts(int instance, const CandidateOutcome& whole,
     if (part + 1 == composition.parts.size() && outcome.span.end.frame != whole.span.end.frame)
       continue;
     chosen.push_back(&outcome);
-    const auto holds = [&](const grammar::Composition::Clause& clause) {
+    const auto holds = [&](const grammar::ComposeRule::Clause& clause) {
       if (std::max(clause.left, clause.right) != static_cast<int>(part)) return true;
       const auto ticks = [&](int i) {
         return grammar::Interval{chosen[i]->span.begin.tick, chosen[i]->span.end.tick};
@@ -301,9 +312,11 @@ Reasons EventReasons::Waited(int instance, const CandidateOutcome& outcome, int 
   const Tick end = outcome.span.end.tick;
   Reasons reasons;
   if (outcome.decided <= end || depth >= kMaxDepth) return reasons;
-  if (rule.bridging_s > 0 && !outcome.span.open_end) {
-    reasons.push_back(Remark(Label(past_, instance), "a gap of up to " + Seconds(rule.bridging_s) +
-                                                         " would have been bridged"));
+  const auto* holds = rule.If<WhileRule>();
+  if (holds != nullptr && holds->bridging_s > 0 && !outcome.span.open_end) {
+    reasons.push_back(
+        Remark(Label(past_, instance),
+               "a gap of up to " + Seconds(holds->bridging_s) + " would have been bridged"));
   }
   if (rule.looks_around_s > 0 && !outcome.span.open_end) {
     reasons.push_back(Remark(Label(past_, instance), "a signal over a window looks " +
@@ -321,10 +334,10 @@ Reasons EventReasons::Waited(int instance, const CandidateOutcome& outcome, int 
 // at all.
 double EventReasons::LooksBack_s(int instance) {
   const Rule& rule = past_.RuleOf(instance);
-  if (rule.form == Form::kUntilSince) return rule.back_s;
-  const int begins_with = rule.form == Form::kRestOf   ? rule.first
-                          : rule.form == Form::kFromTo ? rule.opened_by
-                                                       : kNone;
+  if (const auto* looks_back = rule.If<UntilSinceRule>()) return looks_back->back_s;
+  int begins_with = kNone;
+  if (const auto* rest = rule.If<RestOfRule>()) begins_with = rest->whole;
+  if (rule.form() == Form::kFromTo) begins_with = rule.opened_by;
   const int target = begins_with == kNone ? kNone : past_.Referred(instance, begins_with);
   return target == kNone ? 0 : LooksBack_s(target);
 }
@@ -333,8 +346,8 @@ double EventReasons::LooksBack_s(int instance) {
 // time.
 Reasons EventReasons::WaitedFor(int instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  std::vector<int> targets = past_.At(instance).members;
-  for (std::size_t slot = 0; slot < rule.references.size() && rule.form != Form::kAny; ++slot) {
+  std::vector<int> targets = past_.MembersOf(instance);
+  for (std::size_t slot = 0; slot < rule.references.size() && rule.form() != Form::kAny; ++slot) {
     targets.push_back(past_.Referred(instance, static_cast<int>(slot)));
   }
   std::erase(targets, kNone);

@@ -16,9 +16,11 @@ namespace prehend::harness::explain {
 
 using grammar::CandidateOutcome;
 using grammar::FrameNumber;
+using grammar::FromToRule;
 using grammar::kNone;
 using grammar::Rule;
 using grammar::Tick;
+using grammar::UntilSinceRule;
 using Mark = Reason::Mark;
 
 namespace {
@@ -149,7 +151,7 @@ double MissingReasons::RunCloseness(const CandidateOutcome& outcome) {
     case CandidateOutcome::Kind::kNothingBack: {
       if (outcome.span.end.frame == 0) return 0.9;  // nor could there be anything
       const Moment before{.instance = outcome.instance, .frame = last - 1, .end = last};
-      return 1 + 0.5 * clauses_.Nearness(rule.second, before, true);
+      return 1 + 0.5 * clauses_.Nearness(rule.As<UntilSinceRule>().since, before, true);
     }
     default:
       return 1.5;
@@ -157,20 +159,20 @@ double MissingReasons::RunCloseness(const CandidateOutcome& outcome) {
 }
 
 std::string MissingReasons::Awaited(int instance) {
-  const Rule& rule = past_.RuleOf(instance);
-  return (rule.absence ? "without " : "to ") + ClauseText(past_, instance, rule.second);
+  const FromToRule& rule = past_.RuleOf(instance).As<FromToRule>();
+  return (rule.absence ? "without " : "to ") + ClauseText(past_, instance, rule.to);
 }
 
 // When what was waited for came after all, for the first time.
 std::string MissingReasons::HowLate(const CandidateOutcome& outcome) {
-  const Rule& rule = past_.RuleOf(outcome.instance);
+  const FromToRule& rule = past_.RuleOf(outcome.instance).As<FromToRule>();
   const Tick per_second = past_.entity_table().ticks_per_second;
   const Tick within = past_.AtMostTicks(rule.within_s);
   for (FrameNumber frame = outcome.span.begin.frame + 1; frame < past_.frames(); ++frame) {
     const Tick late = past_.TickOf(frame) - outcome.span.begin.tick - within;
-    if (late <= 0 || !past_.Truth(rule.second, {.instance = outcome.instance,
-                                                .frame = frame,
-                                                .begin = outcome.span.begin.frame}))
+    if (late <= 0 || !past_.Truth(rule.to, {.instance = outcome.instance,
+                                            .frame = frame,
+                                            .begin = outcome.span.begin.frame}))
       continue;
     return "but " + Duration(late, per_second) + " later, at " + clauses_.Time(frame);
   }
@@ -203,12 +205,12 @@ Reasons MissingReasons::Requirement(const CandidateOutcome& outcome, int depth) 
 
 // Where the conditions that should have begun at the end came closest within the run.
 Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameNumber look_until) {
-  const Rule& rule = past_.RuleOf(outcome.instance);
+  const FromToRule& rule = past_.RuleOf(outcome.instance).As<FromToRule>();
   if (rule.absence) return {};
   const FrameNumber last = std::min({outcome.span.end.frame, past_.frames() - 1, look_until});
   const Moment end{.instance = outcome.instance, .frame = last, .begin = outcome.span.begin.frame};
   Reasons told;
-  for (const Clauses::Clause& clause : clauses_.Split(rule.second, end, true)) {
+  for (const Clauses::Clause& clause : clauses_.Split(rule.to, end, true)) {
     const grammar::Node& moment = past_.program().nodes[clause.node];
     if (moment.op != grammar::Op::kBegins || !clause.truth) continue;
     Moment at = end;
@@ -219,7 +221,7 @@ Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameN
       told.push_back(std::move(reason));
     }
   }
-  if (clauses_.IsChoice(rule.second, true)) std::ranges::stable_sort(told, {}, Missed);
+  if (clauses_.IsChoice(rule.to, true)) std::ranges::stable_sort(told, {}, Missed);
   return told;
 }
 
@@ -274,14 +276,14 @@ MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int
     case CandidateOutcome::Kind::kDropped:
       run.how += "dropped";
       run.because = EndThatNeverCame(outcome, look_until);
-      clauses("during ", rule.during,
+      clauses("during ", rule.As<FromToRule>().during,
               {.instance = instance, .frame = outcome.cause, .begin = begin});
       break;
     case CandidateOutcome::Kind::kTooLate:
       run.how += "dropped";
       fail(Awaited(instance), "it did not come within " +
-                                  QuantityText(rule.within_s, grammar::kSeconds) + ", " +
-                                  HowLate(outcome));
+                                  QuantityText(rule.As<FromToRule>().within_s, grammar::kSeconds) +
+                                  ", " + HowLate(outcome));
       break;
     case CandidateOutcome::Kind::kCame:
       run.how += "what must not come came";
@@ -290,16 +292,18 @@ MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int
       break;
     case CandidateOutcome::Kind::kUnfinished:
       run.how += "dropped";
-      fail(Awaited(instance), !rule.absence ? "the episode ended before"
-                                            : "it is decided only " +
-                                                  QuantityText(rule.within_s, grammar::kSeconds) +
-                                                  " later, the episode ended before");
+      fail(Awaited(instance),
+           !rule.As<FromToRule>().absence
+               ? "the episode ended before"
+               : "it is decided only " +
+                     QuantityText(rule.As<FromToRule>().within_s, grammar::kSeconds) +
+                     " later, the episode ended before");
       break;
     case CandidateOutcome::Kind::kNothingBack: {
       run.how = "nothing before its end at " + clauses_.Time(outcome.span.end.frame);
       const FrameNumber before = std::max<FrameNumber>(last - 1, 0);
-      Reasons state =
-          clauses_.State(rule.second, {.instance = instance, .frame = before, .end = last}, true);
+      Reasons state = clauses_.State(rule.As<UntilSinceRule>().since,
+                                     {.instance = instance, .frame = before, .end = last}, true);
       for (Reason& reason : state) {
         reason.what = "since " + reason.what;
         run.because.push_back(std::move(reason));

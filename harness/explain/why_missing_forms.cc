@@ -20,11 +20,13 @@ using grammar::FrameNumber;
 using grammar::kNone;
 using grammar::Op;
 using grammar::Rule;
+using grammar::UntilSinceRule;
 using Mark = Reason::Mark;
 
 namespace {
 
-constexpr FrameNumber kMostLooks = 2000;  // of a long window only so many frames are looked at
+/// Of a longer window only this many frames are sampled.
+constexpr FrameNumber kMaxSampledFrames = 2000;
 constexpr std::size_t kMaxIntervals = 4;  // are listed
 
 Reason Failed(std::string what, std::string how, Reasons because = {}) {
@@ -54,7 +56,7 @@ Reason MissingReasons::Intervals(int instance, std::string how) {
 }
 
 MissingReasons::Blame MissingReasons::OfForm(int instance, const Window& window, int depth) {
-  switch (past_.RuleOf(instance).form) {
+  switch (past_.RuleOf(instance).form()) {
     case Form::kTouching:
       return OfFact(instance, window);
     case Form::kAny:
@@ -100,7 +102,7 @@ FrameNumber MissingReasons::Closest(int node, Moment at, const Window& window) {
     first = from;
     last = to;
   }
-  const FrameNumber step = std::max<FrameNumber>(1, (last - first) / kMostLooks);
+  const FrameNumber step = std::max<FrameNumber>(1, (last - first) / kMaxSampledFrames);
   FrameNumber closest = window.at.value_or(first);
   at.frame = closest;
   double best = clauses_.Nearness(node, at, true);
@@ -136,7 +138,7 @@ MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Windo
 // for.
 void MissingReasons::Follow(Reason& reason, int target, FrameNumber frame, const Window& window,
                             int depth) {
-  if (target == kNone || past_.RuleOf(target).form == Form::kTouching) return;
+  if (target == kNone || past_.RuleOf(target).form() == Form::kTouching) return;
   const bool never = past_.LastBegun(target, past_.frames()) == nullptr;
   Reasons behind =
       OfInstance(target, never && !window.at ? window : Within(window, frame), depth + 1).reasons;
@@ -150,8 +152,9 @@ void MissingReasons::Follow(Reason& reason, int target, FrameNumber frame, const
 
 MissingReasons::Blame MissingReasons::OfWhile(int instance, const Window& window, int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  Blame inner = OfClauses(rule.first, {.instance = instance}, window, depth);
-  const FrameNumber closest = Closest(rule.first, {.instance = instance}, window);
+  const int condition = rule.As<grammar::WhileRule>().condition;
+  Blame inner = OfClauses(condition, {.instance = instance}, window, depth);
+  const FrameNumber closest = Closest(condition, {.instance = instance}, window);
   Reason reason = Failed(Label(past_, instance), "came closest at " + clauses_.Time(closest),
                          std::move(inner.reasons));
   reason.where = Source(rule.file, rule.place);
@@ -193,18 +196,19 @@ MissingReasons::Blame MissingReasons::OfMoment(int node, int instance, const Win
 
 MissingReasons::Blame MissingReasons::OfFromTo(int instance, const Window& window, int depth) {
   const Rule& rule = past_.RuleOf(instance);
+  const auto& [opens, closes, during, or_drop, absence, within_s] = rule.As<grammar::FromToRule>();
   // The last moment that should have begun it.
   const FrameNumber until = window.at.value_or(window.last);
   FrameNumber from = until;
   const auto begins = [&](FrameNumber frame) {
-    return past_.Truth(rule.first, {.instance = instance, .frame = frame, .begin = frame});
+    return past_.Truth(opens, {.instance = instance, .frame = frame, .begin = frame});
   };
   while (from >= 0 && !begins(from)) --from;
   Reason reason = Failed(Label(past_, instance), "", {});
   reason.where = Source(rule.file, rule.place);
   if (from < 0) {
-    const std::string text = ClauseText(past_, instance, rule.first);
-    Blame blame = OfMoment(rule.first, instance, window, depth);
+    const std::string text = ClauseText(past_, instance, opens);
+    Blame blame = OfMoment(opens, instance, window, depth);
     reason.how = "nothing began it";
     reason.because = {Failed(text.empty() ? "what begins it" : "from " + text,
                              "did not happen up to " + clauses_.Time(until),
@@ -223,8 +227,8 @@ MissingReasons::Blame MissingReasons::OfFromTo(int instance, const Window& windo
   }
   reason.how = "could have begun at " + clauses_.Time(from);
   const Moment at{.instance = instance, .frame = from, .begin = from};
-  if (rule.during != kNone && !past_.Truth(rule.during, at)) {
-    for (Reason& state : clauses_.State(rule.during, at, true)) {
+  if (during != kNone && !past_.Truth(during, at)) {
+    for (Reason& state : clauses_.State(during, at, true)) {
       state.what = "during " + state.what;
       reason.because.push_back(std::move(state));
     }
@@ -235,19 +239,19 @@ MissingReasons::Blame MissingReasons::OfFromTo(int instance, const Window& windo
 }
 
 Reason MissingReasons::ClosestApproach(int instance, const Window& window) {
-  const Rule& rule = past_.RuleOf(instance);
-  Reason reason{.mark = Mark::kNote, .what = ClauseText(past_, instance, rule.approach)};
+  const int signal = past_.RuleOf(instance).As<UntilSinceRule>().approach->signal;
+  Reason reason{.mark = Mark::kNote, .what = ClauseText(past_, instance, signal)};
   double smallest = 0;
   for (FrameNumber frame = window.first; frame <= window.last; ++frame) {
     const double value =
-        past_.Number(rule.approach, {.instance = instance, .frame = frame, .end = window.last})
+        past_.Number(signal, {.instance = instance, .frame = frame, .end = window.last})
             .value_or(0);
     if (reason.tick && value >= smallest) continue;
     smallest = value;
     reason.tick = past_.TickOf(frame);
   }
   reason.how = "was smallest at " + At(*reason.tick, past_.entity_table().ticks_per_second) + ": " +
-               QuantityText(smallest, NoteOf(past_.program(), rule.approach).dimension);
+               QuantityText(smallest, NoteOf(past_.program(), signal).dimension);
   return reason;
 }
 
@@ -256,9 +260,10 @@ Reason MissingReasons::ClosestApproach(int instance, const Window& window) {
 std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(int instance, FrameNumber at,
                                                                 int depth) {
   const Rule& rule = past_.RuleOf(instance);
+  const double back_s = rule.As<UntilSinceRule>().back_s;
   for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
     if (outcome.span.end.frame <= at) continue;
-    const bool reaches = outcome.span.end.tick - past_.TickOf(at) <= past_.AtMostTicks(rule.back_s);
+    const bool reaches = outcome.span.end.tick - past_.TickOf(at) <= past_.AtMostTicks(back_s);
     const bool is_interval = outcome.kind == CandidateOutcome::Kind::kInterval;
     if (reaches && !is_interval) return OfRun(outcome, depth);
     Reason reason = Failed(Label(past_, instance), "");
@@ -267,7 +272,7 @@ std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(int instance, Fr
       reason.how = "begins at " + clauses_.Time(outcome.span.begin.frame) + " only";
       reason.because = events_.Begin(instance, outcome);
     } else {
-      const std::string back = QuantityText(rule.back_s, grammar::kSeconds);
+      const std::string back = QuantityText(back_s, grammar::kSeconds);
       reason.how = "the next end is at " + clauses_.Time(outcome.span.end.frame) +
                    ", and it looks at most " + back + " back";
     }
@@ -278,14 +283,15 @@ std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(int instance, Fr
 
 MissingReasons::Blame MissingReasons::OfUntil(int instance, const Window& window, int depth) {
   const Rule& rule = past_.RuleOf(instance);
+  const UntilSinceRule& part = rule.As<UntilSinceRule>();
   if (window.at) {
     if (std::optional<Blame> later = OfLaterEnd(instance, *window.at, depth))
       return *std::move(later);
   }
   const Window rest = window.at ? Window{*window.at, past_.frames() - 1} : window;
-  Blame blame = OfMoment(rule.first, instance, rest, depth);
+  Blame blame = OfMoment(part.until, instance, rest, depth);
   const bool whole = rest.first == 0 && rest.last >= past_.frames() - 1;
-  const std::string text = ClauseText(past_, instance, rule.first);
+  const std::string text = ClauseText(past_, instance, part.until);
   const std::string when = whole       ? "never happened"
                            : window.at ? "did not happen at or after " + clauses_.Time(rest.first)
                                        : "did not happen from " + clauses_.Time(rest.first) +
@@ -294,13 +300,14 @@ MissingReasons::Blame MissingReasons::OfUntil(int instance, const Window& window
   reason.where = Source(rule.file, rule.place);
   reason.because = {
       Failed(text.empty() ? "what ends it" : "until " + text, when, std::move(blame.reasons))};
-  if (rule.approach != kNone) reason.because.push_back(ClosestApproach(instance, window));
+  if (part.approach) reason.because.push_back(ClosestApproach(instance, window));
   return {{std::move(reason)}, 0.5 * blame.closeness};
 }
 
 MissingReasons::Blame MissingReasons::OfRest(int instance, const Window& window, int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  const int whole = past_.Referred(instance, rule.first);
+  const auto& rest = rule.As<grammar::RestOfRule>();
+  const int whole = past_.Referred(instance, rest.whole);
   Reason reason = Failed(Label(past_, instance), "", {});
   reason.where = Source(rule.file, rule.place);
   const auto covers = [&](int target, FrameNumber frame) {
@@ -318,7 +325,7 @@ MissingReasons::Blame MissingReasons::OfRest(int instance, const Window& window,
     return {{std::move(reason)}, 0.1};
   }
   reason.how = "nothing is left of " + Label(past_, whole) + " at " + clauses_.Time(frame);
-  for (const int slot : rule.outside) {
+  for (const int slot : rest.outside) {
     const int target = past_.Referred(instance, slot);
     if (!covers(target, frame)) continue;
     const CandidateOutcome& outcome = *past_.Covering(target, frame);
@@ -326,12 +333,12 @@ MissingReasons::Blame MissingReasons::OfRest(int instance, const Window& window,
         Failed("outside " + Label(past_, target),
                "it held " + IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
                                          past_.entity_table().ticks_per_second));
-    if (past_.RuleOf(target).form == Form::kUntilSince) {
+    if (const auto* looks_back = past_.RuleOf(target).If<UntilSinceRule>()) {
       const Moment at{.instance = target,
                       .frame = frame,
                       .begin = outcome.span.begin.frame,
                       .end = outcome.span.end.frame};
-      covered.because = clauses_.State(past_.RuleOf(target).second, at, true);
+      covered.because = clauses_.State(looks_back->since, at, true);
     }
     reason.because.push_back(std::move(covered));
   }
@@ -354,11 +361,12 @@ MissingReasons::Blame MissingReasons::OfAny(int instance, const Window& window, 
 
 MissingReasons::Blame MissingReasons::OfCompose(int instance, const Window& window, int depth) {
   const Rule& rule = past_.RuleOf(instance);
+  const auto& composition = rule.As<grammar::ComposeRule>();
   Reason reason = Failed(Label(past_, instance), "needs all its parts", {});
   reason.where = Source(rule.file, rule.place);
   std::vector<int> parts;
   bool complete = true;
-  for (const int slot : rule.composition.parts) {
+  for (const int slot : composition.parts) {
     parts.push_back(past_.Referred(instance, slot));
     if (parts.back() == kNone) return {{std::move(reason)}, 0};
     Reason part = Intervals(parts.back(), "was there");
@@ -369,7 +377,7 @@ MissingReasons::Blame MissingReasons::OfCompose(int instance, const Window& wind
     }
     reason.because.push_back(std::move(part));
   }
-  for (const grammar::Composition::Clause& clause : rule.composition.clauses) {
+  for (const grammar::ComposeRule::Clause& clause : composition.clauses) {
     if (!complete) break;
     const auto ticks = [](const CandidateOutcome& outcome) {
       return grammar::Interval{outcome.span.begin.tick, outcome.span.end.tick};

@@ -15,9 +15,9 @@ constexpr double kMinSize_m = 0.001, kMaxSize_m = 100;
 
 }  // namespace
 
-Format<RegionYaml> RegionFormat() {
+ValueFormat<RegionYaml> RegionFormat() {
   using R = RegionYaml;
-  return Record<R>("a region")
+  return StructFormat<R>("a region")
       .Optional("size_m", &R::size_m, Vector<3>(kMinSize_m, kMaxSize_m),
                 "Full edge lengths [x, y, z] of a box.")
       .Optional("radius_m", &R::radius_m, Number(kMinSize_m, kMaxSize_m), "Radius of a ball.")
@@ -25,24 +25,24 @@ Format<RegionYaml> RegionFormat() {
       .format();
 }
 
-Format<GazeTargetYaml> GazeTargetFormat() {
+ValueFormat<GazeTargetYaml> GazeTargetFormat() {
   using G = GazeTargetYaml;
-  return Record<G>("a gaze target")
+  return StructFormat<G>("a gaze target")
       .Optional("radius_m", &G::radius_m, Number(kMinSize_m, 10),
                 "Radius of the ball that is looked at.")
       .format();
 }
 
-Format<CameraYaml> CameraFormat() {
+ValueFormat<CameraYaml> CameraFormat() {
   using C = CameraYaml;
-  return Record<C>("a camera")
+  return StructFormat<C>("a camera")
       .Required("toward_m", &C::toward_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                "A point in the middle of its picture, in the world.")
-      .Optional("view_deg", &C::view_deg, Number(5, 120), "How much it sees, from below to above.")
+                "The point it looks at, world coordinates.")
+      .Optional("view_deg", &C::view_deg, Number(5, 120), "Vertical field of view.")
       .format();
 }
 
-Format<LightYaml> LightFormat() { return Record<LightYaml>("a light").format(); }
+ValueFormat<LightYaml> LightFormat() { return StructFormat<LightYaml>("a light").format(); }
 
 void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
   const Abstract abstract = AbstractOf(entity);
@@ -52,23 +52,22 @@ void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticLis
        {"fixed", "mass_kg", "friction", "rolling_friction", "restitution", "linear_damping_per_s",
         "angular_damping_per_s", "fixed_to", "slider", "hinge", "ball_joint", "on", "in"}) {
     if (const YamlNode* given = node.Find(key))
-      errors.Add(given->key_where, std::string(key) + ": " + noun +
-                                       " has none; it is no matter, and stays where it is");
+      errors.Add(given->key_where,
+                 std::string(key) + ": " + noun + " is abstract; this key does not apply to it");
   }
   for (const char* key : {"rpy_deg", "yaw_deg"}) {
     const YamlNode* given = abstract == Abstract::kRegion ? nullptr : node.Find(key);
     if (given)
-      errors.Add(given->key_where, std::string(key) + ": " + noun + " is not turned",
-                 abstract == Abstract::kCamera ? "it looks toward_m" : "");
+      errors.Add(given->key_where, std::string(key) + ": " + noun + " has no rotation",
+                 abstract == Abstract::kCamera ? "use toward_m" : "");
   }
   if (entity.camera && std::ranges::find(CameraWords(), node.key) != CameraWords().end())
-    errors.Add(node.key_where, "'" + node.key + "' is a camera that every scenario has",
-               "call it otherwise");
+    errors.Add(node.key_where, "'" + node.key + "' is a built-in camera", "choose another name");
   if (entity.camera && entity.at_m.value.size() == 3) {
     const Eigen::Vector3d at_m(entity.at_m.value[0], entity.at_m.value[1], entity.at_m.value[2]);
     if ((entity.camera->toward_m.value - at_m).norm() < kMinSize_m)
-      errors.Add(entity.camera->toward_m.where, "toward_m: the camera stands there",
-                 "a point that it looks at");
+      errors.Add(entity.camera->toward_m.where, "toward_m: this is the camera's own position",
+                 "give the point that it looks at");
   }
 }
 

@@ -18,48 +18,46 @@ using physics::GraspApproach;
 using physics::JointDriver;
 using physics::PidGains;
 
-Format<double> PartLength() { return Number(0.001, 0.5); }
-Format<double> PartMass() { return Number(0.001, 10); }
-Format<Vector3d> InHand() { return Vector<3>(-1, 1); }
+ValueFormat<double> PartLength() { return Number(0.001, 0.5); }
+ValueFormat<double> PartMass() { return Number(0.001, 10); }
+ValueFormat<Vector3d> InHand() { return Vector<3>(-1, 1); }
 
 /// A direction of any length but 0; what is read has length 1.
-Format<Vector3d> Direction() {
+ValueFormat<Vector3d> Direction() {
   const auto vector = Vector<3>(-1, 1);
-  return {.schema = vector.schema,
-          .read =
-              [vector](const YamlNode& node, DiagnosticList& errors, Vector3d& value) {
-                if (!vector.read(node, errors, value)) return false;
-                if (value.norm() < 1e-6)
-                  return ReportExpected(node, errors, "a direction other than [0, 0, 0]");
-                value.normalize();
-                return true;
-              },
-          .show = vector.show};
+  return ValueFormat<Vector3d>(
+             vector.schema(),
+             [vector](const YamlNode& node, DiagnosticList& errors, Vector3d& value) {
+               if (!vector.Read(node, errors, value)) return false;
+               if (value.norm() < 1e-6)
+                 return ReportExpected(node, errors, "a direction other than [0, 0, 0]");
+               value.normalize();
+               return true;
+             })
+      .ShownAs(vector);
 }
 
-Format<PerDigit> PerDigitFormat(double lowest, double highest) {
+ValueFormat<PerDigit> PerDigitFormat(double lowest, double highest) {
   return MapOf(Identifier(), WithPlace(ListOf(WithPlace(Number(lowest, highest)), 1, 8)), 1, 16);
 }
 
 /// Names, each of them once.
-Format<std::vector<std::string>> DifferentNames(std::size_t most) {
+ValueFormat<std::vector<std::string>> DifferentNames(std::size_t most) {
   const auto list = ListOf(Identifier(), 1, most);
-  return {
-      .schema = list.schema,
-      .read =
-          [list](const YamlNode& node, DiagnosticList& errors, std::vector<std::string>& names) {
-            if (!list.read(node, errors, names)) return false;
-            bool good = true;
-            for (std::size_t i = 0; i < names.size(); ++i) {
-              const auto here = names.begin() + static_cast<std::ptrdiff_t>(i);
-              if (std::find(names.begin(), here, *here) == here) continue;
-              errors.Add(node.children[i].where,
-                         fmt::format("{}: '{}' is given twice", node.key, *here));
-              good = false;
-            }
-            return good;
-          },
-      .show = list.show};
+  return ValueFormat<std::vector<std::string>>(
+      list.schema(),
+      [list](const YamlNode& node, DiagnosticList& errors, std::vector<std::string>& names) {
+        if (!list.Read(node, errors, names)) return false;
+        bool good = true;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+          const auto here = names.begin() + static_cast<std::ptrdiff_t>(i);
+          if (std::find(names.begin(), here, *here) == here) continue;
+          errors.Add(node.children[i].where,
+                     fmt::format("{}: '{}' is given twice", node.key, *here));
+          good = false;
+        }
+        return good;
+      });
 }
 
 constexpr double kDegPerRad = 180 / std::numbers::pi;
@@ -83,21 +81,21 @@ void CheckAcross(const YamlNode& node, const char* key, const Vector3d& directio
              hint);
 }
 
-Format<PalmYaml> PalmFormat() {
+ValueFormat<PalmYaml> PalmFormat() {
   using P = PalmYaml;
-  return Record<P>("the palm")
+  return StructFormat<P>("the palm")
       .Optional("size_m", &P::size_m, Vector<3>(0.005, 0.5),
                 "Full edge lengths of its box [x, y, z].")
       .Optional("mass_kg", &P::mass_kg, PartMass(), "Mass.")
       .Optional("inertia_scale", &P::inertia_scale, Number(1, 100),
-                "Stands for the forearm: times the box' inertia.")
+                "Factor on the box's inertia; accounts for the forearm.")
       .Required("sensor_set", &P::sensor_set, Identifier(),
                 "The sensor set that feels its contacts.")
       .format();
 }
 
-Format<PidGains> TranslationFormat() {
-  return Record<PidGains>("the translation gains")
+ValueFormat<PidGains> TranslationFormat() {
+  return StructFormat<PidGains>("the translation gains")
       .Required("proportional_n_per_m", &PidGains::proportional, Number(0, 1e6), "Force per error.")
       .Required("derivative_n_s_per_m", &PidGains::derivative, Number(0, 1e5),
                 "Force per speed of the error.")
@@ -109,8 +107,8 @@ Format<PidGains> TranslationFormat() {
       .format();
 }
 
-Format<PidGains> RotationFormat() {
-  return Record<PidGains>("the rotation gains")
+ValueFormat<PidGains> RotationFormat() {
+  return StructFormat<PidGains>("the rotation gains")
       .Required("proportional_nm_per_rad", &PidGains::proportional, Number(0, 1e6),
                 "Torque per error.")
       .Required("derivative_nm_s_per_rad", &PidGains::derivative, Number(0, 1e5),
@@ -123,16 +121,16 @@ Format<PidGains> RotationFormat() {
       .format();
 }
 
-Format<JointDriver> DriverFormat() {
+ValueFormat<JointDriver> DriverFormat() {
   using D = JointDriver;
-  return Record<D>("the joint driver")
+  return StructFormat<D>("the joint driver")
       .Optional("stiffness", &D::stiffness, Number(0, 1),
                 "Share of the error that it tries to remove per tick.")
-      .Optional("damping", &D::damping, Number(0, 1), "How firmly it holds the speed it wants.")
+      .Optional("damping", &D::damping, Number(0, 1), "How firmly it holds its target speed.")
       .Optional("max_speed_rad_per_s", &D::max_speed_rad_per_s, Number(0.1, 100),
-                "Fastest that a joint turns.")
+                "Maximum speed of a joint.")
       .Optional("max_slide_m_per_s", &D::max_slide_m_per_s, Number(0.001, 10),
-                "Fastest that a jaw slides.")
+                "Maximum speed of a jaw.")
       .format();
 }
 
@@ -144,36 +142,36 @@ Member Link::*Of(Member LinkYaml::*member) {
 
 /// `record` with what a phalanx and a jaw have in common; the units are those of its joint.
 template <class Link>
-Record<Link> LinkRecord(Record<Link> record, const char* strength, double strongest,
-                        const char* range, double farthest) {
+StructFormat<Link> LinkRecord(StructFormat<Link> record, const char* strength, double strongest,
+                              const char* range, double farthest) {
   return record
       .Required("length_m", Of<Link>(&LinkYaml::length_m), PartLength(),
                 "From its joint to the next one.")
       .Required("half_width_m", Of<Link>(&LinkYaml::half_width_m), PartLength(),
-                "Half of its size across.")
+                "Half of its width.")
       .Required("half_thickness_m", Of<Link>(&LinkYaml::half_thickness_m), PartLength(),
-                "Half of its size from back to pad.")
+                "Half of its thickness, from back to pad.")
       .Required("mass_kg", Of<Link>(&LinkYaml::mass_kg), PartMass(), "Mass.")
       .Required(strength, Of<Link>(&LinkYaml::strength), Number(0, strongest),
                 "Largest torque or force of its joint at effort 1.")
       .Required(range, Of<Link>(&LinkYaml::range), Vector<2>(-farthest, farthest),
-                "Joint limits [least, most].")
+                "Joint limits [min, max].")
       .Check([key = std::string(range)](const YamlNode&, const Link& link, DiagnosticList& errors) {
         CheckLeastMost(key, link.range.value, link.range.where, errors);
       });
 }
 
-Format<PhalanxYaml> PhalanxFormat() {
+ValueFormat<PhalanxYaml> PhalanxFormat() {
   using P = PhalanxYaml;
-  Record<P> record("a phalanx");
+  StructFormat<P> record("a phalanx");
   record.Required("name", &P::name, Identifier(), "Its name after the digit's: index_proximal.")
       .Optional("joint_axis", &P::joint_axis, Direction(),
-                "Of the joint at its base, in H; positive angles close.");
+                "Axis of the joint at its base, in H; positive angles close.");
   return LinkRecord(record, "strength_nm", 100, "range_deg", 180).format();
 }
 
-Format<JawYaml> JawFormat() {
-  Record<JawYaml> record("a jaw");
+ValueFormat<JawYaml> JawFormat() {
+  StructFormat<JawYaml> record("a jaw");
   record.Required("slides", &JawYaml::slides, Direction(),
                   "In H: the way it slides; positive values close.");
   return LinkRecord(record, "strength_n", 1000, "range_m", 0.5).format();
@@ -188,14 +186,14 @@ void CheckLastJoint(const YamlNode& node, const DigitYaml& digit, DiagnosticList
   const YamlNode* axis = last.Find("joint_axis");
   errors.Add(axis ? axis->where : last.where,
              fmt::format("joint_axis: expected an axis across the direction of digit '{}', "
-                         "found one along it: the joint would move nothing",
+                         "found one along it; such a joint moves nothing",
                          node.key),
              axis ? "" : "without joint_axis it is [0, 1, 0]");
 }
 
-Format<DigitYaml> DigitFormat() {
+ValueFormat<DigitYaml> DigitFormat() {
   using D = DigitYaml;
-  return Record<D>("digit")
+  return StructFormat<D>("digit")
       .NamedByKey()
       .Required("sensor_set", &D::sensor_set, Identifier(),
                 "The sensor set that feels its contacts.")
@@ -210,9 +208,9 @@ Format<DigitYaml> DigitFormat() {
       .format();
 }
 
-Format<GripYaml> GripFormat() {
+ValueFormat<GripYaml> GripFormat() {
   using G = GripYaml;
-  return Record<G>("the grip")
+  return StructFormat<G>("the grip")
       .Required("axis", &G::axis, Direction(),
                 "In H: from the stiff side (the post) to the force-limited side.")
       .Required("post_m", &G::post_m, InHand(),
@@ -222,9 +220,9 @@ Format<GripYaml> GripFormat() {
       .format();
 }
 
-Record<GraspApproach> ApproachRecord(const std::string& noun) {
+StructFormat<GraspApproach> ApproachRecord(const std::string& noun) {
   using A = GraspApproach;
-  return Record<A>(noun)
+  return StructFormat<A>(noun)
       .Required("toward", &A::toward, Direction(),
                 "In H: the direction of the last part of the motion.")
       .Required("palm_gap_m", &A::palm_gap_m, Number(-0.5, 0.5),
@@ -246,12 +244,12 @@ void CheckApproaches(const YamlNode& node, const StyleYaml& style, DiagnosticLis
   if (!style.side) return;
   check_toward("side", *style.side);
   CheckAcross(*node.Find("side"), "up", style.side->up, "toward", style.side->toward, errors,
-              "the hand arrives level, along toward, with up towards the sky");
+              "the hand arrives horizontally, along toward, with up pointing up");
 }
 
-Format<StyleYaml> StyleFormat() {
+ValueFormat<StyleYaml> StyleFormat() {
   using S = StyleYaml;
-  return Record<S>("style")
+  return StructFormat<S>("style")
       .NamedByKey()
       .Required("grip", &S::grip, GripFormat(), "Where the object is held.")
       .Optional("above", &S::above, ApproachRecord("the approach from above").format(),
@@ -268,7 +266,7 @@ Format<StyleYaml> StyleFormat() {
       .Optional("frames_deg", &S::frames_deg, ListOf(WithPlace(PerDigitFormat(-180, 180)), 2, 16),
                 "Joint angles from open to closed: for each digit one number for each joint.")
       .Optional("frames_m", &S::frames_m, ListOf(WithPlace(PerDigitFormat(-0.5, 0.5)), 2, 16),
-                "Where jaws stand from open to closed: for each jaw one number.")
+                "Positions of the jaws from open to closed: for each jaw one number.")
       .Check([](const YamlNode& node, const S& style, DiagnosticList& errors) {
         if (style.above || style.side) return;
         errors.Add(node.key_where, "style '" + node.key + "' has no approach",
@@ -278,12 +276,12 @@ Format<StyleYaml> StyleFormat() {
       .format();
 }
 
-Format<std::vector<Named<StyleYaml>>> StylesFormat() {
+ValueFormat<std::vector<Named<StyleYaml>>> StylesFormat() {
   return MapOf(Identifier(), StyleFormat(), 1, 64);
 }
 
-Format<GainsYaml> GainsFormat() {
-  return Record<GainsYaml>("the gains")
+ValueFormat<GainsYaml> GainsFormat() {
+  return StructFormat<GainsYaml>("the gains")
       .Required("translation", &GainsYaml::translation, TranslationFormat(),
                 "How the palm follows a position.")
       .Required("rotation", &GainsYaml::rotation, RotationFormat(),
@@ -291,16 +289,16 @@ Format<GainsYaml> GainsFormat() {
       .format();
 }
 
-Format<HandYaml> BuildHandFormat() {
+ValueFormat<HandYaml> BuildHandFormat() {
   using H = HandYaml;
-  return Record<H>("the hand")
+  return StructFormat<H>("the hand")
       .Required("hand", &H::name, Identifier(), "Its name: that of the file without '.hand.yaml'.")
       .Required("sensor_sets", &H::sensor_sets, DifferentNames(16), "Groups of contact sensors.")
       .Optional("ahead", &H::ahead, Direction(), "In H: where the region of interest lies.")
       .Optional("friction", &H::friction, Number(0, 5),
-                "Of its skin; multiplied with the object's.")
+                "Friction of the skin; multiplied with the object's.")
       .Optional("spinning_friction", &H::spinning_friction, Number(0, 1),
-                "Against turning in place.")
+                "Friction against spinning in place.")
       .Required("palm", &H::palm, PalmFormat(), "The palm, a box.")
       .Required("gains", &H::gains, GainsFormat(), "How the palm follows its tracked target.")
       .Optional("driver", &H::driver, DriverFormat(), "How the joints follow their targets.")
@@ -311,22 +309,21 @@ Format<HandYaml> BuildHandFormat() {
       .Optional("styles", &H::styles, StylesFormat(), "Grasps, by name.")
       .Check([](const YamlNode& node, const H& hand, DiagnosticList& errors) {
         if (hand.grasps.empty() && hand.styles.empty())
-          errors.Add(node.where, "the hand has no style of grasp",
-                     "give 'grasps', 'styles' or both");
+          errors.Add(node.where, "the hand has no grasp style", "give 'grasps', 'styles' or both");
       })
       .format();
 }
 
-Format<GraspsYaml> BuildGraspsFormat() {
-  return Record<GraspsYaml>("the grasps")
+ValueFormat<GraspsYaml> BuildGraspsFormat() {
+  return StructFormat<GraspsYaml>("the grasps")
       .Required("grasps", &GraspsYaml::name, Identifier(),
                 "Their name: that of the file without '.grasps.yaml'.")
       .Required("styles", &GraspsYaml::styles, StylesFormat(), "Grasps, by name.")
       .format();
 }
 
-Format<MirrorYaml> BuildMirrorFormat() {
-  return Record<MirrorYaml>("the hand")
+ValueFormat<MirrorYaml> BuildMirrorFormat() {
+  return StructFormat<MirrorYaml>("the hand")
       .Required("hand", &MirrorYaml::name, Identifier(),
                 "Its name: that of the file without '.hand.yaml'.")
       .Required("mirror_of", &MirrorYaml::mirror_of, Identifier(),
@@ -336,18 +333,18 @@ Format<MirrorYaml> BuildMirrorFormat() {
 
 }  // namespace
 
-const Format<HandYaml>& HandFormat() {
-  static const Format<HandYaml> format = BuildHandFormat();
+const ValueFormat<HandYaml>& HandFormat() {
+  static const ValueFormat<HandYaml> format = BuildHandFormat();
   return format;
 }
 
-const Format<GraspsYaml>& GraspsFormat() {
-  static const Format<GraspsYaml> format = BuildGraspsFormat();
+const ValueFormat<GraspsYaml>& GraspsFormat() {
+  static const ValueFormat<GraspsYaml> format = BuildGraspsFormat();
   return format;
 }
 
-const Format<MirrorYaml>& MirrorFormat() {
-  static const Format<MirrorYaml> format = BuildMirrorFormat();
+const ValueFormat<MirrorYaml>& MirrorFormat() {
+  static const ValueFormat<MirrorYaml> format = BuildMirrorFormat();
   return format;
 }
 

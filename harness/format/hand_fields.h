@@ -96,8 +96,8 @@ struct MirrorYaml {
 };
 
 // Built once, since that takes longer than reading a hand.
-const Format<HandYaml>& HandFormat();
-const Format<MirrorYaml>& MirrorFormat();
-const Format<GraspsYaml>& GraspsFormat();
+const ValueFormat<HandYaml>& HandFormat();
+const ValueFormat<MirrorYaml>& MirrorFormat();
+const ValueFormat<GraspsYaml>& GraspsFormat();
 
 }  // namespace prehend::harness

@@ -11,7 +11,7 @@
 namespace prehend::harness {
 
 /// Built once: its schemas take longer to build than most scenarios take to read.
-const Format<ScenarioYaml>& ScenarioFormat();
+const ValueFormat<ScenarioYaml>& ScenarioFormat();
 
 /// The JSON Schema (2020-12) of scenario files, for editors and validators, with a newline at its
 /// end.

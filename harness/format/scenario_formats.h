@@ -16,39 +16,39 @@
 namespace prehend::harness {
 
 // harness/format/entity_fields.cc: shape, material, and what it hangs on.
-Format<EntityYaml> EntityFormat();
+ValueFormat<EntityYaml> EntityFormat();
 
 // harness/format/shape_fields.cc
-Format<physics::Box> BoxFormat();
-Format<physics::Sphere> SphereFormat();
-Format<physics::Cylinder> CylinderFormat();
-Format<physics::Capsule> CapsuleFormat();
-Format<physics::Tray> TrayFormat();
-Format<physics::Mug> MugFormat();
-Format<physics::Bowl> BowlFormat();
-Format<physics::Shelf> ShelfFormat();
-Format<physics::Hull> HullFormat();
-Format<GrainsYaml> GrainsFormat();
-Format<PartYaml> PartFormat();
+ValueFormat<physics::Box> BoxFormat();
+ValueFormat<physics::Sphere> SphereFormat();
+ValueFormat<physics::Cylinder> CylinderFormat();
+ValueFormat<physics::Capsule> CapsuleFormat();
+ValueFormat<physics::Tray> TrayFormat();
+ValueFormat<physics::Mug> MugFormat();
+ValueFormat<physics::Bowl> BowlFormat();
+ValueFormat<physics::Shelf> ShelfFormat();
+ValueFormat<physics::Hull> HullFormat();
+ValueFormat<GrainsYaml> GrainsFormat();
+ValueFormat<PartYaml> PartFormat();
 
 // harness/format/abstract_fields.cc: what has a place but no matter.
-Format<RegionYaml> RegionFormat();
-Format<GazeTargetYaml> GazeTargetFormat();
-Format<CameraYaml> CameraFormat();
-Format<LightYaml> LightFormat();
+ValueFormat<RegionYaml> RegionFormat();
+ValueFormat<GazeTargetYaml> GazeTargetFormat();
+ValueFormat<CameraYaml> CameraFormat();
+ValueFormat<LightYaml> LightFormat();
 
 /// Complains about what only matter has: a mass, a surface, joints, something that it stands on.
 void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors);
 
 // harness/format/actor_fields.cc
-Format<ActorYaml> ActorFormat();
-Format<physics::Eyes> EyesFormat();
+ValueFormat<ActorYaml> ActorFormat();
+ValueFormat<physics::Eyes> EyesFormat();
 
 // harness/format/step_fields.cc: each step is told by its action key.
-Format<StepYaml> StepFormat();
+ValueFormat<StepYaml> StepFormat();
 
 // harness/format/trial_fields.cc
-Format<VariationYaml> VariationFormat();
-Format<std::vector<ConditionYaml>> OutcomeFormat();
+ValueFormat<VariationYaml> VariationFormat();
+ValueFormat<std::vector<ConditionYaml>> OutcomeFormat();
 
 }  // namespace prehend::harness

@@ -14,13 +14,13 @@ constexpr double kMaxSize_m = 100;
 constexpr double kMaxPartOffset_m = 10;
 constexpr int kMaxBoards = 20;
 
-Format<double> Length() { return Number(kMinSize_m, kMaxSize_m); }
-Format<Eigen::Vector3d> Size() { return Vector<3>(kMinSize_m, kMaxSize_m); }
+ValueFormat<double> Length() { return Number(kMinSize_m, kMaxSize_m); }
+ValueFormat<Eigen::Vector3d> Size() { return Vector<3>(kMinSize_m, kMaxSize_m); }
 
 /// Cylinders and capsules: the axis is along z.
 template <class Round>
-Format<Round> RoundFormat(const std::string& noun, const std::string& length_doc) {
-  return Record<Round>(noun)
+ValueFormat<Round> RoundFormat(const std::string& noun, const std::string& length_doc) {
+  return StructFormat<Round>(noun)
       .Required("radius_m", &Round::radius_m, Length(), "Radius.")
       .Required("length_m", &Round::length_m, Length(), length_doc)
       .format();
@@ -32,64 +32,63 @@ void CheckWall(const YamlNode& node, double wall_m, double narrow_m, DiagnosticL
   const YamlNode* wall = node.Find("wall_m");
   errors.Add(wall ? wall->where : node.where,
              fmt::format("wall_m: walls of {} leave no room inside", wall_m),
-             "walls are thinner than half of the narrowest side");
+             "walls must be thinner than half of the narrowest side");
 }
 
 }  // namespace
 
-Format<physics::Box> BoxFormat() {
-  return Record<physics::Box>("a box")
+ValueFormat<physics::Box> BoxFormat() {
+  return StructFormat<physics::Box>("a box")
       .Required("size_m", &physics::Box::size_m, Size(), "Full edge lengths [x, y, z].")
       .format();
 }
 
-Format<physics::Sphere> SphereFormat() {
-  return Record<physics::Sphere>("a sphere")
+ValueFormat<physics::Sphere> SphereFormat() {
+  return StructFormat<physics::Sphere>("a sphere")
       .Required("radius_m", &physics::Sphere::radius_m, Length(), "Radius.")
       .format();
 }
 
-Format<physics::Cylinder> CylinderFormat() {
+ValueFormat<physics::Cylinder> CylinderFormat() {
   return RoundFormat<physics::Cylinder>("a cylinder", "Height, along z.");
 }
 
-Format<physics::Capsule> CapsuleFormat() {
+ValueFormat<physics::Capsule> CapsuleFormat() {
   return RoundFormat<physics::Capsule>("a capsule", "Along z, without the two half spheres.");
 }
 
-Format<physics::Hull> HullFormat() {
+ValueFormat<physics::Hull> HullFormat() {
   struct Points {
     std::vector<Eigen::Vector3d> points_m;
   };
-  const Format<Points> written =
-      Record<Points>("a hull")
+  const ValueFormat<Points> written =
+      StructFormat<Points>("a hull")
           .Required("points_m", &Points::points_m,
                     ListOf(Vector<3>(-kMaxPartOffset_m, kMaxPartOffset_m), physics::kMinHullPoints,
                            physics::kMaxHullPoints),
                     "Its corners [x, y, z] in its own frame, in any order.")
           .format();
-  return {.schema = written.schema,
-          .read =
-              [written](const YamlNode& node, DiagnosticList& errors, physics::Hull& hull) {
-                Points points;
-                if (!written.read(node, errors, points)) return false;
-                physics::MadeHull made = physics::MakeHull(points.points_m);
-                if (made.hull) {
-                  hull = std::move(*made.hull);
-                  return true;
-                }
-                const YamlNode& list = *node.Find("points_m");
-                const YamlNode& wrong =
-                    made.point < 0 ? list : list.children[static_cast<std::size_t>(made.point)];
-                errors.Add(wrong.where, "points_m: " + made.problem, made.remedy);
-                return false;
-              },
-          .show = {}};
+  return ValueFormat<physics::Hull>(
+      written.schema(),
+      [written](const YamlNode& node, DiagnosticList& errors, physics::Hull& hull) {
+        Points points;
+        if (!written.Read(node, errors, points)) return false;
+        physics::MadeHull made = physics::MakeHull(points.points_m);
+        if (made.hull) {
+          hull = std::move(*made.hull);
+          return true;
+        }
+        const YamlNode& list = *node.Find("points_m");
+        const YamlNode& wrong =
+            made.point < 0 ? list : list.children[static_cast<std::size_t>(made.point)];
+        errors.Add(wrong.where, "points_m: " + made.problem, made.remedy);
+        return false;
+      });
 }
 
-Format<physics::Tray> TrayFormat() {
+ValueFormat<physics::Tray> TrayFormat() {
   using T = physics::Tray;
-  return Record<T>("a tray")
+  return StructFormat<T>("a tray")
       .Required("size_m", &T::size_m, Size(), "Outer edge lengths [x, y, z].")
       .Optional("wall_m", &T::wall_m, Length(), "Thickness of floor and walls.")
       .Check([](const YamlNode& node, const T& tray, DiagnosticList& errors) {
@@ -99,14 +98,14 @@ Format<physics::Tray> TrayFormat() {
       .format();
 }
 
-Format<physics::Mug> MugFormat() {
+ValueFormat<physics::Mug> MugFormat() {
   using M = physics::Mug;
-  return Record<M>("a mug")
+  return StructFormat<M>("a mug")
       .Required("radius_m", &M::radius_m, Length(), "Outer radius, without the handle.")
       .Required("height_m", &M::height_m, Length(), "Height.")
       .Optional("wall_m", &M::wall_m, Length(), "Thickness of floor and wall.")
       .Optional("handle_m", &M::handle_m, Number(0, kMaxSize_m),
-                "How far its handle stands out to +x; 0: it has none.")
+                "How far its handle extends to +x; 0: no handle.")
       .Check([](const YamlNode& node, const M& mug, DiagnosticList& errors) {
         CheckWall(node, mug.wall_m, 2 * std::min(mug.radius_m, mug.height_m), errors);
         constexpr double kMinHandle_m = 0.011;  // its bar is 10 mm thick
@@ -119,9 +118,9 @@ Format<physics::Mug> MugFormat() {
       .format();
 }
 
-Format<physics::Bowl> BowlFormat() {
+ValueFormat<physics::Bowl> BowlFormat() {
   using B = physics::Bowl;
-  return Record<B>("a bowl")
+  return StructFormat<B>("a bowl")
       .Required("radius_m", &B::radius_m, Length(),
                 "Outer radius at the rim; the foot has half of it.")
       .Required("height_m", &B::height_m, Length(), "Height.")
@@ -132,12 +131,12 @@ Format<physics::Bowl> BowlFormat() {
       .format();
 }
 
-Format<physics::Shelf> ShelfFormat() {
+ValueFormat<physics::Shelf> ShelfFormat() {
   using S = physics::Shelf;
-  return Record<S>("a shelf")
+  return StructFormat<S>("a shelf")
       .Required("size_m", &S::size_m, Size(), "Outer edge lengths [x, y, z]; it is open to -x.")
       .Optional("boards", &S::boards, Integer<int>(2, kMaxBoards),
-                "How many, at even distances, with the lowest and the highest.")
+                "How many, evenly spaced, including the lowest and the highest.")
       .Optional("wall_m", &S::wall_m, Length(), "Thickness of boards, sides and back.")
       .Optional("back", &S::back, Flag(), "False: open to +x, too.")
       .Check([](const YamlNode& node, const S& shelf, DiagnosticList& errors) {
@@ -148,20 +147,20 @@ Format<physics::Shelf> ShelfFormat() {
       .format();
 }
 
-Format<GrainsYaml> GrainsFormat() {
+ValueFormat<GrainsYaml> GrainsFormat() {
   using G = GrainsYaml;
   constexpr int kMaxGrains = 500;
   constexpr double kMinGrainRadius_m = 0.002, kMaxGrainRadius_m = 0.05;
-  return Record<G>("grains")
+  return StructFormat<G>("grains")
       .Required("count", &G::count, Integer<int>(1, kMaxGrains), "How many.")
       .Required("radius_m", &G::radius_m, Number(kMinGrainRadius_m, kMaxGrainRadius_m),
                 "Radius of each.")
       .format();
 }
 
-Format<PartYaml> PartFormat() {
+ValueFormat<PartYaml> PartFormat() {
   using P = PartYaml;
-  return Record<P>("a part")
+  return StructFormat<P>("a part")
       .Optional("box", &P::box, BoxFormat(), "Its shape: a box.")
       .Optional("sphere", &P::sphere, SphereFormat(), "Its shape: a sphere.")
       .Optional("cylinder", &P::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")

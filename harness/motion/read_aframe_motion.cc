@@ -26,17 +26,17 @@ struct CapturedPose {
   Located<double> timestamp;
 };
 
-Format<XyzYaml> XyzFormat(double most) {
-  return Record<XyzYaml>("a vector")
+ValueFormat<XyzYaml> XyzFormat(double most) {
+  return StructFormat<XyzYaml>("a vector")
       .Required("x", &XyzYaml::x, Number(-most, most), "")
       .Required("y", &XyzYaml::y, Number(-most, most), "")
       .Required("z", &XyzYaml::z, Number(-most, most), "")
       .format();
 }
 
-Format<std::vector<CapturedPose>> PosesFormat() {
+ValueFormat<std::vector<CapturedPose>> PosesFormat() {
   using P = CapturedPose;
-  return ListOf(Record<P>("a pose")
+  return ListOf(StructFormat<P>("a pose")
                     .Required("position", &P::position, XyzFormat(kMaxTrackCoordinate_m), "")
                     .Required("rotation", &P::rotation, XyzFormat(1e4), "")
                     .Required("timestamp", &P::timestamp, Number(-1e15, 1e15), "")
@@ -85,7 +85,7 @@ class CaptureReader {
       return {};
     }
     std::vector<CapturedPose> poses;
-    if (!PosesFormat().read(*written, errors_, poses)) return {};
+    if (!PosesFormat().Read(*written, errors_, poses)) return {};
     MotionTrack track{.samples = {},
                       .file = document_.sources.front().name,
                       .text = document_.sources.front().text};
@@ -143,12 +143,12 @@ class CaptureReader {
       return std::nullopt;
     }
     ButtonEvent read{.name = name->text};
-    bool good = Integer<int>(0, kMaxButtons).read(*id, errors_, read.id);
-    good &= Number(-1e15, 1e15).read(*at, errors_, read.at_ms);
+    bool good = Integer<int>(0, kMaxButtons).Read(*id, errors_, read.id);
+    good &= Number(-1e15, 1e15).Read(*at, errors_, read.at_ms);
     // Many recordings have lost their values: then there is none, or an empty one.
     const bool has_value =
         good && read.id == device_.button && value && value->kind == YamlNode::Kind::kScalar;
-    if (has_value) good &= Number(0, 1).read(*value, errors_, read.value.emplace());
+    if (has_value) good &= Number(0, 1).Read(*value, errors_, read.value.emplace());
     return good ? std::optional(std::move(read)) : std::nullopt;
   }
 

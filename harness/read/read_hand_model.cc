@@ -82,8 +82,8 @@ void HandBuilder::AddDigit(const Named<DigitYaml>& digit, std::vector<physics::H
   const auto add = [&](physics::HandLink link, const std::string& name, Where where,
                        const Eigen::Vector3d& joint_axis) {
     if (std::ranges::count(links, name, &physics::HandLink::name) > 0)
-      errors_.Add(where, fmt::format("a second part of the hand is called '{}'", name),
-                  "a part is called like its digit, a phalanx DIGIT_NAME");
+      errors_.Add(where, fmt::format("two parts of the hand are called '{}'", name),
+                  "a part has the name of its digit, a phalanx is called DIGIT_NAME");
     link.name = name;
     link.parent = parent;
     link.pivot_m = pivot_m;
@@ -161,7 +161,7 @@ Diagnostics HandReader::AddGrasps(const std::string& path, const HandYaml& hand,
   if (!document.value) return std::move(document.diagnostics);
   DiagnosticList errors(*document.value);
   GraspsYaml entry;
-  if (GraspsFormat().read(document.value->root, errors, entry)) {
+  if (GraspsFormat().Read(document.value->root, errors, entry)) {
     CheckName(path, kGraspsEnding, "grasps", entry.name, errors);
     AddStyles(hand.digits, entry.styles, same_name, errors, model.styles);
   }
@@ -171,7 +171,7 @@ Diagnostics HandReader::AddGrasps(const std::string& path, const HandYaml& hand,
 ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDocument& document) {
   DiagnosticList errors(document);
   HandYaml entry;
-  if (!HandFormat().read(document.root, errors, entry)) return {std::nullopt, errors.Sorted()};
+  if (!HandFormat().Read(document.root, errors, entry)) return {std::nullopt, errors.Sorted()};
   CheckName(path, kHandEnding, "hand", entry.name, errors);
   HandModel model = HandBuilder(entry, errors).Build();
   Diagnostics in_grasps;
@@ -198,7 +198,7 @@ ReadResult<HandModel> HandReader::ReadMirror(const std::string& path,
                                              const YamlDocument& document) {
   DiagnosticList errors(document);
   MirrorYaml entry;
-  if (!MirrorFormat().read(document.root, errors, entry)) return {std::nullopt, errors.Sorted()};
+  if (!MirrorFormat().Read(document.root, errors, entry)) return {std::nullopt, errors.Sorted()};
   CheckName(path, kHandEnding, "hand", entry.name, errors);
   if (entry.mirror_of.value == entry.name.value)
     errors.Add(entry.mirror_of.where, "a hand cannot mirror itself");

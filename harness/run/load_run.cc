@@ -81,7 +81,7 @@ std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
 
 bool IsFieldOfScenario(const std::string& name) {
   return name.find('.') != std::string::npos ||
-         ScenarioFormat().schema.at("properties").contains(name);
+         ScenarioFormat().schema().at("properties").contains(name);
 }
 
 ReadResult<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,

@@ -27,8 +27,15 @@ std::string WithoutUnit(const std::string& key) {
 
 /// Returns the known key that was probably meant, or "".
 std::string ReportUnknownKey(const YamlNode& child, const std::string& title,
-                             const std::vector<std::string>& known, DiagnosticList& errors) {
+                             const std::vector<std::string>& known,
+                             const std::vector<std::pair<std::string, std::string>>& renamed,
+                             DiagnosticList& errors) {
   const std::string message = fmt::format("unknown key '{}' in {}", child.key, title);
+  for (const auto& [former, key] : renamed) {
+    if (child.key != former) continue;
+    errors.Add(child.key_where, message, fmt::format("it is called '{}' now", key));
+    return key;
+  }
   const auto same_stem = std::find_if(known.begin(), known.end(), [&](const std::string& key) {
     return WithoutUnit(key) == WithoutUnit(child.key);
   });
@@ -66,13 +73,71 @@ std::vector<std::string> KeysPresent(const YamlNode& node, const std::vector<std
 
 Json Requires(const std::vector<std::string>& keys) { return {{"required", keys}}; }
 
+/// The index of the one key of `cases` that is in the mapping; nothing after complaining.
+std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& noun,
+                                    const std::vector<std::string>& cases, DiagnosticList& errors) {
+  if (node.kind != YamlNode::Kind::kMapping) {
+    ReportExpected(node, errors, fmt::format("a mapping with the fields of {}", noun));
+    return std::nullopt;
+  }
+  const auto present = KeysPresent(node, cases);
+  if (present.size() == 1) {
+    return static_cast<std::size_t>(std::find(cases.begin(), cases.end(), present[0]) -
+                                    cases.begin());
+  }
+  if (present.size() > 1) {
+    errors.Add(node.Find(present[1])->key_where,
+               fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
+    return std::nullopt;
+  }
+  const std::string first = node.children.empty() ? "" : node.children[0].key;
+  errors.AddUnknownName(
+      node.children.empty() ? node.where : node.children[0].key_where,
+      fmt::format("{} needs one of the keys {}", noun, fmt::join(cases, ", ")), first,
+      grammar::NearestName(first, cases).empty() ? std::vector<std::string>{} : cases);
+  return std::nullopt;
+}
+
 }  // namespace
 
-std::string RecordRules::TitleOf(const YamlNode& node) const {
+StructRules::StructRules(std::string called) : noun(std::move(called)) {}
+StructRules::StructRules(const StructRules& other) = default;
+StructRules::~StructRules() = default;
+
+void StructRules::Add(std::string_view key, bool required, std::ptrdiff_t offset,
+                      MemberReader read_member, const ErasedFormat& format, std::string_view doc,
+                      const void* initial) {
+  Json schema = {{"description", doc}};
+  schema.update(format.schema);
+  if (initial && format.show) schema["default"] = format.show(initial);
+  fields.push_back({.key = std::string(key),
+                    .required = required,
+                    .schema = std::move(schema),
+                    .offset = offset,
+                    .read_member = read_member,
+                    .read = format.read});
+}
+
+bool StructRules::Read(const YamlNode& node, DiagnosticList& errors, void* value) const {
+  char* const bytes = static_cast<char*>(value);
+  if (where_offset) *reinterpret_cast<Where*>(bytes + *where_offset) = node.where;
+  bool good = CheckKeys(node, errors);
+  if (node.kind != YamlNode::Kind::kMapping) return good;
+  for (const Field& field : fields) {
+    const YamlNode* child = node.Find(field.key);
+    if (child) good &= field.read_member(field.read, *child, errors, bytes + field.offset);
+  }
+  if (good) {
+    for (const Check& check : checks) check(node, value, errors);
+  }
+  return good;
+}
+
+std::string StructRules::TitleOf(const YamlNode& node) const {
   return named_by_key && !node.key.empty() ? fmt::format("{} '{}'", noun, node.key) : noun;
 }
 
-Json RecordRules::Schema() const {
+Json StructRules::Schema() const {
   Json schema = {
       {"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
   Json required = Json::array();
@@ -97,7 +162,7 @@ Json RecordRules::Schema() const {
   return schema;
 }
 
-bool RecordRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const {
+bool StructRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const {
   if (node.kind != YamlNode::Kind::kMapping) {
     return ReportExpected(node, errors,
                           fmt::format("a mapping with the fields of {}", TitleOf(node)));
@@ -108,7 +173,7 @@ bool RecordRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const 
   std::set<std::string> meant;  // but misspelt: not to be called missing, too
   for (const YamlNode& child : node.children) {
     if (std::find(known.begin(), known.end(), child.key) != known.end()) continue;
-    meant.insert(ReportUnknownKey(child, TitleOf(node), known, errors));
+    meant.insert(ReportUnknownKey(child, TitleOf(node), known, renamed, errors));
     good = false;
   }
   for (const Field& field : fields) {
@@ -137,28 +202,30 @@ bool RecordRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const 
   return good;
 }
 
-std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& noun,
-                                    const std::vector<std::string>& cases, DiagnosticList& errors) {
-  if (node.kind != YamlNode::Kind::kMapping) {
-    ReportExpected(node, errors, fmt::format("a mapping with the fields of {}", noun));
-    return std::nullopt;
+ErasedFormat FormatOf(const StructRules& rules) {
+  return {.schema = rules.Schema(),
+          .read = [shared = std::make_shared<const StructRules>(rules)](
+                      const YamlNode& node, DiagnosticList& errors, void* value) {
+            return shared->Read(node, errors, value);
+          }};
+}
+
+ErasedFormat ErasedByKey(const std::string& noun,
+                         std::vector<std::pair<std::string, ErasedFormat>> cases) {
+  Json one_of = Json::array();
+  std::vector<std::string> keys;
+  std::vector<ErasedFormat::Read> readers;
+  for (auto& [key, format] : cases) {
+    one_of.push_back(std::move(format.schema));
+    keys.push_back(key);
+    readers.push_back(std::move(format.read));
   }
-  const auto present = KeysPresent(node, cases);
-  if (present.size() == 1) {
-    return static_cast<std::size_t>(std::find(cases.begin(), cases.end(), present[0]) -
-                                    cases.begin());
-  }
-  if (present.size() > 1) {
-    errors.Add(node.Find(present[1])->key_where,
-               fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
-    return std::nullopt;
-  }
-  const std::string first = node.children.empty() ? "" : node.children[0].key;
-  errors.AddUnknownName(
-      node.children.empty() ? node.where : node.children[0].key_where,
-      fmt::format("{} needs one of the keys {}", noun, fmt::join(cases, ", ")), first,
-      grammar::NearestName(first, cases).empty() ? std::vector<std::string>{} : cases);
-  return std::nullopt;
+  return {.schema = {{"oneOf", std::move(one_of)}},
+          .read = [noun, keys = std::move(keys), readers = std::move(readers)](
+                      const YamlNode& node, DiagnosticList& errors, void* value) {
+            const auto found = FindCase(node, noun, keys, errors);
+            return found && readers[*found](node, errors, value);
+          }};
 }
 
 }  // namespace prehend::harness

@@ -1,187 +1,205 @@
 // SPDX-License-Identifier: Apache-2.0
-// The field table of a struct: every field is declared once, with key, member, format and a
-// sentence for people; reader and JSON Schema follow from it. See harness/yaml/value_format.h for
-// how to use it. Tested by tests/harness/yaml/struct_format_test.cc
+// The format of a struct: every field is declared once, with key, member, format and a sentence for
+// people; reader and JSON Schema follow from it. See harness/yaml/value_format.h for how to use it.
+//
+// A field is kept without the types of its struct and of its value: as an offset and a function
+// that reads a value into the member there. So a table of fields compiles to data, and the work is
+// done by one reader in harness/yaml/struct_format.cc. Tested by
+// tests/harness/yaml/struct_format_test.cc
 #pragma once
 
-#include <concepts>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "harness/yaml/value_format.h"
 
 namespace prehend::harness {
 
-/// The parts of a record's work that do not depend on its struct.
-struct RecordRules {
-  struct Field {
-    std::string key;
-    bool required = false;
-    Json schema;
-  };
-  std::string
-      noun;  ///< with its article, or without it when the record is named by its key: "entity"
+/// Reads a value with `read` and stores it in the member, if it is one.
+using MemberReader = bool (*)(const ErasedFormat::Read& read, const YamlNode& node,
+                              DiagnosticList& errors, void* member);
+
+/// One row of the table.
+struct Field {
+  std::string key;
+  bool required = false;
+  Json schema;
+  std::ptrdiff_t offset = 0;  ///< of the member in the struct, in bytes
+  MemberReader read_member = nullptr;
+  ErasedFormat::Read read;
+};
+
+/// The table of a struct, without its type: `value` points to one.
+struct StructRules {
+  using Check = std::function<void(const YamlNode&, const void* value, DiagnosticList&)>;
+
+  // Compiled once, not for each struct.
+  explicit StructRules(std::string called);
+  StructRules(const StructRules& other);
+  ~StructRules();
+
+  std::string noun;  ///< with its article: "a box"; without when it is named by its key: "entity"
   bool named_by_key = false;
+  std::optional<std::ptrdiff_t> where_offset;  ///< of its member `Where where`
   std::vector<Field> fields;
   std::vector<std::vector<std::string>> exactly_one;  ///< of these keys
   std::vector<std::vector<std::string>> at_most_one;
+  std::vector<std::pair<std::string, std::string>> renamed;  ///< a former key, and what it is now
+  std::vector<Check> checks;
 
+  /// `initial` is what the member is without the key, or null when that is not shown.
+  void Add(std::string_view key, bool required, std::ptrdiff_t offset, MemberReader read_member,
+           const ErasedFormat& format, std::string_view doc, const void* initial);
+  bool Read(const YamlNode& node, DiagnosticList& errors, void* value) const;
+  Json Schema() const;
+
+ private:
   /// "a box", or "entity 'milk'".
   std::string TitleOf(const YamlNode& node) const;
-  Json Schema() const;
   /// Complains when the node is no mapping, and about unknown and missing keys. False after
   /// complaining.
   bool CheckKeys(const YamlNode& node, DiagnosticList& errors) const;
 };
 
-/// Complains unless exactly one key of `cases` is in the mapping; else returns its index.
-std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& noun,
-                                    const std::vector<std::string>& cases, DiagnosticList& errors);
+/// The format that these rules describe.
+ErasedFormat FormatOf(const StructRules& rules);
+
+/// How a member holds a value of the type F: as it is, optionally, or with its place.
+template <class M, class F>
+struct MemberOf {
+  static void Store(F&& read, const YamlNode&, std::optional<F>& member) {
+    member = std::move(read);
+  }
+  static void Store(F&& read, const YamlNode& node, Located<F>& member) {
+    member = {std::move(read), node.where};
+  }
+  static void Store(F&& read, const YamlNode& node, std::optional<Located<F>>& member) {
+    member = Located<F>{std::move(read), node.where};
+  }
+
+  static bool Read(const ErasedFormat::Read& reader, const YamlNode& node, DiagnosticList& errors,
+                   void* member) {
+    M& stored = *static_cast<M*>(member);
+    if constexpr (std::is_same_v<M, F>) {
+      F read = stored;  // keeps what an inner struct does not mention
+      if (!reader(node, errors, &read)) return false;
+      stored = std::move(read);
+    } else {
+      F read{};
+      if (!reader(node, errors, &read)) return false;
+      Store(std::move(read), node, stored);
+    }
+    return true;
+  }
+
+  /// What stands for the default in the schema, or null.
+  static const void* Shown(const M& member) {
+    if constexpr (std::is_same_v<M, F>) return &member;
+    if constexpr (std::is_same_v<M, Located<F>>) return &member.value;
+    return nullptr;
+  }
+};
 
 template <class T>
-class Record {
+class StructFormat {
  public:
   /// `noun` is how complaints call it: "a box".
-  explicit Record(std::string noun) { state_.rules.noun = std::move(noun); }
+  explicit StructFormat(std::string noun) : rules_(std::move(noun)) {
+    if constexpr (requires(T & t) { t.where = Where{}; })
+      rules_.where_offset = OffsetOf(defaults_.where);
+  }
 
   /// DiagnosticList call it by its key: "entity 'milk'" for noun "entity".
-  Record& NamedByKey() {
-    state_.rules.named_by_key = true;
+  StructFormat& NamedByKey() {
+    rules_.named_by_key = true;
     return *this;
   }
   template <class M, class F>
-  Record& Required(const std::string& key, M T::*member, Format<F> format, const std::string& doc) {
-    return Add(key, true, member, std::move(format), doc);
+  StructFormat& Required(std::string_view key, M T::*member, const ValueFormat<F>& format,
+                         std::string_view doc) {
+    return Add(key, true, member, format, doc);
   }
   /// The default is the member's value in T{}.
   template <class M, class F>
-  Record& Optional(const std::string& key, M T::*member, Format<F> format, const std::string& doc) {
-    return Add(key, false, member, std::move(format), doc);
+  StructFormat& Optional(std::string_view key, M T::*member, const ValueFormat<F>& format,
+                         std::string_view doc) {
+    return Add(key, false, member, format, doc);
   }
-  Record& ExactlyOneOf(std::vector<std::string> keys) {
-    state_.rules.exactly_one.push_back(std::move(keys));
+  StructFormat& ExactlyOneOf(std::vector<std::string> keys) {
+    rules_.exactly_one.push_back(std::move(keys));
     return *this;
   }
-  Record& AtMostOneOf(std::vector<std::string> keys) {
-    state_.rules.at_most_one.push_back(std::move(keys));
+  StructFormat& AtMostOneOf(std::vector<std::string> keys) {
+    rules_.at_most_one.push_back(std::move(keys));
     return *this;
   }
-  /// A rule across fields, checked when all of them are well-formed. The node is the mapping.
-  Record& Check(std::function<void(const YamlNode&, const T&, DiagnosticList&)> rule) {
-    state_.checks.push_back(std::move(rule));
+  /// The key was called `former` once; whoever still writes that is told the new name.
+  StructFormat& Renamed(std::string former, std::string key) {
+    rules_.renamed.emplace_back(std::move(former), std::move(key));
     return *this;
   }
-
-  Format<T> format() const {
-    return {.schema = state_.rules.Schema(),
-            .read = [state = state_](const YamlNode& node, DiagnosticList& errors,
-                                     T& value) { return Read(state, node, errors, value); },
-            .show = {}};
-  }
-
- private:
-  struct State {
-    RecordRules rules;
-    std::vector<std::function<bool(const YamlNode&, DiagnosticList&, T&)>>
-        readers;  ///< one per field
-    std::vector<std::function<void(const YamlNode&, const T&, DiagnosticList&)>> checks;
-  };
-
-  template <class F>
-  static void Store(F&& read, const YamlNode&, std::decay_t<F>& member) {
-    member = std::forward<F>(read);
-  }
-  template <class F>
-  static void Store(F&& read, const YamlNode&, std::optional<std::decay_t<F>>& member) {
-    member = std::forward<F>(read);
-  }
-  template <class F>
-  static void Store(F&& read, const YamlNode& node, Located<std::decay_t<F>>& member) {
-    member = {std::forward<F>(read), node.where};
-  }
-  template <class F>
-  static void Store(F&& read, const YamlNode& node,
-                    std::optional<Located<std::decay_t<F>>>& member) {
-    member = Located<std::decay_t<F>>{std::forward<F>(read), node.where};
-  }
-
-  template <class M, class F>
-  static void ShowDefault(const M& member, const Format<F>& format, Json& schema) {
-    if (!format.show) return;
-    if constexpr (std::same_as<M, F>) schema["default"] = format.show(member);
-    if constexpr (std::same_as<M, Located<F>>) schema["default"] = format.show(member.value);
-  }
-
-  template <class M, class F>
-  Record& Add(const std::string& key, bool required, M T::*member, Format<F> format,
-              const std::string& doc) {
-    Json schema = {{"description", doc}};
-    schema.update(format.schema);
-    if (!required) ShowDefault(T{}.*member, format, schema);
-    state_.rules.fields.push_back({key, required, std::move(schema)});
-    state_.readers.push_back(
-        [member, format](const YamlNode& node, DiagnosticList& errors, T& value) {
-          F read{};
-          if constexpr (std::same_as<M, F>)
-            read = value.*member;  // keeps what an inner record does not mention
-          if (!format.read(node, errors, read)) return false;
-          Store(std::move(read), node, value.*member);
-          return true;
+  /// A rule across fields, checked when all of them are well-formed. The node is the mapping, the
+  /// rule void(const YamlNode&, const T&, DiagnosticList&).
+  template <class Rule>
+  StructFormat& Check(Rule rule) {
+    rules_.checks.push_back(
+        [rule = std::move(rule)](const YamlNode& node, const void* value, DiagnosticList& errors) {
+          rule(node, *static_cast<const T*>(value), errors);
         });
     return *this;
   }
 
-  static bool Read(const State& state, const YamlNode& node, DiagnosticList& errors, T& value) {
-    if constexpr (requires(T & t) { t.where = Where{}; }) value.where = node.where;
-    if (node.kind != YamlNode::Kind::kMapping) return state.rules.CheckKeys(node, errors);
-    bool good = state.rules.CheckKeys(node, errors);
-    for (std::size_t i = 0; i < state.readers.size(); ++i) {
-      const YamlNode* child = node.Find(state.rules.fields[i].key);
-      if (child) good &= state.readers[i](*child, errors, value);
-    }
-    if (good) {
-      for (const auto& check : state.checks) check(node, value, errors);
-    }
-    return good;
+  ValueFormat<T> format() const { return ValueFormat<T>(FormatOf(rules_)); }
+
+ private:
+  template <class M>
+  std::ptrdiff_t OffsetOf(const M& member) const {
+    return reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&defaults_);
   }
 
-  State state_;
+  template <class M, class F>
+  StructFormat& Add(std::string_view key, bool required, M T::*member, const ValueFormat<F>& format,
+                    std::string_view doc) {
+    const M& initial = defaults_.*member;
+    rules_.Add(key, required, OffsetOf(initial), &MemberOf<M, F>::Read, format.erased(), doc,
+               required ? nullptr : MemberOf<M, F>::Shown(initial));
+    return *this;
+  }
+
+  T defaults_{};
+  StructRules rules_;
 };
 
-/// A record read as one alternative of a variant.
-template <class V, class A>
-Format<V> AsAlternative(Format<A> format) {
-  return {.schema = format.schema,
-          .read =
-              [format](const YamlNode& node, DiagnosticList& errors, V& value) {
-                A alternative{};
-                if (!format.read(node, errors, alternative)) return false;
-                value = std::move(alternative);
-                return true;
-              },
-          .show = {}};
+/// One of several structs, told apart by a key that only that one has. `cases` are formats of the
+/// same type.
+ErasedFormat ErasedByKey(const std::string& noun,
+                         std::vector<std::pair<std::string, ErasedFormat>> cases);
+
+template <class T>
+ValueFormat<T> ByKey(const std::string& noun,
+                     const std::vector<std::pair<std::string, ValueFormat<T>>>& cases) {
+  std::vector<std::pair<std::string, ErasedFormat>> erased;
+  for (const auto& [key, format] : cases) erased.emplace_back(key, format.erased());
+  return ValueFormat<T>(ErasedByKey(noun, std::move(erased)));
 }
 
-/// One of several records, told apart by a key that only that one has.
-template <class T>
-Format<T> ByKey(const std::string& noun, std::vector<std::pair<std::string, Format<T>>> cases) {
-  Json one_of = Json::array();
-  std::vector<std::string> keys;
-  for (const auto& [key, format] : cases) {
-    one_of.push_back(format.schema);
-    keys.push_back(key);
-  }
-  return {.schema = {{"oneOf", std::move(one_of)}},
-          .read =
-              [noun, keys, cases](const YamlNode& node, DiagnosticList& errors, T& value) {
-                const auto found = FindCase(node, noun, keys, errors);
-                return found && cases[*found].second.read(node, errors, value);
-              },
-          .show = {}};
+/// A struct read as one alternative of a variant.
+template <class V, class A>
+ValueFormat<V> AsAlternative(const ValueFormat<A>& format) {
+  return ValueFormat<V>({.schema = format.schema(),
+                         .read = [read = format.erased().read](
+                                     const YamlNode& node, DiagnosticList& errors, void* value) {
+                           A alternative{};
+                           if (!read(node, errors, &alternative)) return false;
+                           *static_cast<V*>(value) = std::move(alternative);
+                           return true;
+                         }});
 }
 
 }  // namespace prehend::harness

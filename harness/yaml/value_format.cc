@@ -7,6 +7,7 @@
 #include <regex.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <memory>
@@ -105,9 +106,15 @@ bool HasSize(const YamlNode& node, DiagnosticList& errors, std::size_t least, st
   return false;
 }
 
-Json ShowString(const std::string& value) { return Json(value); }
+Json ShowString(const void* value) { return Json(*static_cast<const std::string*>(value)); }
+std::string& StringAt(void* value) { return *static_cast<std::string*>(value); }
 
 }  // namespace
+
+FormatHolder::FormatHolder(ErasedFormat erased) : erased_(std::move(erased)) {}
+FormatHolder::FormatHolder(const FormatHolder& other) = default;
+FormatHolder::FormatHolder(FormatHolder&& other) noexcept = default;
+FormatHolder::~FormatHolder() = default;
 
 bool ReportExpected(const YamlNode& node, DiagnosticList& errors, const std::string& wanted) {
   std::string message =
@@ -122,12 +129,15 @@ bool ReportExpected(const YamlNode& node, DiagnosticList& errors, const std::str
   return false;
 }
 
+namespace {
+
+/// Complains when the node is no list, or has a wrong number of items. The same for mappings.
 bool IsListOf(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most) {
   if (node.kind == YamlNode::Kind::kSequence) return HasSize(node, errors, least, most);
   const std::string wanted = least == most ? fmt::format("a list of {}", least) : "a list";
   if (node.kind != YamlNode::Kind::kMapping) return ReportExpected(node, errors, wanted);
   errors.Add(node.where, fmt::format("{}expected {}, found a mapping", LabelOf(node), wanted),
-             "each item on a line of its own begins with '- ', or all are in [..]");
+             "begin each item with '- ' on a line of its own, or put all in [..]");
   return false;
 }
 
@@ -138,137 +148,254 @@ bool IsMappingOf(const YamlNode& node, DiagnosticList& errors, std::size_t least
     return ReportExpected(node, errors, "a mapping from names");
   errors.Add(node.where,
              fmt::format("{}expected a mapping from names, found a list", LabelOf(node)),
-             "lines 'NAME: ..' without '- ' before them");
+             "write lines 'NAME: ..' without a leading '- '");
   return false;
 }
 
-Format<double> Number(double lowest, double highest) {
+}  // namespace
+
+ValueFormat<double> Number(double lowest, double highest) {
   const std::string wanted = fmt::format("a number from {} to {}", lowest, highest);
-  return {.schema = {{"type", "number"}, {"minimum", lowest}, {"maximum", highest}},
-          .read =
-              [=](const YamlNode& node, DiagnosticList& errors, double& value) {
-                const auto meaning = NumericMeaning(node);
-                if (!meaning || !(*meaning->number >= lowest && *meaning->number <= highest)) {
-                  return ReportExpectedNumber(node, errors, wanted);
-                }
-                value = *meaning->number;
-                return true;
-              },
-          .show = [](const double& value) { return Json(value); }};
+  return ValueFormat<double>(
+      {.schema = {{"type", "number"}, {"minimum", lowest}, {"maximum", highest}},
+       .read =
+           [=](const YamlNode& node, DiagnosticList& errors, void* value) {
+             const auto meaning = NumericMeaning(node);
+             if (!meaning || !(*meaning->number >= lowest && *meaning->number <= highest))
+               return ReportExpectedNumber(node, errors, wanted);
+             *static_cast<double*>(value) = *meaning->number;
+             return true;
+           },
+       .show = [](const void* value) { return Json(*static_cast<const double*>(value)); }});
 }
 
-Format<std::int64_t> Integer64(std::int64_t lowest, std::int64_t highest) {
+ErasedFormat ErasedInteger(std::int64_t lowest, std::int64_t highest, const IntegerAccess& access) {
   const std::string wanted = fmt::format("a whole number from {} to {}", lowest, highest);
   return {.schema = {{"type", "integer"}, {"minimum", lowest}, {"maximum", highest}},
           .read =
-              [=](const YamlNode& node, DiagnosticList& errors, std::int64_t& value) {
+              [=](const YamlNode& node, DiagnosticList& errors, void* value) {
                 const auto meaning = NumericMeaning(node);
                 constexpr double kExactInDouble = 9007199254740992.0;  // 2^53
-                if (!meaning || !meaning->integer || std::abs(*meaning->number) > kExactInDouble) {
+                if (!meaning || !meaning->integer || std::abs(*meaning->number) > kExactInDouble)
                   return ReportExpected(node, errors, wanted);
-                }
                 const auto whole = static_cast<std::int64_t>(*meaning->number);
                 if (whole < lowest || whole > highest) return ReportExpected(node, errors, wanted);
-                value = whole;
+                access.set(whole, value);
                 return true;
               },
-          .show = [](const std::int64_t& value) { return Json(value); }};
+          .show = [access](const void* value) { return Json(access.get(value)); }};
 }
 
-Format<bool> Flag() {
-  return {.schema = {{"type", "boolean"}},
-          .read =
-              [](const YamlNode& node, DiagnosticList& errors, bool& value) {
-                if (node.kind != YamlNode::Kind::kScalar || !MeaningOf(node).flag) {
-                  return ReportExpected(node, errors, "true or false");
-                }
-                value = *MeaningOf(node).flag;
-                return true;
-              },
-          .show = [](const bool& value) { return Json(value); }};
+ValueFormat<bool> Flag() {
+  return ValueFormat<bool>(
+      {.schema = {{"type", "boolean"}},
+       .read =
+           [](const YamlNode& node, DiagnosticList& errors, void* value) {
+             if (node.kind != YamlNode::Kind::kScalar || !MeaningOf(node).flag)
+               return ReportExpected(node, errors, "true or false");
+             *static_cast<bool*>(value) = *MeaningOf(node).flag;
+             return true;
+           },
+       .show = [](const void* value) { return Json(*static_cast<const bool*>(value)); }});
 }
 
-Format<std::string> Text(std::size_t max_length) {
+ValueFormat<std::string> Text(std::size_t max_length) {
   const std::string wanted = fmt::format("text of 1 to {} bytes", max_length);
-  return {.schema = {{"type", "string"}, {"minLength", 1}, {"maxLength", max_length}},
-          .read =
-              [=](const YamlNode& node, DiagnosticList& errors, std::string& value) {
-                auto text = StringOf(node, errors, wanted);
-                if (!text) return false;
-                if (text->empty() || text->size() > max_length)
-                  return ReportExpected(node, errors, wanted);
-                value = std::move(*text);
-                return true;
-              },
-          .show = ShowString};
+  return ValueFormat<std::string>(
+      {.schema = {{"type", "string"}, {"minLength", 1}, {"maxLength", max_length}},
+       .read =
+           [=](const YamlNode& node, DiagnosticList& errors, void* value) {
+             auto text = StringOf(node, errors, wanted);
+             if (!text) return false;
+             if (text->empty() || text->size() > max_length)
+               return ReportExpected(node, errors, wanted);
+             StringAt(value) = std::move(*text);
+             return true;
+           },
+       .show = ShowString});
 }
 
-Format<std::string> Word(const std::string& pattern, const std::string& wanted,
-                         std::size_t max_length) {
+ValueFormat<std::string> Word(const std::string& pattern, const std::string& wanted,
+                              std::size_t max_length) {
   const std::string whole = "^(" + pattern + ")$";
-  return {.schema = {{"type", "string"}, {"pattern", whole}, {"maxLength", max_length}},
-          .read =
-              [=, matcher = Compiled(whole)](const YamlNode& node, DiagnosticList& errors,
-                                             std::string& value) {
-                auto text = StringOf(node, errors, wanted);
-                if (!text) return false;
-                if (text->size() > max_length) {
-                  return ReportExpected(node, errors,
-                                        fmt::format("{} of at most {} bytes", wanted, max_length));
-                }
-                if (!Matches(matcher.get(), *text)) return ReportExpected(node, errors, wanted);
-                value = std::move(*text);
-                return true;
-              },
-          .show = ShowString};
+  return ValueFormat<std::string>(
+      {.schema = {{"type", "string"}, {"pattern", whole}, {"maxLength", max_length}},
+       .read =
+           [=, matcher = Compiled(whole)](const YamlNode& node, DiagnosticList& errors,
+                                          void* value) {
+             auto text = StringOf(node, errors, wanted);
+             if (!text) return false;
+             if (text->size() > max_length) {
+               return ReportExpected(node, errors,
+                                     fmt::format("{} of at most {} bytes", wanted, max_length));
+             }
+             if (!Matches(matcher.get(), *text)) return ReportExpected(node, errors, wanted);
+             StringAt(value) = std::move(*text);
+             return true;
+           },
+       .show = ShowString});
 }
 
 void CheckLeastMost(const std::string& key, const Eigen::Vector2d& range, Where where,
                     DiagnosticList& errors) {
   if (range[0] < range[1]) return;
   errors.Add(where,
-             fmt::format("{}: expected [least, most], found [{}, {}]", key, range[0], range[1]));
+             fmt::format("{}: expected [min, max], found [{}, {}]", key, range[0], range[1]));
 }
 
-Format<Eigen::Vector4d> UnitQuaternion() {
-  const auto vector = Vector<4>(-1, 1);
-  return {.schema = vector.schema,
+namespace {
+
+/// `count` numbers in a row, from `value` on.
+ErasedFormat ErasedVector(std::size_t count, double lowest, double highest) {
+  const ValueFormat<double> number = Number(lowest, highest);
+  return {.schema = {{"type", "array"},
+                     {"items", number.schema()},
+                     {"minItems", count},
+                     {"maxItems", count}},
           .read =
-              [vector](const YamlNode& node, DiagnosticList& errors, Eigen::Vector4d& value) {
-                constexpr double kTolerance = 0.01;  // two written digits
-                if (!vector.read(node, errors, value)) return false;
-                if (std::abs(value.norm() - 1) <= kTolerance) return true;
-                errors.Add(node.where,
-                           fmt::format("{}expected a unit quaternion [w, x, y, z], found one "
-                                       "of length {:.4g}",
-                                       LabelOf(node), value.norm()));
-                return false;
+              [=](const YamlNode& node, DiagnosticList& errors, void* value) {
+                if (!IsListOf(node, errors, count, count)) return false;
+                std::array<double, 4> numbers{};
+                bool good = true;
+                for (std::size_t i = 0; i < count; ++i)
+                  good &= number.Read(node.children[i], errors, numbers[i]);
+                if (good) std::copy_n(numbers.data(), count, static_cast<double*>(value));
+                return good;
               },
-          .show = vector.show};
+          .show =
+              [count](const void* value) {
+                const auto* numbers = static_cast<const double*>(value);
+                return Json(std::vector<double>(numbers, numbers + count));
+              }};
 }
 
-Format<std::string> Identifier() { return Word("[a-z][a-z0-9_]*", "a name like 'milk_carton'"); }
+}  // namespace
 
-Format<std::string> Choice(std::vector<std::string> words) {
+template <>
+ValueFormat<Eigen::Vector2d> Vector<2>(double lowest, double highest) {
+  return ValueFormat<Eigen::Vector2d>(ErasedVector(2, lowest, highest));
+}
+template <>
+ValueFormat<Eigen::Vector3d> Vector<3>(double lowest, double highest) {
+  return ValueFormat<Eigen::Vector3d>(ErasedVector(3, lowest, highest));
+}
+template <>
+ValueFormat<Eigen::Vector4d> Vector<4>(double lowest, double highest) {
+  return ValueFormat<Eigen::Vector4d>(ErasedVector(4, lowest, highest));
+}
+
+ValueFormat<Eigen::Vector4d> UnitQuaternion() {
+  const auto vector = Vector<4>(-1, 1);
+  return ValueFormat<Eigen::Vector4d>(
+             vector.schema(),
+             [vector](const YamlNode& node, DiagnosticList& errors, Eigen::Vector4d& value) {
+               constexpr double kTolerance = 0.01;  // two written digits
+               if (!vector.Read(node, errors, value)) return false;
+               if (std::abs(value.norm() - 1) <= kTolerance) return true;
+               errors.Add(node.where,
+                          fmt::format("{}expected a unit quaternion [w, x, y, z], found one "
+                                      "of length {:.4g}",
+                                      LabelOf(node), value.norm()));
+               return false;
+             })
+      .ShownAs(vector);
+}
+
+ValueFormat<std::string> Identifier() {
+  return Word("[a-z][a-z0-9_]*", "a name like 'milk_carton'");
+}
+
+ValueFormat<std::string> Choice(std::vector<std::string> words) {
   const std::string wanted = words.size() == 1 ? fmt::format("'{}'", words[0])
                                                : fmt::format("one of {}", fmt::join(words, ", "));
-  return {.schema = {{"type", "string"}, {"enum", words}},
+  Json schema = {{"type", "string"}, {"enum", words}};
+  return ValueFormat<std::string>(
+      {.schema = std::move(schema),
+       .read =
+           [wanted, words = std::move(words)](const YamlNode& node, DiagnosticList& errors,
+                                              void* value) {
+             auto text = StringOf(node, errors, wanted);
+             if (!text) return false;
+             if (std::find(words.begin(), words.end(), *text) == words.end()) {
+               const std::string near = grammar::NearestName(*text, words);
+               errors.Add(
+                   node.where,
+                   fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
+                   near.empty() ? "" : fmt::format("did you mean '{}'?", near));
+               return false;
+             }
+             StringAt(value) = std::move(*text);
+             return true;
+           },
+       .show = ShowString});
+}
+
+ErasedFormat ErasedChoice(std::vector<std::string> words, std::vector<std::int64_t> meanings,
+                          const IntegerAccess& access) {
+  const ValueFormat<std::string> word = Choice(words);
+  return {.schema = word.schema(),
           .read =
-              [=](const YamlNode& node, DiagnosticList& errors, std::string& value) {
-                auto text = StringOf(node, errors, wanted);
-                if (!text) return false;
-                if (std::find(words.begin(), words.end(), *text) == words.end()) {
-                  const std::string near = grammar::NearestName(*text, words);
-                  errors.Add(
-                      node.where,
-                      fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
-                      near.empty() ? "" : fmt::format("did you mean '{}'?", near));
-                  return false;
-                }
-                value = std::move(*text);
+              [=](const YamlNode& node, DiagnosticList& errors, void* value) {
+                std::string chosen;
+                if (!word.Read(node, errors, chosen)) return false;
+                const auto found = std::ranges::find(words, chosen) - words.begin();
+                access.set(meanings[static_cast<std::size_t>(found)], value);
                 return true;
               },
-          .show = ShowString};
+          .show =
+              [=](const void* value) {
+                const auto found = std::ranges::find(meanings, access.get(value));
+                if (found == meanings.end()) return Json();
+                return Json(words[static_cast<std::size_t>(found - meanings.begin())]);
+              }};
+}
+
+ErasedFormat ErasedList(const ErasedFormat& item, std::size_t least, std::size_t most,
+                        const ListAccess& access) {
+  return {.schema = {{"type", "array"},
+                     {"items", item.schema},
+                     {"minItems", least},
+                     {"maxItems", most}},
+          .read =
+              [=, read = item.read](const YamlNode& node, DiagnosticList& errors, void* list) {
+                access.clear(list);
+                if (!IsListOf(node, errors, least, most)) return false;
+                bool good = true;
+                for (const YamlNode& child : node.children)
+                  good &= read(child, errors, access.append(list));
+                return good;
+              },
+          .show =
+              [access, show = item.show](const void* list) {
+                Json shown = Json::array();
+                for (std::size_t i = 0; i < access.size(list); ++i)
+                  shown.push_back(show ? show(access.at(list, i)) : Json());
+                return shown;
+              }};
+}
+
+ErasedFormat ErasedMap(const ValueFormat<std::string>& name, const ErasedFormat& item,
+                       std::size_t least, std::size_t most, const MapAccess& access) {
+  return {.schema = {{"type", "object"},
+                     {"propertyNames", name.schema()},
+                     {"additionalProperties", item.schema},
+                     {"minProperties", least},
+                     {"maxProperties", most}},
+          .read = [=, read_name = name.erased().read, read = item.read](
+                      const YamlNode& node, DiagnosticList& errors, void* map) {
+            access.clear(map);
+            bool good = IsMappingOf(node, errors, least, most);
+            for (const YamlNode& child : node.children) {
+              YamlNode key;
+              key.kind = YamlNode::Kind::kScalar;
+              key.text = child.key;
+              key.where = child.key_where;
+              std::string read_key = child.key;
+              good &= read_name(key, errors, &read_key);
+              good &= read(child, errors, access.append(map, read_key, child.key_where));
+            }
+            return good;
+          }};
 }
 
 }  // namespace prehend::harness

@@ -5,14 +5,12 @@
 //
 // How to use it, for a file of your own:
 //
-//   Format<Wheel> WheelFormat() {
-//     return Record<Wheel>("a wheel")
+//   ValueFormat<Wheel> WheelFormat() {
+//     return StructFormat<Wheel>("a wheel")
 //         .Required("radius_m", &Wheel::radius_m, Number(0.01, 2), "Distance from axle to tread.")
-//         .Optional("spokes", &Wheel::spokes, Integer<int>(0, 100), "How many; the default is that
-//         of Wheel{}.") .format();
+//         .Optional("spokes", &Wheel::spokes, Integer<int>(0, 100), "How many.")
+//         .format();
 //   }
-//   ReadResult<YamlDocument> document = ReadYamlFile(path);
-//   if (document.value) ReadResult<Wheel> wheel = ReadDocument(*document.value, WheelFormat());
 //
 // Members may be T, std::optional<T>, Located<T> (remembers its place, for checks across fields;
 // see DiagnosticList) or std::optional<Located<T>>. A struct with a member `Where where` learns its
@@ -22,7 +20,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -35,13 +32,57 @@ namespace prehend::harness {
 
 using Json = nlohmann::ordered_json;
 
-template <class T>
-struct Format {
-  Json schema;
+/// A format without the type of its values: `value` points to one. Lists, mappings and structs are
+/// made of these, so that only a few lines are compiled anew for each type.
+struct ErasedFormat {
   /// False, after complaining, when the node is not such a value; then the value means nothing.
-  std::function<bool(const YamlNode&, DiagnosticList&, T&)> read;
-  /// How a value is written, for defaults in the schema; may be empty.
-  std::function<Json(const T&)> show;
+  using Read = std::function<bool(const YamlNode&, DiagnosticList&, void* value)>;
+  /// How a value is written, for defaults in the schema.
+  using Show = std::function<Json(const void* value)>;
+
+  Json schema;
+  Read read;
+  Show show = {};  ///< may be empty
+};
+
+/// Holds an erased format. Its special members are compiled once, not wherever a field is declared.
+class FormatHolder {
+ public:
+  explicit FormatHolder(ErasedFormat erased);
+  FormatHolder(const FormatHolder& other);
+  FormatHolder(FormatHolder&& other) noexcept;
+  FormatHolder& operator=(const FormatHolder& other) = delete;
+  ~FormatHolder();
+
+  const Json& schema() const { return erased_.schema; }
+  const ErasedFormat& erased() const { return erased_; }
+
+ protected:
+  ErasedFormat erased_;
+};
+
+template <class T>
+class ValueFormat : public FormatHolder {
+ public:
+  using FormatHolder::FormatHolder;
+  /// `read` is bool(const YamlNode&, DiagnosticList&, T&).
+  template <class Reader>
+  ValueFormat(Json schema, Reader read)
+      : FormatHolder({.schema = std::move(schema),
+                      .read = [read = std::move(read)](const YamlNode& node, DiagnosticList& errors,
+                                                       void* value) {
+                        return read(node, errors, *static_cast<T*>(value));
+                      }}) {}
+
+  /// False, after complaining, when the node is not such a value; then the value means nothing.
+  bool Read(const YamlNode& node, DiagnosticList& errors, T& value) const {
+    return erased_.read(node, errors, &value);
+  }
+  /// The same, with values shown as `other` shows them.
+  ValueFormat ShownAs(const ValueFormat& other) && {
+    erased_.show = other.erased_.show;
+    return std::move(*this);
+  }
 };
 
 /// An entry of a mapping whose keys are names that the writer chose.
@@ -56,165 +97,138 @@ struct Named {
 bool ReportExpected(const YamlNode& node, DiagnosticList& errors, const std::string& wanted);
 
 /// A finite number, bounds included. Units belong into the key.
-Format<double> Number(double lowest, double highest);
+ValueFormat<double> Number(double lowest, double highest);
 /// True or false.
-Format<bool> Flag();
+ValueFormat<bool> Flag();
 /// One or more lines for people, not empty.
-Format<std::string> Text(std::size_t max_length = 500);
+ValueFormat<std::string> Text(std::size_t max_length = 500);
 /// A string that matches `pattern` as a whole; `wanted` describes it: "a name like 'milk_carton'".
 /// The pattern must mean the same to POSIX (the reader) and to ECMAScript (the schema).
-Format<std::string> Word(const std::string& pattern, const std::string& wanted,
-                         std::size_t max_length = 64);
+ValueFormat<std::string> Word(const std::string& pattern, const std::string& wanted,
+                              std::size_t max_length = 64);
 /// snake_case, as entities, actors and files are called.
-Format<std::string> Identifier();
+ValueFormat<std::string> Identifier();
 /// One of a few words.
-Format<std::string> Choice(std::vector<std::string> words);
-Format<std::int64_t> Integer64(std::int64_t lowest, std::int64_t highest);
-/// Complains when the node is no list, or has a wrong number of items. The same for mappings.
-bool IsListOf(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most);
-bool IsMappingOf(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most);
+ValueFormat<std::string> Choice(std::vector<std::string> words);
+/// [w, x, y, z] of length 1.
+ValueFormat<Eigen::Vector4d> UnitQuaternion();
 
 /// Complains "KEY: expected [least, most], found ..." unless the first of the two is smaller.
 void CheckLeastMost(const std::string& key, const Eigen::Vector2d& range, Where where,
                     DiagnosticList& errors);
 
+/// A whole number within the bounds, read into an integer type of any width.
+struct IntegerAccess {
+  void (*set)(std::int64_t number, void* value);
+  std::int64_t (*get)(const void* value);
+};
+ErasedFormat ErasedInteger(std::int64_t lowest, std::int64_t highest, const IntegerAccess& access);
+
 template <class Int>
-Format<Int> Integer(Int lowest, Int highest) {
-  const auto wide =
-      Integer64(static_cast<std::int64_t>(lowest), static_cast<std::int64_t>(highest));
-  return {.schema = wide.schema,
-          .read =
-              [wide](const YamlNode& node, DiagnosticList& errors, Int& value) {
-                std::int64_t read = 0;
-                if (!wide.read(node, errors, read)) return false;
-                value = static_cast<Int>(read);
-                return true;
-              },
-          .show = [](const Int& value) { return Json(value); }};
+ValueFormat<Int> Integer(Int lowest, Int highest) {
+  return ValueFormat<Int>(ErasedInteger(
+      static_cast<std::int64_t>(lowest), static_cast<std::int64_t>(highest),
+      {.set = [](std::int64_t number,
+                 void* value) { *static_cast<Int*>(value) = static_cast<Int>(number); },
+       .get =
+           [](const void* value) {
+             return static_cast<std::int64_t>(*static_cast<const Int*>(value));
+           }}));
 }
 
-/// One of a few words, each standing for a value.
+/// One of a few words, each standing for a value of an enumeration.
+ErasedFormat ErasedChoice(std::vector<std::string> words, std::vector<std::int64_t> meanings,
+                          const IntegerAccess& access);
+
 template <class T>
-Format<T> Choice(std::vector<std::pair<std::string, T>> meanings) {
+ValueFormat<T> Choice(const std::vector<std::pair<std::string, T>>& meanings) {
   std::vector<std::string> words;
-  for (const auto& [word, meaning] : meanings) words.push_back(word);
-  const Format<std::string> choice = Choice(std::move(words));
-  return {.schema = choice.schema,
-          .read =
-              [choice, meanings](const YamlNode& node, DiagnosticList& errors, T& value) {
-                std::string chosen;
-                if (!choice.read(node, errors, chosen)) return false;
-                for (const auto& [word, meaning] : meanings) {
-                  if (word == chosen) value = meaning;
-                }
-                return true;
-              },
-          .show =
-              [meanings](const T& value) {
-                for (const auto& [word, meaning] : meanings) {
-                  if (meaning == value) return Json(word);
-                }
-                return Json();
-              }};
+  std::vector<std::int64_t> values;
+  for (const auto& [word, meaning] : meanings) {
+    words.push_back(word);
+    values.push_back(static_cast<std::int64_t>(meaning));
+  }
+  return ValueFormat<T>(
+      ErasedChoice(std::move(words), std::move(values),
+                   {.set = [](std::int64_t meaning,
+                              void* value) { *static_cast<T*>(value) = static_cast<T>(meaning); },
+                    .get =
+                        [](const void* value) {
+                          return static_cast<std::int64_t>(*static_cast<const T*>(value));
+                        }}));
 }
 
-template <class T>
-Format<std::vector<T>> ListOf(Format<T> item, std::size_t least, std::size_t most) {
-  return {
-      .schema = {{"type", "array"},
-                 {"items", item.schema},
-                 {"minItems", least},
-                 {"maxItems", most}},
-      .read =
-          [item, least, most](const YamlNode& node, DiagnosticList& errors, std::vector<T>& list) {
-            list.clear();
-            if (!IsListOf(node, errors, least, most)) return false;
-            bool good = true;
-            for (const YamlNode& child : node.children) {
-              T value{};
-              good &= item.read(child, errors, value);
-              list.push_back(std::move(value));
-            }
-            return good;
-          },
-      .show =
-          [item](const std::vector<T>& list) {
-            Json shown = Json::array();
-            for (const T& value : list) shown.push_back(item.show ? item.show(value) : Json());
-            return shown;
-          }};
-}
+/// How the items of a list are reached without their type.
+struct ListAccess {
+  void (*clear)(void* list);
+  void* (*append)(void* list);  ///< a new item at the end
+  std::size_t (*size)(const void* list);
+  const void* (*at)(const void* list, std::size_t index);
+};
+ErasedFormat ErasedList(const ErasedFormat& item, std::size_t least, std::size_t most,
+                        const ListAccess& access);
 
-/// A value that remembers where it was written, for members that are lists or mappings of such.
 template <class T>
-Format<Located<T>> WithPlace(Format<T> format) {
-  return {.schema = format.schema,
-          .read =
-              [format](const YamlNode& node, DiagnosticList& errors, Located<T>& value) {
-                value.where = node.where;
-                return format.read(node, errors, value.value);
-              },
-          .show = {}};
+ValueFormat<std::vector<T>> ListOf(const ValueFormat<T>& item, std::size_t least,
+                                   std::size_t most) {
+  using List = std::vector<T>;
+  return ValueFormat<List>(ErasedList(
+      item.erased(), least, most,
+      {.clear = [](void* list) { static_cast<List*>(list)->clear(); },
+       .append = [](void* list) -> void* { return &static_cast<List*>(list)->emplace_back(); },
+       .size = [](const void* list) { return static_cast<const List*>(list)->size(); },
+       .at = [](const void* list, std::size_t index) -> const void* {
+         return &(*static_cast<const List*>(list))[index];
+       }}));
 }
 
 /// N numbers, each within the bounds: [x, y, z].
 template <int N>
-Format<Eigen::Matrix<double, N, 1>> Vector(double lowest, double highest) {
-  using Value = Eigen::Matrix<double, N, 1>;
-  const auto list = ListOf(Number(lowest, highest), N, N);
-  return {.schema = list.schema,
-          .read =
-              [list](const YamlNode& node, DiagnosticList& errors, Value& value) {
-                std::vector<double> numbers;
-                if (!list.read(node, errors, numbers)) return false;
-                value = Eigen::Map<const Value>(numbers.data());
-                return true;
-              },
-          .show =
-              [](const Value& value) {
-                return Json(std::vector<double>(value.data(), value.data() + N));
-              }};
+ValueFormat<Eigen::Matrix<double, N, 1>> Vector(double lowest, double highest);
+template <>
+ValueFormat<Eigen::Vector2d> Vector<2>(double lowest, double highest);
+template <>
+ValueFormat<Eigen::Vector3d> Vector<3>(double lowest, double highest);
+template <>
+ValueFormat<Eigen::Vector4d> Vector<4>(double lowest, double highest);
+
+/// A value that remembers where it was written, for members that are lists or mappings of such.
+template <class T>
+ValueFormat<Located<T>> WithPlace(const ValueFormat<T>& format) {
+  return ValueFormat<Located<T>>(
+      {.schema = format.schema(),
+       .read = [read = format.erased().read](const YamlNode& node, DiagnosticList& errors,
+                                             void* value) {
+         auto* located = static_cast<Located<T>*>(value);
+         located->where = node.where;
+         return read(node, errors, &located->value);
+       }});
 }
 
-/// [w, x, y, z] of length 1.
-Format<Eigen::Vector4d> UnitQuaternion();
+/// How the entries of a mapping are reached without their type.
+struct MapAccess {
+  void (*clear)(void* map);
+  /// A new entry at the end, with this name and place; returns its value.
+  void* (*append)(void* map, const std::string& name, const Where& name_where);
+};
+ErasedFormat ErasedMap(const ValueFormat<std::string>& name, const ErasedFormat& item,
+                       std::size_t least, std::size_t most, const MapAccess& access);
 
 /// A mapping from names to values, in the order of the file.
 template <class T>
-Format<std::vector<Named<T>>> MapOf(Format<std::string> name, Format<T> item, std::size_t least,
-                                    std::size_t most) {
-  return {.schema = {{"type", "object"},
-                     {"propertyNames", name.schema},
-                     {"additionalProperties", item.schema},
-                     {"minProperties", least},
-                     {"maxProperties", most}},
-          .read =
-              [=](const YamlNode& node, DiagnosticList& errors, std::vector<Named<T>>& entries) {
-                entries.clear();
-                bool good = IsMappingOf(node, errors, least, most);
-                for (const YamlNode& child : node.children) {
-                  YamlNode key;
-                  key.kind = YamlNode::Kind::kScalar;
-                  key.text = child.key;
-                  key.where = child.key_where;
-                  Named<T> entry{.name = child.key, .name_where = child.key_where, .value = {}};
-                  good &= name.read(key, errors, entry.name);
-                  good &= item.read(child, errors, entry.value);
-                  entries.push_back(std::move(entry));
-                }
-                return good;
-              },
-          .show = {}};
-}
-
-/// Reads a whole document. The value is there when nothing is wrong with it.
-template <class T>
-ReadResult<T> ReadDocument(const YamlDocument& document, const Format<T>& format) {
-  DiagnosticList errors(document);
-  T value{};
-  format.read(document.root, errors, value);
-  if (!errors.empty()) return {std::nullopt, errors.Sorted()};
-  return {std::move(value), {}};
+ValueFormat<std::vector<Named<T>>> MapOf(const ValueFormat<std::string>& name,
+                                         const ValueFormat<T>& item, std::size_t least,
+                                         std::size_t most) {
+  using Map = std::vector<Named<T>>;
+  return ValueFormat<Map>(
+      ErasedMap(name, item.erased(), least, most,
+                {.clear = [](void* map) { static_cast<Map*>(map)->clear(); },
+                 .append = [](void* map, const std::string& key, const Where& where) -> void* {
+                   Named<T>& entry = static_cast<Map*>(map)->emplace_back();
+                   entry.name = key;
+                   entry.name_where = where;
+                   return &entry.value;
+                 }}));
 }
 
 }  // namespace prehend::harness

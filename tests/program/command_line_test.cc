@@ -125,7 +125,8 @@ TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
       {"render carton_rests --at reching.begin", 2,
        "prehend: --at: grammar 'pick_and_place' has no event 'reching'; did you mean "
        "'reaching'\\?\n[^]*"},
-      {"render carton_rests --at soon", 2, "prehend: --at: 'soon' is no moment; write seconds[^]*"},
+      {"render carton_rests --at soon", 2,
+       "prehend: --at: 'soon' is not a time; write seconds[^]*"},
       {"render carton_rests --camera back", 2, "prehend: --camera: [^]*"},
       {"render carton_rests --at 0 -o no/such/folder/a.png", 2,
        "prehend: --output: cannot write no/such/folder/a.png: No such file or directory\n[^]*"},

@@ -65,7 +65,7 @@ TEST(Recording, TheDocumentedExampleIsRead) {
 }
 
 TEST(Grammar, TheFirstDocumentedExampleRecognisesItsEvent) {
-  std::ifstream document(std::string(PREHEND_SOURCE_DIR) + "/docs/grammar-language.md");
+  std::ifstream document(std::string(PREHEND_SOURCE_DIR) + "/docs/grammar-tutorial.md");
   const std::string text{std::istreambuf_iterator<char>(document), {}};
   const std::size_t begin = text.find("```\n") + 4;
   const auto file = FreshFolder("grammar") / "carrying.grammar";

@@ -50,9 +50,9 @@ TEST_F(ScoreCommand, WhatIsMisspeltIsListedByName) {
       std::string::npos)
       << said.out;
   const Said other = Do("score" + GrammarOption("silent"));
-  EXPECT_NE(other.out.find(
-                "\nnot spoken of: contact (1 true), supported_by (1 true), grasping (0 true), "),
-            std::string::npos)
+  EXPECT_NE(
+      other.out.find("\nnot covered: contact (1 true), supported_by (1 true), grasping (0 true), "),
+      std::string::npos)
       << other.out;
   EXPECT_NE(other.out.find("; no rule prints them, they count as missed\n"), std::string::npos);
 }

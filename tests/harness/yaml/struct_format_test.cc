@@ -27,8 +27,8 @@ struct Wheel {
   std::vector<Named<double>> loads_kg;
 };
 
-Format<Wheel> WheelFormat() {
-  return Record<Wheel>("a wheel")
+ValueFormat<Wheel> WheelFormat() {
+  return StructFormat<Wheel>("a wheel")
       .Required("radius_m", &Wheel::radius_m, Number(0.01, 2), "Distance from axle to tread.")
       .Optional("spokes", &Wheel::spokes, Integer<int>(0, 100), "How many.")
       .Optional("material", &Wheel::material,
@@ -38,7 +38,7 @@ Format<Wheel> WheelFormat() {
       .Optional("label", &Wheel::label, Text(), "On it.")
       .Optional("axis", &Wheel::axis, Vector<3>(-1, 1), "Unit vector.")
       .Optional("hub", &Wheel::hub,
-                Record<Hub>("a hub")
+                StructFormat<Hub>("a hub")
                     .Optional("radius_m", &Hub::radius_m, Number(0, 1), "Radius.")
                     .format(),
                 "Hub.")
@@ -50,7 +50,11 @@ Format<Wheel> WheelFormat() {
 ReadResult<Wheel> ReadWheel(const std::string& text) {
   auto document = ParseYaml("probe.yaml", text);
   EXPECT_TRUE(document.value) << grammar::Format(document.diagnostics);
-  return ReadDocument(*document.value, WheelFormat());
+  DiagnosticList errors(*document.value);
+  Wheel wheel;
+  WheelFormat().Read(document.value->root, errors, wheel);
+  if (!errors.empty()) return {std::nullopt, errors.Sorted()};
+  return {std::move(wheel), {}};
 }
 
 TEST(FieldTable, ReadsEveryKindOfField) {
@@ -110,7 +114,7 @@ TEST(FieldTable, TheDocumentMustBeAMapping) {
 }
 
 TEST(FieldTable, TheSchemaSaysTheSame) {
-  const Json schema = WheelFormat().schema;
+  const Json schema = WheelFormat().schema();
   EXPECT_EQ(schema["additionalProperties"], false);
   EXPECT_EQ(schema["required"], Json({"radius_m"}));
   EXPECT_EQ(schema["properties"]["radius_m"], Json({{"description", "Distance from axle to tread."},

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The times of a rule in ticks of the episode. Tested by tests/grammar/engine/forms_test.cc
+#pragma once
+
+#include "grammar/engine/history.h"
+#include "grammar/program/program.h"
+
+namespace prehend::grammar {
+
+struct RuleTicks {
+  Tick bridging = 0;
+  Tick lasting = 0;
+  Tick idle = 0;
+  Tick back = 0;
+  Tick within = -1;  ///< the deadline; negative: there is none
+  Tick in_time = 0;  ///< what comes at most so late is still in time
+};
+
+RuleTicks TicksOf(const Rule& rule, const History& history);
+
+/// How far before the newest frame the rule may ask for values.
+double LooksBack_s(const Rule& rule);
+
+}  // namespace prehend::grammar
