@@ -105,4 +105,12 @@ class IdsOf {
   Key end_;
 };
 
+// Things with numbers, each defined where its numbers come from.
+struct Node;          // grammar/program/program.h
+struct Rule;          // grammar/program/program.h
+struct RuleInstance;  // grammar/engine/instances.h
+using NodeId = Id<Node>;
+using RuleId = Id<Rule>;
+using InstanceId = Id<RuleInstance>;
+
 }  // namespace prehend::grammar

@@ -14,7 +14,7 @@ namespace prehend::grammar {
 
 class Alarms {
  public:
-  void Set(Tick tick, int instance) {
+  void Set(Tick tick, InstanceId instance) {
     heap_.push_back({tick, instance});
     std::ranges::push_heap(heap_, Later);
   }
@@ -32,7 +32,7 @@ class Alarms {
  private:
   struct Alarm {
     Tick tick = 0;
-    int instance = kNone;
+    InstanceId instance;
   };
   static bool Later(const Alarm& a, const Alarm& b) { return a.tick > b.tick; }
 
