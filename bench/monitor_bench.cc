@@ -95,7 +95,7 @@ void RecordedCarton(benchmark::State& state) {
     events = Resegment(carton.scenario, run.recording, carton.program, run.ticks + 1).events.size();
   state.counters["events"] = static_cast<double>(events);
   state.counters["times_real_time"] =
-      benchmark::Counter(static_cast<double>(run.ticks) / carton.scenario.world.rate_hz,
+      benchmark::Counter(static_cast<double>(run.ticks) / carton.scenario.scene.world.rate_hz,
                          benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(RecordedCarton)->Unit(benchmark::kMillisecond);

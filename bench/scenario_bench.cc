@@ -31,7 +31,8 @@ void CartonPhysicsAlone(benchmark::State& state) {
     physics::Simulation simulation(carton.scenario.scene, carton.scenario.script);
     while (simulation.Step()) {
     }
-    simulated_s = static_cast<double>(simulation.snapshot().tick) / carton.scenario.world.rate_hz;
+    simulated_s =
+        static_cast<double>(simulation.snapshot().tick) / carton.scenario.scene.world.rate_hz;
     benchmark::DoNotOptimize(simulation.state_hash());
   }
   CountRealTime(state, simulated_s);
@@ -43,7 +44,7 @@ void CartonWatched(benchmark::State& state) {
   double simulated_s = 0;
   for (auto _ : state) {
     const RunResult run = RunScenario(carton.scenario, carton.program, {.measure = true});
-    simulated_s = static_cast<double>(run.ticks) / carton.scenario.world.rate_hz;
+    simulated_s = static_cast<double>(run.ticks) / carton.scenario.scene.world.rate_hz;
     state.counters["physics_share"] = run.seconds.physics / run.seconds.total;
     state.counters["sensing_share"] = run.seconds.sensing / run.seconds.total;
     state.counters["grammar_share"] = run.seconds.grammar / run.seconds.total;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes by their signed distance: half a pixel on either side of the edge is the anti-aliasing.
+// Shapes are drawn by their signed distance: anti-aliasing spans half a pixel on either side of the
+// edge.
 // Tested by tests/render/canvas_test.cc
 #include "render/canvas.h"
 
@@ -27,7 +28,7 @@ Color TextColorOn(const Color& background) {
 
 Canvas::Span Canvas::Clip(float low, float high, int limit) {
   const auto bound = static_cast<float>(limit);
-  // The order of the arguments turns NaN into an empty span.
+  // With this order of arguments NaN gives an empty span.
   const float begin = std::max(0.0f, std::min(bound, std::floor(low)));
   const float end = std::max(0.0f, std::min(bound, std::ceil(high)));
   return {static_cast<int>(begin), static_cast<int>(end)};

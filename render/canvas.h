@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Anti-aliased drawing on an image: rounded rectangles, lines, text. Coordinates are pixels, y
-// down; whatever lies outside the image is clipped.
-// Tested by tests/render/canvas_test.cc
+// down. Drawing is clipped to the image. Labels need no more than this, so there is no dependency
+// on cairo. Tested by tests/render/canvas_test.cc
 #pragma once
 
 #include <string>
@@ -22,21 +22,21 @@ struct Rect {
   }
 };
 
-/// 0xRRGGBB as a colour.
+/// Converts 0xRRGGBB to a colour.
 Color Hex(unsigned rgb);
-/// Black or white, whichever can be read better on the colour.
+/// Black or white, whichever is more legible on the colour.
 Color TextColorOn(const Color& background);
 
 class Canvas {
  public:
-  /// Draws on *image with this font; both outlive the canvas.
+  /// Draws on *image with this font; both must outlive the canvas.
   Canvas(const Font& font, Image* image) : font_(font), image_(*image) {}
 
   const Font& font() const { return font_; }
   void FillRounded(const Rect& rect, float radius, const Color& color, float alpha = 1);
   void DrawLine(Eigen::Vector2f from, Eigen::Vector2f to, float width, const Color& color,
                 float alpha = 1);
-  /// `top`: y of the line's top; the baseline is rounded to a whole pixel.
+  /// `top` is the y of the line's top; the baseline is rounded to a whole pixel.
   void DrawText(float left, float top, const std::string& text, float size_px, const Color& color);
 
  private:

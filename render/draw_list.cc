@@ -16,7 +16,7 @@ using Eigen::Vector3f;
 constexpr float kGhostAlpha = 0.40f;
 constexpr float kForearmAlpha = 0.55f;
 constexpr float kUsualDistance_m =
-    2.1f;  // from eye to scene; the size of beads and tubes is meant for it
+    2.1f;  // distance of eye and scene for which beads and tubes are sized
 
 template <class... Ts>
 struct Overloaded : Ts... {
@@ -27,7 +27,7 @@ Affine3f ToAffine(const physics::Pose& pose) {
   return Eigen::Translation3f(pose.p_m.cast<float>()) * pose.q.cast<float>();
 }
 
-// A box whose outer half sizes are given; edges are rounded inwards.
+// A box with these outer half sizes; edges are rounded inwards.
 void SetRoundedBox(const Vector3f& outer_half_m, float rounding_m, Item* item) {
   item->primitive = Primitive::kBox;
   item->rounding_m = std::min(rounding_m, 0.98f * outer_half_m.minCoeff());
@@ -64,7 +64,7 @@ void SetShape(const physics::Shape& shape, Item* item, DrawList* list) {
              shape);
 }
 
-// A body or hand on its way into the list: how it looks and who it is.
+// Appearance and object number of a body or hand that is added to the list.
 struct Look {
   Color color = {0.5f, 0.5f, 0.5f};
   float alpha = 1;
@@ -89,7 +89,7 @@ void AddBody(const physics::Body& body, const physics::Pose& X_WB, const Look& l
   }
 }
 
-/// Regions and gaze targets are seen through; cameras and lights are not seen.
+/// Regions and gaze targets are translucent; cameras and lights are invisible.
 void AddAbstract(const physics::Body& body, int object, DrawList* list) {
   constexpr float kAbstractAlpha = 0.22f;
   using physics::Abstract;
@@ -106,8 +106,8 @@ void AddAbstract(const physics::Body& body, int object, DrawList* list) {
   }
 }
 
-/// `first`: which of the snapshot's grains is the first of these; a snapshot without them: they are
-/// as placed.
+/// `first`: index of the body's first grain in the snapshot; a snapshot without grains shows the
+/// initial positions.
 void AddGrains(const physics::Grains& grains, const physics::Snapshot& snapshot, std::size_t first,
                const Look& look, std::vector<Item>* items, DrawList* list) {
   const bool moved = first + grains.p_WG_m.size() <= snapshot.grains.size();
@@ -129,13 +129,13 @@ void AddHand(const physics::HandModel& model, const physics::HandState& state, c
     Item item = MakeItem(ToAffine(state.X_WL[i]), look);
     const Vector3f half(link.length_m / 2, link.half_width_m, link.half_thickness_m);
     const float rounding = 0.95f * std::min(half.y(), half.z());
-    // Round ends would leave notches at the joints; longer links grow into each other instead.
+    // Round ends would leave notches at the joints, so links are lengthened and overlap.
     SetRoundedBox(half + Vector3f(0.45f * rounding, 0, 0), rounding, &item);
     AddItem(item, items, list);
   }
 }
 
-// Where the arm would be: there is none in the physics, so it is only hinted at.
+// A hint of the forearm, which does not exist in the physics.
 void AddForearm(const physics::HandModel& model, const physics::HandState& state, const Look& look,
                 std::vector<Item>* items, DrawList* list) {
   constexpr float kLength_m = 0.17f;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture is made of before a pixel is drawn: placed primitives with colours, in the order
-// of drawing. A value that can be looked at in tests and compared between runs.
+// The content of a picture before any pixel is drawn: placed primitives with colours, in drawing
+// order. A value that tests can inspect and that can be compared between runs.
 // Tested by tests/render/draw_list_test.cc
 #pragma once
 
@@ -34,7 +34,7 @@ struct Item {
   int object = 0;
 };
 
-/// Something with a name: "body:milk", "hand:right_hand", "forearm:right_hand", "path:2:reaching",
+/// A named object: "body:milk", "hand:right_hand", "forearm:right_hand", "path:2:reaching",
 /// "ghost:0:right_hand", "marker:1:contact".
 struct DrawnObject {
   std::string name;
@@ -44,29 +44,29 @@ struct DrawnObject {
 struct DrawList {
   std::vector<DrawnObject> objects;  ///< 0 is the background, 1 the ground; then bodies, hands,
                                      ///< forearms, paths, ghosts, markers
-  std::vector<Mesh> meshes;          ///< of paths and of hulls
+  std::vector<Mesh> meshes;          ///< meshes of paths and hulls
   std::vector<Item> solids;          ///< bodies and hands
-  std::vector<Item> paths;           ///< seen through solids, faintly
-  std::vector<std::vector<Item>> ghosts;                ///< each one translucent as a whole
+  std::vector<Item> paths;           ///< faintly visible through solids
+  std::vector<std::vector<Item>> ghosts;                ///< each translucent as a whole
   std::vector<Item> markers;                            ///< translucent
-  Bounds bounds;                                        ///< of everything but the ground
+  Bounds bounds;                                        ///< of all objects but the ground
   Eigen::Vector3f to_light = Eigen::Vector3f::UnitZ();  ///< unit
 
-  int first_body = 2, first_hand = 2;  ///< where bodies and hands start in `objects`
+  int first_body = 2, first_hand = 2;  ///< first body and first hand in `objects`
 };
 
-/// Skips what is not finite or refers to things the scene does not have; never fails.
+/// Skips values that are not finite or refer to missing objects; never fails.
 DrawList MakeDrawList(const Picture& picture);
 
-/// Adds tubes, beads and arrows. `scale` widens them for pictures from far away.
+/// Adds tubes, beads and arrows of a path. `scale` widens them for distant cameras.
 void AddPath(const std::vector<PathStretch>& path, float scale, DrawList* list);
 
-/// Adds the item to its list and to the bounds of its object and of the picture, unless it is not
-/// finite.
+/// Adds the item to its list, and to the bounds of its object and of the picture. Ignores an item
+/// that is not finite.
 void AddItem(const Item& item, std::vector<Item>* items, DrawList* list);
 
-/// The picture's colour of a body of its scene; where it gives none, wood for fixed bodies, else a
-/// palette by index.
+/// The picture's colour of a scene body; without one, wood for fixed bodies, else a palette by
+/// index.
 Color BodyColor(const Picture& picture, std::size_t body);
 
 inline const Color kSkinColor = {0.878f, 0.675f, 0.525f};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hand's path: a tube for every stretch, beads at fixed time steps (near beads mean a slow hand)
-// and an arrow in the middle. Stretches without a label (idle hands) are thin and bare.
+// The path of a hand: a tube for every stretch, beads at fixed time steps (dense beads mean a slow
+// hand) and an arrow in the middle. Stretches without a label (idle hands) are thin, without beads
+// and arrow.
 // Tested by tests/render/draw_list_test.cc
 #include <algorithm>
 #include <cmath>
@@ -19,8 +20,7 @@ constexpr float kBeadRadius_m = 0.0125f;
 constexpr float kArrowRadius_m = 0.022f;
 constexpr float kArrowLength_m = 0.050f;
 constexpr double kBeadEvery_s = 0.2;
-constexpr float kJoinGap_m =
-    0.05f;  // stretches sampled side by side end and begin one sample apart
+constexpr float kJoinGap_m = 0.05f;  // consecutive stretches are at most one sample apart
 constexpr int kTubeSegments = 12;
 
 std::vector<Vector3f> FinitePoints(const PathStretch& stretch) {
@@ -31,8 +31,8 @@ std::vector<Vector3f> FinitePoints(const PathStretch& stretch) {
   return points;
 }
 
-// Points nearer than this to the one before only carry the jitter of a resting hand into the tube's
-// direction.
+// Points nearer than this to the previous one are skipped: they would only add the jitter of a
+// resting hand to the tube's direction.
 std::vector<Vector3f> Thinned(const std::vector<Vector3f>& points, float spacing_m) {
   std::vector<Vector3f> kept;
   for (const Vector3f& p : points) {

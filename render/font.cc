@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fonts by stb_truetype.
+// Fonts, by stb_truetype.
 // Tested by tests/render/canvas_test.cc
 #include "render/font.h"
 
@@ -22,9 +22,9 @@ std::unique_ptr<Font> Font::Read(const std::string& file, std::string* error) {
   auto state = std::make_unique<State>();
   std::ifstream stream(file, std::ios::binary);
   state->bytes.assign(std::istreambuf_iterator<char>(stream), {});
-  // stb_truetype trusts its input; at least the magic number and a plausible size are checked here.
-  constexpr std::size_t kSmallestFont = 1024;
-  const bool readable = state->bytes.size() >= kSmallestFont;
+  // stb_truetype trusts its input: the magic number and a plausible size are checked here.
+  constexpr std::size_t kMinFont_bytes = 1024;
+  const bool readable = state->bytes.size() >= kMinFont_bytes;
   const int offset = readable ? stbtt_GetFontOffsetForIndex(state->bytes.data(), 0) : -1;
   if (offset < 0 || stbtt_InitFont(&state->info, state->bytes.data(), offset) == 0) {
     *error = "cannot read the font " + file + " (Debian package fonts-dejavu-core)";

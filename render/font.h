@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TrueType font: widths and anti-aliased glyphs. Text is UTF-8; what the font lacks shows as its
-// empty box.
+// A TrueType font: text widths and anti-aliased glyphs. Text is UTF-8; missing characters are drawn
+// as the font's empty box.
 // Tested by tests/render/canvas_test.cc
 #pragma once
 
@@ -20,17 +20,16 @@ struct Glyph {
 
 class Font {
  public:
-  /// Null and why in *error when the file is missing or no font.
+  /// Null, with the reason in *error, if the file is missing or is not a font.
   static std::unique_ptr<Font> Read(const std::string& file, std::string* error);
   ~Font();
 
   float Width(std::string_view text, float size_px) const;
   float Advance(char32_t character, float size_px) const;
   float Ascent(float size_px) const;
-  /// `fraction`: the pen's x inside its pixel, 0..1.
+  /// `fraction` is the pen's x inside its pixel, 0..1.
   Glyph Draw(char32_t character, float size_px, float fraction) const;
-  /// The text itself, or its beginning and an ellipsis, or nothing, so that it is at most this
-  /// wide.
+  /// The text, or its beginning with an ellipsis, or nothing: at most this wide.
   std::string Shortened(const std::string& text, float size_px, float width_px) const;
 
  private:
@@ -39,7 +38,7 @@ class Font {
   std::unique_ptr<State> state_;
 };
 
-/// Code points of UTF-8; broken bytes become U+FFFD.
+/// Code points of UTF-8 text; invalid bytes become U+FFFD.
 std::vector<char32_t> CodePoints(std::string_view text);
 
 }  // namespace prehend::render

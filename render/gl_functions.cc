@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fills the function table.
+// Looks up the function table.
 // Tested by tests/render/painter_test.cc
 #include "render/gl_functions.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The OpenGL functions that the room uses, as a table that is passed around: no loader library, no
-// globals, and nothing that would pull in the system's libGL.
+// The OpenGL functions that render/ uses, as a table that is passed around: no loader library, no
+// globals, no dependency on the system's libGL.
 // Tested by tests/render/painter_test.cc
 #pragma once
 
@@ -86,7 +86,7 @@ struct GlFunctions {
 #undef PREHEND_DECLARE
 };
 
-/// Looks every function up; false and the name of the missing one in *error.
+/// Looks up every function. False, with the name of the missing one in *error, on failure.
 bool LoadGlFunctions(void* (*address_of)(const char*), GlFunctions* gl, std::string* error);
 
 }  // namespace prehend::render

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Owners of OpenGL names: programs, meshes on the GPU, and the buffers a picture is drawn into.
-// All need the context that made them to be current, also when they die.
+// Owners of OpenGL objects: programs, meshes on the GPU, and framebuffers. Their context must be
+// current whenever they are used, also on destruction.
 // Tested by tests/render/painter_test.cc
 #pragma once
 
@@ -17,7 +17,7 @@ namespace prehend::render {
 
 class Program {
  public:
-  /// Null and the compiler's message in *error when the sources do not compile or link.
+  /// Null, with the compiler's message in *error, if the sources do not compile or link.
   static std::unique_ptr<Program> Create(const GlFunctions& gl, const char* vertex_source,
                                          const char* fragment_source, std::string* error);
   ~Program();
@@ -25,7 +25,7 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void Use() const;
-  // Setters act on the program in use. A name the compiler optimised away is ignored.
+  // Setters act on the program in use. Names that the compiler removed are ignored.
   void Set(const char* name, int value) const;
   void SetUnsigned(const char* name, unsigned value) const;
   void Set(const char* name, float value) const;
@@ -61,22 +61,22 @@ class GpuMesh {
   GLsizei index_count_ = 0;
 };
 
-/// A frame buffer object with at most one colour and one depth attachment.
+/// A framebuffer object with at most one colour and one depth attachment.
 class Framebuffer {
  public:
   enum class Color { kNone, kRgba8, kR8, kId };
-  enum class Depth { kNone, kRead, kCompare };  ///< to be sampled as numbers, or as a shadow map
-  /// samples > 0: multisampled buffers that can only be blitted. Null when the driver refuses
-  /// (size, memory).
+  enum class Depth { kNone, kRead, kCompare };  ///< to be sampled as values, or as a shadow map
+  /// With samples > 0 the buffers are multisampled and can only be blitted. Null if the driver
+  /// refuses (size, memory).
   static std::unique_ptr<Framebuffer> Create(const GlFunctions& gl, int width_px, int height_px,
                                              int samples, Color color, Depth depth);
   ~Framebuffer();
   Framebuffer(const Framebuffer&) = delete;
   Framebuffer& operator=(const Framebuffer&) = delete;
 
-  /// Draws go here, over the full size.
+  /// Directs drawing to this framebuffer, over its full size.
   void Bind() const;
-  /// Copies the planes in `mask` to a target of the same size; resolves samples.
+  /// Copies the buffers in `mask` to a target of the same size and resolves samples.
   void BlitTo(const Framebuffer& target, GLbitfield mask) const;
   void BindColorTexture() const { gl_.BindTexture(GL_TEXTURE_2D, color_texture_); }
   void BindDepthTexture() const { gl_.BindTexture(GL_TEXTURE_2D, depth_texture_); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images as PNG files, and their hash. Level 3 with the SUB filter is the cheapest setting that
-// stays small.
+// Reads and writes PNG files, and hashes images. Level 3 with the SUB filter is the fastest setting
+// with small files.
 // Tested by tests/render/image_file_test.cc
 #include <png.h>
 
@@ -24,11 +24,11 @@ std::uint64_t HashBytes(std::uint64_t hash, const void* bytes, std::size_t size)
   return hash;
 }
 
-// Who asked for the picture says that there is none, in the project's words.
+// The caller reports the failure; libpng's own messages are suppressed.
 [[noreturn]] void FailSilently(png_structp png, png_const_charp) { png_longjmp(png, 1); }
 void StaySilent(png_structp, png_const_charp) {}
 
-// libpng reports errors by longjmp; no object with a destructor may live between here and the jump.
+// libpng reports errors by longjmp: no object with a destructor may live between here and the jump.
 bool WriteRows(png_structp png, png_infop info, const Image& image, std::FILE* file) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_init_io(png, file);

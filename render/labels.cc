@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Greedy placement: for every label, of all places around its anchor that break no rule, the
-// cheapest. Cost is distance plus what the label would cover; upwards and to the sides is preferred
-// to downwards.
+// Greedy placement: every label takes the cheapest of all allowed places around its anchor. The
+// cost is the distance plus what the label would cover; places above and beside the anchor are
+// preferred to places below.
 // Tested by tests/render/labels_test.cc
 #include "render/labels.h"
 
@@ -17,18 +17,18 @@ namespace {
 using Eigen::Vector2f;
 
 constexpr float kTextSize = 16;
-constexpr float kSmallestText = 10;
+constexpr float kMinText_px = 10;
 constexpr int kDirections = 16;
 constexpr float kDistances[] = {14, 28, 46, 70, 100, 140, 190, 250};
-constexpr float kPerPixel = 0.4f;     // cost of the distance from the anchor
+constexpr float kPerPixel = 0.4f;     // cost of a pixel of distance from the anchor
 constexpr float kCoveredPoint = 5;    // cost of a path point under the label
-constexpr float kCoveredThing = 110;  // of another thing, if the label lies on it as a whole
-constexpr float kCoveredSelf = 45;    // of its own thing
-constexpr float kCoveredAnchor = 40;  // of another thing's middle
-constexpr float kCoveredLeader = 90;  // of a leader that it lies on or crosses
+constexpr float kCoveredThing = 110;  // of another object, if the label is entirely on it
+constexpr float kCoveredSelf = 45;    // of its own object
+constexpr float kCoveredAnchor = 40;  // of another object's anchor
+constexpr float kCoveredLeader = 90;  // of a leader line that it covers or crosses
 constexpr float kDownwards = 12;
 
-float TextSize(float scale) { return std::max(kSmallestText, kTextSize * scale); }
+float TextSize(float scale) { return std::max(kMinText_px, kTextSize * scale); }
 
 bool Contains(const Rect& rect, const Vector2f& p) {
   return p.x() >= rect.x && p.x() <= rect.right() && p.y() >= rect.y && p.y() <= rect.bottom();
@@ -39,7 +39,7 @@ bool ContainsRect(const Rect& outer, const Rect& inner) {
          inner.bottom() <= outer.bottom();
 }
 
-// Where the line from the anchor meets the label: the nearest point of its edge.
+// The end of the leader line: the point of the label's edge that is nearest to the anchor.
 Vector2f LeaderEnd(const Rect& box, const Vector2f& anchor) {
   return {std::clamp(anchor.x(), box.x, box.right()), std::clamp(anchor.y(), box.y, box.bottom())};
 }
@@ -57,7 +57,7 @@ bool Passes(const Vector2f& from, const Vector2f& to, const Rect& box) {
   return Cross(from, to, low, high) || Cross(from, to, {low.x(), high.y()}, {high.x(), low.y()});
 }
 
-// How much of the label lies on the thing, 0..1.
+// Share of the label's area that is on the object, 0..1.
 float CoveredShare(const Rect& box, const Rect& thing) {
   if (!box.Overlaps(thing)) return 0;
   const float width = std::min(box.right(), thing.right()) - std::max(box.x, thing.x);
@@ -65,7 +65,7 @@ float CoveredShare(const Rect& box, const Rect& thing) {
   return width * height / (box.width * box.height);
 }
 
-// Nothing where the label must not be.
+// Cost of a place; nullopt where the label must not be.
 std::optional<float> Cost(const Rect& box, const LabelRequest& request,
                           const std::vector<LabelRequest>& requests,
                           const std::vector<PlacedLabel>& placed, const LabelObstacles& obstacles) {
@@ -113,7 +113,7 @@ std::vector<PlacedLabel> PlaceLabels(const std::vector<LabelRequest>& requests,
         const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
         const float away = distance * scale;
         const Vector2f toward(std::cos(angle), -std::sin(angle));
-        // The box's near edge, not its middle, is `away` from the anchor.
+        // `away` is the distance from the anchor to the box's near edge, not to its middle.
         const Vector2f middle =
             request.anchor + toward * away + Vector2f(toward.x() * width, toward.y() * height) / 2;
         const Rect box = {std::round(middle.x() - width / 2), std::round(middle.y() - height / 2),

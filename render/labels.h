@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names beside the things they belong to, placed so that they overlap neither each other nor what
-// matters.
+// Names beside the objects of a picture, placed so that they overlap neither each other nor
+// important content.
 // Tested by tests/render/labels_test.cc
 #pragma once
 
@@ -13,9 +13,9 @@ namespace prehend::render {
 
 struct LabelRequest {
   std::string text;
-  Color color;             ///< of the small bar at its side
-  Eigen::Vector2f anchor;  ///< where the thing is, pixels
-  Rect extent;             ///< what it covers on the picture, roughly
+  Color color;             ///< of the small bar beside the text
+  Eigen::Vector2f anchor;  ///< centre of the object, pixels
+  Rect extent;             ///< approximate area of the object in the picture
 };
 
 struct PlacedLabel {
@@ -23,14 +23,14 @@ struct PlacedLabel {
   Rect box;
 };
 
-/// What labels stay away from.
+/// Areas and points that labels avoid.
 struct LabelObstacles {
-  Rect area;                           ///< labels lie inside
-  std::vector<Rect> forbidden;         ///< title and the like
-  std::vector<Eigen::Vector2f> avoid;  ///< points of paths; covering them costs, but is allowed
+  Rect area;                           ///< labels are inside
+  std::vector<Rect> forbidden;         ///< title and similar
+  std::vector<Eigen::Vector2f> avoid;  ///< points of paths; covering them is allowed at a cost
 };
 
-/// In the order of the requests; one that finds no free place is left out.
+/// Placed labels in the order of the requests, without those that find no free place.
 std::vector<PlacedLabel> PlaceLabels(const std::vector<LabelRequest>& requests,
                                      const LabelObstacles& obstacles, const Font& font,
                                      float scale);

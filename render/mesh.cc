@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3f;
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// One ring of a solid of revolution, from the top down.
+// One ring of a solid of revolution; rings are listed from top to bottom.
 struct ProfilePoint {
   float direction_radial, direction_z;
   float corner_radial, corner_z;
@@ -59,7 +59,7 @@ std::vector<ProfilePoint> RoundedProfile(int segments) {
   return profile;
 }
 
-// Of the first two points that differ.
+// Direction between the first two points that differ.
 Vector3f FirstDirection(const std::vector<Vector3f>& points) {
   for (const Vector3f& p : points) {
     const Vector3f chord = p - points.front();
@@ -126,7 +126,7 @@ Mesh TubeMesh(const std::vector<Vector3f>& points, int segments) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector3f chord = points[std::min(i + 1, points.size() - 1)] - points[i == 0 ? 0 : i - 1];
     const Vector3f next = chord.norm() > 1e-9f ? Vector3f(chord.normalized()) : tangent;
-    // Turning the frame with the tangent keeps the tube from twisting.
+    // Rotating the frame with the tangent prevents twist of the tube.
     across = (RotationBetween(tangent, next) * across).normalized();
     tangent = next;
     const Vector3f up = tangent.cross(across);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OSMesa behind the off-screen context. osmesa.h wants the system's gl.h, which clashes with the
-// core profile header; claiming that gl.h was included already leaves exactly what is needed.
+// The off-screen context by OSMesa. osmesa.h includes the system's gl.h, which conflicts with the
+// core profile header; defining gl.h's include guard avoids that.
 // Tested by tests/render/painter_test.cc
 #include "render/osmesa_context.h"
 
@@ -21,7 +21,7 @@
 namespace prehend::render {
 namespace {
 
-// All drawing goes to frame buffer objects; the window-system buffer only has to exist.
+// All drawing goes to framebuffer objects; the window-system buffer only has to exist.
 constexpr int kDummySize = 16;
 
 }  // namespace

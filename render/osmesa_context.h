@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An OpenGL context without a window or a graphics card, behind three functions so that another
-// off-screen library can replace OSMesa without touching the rest of the room.
+// An OpenGL context without a window or a graphics card. Only three functions are public, so that
+// another off-screen library can replace OSMesa without changes elsewhere.
 // Tested by tests/render/painter_test.cc
 #pragma once
 
@@ -11,15 +11,16 @@ namespace prehend::render {
 
 class OffscreenContext {
  public:
-  /// A current OpenGL 3.3 core context, or null and why in *error.
+  /// Creates an OpenGL 3.3 core context and makes it current. Null, with the reason in *error, on
+  /// failure.
   static std::unique_ptr<OffscreenContext> Create(std::string* error);
   ~OffscreenContext();
   OffscreenContext(const OffscreenContext&) = delete;
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 
-  /// Several contexts may live in one process; the last one made current gets the commands.
+  /// Several contexts may exist in one process; the one made current last gets the commands.
   bool MakeCurrent();
-  /// Address of an OpenGL function. Non-null does not prove that the function exists.
+  /// Address of an OpenGL function. A non-null address does not prove that the function exists.
   static void* FunctionAddress(const char* name);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts a picture together: strip layout, camera, scene, then everything flat on top of it.
+// Composes a picture: strip layout, camera, scene, then flat elements on top.
 // Tested by tests/render/painter_test.cc
 #include <algorithm>
 #include <cmath>
@@ -20,9 +20,9 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr float kTitleSize = 19;
-constexpr int kSmallestWithText_px = 120;  // text on smaller pictures would hide them
+constexpr int kMinSideWithText_px = 120;  // text would hide a smaller picture
 
-// The processor's class that pixels depend on.
+// The processor feature that pixels depend on.
 const char* FusedMultiplyAdd() {
 #if defined(__x86_64__)
   return __builtin_cpu_supports("fma") ? "fma" : "no-fma";
@@ -39,7 +39,7 @@ std::string SizeError(const Picture& picture) {
          std::to_string(kMaxPictureSide_px);
 }
 
-// Everything that follows from a picture before anything is drawn.
+// Everything that is computed from a picture before drawing.
 struct Plan {
   StripLayout strip;
   DrawList list;
@@ -55,9 +55,8 @@ Plan MakePlan(const Picture& picture, const Font& font) {
   return plan;
 }
 
-// Large things (tables) would leave no place that is free of them; they count as scenery for the
-// labels.
-constexpr float kLargestExtent = 0.10f;  // of the picture's area
+// Large objects (tables) would leave no free place; for labels they count as scenery.
+constexpr float kMaxExtentShare = 0.10f;  // of the picture's area
 
 LabelRequest RequestLabel(const std::string& text, const Color& color, const Bounds& bounds,
                           const View& view) {
@@ -76,14 +75,14 @@ LabelRequest RequestLabel(const std::string& text, const Color& color, const Bou
   }
   const Vector2f size = high - low;
   const float area = static_cast<float>(view.width_px) * static_cast<float>(view.height_px);
-  if (size.x() * size.y() < kLargestExtent * area)
+  if (size.x() * size.y() < kMaxExtentShare * area)
     request.extent = {low.x(), low.y(), size.x(), size.y()};
   return request;
 }
 
 std::vector<LabelRequest> RequestLabels(const Picture& picture, const Plan& plan) {
   std::vector<LabelRequest> requests;
-  // Labels beyond `count` name things that the scene does not have.
+  // Labels beyond `count` name objects that the scene does not have.
   const auto request = [&](const std::vector<std::string>& labels, std::size_t count,
                            int first_object, const auto& color_of) {
     for (std::size_t i = 0; i < std::min(labels.size(), count); ++i) {
@@ -100,7 +99,7 @@ std::vector<LabelRequest> RequestLabels(const Picture& picture, const Plan& plan
   return requests;
 }
 
-// Points along paths, dense enough that a label cannot hide between two.
+// Points along paths, so dense that no label fits between two.
 std::vector<Vector2f> PathPixels(const Plan& plan) {
   std::vector<Vector2f> pixels;
   for (const Item& item : plan.list.paths) {
@@ -127,7 +126,7 @@ Rect DrawTitle(const std::string& title, float scale, float width, Canvas* canva
 }
 
 void DrawOverlay(const Picture& picture, const Plan& plan, Canvas* canvas) {
-  if (std::min(picture.width_px, picture.height_px) < kSmallestWithText_px) return;
+  if (std::min(picture.width_px, picture.height_px) < kMinSideWithText_px) return;
   const float scale = OverlayScale(picture.height_px);
   const auto width = static_cast<float>(picture.width_px),
              height = static_cast<float>(picture.height_px);
@@ -143,7 +142,8 @@ void DrawOverlay(const Picture& picture, const Plan& plan, Canvas* canvas) {
 
 }  // namespace
 
-// Members die in reverse order: the renderer before the functions and the context that it needs.
+// Members are destroyed in reverse order: the renderer before the functions and the context that it
+// needs.
 struct Painter::State {
   std::string error;
   std::unique_ptr<Font> font;
@@ -152,7 +152,7 @@ struct Painter::State {
   std::unique_ptr<SceneRenderer> renderer;
 
   bool ready() const { return renderer != nullptr; }
-  // Leaves in `error` why this picture cannot be drawn, or nothing.
+  // Sets `error` to the reason why this picture cannot be drawn, or to empty.
   bool Prepare(const Picture& picture);
 };
 
@@ -174,7 +174,7 @@ Painter::Painter(const std::string& font_file) : state_(std::make_unique<State>(
   state.renderer = SceneRenderer::Create(state.gl, &state.error);
   if (state.renderer != nullptr && !state.renderer->PassesSelfTest()) {
     state.renderer = nullptr;
-    state.error = "the OpenGL self-test drew something else than a triangle";
+    state.error = "the OpenGL self-test did not draw the expected triangle";
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture as a value: what to draw, from where, with which labels and timeline. Draws immutable
-// values and knows neither grammar nor simulation. Colours are sRGB 0..1.
+// One picture as a value: what to draw, from which camera, with which labels and timeline. It knows
+// neither grammar nor simulation. Colours are sRGB, 0..1.
 // Tested by tests/render/painter_test.cc
 #pragma once
 
@@ -16,16 +16,16 @@ namespace prehend::render {
 
 using Color = Eigen::Vector3f;
 
-/// A stretch of a hand's path in one phase; one that begins near the end of the one before is
-/// joined to it.
+/// A stretch of a hand's path in one phase. A stretch that begins near the end of the previous one
+/// is joined to it.
 struct PathStretch {
-  std::string label;  ///< empty: the hand is idle, drawn thin
+  std::string label;  ///< empty: the hand is idle, and the path thin
   Color color = {0.54f, 0.56f, 0.60f};
   std::vector<Eigen::Vector3f> points_m;
   double points_per_s = 60;
 };
 
-/// A translucent copy of a hand (and what it holds) at another time.
+/// A translucent copy of a hand and the objects that it holds, at another time.
 struct Ghost {
   int hand = 0;
   std::vector<int> bodies;  ///< drawn with it
@@ -67,14 +67,14 @@ struct Picture {
   int width_px = 1280, height_px = 720;
   const physics::Scene* scene = nullptr;  ///< outlives the call
   physics::Snapshot snapshot;
-  std::vector<Color> body_colors;        ///< one per scene body; shorter: colours from a palette
+  std::vector<Color> body_colors;        ///< one per scene body; missing ones: from a palette
   std::vector<std::string> body_labels;  ///< one per scene body, empty: none
   std::vector<std::string> hand_labels;  ///< one per scene hand, empty: none
   std::vector<PathStretch> path;
   std::vector<Ghost> ghosts;
   std::vector<Marker> markers;
   Camera camera;
-  Eigen::Vector3f to_light = {0.38f, -0.42f, 0.82f};  ///< the light comes from far away there
+  Eigen::Vector3f to_light = {0.38f, -0.42f, 0.82f};  ///< direction of the distant light
   TimelineStrip strip;
   std::string title;
 };
@@ -84,7 +84,8 @@ struct Image {
   std::vector<std::uint8_t> rgb;  ///< rows from top, 3 bytes a pixel
 };
 
-/// Which object is seen at each pixel, exactly and without anti-aliasing: for comparing pictures.
+/// The object that is visible at each pixel, exact and without anti-aliasing, for comparing
+/// pictures.
 struct IdImage {
   int width_px = 0, height_px = 0;
   std::vector<std::uint32_t> ids;  ///< rows from top; indices into names
@@ -94,8 +95,8 @@ struct IdImage {
 
 inline constexpr const char* kDefaultFontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 
-/// Off-screen context; make one per process and draw many pictures (the first costs shader
-/// compilation).
+/// Owns an off-screen context. Make one per process and draw many pictures with it: the first one
+/// compiles the shaders.
 class Painter {
  public:
   explicit Painter(const std::string& font_file = kDefaultFontFile);
@@ -103,13 +104,13 @@ class Painter {
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
-  /// Empty, or why no picture can be drawn (no context, missing font, failed self-test).
+  /// The reason why no picture can be drawn (no context, missing font, failed self-test), or empty.
   const std::string& error() const;
-  /// An empty image when something failed; then error() says why.
+  /// An empty image on failure; error() then has the reason.
   Image Draw(const Picture& picture);
-  /// The same scene from the same camera as object numbers, without labels, strip and markers.
+  /// Object numbers of the same scene from the same camera, without labels, strip and markers.
   IdImage DrawIds(const Picture& picture);
-  /// "Mesa 22.3.6 llvmpipe ... renderer 1": what the pixels depend on.
+  /// Everything that pixels depend on: "Mesa 22.3.6 llvmpipe ... renderer 1".
   std::string Fingerprint() const;
 
  private:
@@ -117,16 +118,15 @@ class Painter {
   std::unique_ptr<State> state_;
 };
 
-/// False when the file could not be written.
+/// False if the file could not be written.
 bool WritePng(const Image& image, const std::string& path);
-/// An empty image when the file is missing, broken or larger than a picture may be.
+/// An empty image if the file is missing, damaged or larger than a picture may be.
 Image ReadPng(const std::string& path);
-/// FNV-1a of size and pixels.
+/// FNV-1a hash of size and pixels.
 std::uint64_t PixelHash(const Image& image);
 
-/// A camera that frames the box [low, high] from a named side: "front", "left", "right", "top",
-/// "three_quarter". An unknown name gives nullopt-like default "front"; names are listed by
-/// CameraNames().
+/// A camera that frames the box [low, high] from a named side; CameraNames() lists the names. An
+/// unknown name gives "front".
 Camera NamedCamera(const std::string& name, const Eigen::Vector3f& low_m,
                    const Eigen::Vector3f& high_m, double aspect);
 const std::vector<std::string>& CameraNames();

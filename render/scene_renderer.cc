@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The passes, in order:
-//   1. depth from the light (solids and paths throw shadows);
+//   1. depth from the light (solids and paths entity table shadows);
 //   2. backdrop, ground, solids, paths into a multisampled buffer;
 //   3. ambient occlusion at half size from its depth, blurred there and multiplied in;
 //   4. hidden parts of paths, faintly; ghosts, each after its own depth so that inner joints do not
@@ -31,8 +31,8 @@ constexpr float kGroundDrop_m =
 
 const Color kGroundColor = {0.90f, 0.91f, 0.925f};
 
-// The ball in which shadows and the ground matter: all there is, or what the camera looks at if
-// that is much less.
+// The sphere in which shadows and ground are drawn: all objects, or the surroundings of the
+// camera's target if these are much smaller.
 struct Focus {
   Vector3f center_m;
   float radius_m;
@@ -61,7 +61,7 @@ struct SceneRenderer::Targets {
   std::unique_ptr<Framebuffer> sampled, resolved, occlusion, blurred;
 };
 
-// What all passes of one picture share.
+// State that all passes of one picture share.
 struct SceneRenderer::Frame {
   const DrawList& list;
   const View& view;
@@ -144,7 +144,7 @@ bool SceneRenderer::PrepareTargets(int width_px, int height_px) {
       targets_->sampled->height_px() == height_px) {
     return true;
   }
-  targets_ = nullptr;  // frees the old ones before the new ones ask for memory
+  targets_ = nullptr;  // frees the old buffers before new ones are allocated
   using Plane = Framebuffer::Color;
   using Depth = Framebuffer::Depth;
   auto made = std::make_unique<Targets>();
@@ -258,8 +258,7 @@ void SceneRenderer::DrawSolids(const Frame& frame) const {
   DrawGround(frame);
 }
 
-// After the solids, because shading what they hide would be wasted; it fades into the backdrop far
-// out.
+// Drawn after the solids, so that hidden ground is not shaded; far out it fades into the backdrop.
 void SceneRenderer::DrawGround(const Frame& frame) const {
   const float clear_radius = std::max(1.3f, 1.1f * frame.focus.radius_m);
   const Vector3f& center = frame.focus.center_m;
@@ -405,7 +404,7 @@ void SceneRenderer::DrawItem(const Program& program, const Frame& frame, const I
 }
 
 void SceneRenderer::DrawScreen() const {
-  // A core profile wants a vertex array to be bound even when the shader reads none.
+  // The core profile requires a bound vertex array even if the shader reads none.
   ball_->Bind();
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
 }

@@ -15,16 +15,16 @@ namespace prehend::render {
 
 class SceneRenderer {
  public:
-  /// Null and why in *error when a shader does not compile or the driver refuses buffers.
+  /// Null, with the reason in *error, if a shader does not compile or the driver refuses buffers.
   static std::unique_ptr<SceneRenderer> Create(const GlFunctions& gl, std::string* error);
   ~SceneRenderer();
 
-  /// Draws a triangle and looks whether it is there: function addresses alone prove nothing.
+  /// Draws a triangle and checks its pixels: function addresses alone prove nothing.
   bool PassesSelfTest() const;
-  /// Without labels and strip. Empty when the driver refuses buffers of that size.
+  /// Draws the scene without labels and strip. Empty if the driver refuses buffers of that size.
   Image Render(const DrawList& list, const View& view);
-  /// For every pixel, rows from the top, the index into DrawList::objects of what is drawn there
-  /// (regions excepted).
+  /// For every pixel, rows from the top, the index into DrawList::objects of the object drawn
+  /// there, regions excepted.
   std::vector<std::uint32_t> RenderIds(const DrawList& list, const View& view);
 
  private:

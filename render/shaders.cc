@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shader sources. Colours enter as sRGB, light is computed linearly, and a soft tone map leads back
-// to sRGB.
+// Shader sources. Colours are given in sRGB, light is computed in linear space, and a soft tone map
+// converts back to sRGB.
 // Tested by tests/render/painter_test.cc
 #include "render/shaders.h"
 
 namespace prehend::render {
 
-// Every pass that draws solids uses this one, so that depth values agree to the bit between passes.
+// Every pass that draws solids uses this shader, so that depth values are equal to the bit in all
+// passes.
 const char* const kSolidVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 corner;
 layout(location = 1) in vec3 direction;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place where stb_truetype is compiled; render/font.cc uses it.
+// Compiles stb_truetype; render/font.cc uses it.
+// Tested by tests/render/canvas_test.cc
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wshadow"

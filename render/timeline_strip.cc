@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layout of the strip: rows to lanes (first free lane), names inside the bar or above it, ticks at
-// round seconds.
+// Layout of the strip: every row is distributed to lanes (first free lane), names are inside or
+// above their bars, ticks are at round seconds.
 // Tested by tests/render/timeline_strip_test.cc
 #include "render/timeline_strip.h"
 
@@ -13,7 +13,7 @@
 namespace prehend::render {
 namespace {
 
-// Sizes at 720 rows, in pixels.
+// Sizes in pixels, for a picture of 720 pixel rows.
 constexpr float kMargin = 12;
 constexpr float kPadding = 10;
 constexpr float kBarHeight = 18;
@@ -21,9 +21,9 @@ constexpr float kLanePitch = 23;
 constexpr float kNameHeight = 15;  // room for names above the bars of a lane
 constexpr float kAxisHeight = 20;
 constexpr float kRowText = 15, kBarText = 14, kSmallText = 12;
-constexpr float kSmallestText = 9;
-constexpr float kLargestShare = 0.42f;
-constexpr std::size_t kMostLanes = 4;
+constexpr float kMinText_px = 9;
+constexpr float kMaxHeightShare = 0.42f;
+constexpr std::size_t kMaxLanes = 4;
 
 struct TimeAxis {
   double begin_s = 0, end_s = 1;
@@ -39,7 +39,7 @@ bool IsVisible(const StripSegment& segment, const TimelineStrip& strip) {
          segment.begin_s <= strip.end_s;
 }
 
-// Each segment into the first lane that is free at its time; when all are taken, into the last.
+// Puts each segment into the first lane that is free at its time, or into the last lane if none is.
 std::vector<std::vector<StripSegment>> SplitIntoLanes(const StripRow& row,
                                                       const TimelineStrip& strip) {
   std::vector<StripSegment> segments;
@@ -53,21 +53,21 @@ std::vector<std::vector<StripSegment>> SplitIntoLanes(const StripRow& row,
     auto lane = std::find_if(lanes.begin(), lanes.end(), [&](const auto& taken) {
       return taken.empty() || taken.back().end_s <= segment.begin_s + 1e-9;
     });
-    if (lane == lanes.end() && lanes.size() < kMostLanes) lane = lanes.emplace(lanes.end());
+    if (lane == lanes.end() && lanes.size() < kMaxLanes) lane = lanes.emplace(lanes.end());
     if (lane == lanes.end()) lane = std::prev(lanes.end());
     lane->push_back(std::move(segment));
   }
   return lanes;
 }
 
-// The name inside if it fits, perhaps smaller; else above, as near to its bar as names above it
-// allow.
+// Places the name inside the bar if it fits, at a smaller size if necessary; otherwise above, as
+// near to the bar as other names allow.
 void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& axis, float scale,
                float* above_taken, StripBar* bar) {
   if (segment.label.empty()) return;
   bar->name = segment.label;
-  const float small = std::max(kSmallestText, kSmallText * scale);
-  for (const float size : {std::max(kSmallestText, kBarText * scale), small}) {
+  const float small = std::max(kMinText_px, kSmallText * scale);
+  for (const float size : {std::max(kMinText_px, kBarText * scale), small}) {
     const float width = font.Width(segment.label, size);
     if (width > bar->rect.width - 6 * scale) continue;
     bar->name_place = NamePlace::kInside;
@@ -86,8 +86,7 @@ void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& ax
     return;
   }
   bar->name = font.Shortened(segment.label, small, bar->rect.width - 4 * scale);
-  if (bar->name.size() < 5)
-    return;  // an ellipsis has three bytes: a name of one letter tells nothing
+  if (bar->name.size() < 5) return;  // an ellipsis has three bytes; a name of one letter is useless
   bar->name_place = NamePlace::kInside;
   bar->name_size_px = small;
   bar->name_left = bar->rect.x + (bar->rect.width - font.Width(bar->name, small)) / 2;
@@ -118,7 +117,7 @@ float LaneHeight(const StripLane& lane, float scale) {
   return (kLanePitch + (HasNameAbove(lane) ? kNameHeight : 0)) * scale;
 }
 
-// Lanes from `top` down get their y; returns where the axis goes.
+// Sets the y of all lanes from `top` downwards; returns the y of the axis.
 float StackLanes(float top, float scale, const Font& font, std::vector<StripLane>* lanes) {
   float y = top;
   for (StripLane& lane : *lanes) {
@@ -126,7 +125,7 @@ float StackLanes(float top, float scale, const Font& font, std::vector<StripLane
     lane.track.y = bar_top;
     for (StripBar& bar : lane.bars) {
       bar.rect.y = bar_top;
-      // Letters without descenders look centred when the ascent is.
+      // Centres the ascent: letters without descenders then look centred.
       const float inside = bar_top + (bar.rect.height - 1.32f * font.Ascent(bar.name_size_px)) / 2;
       bar.name_top = bar.name_place == NamePlace::kAbove ? y + scale : inside;
     }
@@ -142,7 +141,7 @@ std::string Seconds(double t_s, double step_s) {
   return text;
 }
 
-// The smallest round step whose labels do not crowd.
+// The smallest round step with enough space between labels.
 double TickStep(const TimeAxis& axis, float scale) {
   const double shortest_s = 64 * scale / (axis.right - axis.left) * (axis.end_s - axis.begin_s);
   const double decade = std::pow(10, std::floor(std::log10(shortest_s)));
@@ -185,13 +184,13 @@ float OverlayScale(int height_px) {
 StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_px, int height_px) {
   const float scale = OverlayScale(height_px);
   StripLayout layout{.scale = scale, .picture_height_px = height_px};
-  constexpr double kLongest_s = 1e7;
+  constexpr double kMaxSpan_s = 1e7;
   const double duration_s = strip.end_s - strip.begin_s;
-  if (strip.rows.empty() || !(duration_s > 1e-3 && duration_s < kLongest_s) ||
-      !(std::abs(strip.begin_s) < kLongest_s)) {
+  if (strip.rows.empty() || !(duration_s > 1e-3 && duration_s < kMaxSpan_s) ||
+      !(std::abs(strip.begin_s) < kMaxSpan_s)) {
     return layout;
   }
-  const float text_size = std::max(kSmallestText, kRowText * scale);
+  const float text_size = std::max(kMinText_px, kRowText * scale);
   const auto width = static_cast<float>(width_px), height = static_cast<float>(height_px);
   const float label_width = std::min(WidestLabel(strip, font, text_size), 0.2f * width);
   layout.label_left = (kMargin + kPadding + 2) * scale;
@@ -208,7 +207,7 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
       lanes.push_back(MakeLane(segments, font, axis, scale));
       row_height += LaneHeight(lanes.back(), scale);
     }
-    if (used + row_height > kLargestShare * height) break;
+    if (used + row_height > kMaxHeightShare * height) break;
     used += row_height;
     lanes.front().label = font.Shortened(row.label, text_size, label_width + 1);
     std::move(lanes.begin(), lanes.end(), std::back_inserter(layout.lanes));
@@ -230,7 +229,7 @@ namespace {
 void DrawLane(const StripLayout& layout, const StripLane& lane, Canvas* canvas) {
   const float s = layout.scale;
   canvas->FillRounded(lane.track, 3 * s, Hex(0xDCE1E7), 0.85f);
-  const float text_size = std::max(kSmallestText, kRowText * s);
+  const float text_size = std::max(kMinText_px, kRowText * s);
   const float label_top =
       lane.track.y + (lane.track.height - 1.32f * canvas->font().Ascent(text_size)) / 2;
   canvas->DrawText(layout.label_left, label_top, lane.label, text_size, Hex(0x1B1F24));
@@ -243,7 +242,7 @@ void DrawLane(const StripLayout& layout, const StripLane& lane, Canvas* canvas) 
 }
 
 void DrawAxis(const StripLayout& layout, const Rect& playhead_label, Canvas* canvas) {
-  const float s = layout.scale, size = std::max(kSmallestText, kSmallText * s);
+  const float s = layout.scale, size = std::max(kMinText_px, kSmallText * s);
   const Color ink = Hex(0x59636E);
   for (const StripTick& tick : layout.ticks) {
     const float length = (tick.label.empty() ? 3.5f : 7.0f) * s;
@@ -262,7 +261,7 @@ void DrawAxis(const StripLayout& layout, const Rect& playhead_label, Canvas* can
 
 void DrawStrip(const StripLayout& layout, Canvas* canvas) {
   if (!(layout.panel.height > 0)) return;
-  const float s = layout.scale, size = std::max(kSmallestText, kSmallText * s);
+  const float s = layout.scale, size = std::max(kMinText_px, kSmallText * s);
   canvas->FillRounded(layout.panel, 8 * s, Hex(0xFFFFFF), 0.86f);
   for (const StripLane& lane : layout.lanes) DrawLane(layout, lane, canvas);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strip at the bottom of a picture: what happened when, as named bars, with a playhead. Laying
-// out comes first because the camera frames the scene in what the strip leaves free.
+// The strip at the bottom of a picture: events as named bars over time, with a playhead. The layout
+// is computed first, because the camera frames the scene in the area that the strip leaves free.
 // Tested by tests/render/timeline_strip_test.cc
 #pragma once
 
@@ -17,25 +17,25 @@ struct StripBar {
   Rect rect;
   Color color;
   NamePlace name_place = NamePlace::kNone;
-  std::string name;  ///< perhaps shortened
+  std::string name;  ///< shortened if necessary
   float name_size_px = 0;
   float name_left = 0, name_top = 0;
 };
 
-/// One line of bars. A row whose segments overlap in time has several.
+/// One line of bars. A row with overlapping segments has several lanes.
 struct StripLane {
   Rect track;
-  std::string label;  ///< of the row, on its first lane
+  std::string label;  ///< the row's label, on its first lane only
   std::vector<StripBar> bars;
 };
 
 struct StripTick {
   float x = 0;
-  std::string label;  ///< empty: a minor one
+  std::string label;  ///< empty: a minor tick
 };
 
 struct StripLayout {
-  float scale = 1;  ///< of all sizes; 1 at 720 rows
+  float scale = 1;  ///< scale of all sizes; 1 at 720 pixel rows
   Rect panel;       ///< empty height: no strip
   float label_left = 0;
   float axis_top = 0;
@@ -43,14 +43,14 @@ struct StripLayout {
   std::vector<StripTick> ticks;
   float playhead_x = 0;  ///< NaN: outside
   std::string playhead_label;
-  int reserved_px() const;  ///< rows that the scene should keep clear
+  int reserved_px() const;  ///< pixel rows that the scene should leave free
   int picture_height_px = 0;
 };
 
 /// Size of text and spacing relative to a picture of 720 rows.
 float OverlayScale(int height_px);
 
-/// Rows that do not fit into 42 % of the height are left out, last ones first.
+/// Omits the last rows if the strip would be higher than 42 % of the picture.
 StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_px, int height_px);
 void DrawStrip(const StripLayout& layout, Canvas* canvas);
 

@@ -15,14 +15,14 @@ namespace {
 using Eigen::Matrix4f;
 using Eigen::Vector3f;
 
-constexpr float kFilledShare = 0.90f;  // of the picture by the box that a named camera frames
-constexpr float kNearestEye_m = 0.3f;
+constexpr float kFilledShare = 0.90f;  // share of the picture filled by the box of a named camera
+constexpr float kMinEyeDistance_m = 0.3f;
 
 float HalfTangent(float field_of_view_deg) {
   return std::tan(field_of_view_deg * std::numbers::pi_v<float> / 360);
 }
 
-// Rows: right, up, towards the eye. Straight down, north is up.
+// Rows: right, up, towards the eye. In a view straight down, north is up.
 Eigen::Matrix3f CameraAxes(const Vector3f& forward) {
   const Vector3f up_hint = std::abs(forward.z()) > 0.999f ? Vector3f::UnitY() : Vector3f::UnitZ();
   Eigen::Matrix3f axes;
@@ -45,7 +45,7 @@ bool MakesSense(const Camera& camera) {
          camera.vertical_field_of_view_deg > 0.1f && camera.vertical_field_of_view_deg < 170;
 }
 
-// Corners of the box in the camera's axes, seen from the point it looks at.
+// Corners of the box in the camera's axes, relative to the camera's target.
 std::array<Vector3f, 8> CornersInView(const Eigen::Matrix3f& axes, const Vector3f& look_at,
                                       const Vector3f& low, const Vector3f& high) {
   std::array<Vector3f, 8> corners;
@@ -119,8 +119,8 @@ std::optional<Eigen::Vector2f> ToPixel(const View& view, const Vector3f& p_W_m) 
 Matrix4f WorldToLight(const Vector3f& to_light, const Vector3f& center_m, float radius_m) {
   Matrix4f ortho = Matrix4f::Identity();
   ortho.diagonal().head<2>().setConstant(1 / radius_m);
-  // Things between the light and the ball may throw shadows into it, so the depth range starts
-  // early.
+  // Objects between the light and the sphere may entity table shadows into it: the depth range
+  // starts before them.
   const float near = 0.1f, far = near + 6 * radius_m;
   ortho(2, 2) = -2 / (far - near);
   ortho(2, 3) = -(far + near) / (far - near);
@@ -151,11 +151,11 @@ Camera NamedCamera(const std::string& name, const Vector3f& low_m, const Vector3
   const Eigen::Matrix3f axes = CameraAxes(-from);
   Vector3f look_at = (low_m + high_m) / 2;
   float distance = 1;
-  // Perspective makes near corners reach further out than far ones: shift to their middle, then
-  // look again.
+  // In perspective near corners are further out than far ones: move the target to their middle,
+  // then repeat.
   for (int round = 0; round < 4; ++round) {
     const std::array<Vector3f, 8> corners = CornersInView(axes, look_at, low_m, high_m);
-    distance = kNearestEye_m;
+    distance = kMinEyeDistance_m;
     for (const Vector3f& q : corners) {
       distance = std::max(distance, q.z() + (q.head<2>().array().abs() / tangent).maxCoeff());
     }

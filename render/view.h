@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From metres in the world to pixels: bounds, the camera's matrices and the light's.
+// From metres in the world to pixels: bounds, and the matrices of the camera and the light.
 // Tested by tests/render/view_test.cc
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace prehend::render {
 
-/// Axis-parallel box in the world; empty until a finite point was added.
+/// Axis-aligned box in the world; empty until a finite point is added.
 struct Bounds {
   Eigen::Vector3f low_m = Eigen::Vector3f::Constant(1e30f);
   Eigen::Vector3f high_m = Eigen::Vector3f::Constant(-1e30f);
@@ -32,16 +32,16 @@ struct View {
   Eigen::Matrix4f world_to_clip() const { return view_to_clip * world_to_view; }
 };
 
-/// The camera's view. The field of view spans the part above `reserved_px` rows at the bottom (the
-/// strip), so that what the camera looks at stays in the middle of what can be seen. A camera
-/// without sense is replaced by the default.
+/// The camera's view. The field of view spans the part above `reserved_px` pixel rows at the bottom
+/// (the strip), so that the camera's target is in the middle of the visible part. An invalid camera
+/// is replaced by the default.
 View MakeView(const Camera& camera, int width_px, int height_px, int reserved_px,
               const Bounds& bounds);
 
-/// Pixel of a point, y down; nothing when it is not in front of the camera.
+/// Pixel of a point, y down; nullopt if it is not in front of the camera.
 std::optional<Eigen::Vector2f> ToPixel(const View& view, const Eigen::Vector3f& p_W_m);
 
-/// A parallel light from `to_light` whose map covers the ball.
+/// Matrix of a parallel light from `to_light` whose shadow map covers the sphere.
 Eigen::Matrix4f WorldToLight(const Eigen::Vector3f& to_light, const Eigen::Vector3f& center_m,
                              float radius_m);
 

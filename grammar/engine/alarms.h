@@ -21,7 +21,7 @@ class Alarms {
 
   /// Calls wake(instance) for each alarm up to `now` and drops it.
   template <typename Wake>
-  void Ring(Tick now, const Wake& wake) {
+  void Sound(Tick now, const Wake& wake) {
     while (!heap_.empty() && heap_.front().tick <= now) {
       wake(heap_.front().instance);
       std::ranges::pop_heap(heap_, Later);

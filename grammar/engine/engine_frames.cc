@@ -85,7 +85,7 @@ bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
   decided_ = frame.tick;
   history_.BeginFrame(frame.tick);
   past_.BeginFrame(history_.now());
-  alarms_.Ring(decided_, [this](InstanceId instance) { Wake(instance); });
+  alarms_.Sound(decided_, [this](InstanceId instance) { Wake(instance); });
   return true;
 }
 

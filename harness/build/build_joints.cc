@@ -94,7 +94,7 @@ physics::Joint MakeJoint(const Written& written) {
 
 std::vector<physics::Joint> BuildJoints(const ScenarioYaml& entry, DiagnosticList& errors) {
   std::vector<physics::Joint> joints;
-  Relation hangs_on(entry, "hangs on itself", errors);
+  Relation hangs_on(entry, "is attached to itself", errors);
   for (std::size_t i = 0; i < entry.entities.size(); ++i) {
     const EntityYaml& entity = entry.entities[i].value;
     const auto written = JointOf(entity);
@@ -105,11 +105,13 @@ std::vector<physics::Joint> BuildJoints(const ScenarioYaml& entry, DiagnosticLis
                  fmt::format("give '{}' 'fixed: true' instead", entry.entities[i].name));
     }
     if (AbstractOf(entry.entities[base].value) != physics::Abstract::kNot)
-      errors.Add(written->to->where, fmt::format("{}: '{}' is no matter: nothing hangs on it",
-                                                 written->key, written->to->value));
+      errors.Add(written->to->where,
+                 fmt::format("{}: '{}' is abstract: nothing can be attached to it", written->key,
+                             written->to->value));
     if (entry.entities[base].value.grains)
-      errors.Add(written->to->where, fmt::format("{}: '{}' is grains, which carry nothing",
-                                                 written->key, written->to->value));
+      errors.Add(written->to->where,
+                 fmt::format("{}: '{}' is grains: nothing can be attached to them", written->key,
+                             written->to->value));
     physics::Joint& joint = joints.emplace_back(MakeJoint(*written));
     joint.body = static_cast<int>(i);
     joint.base = static_cast<int>(base);

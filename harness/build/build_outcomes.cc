@@ -17,8 +17,8 @@ class ConditionBuilder {
   ConditionBuilder(const physics::Scene& scene, const physics::Script& script,
                    DiagnosticList& errors)
       : scene_(scene), errors_(errors), end_s_(DurationOf(script)) {
-    // Every beat ends with a tick.
-    latest_s_ = end_s_ + static_cast<double>(script.beats.size() + 1) / scene.world.rate_hz;
+    // Every stage ends with a tick.
+    latest_s_ = end_s_ + static_cast<double>(script.stages.size() + 1) / scene.world.rate_hz;
     for (const physics::Body& body : scene.bodies) names_.push_back(body.name);
   }
 
@@ -28,16 +28,16 @@ class ConditionBuilder {
     if (condition.body < 0) return std::nullopt;
     condition.joint = JointOf(condition.body);
     if ((wanted.joint_above || wanted.joint_below) && condition.joint < 0)
-      errors_.Add(wanted.where, fmt::format("entity: '{}' hangs on no joint", wanted.entity));
+      errors_.Add(wanted.where, fmt::format("entity: '{}' has no joint", wanted.entity));
     if (wanted.at_s && *wanted.at_s > latest_s_)
       errors_.Add(
           wanted.where,
-          fmt::format("at_s: {} s is after the end, which is at {:.3f} s", *wanted.at_s, end_s_),
-          "without at_s it is looked at then");
+          fmt::format("at_s: {} s is after the end of the run at {:.3f} s", *wanted.at_s, end_s_),
+          "without at_s the condition is checked at the end");
     if (wanted.inside) {
       condition.vessel = Find("inside", wanted.inside->value, wanted.inside->where);
       if (condition.vessel == condition.body)
-        errors_.Add(wanted.inside->where, "inside: nothing is inside of itself");
+        errors_.Add(wanted.inside->where, "inside: an entity cannot be inside itself");
     }
     return condition;
   }
@@ -75,8 +75,8 @@ std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<Condition
   for (const auto& entry : entries) {
     if (entry.name == "failed" || entry.name == "other")
       errors.Add(entry.name_where,
-                 fmt::format("outcomes: '{}' is what trials are called that {}", entry.name,
-                             entry.name == "failed" ? "went wrong" : "have no other outcome"),
+                 fmt::format("outcomes: '{}' is reserved for trials that {}", entry.name,
+                             entry.name == "failed" ? "went wrong" : "match no outcome"),
                  "choose another name");
     Outcome& outcome = outcomes.emplace_back();
     outcome.name = entry.name;

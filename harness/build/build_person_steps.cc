@@ -43,22 +43,21 @@ struct PersonStepMaker {
   }
   physics::PersonStep operator()(const MoveLimbYaml& e) const {
     CheckFree(e.move_limb);
-    return {0, physics::MoveLimbStep{e.move_limb.value, e.to_m, e.most_n}, e.over_s};
+    return {0, physics::MoveLimbStep{e.move_limb.value, e.to_m, e.max_force_n}, e.over_s};
   }
   physics::PersonStep operator()(const RecordingYaml& e) const {
     if (!e.style.value.empty())
-      errors.Add(e.style.where, "style: a person's recording moves her head, no hand");
-    if (!e.figures.empty()) {
+      errors.Add(e.style.where, "style: a person's recording moves the head, not a hand");
+    if (!e.postures.empty()) {
       CheckBody(e.recording.where, "recording");
-      return {0, physics::BodyPosesStep{e.figures}, e.figures.back().t_s};
+      return {0, physics::BodyPosesStep{e.postures}, e.postures.back().t_s};
     }
     const double over_s = e.poses.empty() ? 0 : e.poses.back().t_s;
     return {0, physics::HeadPosesStep{e.poses}, over_s};
   }
   template <class HandYaml>
   physics::PersonStep operator()(const HandYaml&) const {
-    errors.Add(step.name_where,
-               fmt::format("'{}' is a person, and this step is for hands", step.name),
+    errors.Add(step.name_where, fmt::format("'{}' is a person; this step is for hands", step.name),
                "persons look, walk, turn, lean, move a limb; their hands are actors of their own");
     return {};
   }
@@ -78,7 +77,7 @@ struct PersonStepMaker {
       if (scene.bodies[i].name == name.value && IsHers(i))
         return errors.Add(name.where,
                           fmt::format("look_at: '{}' cannot look at herself", person.name),
-                          "she looks at things, hands and other persons, or at a point: look_at_m");
+                          "name a thing, a hand or another person, or give a point with look_at_m");
     }
     std::vector<std::string> names;
     for (const physics::Body& body : scene.bodies) names.push_back(body.name);

@@ -55,7 +55,7 @@ class PersonBuilder {
         physics::PlacesOf(person, physics::Standing(scene_, person), {});
     for (std::size_t i = 0; i < parts.size(); ++i) {
       if (i > 0 && !taken_.insert(parts[i].name).second)
-        errors_.Add(where, fmt::format("'{}' is the name of a part of '{}' and of something else",
+        errors_.Add(where, fmt::format("'{}' names both a part of '{}' and something else",
                                        parts[i].name, person.name));
       parts[i].X_WB = places[i];
       scene_.bodies.push_back(std::move(parts[i]));

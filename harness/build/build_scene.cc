@@ -150,8 +150,8 @@ class Stacking {
       return std::nullopt;
     }
     if (const std::string what = WhyNoThing(bodies[found->second]); !what.empty()) {
-      errors_.Add(below->where, fmt::format("{}: '{}' is {}, which carr{} nothing", key,
-                                            below->value, what, what == "grains" ? "y" : "ies"));
+      errors_.Add(below->where, fmt::format("{}: '{}' is {}, which cannot support anything", key,
+                                            below->value, what));
       return std::nullopt;
     }
     return found->second;
@@ -171,8 +171,7 @@ class Stacking {
     const physics::Body* vessel = Placed(entity.in);
     if (!vessel || !entity.grains) return;  // was complained about
     if (Uprightness(*vessel) < kUpright) {
-      return errors_.Add(entity.in->where,
-                         fmt::format("in: '{}' does not stand upright", vessel->name));
+      return errors_.Add(entity.in->where, fmt::format("in: '{}' is not upright", vessel->name));
     }
     constexpr int kMaxGrains = 500;
     grains_so_far_ += entity.grains->count;
@@ -193,7 +192,7 @@ class Stacking {
       errors_.Add(entity.in->where,
                   fmt::format("in: {} of {} grains fit into '{}' below its rim", fit, grains.count,
                               vessel->name),
-                  "take fewer, smaller ones, or a larger vessel; its hollow is around the "
+                  "use fewer or smaller grains, or a larger vessel; its hollow is centred on the "
                   "vertical through its at_m");
     }
   }

@@ -98,7 +98,7 @@ struct StepMaker {
   template <class PersonYaml>
   physics::Step operator()(const PersonYaml&) const {
     errors.Add(written.name_where,
-               fmt::format("'{}' is a hand, and this step is for persons", written.name),
+               fmt::format("'{}' is a hand; this step is for persons", written.name),
                "hands reach, close, move; persons look, walk, lean");
     return {};
   }
@@ -111,8 +111,9 @@ struct StepMaker {
       const auto index = static_cast<std::size_t>(found - entities.begin());
       const std::string what = index < scene.bodies.size() ? WhyNoThing(scene.bodies[index]) : "";
       if (!what.empty())
-        errors.Add(name.where, fmt::format("{}: '{}' is {}, and no thing", key, name.value, what),
-                   what == "grains" ? "name the vessel that they are in" : "nothing touches it");
+        errors.Add(name.where,
+                   fmt::format("{}: '{}' is {}, not a physical object", key, name.value, what),
+                   what == "grains" ? "name the vessel that holds them" : "hands cannot touch it");
       return;
     }
     errors.AddUnknownName(name.where, fmt::format("{}: no entity is called '{}'", key, name.value),
@@ -128,7 +129,7 @@ struct StepMaker {
     const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
     if (away_m <= kMaxOutside_m) return;
     errors.Add(e.point_m->where,
-               fmt::format("point_m: the point is {:.1f} mm outside of '{}', more than {:g} mm",
+               fmt::format("point_m: the point is {:.1f} mm outside '{}', more than {:g} mm",
                            1000 * away_m, *found, 1000 * kMaxOutside_m),
                "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
   }
@@ -140,9 +141,8 @@ struct StepMaker {
     if (joint >= 0 &&
         scene.joints[static_cast<std::size_t>(joint)].kind != physics::JointKind::kBall)
       return;
-    errors.Add(name.where,
-               fmt::format("follow_joint: '{}' hangs on no slider or hinge", name.value),
-               "give it one, or move the hand by 'move_by_m'");
+    errors.Add(name.where, fmt::format("follow_joint: '{}' has no slider or hinge", name.value),
+               "give it one, or use 'move_by_m'");
   }
 
   physics::Step Follow(physics::PosesStep step, const Located<std::string>& style) const {
@@ -174,30 +174,30 @@ struct StepMaker {
   }
 };
 
-double DurationOf(const physics::Beat& beat) {
+double DurationOf(const physics::ScriptStage& stage) {
   double longest_s = 0;
-  for (const physics::Step& step : beat.steps) longest_s = std::max(longest_s, step.over_s);
-  for (const physics::PersonStep& step : beat.person_steps)
+  for (const physics::Step& step : stage.steps) longest_s = std::max(longest_s, step.over_s);
+  for (const physics::PersonStep& step : stage.person_steps)
     longest_s = std::max(longest_s, step.over_s);
   return longest_s;
 }
 
-/// Limits that concern the script as a whole, at the beat where they are passed.
+/// Limits that concern the script as a whole, at the stage where they are passed.
 void CheckLength(const ScenarioYaml& entry, const physics::Script& script, DiagnosticList& errors) {
   double total_s = script.settle_s;
   std::size_t poses = 0;
-  for (std::size_t i = 0; i < script.beats.size(); ++i) {
+  for (std::size_t i = 0; i < script.stages.size(); ++i) {
     for (const Named<StepYaml>& step : entry.script[i]) {
       if (const auto* given = std::get_if<PosesYaml>(&step.value)) poses += given->poses.size();
     }
-    total_s += DurationOf(script.beats[i]);
+    total_s += DurationOf(script.stages[i]);
     const Where where = entry.script[i].front().name_where;
     if (total_s > kMaxDuration_s) {
-      return errors.Add(where,
-                        fmt::format("the script takes more than {} s up to here", kMaxDuration_s));
+      return errors.Add(
+          where, fmt::format("the script is longer than {} s at this point", kMaxDuration_s));
     }
     if (poses > kMaxPoses)
-      return errors.Add(where, fmt::format("more than {} poses up to here", kMaxPoses));
+      return errors.Add(where, fmt::format("more than {} poses at this point", kMaxPoses));
   }
 }
 
@@ -215,10 +215,10 @@ void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
     const HandSoFar& hand = hands[step.name];
     if (!hand.reached.empty() || hand.closed) return;
     errors.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
-               "it has neither reached for something nor closed before");
+               "no step before this one reaches for something or closes the hand");
   };
-  for (const StageYaml& beat : script) {
-    for (const Named<StepYaml>& step : beat) {
+  for (const StageYaml& stage : script) {
+    for (const Named<StepYaml>& step : stage) {
       HandSoFar& hand = hands[step.name];
       if (const auto* reach = std::get_if<ReachYaml>(&step.value))
         hand.reached = reach->reach.value;
@@ -238,7 +238,8 @@ void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
         check_holds("place_on", step, place->where);
         if (place->place_on.value == hand.reached) {
           errors.Add(place->place_on.where,
-                     fmt::format("place_on: {} holds '{}' itself", step.name, hand.reached));
+                     fmt::format("place_on: {} holds '{}' and cannot place it on itself", step.name,
+                                 hand.reached));
         }
       }
     }
@@ -249,7 +250,7 @@ void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
 
 double DurationOf(const physics::Script& script) {
   double total_s = script.settle_s;
-  for (const physics::Beat& beat : script.beats) total_s += DurationOf(beat);
+  for (const physics::ScriptStage& stage : script.stages) total_s += DurationOf(stage);
   return total_s;
 }
 
@@ -268,11 +269,11 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
   physics::Script script;
   script.settle_s = entry.settle_s;
   for (const StageYaml& beat_entry : entry.script) {
-    physics::Beat& beat = script.beats.emplace_back();
+    physics::ScriptStage& stage = script.stages.emplace_back();
     for (const Named<StepYaml>& named : beat_entry) {
       const int hand = IndexOf(named.name, hands), person = IndexOf(named.name, persons);
       if (person >= 0) {
-        beat.person_steps.push_back(MakePersonStep(named, person, scene, errors));
+        stage.person_steps.push_back(MakePersonStep(named, person, scene, errors));
         continue;
       }
       if (hand < 0) {
@@ -285,7 +286,7 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
       physics::Step step =
           std::visit(StepMaker{entities, scene, model, named, errors}, named.value);
       step.hand = hand;
-      beat.steps.push_back(std::move(step));
+      stage.steps.push_back(std::move(step));
     }
   }
   CheckOrder(entry.script, errors);

@@ -62,12 +62,12 @@ std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDig
       if (given != numbers.value.end())
         errors_.Add(
             given->name_where,
-            fmt::format("{}: phalanges belong into frames_deg, jaws into frames_m", digit.name));
+            fmt::format("{}: phalanges belong in frames_deg, jaws in frames_m", digit.name));
       continue;
     }
     if (given == numbers.value.end()) {
       if (names_are_right)
-        errors_.Add(numbers.where, fmt::format("there is nothing for digit '{}'", digit.name));
+        errors_.Add(numbers.where, fmt::format("digit '{}' is missing", digit.name));
       continue;
     }
     const std::size_t joints = JointsOf(digit.value);
@@ -169,8 +169,8 @@ void AddStyles(const std::vector<Named<DigitYaml>>& digits,
     } else if (rule == SameName::kTakesItsPlace) {
       *same_name = std::move(built);
     } else {
-      errors.Add(style.name_where, fmt::format("the hand has a style '{}' already", style.name),
-                 "one of its files gives it; only `grasps` of a scenario replace styles");
+      errors.Add(style.name_where, fmt::format("the hand already has a style '{}'", style.name),
+                 "one of its files defines it; only a scenario's `grasps` replace styles");
     }
   }
 }

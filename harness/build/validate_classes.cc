@@ -38,16 +38,16 @@ void ValidateClasses(const ScenarioYaml& entry, DiagnosticList& errors) {
     for (const auto& [name, where] :
          {std::pair{kind.name, kind.name_where}, std::pair{kind.value.value, kind.value.where}}) {
       if (IsScenarioBuiltinClass(name))
-        errors.Add(where, fmt::format("classes: '{}' is built in and given anyway", name),
-                   "kinds are classes of your own: 'Cup: Container'");
+        errors.Add(where, fmt::format("classes: '{}' is a built-in class", name),
+                   "declare your own classes, for example 'Cup: Container'");
     }
     if (std::ranges::find(used, kind.name) == used.end())
       errors.AddUnknownName(kind.name_where,
-                            fmt::format("classes: no entity is of the class '{}'", kind.name),
+                            fmt::format("classes: no entity has the class '{}'", kind.name),
                             kind.name, used);
     if (IsKindOfItself(entry, kind))
       errors.Add(kind.value.where,
-                 fmt::format("classes: '{}' is, directly or not, a kind of itself", kind.name));
+                 fmt::format("classes: '{}' is, directly or not, its own base class", kind.name));
   }
 }
 

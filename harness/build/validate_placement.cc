@@ -97,16 +97,16 @@ void Complain(const Occupant& later, const Occupant& earlier, double depth_m,
     errors.Add(
         later.where,
         fmt::format("'{}' starts inside '{}', {:.0f} mm deep", later.name, earlier.name, depth_mm),
-        "let her stand elsewhere");
+        "move the person");
   } else if (later.hand) {
     errors.Add(later.where,
                fmt::format("actor '{}' starts inside '{}', {:.0f} mm deep", later.name,
                            earlier.name, depth_mm),
-               "let the hand start in free space");
+               "start the hand in free space");
   } else if (earlier.grains || later.grains) {
     errors.Add(later.where,
                fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),
-               "grains lie around the vertical axis of their vessel: leave that free");
+               "grains are placed around the vessel's vertical axis; keep it free");
   } else {
     errors.Add(later.where,
                fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),

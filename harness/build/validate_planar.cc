@@ -17,7 +17,7 @@ namespace {
 constexpr double kOnPlane_m = 1e-6;
 
 /// The hint for a place or a way.
-constexpr const char* kZeroY = "in a planar world y is 0";
+constexpr const char* kZeroY = "y must be 0 in a planar world";
 
 /// The places of the joint that an entity hangs on.
 Where JointPlace(const EntityYaml& entity) {
@@ -60,7 +60,7 @@ struct StepCheck {
   }
   void operator()(const RecordingYaml& e) const {
     errors.Add(e.recording.where, "a recorded motion does not stay in the plane y = 0",
-               "write its poses as a step of way-points: poses: [..]");
+               "write the motion as way-points: poses: [..]");
   }
   template <class Other>
   void operator()(const Other&) const {}
@@ -68,7 +68,7 @@ struct StepCheck {
  private:
   void CheckWay(const char* key, double y, const Where& where) const {
     if (std::abs(y) > kOnPlane_m)
-      errors.Add(where, fmt::format("{}: it leads out of the plane y = 0", key), kZeroY);
+      errors.Add(where, fmt::format("{}: this leaves the plane y = 0", key), kZeroY);
   }
 };
 
@@ -81,7 +81,7 @@ void CheckBodies(const ScenarioYaml& entry, const physics::Scene& scene, Diagnos
     errors.Add(beside ? entry.entities[i].value.at_m.where : entry.entities[i].name_where,
                fmt::format("'{}' does not fit a planar world: {}", body.name, why),
                beside ? kZeroY
-                      : "turn it about y only, and give it no parts beside the plane; see "
+                      : "rotate it about y only, and keep its parts in the plane; see "
                         "docs/scenario-format.md");
   }
 }
@@ -102,10 +102,10 @@ void CheckHand(const Named<HandActorYaml>& actor, const physics::Hand& hand,
   if (const std::string why = physics::WhyNotPlanar(hand.model); !why.empty())
     errors.Add(actor.value.hand.where,
                fmt::format("hand '{}' does not fit a planar world: {}", hand.model.name, why),
-               "the hand 'planar_gripper' does");
+               "use the hand 'planar_gripper'");
   if (std::abs(hand.X_WH.p_m.y()) > kOnPlane_m)
     errors.Add(actor.value.at_m.where,
-               fmt::format("at_m: '{}' starts beside the plane y = 0", actor.name), kZeroY);
+               fmt::format("at_m: '{}' starts outside the plane y = 0", actor.name), kZeroY);
   else if (!physics::KeepsPlane(hand.X_WH))
     errors.Add(actor.name_where, fmt::format("'{}' is turned out of the plane y = 0", actor.name),
                "a hand turns about y only: rpy_deg: [0, pitch, 0]");
@@ -124,10 +124,10 @@ void ValidatePlanar(const ScenarioYaml& entry, const physics::Scene& scene,
   }
   for (const Named<PersonActorYaml>& person : entry.persons)
     errors.Add(person.name_where,
-               fmt::format("'{}' is a person, and a planar world has none", person.name),
-               "play it without 'planar: true' and in the engine bullet");
-  for (const StageYaml& beat : entry.script) {
-    for (const Named<StepYaml>& step : beat) {
+               fmt::format("'{}' is a person; a planar world has no persons", person.name),
+               "remove 'planar: true' and use engine: bullet");
+  for (const StageYaml& stage : entry.script) {
+    for (const Named<StepYaml>& step : stage) {
       const auto hand = hands.find(step.name);
       if (hand != hands.end()) std::visit(StepCheck{scene, *hand->second, errors}, step.value);
     }

@@ -51,16 +51,16 @@ std::string BlameText(const std::optional<CheckRecord>& last_agreed,
   if (!last_agreed || !its_trace)
     return "blame: unknown, this scenario has not agreed with its golden in this folder yet\n";
   std::string text = fmt::format("blame: the grammar or the golden: everything moves {}", kAgreed);
-  if (const auto contact_end = FirstParting(*its_trace, now.trace)) {
+  if (const auto divergence = FirstDivergence(*its_trace, now.trace)) {
     text = "blame: physics";
     if (its_trace->entities != now.trace.entities) {
       text += ": other entities";
     } else {
       text += fmt::format(": since {:.4f} s (tick {}) {} {}",
-                          static_cast<double>(contact_end->tick) / now.ticks_per_second,
-                          contact_end->tick,
-                          contact_end->entity.empty() ? "the run is not as long"
-                                                      : contact_end->entity + " does not move",
+                          static_cast<double>(divergence->tick) / now.ticks_per_second,
+                          divergence->tick,
+                          divergence->entity.empty() ? "the run is not as long"
+                                                     : divergence->entity + " does not move",
                           kAgreed);
     }
   } else if (!SameSample(*its_trace, now.trace)) {

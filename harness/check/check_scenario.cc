@@ -138,9 +138,9 @@ std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& prog
 }
 
 void JudgeInvariants(const LoadedRun& loaded, const RunResult& run, ScenarioVerdict& verdict) {
-  const WorldYaml& world = loaded.scenario.world;
   EpisodeFacts facts{.end = run.ticks + 1};
-  facts.ticks_per_frame = DefaultTolerance(world.rate_hz, world.sensing_hz) / 2;
+  facts.ticks_per_frame =
+      DefaultTolerance(loaded.scenario.scene.world.rate_hz, loaded.scenario.sensing.sensing_hz) / 2;
   facts.latency = LatencyByEvent(*loaded.program);
   const Violations violations = CheckInvariants(run.timeline, facts);
   std::string details;
@@ -233,10 +233,10 @@ void JudgeAgainstGolden(const CheckRequest& request, const LoadedRun& loaded, co
     return Fail(verdict, ExitCode::kBadInput, "the golden cannot be read",
                 Format(golden.diagnostics));
   }
-  const WorldYaml& world = loaded.scenario.world;
-  const Comparison comparison =
-      Compare(golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
-              run.timeline, DefaultTolerance(world.rate_hz, world.sensing_hz));
+  const Comparison comparison = Compare(
+      golden.value.value_or(Golden{.ticks_per_second = run.timeline.ticks_per_second}),
+      run.timeline,
+      DefaultTolerance(loaded.scenario.scene.world.rate_hz, loaded.scenario.sensing.sensing_hz));
   verdict.timeline_svg = TimelineSvg(comparison, run.ticks + 1, run.drawings);
   const OracleComparison truth = CompareWithOracle(loaded.scenario, *loaded.program, run);
   const Golden pending =

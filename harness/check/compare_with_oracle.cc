@@ -64,7 +64,7 @@ OracleComparison CompareWithOracle(const Scenario& scenario, const grammar::Prog
                                    const RunResult& run) {
   const Judged judged = JudgedByOracle(scenario, program, run);
   const grammar::Tick tolerance =
-      DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz);
+      DefaultTolerance(scenario.scene.world.rate_hz, scenario.sensing.sensing_hz);
   const std::size_t others = run.timeline.events.size() - judged.found.events.size();
   return {.agreement = Agree(judged.truth, judged.found, tolerance),
           .tolerance = tolerance,

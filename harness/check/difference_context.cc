@@ -110,7 +110,7 @@ std::string FactsAround(const Scenario& scenario, std::span<const physics::Snaps
   const std::set<int> participants = Participants(difference, entity_table);
   const Tick rate = entity_table.ticks_per_second;
   const Tick around = TickAt(kAround_s, rate);
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
+  Sensing sensing(scenario.scene, scenario.sensing);
 
   const auto at = std::ranges::lower_bound(recording, tick, {}, &physics::Snapshot::tick);
   const physics::Snapshot& snapshot = at == recording.end() ? recording.back() : *at;

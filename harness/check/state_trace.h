@@ -26,7 +26,7 @@ struct PhysicsTrace {
 /// Of at most 20,000 snapshots; of a longer recording every n-th.
 PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording);
 
-struct PartingPlace {
+struct Divergence {
   std::int64_t tick = 0;
   std::string entity;  ///< the first that differs; "" when one run has more ticks or other entities
 };
@@ -35,7 +35,7 @@ struct PartingPlace {
 bool SameSample(const PhysicsTrace& a, const PhysicsTrace& b);
 
 /// Nothing when the two move the same, as far as both look, and are as long.
-std::optional<PartingPlace> FirstParting(const PhysicsTrace& a, const PhysicsTrace& b);
+std::optional<Divergence> FirstDivergence(const PhysicsTrace& a, const PhysicsTrace& b);
 
 /// A text file; "" or what went wrong.
 std::string WriteTrace(const std::filesystem::path& path, const PhysicsTrace& trace);

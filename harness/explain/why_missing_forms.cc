@@ -26,7 +26,8 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr FrameNumber kMostLooks = 2000;  // of a long window only so many frames are looked at
+/// Of a longer window only this many frames are sampled.
+constexpr FrameNumber kMaxSampledFrames = 2000;
 constexpr std::size_t kMaxIntervals = 4;  // are listed
 
 Reason Failed(std::string what, std::string how, Reasons because = {}) {
@@ -102,7 +103,7 @@ FrameNumber MissingReasons::Closest(int node, Moment at, const Window& window) {
     first = from;
     last = to;
   }
-  const FrameNumber step = std::max<FrameNumber>(1, (last - first) / kMostLooks);
+  const FrameNumber step = std::max<FrameNumber>(1, (last - first) / kMaxSampledFrames);
   FrameNumber closest = window.at.value_or(first);
   at.frame = closest;
   double best = clauses_.Nearness(node, at, true);

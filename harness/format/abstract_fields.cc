@@ -37,8 +37,8 @@ ValueFormat<CameraYaml> CameraFormat() {
   using C = CameraYaml;
   return StructFormat<C>("a camera")
       .Required("toward_m", &C::toward_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                "A point in the middle of its picture, in the world.")
-      .Optional("view_deg", &C::view_deg, Number(5, 120), "How much it sees, from below to above.")
+                "The point it looks at, world coordinates.")
+      .Optional("view_deg", &C::view_deg, Number(5, 120), "Vertical field of view.")
       .format();
 }
 
@@ -52,23 +52,22 @@ void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticLis
        {"fixed", "mass_kg", "friction", "rolling_friction", "restitution", "linear_damping_per_s",
         "angular_damping_per_s", "fixed_to", "slider", "hinge", "ball_joint", "on", "in"}) {
     if (const YamlNode* given = node.Find(key))
-      errors.Add(given->key_where, std::string(key) + ": " + noun +
-                                       " has none; it is no matter, and stays where it is");
+      errors.Add(given->key_where,
+                 std::string(key) + ": " + noun + " is abstract; this key does not apply to it");
   }
   for (const char* key : {"rpy_deg", "yaw_deg"}) {
     const YamlNode* given = abstract == Abstract::kRegion ? nullptr : node.Find(key);
     if (given)
-      errors.Add(given->key_where, std::string(key) + ": " + noun + " is not turned",
-                 abstract == Abstract::kCamera ? "it looks toward_m" : "");
+      errors.Add(given->key_where, std::string(key) + ": " + noun + " has no rotation",
+                 abstract == Abstract::kCamera ? "use toward_m" : "");
   }
   if (entity.camera && std::ranges::find(CameraWords(), node.key) != CameraWords().end())
-    errors.Add(node.key_where, "'" + node.key + "' is a camera that every scenario has",
-               "call it otherwise");
+    errors.Add(node.key_where, "'" + node.key + "' is a built-in camera", "choose another name");
   if (entity.camera && entity.at_m.value.size() == 3) {
     const Eigen::Vector3d at_m(entity.at_m.value[0], entity.at_m.value[1], entity.at_m.value[2]);
     if ((entity.camera->toward_m.value - at_m).norm() < kMinSize_m)
-      errors.Add(entity.camera->toward_m.where, "toward_m: the camera stands there",
-                 "a point that it looks at");
+      errors.Add(entity.camera->toward_m.where, "toward_m: this is the camera's own position",
+                 "give the point that it looks at");
   }
 }
 

@@ -51,16 +51,16 @@ ValueFormat<physics::TrackerSettings> TrackingFormat() {
   using T = physics::TrackerSettings;
   return StructFormat<T>("the tracking")
       .Optional("tracker_hz", &T::tracker_hz, Integer<int>(1, 4800),
-                "Looks of the tracker per second, at most rate_hz.")
-      .Optional("latency_s", &T::latency_s, Number(0, 2), "From a look to its arrival.")
+                "Samples of the tracker per second, at most rate_hz.")
+      .Optional("latency_s", &T::latency_s, Number(0, 2), "Delay from a sample to its arrival.")
       .Optional("jitter_mm", &T::jitter_mm, Number(0, 100),
-                "Standard deviation of each coordinate of a look.")
+                "Standard deviation of each coordinate of a sample.")
       .Optional("jitter_deg", &T::jitter_deg, Number(0, 45),
-                "Standard deviation of each component of a look's rotation vector.")
+                "Standard deviation of each component of a sample's rotation vector.")
       .Optional("dropped_share", &T::dropped_share, Number(0, 0.95),
-                "Share of the looks that are lost.")
+                "Share of the samples that are lost.")
       .Optional("dropped_run_s", &T::dropped_run_s, Number(0, 10),
-                "Mean length of a loss; 0: every look is lost for itself.")
+                "Mean length of a loss; 0: losses are independent.")
       .Optional("tremor_mm", &T::tremor_mm, Number(0, 50), "Amplitude of the tremor on each axis.")
       .Optional("tremor_hz", &T::tremor_hz, Number(0.1, 60), "Frequency of the tremor.")
       .Check(CheckLosses)
@@ -81,15 +81,15 @@ ValueFormat<HandActorYaml> HandActorFormat() {
           "grasps", &A::grasps,
           ListOf(WithPlace(Word("[A-Za-z0-9_./-]+\\.grasps\\.yaml", "a .grasps.yaml file", 255)), 1,
                  16),
-          "Files of grasp styles beside the scenario, which the hand has, too; one of the same "
-          "name as an earlier one takes its place.")
+          "Files beside the scenario with more grasp styles for the hand; a style replaces an "
+          "earlier one of the same name.")
       .Required("at_m", &A::at_m, Position(),
                 "World coordinates of the palm's centre at the start.")
       .Optional("rpy_deg", &A::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis. "
-                "At 0 fingers point along x, the palm looks down.")
+                "At 0 the fingers point along x and the palm faces down.")
       .Optional("gains", &A::gains, GainsFormat(),
-                "Replaces gains of the hand file; what is not given stays.")
+                "Replaces gains of the hand file; gains not given here stay.")
       .Optional("tracking", &A::tracking, TrackingFormat(),
                 "An imperfect tracker between the wanted pose and the tracked target.")
       .format();
@@ -101,11 +101,11 @@ ValueFormat<PersonActorYaml> PersonActorFormat() {
       .NamedByKey()
       .Required("person", &P::person,
                 Choice<PersonKind>({{"head", PersonKind::kHead}, {"body", PersonKind::kBody}}),
-                "How much of a human takes part: a head that looks, or a whole body.")
+                "How much of the person is simulated: a head that looks, or a whole body.")
       .Required("at_m", &P::at_m, Position(),
-                "World coordinates of the place between the feet, on the floor.")
-      .Optional("yaw_deg", &P::yaw_deg, Number(-360, 360), "Where she faces; at 0 along x.")
-      .Optional("height_m", &P::height_m, Number(1, 2.3), "From the floor to the crown.")
+                "World coordinates of the point between the feet, on the floor.")
+      .Optional("yaw_deg", &P::yaw_deg, Number(-360, 360), "The direction she faces; 0 is along x.")
+      .Optional("height_m", &P::height_m, Number(1, 2.3), "Height from the floor to the crown.")
       .Optional("eyes", &P::eyes, EyesFormat(),
                 "Where she looks when no step says so: where her hands go next, or ahead.")
       .Optional("right_hand", &P::right_hand, Identifier(), "The actor that is her right hand.")

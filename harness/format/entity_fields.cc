@@ -22,15 +22,17 @@ constexpr double kMaxTurn_deg = 170;  // at half a turn the two ways could not b
 void CheckRange(const YamlNode&, const JointYaml& joint, DiagnosticList& errors) {
   const Eigen::Vector2d& range = joint.range.value;
   if (range[0] <= 0 && range[1] >= 0 && range[0] < range[1]) return;
-  errors.Add(joint.range.where,
-             fmt::format("expected a range [least, most] with 0, where it is placed, between "
-                         "or at them, found [{}, {}]",
-                         range[0], range[1]));
+  errors.Add(
+      joint.range.where,
+      fmt::format(
+          "expected a range [min, max] that contains 0, the position as placed, found [{}, {}]",
+          range[0], range[1]));
 }
 
 StructFormat<JointYaml> JointRecord(const std::string& noun) {
   using J = JointYaml;
-  return StructFormat<J>(noun).Required("to", &J::to, Identifier(), "The entity that it hangs on.");
+  return StructFormat<J>(noun).Required("to", &J::to, Identifier(),
+                                        "The entity that it is attached to.");
 }
 
 ValueFormat<Eigen::Vector3d> Axis() { return Vector<3>(-1, 1); }
@@ -46,8 +48,8 @@ std::function<void(const YamlNode&, const JointYaml&, DiagnosticList&)> SpringPu
   return [rest, spring](const YamlNode& node, const JointYaml&, DiagnosticList& errors) {
     const YamlNode* given = node.Find(rest);
     if (!given || node.Find(spring)) return;
-    errors.Add(given->key_where, fmt::format("{}: there is no spring that pulls to it", rest),
-               fmt::format("give it {}", spring));
+    errors.Add(given->key_where, fmt::format("{}: there is no spring", rest),
+               fmt::format("add {}", spring));
   };
 }
 
@@ -57,14 +59,15 @@ ValueFormat<JointYaml> SliderFormat() {
       .Required("axis", &J::axis, Axis(),
                 "The direction in which it opens, in the world, as placed.")
       .Required("range_m", &J::range, Vector<2>(-kMaxSlide_m, kMaxSlide_m),
-                "How far it goes from where it is placed: [least, most].")
+                "Range of motion relative to where it is placed: [min, max].")
       .Optional("friction_n", &J::friction, Number(0, kMaxResistance),
                 "Largest force that it holds against.")
       .Optional("damping_n_s_per_m", &J::damping, Number(0, kMaxResistance),
-                "Force against its speed.")
+                "Damping: force per speed.")
       .Optional("spring_n_per_m", &J::spring, Number(0, kMaxResistance),
                 "Force that pulls it to rest_m.")
-      .Optional("rest_m", &J::rest, Number(-kMaxSlide_m, kMaxSlide_m), "Where its spring is slack.")
+      .Optional("rest_m", &J::rest, Number(-kMaxSlide_m, kMaxSlide_m),
+                "Where its spring exerts no force.")
       .Check(CheckAxis)
       .Check(CheckRange)
       .Check(SpringPullsTo("rest_m", "spring_n_per_m"))
@@ -77,17 +80,17 @@ ValueFormat<JointYaml> HingeFormat() {
       .Required("at_m", &J::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "A point of its axis, in the world, as placed.")
       .Required("axis", &J::axis, Axis(),
-                "The direction of its axis; it opens the way that a right-handed screw turns.")
+                "The direction of its axis; positive angles follow the right-hand rule.")
       .Required("range_deg", &J::range, Vector<2>(-kMaxTurn_deg, kMaxTurn_deg),
-                "How far it turns from where it is placed: [least, most].")
+                "Range of rotation relative to where it is placed: [min, max].")
       .Optional("friction_nm", &J::friction, Number(0, kMaxResistance),
                 "Largest torque that it holds against.")
       .Optional("damping_nm_s_per_rad", &J::damping, Number(0, kMaxResistance),
-                "Torque against its speed.")
+                "Damping: torque per angular speed.")
       .Optional("spring_nm_per_rad", &J::spring, Number(0, kMaxResistance),
                 "Torque that turns it to rest_deg.")
       .Optional("rest_deg", &J::rest, Number(-kMaxTurn_deg, kMaxTurn_deg),
-                "Where its spring is slack.")
+                "Where its spring exerts no force.")
       .Check(CheckAxis)
       .Check(CheckRange)
       .Check(SpringPullsTo("rest_deg", "spring_nm_per_rad"))
@@ -97,15 +100,16 @@ ValueFormat<JointYaml> HingeFormat() {
 ValueFormat<JointYaml> BallJointFormat() {
   return JointRecord("a ball joint")
       .Required("at_m", &JointYaml::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                "The point about which it turns any way, in the world, as placed.")
+                "The point about which it rotates, in the world, as placed.")
       .format();
 }
 
 void CheckClass(const EntityYaml& entity, DiagnosticList& errors) {
   if (!IsScenarioBuiltinClass(entity.class_name.value)) return;
-  errors.Add(entity.class_name.where,
-             "class: '" + entity.class_name.value + "' is built in and given anyway",
-             "name what the thing is, for example Cup");
+  errors.Add(
+      entity.class_name.where,
+      "class: '" + entity.class_name.value + "' is a built-in class that entities get anyway",
+      "name what the entity is, for example Cup");
 }
 
 /// What hangs on a joint moves, and what is fixed to something has its surface.
@@ -114,7 +118,7 @@ void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& 
   for (const char* key : {"fixed_to", "slider", "hinge", "ball_joint"}) {
     const YamlNode* joint = node.Find(key);
     if (joint && entity.fixed) {
-      errors.Add(joint->key_where, title + " is fixed: it cannot hang on a joint",
+      errors.Add(joint->key_where, title + " is fixed: it cannot have a joint",
                  "remove fixed or " + std::string(key));
     }
   }
@@ -123,9 +127,10 @@ void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& 
                           "angular_damping_per_s"}) {
     const YamlNode* surface = node.Find(key);
     if (surface) {
-      errors.Add(surface->key_where,
-                 std::string(key) + ": what is fixed to something has its surface",
-                 "give it to '" + entity.fixed_to->value + "'");
+      errors.Add(
+          surface->key_where,
+          std::string(key) + ": an entity that is fixed to another has the surface of that one",
+          "give it to '" + entity.fixed_to->value + "'");
     }
   }
 }
@@ -134,7 +139,7 @@ void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& 
 void CheckGrains(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
   const std::string title = "entity '" + node.key + "'";
   if (entity.in && !entity.grains)
-    errors.Add(entity.in->where, "in: only grains are put into something",
+    errors.Add(entity.in->where, "in: only grains can be put into a vessel",
                "for a thing: 'on', with at_m: [x, y]");
   if (!entity.grains) return;
   if (!entity.in)
@@ -143,8 +148,9 @@ void CheckGrains(const YamlNode& node, const EntityYaml& entity, DiagnosticList&
   for (const char* key : {"fixed", "part_of", "fixed_to", "slider", "hinge", "ball_joint", "on",
                           "at_m", "rpy_deg", "yaw_deg"}) {
     if (const YamlNode* given = node.Find(key))
-      errors.Add(given->key_where,
-                 std::string(key) + ": grains have none; they lie loose in their vessel");
+      errors.Add(
+          given->key_where,
+          std::string(key) + ": this key does not apply to grains; they lie loose in their vessel");
   }
 }
 
@@ -194,22 +200,21 @@ ValueFormat<EntityYaml> EntityFormat() {
       .Optional("mug", &E::mug, MugFormat(), "Its shape: a round cup, perhaps with a handle.")
       .Optional("bowl", &E::bowl, BowlFormat(), "Its shape: a round dish.")
       .Optional("shelf", &E::shelf, ShelfFormat(),
-                "Its shape: boards between two sides; a cupboard has two.")
+                "Its shape: boards between two sides, as a shelf or a cupboard.")
       .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMaxParts),
                 "Its shape: several shapes, rigidly together.")
       .Optional("grains", &E::grains, GrainsFormat(),
                 "Many loose balls in a vessel, seen as one entity.")
-      .Optional("region", &E::region, RegionFormat(), "No matter: a box or a ball of space.")
+      .Optional("region", &E::region, RegionFormat(), "Abstract: a region, a box or a ball.")
       .Optional("gaze_target", &E::gaze_target, GazeTargetFormat(),
-                "No matter: a place that eyes can look at.")
-      .Optional("camera", &E::camera, CameraFormat(), "No matter: from where pictures can be made.")
-      .Optional("light", &E::light, LightFormat(),
-                "No matter: from where the light of pictures comes.")
+                "Abstract: a point that eyes can look at.")
+      .Optional("camera", &E::camera, CameraFormat(), "Abstract: a viewpoint for pictures.")
+      .Optional("light", &E::light, LightFormat(), "Abstract: a light source for pictures.")
       .Optional("fixed", &E::fixed, Flag(), "True: never moves and has no mass.")
       .Optional("mass_kg", &E::mass_kg, Number(0.001, 1000),
                 "Mass; required unless fixed or abstract. Of grains: of all together.")
       .Optional("friction", &E::friction, Number(0, 5),
-                "Coulomb friction; that of two bodies is multiplied. Default 0.8.")
+                "Coulomb friction; the values of two touching bodies are multiplied. Default 0.8.")
       .Optional("rolling_friction", &E::rolling_friction, Number(0, 1),
                 "Slows rolling; default 0.006 for a sphere and for grains, 0 for the others.")
       .Optional("restitution", &E::restitution, Number(0, 1),
@@ -227,7 +232,7 @@ ValueFormat<EntityYaml> EntityFormat() {
                 "It slides on another entity, as a drawer does.")
       .Optional("hinge", &E::hinge, HingeFormat(), "It turns on another entity, as a door does.")
       .Optional("ball_joint", &E::ball_joint, BallJointFormat(),
-                "It swings any way about a point of another entity.")
+                "It rotates freely about a point of another entity.")
       .Optional("at_m", &E::at_m, ListOf(Number(-kMaxDistance_m, kMaxDistance_m), 2, 3),
                 "World coordinates of its centre: [x, y, z], or [x, y] with 'on'.")
       .Optional("rpy_deg", &E::rpy_deg, Vector<3>(-360, 360),

@@ -88,7 +88,7 @@ ValueFormat<PalmYaml> PalmFormat() {
                 "Full edge lengths of its box [x, y, z].")
       .Optional("mass_kg", &P::mass_kg, PartMass(), "Mass.")
       .Optional("inertia_scale", &P::inertia_scale, Number(1, 100),
-                "Stands for the forearm: times the box' inertia.")
+                "Factor on the box's inertia; accounts for the forearm.")
       .Required("sensor_set", &P::sensor_set, Identifier(),
                 "The sensor set that feels its contacts.")
       .format();
@@ -126,11 +126,11 @@ ValueFormat<JointDriver> DriverFormat() {
   return StructFormat<D>("the joint driver")
       .Optional("stiffness", &D::stiffness, Number(0, 1),
                 "Share of the error that it tries to remove per tick.")
-      .Optional("damping", &D::damping, Number(0, 1), "How firmly it holds the speed it wants.")
+      .Optional("damping", &D::damping, Number(0, 1), "How firmly it holds its target speed.")
       .Optional("max_speed_rad_per_s", &D::max_speed_rad_per_s, Number(0.1, 100),
-                "Fastest that a joint turns.")
+                "Maximum speed of a joint.")
       .Optional("max_slide_m_per_s", &D::max_slide_m_per_s, Number(0.001, 10),
-                "Fastest that a jaw slides.")
+                "Maximum speed of a jaw.")
       .format();
 }
 
@@ -148,14 +148,14 @@ StructFormat<Link> LinkRecord(StructFormat<Link> record, const char* strength, d
       .Required("length_m", Of<Link>(&LinkYaml::length_m), PartLength(),
                 "From its joint to the next one.")
       .Required("half_width_m", Of<Link>(&LinkYaml::half_width_m), PartLength(),
-                "Half of its size across.")
+                "Half of its width.")
       .Required("half_thickness_m", Of<Link>(&LinkYaml::half_thickness_m), PartLength(),
-                "Half of its size from back to pad.")
+                "Half of its thickness, from back to pad.")
       .Required("mass_kg", Of<Link>(&LinkYaml::mass_kg), PartMass(), "Mass.")
       .Required(strength, Of<Link>(&LinkYaml::strength), Number(0, strongest),
                 "Largest torque or force of its joint at effort 1.")
       .Required(range, Of<Link>(&LinkYaml::range), Vector<2>(-farthest, farthest),
-                "Joint limits [least, most].")
+                "Joint limits [min, max].")
       .Check([key = std::string(range)](const YamlNode&, const Link& link, DiagnosticList& errors) {
         CheckLeastMost(key, link.range.value, link.range.where, errors);
       });
@@ -166,7 +166,7 @@ ValueFormat<PhalanxYaml> PhalanxFormat() {
   StructFormat<P> record("a phalanx");
   record.Required("name", &P::name, Identifier(), "Its name after the digit's: index_proximal.")
       .Optional("joint_axis", &P::joint_axis, Direction(),
-                "Of the joint at its base, in H; positive angles close.");
+                "Axis of the joint at its base, in H; positive angles close.");
   return LinkRecord(record, "strength_nm", 100, "range_deg", 180).format();
 }
 
@@ -186,7 +186,7 @@ void CheckLastJoint(const YamlNode& node, const DigitYaml& digit, DiagnosticList
   const YamlNode* axis = last.Find("joint_axis");
   errors.Add(axis ? axis->where : last.where,
              fmt::format("joint_axis: expected an axis across the direction of digit '{}', "
-                         "found one along it: the joint would move nothing",
+                         "found one along it; such a joint moves nothing",
                          node.key),
              axis ? "" : "without joint_axis it is [0, 1, 0]");
 }
@@ -244,7 +244,7 @@ void CheckApproaches(const YamlNode& node, const StyleYaml& style, DiagnosticLis
   if (!style.side) return;
   check_toward("side", *style.side);
   CheckAcross(*node.Find("side"), "up", style.side->up, "toward", style.side->toward, errors,
-              "the hand arrives level, along toward, with up towards the sky");
+              "the hand arrives horizontally, along toward, with up pointing up");
 }
 
 ValueFormat<StyleYaml> StyleFormat() {
@@ -266,7 +266,7 @@ ValueFormat<StyleYaml> StyleFormat() {
       .Optional("frames_deg", &S::frames_deg, ListOf(WithPlace(PerDigitFormat(-180, 180)), 2, 16),
                 "Joint angles from open to closed: for each digit one number for each joint.")
       .Optional("frames_m", &S::frames_m, ListOf(WithPlace(PerDigitFormat(-0.5, 0.5)), 2, 16),
-                "Where jaws stand from open to closed: for each jaw one number.")
+                "Positions of the jaws from open to closed: for each jaw one number.")
       .Check([](const YamlNode& node, const S& style, DiagnosticList& errors) {
         if (style.above || style.side) return;
         errors.Add(node.key_where, "style '" + node.key + "' has no approach",
@@ -296,9 +296,9 @@ ValueFormat<HandYaml> BuildHandFormat() {
       .Required("sensor_sets", &H::sensor_sets, DifferentNames(16), "Groups of contact sensors.")
       .Optional("ahead", &H::ahead, Direction(), "In H: where the region of interest lies.")
       .Optional("friction", &H::friction, Number(0, 5),
-                "Of its skin; multiplied with the object's.")
+                "Friction of the skin; multiplied with the object's.")
       .Optional("spinning_friction", &H::spinning_friction, Number(0, 1),
-                "Against turning in place.")
+                "Friction against spinning in place.")
       .Required("palm", &H::palm, PalmFormat(), "The palm, a box.")
       .Required("gains", &H::gains, GainsFormat(), "How the palm follows its tracked target.")
       .Optional("driver", &H::driver, DriverFormat(), "How the joints follow their targets.")
@@ -309,8 +309,7 @@ ValueFormat<HandYaml> BuildHandFormat() {
       .Optional("styles", &H::styles, StylesFormat(), "Grasps, by name.")
       .Check([](const YamlNode& node, const H& hand, DiagnosticList& errors) {
         if (hand.grasps.empty() && hand.styles.empty())
-          errors.Add(node.where, "the hand has no style of grasp",
-                     "give 'grasps', 'styles' or both");
+          errors.Add(node.where, "the hand has no grasp style", "give 'grasps', 'styles' or both");
       })
       .format();
 }

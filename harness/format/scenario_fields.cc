@@ -20,19 +20,20 @@ ValueFormat<WorldYaml> WorldFormat() {
                                 {"bullet_stock", Engine::kBulletStock}}),
                 "The physics engine. box2d is planar; bullet_stock is Bullet without this "
                 "project's changes, to compare.")
-      .Optional("planar", &W::planar, Flag(),
-                "Everything stays in the plane y = 0; always so with box2d, else not unless given.")
+      .Optional(
+          "planar", &W::planar, Flag(),
+          "Everything stays in the plane y = 0; always true with box2d, default false otherwise.")
       .Optional("rate_hz", &W::rate_hz, Integer<int>(60, 4800), "Physics steps per second.")
       .Optional("sensing_hz", &W::sensing_hz, Integer<int>(1, 4800),
-                "Looks of the grammar per second, at most rate_hz.")
+                "Frames per second that the grammar sees, at most rate_hz.")
       .Optional("bearing_share", &W::bearing_share, Number(0, 0.5),
-                "Of the load between two that touch: a point of contact with a smaller share bears "
-                "nothing, so its normal does not say what is held from below.")
+                "A contact point with a smaller share of the load between two bodies is not "
+                "counted as support.")
       .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
                 "Seed of all randomness.")
       .Check([](const YamlNode&, const W& world, DiagnosticList& errors) {
         if (world.engine != Engine::kBox2d || !world.planar || world.planar->value) return;
-        errors.Add(world.planar->where, "planar: engine box2d knows nothing but the plane",
+        errors.Add(world.planar->where, "planar: engine box2d is always planar",
                    "planar: true, or engine: bullet");
       })
       .Check([](const YamlNode& node, const W& world, DiagnosticList& errors) {
@@ -95,17 +96,18 @@ ValueFormat<ScenarioYaml> BuildScenarioFormat() {
       .Required("entities", &S::entities, MapOf(Identifier(), EntityFormat(), 1, kMaxEntities),
                 "The things in the world, by name.")
       .Optional("classes", &S::classes, MapOf(ClassName(), WithPlace(ClassName()), 0, kMaxClasses),
-                "Classes, and the class that each is a kind of: {Cup: Container}.")
+                "Classes and their base classes: {Cup: Container}.")
       .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors),
-                "The hands, by name.")
-      .Optional("script", &S::script,
-                ListOf(MapOf(Identifier(), StepFormat(), 1, kMaxActors), 0, kMaxBeats),
-                "What the hands do: beats, one after another; in a beat one step per named actor.")
-      .Optional("settle_s", &S::settle_s, Number(0, 60), "Simulated on after the last beat.")
+                "The hands and persons, by name.")
+      .Optional(
+          "script", &S::script,
+          ListOf(MapOf(Identifier(), StepFormat(), 1, kMaxActors), 0, kMaxBeats),
+          "What the actors do: stages, one after another; in a stage one step per named actor.")
+      .Optional("settle_s", &S::settle_s, Number(0, 60), "Time simulated after the last stage.")
       .Optional("vary", &S::vary, ListOf(VariationFormat(), 0, kMaxVariations),
                 "What differs from trial to trial of 'prehend run --trials'.")
       .Optional("outcomes", &S::outcomes, MapOf(Identifier(), OutcomeFormat(), 0, kMaxOutcomes),
-                "How a trial can end, by name; the first one is the one that is wanted.")
+                "How a trial can end, by name; the first is the desired one.")
       .Optional("pictures", &S::pictures, ListOf(PictureFormat(), 0, kMaxPictures),
                 "Which pictures are drawn.")
       .format();

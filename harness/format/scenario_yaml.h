@@ -233,13 +233,13 @@ struct RecordingYaml {
   Eigen::Vector3d palm_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d palm_rpy_deg = Eigen::Vector3d::Zero();
   double join_s = 0.5;
-  double most_gap_s = 0.25;
-  double most_jump_m = 0.1;
+  double max_gap_s = 0.25;
+  double max_jump_m = 0.1;
   std::optional<Located<double>> scale;  ///< metres per unit of a .bvh file
-  // What harness/read/place_recordings.h makes of the file: poses of the palm or head, or figures
+  // What harness/read/place_recordings.h makes of the file: poses of the palm or head, or postures
   // of a body.
   std::vector<physics::TimedPose> poses;
-  std::vector<physics::TimedFigure> figures;
+  std::vector<physics::TimedPosture> postures;
 };
 // Steps of persons.
 struct LookAtYaml {
@@ -273,7 +273,7 @@ struct SwayYaml {
 struct MoveLimbYaml {
   Located<physics::LimbEnd> move_limb;
   std::optional<Eigen::Vector3d> to_m;
-  std::optional<double> most_n;
+  std::optional<double> max_force_n;
   double over_s = 0.8;
 };
 
@@ -284,6 +284,15 @@ using StepYaml =
 
 /// One item of the script: what each named actor does at the same time.
 using StageYaml = std::vector<Named<StepYaml>>;
+
+struct WorldYaml {
+  physics::Engine engine = physics::Engine::kBullet;
+  std::optional<Located<bool>> planar;  ///< default: as the engine needs it
+  int rate_hz = physics::WorldSettings{}.rate_hz;
+  int sensing_hz = SensingSettings{}.sensing_hz;
+  double bearing_share = SensingSettings{}.bearing_share;
+  std::uint64_t seed = physics::WorldSettings{}.seed;
+};
 
 struct ScenarioYaml {
   Where where;

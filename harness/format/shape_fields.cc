@@ -32,7 +32,7 @@ void CheckWall(const YamlNode& node, double wall_m, double narrow_m, DiagnosticL
   const YamlNode* wall = node.Find("wall_m");
   errors.Add(wall ? wall->where : node.where,
              fmt::format("wall_m: walls of {} leave no room inside", wall_m),
-             "walls are thinner than half of the narrowest side");
+             "walls must be thinner than half of the narrowest side");
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ ValueFormat<physics::Mug> MugFormat() {
       .Required("height_m", &M::height_m, Length(), "Height.")
       .Optional("wall_m", &M::wall_m, Length(), "Thickness of floor and wall.")
       .Optional("handle_m", &M::handle_m, Number(0, kMaxSize_m),
-                "How far its handle stands out to +x; 0: it has none.")
+                "How far its handle extends to +x; 0: no handle.")
       .Check([](const YamlNode& node, const M& mug, DiagnosticList& errors) {
         CheckWall(node, mug.wall_m, 2 * std::min(mug.radius_m, mug.height_m), errors);
         constexpr double kMinHandle_m = 0.011;  // its bar is 10 mm thick
@@ -136,7 +136,7 @@ ValueFormat<physics::Shelf> ShelfFormat() {
   return StructFormat<S>("a shelf")
       .Required("size_m", &S::size_m, Size(), "Outer edge lengths [x, y, z]; it is open to -x.")
       .Optional("boards", &S::boards, Integer<int>(2, kMaxBoards),
-                "How many, at even distances, with the lowest and the highest.")
+                "How many, evenly spaced, including the lowest and the highest.")
       .Optional("wall_m", &S::wall_m, Length(), "Thickness of boards, sides and back.")
       .Optional("back", &S::back, Flag(), "False: open to +x, too.")
       .Check([](const YamlNode& node, const S& shelf, DiagnosticList& errors) {

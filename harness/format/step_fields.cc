@@ -19,7 +19,7 @@ constexpr double kMaxStep_s = 600;
 
 ValueFormat<double> Duration() { return Number(kMinStep_s, kMaxStep_s); }
 const std::string kOverDoc = "Duration in seconds.";
-const std::string kStyleDoc = "The grasp style that the hand takes; default: it keeps its own.";
+const std::string kStyleDoc = "The grasp style that the hand takes; default: unchanged.";
 
 /// A record with one number, list or name and a duration; most steps are of this kind.
 template <class Entry, class M, class F>
@@ -56,10 +56,11 @@ ValueFormat<StepYaml> FollowJointFormat() {
   using F = FollowJointYaml;
   return AsAlternative<StepYaml>(
       StructFormat<F>("a follow_joint step")
-          .Required("follow_joint", &F::follow_joint, Identifier(),
-                    "The entity on a slider or hinge whose way the hand goes, with what it holds.")
+          .Required(
+              "follow_joint", &F::follow_joint, Identifier(),
+              "The entity on a slider or hinge whose path the hand follows, with what it holds.")
           .Optional("to", &F::to, Number(0, 1),
-                    "Where the joint then stands: 0 is the least of its range, 1 the most.")
+                    "Where the joint ends: 0 is the minimum of its range, 1 the maximum.")
           .Optional("over_s", &F::over_s, Duration(), kOverDoc)
           .format());
 }
@@ -98,11 +99,11 @@ ValueFormat<StepYaml> PosesFormat() {
             for (std::size_t i = 1; i < step.poses.size(); ++i) {
               const double before_s = step.poses[i - 1].t_s, t_s = step.poses[i].t_s;
               if (t_s > before_s) continue;
-              errors.Add(node.Find("poses")->children[i].Find("t_s")->where,
-                         fmt::format("t_s: expected more than {}, when the pose before is, "
-                                     "found {}",
-                                     before_s, t_s),
-                         "t_s counts from the beginning of the step, not from the pose before");
+              errors.Add(
+                  node.Find("poses")->children[i].Find("t_s")->where,
+                  fmt::format("t_s: expected more than {}, the time of the previous pose, found {}",
+                              before_s, t_s),
+                  "t_s counts from the beginning of the step, not from the previous pose");
             }
           })
           .format());
@@ -118,7 +119,7 @@ void CheckKindOfRecording(const YamlNode& node, const RecordingYaml& entry,
   };
   if (!body) return refuse("scale", "only a BVH file has units of its own");
   for (const char* key : {"device", "button", "press_s", "style", "palm_m", "palm_rpy_deg"})
-    refuse(key, "a BVH file moves a whole body, no hand");
+    refuse(key, "a BVH file moves a whole body, not a hand");
 }
 
 ValueFormat<StepYaml> RecordingFormat() {
@@ -135,10 +136,11 @@ ValueFormat<StepYaml> RecordingFormat() {
           .Optional("button", &R::button, Integer<int>(0, 31),
                     "Which button of that device is the trigger; default 1.")
           .Optional("press_s", &R::press_s, Number(0, 5),
-                    "How long a press takes whose recording only knows pressed and released.")
+                    "Duration of a press, for recordings that only have pressed and released.")
           .Optional("style", &R::style, Identifier(), kStyleDoc)
-          .Optional("from_s", &R::from_s, seconds, "What came before is left out.")
-          .Optional("to_s", &R::to_s, seconds, "What comes after is left out; default: nothing.")
+          .Optional("from_s", &R::from_s, seconds, "Samples before this time are left out.")
+          .Optional("to_s", &R::to_s, seconds,
+                    "Samples after this time are left out; default: none.")
           .Optional("start_at_m", &R::start_at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                     "The motion is shifted so that the palm starts here; default: not shifted.")
           .Optional("yaw_deg", &R::yaw_deg, Number(-360, 360),
@@ -146,13 +148,15 @@ ValueFormat<StepYaml> RecordingFormat() {
           .Optional("palm_m", &R::palm_m, Vector<3>(-1, 1),
                     "The palm's centre, in the device's axes.")
           .Optional("palm_rpy_deg", &R::palm_rpy_deg, Vector<3>(-360, 360),
-                    "How the palm is turned against the device.")
+                    "Rotation of the palm relative to the device.")
           .Optional("join_s", &R::join_s, Number(0, 60),
                     "Time to get from where the target is to where the recording starts.")
-          .Optional("most_gap_s", &R::most_gap_s, Number(0, 60), "Longer gaps are refused.")
-          .Optional("most_jump_m", &R::most_jump_m, Number(0, 100), "Larger jumps are refused.")
+          .Optional("max_gap_s", &R::max_gap_s, Number(0, 60), "Longer gaps are refused.")
+          .Optional("max_jump_m", &R::max_jump_m, Number(0, 100), "Larger jumps are refused.")
           .Optional("scale", &R::scale, Number(1e-4, 100),
-                    "Metres per unit of a BVH file; default: so that its legs are as long as hers.")
+                    "Metres per unit of a BVH file; default: scaled to the length of her legs.")
+          .Renamed("most_gap_s", "max_gap_s")
+          .Renamed("most_jump_m", "max_jump_m")
           .Check(CheckKindOfRecording)
           .format());
 }
@@ -171,10 +175,11 @@ ValueFormat<StepYaml> MoveLimbFormat() {
                                      {"left_foot", LimbEnd::kLeftFoot}}),
                     "Which part of a person goes there; the rest of the limb follows.")
           .Optional("to_m", &M::to_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                    "World coordinates; without it the limb goes back to where it hangs or stands.")
-          .Optional("most_n", &M::most_n, Number(1, 10000),
+                    "World coordinates; without it the limb returns to its rest position.")
+          .Optional("max_force_n", &M::max_force_n, Number(1, 10000),
                     "The limb yields: it slows down so that it pushes with no more than this.")
           .Optional("over_s", &M::over_s, Duration(), kOverDoc)
+          .Renamed("most_n", "max_force_n")
           .format());
 }
 
@@ -200,7 +205,7 @@ ValueFormat<StepYaml> StepFormat() {
        {"place_on", TimedStep("place_on", &PlaceYaml::place_on, Identifier(),
                               "Lower until the held object stands on this entity.")},
        {"retreat_by_m", TimedStep("retreat_by_m", &RetreatYaml::retreat_by_m, Number(0, kMaxMove_m),
-                                  "Back by this much, along the way the hand came.")},
+                                  "Back by this much, along the path the hand came.")},
        {"follow_joint", FollowJointFormat()},
        {"wait_s", WaitFormat()},
        {"poses", PosesFormat()},
@@ -209,19 +214,19 @@ ValueFormat<StepYaml> StepFormat() {
                              "The entity or hand that a person looks at from now on.")},
        {"look_at_m", TimedStep("look_at_m", &LookAtPointYaml::look_at_m,
                                Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                               "The place that a person looks at from now on.")},
+                               "The point that a person looks at from now on.")},
        {"eyes", TimedStep("eyes", &EyesYaml::eyes, EyesFormat(),
                           "A person's eyes lead her hands again, or look ahead.")},
        {"walk_to_m",
         TimedStep("walk_to_m", &WalkYaml::walk_to_m, Vector<2>(-kMaxDistance_m, kMaxDistance_m),
-                  "The place between a person's feet goes to this [x, y].")},
+                  "The point between a person's feet goes to this [x, y].")},
        {"turn_to_deg", TimedStep("turn_to_deg", &TurnYaml::turn_to_deg, Number(-360, 360),
                                  "A person turns to this yaw.")},
        {"lean_deg", TimedStep("lean_deg", &LeanYaml::lean_deg, Number(-30, 90),
                               "A person's trunk leans forwards by this.")},
        {"sway_by_m",
         TimedStep("sway_by_m", &SwayYaml::sway_by_m, Vector<2>(-kMaxSway_m, kMaxSway_m),
-                  "A person's hips go this far [ahead, left] of over her feet.")},
+                  "A person's hips shift this far [ahead, left] from above her feet.")},
        {"move_limb", MoveLimbFormat()}});
 }
 

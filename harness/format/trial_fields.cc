@@ -35,7 +35,7 @@ void CheckCondition(const YamlNode& node, const ConditionYaml& wanted, Diagnosti
   const auto nothing_between = [&](const char* above, const std::optional<double>& least,
                                    const char* below, const std::optional<double>& most) {
     if (least && most && *least >= *most)
-      report(below, fmt::format("nothing is between '{}' and '{}'", above, below));
+      report(below, fmt::format("no value lies between '{}' and '{}'", above, below));
   };
   nothing_between("above_m", wanted.above_m, "below_m", wanted.below_m);
   nothing_between("tilt_above_deg", wanted.tilt_above_deg, "tilt_below_deg", wanted.tilt_below_deg);
@@ -46,7 +46,8 @@ void CheckCondition(const YamlNode& node, const ConditionYaml& wanted, Diagnosti
     return field.key == "entity" || field.key == "at_s";
   };
   if (std::ranges::all_of(node.children, says_nothing))
-    errors.Add(node.where, "a condition: it always holds", "say what, as above_m: 0.9");
+    errors.Add(node.where, "this condition always holds",
+               "add a requirement, for example above_m: 0.9");
 }
 
 ValueFormat<ConditionYaml> ConditionFormat() {
@@ -69,9 +70,9 @@ ValueFormat<ConditionYaml> ConditionFormat() {
       .Optional("slower_than_m_per_s", &C::slower_than_m_per_s, Number(0, 100),
                 "It moves slower than this.")
       .Optional("joint_above", &C::joint_above, fraction,
-                "Its joint stands above this fraction of its range.")
+                "Its joint is above this fraction of its range.")
       .Optional("joint_below", &C::joint_below, fraction,
-                "Its joint stands below this fraction of its range.")
+                "Its joint is below this fraction of its range.")
       .Optional("inside", &C::inside, Identifier(),
                 "Its centre is in the bounding box of this entity.")
       .Optional("share", &C::share, fraction, "Of grains: at least this share of them is inside.")
@@ -89,11 +90,12 @@ ValueFormat<VariationYaml> VariationFormat() {
           "fields", &V::fields,
           ListOf(Word("[a-z0-9_]+(\\.[a-z0-9_]+)*", "a field like 'entities.milk.mass_kg'", 255), 1,
                  64),
-          "The fields that get the same draw, written as for --set.")
-      .Optional("uniform", &V::uniform, range, "Anything between [least, most].")
-      .Optional("normal", &V::normal, range, "[mean, standard deviation].")
-      .Optional("plus", &V::plus, range, "What is written, plus anything between [least, most].")
-      .Optional("times", &V::times, range, "What is written, times anything between [least, most].")
+          "The fields that get the same sample, written as for --set.")
+      .Optional("uniform", &V::uniform, range, "Uniform in [min, max].")
+      .Optional("normal", &V::normal, range, "Normal with [mean, standard deviation].")
+      .Optional("plus", &V::plus, range, "The written value plus a uniform sample in [min, max].")
+      .Optional("times", &V::times, range,
+                "The written value times a uniform sample in [min, max].")
       .Optional("choose", &V::choose, ListOf(Value(), 1, 64), "One of these values.")
       .ExactlyOneOf({"uniform", "normal", "plus", "times", "choose"})
       .Check([](const YamlNode& node, const V& variation, DiagnosticList& errors) {
@@ -107,8 +109,8 @@ ValueFormat<VariationYaml> VariationFormat() {
         }
         if (variation.normal && (*variation.normal)[1] < 0)
           errors.Add(node.Find("normal")->where,
-                     fmt::format("normal: expected [mean, deviation], and no deviation below 0, "
-                                 "found [{}, {}]",
+                     fmt::format("normal: expected [mean, deviation] with a deviation of at least "
+                                 "0, found [{}, {}]",
                                  (*variation.normal)[0], (*variation.normal)[1]));
       })
       .format();

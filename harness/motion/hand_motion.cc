@@ -36,9 +36,9 @@ class TrackChecker {
     const double usual_s = MedianInterval(track_.samples);
     if (usual_s > limits_.gap_s) {
       Add(track_.samples[1], false,
-          fmt::format("samples are usually {:.3f} s apart; at most {} s are bridged", usual_s,
-                      limits_.gap_s),
-          "are these times milliseconds, and called seconds? Else raise most_gap_s");
+          fmt::format("samples are typically {:.3f} s apart; gaps of at most {} s are bridged",
+                      usual_s, limits_.gap_s),
+          "milliseconds need a column t_ms; otherwise raise max_gap_s");
       return std::move(found_);
     }
     const double gap_s = std::max(kMinGap_s, kGapOfMedian * usual_s);
@@ -51,7 +51,7 @@ class TrackChecker {
             fmt::format("gap: no sample for {:.3f} s before this one, at {:.3f} s; at most {} s "
                         "are bridged",
                         dt_s, sample.t_s, limits_.gap_s),
-            "cut the recording with from_s and to_s, or raise most_gap_s");
+            "cut the recording with from_s and to_s, or raise max_gap_s");
       } else if (dt_s > gap_s) {
         Add(sample, true,
             fmt::format("gap: no sample for {:.3f} s before this one, at {:.3f} s; it is bridged",
@@ -62,7 +62,7 @@ class TrackChecker {
           fmt::format("jump: {:.3f} m within {:.3f} s, at {:.3f} s", way_m, dt_s, sample.t_s);
       if (way_m > limits_.jump_m) {
         Add(sample, false, jump + fmt::format("; at most {} m are followed", limits_.jump_m),
-            "cut the recording with from_s and to_s, or raise most_jump_m");
+            "cut the recording with from_s and to_s, or raise max_jump_m");
       } else {
         Add(sample, true, jump);
       }

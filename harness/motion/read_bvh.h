@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// BVH files as they are: a hierarchy of joints, and rows of channel values at even times. What they
-// mean for a person is harness/motion/body_motion.h. Format: Meredith & Maddock, Motion Capture
-// File Formats Explained (2001). Tested by tests/harness/motion/read_bvh_test.cc
+// BVH files: a hierarchy of joints, and rows of channel values at regular times. What they mean for
+// a person is in harness/motion/body_motion.h. Format: Meredith & Maddock, Motion Capture File
+// Formats Explained (2001). Read here and not by assimp, which loses the order of the channels and
+// the line and column of an error. Tested by tests/harness/motion/read_bvh_test.cc
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/motion/hand_motion_test.cc
+// Reads the motion of a hand from CSV. Written here, although libcsv exists: the separators are the
+// small part; units in the heads and errors with line and column are the large one. Tested by
+// tests/harness/motion/hand_motion_test.cc
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -160,12 +162,12 @@ class CsvReader {
     };
     if (count({"t", "x", "y", "z"}) < 4)
       Complain({line_, 1},
-               "the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm); there is none of " +
+               "the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm); missing: " +
                    missing({"t", "x", "y", "z"}));
     if (quaternion > 0 && angles > 0)
       Complain({line_, 1}, "an orientation is either qw,qx,qy,qz or roll_deg,pitch_deg,yaw_deg");
     else if (quaternion % 4 != 0)
-      Complain({line_, 1}, "a quaternion needs qw, qx, qy and qz; there is no " +
+      Complain({line_, 1}, "a quaternion needs qw, qx, qy and qz; missing: " +
                                missing({"qw", "qx", "qy", "qz"}));
     has_quaternion_ = quaternion == 4;
   }
@@ -215,7 +217,7 @@ class CsvReader {
         return Complain(
             place_of(axis),
             fmt::format("{}: {} m is beyond {} m", axis, row[axis], kMaxTrackCoordinate_m),
-            "are the units those that the header says?");
+            "does the unit match the header?");
     }
     if (has_quaternion_) {
       const Eigen::Quaterniond q(row["qw"], row["qx"], row["qy"], row["qz"]);

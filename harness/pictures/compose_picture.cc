@@ -15,11 +15,12 @@ namespace {
 
 using grammar::DrawnAs;
 
-// Furniture larger than this is scenery: it does not decide what the camera frames.
-constexpr double kSceneryFromM = 0.5;
-// Paths are thinned to this many points a second; more only costs triangles.
-constexpr double kPathPointsPerS = 60;
-constexpr std::size_t kMaxRows = 6;  // of the strip; more would hide the picture
+/// A larger body is scenery: it does not affect what the camera frames.
+constexpr double kSceneryFrom_m = 0.5;
+/// Paths are thinned to this many points per second; more only costs triangles.
+constexpr double kPathPoints_per_s = 60;
+/// Rows of the strip; more would hide the picture.
+constexpr std::size_t kMaxRows = 6;
 
 render::Color ColorOf(std::uint32_t rgb) {
   return {static_cast<float>(rgb >> 16 & 255) / 255, static_cast<float>(rgb >> 8 & 255) / 255,
@@ -29,7 +30,7 @@ render::Color ColorOf(std::uint32_t rgb) {
 /// Calm, distinguishable colours for bodies; fixed ones are wood.
 render::Color BodyColor(const physics::Body& body, int index) {
   if (body.fixed) return ColorOf(0xC8A27C);
-  if (body.kinematic) return ColorOf(0xA9B4BE);  // a person, who is not what it is about
+  if (body.kinematic) return ColorOf(0xA9B4BE);  // a person: not the subject of the picture
   constexpr std::array<std::uint32_t, 6> palette = {0xE9EEF2, 0xE07A3F, 0x3F6E8C,
                                                     0xC0392B, 0x8FB339, 0x8C6BB1};
   return ColorOf(palette[index % palette.size()]);
@@ -40,7 +41,7 @@ bool IsSeen(const physics::Body& body) {
   return body.abstract != physics::Abstract::kCamera && body.abstract != physics::Abstract::kLight;
 }
 
-/// From the middle of the things to the first light; nothing when there is none.
+/// Direction from the middle of the things to the first light; nullopt without a light.
 std::optional<Eigen::Vector3f> ToLight(const physics::Scene& scene) {
   const auto light =
       std::ranges::find(scene.bodies, physics::Abstract::kLight, &physics::Body::abstract);
@@ -70,7 +71,7 @@ bool IsOfHand(const RunResult& run, const grammar::NamedEvent& event, grammar::D
   return IsDrawnAs(run, event, as) && event.roles[run.drawings.Of(event.event).hand].value == hand;
 }
 
-/// What is held, or what stands on something.
+/// The held object, or the object on the support.
 const std::string& FirstOf(const RunResult& run, const grammar::NamedEvent& event) {
   return event.roles[run.drawings.Of(event.event).first].value;
 }
@@ -101,7 +102,8 @@ const grammar::NamedEvent* PhaseOf(const RunResult& run, const std::string& hand
   return nullptr;
 }
 
-/// The path of one hand, cut where its phase changes; a stretch starts where the last one ended.
+/// The path of one hand, cut where its phase changes; a stretch starts at the end of the one
+/// before.
 void AppendPath(const physics::Scene& scene, const RunResult& run, int hand,
                 std::vector<render::PathStretch>& path) {
   const std::string& name = scene.hands[hand].name;
@@ -116,11 +118,14 @@ void AppendPath(const physics::Scene& scene, const RunResult& run, int hand,
     const Eigen::Vector3f point = snapshot.hands[hand].palm.X_WB.p_m.cast<float>();
     if (change) {
       if (!first) path.back().points_m.push_back(point);
-      path.push_back({.points_per_s = kPathPointsPerS});
-      if (now) path.back().label = now->event, path.back().color = ColorOf(run, *now);
+      path.push_back({.points_per_s = kPathPoints_per_s});
+      if (now) {
+        path.back().label = now->event;
+        path.back().color = ColorOf(run, *now);
+      }
     }
     path.back().points_m.push_back(point);
-    next_point_s = t_s + 1 / kPathPointsPerS;
+    next_point_s = t_s + 1 / kPathPoints_per_s;
     phase = now;
     first = false;
   }
@@ -138,7 +143,8 @@ std::vector<int> HeldBodies(const physics::Scene& scene, const RunResult& run,
   return held;
 }
 
-/// A ghost of every hand where each of its phases says, except at the moment pictured itself.
+/// A ghost of every hand at the begin or end of each phase whose drawing asks for one, except at
+/// the pictured moment itself.
 std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunResult& run,
                                          grammar::Tick moment) {
   std::vector<render::Ghost> ghosts;
@@ -159,8 +165,7 @@ std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunR
   return ghosts;
 }
 
-/// Where bodies rest on each other (green) and where hands touch (yellow), at the mean of the
-/// touching points.
+/// Markers of supports (green, under the supported body) and of hands' contact points (yellow).
 std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunResult& run,
                                            const physics::Snapshot& snapshot) {
   std::vector<render::Marker> markers;
@@ -195,53 +200,85 @@ std::vector<std::string> OtherEvents(const RunResult& run) {
   return names;
 }
 
+/// The name as it is printed: with spaces.
+std::string Printed(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+/// Makes the strip row by row, from bars that are events of the run.
+class StripComposer {
+ public:
+  StripComposer(const RunResult& run, grammar::Tick moment) : run_(run) {
+    strip_.end_s = std::max(Seconds(run.ticks, run), 0.1);
+    strip_.playhead_s = Seconds(moment, run);
+  }
+
+  void AddPhases(const std::string& label, const std::string& hand) {
+    render::StripRow row{label, {}};
+    for (const grammar::NamedEvent& event : run_.timeline.events)
+      if (IsOfHand(run_, event, DrawnAs::kPhase, hand)) AddBar(event, Printed(event.event), row);
+    Append(std::move(row));
+  }
+
+  /// Bars have the names of the held objects.
+  void AddGrasps(const std::string& hand) {
+    render::StripRow row{"grasp", {}};
+    for (const grammar::NamedEvent& event : run_.timeline.events)
+      if (IsOfHand(run_, event, DrawnAs::kGrasp, hand)) AddBar(event, FirstOf(run_, event), row);
+    Append(std::move(row));
+  }
+
+  /// Bars have the names of the entities in the last role.
+  void AddEvents(const std::string& name) {
+    render::StripRow row{Printed(name), {}};
+    for (const grammar::NamedEvent& event : run_.timeline.events) {
+      if (event.event != name) continue;
+      AddBar(event, event.roles.empty() ? Printed(name) : event.roles.back().value, row);
+    }
+    Append(std::move(row));
+  }
+
+  /// Bars have the names of the supports.
+  void AddSupports(const std::string& body) {
+    render::StripRow row{body + " on", {}};
+    for (const grammar::NamedEvent& event : run_.timeline.events) {
+      if (!IsDrawnAs(run_, event, DrawnAs::kSupport) || FirstOf(run_, event) != body) continue;
+      AddBar(event, event.roles[run_.drawings.Of(event.event).last].value, row);
+    }
+    Append(std::move(row));
+  }
+
+  bool IsFull() const { return strip_.rows.size() >= kMaxRows; }
+  const render::TimelineStrip& strip() const { return strip_; }
+
+ private:
+  void AddBar(const grammar::NamedEvent& event, std::string name, render::StripRow& row) const {
+    row.segments.push_back({std::move(name), Seconds(event.interval.begin, run_),
+                            Seconds(event.interval.end, run_), ColorOf(run_, event)});
+  }
+  void Append(render::StripRow row) {
+    if (!row.segments.empty()) strip_.rows.push_back(std::move(row));
+  }
+
+  const RunResult& run_;
+  render::TimelineStrip strip_;
+};
+
 /// Rows per hand: its phases, its grasps; then one per kind of other events; then one of supports
 /// per movable body that has any.
-render::TimelineStrip ComposeStrip(const Scenario& scenario, const RunResult& run,
+render::TimelineStrip ComposeStrip(const physics::Scene& scene, const RunResult& run,
                                    grammar::Tick moment) {
-  render::TimelineStrip strip{.begin_s = 0,
-                              .end_s = std::max(Seconds(run.ticks, run), 0.1),
-                              .playhead_s = Seconds(moment, run),
-                              .rows = {}};
-  const auto add_row = [&](std::string label, auto&& wanted, auto&& name) {
-    render::StripRow row{std::move(label), {}};
-    for (const grammar::NamedEvent& event : run.timeline.events) {
-      if (!wanted(event)) continue;
-      row.segments.push_back({name(event), Seconds(event.interval.begin, run),
-                              Seconds(event.interval.end, run), ColorOf(run, event)});
-    }
-    if (!row.segments.empty()) strip.rows.push_back(std::move(row));
-  };
-  const auto spoken = [](std::string text) {
-    std::ranges::replace(text, '_', ' ');
-    return text;
-  };
-  const bool one_hand = scenario.scene.hands.size() == 1;
-  for (const physics::Hand& hand : scenario.scene.hands) {
-    add_row(
-        one_hand ? "phase" : hand.name,
-        [&](const auto& e) { return IsOfHand(run, e, DrawnAs::kPhase, hand.name); },
-        [&](const auto& e) { return spoken(e.event); });
-    add_row(
-        "grasp", [&](const auto& e) { return IsOfHand(run, e, DrawnAs::kGrasp, hand.name); },
-        [&](const auto& e) { return FirstOf(run, e); });
+  StripComposer composer(run, moment);
+  for (const physics::Hand& hand : scene.hands) {
+    composer.AddPhases(scene.hands.size() == 1 ? "phase" : hand.name, hand.name);
+    composer.AddGrasps(hand.name);
   }
-  for (const std::string& name : OtherEvents(run)) {
-    if (strip.rows.size() >= kMaxRows) break;
-    add_row(
-        spoken(name), [&](const auto& e) { return e.event == name; },
-        [&](const auto& e) { return e.roles.empty() ? spoken(name) : e.roles.back().value; });
-  }
-  for (const physics::Body& body : scenario.scene.bodies) {
-    if (body.fixed || body.kinematic || strip.rows.size() >= kMaxRows) continue;
-    add_row(
-        body.name + " on",
-        [&](const auto& e) {
-          return IsDrawnAs(run, e, DrawnAs::kSupport) && FirstOf(run, e) == body.name;
-        },
-        [&](const auto& e) { return e.roles[run.drawings.Of(e.event).last].value; });
-  }
-  return strip;
+  for (const std::string& name : OtherEvents(run))
+    if (!composer.IsFull()) composer.AddEvents(name);
+  for (const physics::Body& body : scene.bodies)
+    if (!body.fixed && !body.kinematic && !composer.IsFull()) composer.AddSupports(body.name);
+  return composer.strip();
 }
 
 /// A camera of the scenario.
@@ -263,14 +300,12 @@ render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& pi
     for (const Eigen::Vector3f& point : stretch.points_m) box.extend(point);
   for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
     const physics::LocalBox local = physics::BoundingBox(scenario.scene.bodies[i]);
-    if (local.half_size_m.maxCoeff() * 2 > kSceneryFromM || !IsSeen(scenario.scene.bodies[i]))
+    if (local.half_size_m.maxCoeff() * 2 > kSceneryFrom_m || !IsSeen(scenario.scene.bodies[i]))
       continue;
-    for (const physics::Snapshot* snapshot : {&picture.snapshot}) {
-      const Eigen::Vector3f centre = (snapshot->bodies[i].X_WB * local.p_BC_m).cast<float>();
-      const float reach = static_cast<float>(local.half_size_m.norm());
-      box.extend(Eigen::Vector3f(centre.array() + reach));
-      box.extend(Eigen::Vector3f(centre.array() - reach));
-    }
+    const Eigen::Vector3f centre = (picture.snapshot.bodies[i].X_WB * local.p_BC_m).cast<float>();
+    const float reach = static_cast<float>(local.half_size_m.norm());
+    box.extend(Eigen::Vector3f(centre.array() + reach));
+    box.extend(Eigen::Vector3f(centre.array() - reach));
   }
   if (box.isEmpty()) box.extend(Eigen::Vector3f(0, 0, 0)).extend(Eigen::Vector3f(1, 1, 1));
   return render::NamedCamera(name, box.min(), box.max(),
@@ -287,7 +322,7 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
   picture.snapshot = SnapshotAt(run, moment.tick);
   for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
     picture.body_colors.push_back(BodyColor(scenario.scene.bodies[i], static_cast<int>(i)));
-    // A person is named once, at her head: labels of eighteen parts would hide her.
+    // A person has one label, at her head: labels of eighteen parts would hide her.
     const bool is_part = scenario.body_classes[i] == "BodyPart";
     const bool is_named = !is_part && IsSeen(scenario.scene.bodies[i]);
     picture.body_labels.push_back(is_named ? scenario.scene.bodies[i].name : "");
@@ -297,7 +332,7 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
     AppendPath(scenario.scene, run, static_cast<int>(h), picture.path);
   picture.ghosts = ComposeGhosts(scenario.scene, run, moment.tick);
   picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
-  picture.strip = ComposeStrip(scenario, run, moment.tick);
+  picture.strip = ComposeStrip(scenario.scene, run, moment.tick);
   picture.camera = ComposeCamera(scenario, picture, entry.camera.value);
   const auto name = ParseEventTime(entry.at.value);
   std::string at = name && name->time_s ? "" : fmt::format("  ·  {}", entry.at.value);

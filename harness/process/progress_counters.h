@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far each of several processes came: counters in memory that a parent shares with the children
-// it forks, so that they outlive a child that is killed. Tested by
+// How far each of several processes has come: counters in memory that a parent shares with the
+// children that it forks. They outlive a child that is killed. Tested by
 // tests/harness/process/worker_pool_test.cc
 #pragma once
 
@@ -13,9 +13,9 @@ namespace prehend::harness {
 class ProgressCounters {
  public:
   using Tick = std::atomic<std::int64_t>;
-  static constexpr std::int64_t kNone = -1;  ///< where each counter begins
+  static constexpr std::int64_t kNone = -1;  ///< the value of each counter at first
 
-  /// Throws std::bad_alloc when the system has no memory to share.
+  /// Throws std::bad_alloc if the system has no memory to share.
   explicit ProgressCounters(std::size_t count);
   ~ProgressCounters();
   ProgressCounters(const ProgressCounters&) = delete;

@@ -52,7 +52,7 @@ bool Cut(const RecordingYaml& entry, Track& track, DiagnosticList& errors) {
   errors.Add(where,
              fmt::format("between {} and {} s the recording has {} of at least 2 samples",
                          entry.from_s.value, to_s, samples.size()),
-             fmt::format("it takes {:.3f} s", last_s));
+             fmt::format("the recording lasts {:.3f} s", last_s));
   return false;
 }
 
@@ -70,8 +70,8 @@ std::vector<physics::TimedPose> Place(const RecordingYaml& entry, const MotionTr
 
 /// The person in the world, at every frame: as tall as she is, and where she stands lowest, her
 /// ankle is as high as when she stands.
-std::vector<physics::TimedFigure> Place(const RecordingYaml& entry, const BodyTrack& track,
-                                        const PersonActorYaml& person, double scale) {
+std::vector<physics::TimedPosture> Place(const RecordingYaml& entry, const BodyTrack& track,
+                                         const PersonActorYaml& person, double scale) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const BodySample& sample : track.samples)
     lowest =
@@ -80,16 +80,16 @@ std::vector<physics::TimedFigure> Place(const RecordingYaml& entry, const BodyTr
   const Eigen::Quaterniond yaw = physics::FromRollPitchYaw({0, 0, entry.yaw_deg});
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
   if (entry.start_at_m)
-    shift_m = *entry.start_at_m - yaw * (scale * track.samples.front().figure.hips_W_m);
+    shift_m = *entry.start_at_m - yaw * (scale * track.samples.front().posture.hips_W_m);
   shift_m.z() = floor_m + physics::AnkleHeight(person.height_m) - scale * lowest;
-  std::vector<physics::TimedFigure> figures;
+  std::vector<physics::TimedPosture> postures;
   for (const BodySample& sample : track.samples) {
-    physics::Figure figure = sample.figure;
-    figure.hips_W_m = yaw * (scale * figure.hips_W_m) + shift_m;
-    for (Eigen::Vector3d& way : figure.ways_W) way = yaw * way;
-    figures.push_back({entry.join_s + sample.t_s, figure});
+    physics::Posture posture = sample.posture;
+    posture.hips_W_m = yaw * (scale * posture.hips_W_m) + shift_m;
+    for (Eigen::Vector3d& way : posture.directions_W) way = yaw * way;
+    postures.push_back({entry.join_s + sample.t_s, posture});
   }
-  return figures;
+  return postures;
 }
 
 /// More would say the same again.
@@ -99,14 +99,14 @@ constexpr std::size_t kMaxOddities = 12;
 grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingYaml& entry,
                                     double scale) {
   const double frame_s = track.samples[1].t_s - track.samples[0].t_s;
-  if (frame_s > entry.most_gap_s) {
+  if (frame_s > entry.max_gap_s) {
     return {grammar::DiagnosticAt(
         track.file, track.text, track.samples[1].place,
         fmt::format("gap: frames are {:.3f} s apart; at most {} s are bridged", frame_s,
-                    entry.most_gap_s),
-        "raise most_gap_s")};
+                    entry.max_gap_s),
+        "raise max_gap_s")};
   }
-  const TrackLimits limits{std::numeric_limits<double>::infinity(), entry.most_jump_m};
+  const TrackLimits limits{std::numeric_limits<double>::infinity(), entry.max_jump_m};
   grammar::Diagnostics odd;
   for (std::size_t i = 0; i < kWatchedPoints.size(); ++i) {
     MotionTrack point{.samples = {}, .file = track.file, .text = track.text};
@@ -140,16 +140,17 @@ class RecordingReader {
     if (!track.value) return Refuse(entry, std::move(track.diagnostics));
     if (!CheckButton(entry, *track.value)) return;
     if (!Cut(entry, *track.value, errors_)) return;
-    if (!Accept(entry, CheckTrack(*track.value, {entry.most_gap_s, entry.most_jump_m}))) return;
+    if (!Accept(entry, CheckTrack(*track.value, {entry.max_gap_s, entry.max_jump_m}))) return;
     if (!HasRoom(entry, track.value->samples.size())) return;
     entry.poses = Place(entry, *track.value);
     for (std::size_t i = 0; i < entry.poses.size(); ++i) {
       if (entry.poses[i].X_WH.p_m.norm() <= kMaxDistance_m) continue;
-      return Refuse(entry,
-                    {grammar::DiagnosticAt(
-                        track.value->file, track.value->text, track.value->samples[i].place,
-                        fmt::format("here it is beyond {} m from the origin", kMaxDistance_m),
-                        "start_at_m shifts the whole motion")});
+      return Refuse(
+          entry,
+          {grammar::DiagnosticAt(
+              track.value->file, track.value->text, track.value->samples[i].place,
+              fmt::format("the motion is more than {} m from the origin here", kMaxDistance_m),
+              "start_at_m shifts the whole motion")});
     }
   }
 
@@ -158,7 +159,8 @@ class RecordingReader {
     const auto person = std::find_if(persons_.begin(), persons_.end(),
                                      [&](const auto& p) { return p.name == actor; });
     if (person == persons_.end()) {
-      return errors_.Add(entry.recording.where, "recording: a BVH file moves a whole body, no hand",
+      return errors_.Add(entry.recording.where,
+                         "recording: a BVH file moves a whole body, not a hand",
                          "give this step to a person; hands follow .csv and .json files");
     }
     ReadResult<BodyTrack> track = ReadBodyTrack(PathOf(entry));
@@ -170,13 +172,15 @@ class RecordingReader {
     if (!CheckScale(entry, scale * track.value->leg_units, person->value)) return;
     if (!Accept(entry, CheckBodyTrack(*track.value, entry, scale))) return;
     if (!HasRoom(entry, track.value->samples.size())) return;
-    entry.figures = Place(entry, *track.value, person->value, scale);
-    for (std::size_t i = 0; i < entry.figures.size(); ++i) {
-      if (entry.figures[i].figure.hips_W_m.norm() <= kMaxDistance_m) continue;
-      return Refuse(entry, {grammar::DiagnosticAt(
-                               track.value->file, track.value->text, track.value->samples[i].place,
-                               fmt::format("the hips are beyond {} m", kMaxDistance_m),
-                               "in which units is the file? Say so with scale: metres per unit")});
+    entry.postures = Place(entry, *track.value, person->value, scale);
+    for (std::size_t i = 0; i < entry.postures.size(); ++i) {
+      if (entry.postures[i].posture.hips_W_m.norm() <= kMaxDistance_m) continue;
+      return Refuse(
+          entry,
+          {grammar::DiagnosticAt(
+              track.value->file, track.value->text, track.value->samples[i].place,
+              fmt::format("the hips are more than {} m from the origin here", kMaxDistance_m),
+              "give the file's unit with scale: metres per unit")});
     }
   }
 
@@ -185,12 +189,12 @@ class RecordingReader {
     constexpr double kMaxRatio = 3;
     const double hers_m = physics::LegLength(person.height_m), ratio = legs_m / hers_m;
     if (ratio < kMaxRatio && ratio > 1 / kMaxRatio) return true;
-    errors_.Add(entry.scale->where,
-                fmt::format("scale: the recorded legs would be {:.3g} m long, hers are {:.3g} m",
-                            legs_m, hers_m),
-                fmt::format("metres per unit of the file: perhaps {:.3g}; without scale, legs "
-                            "are as long as hers",
-                            entry.scale->value / ratio));
+    errors_.Add(
+        entry.scale->where,
+        fmt::format("scale: the recorded legs would be {:.3g} m long, hers are {:.3g} m", legs_m,
+                    hers_m),
+        fmt::format("try {:.3g} metres per unit; without scale the motion is scaled to her legs",
+                    entry.scale->value / ratio));
     return false;
   }
 
@@ -216,7 +220,7 @@ class RecordingReader {
     samples_ += samples;
     if (samples_ <= kMaxTrackSamples) return true;
     errors_.Add(entry.recording.where,
-                fmt::format("recording: more than {} samples up to here", kMaxTrackSamples));
+                fmt::format("recording: more than {} samples at this point", kMaxTrackSamples));
     return false;
   }
 
@@ -235,9 +239,9 @@ class RecordingReader {
     if (!IsCapture(entry) || (!entry.button && track.buttons.empty())) return true;
     const int wanted = entry.button.value_or(Located<int>{kUsualButton, {}}).value;
     if (track.buttons.contains(wanted)) return true;
-    const std::string pressed = track.buttons.empty()
-                                    ? "no button is"
-                                    : fmt::format("pressed are {}", fmt::join(track.buttons, ", "));
+    const std::string pressed = track.buttons.empty() ? "no button is ever pressed"
+                                                      : fmt::format("the pressed buttons are {}",
+                                                                    fmt::join(track.buttons, ", "));
     const std::string message =
         fmt::format("button {} of '{}' is never pressed", wanted, entry.device->value);
     if (entry.button) {
@@ -245,7 +249,7 @@ class RecordingReader {
       return false;
     }
     Diagnostic odd = grammar::DiagnosticAt(track.file, "", {}, message + ", so the grip stays open",
-                                           pressed + "; say which one is the trigger: button: N");
+                                           pressed + "; name the trigger with button: N");
     odd.is_warning = true;
     in_recordings_.push_back(std::move(odd));
     return true;
@@ -254,14 +258,14 @@ class RecordingReader {
   bool CheckKind(const RecordingYaml& entry) {
     const bool capture = IsCapture(entry);
     if (capture && !entry.device) {
-      errors_.Add(entry.recording.where, "recording: which device of the .json file is followed?",
+      errors_.Add(entry.recording.where, "recording: a .json file needs the key 'device'",
                   "add device: " + NamesOfDevices(entry));
       return false;
     }
     if (!capture && entry.device)
-      errors_.Add(entry.device->where, "device: a CSV file has only one");
+      errors_.Add(entry.device->where, "device: a CSV file has only one device");
     if (!capture && entry.button)
-      errors_.Add(entry.button->where, "button: a CSV file has a trigger, no buttons");
+      errors_.Add(entry.button->where, "button: a CSV file has a trigger but no buttons");
     return capture || (!entry.device && !entry.button);
   }
 
@@ -285,8 +289,8 @@ void ReadRecordings(const std::string& scenario_file, ScenarioYaml& entry,
                     const ScenarioLibrary& library, DiagnosticList& errors,
                     grammar::Diagnostics& in_recordings) {
   RecordingReader reader(scenario_file, entry.persons, library, errors, in_recordings);
-  for (StageYaml& beat : entry.script) {
-    for (Named<StepYaml>& step : beat) {
+  for (StageYaml& stage : entry.script) {
+    for (Named<StepYaml>& step : stage) {
       if (auto* recording = std::get_if<RecordingYaml>(&step.value))
         reader.Fill(step.name, *recording);
     }

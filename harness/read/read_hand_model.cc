@@ -82,8 +82,8 @@ void HandBuilder::AddDigit(const Named<DigitYaml>& digit, std::vector<physics::H
   const auto add = [&](physics::HandLink link, const std::string& name, Where where,
                        const Eigen::Vector3d& joint_axis) {
     if (std::ranges::count(links, name, &physics::HandLink::name) > 0)
-      errors_.Add(where, fmt::format("a second part of the hand is called '{}'", name),
-                  "a part is called like its digit, a phalanx DIGIT_NAME");
+      errors_.Add(where, fmt::format("two parts of the hand are called '{}'", name),
+                  "a part has the name of its digit, a phalanx is called DIGIT_NAME");
     link.name = name;
     link.parent = parent;
     link.pivot_m = pivot_m;

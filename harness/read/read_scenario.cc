@@ -82,7 +82,7 @@ physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
   // Blamed is the file where something is wrong. What has no place could not be opened.
   const auto blame = [&](const char* key, const Located<std::string>& named, bool is_open) {
     errors.Add(named.where, fmt::format("{}: '{}' cannot be used, see below", key, named.value),
-               is_open ? "" : "its path starts at the folder of the scenario");
+               is_open ? "" : "the path is relative to the scenario's folder");
   };
   std::map<std::string, bool> bad;  ///< and whether they could be opened
   for (const grammar::Diagnostic& found : model.diagnostics) bad[found.file] = found.place.line > 0;
@@ -168,7 +168,8 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   scenario.shows = entry.shows;
   scenario.grammar = entry.grammar.value;
   scenario.tags = std::move(entry.tags);
-  scenario.world = entry.world;
+  scenario.sensing = {.sensing_hz = entry.world.sensing_hz,
+                      .bearing_share = entry.world.bearing_share};
   for (const auto& entity : entry.entities)
     scenario.body_classes.push_back(entity.value.class_name.value);
   AddPersonClasses(scenario);

@@ -43,7 +43,7 @@ bool IsAboutThePath(const grammar::Diagnostic& wrong, const std::string& setting
 /// Nobody can put a drawn number in quotes.
 std::string HintFor(const grammar::Diagnostic& wrong, const VariationYaml& variation) {
   const bool wants_text = wrong.hint.starts_with("put it in quotes");
-  return wants_text && !variation.choose ? "to draw texts: choose: [...]" : wrong.hint;
+  return wants_text && !variation.choose ? "use choose: [...] for texts" : wrong.hint;
 }
 
 class DrawChecker {
@@ -94,7 +94,7 @@ void ValidateVariations(const YamlDocument& document, const std::vector<Variatio
       const std::string& field = variations[i].fields[k];
       const Where where = PlaceOfField(document, i, k);
       if (field == "vary" || field.starts_with("vary.")) {
-        errors.Add(where, "fields: what is varied cannot be varied itself");
+        errors.Add(where, "fields: 'vary' itself cannot be varied");
         continue;
       }
       if (!varied.insert(CanonicalPath(document.root, field)).second)
@@ -105,10 +105,10 @@ void ValidateVariations(const YamlDocument& document, const std::vector<Variatio
           ApplyOverride(field + "=0", ScenarioFormat().schema(), tried);
       if (!nowhere.empty() || (relative && !node)) {
         const std::string hint =
-            nowhere.empty() ? "plus and times need a number that is written" : nowhere.front().hint;
+            nowhere.empty() ? "plus and times need a written number" : nowhere.front().hint;
         errors.Add(where, fmt::format("fields: the scenario has no '{}'", field), hint);
       } else if (relative && !NumberOf(*node)) {
-        errors.Add(where, fmt::format("fields: '{}' is no number", field));
+        errors.Add(where, fmt::format("fields: '{}' is not a number", field));
       }
     }
   }

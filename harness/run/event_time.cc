@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/run/event_time_test.cc
+// See harness/run/event_time.h. Tested by tests/harness/run/event_time_test.cc
 #include "harness/run/event_time.h"
 
 #include <fmt/format.h>
@@ -34,8 +34,8 @@ std::optional<EventTimeProblem> WhyNoEventTime(const std::string& text,
   const auto moment = ParseEventTime(text);
   if (!moment) {
     return EventTimeProblem{
-        fmt::format("'{}' is no moment", text),
-        "write seconds, like 1.25, or an event's boundary, like reaching.begin"};
+        fmt::format("'{}' is not a time", text),
+        "write seconds, like 1.25, or the boundary of an event, like reaching.begin"};
   }
   if (moment->time_s) return std::nullopt;
   if (HasEvent(program, moment->event)) return std::nullopt;
@@ -49,7 +49,7 @@ std::optional<EventTimeProblem> WhyNoEventTime(const std::string& text,
 
 FoundTime FindEventTime(const std::string& text, const RunResult& run) {
   const auto moment = ParseEventTime(text);
-  if (!moment) return {run.ticks, fmt::format("'{}' is no moment", text)};
+  if (!moment) return {run.ticks, fmt::format("'{}' is not a time", text)};
   if (moment->time_s) {
     const double ticks_per_s = static_cast<double>(run.timeline.ticks_per_second);
     const double tick = std::round(*moment->time_s * ticks_per_s);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A moment of an episode as people write it: "reaching.begin", "grasping.end", or seconds: "1.25".
+// A time of an episode as people write it: "reaching.begin", "grasping.end", or in seconds "1.25".
 // Tested by tests/harness/run/event_time_test.cc
 #pragma once
 
@@ -11,17 +11,17 @@
 
 namespace prehend::harness {
 
-/// Either a time or an event's boundary.
+/// Either seconds or a boundary of an event.
 struct EventTime {
   std::optional<double> time_s;
   std::string event;
-  bool end = false;  ///< the event's end, not its begin
+  bool end = false;  ///< the end of the event, otherwise its begin
 };
 
-/// Nothing when the text is neither a time nor EVENT.begin nor EVENT.end.
+/// No value if the text is neither seconds nor EVENT.begin nor EVENT.end.
 std::optional<EventTime> ParseEventTime(const std::string& text);
 
-/// What is wrong with asking for this moment of an episode that this grammar watches.
+/// Why an episode with this grammar cannot have such a time; no value if it can.
 struct EventTimeProblem {
   std::string message;
   std::string hint;
@@ -29,8 +29,8 @@ struct EventTimeProblem {
 std::optional<EventTimeProblem> WhyNoEventTime(const std::string& text,
                                                const grammar::Program& program);
 
-/// The tick that the text names; the first such event counts. When it did not happen, or is later
-/// than the episode, the end of the run, and `missed` says why.
+/// The tick that the text names; the first such event counts. If it did not happen, or is after the
+/// episode, the tick is the end of the run, and `missed` gives the reason.
 struct FoundTime {
   grammar::Tick tick = 0;
   std::string missed;

@@ -36,6 +36,9 @@ ScenarioFile ScenarioAt(const std::vector<ScenarioFile>& scenarios, const std::s
 /// called by its path.
 std::string IdOf(const ScenarioFile& file);
 
+/// The scenario that was probably meant, when FindScenario() found nothing; or "".
+std::string NearestScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);
+
 /// "did you mean 'milk_carton_wrap'?", or which skills share the name, or "". For when
 /// FindScenario() found nothing.
 std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An episode to look at once more, from a scenario that is played or from a recording, with the
-// grammar that watches it. Tested by tests/program/explain_command_test.cc
+// An episode and the grammar that segments it, from a scenario (which is simulated) or from a
+// recording. Tested by tests/program/explain_command_test.cc
 #pragma once
 
 #include <functional>
@@ -16,22 +16,22 @@ namespace prehend::harness {
 struct EpisodeSource {
   using Watcher = std::function<void(const grammar::Frame&)>;
   struct Played {
-    grammar::Tick end = 0;  ///< the first tick that no longer belongs to it
+    grammar::Tick end = 0;  ///< the first tick after the episode
     std::string failure;    ///< empty, or why the simulation ended early
   };
 
   std::string name;
   std::shared_ptr<const grammar::Program> program;
   grammar::EntityTable entity_table;
-  std::function<Played(const Watcher&)> play;  ///< shows every frame
+  std::function<Played(const Watcher&)> play;  ///< calls the watcher with every frame
 };
 
-/// Whether what was typed is a recording (docs/recording-format.md) and no scenario: a file that
-/// begins with `{`.
+/// Whether this is a recording (docs/recording-format.md) and not a scenario: a file that begins
+/// with `{`.
 bool IsRecording(const std::string& typed);
 
-/// `grammar` empty: the episode's own. `settings` as for `prehend run --set`; of a recording, only
-/// parameters.
+/// If `grammar` is empty, the episode's own. `settings` are those of `prehend run --set`; for a
+/// recording, only parameters of the grammar.
 ReadResult<EpisodeSource> OpenScenario(const std::string& file, const std::string& grammar,
                                        const std::vector<std::string>& settings,
                                        const std::string& root);

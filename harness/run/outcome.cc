@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/run/outcome_test.cc
+// See harness/run/outcome.h. Tested by tests/harness/run/outcome_test.cc
 #include "harness/run/outcome.h"
 
 #include <algorithm>
@@ -28,15 +28,15 @@ OutcomeWatch::OutcomeWatch(const physics::Scene& scene, const std::vector<Outcom
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     for (std::size_t k = 0; k < outcomes[i].conditions.size(); ++k) {
       const auto& at_s = outcomes[i].conditions[k].wanted.at_s;
-      if (at_s) moments_.push_back({std::llround(*at_s * scene.world.rate_hz), i, k, false});
+      if (at_s) timed_.push_back({std::llround(*at_s * scene.world.rate_hz), i, k, false});
     }
   }
 }
 
 void OutcomeWatch::Look(const physics::Snapshot& snapshot) {
-  for (Moment& moment : moments_) {
-    if (moment.tick == snapshot.tick)
-      moment.holds = Holds(outcomes_[moment.outcome].conditions[moment.condition], snapshot);
+  for (TimedCondition& timed : timed_) {
+    if (timed.tick == snapshot.tick)
+      timed.holds = Holds(outcomes_[timed.outcome].conditions[timed.condition], snapshot);
   }
 }
 
@@ -45,7 +45,7 @@ std::string OutcomeWatch::Judge(const physics::Snapshot& last) const {
     bool holds = true;
     for (const auto& condition : outcomes_[i].conditions)
       holds &= condition.wanted.at_s || Holds(condition, last);
-    for (const Moment& moment : moments_) holds &= moment.outcome != i || moment.holds;
+    for (const TimedCondition& timed : timed_) holds &= timed.outcome != i || timed.holds;
     if (holds) return outcomes_[i].name;
   }
   return kOtherOutcome;
@@ -72,7 +72,7 @@ bool OutcomeWatch::Holds(const Outcome::Condition& condition,
          (!wanted.inside || ShareInside(condition, snapshot) >= wanted.share);
 }
 
-/// 0 or 1 of what is one thing.
+/// The share of the body's grains that are inside the vessel; 0 or 1 for a body without grains.
 double OutcomeWatch::ShareInside(const Outcome::Condition& condition,
                                  const physics::Snapshot& snapshot) const {
   const auto index = static_cast<std::size_t>(condition.body),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Watches a run and tells which of a scenario's outcomes it came to. Tested by
+// Watches a run and finds which of the scenario's outcomes it ended with. Tested by
 // tests/harness/run/outcome_test.cc
 #pragma once
 
@@ -12,22 +12,22 @@
 
 namespace prehend::harness {
 
-/// What trials call a run that is none of its scenario's outcomes.
+/// The outcome of a run that fits none of the scenario's outcomes.
 inline constexpr const char* kOtherOutcome = "other";
 
 class OutcomeWatch {
  public:
-  /// Both outlive the watch.
+  /// Both must outlive the watch.
   OutcomeWatch(const physics::Scene& scene, const std::vector<Outcome>& outcomes);
 
-  /// Every snapshot, in order.
+  /// To be called with every snapshot, in order.
   void Look(const physics::Snapshot& snapshot);
-  /// The first outcome whose conditions all hold, judged after the last snapshot, or
-  /// `kOtherOutcome`.
+  /// After the last snapshot: the first outcome whose conditions all hold, or kOtherOutcome.
   std::string Judge(const physics::Snapshot& last) const;
 
  private:
-  struct Moment {
+  /// A condition with a time of its own.
+  struct TimedCondition {
     std::int64_t tick;
     std::size_t outcome, condition;
     bool holds;
@@ -38,7 +38,7 @@ class OutcomeWatch {
 
   const physics::Scene& scene_;
   const std::vector<Outcome>& outcomes_;
-  std::vector<Moment> moments_;  ///< of the conditions that say when
+  std::vector<TimedCondition> timed_;
 };
 
 }  // namespace prehend::harness

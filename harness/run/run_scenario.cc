@@ -35,7 +35,7 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
                       const RunOptions& options) {
   RunResult result;
   physics::Simulation simulation(scenario.scene, scenario.script);
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
+  Sensing sensing(scenario.scene, scenario.sensing);
   const grammar::EntityTable entity_table = MakeEntityTable(scenario);
   grammar::Monitor monitor(program, entity_table);
   if (!monitor.error().empty()) {
@@ -78,7 +78,7 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
 
 grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
                             std::shared_ptr<const grammar::Program> program, grammar::Tick end) {
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
+  Sensing sensing(scenario.scene, scenario.sensing);
   const grammar::EntityTable entity_table = MakeEntityTable(scenario);
   grammar::Monitor monitor(program, entity_table);
   std::vector<grammar::Event> events;

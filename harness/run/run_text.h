@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run for people (a table) and for programs (one JSON object).
+// The result of a run as text: a table for people, one JSON object for programs.
 // Tested by tests/harness/run/run_text_test.cc
 #pragma once
 
@@ -13,24 +13,24 @@ namespace prehend::harness {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// "completed at 5.1000 s (2448 ticks)", or "failed at ...: milk: reason (advice)".
+/// "completed: 5.1000 s, 2448 ticks", or "failed at 0.5000 s (tick 240): milk: reason; advice".
 std::string StatusText(const RunResult& run);
 
-/// The events as an aligned table with a title, then the status line.
+/// The events as an aligned table with a head, then the status line.
 std::string RunTable(const RunResult& run);
 
 /// "note: 0.250 s: right_hand: ..." for each note of the run.
 std::vector<std::string> NoteLines(const Scenario& scenario, const RunResult& run);
 
-/// {"scenario", "status", "ticks_per_second", "ticks", "state_hash", "grammar", "events": [...]}; a
-/// failed run has "failure": {"tick", "entity", "reason", "advice"}, a judged one "outcome", one
-/// with notes "notes".
+/// {"scenario", "id", "status", "ticks_per_second", "ticks", "state_hash", "grammar", "events":
+/// [..]}. A failed run also has "failure": {"tick", "entity", "reason", "advice"}; a run with
+/// outcomes has "outcome"; a run with notes has "notes".
 OrderedJson RunJson(const Scenario& scenario, const RunResult& run);
 
-/// "0x" and 16 digits: 64 bits don't fit into a JSON number.
+/// "0x" and 16 digits: a JSON number cannot hold 64 bits.
 std::string HashText(std::uint64_t hash);
 
-/// Shares of time, times real time, and the process's peak memory, as text and as JSON.
+/// Where the time of a run went, its speed against real time, and the peak memory of the process.
 struct Measurement {
   RunSeconds seconds;
   double simulated_s = 0;

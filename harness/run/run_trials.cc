@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/run/run_trials_test.cc
+// See harness/run/run_trials.h. Tested by tests/harness/run/run_trials_test.cc
 #include "harness/run/run_trials.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ constexpr const char* kFailed = "failed";
 constexpr double kTimeLimit_s = 600;
 constexpr std::size_t kMaxListed = 20;
 
-/// What trials are drawn from; the file is looked at once, before the first of them.
+/// What the trials vary. The file is read once, before the first of them.
 struct Nominal {
   LoadedRun run;
   YamlDocument document;
@@ -39,12 +39,12 @@ ReadResult<Nominal> ReadNominal(const RunRequest& request, const std::string& ro
   return {Nominal{std::move(*loaded.value), std::move(*document.value)}, {}};
 }
 
-/// What the command line sets is not varied.
+/// Draws one trial. A field that the command line sets is not varied.
 RunRequest WithDraws(const RunRequest& request, const Nominal& nominal, int trial) {
   const Scenario& scenario = nominal.run.scenario;
   RunRequest varied = request;
   for (std::string& drawn :
-       SampleTrial(nominal.document, scenario.variations, scenario.world.seed, trial)) {
+       SampleTrial(nominal.document, scenario.variations, scenario.scene.world.seed, trial)) {
     const std::string field = drawn.substr(0, drawn.find('=') + 1);
     const bool set = std::ranges::any_of(
         request.settings, [&](const std::string& given) { return given.starts_with(field); });
@@ -53,7 +53,7 @@ RunRequest WithDraws(const RunRequest& request, const Nominal& nominal, int tria
   return varied;
 }
 
-/// Simulates one trial; nobody watches but the outcomes.
+/// Simulates one trial without a grammar.
 TrialResult RunTrial(const Scenario& scenario, int trial) {
   physics::Simulation simulation(scenario.scene, scenario.script);
   OutcomeWatch watch(scenario.scene, scenario.outcomes);
@@ -74,7 +74,6 @@ TrialResult FromWorker(int trial, const WorkerResult& worker) {
   return {trial, json["outcome"], json["reason"]};
 }
 
-/// A whole percentage is enough for hundreds of trials.
 std::string TableLine(const std::string& outcome, std::size_t count, std::size_t of) {
   return fmt::format("{:<24} {:>5}  {:>5.1f} %\n", outcome, count,
                      100.0 * static_cast<double>(count) / static_cast<double>(of));
@@ -107,10 +106,11 @@ ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& 
   if (!nominal.value) return {std::nullopt, nominal.diagnostics};
   const Scenario& scenario = nominal.value->run.scenario;
   if (scenario.outcomes.empty()) {
-    return {std::nullopt,
-            {grammar::DiagnosticAt(request.scenario_file, "", {1, 1},
-                                   "the scenario has no outcomes, so trials cannot be judged",
-                                   "outcomes: {lifted: [{entity: milk, above_m: 0.9}]}")}};
+    return {
+        std::nullopt,
+        {grammar::DiagnosticAt(request.scenario_file, "", {1, 1},
+                               "the scenario has no outcomes, so its trials cannot be classified",
+                               "outcomes: {lifted: [{entity: milk, above_m: 0.9}]}")}};
   }
   std::vector<WorkerJob> jobs;
   for (int trial = 1; trial <= settings.count; ++trial) {
@@ -154,7 +154,7 @@ std::string TrialTable(const TrialReport& report, const std::string& command) {
     const bool own = name != kOtherOutcome && name != kFailed;
     if (own || count > 0) table += TableLine(name, count, results.size());
   }
-  // The worst first: those that failed, then the outcomes from the last to the first.
+  // The worst first: failed trials, then the outcomes from the last to the first.
   std::size_t listed = 0, more = 0;
   for (std::size_t i = names.size(); i-- > 1;) {
     for (const TrialResult& result : results) {

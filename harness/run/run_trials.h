@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many seeded variations of one scenario (`vary:`), each judged by the scenario's `outcomes:`.
+// Runs many seeded variations (`vary:`) of one scenario and classifies each by its `outcomes:`.
 // Tested by tests/harness/run/run_trials_test.cc
 #pragma once
 
@@ -20,28 +20,28 @@ struct TrialSettings {
 struct TrialResult {
   int trial = 1;
   std::string outcome;  ///< one of the scenario's, "other" or "failed"
-  std::string reason;   ///< why it failed
+  std::string reason;   ///< why it failed, if it did
 };
 
 struct TrialReport {
-  std::vector<std::string> outcomes;  ///< of the scenario, the wanted one first
+  std::vector<std::string> outcomes;  ///< of the scenario; the first is the intended one
   std::vector<TrialResult> results;   ///< trial 1, 2, ...
 };
 
-/// Trial 1 .. count of a scenario. Complains when it has no outcomes.
+/// Runs the trials 1 .. count of a scenario. A scenario without outcomes is an error.
 ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
                                   const TrialSettings& settings,
                                   const std::function<void(int done)>& progress = {});
 
-/// The request with the draws of one trial added to its settings.
+/// The request, with the values drawn for one trial added to its settings.
 ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root,
                                       int trial);
 
 /// For programs: `trials`, `outcomes` (name to count) and `results` (`trial`, `outcome`, `reason`).
 nlohmann::ordered_json TrialJson(const TrialReport& report);
 
-/// How often each outcome came, and the trials that did not end with the first one, each with the
-/// command that shows it again: `command` and the trial's number.
+/// The count of each outcome, and the trials that did not end with the first one, each with the
+/// command that repeats it: `command` and the number of the trial.
 std::string TrialTable(const TrialReport& report, const std::string& command);
 
 }  // namespace prehend::harness

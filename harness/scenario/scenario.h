@@ -18,13 +18,10 @@
 
 namespace prehend::harness {
 
-struct WorldYaml {
-  physics::Engine engine = physics::Engine::kBullet;
-  std::optional<Located<bool>> planar;  ///< default: as the engine needs it
-  int rate_hz = 480;
-  int sensing_hz = 240;
+/// When the grammar sees the scene, and what of it.
+struct SensingSettings {
+  int sensing_hz = 240;         ///< at most the world's rate
   double bearing_share = 0.05;  ///< of the load of two that touch: a point with less bears nothing
-  std::uint64_t seed = 1;
 };
 
 /// A class and what it is a kind of: every Mug is a Cup.
@@ -51,8 +48,8 @@ struct Scenario {
   std::string shows;
   std::string grammar = kDefaultGrammar;
   std::vector<std::string> tags;
-  WorldYaml world;
-  physics::Scene scene;
+  physics::Scene scene;  ///< its world has the engine, the rate and the seed
+  SensingSettings sensing;
   std::vector<std::string> body_classes;  ///< one per scene body
   std::vector<BaseClass> kinds;           ///< each class at most once
   std::vector<int> body_part_of;  ///< one per scene body: a scene body, or grammar::kNoEntity

@@ -14,7 +14,7 @@ using grammar::Tick;
 
 constexpr double kMicrosPerS = 1e6;
 
-/// A mean that is gathered as one goes.
+/// A running mean.
 class Mean {
  public:
   void Add(double value) {
@@ -37,7 +37,7 @@ void Append(const Segments& segments, double ticks_per_second, Tick begin, Segme
     to.push_back({segment.label, {micros(segment.interval.begin), micros(segment.interval.end)}});
 }
 
-/// One episode after the other.
+/// The episodes, concatenated.
 Episode Chained(const std::vector<LabelledEpisode>& episodes, double all_s) {
   Episode chain;
   for (const LabelledEpisode& episode : episodes) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scores of the literature that do not stand in the table, over the episodes in which an event
-// happened or was said to. Labels are events with their roles; each is scored alone, because events
-// of different labels overlap. Tested by tests/harness/score/score_test.cc
+// Scores from the literature that are not in the table, over the episodes in which an event is true
+// or found. Labels are events with their roles; each label is scored alone, because events of
+// different labels overlap. Tested by tests/harness/score/score_test.cc
 #pragma once
 
 #include <vector>
@@ -16,14 +16,14 @@ struct FurtherScores {
   Hits boundary_hits;  ///< boundaries within the collar, pooled
   /// Means over the labels of the episodes.
   double pairwise_f1 = 1, purity = 1, coverage = 1;
-  /// Of a label's boundaries to the nearest of the other side, median, mean over the labels that
-  /// have both; seconds.
+  /// Distance of a label's boundaries to the nearest one of the other side, in seconds: the median,
+  /// averaged over the labels that both sides have.
   double deviation_from_truth_s = 0, deviation_from_found_s = 0;
-  /// All episodes one after the other.
+  /// Of all episodes, concatenated.
   double intersection_f1 = 1, psds = 1;
 };
 
-/// `all_s`: how long all episodes last, those in which nothing of the kind happened, too.
+/// `all_s`: the length of all episodes together, also of those without such events.
 FurtherScores ScoreFurther(const std::vector<LabelledEpisode>& episodes, double collar_s,
                            double all_s);
 

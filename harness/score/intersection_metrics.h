@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores by how much of an event is covered, which forgive it to be said in pieces (Bilen et al.
+// Scores by how much of an event is covered; a fragmented event still counts (Bilen et al.
 // 2020, "A framework for the robust evaluation of sound event detection"; psds_eval). Tested by
 // tests/harness/score/score_metrics_test.cc against printouts of the reference program.
 #pragma once
@@ -10,10 +10,9 @@ namespace prehend::harness::score {
 
 struct IntersectionSettings {
   double detection_covered =
-      0.5;  ///< share of a prediction that has to lie in true events of its label (DTC)
-  double truth_covered = 0.5;  ///< share of a true event that such predictions have to cover (GTC)
-  double most_false_per_hour =
-      100;  ///< of one label: with so many false predictions it scores nothing
+      0.5;  ///< share of a prediction that must lie in true events of its label (DTC)
+  double truth_covered = 0.5;  ///< share of a true event that such predictions must cover (GTC)
+  double most_false_per_hour = 100;  ///< a label with so many false predictions scores 0
 };
 
 struct IntersectionScore {
@@ -24,8 +23,8 @@ struct IntersectionScore {
   double psds = 1;
 };
 
-/// Both 1 without truth. Predictions with labels that the truth does not have do not count
-/// (psds_eval refuses them).
+/// Both are 1 without truth. Predictions whose label the truth does not have are ignored (psds_eval
+/// refuses them).
 IntersectionScore ScoreByIntersection(const Episode& episode, double ticks_per_second,
                                       const IntersectionSettings& settings = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Timelines as the scores read them: labelled segments, all together and label by label.
+// Timelines as labelled segments: all together, and label by label.
 // Tested by tests/harness/score/score_test.cc
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace prehend::harness::score {
 
-/// Labels are events with their roles. Of one label, segments never overlap within a side.
+/// Labels are events with their roles. Segments of one label do not overlap within a side.
 struct LabelledEpisode {
   double ticks_per_second = 480;
   Episode whole;

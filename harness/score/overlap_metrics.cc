@@ -20,14 +20,14 @@ double Ratio(double part, double whole, double of_nothing) {
   return whole > 0 ? part / whole : of_nothing;
 }
 
-/// Intersection over hull; negative when they lie apart.
+/// Intersection over hull; negative if they do not overlap.
 double Closeness(const Interval& a, const Interval& b) {
   const Tick hull = std::max(a.end, b.end) - std::min(a.begin, b.begin);
   return static_cast<double>(Overlap(a, b)) / static_cast<double>(hull);
 }
 
-/// Size of the largest matching between `left` and `right` things (augmenting paths). partner[i]:
-/// of left i, or -1.
+/// Size of the largest matching of `left` with `right` (augmenting paths). partner[i] is the
+/// partner of left i, or -1.
 int LargestMatching(int left, int right, const std::function<bool(int, int)>& fits,
                     std::vector<int>& partner) {
   std::vector<int> taken_by(static_cast<std::size_t>(right), -1);
@@ -54,7 +54,7 @@ int LargestMatching(int left, int right, const std::function<bool(int, int)>& fi
   return size;
 }
 
-/// Area under the precision-recall curve, precision being made monotonous (VOC 2011).
+/// Area under the precision-recall curve, with precision made monotonic (VOC 2011).
 double AveragePrecision(const std::vector<bool>& correct, std::size_t truths) {
   std::vector<double> recall = {0}, precision = {0};
   double hits = 0;

@@ -17,7 +17,7 @@ struct Hits {
   int missed = 0;   ///< false negatives
 
   Hits& operator+=(const Hits& other);
-  /// 0..1; of nothing at all: 1, nothing is wrong.
+  /// 0..1; 1 if there is nothing.
   double Precision() const;
   double Recall() const;
   double F1() const;
@@ -53,7 +53,7 @@ struct FrameCounts {
   double AccuracyInTruth() const;
   /// Identification error rate; the same as the segment-based error rate on the tick grid.
   double ErrorRate() const;
-  /// The same without labels: something or background (pyannote's detection error rate).
+  /// The same without labels: event or background (pyannote's detection error rate).
   double DetectionErrorRate() const;
   /// F1 of labelled frames.
   double F1() const;

@@ -11,11 +11,11 @@
 
 namespace prehend::harness::score {
 
-/// Boundaries of the partition, both outer ends left out; sorted.
+/// Boundaries of the partition without its two outer ends; sorted.
 std::vector<grammar::Tick> InnerBoundaries(const Segments& segments, grammar::Tick ticks);
 
 /// Median distance, in ticks, from a boundary of one side to the nearest of the other
-/// (mir_eval.segment.deviation, trimmed). No value when one side has none.
+/// (mir_eval.segment.deviation, trimmed). No value if one side has none.
 struct Deviation {
   double from_truth = 0, from_prediction = 0;
 };

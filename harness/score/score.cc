@@ -23,7 +23,7 @@ double Quantile(std::vector<double> values, double share, Less less = {}) {
   return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
 }
 
-/// All events when `event` is empty.
+/// If `event` is empty, all events.
 grammar::Timeline OfKind(const grammar::Timeline& timeline, const std::string& event) {
   grammar::Timeline only{.ticks_per_second = timeline.ticks_per_second, .events = {}};
   for (const NamedEvent& candidate : timeline.events) {
@@ -40,7 +40,7 @@ double SecondsOf(const std::vector<EpisodeToScore>& episodes) {
   return seconds;
 }
 
-/// Adds what one episode says about one kind of event.
+/// Adds one episode to the score of one kind of event.
 void AddEpisode(const EpisodeToScore& judged, const LabelledEpisode& episode,
                 const std::string& event, double collar_s, EventScore& score) {
   const double per_s = episode.ticks_per_second;
@@ -51,7 +51,7 @@ void AddEpisode(const EpisodeToScore& judged, const LabelledEpisode& episode,
   score.overlap_25 += HitsByOverlap(truth, found, 0.25);
   score.overlap_50 += HitsByOverlap(truth, found, 0.50);
   score.within_collar += MatchWithCollar(truth, found, collar_s * per_s, 0);
-  // Frames and Ward's classes are of one label at a time: events of different labels overlap.
+  // Frames and Ward's classes are per label, because events of different labels overlap.
   for (const Episode& label : episode.by_label) {
     const Ward ward = CompareByWard(IntervalsOf(label.truth), IntervalsOf(label.prediction));
     score.ward.ticks += ward.ticks;
@@ -73,7 +73,7 @@ void AddEpisode(const EpisodeToScore& judged, const LabelledEpisode& episode,
   }
 }
 
-/// All kinds when `event` is empty.
+/// If `event` is empty, all kinds.
 EventScore ScoreKind(const std::vector<EpisodeToScore>& episodes, const std::string& event,
                      double collar_s) {
   EventScore score{.event = event.empty() ? "all" : event};
@@ -83,7 +83,7 @@ EventScore ScoreKind(const std::vector<EpisodeToScore>& episodes, const std::str
     LabelledEpisode episode =
         Labelled(OfKind(judged.truth, event), OfKind(judged.found, event), judged.ticks);
     AddEpisode(judged, episode, event, collar_s, score);
-    if (episode.by_label.empty()) continue;  // it neither happened nor was said to
+    if (episode.by_label.empty()) continue;  // neither true nor found
     edits += EditScore(episode.whole.truth, episode.whole.prediction);
     labelled.push_back(std::move(episode));
   }
@@ -114,7 +114,7 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& epi
               .events = {},
               .total = ScoreKind(episodes, "", collar_s),
               .episodes = static_cast<int>(episodes.size()),
-              .not_spoken_of = {},
+              .not_covered = {},
               .not_judged = {}};
   for (const EpisodeToScore& episode : episodes) {
     for (const auto& [event, times] : episode.not_judged) score.not_judged[event] += times;

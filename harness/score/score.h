@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a grammar recognises: its timelines against true ones, per kind of event and in total.
+// How well a grammar recognises events: its timelines against true ones, per kind and in total.
 // Tested by tests/harness/score/score_test.cc
 #pragma once
 
@@ -14,22 +14,22 @@
 
 namespace prehend::harness::score {
 
-/// One episode as it truly was and as a grammar says it was.
+/// The true events of one episode, and those that a grammar recognised.
 struct EpisodeToScore {
   std::string scenario;
   grammar::Tick ticks = 0;
   grammar::Timeline truth;
   grammar::Timeline found;
   std::map<std::string, int>
-      not_judged;  ///< how often events were found that nobody knows the truth of
+      not_judged;  ///< count of recognised events for which there is no ground truth
 };
 
-/// Signed offsets of boundaries (found - true) of the events that were matched, in seconds.
+/// Signed offsets (found - true) of the boundaries of matched events, in seconds.
 struct BoundaryErrors {
   std::vector<double> seconds;
 
-  /// Nearest-rank quantiles; 0 without any. Of the signed offsets, and in the order of magnitude,
-  /// sign kept.
+  /// Nearest-rank quantiles, 0 if there are none: of the signed offsets, and of the offsets sorted
+  /// by magnitude (with their sign).
   double Median() const;
   double QuantileByMagnitude(double share) const;
 };
@@ -42,7 +42,7 @@ struct EventScore {
   Hits overlap_10, overlap_25, overlap_50;
   EventErrors within_collar;
   FrameCounts frames;
-  double edit = 100;  ///< mean over the episodes in which it happened or was said to
+  double edit = 100;  ///< mean over the episodes that have such an event, true or found
   FurtherScores further;
   std::vector<double> latency_s;  ///< from an event's end to its decision
 
@@ -55,7 +55,7 @@ struct Score {
   EventScore total;
   int episodes = 0;
   std::vector<std::string>
-      not_spoken_of;  ///< events that are judged, but that no rule of the grammar prints
+      not_covered;  ///< events that are scored, but that no rule of the grammar prints
   std::map<std::string, int> not_judged;  ///< of all episodes
 };
 
@@ -63,8 +63,8 @@ struct Score {
 Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
               double collar_s);
 
-/// A table for people: Ward's error row, boundary errors, F1@{10,25,50}, edit, frames, F at the
-/// collar, latency; below it, what the grammar does not speak of, and what is not judged.
+/// A table for people: Ward's event errors, boundary errors, F1@{10,25,50}, edit, frames, F at the
+/// collar, latency. Below it, the events that the grammar does not cover, and those not judged.
 std::string ScoreTable(const Score& score, double collar_s);
 
 /// The totals of several grammars beside each other, as a Markdown table.

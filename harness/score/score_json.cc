@@ -70,7 +70,7 @@ Json ScoresJson(const std::vector<Score>& scores, double collar_s) {
     for (const EventScore& event : s.events) events.push_back(EventScoreJson(event));
     grammars.push_back({{"grammar", s.grammar},
                         {"episodes", s.episodes},
-                        {"not_spoken_of", s.not_spoken_of},
+                        {"not_spoken_of", s.not_covered},
                         {"not_judged", s.not_judged},
                         {"total", EventScoreJson(s.total)},
                         {"events", std::move(events)}});

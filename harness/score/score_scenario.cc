@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/program/score_test.cc
+// See harness/score/score_scenario.h. Tested by tests/program/score_test.cc
 #include "harness/score/score_scenario.h"
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace prehend::harness {
 namespace {
 
-/// Leaves what is judged, and counts what nobody knows the truth of.
-void KeepJudged(const std::vector<std::string>& wanted, score::EpisodeToScore& episode) {
+/// Removes events that are not scored, and counts those that the oracle does not define.
+void KeepScored(const std::vector<std::string>& wanted, score::EpisodeToScore& episode) {
   const auto is_left_out = [&](const grammar::NamedEvent& event) {
     return !OracleDefines(event.event) ||
            (!wanted.empty() && std::ranges::find(wanted, event.event) == wanted.end());
@@ -56,7 +56,7 @@ ReadResult<std::vector<score::EpisodeToScore>> EpisodesToScore(const ScoreReques
                .truth = truth,
                .found = Resegment(scenario, run.recording, compiled.program, end),
                .not_judged = {}};
-    KeepJudged(request.events, episode);
+    KeepScored(request.events, episode);
   }
   return {std::move(episodes), {}};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One scenario, played once and segmented by several grammars, beside what truly happened.
+// One scenario, simulated once and segmented by several grammars, each beside the true events.
 // Tested by tests/program/score_test.cc
 #pragma once
 
@@ -16,12 +16,13 @@ struct ScoreRequest {
   std::string id;
   std::string root;
   std::vector<std::string> grammars;  ///< names or paths
-  std::vector<std::string> events;    ///< only these are judged; none: all that the oracle defines
+  std::vector<std::string> events;    ///< only these are scored; empty: all that the oracle defines
 };
 
-/// One judged episode per grammar, all with the same truth: a grammar that is silent about a kind
-/// of event, or misspells it, has missed what happened. Without value: what cannot be read
-/// (`bad_input`), or why the run did not complete.
+/// One episode per grammar, all with the same truth: a grammar that does not define a kind of
+/// event, or misspells it, has missed all such events. Without a value: an input that cannot be
+/// read
+/// (`bad_input`), or a run that did not complete.
 ReadResult<std::vector<score::EpisodeToScore>> EpisodesToScore(const ScoreRequest& request,
                                                                bool& bad_input);
 

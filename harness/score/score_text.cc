@@ -23,7 +23,7 @@ std::string SignedMs(double seconds) {
   return ms == 0 ? "0" : fmt::format("{:+}", ms);
 }
 
-/// "median/p95/max", all signed; the last two in the order of magnitude.
+/// "median/p95/max", all signed; the last two are by magnitude.
 std::string Milliseconds(const BoundaryErrors& errors) {
   if (errors.seconds.empty()) return "-";
   return fmt::format("{}/{}/{}", SignedMs(errors.Median()),
@@ -78,7 +78,7 @@ Row RowOf(const EventScore& s) {
                             kMsPerS * s.LatencyQuantile(0.95), kMsPerS * s.LatencyQuantile(1))};
 }
 
-/// Columns two blanks apart; the first one to the left, the others to the right.
+/// Columns two spaces apart; the first is aligned left, the others right.
 std::string Aligned(const std::vector<Row>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const Row& row : rows) {
@@ -101,12 +101,13 @@ int TruthsOf(const Score& score, const std::string& event) {
 }
 
 std::string NotSpokenOfText(const Score& score) {
-  if (score.not_spoken_of.empty()) return "";
+  if (score.not_covered.empty()) return "";
   std::vector<std::string> kinds;
-  for (const std::string& event : score.not_spoken_of)
+  for (const std::string& event : score.not_covered)
     kinds.push_back(fmt::format("{} ({} true)", event, TruthsOf(score, event)));
-  return fmt::format("not spoken of: {}; no rule prints them, they count as missed\n",
-                     fmt::join(kinds, ", "));
+  return fmt::format(
+      "not covered: {}; no rule of the grammar prints them, so they count as missed\n",
+      fmt::join(kinds, ", "));
 }
 
 std::string NotJudgedText(const Score& score) {
@@ -130,7 +131,8 @@ std::string ScoreTable(const Score& score, double collar_s) {
 
 std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
   std::string text = fmt::format(
-      "| grammar | true | not spoken of | correct | deleted | fragmented | merged | inserted | "
+      "| grammar | true events | not covered by the grammar | correct | deleted | fragmented | "
+      "merged | inserted | "
       "begin, ms | end, ms | F1@10 | F1@25 | F1@50 "
       "| edit | frames % | F at {:.0f} ms "
       "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
@@ -138,11 +140,11 @@ std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
   for (const Score& score : scores) {
     const EventScore& s = score.total;
     const WardEvents& ward = s.ward.events;
-    int not_spoken_of = 0;
-    for (const std::string& event : score.not_spoken_of) not_spoken_of += TruthsOf(score, event);
+    int not_covered = 0;
+    for (const std::string& event : score.not_covered) not_covered += TruthsOf(score, event);
     text += fmt::format(
         "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1f} | {} | {} |\n",
-        score.grammar, s.truths, not_spoken_of, ward.correct, ward.deleted,
+        score.grammar, s.truths, not_covered, ward.correct, ward.deleted,
         ward.fragmented + ward.fragmented_and_merged, ward.merged, ward.inserted,
         Milliseconds(s.begin), Milliseconds(s.end), Percent(s.overlap_10.F1()),
         Percent(s.overlap_25.F1()), Percent(s.overlap_50.F1()), s.edit,

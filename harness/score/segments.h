@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is scored: labelled half-open intervals of integer ticks, the truth's and the prediction's,
-// of one episode.
+// What is scored: labelled half-open intervals of integer ticks, true and predicted, of one
+// episode. Tested by tests/harness/score/score_metrics_test.cc
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct Segment {
 };
 using Segments = std::vector<Segment>;  ///< in the order of their begins
 
-/// [0, ticks) with two opinions about it. What no segment covers is background.
+/// The segments of [0, ticks), true and predicted. What no segment covers is background.
 struct Episode {
   grammar::Tick ticks = 0;
   Segments truth;
@@ -24,7 +24,7 @@ struct Episode {
 };
 
 inline grammar::Tick Length(const grammar::Interval& i) { return i.end - i.begin; }
-/// Negative when they lie apart.
+/// Negative if they do not overlap.
 inline grammar::Tick Overlap(const grammar::Interval& a, const grammar::Interval& b) {
   return (a.end < b.end ? a.end : b.end) - (a.begin > b.begin ? a.begin : b.begin);
 }

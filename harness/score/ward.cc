@@ -13,7 +13,7 @@ namespace {
 using grammar::Interval;
 using grammar::Tick;
 
-/// A stretch between two boundaries of either side.
+/// A stretch between two successive boundaries of either side.
 struct Piece {
   Tick length = 0;
   bool is_true = false;
@@ -32,11 +32,11 @@ std::vector<Piece> Cut(const std::vector<Interval>& truth, const std::vector<Int
   for (const auto* side : {&truth, &said}) {
     for (const Interval& interval : *side) cuts.insert({interval.begin, interval.end});
   }
-  std::vector<Piece> pieces = {{}};  // nothing before
+  std::vector<Piece> pieces = {{}};  // before the first
   for (auto cut = cuts.begin(); cut != cuts.end() && std::next(cut) != cuts.end(); ++cut) {
     pieces.push_back({*std::next(cut) - *cut, Covers(truth, *cut), Covers(said, *cut)});
   }
-  pieces.push_back({});  // nor after
+  pieces.push_back({});  // after the last
   return pieces;
 }
 
@@ -66,7 +66,7 @@ int Meeting(const Interval& one, const std::vector<Interval>& others) {
   }));
 }
 
-/// Whether one that `one` meets meets others of `one`'s side, too.
+/// Whether an interval that overlaps `one` also overlaps another interval of its side.
 bool SharesPartner(const Interval& one, const std::vector<Interval>& others,
                    const std::vector<Interval>& own) {
   return std::any_of(others.begin(), others.end(), [&](const Interval& other) {

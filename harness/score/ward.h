@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a recognition is wrong: the error classes of Ward, Lukowicz & Gellersen 2011, "Performance
-// metrics for activity recognition", section 4. Of one class at a time: the intervals in which
-// something was true, and was said to be. Tested by tests/harness/score/score_metrics_test.cc
+// The error classes of Ward, Lukowicz & Gellersen 2011, "Performance metrics for activity
+// recognition", section 4. One kind of event at a time: the intervals in which it was true, and
+// those in which it was recognised. Tested by tests/harness/score/score_metrics_test.cc
 #pragma once
 
 #include <vector>
@@ -10,15 +10,15 @@
 
 namespace prehend::harness::score {
 
-/// Ticks by what is wrong with them.
+/// Ticks by their error class.
 struct WardTicks {
   grammar::Tick correct = 0;
-  grammar::Tick inserted = 0;  ///< said, belongs to no true interval
+  grammar::Tick inserted = 0;  ///< recognised, belongs to no true interval
   grammar::Tick merged =
-      0;  ///< said, between two true intervals that one recognised interval covers
-  grammar::Tick overfilled_begin = 0;  ///< said before the true begin
-  grammar::Tick overfilled_end = 0;    ///< said after the true end
-  grammar::Tick deleted = 0;           ///< true, never said
+      0;  ///< recognised, between two true intervals that one recognised interval covers
+  grammar::Tick overfilled_begin = 0;  ///< recognised before the true begin
+  grammar::Tick overfilled_end = 0;    ///< recognised after the true end
+  grammar::Tick deleted = 0;           ///< true, never recognised
   grammar::Tick fragmented = 0;        ///< true, between two recognised pieces
   grammar::Tick underfilled_begin = 0;
   grammar::Tick underfilled_end = 0;
@@ -26,7 +26,7 @@ struct WardTicks {
   WardTicks& operator+=(const WardTicks& other);
 };
 
-/// Intervals by what became of them.
+/// Intervals by their class.
 struct WardEvents {
   // Of the truth.
   int correct = 0;
@@ -34,7 +34,7 @@ struct WardEvents {
   int fragmented = 0;
   int merged = 0;
   int fragmented_and_merged = 0;
-  // Of the recognition.
+  // Of what was recognised.
   int said_correct = 0;
   int inserted = 0;
   int fragmenting = 0;

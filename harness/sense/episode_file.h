@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// An episode as a file: who takes part, then one line per frame, each a JSON object (JSON Lines).
-// What a grammar needs to segment it again, and nothing more: docs/recording-format.md. Written by
-// `prehend run --record`, by trackers, by hand. Tested by tests/harness/sense/episode_file_test.cc
+// An episode as a file of JSON Lines: first the entities, then one line per frame. It holds what a
+// grammar needs to segment the episode again, and nothing more (docs/recording-format.md). It is
+// written by `prehend run --record`, by trackers or by hand. Tested by
+// tests/harness/sense/episode_file_test.cc
 #pragma once
 
 #include <ostream>
@@ -20,33 +21,33 @@ inline constexpr std::size_t kMaxEpisodeLineBytes = 1 << 20;
 
 /// The first line.
 struct EpisodeHeader {
-  std::string episode;  ///< its name: of the scenario it was recorded from
-  std::string grammar;  ///< that watches unless another one is asked for
+  std::string episode;  ///< its name: of the scenario that was recorded
+  std::string grammar;  ///< which grammar segments it unless another one is asked for
   grammar::EntityTable entity_table;
 };
 
-/// A frame that owns what it shows.
+/// A frame that owns its data.
 struct EpisodeFrame {
   grammar::Tick tick = 0;
   std::vector<grammar::EntitySample> entities;
-  std::vector<grammar::HandSample> hands;  ///< their own spans are empty, see `collision_spheres`
+  std::vector<grammar::HandSample> hands;  ///< their spans are empty, see `collision_spheres`
   std::vector<std::vector<grammar::CollisionSphere>> collision_spheres;  ///< per hand
   std::vector<grammar::Touch> touches;
 
-  /// Lives as long as this and until it changes.
+  /// Valid as long as this frame, until it changes.
   grammar::Frame View();
 };
 
 struct Episode {
   EpisodeHeader header;
   std::vector<EpisodeFrame> frames;
-  grammar::Tick end_tick = 0;  ///< the first that no longer belongs to it
+  grammar::Tick end_tick = 0;  ///< the first tick after the episode
 };
 
-/// Complains with file, line and column; limits as above.
+/// Reports errors with file, line and column. The limits are those above.
 ReadResult<Episode> ReadEpisode(const std::string& path);
 
-/// Writes line by line, as the frames come.
+/// Writes each frame as it comes.
 class EpisodeWriter {
  public:
   EpisodeWriter(std::ostream& out, const EpisodeHeader& header);
@@ -56,7 +57,7 @@ class EpisodeWriter {
  private:
   std::ostream& out_;
   grammar::EntityTable entity_table_;
-  std::vector<std::string> shown_;  ///< per entity: how it looked when last written
+  std::vector<std::string> shown_;  ///< per entity: its last line, as only changes are written
 };
 
 }  // namespace prehend::harness

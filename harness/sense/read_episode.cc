@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads an episode line by line with the same field tables and complaints as a scenario: JSON is
-// YAML, too. Tested by tests/harness/sense/episode_file_test.cc
+// Reads an episode line by line, with the field tables and error messages of scenario files: JSON
+// is valid YAML. Tested by tests/harness/sense/episode_file_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,178 +11,28 @@
 #include <optional>
 #include <variant>
 
-#include "harness/base/default_grammar.h"
 #include "harness/base/text_file.h"
 #include "harness/scenario/classes.h"
 #include "harness/sense/episode_file.h"
-#include "harness/yaml/struct_format.h"
+#include "harness/sense/episode_format.h"
 
 namespace prehend::harness {
 namespace {
 
-constexpr double kMaxPosition_m = 1e4;
-constexpr double kMaxVelocity = 1e4;
-constexpr std::int64_t kLatestTick = 1'000'000'000'000;
-constexpr std::size_t kMaxMembers = 10'000;
-constexpr std::size_t kMaxFeelers = 1000;
-constexpr std::size_t kMaxSets = 32;
-constexpr std::size_t kMaxClasses = 100;
+using episode::EndEntry;
+using episode::FrameEntry;
+using episode::HandYaml;
+using episode::HeaderEntry;
+using episode::LineEntry;
+using episode::MemberEntry;
+using episode::SampleEntry;
+using episode::TouchEntry;
 
-struct MemberEntry {
-  std::string class_name = "Object";
-  bool fixed = false;
-  bool jointed = false;
-  bool grains = false;
-  bool person = false;
-  bool hand = false;
-  bool round = false;
-  std::string abstract;            ///< which class of those that are Abstract; "": none
-  std::vector<std::string> kinds;  ///< what the class is a kind of
-  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
-  double mass_kg = 0, strength_n = 0;
-  std::optional<Located<std::string>> part_of;
-  std::vector<std::string> sensor_sets = {"fingers", "thumb", "palm"};
-};
-struct HeaderEntry {
-  int version = kEpisodeVersion;
-  std::string episode;
-  std::string grammar = kDefaultGrammar;
-  std::int64_t ticks_per_second = 0;
-  std::vector<std::string> styles;
-  std::vector<Named<MemberEntry>> entities;
-};
-struct LookEntry {
-  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
-  std::optional<Located<Eigen::Vector4d>> quat_wxyz;
-  std::optional<Eigen::Vector3d> v_m_per_s, w_rad_per_s;
-  bool asleep = false;
-  double joint_position = 0, joint_fraction = 0;
-  std::optional<Located<std::string>> gazes_at;
-};
-struct HandYaml {
-  double trigger = 0;
-  std::optional<Eigen::Vector3d> ahead;
-  std::vector<Eigen::Vector4d> feelers_m;
-  std::optional<Located<std::string>> style;
-};
-struct TouchEntry {
-  Located<std::string> a, b;
-  double up_on_a = 0;
-  std::optional<double> up_on_b;
-  double force_n = 0;
-  std::optional<double> vertical_speed_m_per_s;
-  std::vector<Located<std::string>> sensor_sets;
-};
-struct FrameEntry {
-  Located<std::int64_t> tick;
-  std::vector<Named<LookEntry>> looks;
-  std::vector<Named<HandYaml>> hands;
-  std::vector<TouchEntry> touches;
-};
-struct EndEntry {
-  Located<std::int64_t> end_tick;
-};
-using LineEntry = std::variant<FrameEntry, EndEntry>;
-
-ValueFormat<std::string> Name() {
-  return Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'");
-}
-ValueFormat<std::string> ClassName() {
-  return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'");
-}
-ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kMaxPosition_m, kMaxPosition_m); }
-ValueFormat<Eigen::Vector3d> Velocity() { return Vector<3>(-kMaxVelocity, kMaxVelocity); }
-
-ValueFormat<HeaderEntry> HeaderFormat() {
-  using M = MemberEntry;
-  const ValueFormat<M> member =
-      StructFormat<M>("entity")
-          .NamedByKey()
-          .Optional("class", &M::class_name, ClassName(), "")
-          .Optional("fixed", &M::fixed, Flag(), "")
-          .Optional("jointed", &M::jointed, Flag(), "")
-          .Optional("person", &M::person, Flag(), "")
-          .Optional("grains", &M::grains, Flag(), "")
-          .Optional("abstract", &M::abstract, Choice({"Region", "GazeTarget", "Camera", "Light"}),
-                    "")
-          .Optional("round", &M::round, Flag(), "")
-          .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxClasses), "")
-          .Optional("hand", &M::hand, Flag(), "")
-          .Optional("centre_m", &M::centre_m, Position(), "")
-          .Required("size_m", &M::size_m, Vector<3>(0, kMaxPosition_m), "")
-          .Optional("mass_kg", &M::mass_kg, Number(0, 1e6), "")
-          .Optional("strength_n", &M::strength_n, Number(0, 1e6), "")
-          .Optional("part_of", &M::part_of, Name(), "")
-          .Optional("sensor_sets", &M::sensor_sets, ListOf(Name(), 1, kMaxSets), "")
-          .format();
-  using H = HeaderEntry;
-  return StructFormat<H>("the first line")
-      .Required("recording", &H::version, Integer<int>(kEpisodeVersion, kEpisodeVersion), "")
-      .Required("episode", &H::episode, Name(), "")
-      .Optional("grammar", &H::grammar, Name(), "")
-      .Required("ticks_per_second", &H::ticks_per_second, Integer64(1, 1'000'000), "")
-      .Optional("styles", &H::styles, ListOf(Name(), 0, 1000), "")
-      .Required("entities", &H::entities, MapOf(Name(), member, 1, kMaxMembers), "")
-      .format();
-}
-
-ValueFormat<LineEntry> LineFormat() {
-  using L = LookEntry;
-  const ValueFormat<L> look =
-      StructFormat<L>("look")
-          .NamedByKey()
-          .Required("at_m", &L::at_m, Position(), "")
-          .Optional("quat_wxyz", &L::quat_wxyz, UnitQuaternion(), "")
-          .Optional("v_m_per_s", &L::v_m_per_s, Velocity(), "")
-          .Optional("w_rad_per_s", &L::w_rad_per_s, Velocity(), "")
-          .Optional("asleep", &L::asleep, Flag(), "")
-          .Optional("joint_position", &L::joint_position, Number(-1e4, 1e4), "")
-          .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
-          .Optional("gazes_at", &L::gazes_at, Name(), "")
-          .format();
-  using H = HandYaml;
-  const ValueFormat<H> hand =
-      StructFormat<H>("hand")
-          .NamedByKey()
-          .Optional("trigger", &H::trigger, Number(0, 1), "")
-          .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
-          .Optional("feelers_m", &H::feelers_m,
-                    ListOf(Vector<4>(-kMaxPosition_m, kMaxPosition_m), 1, kMaxFeelers), "")
-          .Optional("style", &H::style, Name(), "")
-          .format();
-  using T = TouchEntry;
-  const ValueFormat<T> touch =
-      StructFormat<T>("a touch")
-          .Required("a", &T::a, Name(), "")
-          .Required("b", &T::b, Name(), "")
-          .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
-          .Optional("up_on_b", &T::up_on_b, Number(-1, 1), "")
-          .Optional("force_n", &T::force_n, Number(0, 1e9), "")
-          .Optional("vertical_speed_m_per_s", &T::vertical_speed_m_per_s, Number(0, 1e9), "")
-          .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
-          .format();
-  using F = FrameEntry;
-  const auto tick = Integer64(-kLatestTick, kLatestTick);
-  return ByKey<LineEntry>(
-      "a line",
-      {{"tick", AsAlternative<LineEntry>(
-                    StructFormat<F>("a frame")
-                        .Required("tick", &F::tick, tick, "")
-                        .Optional("looks", &F::looks, MapOf(Name(), look, 0, kMaxMembers), "")
-                        .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
-                        .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
-                        .format())},
-       {"end_tick",
-        AsAlternative<LineEntry>(StructFormat<EndEntry>("the last line")
-                                     .Required("end_tick", &EndEntry::end_tick, tick, "")
-                                     .format())}});
-}
-
-/// Reads line after line into an episode; the first line that is wrong ends it.
+/// Reads line after line into an episode. The first line with an error ends it.
 class EpisodeReader {
  public:
-  explicit EpisodeReader(std::string file) : file_(std::move(file)), line_format_(LineFormat()) {}
+  explicit EpisodeReader(std::string file)
+      : file_(std::move(file)), line_format_(episode::LineFormat()) {}
 
   grammar::Diagnostics diagnostics;
   Episode episode;
@@ -195,7 +45,8 @@ class EpisodeReader {
     DiagnosticList errors(*document.value);
     if (!header_) {
       HeaderEntry header;
-      if (HeaderFormat().Read(document.value->root, errors, header)) TakeHeader(header, errors);
+      if (episode::HeaderFormat().Read(document.value->root, errors, header))
+        TakeHeader(header, errors);
       header_ = true;
     } else {
       LineEntry line;
@@ -259,7 +110,7 @@ class EpisodeReader {
     now_.collision_spheres.resize(hands_.size());
   }
 
-  /// Of what is no hand.
+  /// Classes of an entity that is not a hand.
   static std::vector<std::string> ClassesOf(const MemberEntry& m) {
     std::vector<std::string> classes = {m.class_name};
     classes.insert(classes.end(), m.kinds.begin(), m.kinds.end());
@@ -277,7 +128,7 @@ class EpisodeReader {
     return classes;
   }
 
-  /// The entity of this name, or kNoEntity after complaining.
+  /// The entity of this name; otherwise kNoEntity, and an error is reported.
   int IndexOf(const std::string& name, const Where& where, DiagnosticList& errors) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     if (found != names_.end()) return static_cast<int>(found - names_.begin());
@@ -309,7 +160,7 @@ class EpisodeReader {
     now_.tick = tick;
     for (grammar::EntitySample& look : now_.entities)
       look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
-    for (const Named<LookEntry>& look : entry.looks) {
+    for (const Named<SampleEntry>& look : entry.looks) {
       const int index = IndexOf(look.name, look.name_where, errors);
       if (index == grammar::kNoEntity) continue;
       TakeSample(look.value, first ? 0 : dt_s, now_.entities[index]);
@@ -328,8 +179,8 @@ class EpisodeReader {
       errors.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
   }
 
-  /// Velocities that are not given are those from the previous look to this one.
-  static void TakeSample(const LookEntry& entry, double dt_s, grammar::EntitySample& look) {
+  /// Velocities that are not given are computed from the previous sample and this one.
+  static void TakeSample(const SampleEntry& entry, double dt_s, grammar::EntitySample& look) {
     const grammar::EntitySample before = look;
     look.p_WB_m = entry.at_m;
     if (entry.quat_wxyz) {
@@ -354,7 +205,7 @@ class EpisodeReader {
     if (entity == grammar::kNoEntity) return;
     const auto found = std::find(hands_.begin(), hands_.end(), entity);
     if (found == hands_.end())
-      return errors.Add(named.name_where, fmt::format("'{}' is no hand", named.name),
+      return errors.Add(named.name_where, fmt::format("'{}' is not a hand", named.name),
                         "its entity has no 'hand: true'");
     const auto slot = static_cast<std::size_t>(found - hands_.begin());
     const HandYaml& entry = named.value;
@@ -401,12 +252,12 @@ class EpisodeReader {
         std::any_of(now_.touches.begin(), now_.touches.end(),
                     [&](const grammar::Touch& t) { return t.a == touch.a && t.b == touch.b; });
     if (twice)
-      return errors.Add(entry.a.where, fmt::format("'{}' and '{}' are said to touch twice",
+      return errors.Add(entry.a.where, fmt::format("the touch of '{}' and '{}' is given twice",
                                                    entry.a.value, entry.b.value));
     now_.touches.push_back(touch);
   }
 
-  /// Where the two touch is not known; the place of the one that the other bears is near it.
+  /// The contact point is not recorded. The position of the upper entity is close to it.
   double SpeedAtTheUpper(const grammar::Touch& touch) const {
     const grammar::EntitySample &a = now_.entities[static_cast<std::size_t>(touch.a)],
                                 &b = now_.entities[static_cast<std::size_t>(touch.b)];

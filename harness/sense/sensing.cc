@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// See harness/sense/sensing.h. Tested by tests/harness/sense/sensing_test.cc
 #include "harness/sense/sensing.h"
 
 #include <algorithm>
@@ -13,10 +14,10 @@ namespace {
 constexpr int kFeelersPerLink = 3;
 constexpr int kPalmFeelersPerSide = 3;
 
-// Of a touch that pushes no more, as after a bounce, all points count alike.
+// If a touch has no force, as after a bounce, all of its points count equally.
 constexpr double kJustPushed_n_s = 1e-12;
 
-/// Balls inscribed in the palm's box, in the hand's frame.
+/// Spheres inside the palm's box, in the hand's frame.
 std::vector<grammar::CollisionSphere> PalmFeelers(const physics::HandModel& model) {
   const double radius = model.palm_size_m.z() / 2;
   const Eigen::Vector2d reach = model.palm_size_m.head<2>() / 2 - Eigen::Vector2d::Constant(radius);
@@ -31,7 +32,7 @@ std::vector<grammar::CollisionSphere> PalmFeelers(const physics::HandModel& mode
   return collision_spheres;
 }
 
-/// Balls inscribed in every link's box, in that link's frame (x along the link).
+/// Spheres inside the box of each link, in that link's frame (x along the link).
 std::vector<grammar::CollisionSphere> LinkFeelers(const physics::HandModel& model) {
   std::vector<grammar::CollisionSphere> collision_spheres;
   for (const physics::HandLink& link : model.links) {
@@ -43,7 +44,7 @@ std::vector<grammar::CollisionSphere> LinkFeelers(const physics::HandModel& mode
   return collision_spheres;
 }
 
-/// For each style of the hand its index in `names`, which has them all.
+/// For each style of the hand, its index in `names`, which contains all of them.
 std::vector<int> StyleIndices(const physics::HandModel& model,
                               const std::vector<std::string>& names) {
   std::vector<int> indices;
@@ -60,7 +61,7 @@ grammar::EntitySample LookAt(const physics::BodyState& body) {
           .asleep = body.asleep};
 }
 
-/// No grammar can tell them apart.
+/// Whether no grammar can distinguish them.
 bool SameSample(const grammar::EntitySample& a, const grammar::EntitySample& b) {
   return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() &&
          a.v_WB_m_per_s == b.v_WB_m_per_s && a.w_WB_rad_per_s == b.w_WB_rad_per_s &&
@@ -77,10 +78,10 @@ bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
 
 }  // namespace
 
-Sensing::Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share)
+Sensing::Sensing(const physics::Scene& scene, const SensingSettings& settings)
     : rate_hz_(scene.world.rate_hz),
-      sensing_hz_(sensing_hz),
-      bearing_share_(bearing_share),
+      sensing_hz_(settings.sensing_hz),
+      bearing_share_(settings.bearing_share),
       body_count_(static_cast<int>(scene.bodies.size())) {
   const std::vector<std::string> styles = StyleNames(scene);
   for (const physics::Hand& hand : scene.hands) {
@@ -95,7 +96,7 @@ Sensing::Sensing(const physics::Scene& scene, int sensing_hz, double bearing_sha
 }
 
 grammar::FrameChanges Sensing::SenseChanges(const physics::Snapshot& snapshot) {
-  if (snapshot.tick <= tick_) tick_ = -1;  // an earlier moment: everybody may stand elsewhere
+  if (snapshot.tick <= tick_) tick_ = -1;  // an earlier tick: any body may have moved
   shown_.clear();
   SenseBodies(snapshot);
   SenseHands(snapshot);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the grammar gets to see: Snapshot -> Frame, or what is new in it. Points of contact become
-// touches of pairs, links become collision spheres and sensor sets. Knows geometry, knows nothing
-// of events. Bodies asleep, and what touches between them, are not looked at again: they cost no
-// time. Tested by tests/harness/sense/sensing_test.cc
+// Snapshot -> Frame: what the grammar observes, whole or as changes. Contact points become touches
+// of pairs; links become collision spheres and sensor sets. This knows geometry and no events.
+// Sleeping bodies and the touches between them are not read again, so they cost no time. Tested by
+// tests/harness/sense/sensing_test.cc
 #pragma once
 
 #include <memory>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
+#include "harness/scenario/scenario.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 
@@ -19,23 +20,23 @@ namespace prehend::harness {
 
 class Sensing {
  public:
-  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). `sensing_hz` <= the
-  /// scene's rate. `bearing_share`: a point of contact counts for what is held from below only if
-  /// it carries this share of the pair's load; otherwise an idle corner with a skewed normal would
-  /// decide.
-  Sensing(const physics::Scene& scene, int sensing_hz, double bearing_share);
+  /// Entities are the scene's bodies, then its hands (as in MakeEntityTable). The settings'
+  /// `sensing_hz` must not exceed the scene's rate. A contact point decides about support only if
+  /// it carries at least `bearing_share` of the pair's load; otherwise an idle corner point with a
+  /// skewed normal would decide.
+  Sensing(const physics::Scene& scene, const SensingSettings& settings);
 
-  /// Whether the snapshot of this tick is looked at: the ticks at which another 1/sensing_hz is
-  /// full, on integers, so that any rate works without drift.
+  /// Whether the snapshot of this tick is sensed: at each tick that completes another 1/sensing_hz.
+  /// Computed on integers, so that any rate works without drift.
   bool Due(std::int64_t tick) const {
     return tick * sensing_hz_ / rate_hz_ > (tick - 1) * sensing_hz_ / rate_hz_;
   }
 
-  /// What differs from the snapshot of this run that was sensed before, at first from nothing at
-  /// all. Lives until the next call. Allocates nothing once it has seen the largest number of
-  /// contacts, while nobody falls asleep or wakes.
+  /// The changes since the snapshot that was sensed before; the first time, everything. Valid until
+  /// the next call. Allocates nothing once the number of contacts no longer grows, as long as no
+  /// body falls asleep or wakes.
   grammar::FrameChanges SenseChanges(const physics::Snapshot& snapshot);
-  /// Everything as sensed last. Lives until the next call.
+  /// Everything, as sensed last. Valid until the next call.
   grammar::Frame Whole();
   grammar::Frame Sense(const physics::Snapshot& snapshot) {
     SenseChanges(snapshot);
@@ -60,7 +61,7 @@ class Sensing {
     std::vector<grammar::CollisionSphere> palm;  ///< in the hand's frame
     std::vector<grammar::CollisionSphere>
         links;                ///< in the links' frames, the same number for each link
-    std::vector<int> styles;  ///< for each of the hand's styles its index in StyleNames
+    std::vector<int> styles;  ///< for each style of the hand, its index in StyleNames
   };
 
   /// One contact point seen from the pair (a, b) with a < b.
@@ -72,31 +73,32 @@ class Sensing {
     std::uint32_t sensor_sets = 0;
   };
 
-  /// Of the material of the two at the centre of their upright load; 0 if they touch side by side.
+  /// The relative vertical speed of the two bodies' material at the centre of their vertical load;
+  /// 0 if they touch side by side.
   double VerticalSpeed(std::span<const PairPoint> points) const;
 
   std::int64_t rate_hz_ = 480;
   std::int64_t sensing_hz_ = 240;
   double bearing_share_ = 0;
   int body_count_ = 0;
-  std::vector<int> heads_;    ///< for every person the body that is her head
-  std::vector<int> jointed_;  ///< for every joint the body that hangs on it
+  std::vector<int> heads_;    ///< for each person, the body that is its head
+  std::vector<int> jointed_;  ///< for each joint, the body that it moves
   std::vector<HandGeometry> geometry_;
   std::vector<grammar::EntitySample> entities_;
   std::vector<grammar::HandSample> hands_;
   std::vector<std::vector<grammar::CollisionSphere>> collision_spheres_;  ///< per hand, world frame
   std::vector<PairPoint> points_;
-  /// What touches, sorted: now and in the snapshot before, between what may move and what rests.
+  /// Touches, sorted: of bodies that may move and of bodies that rest.
   struct SensedTouches {
     Touches moving, resting;
     Touches All() const;
   };
   SensedTouches now_, before_;
   std::shared_ptr<const std::vector<physics::ContactPoint>> resting_points_;
-  Touches touches_;         ///< all of them, when asked for
+  Touches touches_;         ///< all of them, for Whole()
   std::int64_t tick_ = -1;  ///< of the last snapshot
 
-  std::vector<int> shown_;  ///< entities that look different
+  std::vector<int> shown_;  ///< entities that changed
   std::vector<grammar::EntityChange> entity_changes_;
   Touches touch_changes_;
   std::vector<grammar::ContactEnd> contact_ends_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/sense/episode_file_test.cc
+// Writes an episode, see harness/sense/episode_file.h. Tested by
+// tests/harness/sense/episode_file_test.cc
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,7 @@ Json ToJson(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; 
 
 bool IsHand(const grammar::EntityInfo& member) { return member.classes.front() == "Hand"; }
 
-/// Of what is no hand: its own class, what that is a kind of, and what is built in.
+/// Classes of an entity that is not a hand: its own, its base classes, the built-in ones.
 void AddClasses(const std::vector<std::string>& classes, Json& json) {
   const auto given = std::find_if(classes.begin() + 1, classes.end(), IsScenarioBuiltinClass);
   json["class"] = classes.front();
@@ -84,7 +85,7 @@ Json TouchJson(const grammar::Touch& touch, const grammar::EntityTable& entity_t
     for (std::size_t i = 0; i < sets.size(); ++i) {
       if (touch.sensor_sets >> i & 1) json["sensor_sets"].push_back(sets[i]);
     }
-    if (!sets.empty()) break;  // of two hands the sets are the first one's
+    if (!sets.empty()) break;  // of two hands, the sets are those of the first
   }
   return json;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames in memory, each as what is new in it, to be played to monitors as often as one likes.
+// Frames in memory, each as its changes. They can be played to monitors any number of times.
 // Tested by tests/harness/speed/workload_test.cc
 #pragma once
 
@@ -17,13 +17,13 @@ class ChangeLog {
   std::size_t size() const { return frames_.size(); }
   grammar::Tick end_tick() const { return frames_.empty() ? 0 : frames_.back().tick + 1; }
 
-  /// A frame begins; what is added from now on is new in it.
+  /// Begins a frame; what is added from now on are its changes.
   void Begin(grammar::Tick tick) {
     frames_.push_back(
         {tick, entities_.size(), hands_.size(), touches_.size(), contact_ends_.size()});
   }
   void Add(const grammar::EntityChange& change) { entities_.push_back(change); }
-  /// Without collision spheres: they would not outlive the call.
+  /// Its collision spheres are dropped: they would not outlive the call.
   void Add(grammar::HandSample hand) {
     hand.collision_spheres = {};
     hands_.push_back(hand);
@@ -31,7 +31,7 @@ class ChangeLog {
   void Add(const grammar::Touch& touch) { touches_.push_back(touch); }
   void Add(const grammar::ContactEnd& contact_end) { contact_ends_.push_back(contact_end); }
 
-  /// Lives as long as nothing is added.
+  /// Valid until something is added.
   grammar::FrameChanges operator[](std::size_t i) const {
     const Start& here = frames_[i];
     const bool is_last = i + 1 == frames_.size();

@@ -15,7 +15,7 @@ using grammar::Tick;
 constexpr Tick kSupportTicks = FourRules::kSupport_ms * kWorldRate_hz / 1000;
 constexpr Tick kUnansweredTicks = FourRules::kUnanswered_ms * kWorldRate_hz / 1000;
 
-// The four rules for one object, looked at in each frame.
+// The four rules for one object, evaluated in each frame.
 struct Automaton {
   // Facts.
   double trigger = 0;

@@ -32,8 +32,8 @@ class Measuring {
 
   int Frames(int frames) const { return quick_ ? std::max(2, frames / 50) : frames; }
 
-  /// The four rules on a log, in turns by grammar and by hand; an operation is what the unit names,
-  /// in one frame.
+  /// The four rules on a log, by the grammar and by hand in turns. An operation is that of the
+  /// unit, in one frame.
   SpeedFigure Watch(std::string what, std::string unit, double operations, const ChangeLog& log,
                     int warm_up) const {
     const double frames = static_cast<double>(log.size()) - warm_up;
@@ -58,15 +58,15 @@ class Measuring {
     warm_up = Frames(warm_up);
     return Watch(fmt::format("four rules, {} object{}, each used every {} s", objects,
                              objects == 1 ? "" : "s", period_s),
-                 "object-rule-frame", 1.0 * FourRules::kCount * objects,
+                 "object-rule-frame", static_cast<double>(FourRules::kCount * objects),
                  MakeStations(objects, Frames(frames) + warm_up, period_s), warm_up);
   }
 
-  /// All facts about all objects change, each once in so many frames.
+  /// All facts about all objects change, each once in that many frames.
   SpeedFigure Dense(int objects, int every) const {
     return Watch(fmt::format("four rules, {} objects, a fact of each changes every {} frames",
                              objects, every),
-                 "object-rule-frame", 1.0 * FourRules::kCount * objects,
+                 "object-rule-frame", static_cast<double>(FourRules::kCount * objects),
                  MakeFlicker(objects, Frames(4000), objects / every, Flicker::kFact), 1);
   }
 
@@ -86,10 +86,10 @@ class Measuring {
     monitor.AdvanceBy(log[0], events);
     grammar::Tick tick = 1;
     for (; tick < 1000; ++tick)
-      monitor.AdvanceBy({.tick = tick}, events);  // what is new comes to rest
+      monitor.AdvanceBy({.tick = tick}, events);  // new instances become idle
     const Stopwatch watch;
     for (int i = 0; i < frames; ++i) monitor.AdvanceBy({.tick = tick++}, events);
-    return {.what = fmt::format("nothing happens, {} objects stand on a table", objects),
+    return {.what = fmt::format("nothing changes, {} objects stand on a table", objects),
             .unit = "idle tick",
             .operations = static_cast<double>(frames),
             .seconds = watch.seconds(),
@@ -120,7 +120,7 @@ class Measuring {
   std::shared_ptr<const grammar::Program> program_;
 };
 
-/// The scenario's world alone. Seconds of the processor.
+/// The scenario's world alone, in seconds of processor time.
 double TimePhysics(const Scenario& scenario) {
   physics::Simulation simulation(scenario.scene, scenario.script);
   const Stopwatch watch;
@@ -129,10 +129,10 @@ double TimePhysics(const Scenario& scenario) {
   return watch.seconds();
 }
 
-/// What sensing and grammar make of snapshots that were taken before.
+/// Sensing and grammar alone, on recorded snapshots.
 double TimeWatching(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                     std::span<const physics::Snapshot> recording) {
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
+  Sensing sensing(scenario.scene, scenario.sensing);
   grammar::Monitor monitor(std::move(program), MakeEntityTable(scenario));
   std::vector<grammar::Event> events;
   const Stopwatch watch;
@@ -141,15 +141,15 @@ double TimeWatching(const Scenario& scenario, std::shared_ptr<const grammar::Pro
   return watch.seconds();
 }
 
-// One hand takes one carton: what physics costs, and what watching adds to it. Apart, so that the
-// clock of the processor, which is slow to read, is read twice only.
+// One hand takes one carton: the cost of physics, and of sensing and grammar. They are measured
+// apart, because reading the clock of the processor is slow.
 SpeedFigure WatchCarton(const LoadedRun& carton, bool quick) {
   SpeedFigure figure{.what = "pick_and_place on " + carton.scenario.name + ", sensing included",
                      .unit = "physics tick"};
   const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
   figure.operations = static_cast<double>(run.ticks);
   figure.events = static_cast<double>(run.timeline.events.size());
-  figure.simulated_s = figure.operations / carton.scenario.world.rate_hz;
+  figure.simulated_s = figure.operations / carton.scenario.scene.world.rate_hz;
   figure.seconds = figure.physics_s = std::numeric_limits<double>::infinity();
   for (int i = 0; i < (quick ? 1 : kRuns); ++i) {
     figure.physics_s = std::min(figure.physics_s, TimePhysics(carton.scenario));
@@ -159,13 +159,13 @@ SpeedFigure WatchCarton(const LoadedRun& carton, bool quick) {
   return figure;
 }
 
-// Nothing happens to thousands of boxes: what the world costs then, and what watching adds to it.
+// Thousands of boxes at rest: the cost of the world, and of sensing and grammar.
 SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool quick) {
-  constexpr int kRate_hz = 60;  // to fall asleep takes 2 s, however few ticks they have
+  constexpr int kRate_hz = 60;  // falling asleep takes 2 s at any rate
   const int boxes = quick ? 50 : 5000, ticks = quick ? 20 : 400;
   const Scenario scenario = BoxesOnAFloor(boxes, kRate_hz);
   physics::Simulation simulation(scenario.scene, scenario.script);
-  Sensing sensing(scenario.scene, scenario.world.sensing_hz, scenario.world.bearing_share);
+  Sensing sensing(scenario.scene, scenario.sensing);
   grammar::Monitor monitor(std::move(program), MakeEntityTable(scenario));
   std::vector<grammar::Event> events;
   while (simulation.snapshot().tick < kUntilAsleep_s * kRate_hz && simulation.Step())
@@ -181,7 +181,7 @@ SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool 
   for (int i = 0; i < ticks; ++i) {
     simulation.Step();
     if (!sensing.Due(simulation.snapshot().tick) || recording.size() >= kKeptSnapshots) continue;
-    figure.physics_s += watch.seconds();  // copies do not count
+    figure.physics_s += watch.seconds();  // without the copies
     recording.push_back(simulation.snapshot());
     watch.Restart();
   }
@@ -208,10 +208,9 @@ ReadResult<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool 
       measuring.Stations(65'536, 480, 100, 60),
       measuring.Dense(1024, 8),
       measuring.Idle(65'536),
-      measuring.Touches("a touch that no rule can tell from before", "change", Flicker::kPressure),
-      measuring.Touches("a touch that makes a condition true or false", "fact edge",
-                        Flicker::kFact),
-      measuring.Touches("a touch that begins or ends a grasp", "event boundary", Flicker::kGrasp),
+      measuring.Touches("a touch changes, no threshold is crossed", "change", Flicker::kPressure),
+      measuring.Touches("a touch makes a condition true or false", "fact edge", Flicker::kFact),
+      measuring.Touches("a touch begins or ends a grasp", "event boundary", Flicker::kGrasp),
       measuring.Binding(),
       WatchCarton(*carton.value, quick),
       WatchSleepers(carton.value->program, quick)};

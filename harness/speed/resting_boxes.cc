@@ -7,14 +7,13 @@ namespace prehend::harness {
 
 Scenario BoxesOnAFloor(int count, int rate_hz) {
   constexpr double kSpacing_m = 0.12, kSize_m = 0.1;
-  constexpr double kLongest_s = 1800;
+  constexpr double kMaxDuration_s = 1800;
   const int side = static_cast<int>(std::ceil(std::sqrt(count)));
   const double middle_m = kSpacing_m * (side - 1) / 2;
   Scenario scenario;
-  scenario.world.rate_hz = rate_hz;
-  scenario.world.sensing_hz = rate_hz / 2;
   scenario.scene.world.rate_hz = rate_hz;
-  scenario.script.settle_s = kLongest_s;
+  scenario.sensing.sensing_hz = rate_hz / 2;
+  scenario.script.settle_s = kMaxDuration_s;
   const auto add = [&](physics::Body body, const char* class_name) {
     scenario.scene.bodies.push_back(std::move(body));
     scenario.body_classes.emplace_back(class_name);

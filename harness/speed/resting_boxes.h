@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many things of which nothing is to be told: boxes that stand on a floor and fall asleep.
+// Many bodies without events: boxes that stand on a floor and fall asleep.
 // Tested by tests/harness/speed/workload_test.cc
 #pragma once
 
@@ -7,8 +7,8 @@
 
 namespace prehend::harness {
 
-/// `count` boxes side by side on a fixed floor, no hand; sensed at every second tick. They fall
-/// asleep within 2.2 s.
+/// `count` boxes side by side on a fixed floor, without a hand, sensed at every second tick. They
+/// fall asleep within 2.2 s.
 Scenario BoxesOnAFloor(int count, int rate_hz = 480);
 inline constexpr double kUntilAsleep_s = 2.5;
 

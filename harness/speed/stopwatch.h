@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time of the processor, not of the wall: others may use this machine, too.
+// Processor time, not wall time, because other programs may run on this machine.
 // Tested by tests/harness/speed/workload_test.cc
 #pragma once
 

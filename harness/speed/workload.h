@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four rules of the kind that other monitors are measured with, as a grammar, and what came of
-// watching a world with them. four_automata.h has the same rules by hand. Tested by
-// tests/harness/speed/workload_test.cc
+// Four rules of the kind that other monitors are measured with, as a grammar, and the events that
+// it recognises in a made-up world. harness/speed/four_automata.h has the same rules by hand.
+// Tested by tests/harness/speed/workload_test.cc
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace prehend::harness {
 
-/// A grasp; a support, for a while; a touch without a grasp, for a while; a grasped thing that
-/// leaves its support.
+/// A grasp; a support of some duration; a touch of some duration without a grasp; a grasped object
+/// that leaves its support.
 struct FourRules {
   enum Number { kGrasping, kSupported, kUnanswered, kPickingUp, kCount };
   static constexpr double kGripOn = 0.3;  ///< of the commanded grip
@@ -25,7 +25,7 @@ struct FourRules {
 };
 std::shared_ptr<const grammar::Program> CompileFourRules();
 
-/// What was recognised: order does not matter, everything else does.
+/// The recognised events, independent of their order.
 struct Recognised {
   std::uint64_t events = 0;
   std::uint64_t hash = 0;
@@ -35,12 +35,12 @@ struct Recognised {
 
 struct Watched {
   Recognised recognised;     ///< all of it
-  std::uint64_t events = 0;  ///< among them, those after the warm-up
-  double seconds = 0;        ///< that the frames after the warm-up took
+  std::uint64_t events = 0;  ///< of them, those after the warm-up
+  double seconds = 0;        ///< for the frames after the warm-up
 };
 
-/// Plays a log of worlds.h to a monitor of the four rules. The first frames are `warm_up`: what is
-/// new is bound, and memory is taken.
+/// Plays a log of harness/speed/worlds.h to a monitor of the four rules. During the first `warm_up`
+/// frames, new instances are bound and memory is allocated.
 Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::size_t warm_up = 0);
 
 }  // namespace prehend::harness

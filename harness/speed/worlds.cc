@@ -20,8 +20,8 @@ grammar::EntityTable MakeEntityTable(int objects) {
   return entity_table;
 }
 
-// A hand that takes an object, holds it up and puts it back: when each step is due, in frames from
-// the touch.
+// A hand picks up an object, holds it and puts it back: the frame of each step, counted from the
+// touch.
 struct Visit {
   int grip = 0, lift = 0, lower = 0, release = 0, leave = 0;
 };
@@ -37,7 +37,7 @@ class Stations {
         random_(seed) {
     log.entity_table = MakeEntityTable(objects);
     visits_.resize(static_cast<std::size_t>(objects));
-    // agenda_[frame % period]: who does something then; every visit is over before its period is.
+    // agenda_[frame % period]: which hands act then; a visit is shorter than its period.
     for (int i = 0; i < objects; ++i) {
       starts_.push_back(
           1 + static_cast<int>(random_() % static_cast<unsigned>(period_ - kMaxVisitTicks)));
@@ -65,7 +65,7 @@ class Stations {
     const auto upto = [&](int most) {
       return 1 + static_cast<int>(random_() % static_cast<unsigned>(most));
     };
-    visit.grip = upto(180);  // now and then too late
+    visit.grip = upto(180);  // sometimes too late
     visit.lift = visit.grip + upto(20);
     visit.lower = visit.lift + kRiseFrames + upto(60);
     visit.release = visit.lower + kRiseFrames + upto(20);

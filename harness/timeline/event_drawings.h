@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "grammar/base/timeline.h"
-#include "grammar/program/program.h"
+#include "grammar/contents.h"
 
 namespace prehend::harness {
 

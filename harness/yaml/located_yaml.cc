@@ -64,7 +64,7 @@ class TreeBuilder : public YAML::EventHandler {
     node.text = value;
     node.quoted = tag == "!";  // yaml-cpp's way to say so; explicit tags were refused by NewNode()
     if (node.quoted && !IsClosed(Offset(mark))) {
-      Complain(node.where.place, "this quotation does not end", "close it with the same quote");
+      Complain(node.where.place, "this quote is not closed", "close it with the same quote");
     }
     Attach(std::move(node));
   }
@@ -122,7 +122,8 @@ class TreeBuilder : public YAML::EventHandler {
     const char first = offset < text_.size() ? text_[offset] : '\0';
     if (first == '!') Complain(PlaceOf(mark), "tags ('!name') are not supported", "remove the tag");
     if (first == '&')
-      Complain(PlaceOf(mark), "anchors ('&name') are not supported", "write values out where used");
+      Complain(PlaceOf(mark), "anchors ('&name') are not supported",
+               "write the value out where it is used");
     YamlNode node;
     node.kind = kind;
     node.where.place = PlaceOf(mark);
@@ -222,32 +223,31 @@ std::pair<std::string, std::string> InPlainWords(const std::string& message, std
       std::min(line.size(), static_cast<std::size_t>(std::max(1, place.column)) - 1);
   const std::string_view before = line.substr(0, column);
   if (line.substr(column).starts_with(':') && before.find(": ") != std::string_view::npos) {
-    return {"not valid YAML: a second ':' in what is one text",
+    return {"not valid YAML: a second ':' in one value",
             "text with ': ' in it goes in quotes, like \"first: second\""};
   }
   if (message == "end of map not found" &&
       before.find_first_not_of(' ') != std::string_view::npos) {
-    return {"not valid YAML: this cannot stand behind what is before it",
-            "text that begins with a quote ends with it; put all of it in quotes"};
+    return {"not valid YAML: unexpected text after the value before it",
+            "put the whole value in quotes"};
   }
   constexpr const char* kBrackets = "each '[' needs its ']', each '{' its '}'";
-  constexpr const char* kIndent = "what belongs together begins in the same column";
+  constexpr const char* kIndent = "siblings begin in the same column";
   constexpr Words kWords[] = {
-      {"illegal flow end", "this bracket is not the one that closes the open one", kBrackets},
+      {"illegal flow end", "this bracket does not match the open one", kBrackets},
       {"end of sequence flow not found", "a '[' before this is not closed", kBrackets},
       {"end of map flow not found", "a '{' before this is not closed", kBrackets},
-      {"end of map not found", "this line is indented otherwise than those it belongs to", kIndent},
-      {"end of sequence not found", "this line is indented otherwise than those it belongs to",
-       kIndent},
+      {"end of map not found", "this line's indentation does not match its siblings", kIndent},
+      {"end of sequence not found", "this line's indentation does not match its siblings", kIndent},
       {"illegal map value", "no ':' is expected here",
-       "a key begins a line, or stands in '{}'; text with ': ' goes in quotes"},
-      {"alias not found after *", "no text begins with '*'",
+       "a key begins a line or is inside '{}'; text with ': ' goes in quotes"},
+      {"alias not found after *", "text cannot begin with '*'",
        "text with special characters goes in quotes"},
-      {"anchor not found after &", "no text begins with '&'",
+      {"anchor not found after &", "text cannot begin with '&'",
        "text with special characters goes in quotes"},
       {"the referenced anchor is not defined", "aliases ('*name') are not supported",
        "write the value out; text that begins with '*' goes in quotes"},
-      {"unknown token", "no YAML begins with this character",
+      {"unknown token", "a value cannot begin with this character",
        "text with special characters goes in quotes"},
   };
   for (const Words& words : kWords) {
@@ -275,7 +275,7 @@ ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
     YAML::Parser parser(stream);
     bool any = false;
     while (parser.HandleNextDocument(builder)) any = true;
-    if (!any) builder.Complain({}, "the file is empty but for comments", "");
+    if (!any) builder.Complain({}, "the file contains only comments", "");
   } catch (const Stop&) {
     // The builder has said why.
   } catch (const YAML::Exception& error) {

@@ -27,8 +27,15 @@ std::string WithoutUnit(const std::string& key) {
 
 /// Returns the known key that was probably meant, or "".
 std::string ReportUnknownKey(const YamlNode& child, const std::string& title,
-                             const std::vector<std::string>& known, DiagnosticList& errors) {
+                             const std::vector<std::string>& known,
+                             const std::vector<std::pair<std::string, std::string>>& renamed,
+                             DiagnosticList& errors) {
   const std::string message = fmt::format("unknown key '{}' in {}", child.key, title);
+  for (const auto& [former, key] : renamed) {
+    if (child.key != former) continue;
+    errors.Add(child.key_where, message, fmt::format("it is called '{}' now", key));
+    return key;
+  }
   const auto same_stem = std::find_if(known.begin(), known.end(), [&](const std::string& key) {
     return WithoutUnit(key) == WithoutUnit(child.key);
   });
@@ -166,7 +173,7 @@ bool StructRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const 
   std::set<std::string> meant;  // but misspelt: not to be called missing, too
   for (const YamlNode& child : node.children) {
     if (std::find(known.begin(), known.end(), child.key) != known.end()) continue;
-    meant.insert(ReportUnknownKey(child, TitleOf(node), known, errors));
+    meant.insert(ReportUnknownKey(child, TitleOf(node), known, renamed, errors));
     good = false;
   }
   for (const Field& field : fields) {

@@ -4,7 +4,8 @@
 //
 // A field is kept without the types of its struct and of its value: as an offset and a function
 // that reads a value into the member there. So a table of fields compiles to data, and the work is
-// done by one reader in struct_format.cc. Tested by tests/harness/yaml/struct_format_test.cc
+// done by one reader in harness/yaml/struct_format.cc. Tested by
+// tests/harness/yaml/struct_format_test.cc
 #pragma once
 
 #include <functional>
@@ -49,6 +50,7 @@ struct StructRules {
   std::vector<Field> fields;
   std::vector<std::vector<std::string>> exactly_one;  ///< of these keys
   std::vector<std::vector<std::string>> at_most_one;
+  std::vector<std::pair<std::string, std::string>> renamed;  ///< a former key, and what it is now
   std::vector<Check> checks;
 
   /// `initial` is what the member is without the key, or null when that is not shown.
@@ -135,6 +137,11 @@ class StructFormat {
   }
   StructFormat& AtMostOneOf(std::vector<std::string> keys) {
     rules_.at_most_one.push_back(std::move(keys));
+    return *this;
+  }
+  /// The key was called `former` once; whoever still writes that is told the new name.
+  StructFormat& Renamed(std::string former, std::string key) {
+    rules_.renamed.emplace_back(std::move(former), std::move(key));
     return *this;
   }
   /// A rule across fields, checked when all of them are well-formed. The node is the mapping, the

@@ -137,7 +137,7 @@ bool IsListOf(const YamlNode& node, DiagnosticList& errors, std::size_t least, s
   const std::string wanted = least == most ? fmt::format("a list of {}", least) : "a list";
   if (node.kind != YamlNode::Kind::kMapping) return ReportExpected(node, errors, wanted);
   errors.Add(node.where, fmt::format("{}expected {}, found a mapping", LabelOf(node), wanted),
-             "each item on a line of its own begins with '- ', or all are in [..]");
+             "begin each item with '- ' on a line of its own, or put all in [..]");
   return false;
 }
 
@@ -148,7 +148,7 @@ bool IsMappingOf(const YamlNode& node, DiagnosticList& errors, std::size_t least
     return ReportExpected(node, errors, "a mapping from names");
   errors.Add(node.where,
              fmt::format("{}expected a mapping from names, found a list", LabelOf(node)),
-             "lines 'NAME: ..' without '- ' before them");
+             "write lines 'NAME: ..' without a leading '- '");
   return false;
 }
 
@@ -240,7 +240,7 @@ void CheckLeastMost(const std::string& key, const Eigen::Vector2d& range, Where 
                     DiagnosticList& errors) {
   if (range[0] < range[1]) return;
   errors.Add(where,
-             fmt::format("{}: expected [least, most], found [{}, {}]", key, range[0], range[1]));
+             fmt::format("{}: expected [min, max], found [{}, {}]", key, range[0], range[1]));
 }
 
 namespace {

@@ -85,7 +85,7 @@ std::optional<ScalarMeaning> AmbiguousNumber(const std::string& text) {
     return Ambiguous("a number in another base to some YAML readers", "write a decimal number");
   }
   if (only("0123456789_.") && lower.find('_') != std::string::npos) {
-    return Ambiguous("'_' is a separator to some YAML readers only",
+    return Ambiguous("only some YAML readers take '_' for a separator",
                      "write the digits without '_'");
   }
   if (only("0123456789:.") && lower.find(':') != std::string::npos) {
@@ -97,7 +97,7 @@ std::optional<ScalarMeaning> AmbiguousNumber(const std::string& text) {
     return Ambiguous("a leading zero means octal to some YAML readers",
                      fmt::format("write {}", lower.substr(significant)));
   }
-  if (text[0] == '+') return Ambiguous("a number with a plus sign", "leave the '+' out");
+  if (text[0] == '+') return Ambiguous("a number with a plus sign", "remove the '+'");
   if (only("0123456789.") && std::count(lower.begin(), lower.end(), '.') == 1) {
     return Ambiguous("a number without a digit on both sides of the point",
                      "write for example 0.5 or 5.0");
@@ -176,8 +176,8 @@ std::string LookAlikeRemedy(std::string_view text) {
                              {"\u3000", " "}};
   for (const auto& [found, meant] : kPairs) {
     if (text.find(found) == std::string_view::npos) continue;
-    return meant == " " ? "there is a blank in it that is none: type it again"
-                        : fmt::format("'{}' is not '{}': type it again", found, meant);
+    return meant == " " ? "it contains a non-standard space character; retype it"
+                        : fmt::format("'{}' is not '{}'; retype it", found, meant);
   }
   return "";
 }

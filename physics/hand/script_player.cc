@@ -20,7 +20,7 @@ namespace {
 constexpr double kPress_m = 0.002;
 /// The integral of the palm's PID carries the object's weight and takes a second to decay: the
 /// target goes lower by the extension of the palm's spring under that weight, at most this much.
-constexpr double kMostSpring_m = 0.01;
+constexpr double kMaxSpring_m = 0.01;
 /// Share of a put-down's time after which the motion ends; the object settles in the rest.
 constexpr double kLoweringShare = 0.85;
 /// The open hand is approximated by spheres, which protrude by less than this.
@@ -41,10 +41,10 @@ double DurationOf(const PersonStep& step) {
   return head && !head->poses.empty() ? head->poses.back().t_s : step.over_s;
 }
 
-double DurationOf(const Beat& beat) {
+double DurationOf(const ScriptStage& stage) {
   double longest = 0;
-  for (const Step& step : beat.steps) longest = std::max(longest, DurationOf(step));
-  for (const PersonStep& step : beat.person_steps) longest = std::max(longest, DurationOf(step));
+  for (const Step& step : stage.steps) longest = std::max(longest, DurationOf(step));
+  for (const PersonStep& step : stage.person_steps) longest = std::max(longest, DurationOf(step));
   return longest;
 }
 
@@ -204,7 +204,7 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
         scene_.hands[static_cast<std::size_t>(step_.hand)].model.translation.proportional;
     const double weight_n =
         scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / HandsOn(held, now_);
-    const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMostSpring_m);
+    const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMaxSpring_m);
     MoveBy({0, 0, -drop - kPress_m - spring}, kLoweringShare * step_.over_s);
   }
 }
@@ -260,8 +260,8 @@ ScriptPlayer::ScriptPlayer(const Scene& scene, Script script)
 
 std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& script) {
   std::vector<int> styles(scene.hands.size(), -1);
-  for (const Beat& beat : script.beats) {
-    for (const Step& step : beat.steps) {
+  for (const ScriptStage& stage : script.stages) {
+    for (const Step& step : stage.steps) {
       const auto* reach = std::get_if<ReachStep>(&step.action);
       const auto* poses = std::get_if<PosesStep>(&step.action);
       const std::string style = reach ? reach->style : poses ? poses->style : std::string();
@@ -274,19 +274,19 @@ std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& scr
   return styles;
 }
 
-void ScriptPlayer::StartBeat(const Snapshot& now) {
+void ScriptPlayer::StartStage(const Snapshot& now) {
   const double rate_hz = scene_.world.rate_hz;
   for (HandState& hand : hands_) hand.motion = Trajectory(hand.target);
-  tick_in_beat_ = 0;
-  if (beat_ == script_.beats.size()) {
+  tick_in_stage_ = 0;
+  if (stage_ == script_.stages.size()) {
     settling_ = true;
-    beat_ticks_ = std::llround(script_.settle_s * rate_hz);
+    stage_ticks_ = std::llround(script_.settle_s * rate_hz);
     return;
   }
-  begun_.push_back(beat_);
-  const Beat& beat = script_.beats[beat_++];
-  beat_ticks_ = std::llround(DurationOf(beat) * rate_hz);
-  for (const Step& step : beat.steps) {
+  begun_.push_back(stage_);
+  const ScriptStage& stage = script_.stages[stage_++];
+  stage_ticks_ = std::llround(DurationOf(stage) * rate_hz);
+  for (const Step& step : stage.steps) {
     Resolver resolver(scene_, now, step, hands_[static_cast<std::size_t>(step.hand)]);
     problem_ = resolver.Resolve();
     if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
@@ -298,17 +298,17 @@ void ScriptPlayer::StartBeat(const Snapshot& now) {
 const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   commands_.clear();
   begun_.clear();
-  while (tick_in_beat_ == beat_ticks_ && !settling_ && problem_.empty()) StartBeat(now);
-  if (!problem_.empty() || tick_in_beat_ == beat_ticks_) return nullptr;
-  ++tick_in_beat_;
-  const double t_s = static_cast<double>(tick_in_beat_) / scene_.world.rate_hz;
+  while (tick_in_stage_ == stage_ticks_ && !settling_ && problem_.empty()) StartStage(now);
+  if (!problem_.empty() || tick_in_stage_ == stage_ticks_) return nullptr;
+  ++tick_in_stage_;
+  const double t_s = static_cast<double>(tick_in_stage_) / scene_.world.rate_hz;
   for (const HandState& hand : hands_) commands_.push_back({hand.motion.At(t_s), hand.style});
   return &commands_;
 }
 
 double DurationOf(const Script& script) {
   double sum_s = script.settle_s;
-  for (const Beat& beat : script.beats) sum_s += DurationOf(beat);
+  for (const ScriptStage& stage : script.stages) sum_s += DurationOf(stage);
   return sum_s;
 }
 

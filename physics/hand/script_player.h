@@ -34,7 +34,7 @@ class ScriptPlayer {
   /// continue (see problem()).
   const std::vector<HandCommand>* Advance(const Snapshot& now);
 
-  /// The stages that began with the last Advance(), as indices into Script::beats.
+  /// The stages that began with the last Advance(), as indices into Script::stages.
   const std::vector<std::size_t>& begun() const { return begun_; }
   const Script& script() const { return script_; }
 
@@ -56,15 +56,15 @@ class ScriptPlayer {
   };
   class Resolver;
 
-  void StartBeat(const Snapshot& now);
+  void StartStage(const Snapshot& now);
 
   const Scene& scene_;
   Script script_;
   std::vector<HandState> hands_;
   std::vector<HandCommand> commands_;
-  std::size_t beat_ = 0;  ///< the next stage to start
-  std::int64_t tick_in_beat_ = 0;
-  std::int64_t beat_ticks_ = 0;
+  std::size_t stage_ = 0;  ///< the next stage to start
+  std::int64_t tick_in_stage_ = 0;
+  std::int64_t stage_ticks_ = 0;
   std::vector<std::size_t> begun_;
   bool settling_ = false;
   std::string problem_;

@@ -85,13 +85,13 @@ struct MoveLimbStep {
   std::optional<Eigen::Vector3d> to_m = std::nullopt;  ///< none: back to its rest position
   /// If set, the limb yields: it slows down so that it pushes with no more than this force,
   /// newtons.
-  std::optional<double> most_n = std::nullopt;
+  std::optional<double> max_force_n = std::nullopt;
 };
 struct HeadPosesStep {  ///< recorded head; the eyes look along its x
   std::vector<TimedPose> poses;
 };
 struct BodyPosesStep {  ///< recorded whole body
-  std::vector<TimedFigure> figures;
+  std::vector<TimedPosture> postures;
 };
 using PersonAction = std::variant<WaitStep, LookAtStep, EyesStep, WalkStep, TurnStep, LeanStep,
                                   SwayStep, MoveLimbStep, HeadPosesStep, BodyPosesStep>;
@@ -102,13 +102,13 @@ struct PersonStep {
   double over_s = 0.5;
 };
 
-struct Beat {
+struct ScriptStage {
   std::vector<Step> steps;                    ///< at most one per hand
   std::vector<PersonStep> person_steps = {};  ///< at most one per person
 };
 
 struct Script {
-  std::vector<Beat> beats;
+  std::vector<ScriptStage> stages;
   double settle_s = 0.5;  ///< simulated time after the last stage
 };
 

@@ -71,12 +71,12 @@ std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaz
 GazeLeader::GazeLeader(const Scene& scene, const Script& script, const Person& person)
     : scene_(scene), script_(script), person_(person), reached_(scene.hands.size(), -1) {}
 
-void GazeLeader::Begin(std::size_t beat, const Snapshot& now) {
+void GazeLeader::Begin(std::size_t stage, const Snapshot& now) {
   // The right hand first: she looks at one of two hands that do different things.
   for (const int hand : {person_.right_hand, person_.left_hand}) {
-    for (const Step& step : script_.beats[beat].steps) {
+    for (const Step& step : script_.stages[stage].steps) {
       if (hand < 0 || step.hand != hand) continue;
-      if (const auto target = TargetOf(step, beat, now)) {
+      if (const auto target = TargetOf(step, stage, now)) {
         target_ = *target;
         return;
       }
@@ -85,7 +85,7 @@ void GazeLeader::Begin(std::size_t beat, const Snapshot& now) {
 }
 
 /// Nullopt if the step gives no target: then the eyes stay.
-std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t beat,
+std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t stage,
                                                const Snapshot& now) {
   int& reached = reached_[static_cast<std::size_t>(step.hand)];
   const auto body = [](int index) {
@@ -96,7 +96,7 @@ std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t bea
     return body(reached);
   }
   if (const auto* carry = std::get_if<CarryStep>(&step.action)) {
-    if (const auto place = LandingPlace(*carry, step.hand, beat, now))
+    if (const auto place = LandingPlace(*carry, step.hand, stage, now))
       return GazeTarget{.kind = GazeTarget::Kind::kPoint, .p_W_m = *place};
   }
   if (std::holds_alternative<RetreatStep>(step.action)) return GazeTarget{};
@@ -108,10 +108,10 @@ std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t bea
 }
 
 /// The place on the support of the next put-down; nullopt if none follows.
-std::optional<Vector3d> GazeLeader::LandingPlace(const CarryStep& carry, int hand, std::size_t beat,
-                                                 const Snapshot& now) const {
-  for (std::size_t later = beat + 1; later < script_.beats.size(); ++later) {
-    for (const Step& step : script_.beats[later].steps) {
+std::optional<Vector3d> GazeLeader::LandingPlace(const CarryStep& carry, int hand,
+                                                 std::size_t stage, const Snapshot& now) const {
+  for (std::size_t later = stage + 1; later < script_.stages.size(); ++later) {
+    for (const Step& step : script_.stages[later].steps) {
       const auto* place = std::get_if<PlaceStep>(&step.action);
       const int support = place && step.hand == hand ? FindBody(scene_, place->support) : -1;
       if (support < 0) continue;

@@ -44,12 +44,12 @@ class GazeLeader {
   GazeLeader(const Scene& scene, const Script& script, const Person& person);
 
   /// Chooses the target from the beginning of this stage of the script on.
-  void Begin(std::size_t beat, const Snapshot& now);
+  void Begin(std::size_t stage, const Snapshot& now);
   const GazeTarget& target() const { return target_; }
 
  private:
-  std::optional<GazeTarget> TargetOf(const Step& step, std::size_t beat, const Snapshot& now);
-  std::optional<Eigen::Vector3d> LandingPlace(const CarryStep& carry, int hand, std::size_t beat,
+  std::optional<GazeTarget> TargetOf(const Step& step, std::size_t stage, const Snapshot& now);
+  std::optional<Eigen::Vector3d> LandingPlace(const CarryStep& carry, int hand, std::size_t stage,
                                               const Snapshot& now) const;
 
   const Scene& scene_;

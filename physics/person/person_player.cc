@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motions start at stages of the script; every tick turns them into a posture and that into places.
-// Tested by tests/physics/person/person_player_test.cc
+// Motions start at stages of the script; every tick turns them into body targets and these into
+// poses. Tested by tests/physics/person/person_player_test.cc
 #include "physics/person/person_player.h"
 
 #include <cmath>
@@ -51,26 +51,26 @@ class PersonPlayer::Resolver {
     Start(player_.sway_left_, sway.by_m.y());
   }
   void operator()(const MoveLimbStep& move) {
-    const Pose X_SW = player_.posture_.X_WS.inverse();
+    const Pose X_SW = player_.targets_.X_WS.inverse();
     LimbMotion& limb = player_.limbs_[static_cast<std::size_t>(LimbOf(move.limb))];
     limb.end = move.limb;
-    limb.from_S_m = X_SW * PlaceOf(move.limb, player_.person_, player_.posture_);
+    limb.from_S_m = X_SW * PlaceOf(move.limb, player_.person_, player_.targets_);
     if (LimbOf(move.limb) < 2)
-      limb.forearm_S = X_SW.q * ForearmOf(move.limb, player_.person_, player_.posture_);
+      limb.forearm_S = X_SW.q * ForearmOf(move.limb, player_.person_, player_.targets_);
     limb.to_rest = !move.to_m;
     if (move.to_m) limb.to_S_m = X_SW * *move.to_m;
     limb.progress = {0, 1, player_.t_s_, over_s_};
-    limb.most_n = move.most_n;
+    limb.max_force_n = move.max_force_n;
     limb.pace = 1;
     limb.behind_s = 0;
   }
   void operator()(const HeadPosesStep& head) {
-    const TargetState from{.X_WH = player_.posture_.X_WHead};
+    const TargetState from{.X_WH = player_.targets_.X_WHead};
     player_.head_ = {WaypointTrajectory(from, head.poses), player_.t_s_};
   }
   void operator()(const BodyPosesStep& body) {
-    const Figure from = FigureOf(player_.person_, player_.posture_);
-    player_.body_ = RecordedBody{FigureTrack(from, body.figures), player_.t_s_};
+    const Posture from = PostureOf(player_.person_, player_.targets_);
+    player_.body_ = RecordedBody{PostureTrack(from, body.postures), player_.t_s_};
     player_.leaving_.reset();
   }
 
@@ -88,26 +88,26 @@ PersonPlayer::PersonPlayer(const Scene& scene, const Script& script, int person)
       script_(script),
       person_(scene.persons[static_cast<std::size_t>(person)]),
       index_(person),
-      posture_(Standing(scene, person_)),
-      places_(PlacesOf(person_, posture_, {})),
+      targets_(Standing(scene, person_)),
+      places_(PlacesOf(person_, targets_, {})),
       leader_(scene, script, person_),
       eyes_(person_.eyes),
-      gaze_(posture_.X_WHead.q * Vector3d::UnitX()) {
+      gaze_(targets_.X_WHead.q * Vector3d::UnitX()) {
   const Vector3d ahead = person_.X_WS.q * Vector3d::UnitX();
   x_.to = person_.X_WS.p_m.x();
   y_.to = person_.X_WS.p_m.y();
   yaw_.to = std::atan2(ahead.y(), ahead.x());
   for (int limb = 0; limb < 4; ++limb)
-    limbs_[static_cast<std::size_t>(limb)].end = RestOf(limb, person_, posture_).end;
+    limbs_[static_cast<std::size_t>(limb)].end = RestOf(limb, person_, targets_).end;
 }
 
-void PersonPlayer::Begin(std::size_t beat, const Snapshot& now) {
-  leader_.Begin(beat, now);
-  for (const PersonStep& step : script_.beats[beat].person_steps) {
+void PersonPlayer::Begin(std::size_t stage, const Snapshot& now) {
+  leader_.Begin(stage, now);
+  for (const PersonStep& step : script_.stages[stage].person_steps) {
     if (step.person != index_) continue;
     head_.reset();
     if (body_) {
-      leaving_ = Leaving{*posture_.figure, {0, 1, t_s_, step.over_s}};
+      leaving_ = Leaving{*targets_.posture, {0, 1, t_s_, step.over_s}};
       body_.reset();
     }
     Resolver resolver(*this, step.over_s);
@@ -115,9 +115,9 @@ void PersonPlayer::Begin(std::size_t beat, const Snapshot& now) {
   }
 }
 
-Posture::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
+BodyTargets::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
   const int hand = limb == 0 ? person_.right_hand : limb == 1 ? person_.left_hand : -1;
-  const Posture::Limb rest = RestOf(limb, person_, posture_);
+  const BodyTargets::Limb rest = RestOf(limb, person_, targets_);
   if (hand >= 0) {
     const auto h = static_cast<std::size_t>(hand);
     return {rest.end, now.hands[h].palm.X_WB * WristInHand(person_, scene_.hands[h].model)};
@@ -126,24 +126,24 @@ Posture::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
   const double progress =
       motion.progress.duration_s > 0 ? motion.progress.At(t_s_ - motion.behind_s) : 1;
   if (motion.to_rest && progress == 1) return rest;
-  Vector3d to_W = posture_.X_WS * motion.to_S_m;
-  Vector3d forearm_W = FoldedForearm(motion.end, posture_.X_WS);
+  Vector3d to_W = targets_.X_WS * motion.to_S_m;
+  Vector3d forearm_W = FoldedForearm(motion.end, targets_.X_WS);
   if (motion.to_rest) {
-    Posture resting = posture_;
+    BodyTargets resting = targets_;
     resting.limbs[static_cast<std::size_t>(limb)] = rest;
     to_W = PlaceOf(motion.end, person_, resting);
     if (limb < 2) forearm_W = ForearmOf(motion.end, person_, resting);
   }
-  const Vector3d from_W = posture_.X_WS * motion.from_S_m;
-  const Eigen::Quaterniond turn = RotationBetween(posture_.X_WS.q * motion.forearm_S, forearm_W);
+  const Vector3d from_W = targets_.X_WS * motion.from_S_m;
+  const Eigen::Quaterniond turn = RotationBetween(targets_.X_WS.q * motion.forearm_S, forearm_W);
   const Eigen::Quaterniond turned = Eigen::Quaterniond::Identity().slerp(progress, turn);
   return {motion.end, from_W + progress * (to_W - from_W),
-          turned * (posture_.X_WS.q * motion.forearm_S)};
+          turned * (targets_.X_WS.q * motion.forearm_S)};
 }
 
 double PersonPlayer::ResistanceTo(int limb, const Snapshot& now) const {
   const LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
-  const Vector3d way = posture_.X_WS * motion.to_S_m - posture_.X_WS * motion.from_S_m;
+  const Vector3d way = targets_.X_WS * motion.to_S_m - targets_.X_WS * motion.from_S_m;
   if (way.norm() < 1e-6) return 0;
   const PartRange parts = PartsOfLimb(person_, limb);
   const auto is_part = [&](const ContactSide& side) {
@@ -161,37 +161,37 @@ void PersonPlayer::Yield(int limb, const Snapshot& now) {
   // Resistance in the solver grows with speed, so the pace is divided by the excess. It then grows
   // back exponentially from where it was: a resistance that was met at a slow pace is met at a slow
   // pace again.
-  constexpr double kGrow_s = 0.1, kLeastPace = 0.01;
+  constexpr double kGrow_s = 0.1, kMinPace = 0.01;
   const double dt_s = 1.0 / scene_.world.rate_hz;
   LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
-  if (!motion.most_n) return;
+  if (!motion.max_force_n) return;
   const double resistance_n = ResistanceTo(limb, now);
-  motion.pace = resistance_n > *motion.most_n
-                    ? motion.pace * *motion.most_n / resistance_n
-                    : std::min(1.0, std::max(motion.pace, kLeastPace) * (1 + dt_s / kGrow_s));
+  motion.pace = resistance_n > *motion.max_force_n
+                    ? motion.pace * *motion.max_force_n / resistance_n
+                    : std::min(1.0, std::max(motion.pace, kMinPace) * (1 + dt_s / kGrow_s));
   motion.behind_s += (1 - motion.pace) * dt_s;
 }
 
-void PersonPlayer::StandBelow(const Figure& figure) {
+void PersonPlayer::StandBelow(const Posture& posture) {
   const auto rest = [](double at) { return Motion{at, at, 0, 0}; };
-  const Vector3d& left = figure.ways_W[Figure::kAcrossHips];
-  x_ = rest(figure.hips_W_m.x());
-  y_ = rest(figure.hips_W_m.y());
+  const Vector3d& left = posture.directions_W[Posture::kAcrossHips];
+  x_ = rest(posture.hips_W_m.x());
+  y_ = rest(posture.hips_W_m.y());
   if (std::hypot(left.x(), left.y()) > 1e-6) yaw_ = rest(std::atan2(-left.x(), left.y()));
   lean_ = sway_ahead_ = sway_left_ = rest(0);
   for (int limb = 0; limb < 4; ++limb)
-    limbs_[static_cast<std::size_t>(limb)] = LimbMotion{.end = RestOf(limb, person_, posture_).end};
+    limbs_[static_cast<std::size_t>(limb)] = LimbMotion{.end = RestOf(limb, person_, targets_).end};
 }
 
-void PersonPlayer::HoldFigure() {
+void PersonPlayer::HoldPosture() {
   if (body_) {
-    const Figure figure = body_->track.At(t_s_ - body_->begin_s);
-    StandBelow(figure);
-    posture_.figure = figure;
+    const Posture posture = body_->track.At(t_s_ - body_->begin_s);
+    StandBelow(posture);
+    targets_.posture = posture;
   } else if (leaving_) {
     const double share = leaving_->progress.At(t_s_);
     if (share < 1)
-      posture_.figure = Mix(leaving_->from, FigureOf(person_, posture_), share);
+      targets_.posture = Mix(leaving_->from, PostureOf(person_, targets_), share);
     else
       leaving_.reset();
   }
@@ -199,46 +199,46 @@ void PersonPlayer::HoldFigure() {
 
 void PersonPlayer::TurnHead(const Snapshot& now) {
   if (body_) {
-    posture_.X_WHead = HeadOfFigure(person_, posture_);
-    gaze_.Set(posture_.X_WHead.q * Vector3d::UnitX());
+    targets_.X_WHead = HeadOfPosture(person_, targets_);
+    gaze_.Set(targets_.X_WHead.q * Vector3d::UnitX());
     return;
   }
-  const Vector3d neck = NeckTop(person_, posture_);
+  const Vector3d neck = NeckTop(person_, targets_);
   if (head_) {
-    posture_.X_WHead = head_->first.At(t_s_ - head_->second).X_WH;
-    gaze_.Set(posture_.X_WHead.q * Vector3d::UnitX());
+    targets_.X_WHead = head_->first.At(t_s_ - head_->second).X_WH;
+    gaze_.Set(targets_.X_WHead.q * Vector3d::UnitX());
     return;
   }
   const GazeTarget target = told_ ? *told_ : eyes_ == Eyes::kLead ? leader_.target() : GazeTarget{};
-  Vector3d toward = posture_.X_WS.q * Vector3d::UnitX();
+  Vector3d toward = targets_.X_WS.q * Vector3d::UnitX();
   if (const auto point = PointOf(target, scene_, now)) {
-    const Vector3d way = *point - EyesOf(person_, posture_.X_WHead);
+    const Vector3d way = *point - EyesOf(person_, targets_.X_WHead);
     if (way.norm() > 1e-3) toward = way.normalized();
   }
   gaze_.Turn(toward, 1.0 / scene_.world.rate_hz);
-  posture_.X_WHead = HeadToward(person_, neck, gaze_.head_W());
+  targets_.X_WHead = HeadToward(person_, neck, gaze_.head_W());
 }
 
 void PersonPlayer::Advance(const Snapshot& now, World& world) {
   t_s_ = static_cast<double>(++tick_) / scene_.world.rate_hz;
-  posture_.figure.reset();
-  posture_.X_WS = {{x_.At(t_s_), y_.At(t_s_), person_.X_WS.p_m.z()},
+  targets_.posture.reset();
+  targets_.X_WS = {{x_.At(t_s_), y_.At(t_s_), person_.X_WS.p_m.z()},
                    Eigen::Quaterniond(Eigen::AngleAxisd(yaw_.At(t_s_), Vector3d::UnitZ()))};
-  posture_.lean_rad = lean_.At(t_s_);
-  posture_.sway_m = {sway_ahead_.At(t_s_), sway_left_.At(t_s_)};
+  targets_.lean_rad = lean_.At(t_s_);
+  targets_.sway_m = {sway_ahead_.At(t_s_), sway_left_.At(t_s_)};
   for (int limb = 0; limb < 4; ++limb) {
     Yield(limb, now);
-    posture_.limbs[static_cast<std::size_t>(limb)] = LimbAt(limb, now);
+    targets_.limbs[static_cast<std::size_t>(limb)] = LimbAt(limb, now);
   }
-  HoldFigure();
+  HoldPosture();
   TurnHead(now);
-  places_ = PlacesOf(person_, posture_, places_);
+  places_ = PlacesOf(person_, targets_, places_);
   for (std::size_t i = 0; i < places_.size(); ++i)
     world.MoveKinematic(person_.head + static_cast<int>(i), places_[i]);
 }
 
 GazeState PersonPlayer::See(const World& world) const {
-  GazeState gaze{.p_WE_m = EyesOf(person_, posture_.X_WHead), .toward_W = gaze_.eyes_W()};
+  GazeState gaze{.p_WE_m = EyesOf(person_, targets_.X_WHead), .toward_W = gaze_.eyes_W()};
   const Sight sight = world.Look({.from_W_m = gaze.p_WE_m,
                                   .toward_W = gaze.toward_W,
                                   .ignore_from = person_.head,

@@ -21,13 +21,13 @@ class PersonPlayer {
   PersonPlayer(const Scene& scene, const Script& script, int person);
 
   /// This stage of the script begins with the tick after `now`.
-  void Begin(std::size_t beat, const Snapshot& now);
+  void Begin(std::size_t stage, const Snapshot& now);
   /// Moves her parts for the tick after `now`.
   void Advance(const Snapshot& now, World& world);
   /// What she sees in a world that has stepped since her last Advance().
   GazeState See(const World& world) const;
 
-  const Posture& posture() const { return posture_; }
+  const BodyTargets& targets() const { return targets_; }
 
  private:
   /// A minimum-jerk motion of one quantity.
@@ -43,26 +43,26 @@ class PersonPlayer {
     Eigen::Vector3d forearm_S = Eigen::Vector3d::UnitZ();  ///< when the step began
     bool to_rest = true;
     Motion progress;
-    std::optional<double> most_n;  ///< force above which the limb yields
-    double pace = 1;               ///< share of the full speed, less than 1 under resistance
-    double behind_s = 0;           ///< delay that yielding has caused
+    std::optional<double> max_force_n;  ///< force above which the limb yields
+    double pace = 1;                    ///< share of the full speed, less than 1 under resistance
+    double behind_s = 0;                ///< delay that yielding has caused
   };
   struct RecordedBody {
-    FigureTrack track;
+    PostureTrack track;
     double begin_s = 0;
   };
   struct Leaving {  ///< the transition from the end of a recording
-    Figure from;
+    Posture from;
     Motion progress;
   };
   class Resolver;
 
-  Posture::Limb LimbAt(int limb, const Snapshot& now) const;
+  BodyTargets::Limb LimbAt(int limb, const Snapshot& now) const;
   /// Slows a limb down that meets too much resistance, and speeds it up again afterwards.
   void Yield(int limb, const Snapshot& now);
   double ResistanceTo(int limb, const Snapshot& now) const;
-  void HoldFigure();
-  void StandBelow(const Figure& figure);
+  void HoldPosture();
+  void StandBelow(const Posture& posture);
   void TurnHead(const Snapshot& now);
 
   const Scene& scene_;
@@ -73,7 +73,7 @@ class PersonPlayer {
   std::int64_t tick_ = 0;
   Motion x_, y_, yaw_, lean_, sway_ahead_, sway_left_;
   std::array<LimbMotion, 4> limbs_;
-  Posture posture_;
+  BodyTargets targets_;
   std::vector<Pose> places_;
   GazeLeader leader_;
   Eyes eyes_;

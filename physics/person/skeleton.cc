@@ -48,19 +48,20 @@ Vector3d SwayOf(const Person& person, const Pose& X_WS, const Eigen::Vector2d& s
   return X_WS.q * Vector3d(sway_m.x(), sway_m.y(), sink);
 }
 
-Torso TorsoOf(const Person& person, const Posture& posture) {
-  if (posture.figure) {
-    const Figure& figure = *posture.figure;
-    return {figure.hips_W_m, figure.ways_W[Figure::kTrunk], figure.ways_W[Figure::kNeck],
-            figure.ways_W[Figure::kAcrossHips], figure.ways_W[Figure::kAcrossShoulders]};
+Torso TorsoOf(const Person& person, const BodyTargets& targets) {
+  if (targets.posture) {
+    const Posture& posture = *targets.posture;
+    return {posture.hips_W_m, posture.directions_W[Posture::kTrunk],
+            posture.directions_W[Posture::kNeck], posture.directions_W[Posture::kAcrossHips],
+            posture.directions_W[Posture::kAcrossShoulders]};
   }
   const double h = person.height_m;
-  const Eigen::Quaterniond& q = posture.X_WS.q;
-  const Vector3d over_feet = posture.X_WS * Vector3d(0, 0, kHip * h);
+  const Eigen::Quaterniond& q = targets.X_WS.q;
+  const Vector3d over_feet = targets.X_WS * Vector3d(0, 0, kHip * h);
   const Vector3d leaning =
-      q * (Eigen::AngleAxisd(posture.lean_rad, Vector3d::UnitY()) * Vector3d::UnitZ());
+      q * (Eigen::AngleAxisd(targets.lean_rad, Vector3d::UnitY()) * Vector3d::UnitZ());
   const Vector3d shoulders = over_feet + (kShoulder - kHip) * h * leaning;
-  const Vector3d hips = over_feet + SwayOf(person, posture.X_WS, posture.sway_m);
+  const Vector3d hips = over_feet + SwayOf(person, targets.X_WS, targets.sway_m);
   const Vector3d up = (shoulders - hips).normalized();
   const Vector3d left = q * Vector3d::UnitY();
   return {hips, up, up, left, left};
@@ -110,22 +111,22 @@ bool FollowsHand(const Person& person, bool right) {
   return (right ? person.right_hand : person.left_hand) >= 0;
 }
 
-Vector3d WayOf(const Posture& posture, std::size_t way, bool right) {
-  return posture.figure->ways_W[way + (right ? 0 : 1)];
+Vector3d DirectionOf(const BodyTargets& targets, std::size_t way, bool right) {
+  return targets.posture->directions_W[way + (right ? 0 : 1)];
 }
 
-Arm ArmOf(const Person& person, const Posture& posture, bool right) {
+Arm ArmOf(const Person& person, const BodyTargets& targets, bool right) {
   const double h = person.height_m;
-  const Eigen::Quaterniond& q = posture.X_WS.q;
-  const Posture::Limb& limb = posture.limbs[right ? 0 : 1];
-  Arm arm{.shoulder = ShoulderOf(person, TorsoOf(person, posture), right),
+  const Eigen::Quaterniond& q = targets.X_WS.q;
+  const BodyTargets::Limb& limb = targets.limbs[right ? 0 : 1];
+  Arm arm{.shoulder = ShoulderOf(person, TorsoOf(person, targets), right),
           .elbow = {},
           .wrist = {},
           .palm_toward = {}};
-  if (posture.figure && !FollowsHand(person, right)) {
-    arm.elbow = arm.shoulder + kUpperArm * h * WayOf(posture, Figure::kUpperArm, right);
-    arm.wrist = arm.elbow + kForearm * h * WayOf(posture, Figure::kForearm, right);
-    arm.palm_toward = WayOf(posture, Figure::kHand, right);
+  if (targets.posture && !FollowsHand(person, right)) {
+    arm.elbow = arm.shoulder + kUpperArm * h * DirectionOf(targets, Posture::kUpperArm, right);
+    arm.wrist = arm.elbow + kForearm * h * DirectionOf(targets, Posture::kForearm, right);
+    arm.palm_toward = DirectionOf(targets, Posture::kHand, right);
     return arm;
   }
   if (limb.end == LimbEnd::kRightElbow || limb.end == LimbEnd::kLeftElbow) {
@@ -154,24 +155,25 @@ struct Leg {
   Vector3d hip, knee, ankle;
   Vector3d foot_ahead, sole_down;
 };
-Leg LegOf(const Person& person, const Posture& posture, bool right) {
+Leg LegOf(const Person& person, const BodyTargets& targets, bool right) {
   const double h = person.height_m;
-  const Eigen::Quaterniond& q = posture.X_WS.q;
-  const Vector3d hip = HipOf(person, TorsoOf(person, posture), right);
-  if (posture.figure) {
-    const Vector3d knee = hip + kThigh * h * WayOf(posture, Figure::kThigh, right);
-    const Vector3d ankle = knee + kShank * h * WayOf(posture, Figure::kShank, right);
-    return {hip, knee, ankle, WayOf(posture, Figure::kFoot, right),
-            WayOf(posture, Figure::kSole, right)};
+  const Eigen::Quaterniond& q = targets.X_WS.q;
+  const Vector3d hip = HipOf(person, TorsoOf(person, targets), right);
+  if (targets.posture) {
+    const Vector3d knee = hip + kThigh * h * DirectionOf(targets, Posture::kThigh, right);
+    const Vector3d ankle = knee + kShank * h * DirectionOf(targets, Posture::kShank, right);
+    return {hip, knee, ankle, DirectionOf(targets, Posture::kFoot, right),
+            DirectionOf(targets, Posture::kSole, right)};
   }
-  const Vector3d wanted = posture.limbs[right ? 2 : 3].p_W_m - q * FootFromAnkle(h);
+  const Vector3d wanted = targets.limbs[right ? 2 : 3].p_W_m - q * FootFromAnkle(h);
   const TwoBones bones =
       Reach(hip, wanted, kThigh * h, kShank * h, q * Vector3d(1, 0.1 * Side(right), 0.2));
   return {hip, bones.joint, bones.end, q * Vector3d::UnitX(), q * -Vector3d::UnitZ()};
 }
 
-void AddArm(const Person& person, const Posture& posture, bool right, std::vector<Bone>& bones) {
-  const Arm arm = ArmOf(person, posture, right);
+void AddArm(const Person& person, const BodyTargets& targets, bool right,
+            std::vector<Bone>& bones) {
+  const Arm arm = ArmOf(person, targets, right);
   bones.push_back({right ? "right_upper_arm" : "left_upper_arm", 0.026, arm.elbow, arm.shoulder});
   bones.push_back({right ? "right_forearm" : "left_forearm", kForearmRadius, arm.wrist, arm.elbow});
   if (FollowsHand(person, right)) return;  // a hand of the scene takes its place
@@ -179,9 +181,10 @@ void AddArm(const Person& person, const Posture& posture, bool right, std::vecto
                    arm.wrist + kPalm * person.height_m * arm.palm_toward, arm.wrist});
 }
 
-void AddLeg(const Person& person, const Posture& posture, bool right, std::vector<Bone>& bones) {
+void AddLeg(const Person& person, const BodyTargets& targets, bool right,
+            std::vector<Bone>& bones) {
   const double h = person.height_m;
-  const Leg leg = LegOf(person, posture, right);
+  const Leg leg = LegOf(person, targets, right);
   const Vector3d heel =
       leg.ankle + h * (-kHeel * leg.foot_ahead + (kAnkle - kSole) * leg.sole_down);
   const Vector3d ball = heel + kFootLength * h * leg.foot_ahead;
@@ -193,16 +196,16 @@ void AddLeg(const Person& person, const Posture& posture, bool right, std::vecto
 }
 
 /// All but the head.
-std::vector<Bone> BonesOf(const Person& person, const Posture& posture) {
-  const Torso torso = TorsoOf(person, posture);
+std::vector<Bone> BonesOf(const Person& person, const BodyTargets& targets) {
+  const Torso torso = TorsoOf(person, targets);
   const auto trunk = [&](double level) { return OnTrunk(person, torso, level); };
   std::vector<Bone> bones = {
-      {"neck", 0.030, trunk(kShoulder), NeckTop(person, posture)},
+      {"neck", 0.030, trunk(kShoulder), NeckTop(person, targets)},
       {"chest", 0.080, trunk(0.690), trunk(0.750)},
       {"abdomen", 0.070, trunk(0.590), trunk(0.660)},
       {"pelvis", 0.070, HipOf(person, torso, true), HipOf(person, torso, false)}};
-  for (const bool right : {true, false}) AddArm(person, posture, right, bones);
-  for (const bool right : {true, false}) AddLeg(person, posture, right, bones);
+  for (const bool right : {true, false}) AddArm(person, targets, right, bones);
+  for (const bool right : {true, false}) AddLeg(person, targets, right, bones);
   return bones;
 }
 
@@ -253,89 +256,89 @@ PartRange PartsOfLimb(const Person& person, int limb) {
   return range;
 }
 
-Posture::Limb RestOf(int limb, const Person& person, const Posture& posture) {
+BodyTargets::Limb RestOf(int limb, const Person& person, const BodyTargets& targets) {
   const double h = person.height_m;
   const bool right = limb % 2 == 0;
   if (limb < 2) {
     const Vector3d hanging(0.05, Side(right) * 0.02, -0.95 * (kUpperArm + kForearm));
     return {right ? LimbEnd::kRightWrist : LimbEnd::kLeftWrist,
-            ShoulderOf(person, TorsoOf(person, posture), right) + posture.X_WS.q * (h * hanging)};
+            ShoulderOf(person, TorsoOf(person, targets), right) + targets.X_WS.q * (h * hanging)};
   }
   const Vector3d ankle = h * Vector3d(0, Side(right) * kHalfHips, kAnkle);
   return {right ? LimbEnd::kRightFoot : LimbEnd::kLeftFoot,
-          posture.X_WS * (ankle + FootFromAnkle(h))};
+          targets.X_WS * (ankle + FootFromAnkle(h))};
 }
 
-Eigen::Vector3d PlaceOf(LimbEnd end, const Person& person, const Posture& posture) {
+Eigen::Vector3d PlaceOf(LimbEnd end, const Person& person, const BodyTargets& targets) {
   const int limb = LimbOf(end);
   const bool right = limb % 2 == 0;
   if (limb >= 2)
-    return LegOf(person, posture, right).ankle + posture.X_WS.q * FootFromAnkle(person.height_m);
-  const Arm arm = ArmOf(person, posture, right);
+    return LegOf(person, targets, right).ankle + targets.X_WS.q * FootFromAnkle(person.height_m);
+  const Arm arm = ArmOf(person, targets, right);
   return end == LimbEnd::kRightElbow || end == LimbEnd::kLeftElbow ? arm.elbow : arm.wrist;
 }
 
-Eigen::Vector3d ForearmOf(LimbEnd end, const Person& person, const Posture& posture) {
-  return ArmOf(person, posture, LimbOf(end) % 2 == 0).palm_toward;
+Eigen::Vector3d ForearmOf(LimbEnd end, const Person& person, const BodyTargets& targets) {
+  return ArmOf(person, targets, LimbOf(end) % 2 == 0).palm_toward;
 }
 
 Eigen::Vector3d FoldedForearm(LimbEnd end, const Pose& X_WS) {
   return X_WS.q * Vector3d(-0.1, -0.5 * Side(LimbOf(end) % 2 == 0), 0.85).normalized();
 }
 
-Eigen::Vector3d NeckTop(const Person& person, const Posture& posture) {
-  const Torso torso = TorsoOf(person, posture);
+Eigen::Vector3d NeckTop(const Person& person, const BodyTargets& targets) {
+  const Torso torso = TorsoOf(person, targets);
   return OnTrunk(person, torso, kShoulder) +
          (kNeckTop - kShoulder) * person.height_m * torso.neck_up;
 }
 
 Pose HeadToward(const Person& person, const Vector3d& p_W_neck, const Vector3d& toward_W) {
   // Yaw and pitch, no roll. Yaw is undefined straight up and down, so the pitch is limited.
-  constexpr double kMostNod = 0.98;
+  constexpr double kMaxPitchSine = 0.98;
   const double level = std::hypot(toward_W.x(), toward_W.y());
   const double yaw = level > 1e-9 ? std::atan2(toward_W.y(), toward_W.x()) : 0;
-  const double pitch = -std::asin(std::clamp(toward_W.z(), -kMostNod, kMostNod));
+  const double pitch = -std::asin(std::clamp(toward_W.z(), -kMaxPitchSine, kMaxPitchSine));
   const Eigen::Quaterniond q =
       Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY());
   return {p_W_neck + q * Vector3d(0, 0, kHeadCentre * person.height_m), q};
 }
 
-Pose HeadOfFigure(const Person& person, const Posture& posture) {
-  const Vector3d& crown = posture.figure->ways_W[Figure::kCrown];
-  const Vector3d& face = posture.figure->ways_W[Figure::kFace];
+Pose HeadOfPosture(const Person& person, const BodyTargets& targets) {
+  const Vector3d& crown = targets.posture->directions_W[Posture::kCrown];
+  const Vector3d& face = targets.posture->directions_W[Posture::kFace];
   const Vector3d level = face - face.dot(crown) * crown;
   Eigen::Matrix3d axes;
   axes.col(0) = level.norm() > 1e-6 ? Vector3d(level.normalized()) : crown.unitOrthogonal();
   axes.col(2) = crown;
   axes.col(1) = crown.cross(axes.col(0));
-  return {NeckTop(person, posture) + kHeadCentre * person.height_m * crown,
+  return {NeckTop(person, targets) + kHeadCentre * person.height_m * crown,
           Eigen::Quaterniond(axes).normalized()};
 }
 
-Figure FigureOf(const Person& person, const Posture& posture) {
-  if (posture.figure) return *posture.figure;
-  const Torso torso = TorsoOf(person, posture);
-  Figure figure{.hips_W_m = torso.hips, .ways_W = {}};
-  auto& ways = figure.ways_W;
-  ways[Figure::kTrunk] = torso.trunk_up;
-  ways[Figure::kNeck] = torso.neck_up;
-  ways[Figure::kFace] = posture.X_WHead.q * Vector3d::UnitX();
-  ways[Figure::kCrown] = posture.X_WHead.q * Vector3d::UnitZ();
-  ways[Figure::kAcrossHips] = torso.hips_left;
-  ways[Figure::kAcrossShoulders] = torso.shoulders_left;
+Posture PostureOf(const Person& person, const BodyTargets& targets) {
+  if (targets.posture) return *targets.posture;
+  const Torso torso = TorsoOf(person, targets);
+  Posture posture{.hips_W_m = torso.hips, .directions_W = {}};
+  auto& directions = posture.directions_W;
+  directions[Posture::kTrunk] = torso.trunk_up;
+  directions[Posture::kNeck] = torso.neck_up;
+  directions[Posture::kFace] = targets.X_WHead.q * Vector3d::UnitX();
+  directions[Posture::kCrown] = targets.X_WHead.q * Vector3d::UnitZ();
+  directions[Posture::kAcrossHips] = torso.hips_left;
+  directions[Posture::kAcrossShoulders] = torso.shoulders_left;
   for (const bool right : {true, false}) {
     const std::size_t side = right ? 0 : 1;
-    const Arm arm = ArmOf(person, posture, right);
-    ways[Figure::kUpperArm + side] = (arm.elbow - arm.shoulder).normalized();
-    ways[Figure::kForearm + side] = (arm.wrist - arm.elbow).normalized();
-    ways[Figure::kHand + side] = arm.palm_toward;
-    const Leg leg = LegOf(person, posture, right);
-    ways[Figure::kThigh + side] = (leg.knee - leg.hip).normalized();
-    ways[Figure::kShank + side] = (leg.ankle - leg.knee).normalized();
-    ways[Figure::kFoot + side] = leg.foot_ahead;
-    ways[Figure::kSole + side] = leg.sole_down;
+    const Arm arm = ArmOf(person, targets, right);
+    directions[Posture::kUpperArm + side] = (arm.elbow - arm.shoulder).normalized();
+    directions[Posture::kForearm + side] = (arm.wrist - arm.elbow).normalized();
+    directions[Posture::kHand + side] = arm.palm_toward;
+    const Leg leg = LegOf(person, targets, right);
+    directions[Posture::kThigh + side] = (leg.knee - leg.hip).normalized();
+    directions[Posture::kShank + side] = (leg.ankle - leg.knee).normalized();
+    directions[Posture::kFoot + side] = leg.foot_ahead;
+    directions[Posture::kSole + side] = leg.sole_down;
   }
-  return figure;
+  return posture;
 }
 
 double LegLength(double height_m) { return (kThigh + kShank) * height_m; }
@@ -352,27 +355,27 @@ Eigen::Vector3d WristInHand(const Person& person, const HandModel& model) {
 
 namespace {
 
-/// Standing posture with hanging arms, without the head's pose.
-Posture Resting(const Person& person) {
-  Posture posture{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}, .figure = {}};
+/// Targets of a standing person with hanging arms, without the head's pose.
+BodyTargets Resting(const Person& person) {
+  BodyTargets targets{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}, .posture = {}};
   for (int limb = 0; limb < 4; ++limb)
-    posture.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, posture);
-  return posture;
+    targets.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, targets);
+  return targets;
 }
 
 }  // namespace
 
-Posture Standing(const Scene& scene, const Person& person) {
-  Posture posture = Resting(person);
+BodyTargets Standing(const Scene& scene, const Person& person) {
+  BodyTargets targets = Resting(person);
   for (const auto& [hand, limb] :
        {std::pair(person.right_hand, 0), std::pair(person.left_hand, 1)}) {
     if (hand < 0) continue;
     const Hand& of_scene = scene.hands[static_cast<std::size_t>(hand)];
-    posture.limbs[static_cast<std::size_t>(limb)].p_W_m =
+    targets.limbs[static_cast<std::size_t>(limb)].p_W_m =
         of_scene.X_WH * WristInHand(person, of_scene.model);
   }
-  posture.X_WHead = HeadToward(person, NeckTop(person, posture), person.X_WS.q * Vector3d::UnitX());
-  return posture;
+  targets.X_WHead = HeadToward(person, NeckTop(person, targets), person.X_WS.q * Vector3d::UnitX());
+  return targets;
 }
 
 std::vector<Body> PartsOf(const Person& person) {
@@ -385,11 +388,11 @@ std::vector<Body> PartsOf(const Person& person) {
   return parts;
 }
 
-std::vector<Pose> PlacesOf(const Person& person, const Posture& posture,
+std::vector<Pose> PlacesOf(const Person& person, const BodyTargets& targets,
                            const std::vector<Pose>& before) {
-  std::vector<Pose> places = {posture.X_WHead};
+  std::vector<Pose> places = {targets.X_WHead};
   if (!person.has_body) return places;
-  for (const Bone& bone : BonesOf(person, posture))
+  for (const Bone& bone : BonesOf(person, targets))
     places.push_back(PlaceOf(bone, before.empty() ? nullptr : &before[places.size()]));
   return places;
 }

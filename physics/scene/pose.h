@@ -32,7 +32,7 @@ inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& q) {
 
 /// The shortest rotation from one direction to another; neither has to be a unit vector. Eigen's
 /// FromTwoVectors, which compiles a singular value decomposition wherever it is called: therefore
-/// only in pose.cc.
+/// only in physics/scene/pose.cc.
 Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// Rotates about the world's x, then y, then z axis; degrees.

@@ -12,7 +12,7 @@ namespace prehend::physics {
 namespace {
 
 Script OneBeat(StepAction action, double over_s, double settle_s = 0.5) {
-  return {.beats = {{{{0, std::move(action), over_s}}}}, .settle_s = settle_s};
+  return {.stages = {{{{0, std::move(action), over_s}}}}, .settle_s = settle_s};
 }
 
 TEST(SimulationTest, EmptySceneCompletesAfterSettling) {
@@ -97,8 +97,8 @@ TEST(SimulationTest, WrapSucceedsForNineteenOfTwentyVariations) {
 
 TEST(SimulationTest, AHeldObjectSlidesAlongTheTable) {
   Script script = MakeScript({});
-  script.beats.resize(2);
-  script.beats.push_back({{{0, MoveStep{{0, -0.25, 0}}, 1.0}}});
+  script.stages.resize(2);
+  script.stages.push_back({{{0, MoveStep{{0, -0.25, 0}}, 1.0}}});
   Simulation simulation(MakeScene({}), script);
   int on_table = 0, moving = 0;
   while (simulation.Step()) {
@@ -134,7 +134,7 @@ TEST(SimulationTest, AnObjectTouchesItsSupportBeforeTheHandOpens) {
 
 TEST(SimulationTest, GraspsAreFeltByFingersAndThumb) {
   Script script = MakeScript({});
-  script.beats.resize(3);
+  script.stages.resize(3);
   Simulation simulation(MakeScene({}), script);
   while (simulation.Step()) {
   }
@@ -153,7 +153,7 @@ TEST(SimulationTest, GraspsAreFeltByFingersAndThumb) {
 TEST(SimulationTest, ASecondReachFindsAnObjectThatWasMoved) {
   Script script = MakeScript({});
   Script again = MakeScript({.to_m = {0, 0}});
-  script.beats.insert(script.beats.end(), again.beats.begin(), again.beats.end());
+  script.stages.insert(script.stages.end(), again.stages.begin(), again.stages.end());
   Simulation simulation(MakeScene({}), script);
   while (simulation.Step()) {
   }
@@ -164,7 +164,7 @@ TEST(SimulationTest, ASecondReachFindsAnObjectThatWasMoved) {
 
 TEST(SimulationTest, AWaitUntilTheObjectSleepsChangesNothing) {
   Script script = MakeScript({});
-  script.beats.insert(script.beats.begin(), Beat{{{0, WaitStep{}, 3}}});
+  script.stages.insert(script.stages.begin(), ScriptStage{{{0, WaitStep{}, 3}}});
   Simulation simulation(MakeScene({}), script);
   bool slept = false;
   double highest = 0;

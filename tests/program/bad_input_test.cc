@@ -70,7 +70,7 @@ std::vector<Case> Cases() {
       {"carry_without_reach", edited("reach: milk, style: wrap", "carry_to_m: [0, 0]"),
        "probe.yaml:11:17: error: carry_to_m"},
       {"place_on_itself", std::string(kScenario) + "  - right_hand: {place_on: milk}\n",
-       "probe.yaml:12:28: error: place_on: right_hand holds 'milk' itself"},
+       "probe.yaml:12:28: error: place_on: right_hand holds 'milk' and cannot place it on itself"},
       {"picture_of_no_event", std::string(kScenario) + "pictures: [{at: reching.begin}]\n",
        "probe.yaml:12:17: error: at: grammar 'pick_and_place' has no event 'reching'"},
       {"picture_before_the_begin", std::string(kScenario) + "pictures: [{at: -1}]\n",

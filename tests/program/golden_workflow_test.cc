@@ -21,7 +21,8 @@ class GoldenWorkflow : public SmallProject {
 };
 
 TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
-  EXPECT_EQ(Do("review").out, "nothing is pending ('prehend check' finds out what should be)\n");
+  EXPECT_EQ(Do("review").out,
+            "nothing is pending ('prehend check' finds what differs from its golden)\n");
   EXPECT_EQ(Do("review").exit_code, 0);
   EXPECT_EQ(Do("check --no-pictures").exit_code, 5);
   const Said fresh = Do("review");
@@ -45,8 +46,8 @@ TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
 
   fs::remove(Scenario());
   const Said orphans = Do("review");
-  EXPECT_TRUE(
-      SaysIn(orphans, "orphan  rest/carton_rests\n    pending, but there is no such scenario"))
+  EXPECT_TRUE(SaysIn(
+      orphans, "orphan  rest/carton_rests\n    the scenario of this pending golden does not exist"))
       << orphans.out;
   EXPECT_TRUE(SaysIn(orphans, "carton_rests.timeline belongs to no scenario: remove it"))
       << orphans.out;
@@ -118,7 +119,7 @@ TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
   WriteFile(Scenario(), Replaced(kCartonRests, "wait_s: 0.2", "wait_s: 0.3"));
   const std::string by_fingerprint = " --reviewed " + shown;
   for (const auto& [how, why] :
-       {std::pair(std::string(), "was " + shown + ", but the scenario yields something else now"),
+       {std::pair(std::string(), "is " + shown + ", but the scenario now yields"),
         std::pair(by_fingerprint, ", not " + shown)}) {
     const Said refused = Do("accept carton_rests --reason seen" + how);
     EXPECT_EQ(refused.exit_code, 1) << refused.err;
@@ -131,11 +132,9 @@ TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
     const Said no_fingerprint = Do("accept carton_rests --reason seen --reviewed " + typed);
     EXPECT_EQ(no_fingerprint.exit_code, 2);
     EXPECT_EQ(no_fingerprint.err,
-              "prehend: --reviewed: '" + typed +
-                  "' is no fingerprint; 'prehend review' prints it, 16 digits from 0-9 and a-f, "
-                  "like 3fa90c11d27e5b60\n  again: prehend accept carton_rests --reason seen "
-                  "--reviewed " +
-                  typed + "\n");
+              "prehend: --reviewed: found '" + typed +
+                  "', wanted the 16 digits from 0-9 and a-f that 'prehend review' prints, like "
+                  "3fa90c11d27e5b60\n  see: prehend accept --help\n");
   }
   EXPECT_EQ(Do("accept carton_rests --reason seen --reviewed " + now).exit_code, 0);
 }
@@ -366,8 +365,7 @@ TEST_F(GoldenWorkflow, WhatDiffersBetweenEnginesIsShownAndNotAccepted) {
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_TRUE(SaysIn(refused, "recognised in bullet, expected as recognised in box2d:\n"))
       << refused.out;
-  EXPECT_NE(refused.err.find(
-                "bullet does not lead to the same events (shown above); nothing was accepted"),
+  EXPECT_NE(refused.err.find("bullet yields other events (printed above); nothing was accepted"),
             std::string::npos)
       << refused.err;
   EXPECT_FALSE(fs::exists(Golden("rest/stones_tumble")));
@@ -377,7 +375,7 @@ TEST_F(GoldenWorkflow, WhatDiffersBetweenEnginesIsShownAndNotAccepted) {
   EXPECT_EQ(Do("check stones_tumble --no-pictures").exit_code, 5);
   Accept("stones_tumble");
   EXPECT_EQ(Do("review stones_tumble").out,
-            "nothing is pending ('prehend check' finds out what should be)\n");
+            "nothing is pending ('prehend check' finds what differs from its golden)\n");
 }
 
 }  // namespace

@@ -100,36 +100,36 @@ TEST(BuildJoints, RefusesWhatCannotBe) {
       {"unknown", Furniture("slider: {to: chset, axis: [1, 0, 0], range_m: [0, 1]}", kFixed),
        "5:90: slider: no entity is called 'chset' | did you mean 'chest'?\n"},
       {"ring", Furniture("fixed_to: handle", "fixed_to: drawer"),
-       "6:91: fixed_to: 'handle', directly or not, hangs on itself\n"},
+       "6:91: fixed_to: 'handle', directly or not, is attached to itself\n"},
       {"part_of_itself", Furniture(kSlider, "part_of: handle, fixed_to: drawer"),
        "6:90: part_of: 'handle', directly or not, is part of itself\n"},
       {"fixed_to_fixed", Furniture("fixed_to: chest", kFixed),
        "5:87: fixed_to: 'chest' never moves | give 'drawer' 'fixed: true' instead\n"},
       {"empty_range",
        Furniture("slider: {to: chest, axis: [1, 0, 0], range_m: [0.1, 0.3]}", kFixed),
-       "5:123: expected a range [least, most] with 0, where it is placed, between or at them, "
-       "found [0.1, 0.3]\n"},
+       "5:123: expected a range [min, max] that contains 0, the position as placed, found [0.1, "
+       "0.3]\n"},
       {"no_axis", Furniture("slider: {to: chest, axis: [0, 0, 0], range_m: [0, 0.3]}", kFixed),
        "5:103: axis: expected a direction other than [0, 0, 0]\n"},
       {"surface", Furniture(kSlider, "fixed_to: drawer, friction: 0.5"),
-       "6:99: friction: what is fixed to something has its surface | give it to 'drawer'\n"},
+       "6:99: friction: an entity that is fixed to another has the surface of that one | give it "
+       "to 'drawer'\n"},
       {"two_joints", Furniture(std::string(kSlider) + ", fixed_to: chest", kFixed),
        "5:150: entity 'drawer' cannot have both 'slider' and 'fixed_to'\n"},
       {"jointed_and_fixed", Furniture(kSlider, "fixed_to: drawer, fixed: true"),
        "6:21: entity 'handle' is fixed: it cannot have a mass | remove fixed or mass_kg\n"
-       "6:81: entity 'handle' is fixed: it cannot hang on a joint | remove fixed or fixed_to\n"},
+       "6:81: entity 'handle' is fixed: it cannot have a joint | remove fixed or fixed_to\n"},
       {"thick_walls",
        "scenario: probe\nshows: a tray\nentities:\n"
        "  tray: {fixed: true, tray: {size_m: [0.3, 0.3, 0.05], wall_m: 0.2}, at_m: [0, 0, 0]}\n",
-       "4:64: wall_m: walls of 0.2 leave no room inside | walls are thinner than half of the "
+       "4:64: wall_m: walls of 0.2 leave no room inside | walls must be thinner than half of the "
        "narrowest side\n"},
       {"no_joint_to_follow",
        Furniture(kSlider, kFixed,
                  "  block: {mass_kg: 1, box: {size_m: [0.1, 0.1, 0.1]}, at_m: [-1, 0, 0]}\n"
                  "actors:\n  hand: {hand: human_right, at_m: [-0.5, 0, 1]}\n"
                  "script:\n  - hand: {follow_joint: block}\n"),
-       "11:26: follow_joint: 'block' hangs on no slider or hinge | give it one, or move the hand "
-       "by 'move_by_m'\n"}};
+       "11:26: follow_joint: 'block' has no slider or hinge | give it one, or use 'move_by_m'\n"}};
   for (const Case& c : cases) {
     const auto read = Read(c.text);
     EXPECT_FALSE(read.value) << c.name;

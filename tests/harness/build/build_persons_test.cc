@@ -12,12 +12,12 @@ namespace {
 
 const char* const kHands = "  right_hand: {hand: human_right, at_m: [-0.2, -0.2, 1.05]}\n";
 
-/// The probe with this actor beside its hand, and these steps as first beat.
-std::string WithActor(const std::string& actor, const std::string& beat = "") {
+/// The probe with this actor beside its hand, and these steps as first stage.
+std::string WithActor(const std::string& actor, const std::string& stage = "") {
   std::string text = ProbeWith(kHands, kHands + ("  anna: " + actor + "\n"));
-  if (!beat.empty()) {
+  if (!stage.empty()) {
     const std::string script = "script:\n";
-    text.insert(text.find(script) + script.size(), "  - " + beat + "\n");
+    text.insert(text.find(script) + script.size(), "  - " + stage + "\n");
   }
   return text;
 }
@@ -50,22 +50,22 @@ TEST(PersonsTest, StepsAreUnderstood) {
                                    "anna: {eyes: lead}\n  - anna: {walk_to_m: [-0.8, 0]}\n"
                                    "  - anna: {turn_to_deg: 90}\n  - anna: {lean_deg: 20}\n  - "
                                    "anna: {move_limb: left_foot, to_m: [-0.5, 0.1, 0.3]}\n"
-                                   "  - anna: {move_limb: left_foot, most_n: 30}\n  - anna: "
+                                   "  - anna: {move_limb: left_foot, max_force_n: 30}\n  - anna: "
                                    "{sway_by_m: [0.1, -0.2]}\n  - anna: {wait_s: 0.1}"));
   ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  EXPECT_EQ(read.value->script.beats[0].person_steps.size(), 1u);
-  EXPECT_TRUE(read.value->script.beats[0].steps.empty());
+  EXPECT_EQ(read.value->script.stages[0].person_steps.size(), 1u);
+  EXPECT_TRUE(read.value->script.stages[0].steps.empty());
 }
 
 struct Bad {
   const char* name;
   const char* actor;
-  const char* beat;
+  const char* stage;
   const char* errors;
 };
 class PersonsRefused : public testing::TestWithParam<Bad> {};
 TEST_P(PersonsRefused, WithTheirPlace) {
-  EXPECT_EQ(ErrorsAbout(WithActor(GetParam().actor, GetParam().beat)), GetParam().errors);
+  EXPECT_EQ(ErrorsAbout(WithActor(GetParam().actor, GetParam().stage)), GetParam().errors);
 }
 
 // clang-format off
@@ -75,16 +75,16 @@ INSTANTIATE_TEST_SUITE_P(Files, PersonsRefused, testing::Values(
     Bad{"kind", "{person: legs, at_m: [-0.9, 0, 0]}", "", "10:18: person: expected one of head, body, found 'legs'\n"},
     Bad{"hand", "{person: head, at_m: [-0.9, 0, 0], right_hand: left_hand}", "", "10:56: right_hand: no hand is called 'left_hand' | known: right_hand\n"},
     Bad{"one_hand_twice", "{person: head, at_m: [-0.9, 0, 0], right_hand: right_hand, left_hand: right_hand}", "", "10:79: left_hand: 'right_hand' is already on another arm\n"},
-    Bad{"in_the_milk", "{person: body, at_m: [0.15, 0.1, 0]}", "", "10:30: 'anna_abdomen' starts inside 'milk', 48 mm deep | let her stand elsewhere\n10:30: 'anna_pelvis' starts inside 'milk', 108 mm deep | let her stand elsewhere\n10:30: 'anna_right_thigh' starts inside 'milk', 25 mm deep | let her stand elsewhere\n10:30: 'anna_left_thigh' starts inside 'milk', 25 mm deep | let her stand elsewhere\n"},
-    Bad{"hand_step", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {close_to: 1}", "12:5: 'anna' is a person, and this step is for hands | persons look, walk, turn, lean, move a limb; their hands are actors of their own\n"},
-    Bad{"person_step", "{person: head, at_m: [-0.9, 0, 0]}", "right_hand: {lean_deg: 10}", "12:5: 'right_hand' is a hand, and this step is for persons | hands reach, close, move; persons look, walk, lean\n"},
+    Bad{"in_the_milk", "{person: body, at_m: [0.15, 0.1, 0]}", "", "10:30: 'anna_abdomen' starts inside 'milk', 48 mm deep | move the person\n10:30: 'anna_pelvis' starts inside 'milk', 108 mm deep | move the person\n10:30: 'anna_right_thigh' starts inside 'milk', 25 mm deep | move the person\n10:30: 'anna_left_thigh' starts inside 'milk', 25 mm deep | move the person\n"},
+    Bad{"hand_step", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {close_to: 1}", "12:5: 'anna' is a person; this step is for hands | persons look, walk, turn, lean, move a limb; their hands are actors of their own\n"},
+    Bad{"person_step", "{person: head, at_m: [-0.9, 0, 0]}", "right_hand: {lean_deg: 10}", "12:5: 'right_hand' is a hand; this step is for persons | hands reach, close, move; persons look, walk, lean\n"},
     Bad{"look_at_herself", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {look_at: anna_left_foot}",
-        "12:21: look_at: 'anna' cannot look at herself | she looks at things, hands and other persons, or at a point: look_at_m\n"},
+        "12:21: look_at: 'anna' cannot look at herself | name a thing, a hand or another person, or give a point with look_at_m\n"},
     Bad{"look_at", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {look_at: mlik}", "12:21: look_at: no entity is called 'mlik' | did you mean 'milk'?\n"},
     Bad{"no_limbs", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foot}", "12:23: move_limb: 'anna' is only a head | write 'person: body'\n"},
     Bad{"no_hips", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {sway_by_m: [0, 0.1]}", "12:23: sway_by_m: 'anna' is only a head | write 'person: body'\n"},
     Bad{"sway_too_far", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {sway_by_m: [0, 0.5]}", "12:27: sway_by_m[1]: expected a number from -0.4 to 0.4, found '0.5'\n"},
-    Bad{"weak", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foot, most_n: 0}", "12:43: most_n: expected a number from 1 to 10000, found '0'\n"},
+    Bad{"weak", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foot, max_force_n: 0}", "12:48: max_force_n: expected a number from 1 to 10000, found '0'\n"},
     Bad{"limb", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {move_limb: right_foo}", "12:23: move_limb: expected one of right_elbow, left_elbow, right_wrist, left_wrist, right_foot, left_foot, found 'right_foo' | did you mean 'right_foot'?\n"},
     Bad{"arm_of_a_hand", "{person: body, at_m: [-0.9, 0, 0], right_hand: right_hand}", "anna: {move_limb: right_elbow, to_m: [0, 0, 1]}", "12:23: move_limb: this arm follows the hand 'right_hand' | move the hand instead\n"}),
     [](const auto& test) { return test.param.name; });
@@ -97,7 +97,7 @@ TEST(PersonsTest, NamesOfPartsMustBeFree) {
   std::string clash = text;
   clash.replace(clash.find("entities:\n"), 10, taken);
   EXPECT_EQ(ErrorsAbout(clash),
-            "11:3: 'anna_pelvis' is the name of a part of 'anna' and of something else\n");
+            "11:3: 'anna_pelvis' names both a part of 'anna' and something else\n");
 }
 
 std::string WithTracking(const std::string& tracking) {

@@ -33,13 +33,13 @@ TEST(Kinds, AMugIsACupIsAContainer) {
 
 TEST(Kinds, MistakesHaveTheirPlace) {
   EXPECT_EQ(Brief(Read("{Mag: Cup}").diagnostics),
-            "6:11: classes: no entity is of the class 'Mag' | did you mean 'Mug'?\n");
+            "6:11: classes: no entity has the class 'Mag' | did you mean 'Mug'?\n");
   EXPECT_EQ(Brief(Read("{Mug: Cup, Cup: Mug}").diagnostics),
-            "6:16: classes: 'Mug' is, directly or not, a kind of itself\n6:26: classes: 'Cup' is, "
-            "directly or not, a kind of itself\n");
+            "6:16: classes: 'Mug' is, directly or not, its own base class\n6:26: classes: 'Cup' "
+            "is, directly or not, its own base class\n");
   EXPECT_EQ(Brief(Read("{Mug: Movable}").diagnostics),
-            "6:16: classes: 'Movable' is built in and given anyway | kinds are classes of your "
-            "own: 'Cup: Container'\n");
+            "6:16: classes: 'Movable' is a built-in class | declare your own classes, for example "
+            "'Cup: Container'\n");
   EXPECT_EQ(Brief(Read("{Mug: cup}").diagnostics),
             "6:16: Mug: expected a class name like 'MilkCarton', found 'cup'\n");
 }

@@ -56,38 +56,38 @@ TEST(CheckPlanarTest, AGoodOneIsReadForBothEngines) {
 TEST(CheckPlanarTest, WhatDoesNotFitIsRefused) {
   const Probe probes[] = {
       {"{engine: box2d}", "{engine: box2d, planar: false}",
-       "3:32: planar: engine box2d knows nothing but the plane | planar: true, or engine: bullet"},
+       "3:32: planar: engine box2d is always planar | planar: true, or engine: bullet"},
       {"{engine: box2d}", "{engine: box3d}",
        "3:17: engine: expected one of bullet, box2d, bullet_stock, found 'box3d' | did you mean "
        "'box2d'?"},
       {"at_m: [0.2, 0]", "at_m: [0.2, 0.1]",
-       "6:75: 'box' does not fit a planar world: its centre is off the plane y = 0 | in a planar "
-       "world y is 0"},
+       "6:75: 'box' does not fit a planar world: its centre is off the plane y = 0 | y must be 0 "
+       "in a planar world"},
       {"at_m: [0.2, 0]", "at_m: [0.2, 0], yaw_deg: 10",
-       "6:3: 'box' does not fit a planar world: it is turned out of the plane | turn it about y "
-       "only, and give it no parts beside the plane; see docs/scenario-format.md"},
+       "6:3: 'box' does not fit a planar world: it is turned out of the plane | rotate it about y "
+       "only, and keep its parts in the plane; see docs/scenario-format.md"},
       {"box: {size_m: [0.06, 0.06, 0.10]}", "tray: {size_m: [0.06, 0.06, 0.10]}",
-       "6:3: 'box' does not fit a planar world: a part of it is not in the plane y = 0 | turn it "
-       "about y only, and give it no parts beside the plane; see docs/scenario-format.md"},
+       "6:3: 'box' does not fit a planar world: a part of it is not in the plane y = 0 | rotate it "
+       "about y only, and keep its parts in the plane; see docs/scenario-format.md"},
       {"at_m: [0.2, 0]", "at_m: [0.2, 0], ball_joint: {to: table, at_m: [0.2, 0, 0.9]}",
        "6:97: the joint of 'box' does not fit a planar world: a ball joint turns out of the plane "
        "| hinge with axis: [0, 1, 0]"},
       {"hand: planar_gripper", "hand: human_right",
        "8:19: hand 'human_right' does not fit a planar world: its link 'index_proximal' is "
-       "not in its plane y = 0 | the hand 'planar_gripper' does"},
+       "not in its plane y = 0 | use the hand 'planar_gripper'"},
       {"at_m: [-0.2, 0, 1.05]", "at_m: [-0.2, 0.1, 1.05]",
-       "8:41: at_m: 'gripper' starts beside the plane y = 0 | in a planar world y is 0"},
+       "8:41: at_m: 'gripper' starts outside the plane y = 0 | y must be 0 in a planar world"},
       {"at_m: [-0.2, 0, 1.05]", "at_m: [-0.2, 0, 1.05], rpy_deg: [0, 0, 90]",
        "8:3: 'gripper' is turned out of the plane y = 0 | a hand turns about y only: rpy_deg: [0, "
        "pitch, 0]"},
       {"style: parallel}", "style: parallel, offset_m: [0, 0.01, 0]}",
-       "10:54: offset_m: it leads out of the plane y = 0 | in a planar world y is 0"},
+       "10:54: offset_m: this leaves the plane y = 0 | y must be 0 in a planar world"},
       {"{reach: box, style: parallel}", "{move_by_m: [0, 0.1, 0]}",
-       "10:26: move_by_m: it leads out of the plane y = 0 | in a planar world y is 0"},
+       "10:26: move_by_m: this leaves the plane y = 0 | y must be 0 in a planar world"},
       {"style: parallel}", "style: parallel}\n  - gripper: {carry_to_m: [0, 0.1]}",
-       "11:27: carry_to_m: it leads out of the plane y = 0 | in a planar world y is 0"},
+       "11:27: carry_to_m: this leaves the plane y = 0 | y must be 0 in a planar world"},
       {"{reach: box, style: parallel}", "{poses: [{t_s: 1, at_m: [0, 0.1, 1]}]}",
-       "10:23: at_m: it leads out of the plane y = 0 | in a planar world y is 0"},
+       "10:23: at_m: this leaves the plane y = 0 | y must be 0 in a planar world"},
       {"{reach: box, style: parallel}",
        "{poses: [{t_s: 1, at_m: [0, 0, 1], rpy_deg: [0, 0, 180]}]}",
        "10:23: this pose turns the hand out of the plane y = 0 | a hand turns about y only: "
@@ -104,8 +104,8 @@ TEST(CheckPlanarTest, APlaneOfBulletRefusesTheSame) {
   std::string text = With("{engine: box2d}", "{engine: bullet, planar: true}");
   text.replace(text.find("at_m: [0.2, 0]"), 14, "at_m: [0.2, 0.1]");
   EXPECT_EQ(Brief(Read(text).diagnostics),
-            "6:75: 'box' does not fit a planar world: its centre is off the plane y = 0 | in a "
-            "planar world y is 0\n");
+            "6:75: 'box' does not fit a planar world: its centre is off the plane y = 0 | y must "
+            "be 0 in a planar world\n");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ TEST(Claims, AreWhatComesOutOfTheScenarios) {
     if (!played.contains(row.scenario)) played.emplace(row.scenario, Play(row.scenario));
     const PlayedScenario& play = played.at(row.scenario);
     const grammar::Tick tolerance =
-        DefaultTolerance(play.scenario.world.rate_hz, play.scenario.world.sensing_hz);
+        DefaultTolerance(play.scenario.scene.world.rate_hz, play.scenario.sensing.sensing_hz);
     const grammar::Timeline truth =
         Only(TrueTimeline(play.scenario.scene, play.run.recording, play.end()), row.event);
     const grammar::Timeline ours = Only(play.run.timeline, row.event);

@@ -22,7 +22,7 @@ struct Stage {
       scenario.body_classes.push_back("Object");
       scenario.body_part_of.push_back(grammar::kNoEntity);
     }
-    scenario.world = {.rate_hz = 480, .sensing_hz = 480};
+    scenario.sensing.sensing_hz = 480;
     scenario.scene.world.rate_hz = 480;
     for (int tick = 0; tick < 30; ++tick) {
       physics::Snapshot snapshot;

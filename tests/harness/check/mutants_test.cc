@@ -165,8 +165,10 @@ struct Witness {
   Golden golden;
 
   bool Agrees(const grammar::Timeline& timeline) const {
-    const auto& world = played.scenario.world;
-    return Compare(golden, timeline, DefaultTolerance(world.rate_hz, world.sensing_hz)).Agrees();
+    return Compare(golden, timeline,
+                   DefaultTolerance(played.scenario.scene.world.rate_hz,
+                                    played.scenario.sensing.sensing_hz))
+        .Agrees();
   }
 };
 

@@ -64,7 +64,7 @@ TEST_P(OracleAgreement, WithinTwoFrames) {
   ASSERT_TRUE(loaded.value) << grammar::Format(loaded.diagnostics);
   const Scenario& scenario = loaded.value->scenario;
   const bool check_is_as_strict =
-      DefaultTolerance(scenario.world.rate_hz, scenario.world.sensing_hz) <= kTolerance;
+      DefaultTolerance(scenario.scene.world.rate_hz, scenario.sensing.sensing_hz) <= kTolerance;
   if (check_is_as_strict)
     ExpectAllToFollow(GetParam(), *loaded.value->program);
   else

@@ -84,21 +84,22 @@ TEST(AbstractEntities, ACameraLooksTowards) {
 
 TEST(AbstractEntities, WhatOnlyMatterHasIsRefused) {
   EXPECT_EQ(Complaint("region: {size_m: [1, 1, 1]}, at_m: [0, 0, 0.8], mass_kg: 1"),
-            "6:56: mass_kg: a region has none; it is no matter, and stays where it is\n");
+            "6:56: mass_kg: a region is abstract; this key does not apply to it\n");
   EXPECT_EQ(Complaint("light: {}, at_m: [0, 0, 0.8], yaw_deg: 30"),
-            "6:38: yaw_deg: a light is not turned\n");
+            "6:38: yaw_deg: a light has no rotation\n");
   EXPECT_EQ(Complaint("region: {size_m: [1, 1, 1], radius_m: 1}, at_m: [0, 0, 0.8]"),
             "6:36: a region cannot have both 'size_m' and 'radius_m'\n");
-  EXPECT_EQ(Complaint("camera: {toward_m: [0, 0, 0.8]}, at_m: [0, 0, 0.8]"),
-            "6:27: toward_m: the camera stands there | a point that it looks at\n");
+  EXPECT_EQ(
+      Complaint("camera: {toward_m: [0, 0, 0.8]}, at_m: [0, 0, 0.8]"),
+      "6:27: toward_m: this is the camera's own position | give the point that it looks at\n");
   EXPECT_EQ(
       Complaint(
           "region: {radius_m: 1}, at_m: [0, 0, 0.8]",
           "actors: {hand: {hand: human_right, at_m: [0, 0, 2]}}\nscript: [hand: {reach: it}]\n"),
-      "8:24: reach: 'it' is a region, and no thing | nothing touches it\n");
+      "8:24: reach: 'it' is a region, not a physical object | hands cannot touch it\n");
   EXPECT_EQ(Complaint("region: {radius_m: 1}, at_m: [0, 0, 0.8]",
                       "  can: {sphere: {radius_m: 0.1}, mass_kg: 1, on: it, at_m: [0, 0]}\n"),
-            "7:50: on: 'it' is a region, which carries nothing\n");
+            "7:50: on: 'it' is a region, which cannot support anything\n");
 }
 
 TEST(AbstractEntities, PicturesAreMadeFromTheScenariosCameras) {

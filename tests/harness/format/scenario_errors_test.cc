@@ -77,7 +77,7 @@ const Case kCases[] = {
       {"class_lower", "class: Table", "class: table", kRefuses,
        "6:18: class: expected a class name like 'MilkCarton', found 'table'\n"},
       {"class_builtin", "class: Table", "class: Thing", kAccepts,
-       "6:18: class: 'Thing' is built in and given anyway | name what the thing is, for example Cup\n"},
+       "6:18: class: 'Thing' is a built-in class that entities get anyway | name what the entity is, for example Cup\n"},
       {"fixed_word", "fixed: true", "fixed: yes", kRefuses,
        "6:32: fixed: expected true or false, found 'yes' (true or false to some YAML readers) | write a number, true or false, or text in quotes\n"},
       {"fixed_with_mass", "fixed: true", "fixed: true, mass_kg: 3", kAccepts,
@@ -91,7 +91,7 @@ const Case kCases[] = {
       {"decimal_comma", "mass_kg: 0.4", "mass_kg: 1,4", kRefuses,
        "7:56: unknown key '4' in entity 'milk' | decimals have a point: 0.5\n"},
       {"typographic_minus", "[0.2, 0.1]", "[0.2, \u22120.1]", kRefuses,
-       "7:82: at_m[1]: expected a number from -20 to 20, found '\u22120.1' | '\u2212' is not '-': type it again\n"},
+       "7:82: at_m[1]: expected a number from -20 to 20, found '\u22120.1' | '\u2212' is not '-'; retype it\n"},
       {"mass_null", "mass_kg: 0.4", "mass_kg: ~", kRefuses,
        "7:54: mass_kg: expected a number from 0.001 to 1000, found '~'\n"},
       {"mass_missing_value", "mass_kg: 0.4", "mass_kg: ", kRefuses,
@@ -119,22 +119,22 @@ const Case kCases[] = {
       {"no_place", ", at_m: [0.2, 0.1]", "", kRefuses,
        "7:3: entity 'milk' needs one of the keys at_m, in\n"},
       {"in_is_for_grains", "on: table, at_m: [0.2, 0.1]", "in: table", kAccepts,
-       "7:63: in: only grains are put into something | for a thing: 'on', with at_m: [x, y]\n"},
+       "7:63: in: only grains can be put into a vessel | for a thing: 'on', with at_m: [x, y]\n"},
       {"grains_without_vessel", "box: {size_m: [0.07, 0.07, 0.20]}", "grains: {count: 10, radius_m: 0.005}", kAccepts,
        "7:3: entity 'milk' is grains: it needs the key 'in' | the vessel that they fill\n"
-       "7:62: on: grains have none; they lie loose in their vessel\n"
-       "7:73: at_m: grains have none; they lie loose in their vessel\n"
-       "11:25: reach: 'milk' is grains, and no thing | name the vessel that they are in\n"},
+       "7:62: on: this key does not apply to grains; they lie loose in their vessel\n"
+       "7:73: at_m: this key does not apply to grains; they lie loose in their vessel\n"
+       "11:25: reach: 'milk' is grains, not a physical object | name the vessel that holds them\n"},
       {"too_many_grains", "box: {size_m: [0.07, 0.07, 0.20]}", "grains: {count: 501, radius_m: 0.005}", kRefuses,
        "7:26: count: expected a whole number from 1 to 500, found '501'\n"},
       {"too_small_grains", "box: {size_m: [0.07, 0.07, 0.20]}", "grains: {count: 50, radius_m: 0.001}", kRefuses,
        "7:40: radius_m: expected a number from 0.002 to 0.05, found '0.001'\n"},
       {"grains_in_nothing", kMilk, "milk: {grains: {count: 10, radius_m: 0.005}, mass_kg: 0.4, in: tabel}", kAccepts,
        "7:66: in: no entity is called 'tabel' | did you mean 'table'?\n"
-       "11:25: reach: 'milk' is grains, and no thing | name the vessel that they are in\n"},
+       "11:25: reach: 'milk' is grains, not a physical object | name the vessel that holds them\n"},
       {"grains_in_what_is_solid", kMilk, "milk: {grains: {count: 10, radius_m: 0.005}, mass_kg: 0.4, in: table}", kAccepts,
-       "7:66: in: 0 of 10 grains fit into 'table' below its rim | take fewer, smaller ones, or a larger vessel; its hollow is around the vertical through its at_m\n"
-       "11:25: reach: 'milk' is grains, and no thing | name the vessel that they are in\n"},
+       "7:66: in: 0 of 10 grains fit into 'table' below its rim | use fewer or smaller grains, or a larger vessel; its hollow is centred on the vertical through its at_m\n"
+       "11:25: reach: 'milk' is grains, not a physical object | name the vessel that holds them\n"},
       {"inside_table", "on: table, at_m: [0.2, 0.1]", "at_m: [0.2, 0.1, 0.8]", kAccepts,
        "7:65: 'milk' overlaps 'table' by 60 mm | 'on: table' with at_m: [x, y] puts it on top\n"},
       {"entity_name_upper", "milk: {", "Milk: {", kRefuses,
@@ -151,7 +151,7 @@ const Case kCases[] = {
        "9:22: hand: 'broken.hand.yaml' cannot be used, see below\n"
        "broken.hand.yaml:3:4: no links\n"},
       {"hand_inside_table", "at_m: [-0.2, -0.2, 1.05]", "at_m: [-0.2, -0.2, 0.76]", kAccepts,
-       "9:41: actor 'right_hand' starts inside 'table', 12 mm deep | let the hand start in free space\n"},
+       "9:41: actor 'right_hand' starts inside 'table', 12 mm deep | start the hand in free space\n"},
       {"gains_unstable", "hand: human_right", "hand: human_right, gains: {translation: {derivative_n_s_per_m: 300}}", kAccepts,
        "9:42: actor 'right_hand' cannot be stable: the translation derivative gain 300 cannot be stable: gain * dt / inertia = 300 * (1/480 s) / 0.6 kg = 1.04, which must stay below 1 (at most 285.1 here)\n"},
       {"gains_at_low_rate", "rate_hz: 480, sensing_hz: 240", "rate_hz: 90, sensing_hz: 90", kAccepts,
@@ -163,7 +163,7 @@ const Case kCases[] = {
       {"unknown_style", "style: wrap", "style: warp", kAccepts,
        "11:38: style: hand 'human_right' has no style 'warp' | did you mean 'wrap'?\n"},
       {"point_elsewhere", "over_s: 0.8", "point_m: [0, 0, 0.2]", kAccepts,
-       "11:53: point_m: the point is 100.0 mm outside of 'milk', more than 5 mm | point_m is in the entity's own frame: [0, 0, 0] is where its at_m is\n"},
+       "11:53: point_m: the point is 100.0 mm outside 'milk', more than 5 mm | point_m is in the entity's own frame: [0, 0, 0] is where its at_m is\n"},
       {"no_side_grasp", "style: wrap", "style: pinch, from: side", kAccepts,
        "11:25: style 'pinch' does not grasp from the side\n"},
       {"unknown_approach", "style: wrap", "from: below", kRefuses,
@@ -178,6 +178,11 @@ const Case kCases[] = {
        "12:33: a step has one of 'close_to' and 'open_to', not both\n"},
       {"key_of_another_step", "close_to: 1.0", "close_to: 1.0, style: wrap", kRefuses,
        "12:33: unknown key 'style' in a close_to step | known: close_to, over_s\n"},
+      {"renamed_key_of_a_limb", "close_to: 1.0", "move_limb: right_elbow, to_m: [0, 0, 1], most_n: 40", kRefuses,
+       "12:59: unknown key 'most_n' in a move_limb step | it is called 'max_force_n' now\n"},
+      {"renamed_keys_of_a_recording", "close_to: 1.0", "recording: a.csv, most_gap_s: 0.1, most_jump_m: 0.2", kRefuses,
+       "12:36: unknown key 'most_gap_s' in a recording step | it is called 'max_gap_s' now\n"
+       "12:53: unknown key 'most_jump_m' in a recording step | it is called 'max_jump_m' now\n"},
       {"duration_zero", "over_s: 0.8", "over_s: 0", kRefuses,
        "11:52: over_s: expected a number from 0.01 to 600, found '0'\n"},
       {"place_on_unknown", "close_to: 1.0", "place_on: shelf", kAccepts,
@@ -185,9 +190,9 @@ const Case kCases[] = {
       {"step_is_word", "{close_to: 1.0}", "close", kRefuses,
        "12:17: right_hand: expected a mapping with the fields of a step, found 'close'\n"},
       {"script_is_mapping", "script:\n  - right_hand: {reach: milk, style: wrap, over_s: 0.8}\n  - right_hand: {close_to: 1.0}", "script:\n  right_hand: {close_to: 1.0}", kRefuses,
-       "11:3: script: expected a list, found a mapping | each item on a line of its own begins with '- ', or all are in [..]\n"},
+       "11:3: script: expected a list, found a mapping | begin each item with '- ' on a line of its own, or put all in [..]\n"},
       {"poses_not_increasing", "close_to: 1.0", "poses: [{t_s: 0.5, at_m: [0, 0, 1]}, {t_s: 0.5, at_m: [0, 0, 1]}]", kAccepts,
-       "12:61: t_s: expected more than 0.5, when the pose before is, found 0.5 | t_s counts from the beginning of the step, not from the pose before\n"},
+       "12:61: t_s: expected more than 0.5, the time of the previous pose, found 0.5 | t_s counts from the beginning of the step, not from the previous pose\n"},
       {"quaternion_not_unit", "close_to: 1.0", "poses: [{t_s: 0.5, at_m: [0, 0, 1], quat_wxyz: [1, 1, 0, 0]}]", kAccepts,
        "12:65: quat_wxyz: expected a unit quaternion [w, x, y, z], found one of length 1.414\n"},
       {"pose_with_both", "close_to: 1.0", "poses: [{t_s: 0.5, at_m: [0, 0, 1], quat_wxyz: [1, 0, 0, 0], rpy_deg: [0, 0, 0]}]", kRefuses,
@@ -203,7 +208,7 @@ const Case kCases[] = {
       {"alias", "a carton on a table", "*carton", kCannotRead,
        "2:8: not valid YAML: aliases ('*name') are not supported | write the value out; text that begins with '*' goes in quotes\n"},
       {"anchor", "a carton on a table", "&carton text", kAccepts,
-       "2:8: anchors ('&name') are not supported | write values out where used\n"},
+       "2:8: anchors ('&name') are not supported | write the value out where it is used\n"},
       {"tag", "a carton on a table", "!!str text", kAccepts,
        "2:8: tags ('!name') are not supported | remove the tag\n"},
       {"two_documents", "grammar: pick_and_place", "---", kCannotRead,
@@ -249,6 +254,17 @@ TEST(ScenarioErrors, AreShownWithLineAndCaret) {
       "    milk: {box: {size_m: [0.07, 0.07, 0.20]}, mass_g: 400, on: table, at_m: [0.2, 0.1]}\n"
       "                                              ^\n"
       "  hint: did you mean 'mass_kg'?\n");
+}
+
+TEST(ScenarioErrors, ARenamedKeyIsShownWithItsNewName) {
+  const auto read = ReadScenarioText(
+      "probe.yaml", ProbeWith("close_to: 1.0", "move_limb: right_elbow, most_n: 40"), {},
+      ProbeLibrary());
+  EXPECT_EQ(grammar::Format(read.diagnostics),
+            "probe.yaml:12:42: error: unknown key 'most_n' in a move_limb step\n"
+            "    - right_hand: {move_limb: right_elbow, most_n: 40}\n"
+            "                                           ^\n"
+            "  hint: it is called 'max_force_n' now\n");
 }
 
 TEST(ScenarioErrors, AllOfAFileAreCollected) {

@@ -85,14 +85,14 @@ INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
                                      "m.csv:1:5: no column is called '0' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
                                      "m.csv:1:7: no column is called '1' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"},
     BadCsv{"semicolons", "t_s;x_m;y_m;z_m\n0;0;0;1\n", "m.csv:1:1: no column is called 't_s;x_m;y_m;z_m' | commas separate columns and values\n"},
-    BadCsv{"incomplete", "t_s,x_m,y_m\n0,0,0\n", "m.csv:1:1: the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm); there is none of z\n"},
-    BadCsv{"half_quaternion", "t_s,x_m,y_m,z_m,qw,qx\n0,0,0,0,1,0\n", "m.csv:1:1: a quaternion needs qw, qx, qy and qz; there is no qy, qz\n"},
+    BadCsv{"incomplete", "t_s,x_m,y_m\n0,0,0\n", "m.csv:1:1: the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm); missing: z\n"},
+    BadCsv{"half_quaternion", "t_s,x_m,y_m,z_m,qw,qx\n0,0,0,0,1,0\n", "m.csv:1:1: a quaternion needs qw, qx, qy and qz; missing: qy, qz\n"},
     BadCsv{"two_orientations", "t_s,x_m,y_m,z_m,qw,qx,qy,qz,yaw_deg\n0,0,0,0,1,0,0,0,0\n", "m.csv:1:1: an orientation is either qw,qx,qy,qz or roll_deg,pitch_deg,yaw_deg\n"},
     BadCsv{"word", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0, abc,0\n", "m.csv:3:6: expected a number, found 'abc'\n"},
     BadCsv{"nan", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,nan,0,0\n", "m.csv:3:3: expected a number, found 'nan'\n"},
     BadCsv{"short_row", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0\n", "m.csv:3:5: expected 4 values as in the header, found 3\n"},
     BadCsv{"backwards", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0,0\n0.5,0,0,0\n", "m.csv:4:1: the times must increase from row to row: 0.5 s comes after 1 s\n"},
-    BadCsv{"far", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0,1000\n", "m.csv:3:7: z: 1000 m is beyond 100 m | are the units those that the header says?\n"},
+    BadCsv{"far", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0,1000\n", "m.csv:3:7: z: 1000 m is beyond 100 m | does the unit match the header?\n"},
     BadCsv{"no_unit_quaternion", "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,1,0,0\n1,0,0,0,1,0,0,0\n", "m.csv:2:9: qw, qx, qy, qz: expected a unit quaternion, found one of length 1.414\n"},
     BadCsv{"trigger", "t_s,x_m,y_m,z_m,trigger\n0,0,0,0,0\n1,0,0,0,1.5\n", "m.csv:3:9: trigger: expected a number from 0 to 1, found 1.5\n"},
     BadCsv{"one_row", "t_s,x_m,y_m,z_m\n0,0,0,0\n", "m.csv:2:1: 1 rows; a motion has at least 2\n"}),
@@ -198,10 +198,10 @@ TEST(CheckTrackTest, GapsAndJumpsAreToldAndLimited) {
   EXPECT_EQ(DiagnosticList(strict),
             "m.csv:22:1: gap: no sample for 0.160 s before this one, at 0.350 s; at most 0.1 s are "
             "bridged | cut the "
-            "recording with from_s and to_s, or raise most_gap_s\n"
+            "recording with from_s and to_s, or raise max_gap_s\n"
             "m.csv:27:1: jump: 0.090 m within 0.010 s, at 0.400 s; at most 0.05 m are followed | "
             "cut the recording with "
-            "from_s and to_s, or raise most_jump_m\n");
+            "from_s and to_s, or raise max_jump_m\n");
   for (const auto& diagnostic : strict) EXPECT_FALSE(diagnostic.is_warning);
 }
 

@@ -49,7 +49,7 @@ class RecordedInputTest : public testing::Test {
     const auto read = Read(step);
     EXPECT_TRUE(read.value) << Brief(read.diagnostics);
     return read.value
-               ? std::get<physics::PosesStep>(read.value->script.beats[0].steps[0].action).poses
+               ? std::get<physics::PosesStep>(read.value->script.stages[0].steps[0].action).poses
                : std::vector<physics::TimedPose>{};
   }
 
@@ -85,7 +85,7 @@ TEST_F(RecordedInputTest, FollowsTheRecordingWithoutDriftAtAnyRate) {
         {"world.rate_hz=" + std::to_string(rate_hz)}, ProbeLibrary());
     ASSERT_TRUE(read.value) << Brief(read.diagnostics);
     const auto& poses =
-        std::get<physics::PosesStep>(read.value->script.beats[0].steps[0].action).poses;
+        std::get<physics::PosesStep>(read.value->script.stages[0].steps[0].action).poses;
     const physics::Trajectory motion = physics::WaypointTrajectory({}, poses);
     // In its last interval the motion comes to rest.
     for (int tick = rate_hz; tick < static_cast<int>(2.48 * rate_hz); ++tick) {
@@ -102,15 +102,15 @@ TEST_F(RecordedInputTest, Refuses) {
   EXPECT_EQ(ErrorsAbout("recording: line.txt"),
             "probe.yaml:11:29: recording: expected a .csv, .json or .bvh file, found 'line.txt'\n");
   EXPECT_EQ(ErrorsAbout("recording: line.json"),
-            "probe.yaml:11:29: recording: which device of the .json file is followed? | add "
+            "probe.yaml:11:29: recording: a .json file needs the key 'device' | add "
             "device: right\n");
   EXPECT_EQ(ErrorsAbout("recording: line.csv, device: right"),
-            "probe.yaml:11:47: device: a CSV file has only one\n");
+            "probe.yaml:11:47: device: a CSV file has only one device\n");
   EXPECT_EQ(ErrorsAbout("recording: line.csv, button: 1"),
-            "probe.yaml:11:47: button: a CSV file has a trigger, no buttons\n");
+            "probe.yaml:11:47: button: a CSV file has a trigger but no buttons\n");
   EXPECT_EQ(ErrorsAbout("recording: line.csv, from_s: 1.9, to_s: 1.905"),
             "probe.yaml:11:58: between 1.9 and 1.905 s the recording has 1 of at least 2 samples "
-            "| it takes 2.000 s\n");
+            "| the recording lasts 2.000 s\n");
   EXPECT_EQ(
       ErrorsAbout("recording: line.csv, style: warp"),
       "probe.yaml:11:46: style: hand 'human_right' has no style 'warp' | did you mean 'wrap'?\n");
@@ -126,13 +126,13 @@ TEST_F(RecordedInputTest, OddRecordingsAreUsedWithAWarning) {
   EXPECT_EQ(read.value->warnings[0].message,
             "gap: no sample for 0.200 s before this one, at 0.220 s; it is bridged");
   EXPECT_TRUE(read.value->warnings[0].is_warning);
-  EXPECT_EQ(ErrorsAbout("recording: gap.csv, most_gap_s: 0.1"),
+  EXPECT_EQ(ErrorsAbout("recording: gap.csv, max_gap_s: 0.1"),
             "probe.yaml:11:29: recording: 'gap.csv' cannot be used, see below\n"
             "gap.csv:5:1: gap: no sample for 0.200 s before this one, at 0.220 s; at most 0.1 s "
             "are bridged | cut the "
-            "recording with from_s and to_s, or raise most_gap_s\n");
+            "recording with from_s and to_s, or raise max_gap_s\n");
   // What is cut off does not matter.
-  EXPECT_TRUE(Read("recording: gap.csv, most_gap_s: 0.1, to_s: 0.02").value);
+  EXPECT_TRUE(Read("recording: gap.csv, max_gap_s: 0.1, to_s: 0.02").value);
 }
 
 TEST_F(RecordedInputTest, TheTriggerHasToBeAButtonThatIsPressed) {
@@ -144,10 +144,11 @@ TEST_F(RecordedInputTest, TheTriggerHasToBeAButtonThatIsPressed) {
   };
   write(R"({"name": "buttondown", "detail": {"id": 2}, "timestamp": 5})");
   EXPECT_EQ(ErrorsAbout("recording: pad.json"),
-            "probe.yaml:11:29: recording: which device of the .json file is followed? | add "
+            "probe.yaml:11:29: recording: a .json file needs the key 'device' | add "
             "device: left or right\n");
   EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 3"),
-            "probe.yaml:11:62: button: button 3 of 'right' is never pressed | pressed are 2\n");
+            "probe.yaml:11:62: button: button 3 of 'right' is never pressed | the pressed buttons "
+            "are 2\n");
   EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 2"), "");
   const auto odd = Read("recording: pad.json, device: right");
   ASSERT_TRUE(odd.value && odd.value->warnings.size() == 1) << Brief(odd.diagnostics);
@@ -155,7 +156,8 @@ TEST_F(RecordedInputTest, TheTriggerHasToBeAButtonThatIsPressed) {
             "button 1 of 'right' is never pressed, so the grip stays open");
   write("");
   EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 2"),
-            "probe.yaml:11:62: button: button 2 of 'right' is never pressed | no button is\n");
+            "probe.yaml:11:62: button: button 2 of 'right' is never pressed | no button is ever "
+            "pressed\n");
   EXPECT_TRUE(Read("recording: pad.json, device: right").value->warnings.empty());
 }
 
@@ -193,63 +195,63 @@ class RecordedBodyTest : public RecordedInputTest {
       text.erase(at, folder.size());
     return text;
   }
-  std::vector<physics::TimedFigure> Figures(const std::string& step) {
+  std::vector<physics::TimedPosture> Postures(const std::string& step) {
     const auto read = ReadBody(step);
     EXPECT_TRUE(read.value) << Brief(read.diagnostics);
     if (!read.value) return {};
-    return std::get<physics::BodyPosesStep>(read.value->script.beats[0].person_steps[0].action)
-        .figures;
+    return std::get<physics::BodyPosesStep>(read.value->script.stages[0].person_steps[0].action)
+        .postures;
   }
 };
 
 TEST_F(RecordedBodyTest, IsScaledToHerLegsAndStandsOnHerFloor) {
-  const auto figures = Figures("recording: sticks.bvh, join_s: 0.3, most_jump_m: 9");
-  ASSERT_EQ(figures.size(), 3u);
-  EXPECT_NEAR(figures[1].t_s, 0.5, 1e-12);
+  const auto postures = Postures("recording: sticks.bvh, join_s: 0.3, max_jump_m: 9");
+  ASSERT_EQ(postures.size(), 3u);
+  EXPECT_NEAR(postures[1].t_s, 0.5, 1e-12);
   // Her legs are 0.491 of 2 m, the file's 80: so 50 is 0.6138 m; x of the file is our y.
-  EXPECT_NEAR(figures[0].figure.hips_W_m.y(), 50 * 0.982 / 80, 1e-9);
+  EXPECT_NEAR(postures[0].posture.hips_W_m.y(), 50 * 0.982 / 80, 1e-9);
   // Hips over the ankles, and those as high over the floor as when she stands.
-  EXPECT_NEAR(figures[0].figure.hips_W_m.z(), 0.1 + 0.039 * 2 + 0.982, 1e-9);
-  EXPECT_NEAR(figures[2].figure.hips_W_m.x() - figures[0].figure.hips_W_m.x(), 100 * 0.982 / 80,
+  EXPECT_NEAR(postures[0].posture.hips_W_m.z(), 0.1 + 0.039 * 2 + 0.982, 1e-9);
+  EXPECT_NEAR(postures[2].posture.hips_W_m.x() - postures[0].posture.hips_W_m.x(), 100 * 0.982 / 80,
               1e-9);
 }
 
 TEST_F(RecordedBodyTest, ScalePlaceAndYawAreTheScenarios) {
-  const auto figures = Figures(
+  const auto postures = Postures(
       "recording: sticks.bvh, scale: 0.01, start_at_m: [1, 2, 0.5], yaw_deg: 90, join_s: 0, "
-      "most_jump_m: 9");
-  ASSERT_EQ(figures.size(), 3u);
-  EXPECT_NEAR(figures[0].figure.hips_W_m.x(), 1, 1e-9);
-  EXPECT_NEAR(figures[2].figure.hips_W_m.y(), 3, 1e-9);
-  EXPECT_NEAR(figures[0].figure.hips_W_m.z(), 0.5 + 0.078 + 0.8, 1e-9);
-  EXPECT_LT((figures[0].figure.ways_W[physics::Figure::kFace] - Vector3d::UnitY()).norm(), 1e-9);
+      "max_jump_m: 9");
+  ASSERT_EQ(postures.size(), 3u);
+  EXPECT_NEAR(postures[0].posture.hips_W_m.x(), 1, 1e-9);
+  EXPECT_NEAR(postures[2].posture.hips_W_m.y(), 3, 1e-9);
+  EXPECT_NEAR(postures[0].posture.hips_W_m.z(), 0.5 + 0.078 + 0.8, 1e-9);
+  EXPECT_LT((postures[0].posture.directions_W[physics::Posture::kFace] - Vector3d::UnitY()).norm(),
+            1e-9);
 }
 
 TEST_F(RecordedBodyTest, Refuses) {
-  EXPECT_EQ(Refused("recording: sticks.bvh", "right_hand"),
-            "probe.yaml:12:29: recording: a BVH file moves a whole body, no hand | give this step "
-            "to a person; hands "
-            "follow .csv and .json files\n");
+  EXPECT_EQ(
+      Refused("recording: sticks.bvh", "right_hand"),
+      "probe.yaml:12:29: recording: a BVH file moves a whole body, not a hand | give this step "
+      "to a person; hands "
+      "follow .csv and .json files\n");
   EXPECT_NE(Refused("recording: sticks.bvh, palm_m: [0, 0, 0]")
-                .find("palm_m: a BVH file moves a whole body, no hand"),
+                .find("palm_m: a BVH file moves a whole body, not a hand"),
             std::string::npos);
   EXPECT_NE(
       Refused("recording: line.csv, scale: 1").find("scale: only a BVH file has units of its own"),
       std::string::npos);
-  EXPECT_NE(
-      Refused("recording: sticks.bvh, most_gap_s: 0.1")
-          .find("gap: frames are 0.200 s apart; at most 0.1 s are bridged | raise most_gap_s"),
-      std::string::npos);
+  EXPECT_NE(Refused("recording: sticks.bvh, max_gap_s: 0.1")
+                .find("gap: frames are 0.200 s apart; at most 0.1 s are bridged | raise max_gap_s"),
+            std::string::npos);
   EXPECT_NE(Refused("recording: sticks.bvh, scale: 0.035")
                 .find("hips: jump: 1.759 m within 0.200 s, at 0.200 s; at most 0.1 m"),
             std::string::npos);
   EXPECT_NE(Refused("recording: sticks.bvh, scale: 1")
-                .find("scale: the recorded legs would be 80 m long, hers are 0.982 m | metres per "
-                      "unit of the file: "
-                      "perhaps 0.0123; without scale, legs are as long as hers"),
+                .find("scale: the recorded legs would be 80 m long, hers are 0.982 m | try 0.0123 "
+                      "metres per unit; without scale the motion is scaled to her legs"),
             std::string::npos);
-  EXPECT_NE(Refused("recording: sticks.bvh, start_at_m: [19.5, 0, 0], most_jump_m: 9")
-                .find("the hips are beyond 20 m"),
+  EXPECT_NE(Refused("recording: sticks.bvh, start_at_m: [19.5, 0, 0], max_jump_m: 9")
+                .find("the hips are more than 20 m from the origin here"),
             std::string::npos);
 }
 

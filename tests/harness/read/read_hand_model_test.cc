@@ -87,11 +87,11 @@ TEST(ReadHandModelTest, MistakesAreNamedAtTheirPlace) {
       {"index: [25, 15, 5]", "indes: [25, 15, 5]", "no digit 'indes'"},
       {"direction: [1, 0, 0]", "direction: [0, 0, 0]", "a direction other than"},
       {"range_deg: [-20, 95]", "range_deg: [95, -20]",
-       "range_deg: expected [least, most], found [95, -20]"},
+       "range_deg: expected [min, max], found [95, -20]"},
       {"stiffness: 0.2", "stiffnes: 0.2", "stiffnes"},
       {"grasps: [human]", "grasps: [humen]",
        "grasps: there is no humen.grasps.yaml beside this file, in "},
-      {"grasps: [human]", "", "the hand has no style of grasp"},
+      {"grasps: [human]", "", "the hand has no grasp style"},
       {"grasps: human", "grasps: people",
        "grasps: the name is 'people', but the file is called 'human.grasps.yaml'"},
       {"mass_kg: 0.6", "mass_kg: -0.6", "mass_kg"},
@@ -114,9 +114,9 @@ TEST(ReadHandModelTest, JawsSlideAndAreCheckedAlike) {
   EXPECT_EQ(hand.value->links[1].strength, 15);
   EXPECT_EQ(hand.value->styles[0].frames[1][0], 0.012) << "metres";
   const Mistake mistakes[] = {
-      {"- {post: [0], jaw: [0]}", "- {post: [0]}", "there is nothing for digit 'jaw'"},
+      {"- {post: [0], jaw: [0]}", "- {post: [0]}", "digit 'jaw' is missing"},
       {"range_m: [0, 0.045]", "range_m: [0.045, 0]",
-       "range_m: expected [least, most], found [0.045, 0]"},
+       "range_m: expected [min, max], found [0.045, 0]"},
       {"    frames_m:", "    frames_deg:", "style 'parallel' has no 'frames_m'"},
       {"strength_n: 45", "strength_nm: 45", "strength_n"},
       {"slides: [1, 0, 0]", "slides: [0, 0, 0]", "a direction other than"},

@@ -30,7 +30,7 @@ TEST(ReadScenario, TheProbe) {
   const Scenario scenario = Read(kProbe, {}, "some/scenarios/lift/probe.yaml");
   EXPECT_EQ(scenario.name, "probe");
   EXPECT_EQ(scenario.skill, "lift");
-  EXPECT_EQ(scenario.world.sensing_hz, 240);
+  EXPECT_EQ(scenario.sensing.sensing_hz, 240);
   ASSERT_EQ(scenario.scene.bodies.size(), 2u);
   const physics::Body& milk = scenario.scene.bodies[1];
   EXPECT_EQ(milk.name, "milk");
@@ -41,9 +41,9 @@ TEST(ReadScenario, TheProbe) {
   ASSERT_EQ(scenario.scene.hands.size(), 1u);
   EXPECT_EQ(scenario.scene.hands[0].model.name, "human_right");
   EXPECT_EQ(scenario.scene.hands[0].X_WH.p_m, Eigen::Vector3d(-0.2, -0.2, 1.05));
-  ASSERT_EQ(scenario.script.beats.size(), 2u);
-  EXPECT_EQ(std::get<physics::ReachStep>(scenario.script.beats[0].steps[0].action).object, "milk");
-  EXPECT_EQ(scenario.script.beats[1].steps[0].over_s, 0.6) << "the default of close_to";
+  ASSERT_EQ(scenario.script.stages.size(), 2u);
+  EXPECT_EQ(std::get<physics::ReachStep>(scenario.script.stages[0].steps[0].action).object, "milk");
+  EXPECT_EQ(scenario.script.stages[1].steps[0].over_s, 0.6) << "the default of close_to";
   EXPECT_EQ(scenario.script.settle_s, 0.5);
   EXPECT_EQ(scenario.pictures[0].at.value, "reaching.begin");
 }
@@ -61,8 +61,8 @@ TEST(ReadScenario, EveryStep) {
   - right_hand: {wait_s: 1}
   - right_hand: {poses: [{t_s: 0, at_m: [0, 0, 1]}, {t_s: 1, at_m: [0, 0, 2], rpy_deg: [0, 0, 90], trigger: 1}]}
 )"));
-  ASSERT_EQ(scenario.script.beats.size(), 11u);
-  const auto step = [&](std::size_t i) { return scenario.script.beats[i].steps[0]; };
+  ASSERT_EQ(scenario.script.stages.size(), 11u);
+  const auto step = [&](std::size_t i) { return scenario.script.stages[i].steps[0]; };
   for (std::size_t i = 1; i < 11; ++i) EXPECT_EQ(step(i).over_s, 1) << i;
   const auto reach = std::get<physics::ReachStep>(step(1).action);
   EXPECT_EQ(reach.style, "pinch");
@@ -92,10 +92,10 @@ TEST(ReadScenario, TwoActorsInOneBeat) {
   text.insert(text.find("  - right_hand: {close_to"),
               "  - {left_hand: {wait_s: 0.3}, right_hand: {wait_s: 0.5}}\n");
   const Scenario scenario = Read(text);
-  const physics::Beat& beat = scenario.script.beats[1];
-  ASSERT_EQ(beat.steps.size(), 2u);
-  EXPECT_EQ(beat.steps[0].hand, 1);
-  EXPECT_EQ(beat.steps[1].hand, 0);
+  const physics::ScriptStage& stage = scenario.script.stages[1];
+  ASSERT_EQ(stage.steps.size(), 2u);
+  EXPECT_EQ(stage.steps[0].hand, 1);
+  EXPECT_EQ(stage.steps[1].hand, 0);
   EXPECT_EQ(scenario.script.settle_s, 0);
 }
 
@@ -149,10 +149,10 @@ TEST(ReadScenario, OverridesComeBeforeTheChecks) {
 }
 
 TEST(ReadScenario, LimitsOnTheWhole) {
-  std::string beats;
-  for (int i = 0; i < 7; ++i) beats += "  - right_hand: {wait_s: 600}\n";
-  EXPECT_EQ(ErrorsAbout(ProbeWith("pictures:\n", beats + "pictures:\n")),
-            "18:5: the script takes more than 3600 s up to here\n");
+  std::string stages;
+  for (int i = 0; i < 7; ++i) stages += "  - right_hand: {wait_s: 600}\n";
+  EXPECT_EQ(ErrorsAbout(ProbeWith("pictures:\n", stages + "pictures:\n")),
+            "18:5: the script is longer than 3600 s at this point\n");
 
   std::string many;
   for (std::size_t i = 0; i <= kMaxBeats; ++i) many += "  - right_hand: {wait_s: 0.01}\n";

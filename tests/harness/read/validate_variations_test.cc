@@ -30,12 +30,12 @@ TEST(CheckDraws, FieldsHaveToBeThere) {
       {"- {fields: [wrld.seed], uniform: [0, 1]}",
        "16:15: fields: the scenario has no 'wrld.seed' | did you mean 'world'?\n"},
       {"- {fields: [entities.milk.friction], times: [0.9, 1.1]}",
-       "16:15: fields: the scenario has no 'entities.milk.friction' | plus and times need a number "
-       "that is written\n"},
+       "16:15: fields: the scenario has no 'entities.milk.friction' | plus and times need a "
+       "written number\n"},
       {"- {fields: [entities.milk.on], plus: [0, 1]}",
-       "16:15: fields: 'entities.milk.on' is no number\n"},
+       "16:15: fields: 'entities.milk.on' is not a number\n"},
       {"- {fields: [vary.0.uniform.0], uniform: [0, 1]}",
-       "16:15: fields: what is varied cannot be varied itself\n"},
+       "16:15: fields: 'vary' itself cannot be varied\n"},
       {"- {fields: [entities.milk.mass_kg]}",
        "16:5: a variation needs one of the keys uniform, normal, plus, times, choose\n"}};
   for (const auto& [line, complaint] : cases)
@@ -57,9 +57,9 @@ TEST(CheckDraws, NoFieldIsVariedTwice) {
 TEST(CheckDraws, BoundsHaveToBeReadable) {
   const std::pair<const char*, const char*> cases[] = {
       {"- {fields: [entities.milk.mass_kg], uniform: [1, 0]}",
-       "16:48: uniform: expected [least, most], found [1, 0]\n"},
+       "16:48: uniform: expected [min, max], found [1, 0]\n"},
       {"- {fields: [entities.milk.mass_kg], normal: [1, -1]}",
-       "16:47: normal: expected [mean, deviation], and no deviation below 0, found [1, -1]\n"},
+       "16:47: normal: expected [mean, deviation] with a deviation of at least 0, found [1, -1]\n"},
       {"- {fields: [entities.milk.mass_kg], uniform: [-1, 0.5]}",
        "16:49: with entities.milk.mass_kg=-1.000000: mass_kg: expected a number from 0.001 to "
        "1000, found "
@@ -75,7 +75,7 @@ TEST(CheckDraws, BoundsHaveToBeReadable) {
       {"- {fields: [entities.milk.class], uniform: [0, 1]}",
        "16:47: with entities.milk.class=0.000000: class: expected a class name like 'MilkCarton', "
        "found the number "
-       "0.000000 | to draw texts: choose: [...]\n"},
+       "0.000000 | use choose: [...] for texts\n"},
       {"- {fields: [script.0.right_hand.style], choose: [wrap, pich]}",
        "16:58: with script.0.right_hand.style=pich: style: hand 'human_right' has no style 'pich' "
        "| did you mean "

@@ -28,8 +28,8 @@ TEST(OneHash, WhateverRanBefore) {
                         .settings = {"settle_s=0", "script.0.right_hand.over_s=0.1"}},
                        root);
     ASSERT_TRUE(one.value) << Format(one.diagnostics);
-    // Only the first beat: short enough to be run a thousand times, long enough to move a hand.
-    one.value->scenario.script.beats.resize(1);
+    // Only the first stage: short enough to be run a thousand times, long enough to move a hand.
+    one.value->scenario.script.stages.resize(1);
     loaded.push_back(std::move(*one.value));
   }
   std::mt19937 random(1);

@@ -49,26 +49,25 @@ TEST(Outcome, TheFirstThatHoldsIsTheOne) {
 
 TEST(Outcome, AMomentAfterTheEndIsRefused) {
   EXPECT_EQ(Brief(Read("  held: [{entity: milk, at_s: 2.5, above_m: 1}]\n").diagnostics),
-            "16:10: at_s: 2.5 s is after the end, which is at 1.900 s | without at_s it is looked "
-            "at then\n");
+            "16:10: at_s: 2.5 s is after the end of the run at 1.900 s | without at_s the "
+            "condition is checked at the end\n");
   EXPECT_TRUE(Read("  held: [{entity: milk, at_s: 1.9, above_m: 1}]\n").value);
 }
 
 TEST(Outcome, WhatAlwaysOrNeverHoldsIsRefused) {
   const std::pair<const char*, const char*> refused[] = {
-      {"bad: [{entity: milk}]", "a condition: it always holds"},
-      {"bad: [{entity: milk, at_s: 1}]", "a condition: it always holds"},
+      {"bad: [{entity: milk}]", "this condition always holds"},
+      {"bad: [{entity: milk, at_s: 1}]", "this condition always holds"},
       {"bad: [{entity: milk, within_m: 0.1}]", "within_m: there is no 'near_m'"},
       {"bad: [{entity: milk, share: 0.5, above_m: 1}]", "share: there is no 'inside'"},
       {"bad: [{entity: milk, above_m: 1, below_m: 0}]",
-       "below_m: nothing is between 'above_m' and 'below_m'"},
+       "below_m: no value lies between 'above_m' and 'below_m'"},
       {"bad: [{entity: milk, tilt_above_deg: 9, tilt_below_deg: 5}]",
-       "tilt_below_deg: nothing is between 'tilt_above_deg' and 'tilt_below_deg'"},
-      {"bad: [{entity: milk, inside: milk}]", "inside: nothing is inside of itself"},
-      {"failed: [{entity: milk, below_m: 1}]",
-       "'failed' is what trials are called that went wrong"},
+       "tilt_below_deg: no value lies between 'tilt_above_deg' and 'tilt_below_deg'"},
+      {"bad: [{entity: milk, inside: milk}]", "inside: an entity cannot be inside itself"},
+      {"failed: [{entity: milk, below_m: 1}]", "'failed' is reserved for trials that went wrong"},
       {"other: [{entity: milk, below_m: 1}]",
-       "'other' is what trials are called that have no other outcome"},
+       "'other' is reserved for trials that match no outcome"},
   };
   for (const auto& [outcome, complaint] : refused) {
     const auto read = Read("  " + std::string(outcome) + "\n");
@@ -121,7 +120,7 @@ TEST(Outcome, RefusesWhatIsNotThere) {
   EXPECT_EQ(Brief(Read("  held: [{entity: mlik, above_m: 1}]\n").diagnostics),
             "16:10: entity: no entity is called 'mlik' | did you mean 'milk'?\n");
   EXPECT_EQ(Brief(Read("  open: [{entity: milk, joint_above: 0.5}]\n").diagnostics),
-            "16:10: entity: 'milk' hangs on no joint\n");
+            "16:10: entity: 'milk' has no joint\n");
   EXPECT_EQ(Brief(Read("  kept: [{entity: milk, inside: tabel}]\n").diagnostics),
             "16:33: inside: no entity is called 'tabel' | did you mean 'table'?\n");
 }

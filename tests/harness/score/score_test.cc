@@ -37,14 +37,14 @@ TEST(ScoreOf, WhatIsNotSaidIsMissed) {
       {Event("slide", 100, 300, 0), Event("hold", 50, 400, 0)}, {Event("hold", 50, 400, 400)})};
   episodes[0].not_judged["slidding"] = 3;
   Score score = ScoreOf("g", episodes, 0.05);
-  score.not_spoken_of = {"slide"};
+  score.not_covered = {"slide"};
   EXPECT_EQ(score.total.truths, 2);
   EXPECT_EQ(score.total.ward.events.deleted, 1);
   EXPECT_NEAR(score.total.overlap_50.F1(), 2.0 / 3, 1e-12);
   const std::string table = ScoreTable(score, 0.05);
-  EXPECT_TRUE(
-      table.ends_with("\nnot spoken of: slide (1 true); no rule prints them, they count as missed\n"
-                      "not judged: slidding (3 found); docs/events.md does not define them\n"))
+  EXPECT_TRUE(table.ends_with(
+      "\nnot covered: slide (1 true); no rule of the grammar prints them, so they count as missed\n"
+      "not judged: slidding (3 found); docs/events.md does not define them\n"))
       << table;
 }
 

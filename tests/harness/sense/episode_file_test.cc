@@ -90,9 +90,12 @@ TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
   EXPECT_EQ(Complaint("{\"tick\": 1, \"looks\": {\"cip\": {\"at_m\": [0, 0, 0]}}}\n"),
             "2:23: no entity is called 'cip' | did you mean 'cup'?\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"hands\": {\"cup\": {}}}\n"),
-            "2:23: 'cup' is no hand | its entity has no 'hand: true'\n");
+            "2:23: 'cup' is not a hand | its entity has no 'hand: true'\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"touches\": [{\"a\": \"cup\", \"b\": \"cup\"}]}\n"),
             "2:43: 'cup' cannot touch itself\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1, \"touches\": [{\"a\": \"cup\", \"b\": \"table\"}, {\"a\": "
+                      "\"table\", \"b\": \"cup\"}]}\n"),
+            "2:60: the touch of 'table' and 'cup' is given twice\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"toches\": []}\n"),
             "2:13: unknown key 'toches' in a frame | did you mean 'touches'?\n");
   EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"end_tick\": 1}\n"),

@@ -36,8 +36,6 @@ physics::Snapshot StillSnapshot(std::int64_t tick) {
   return snapshot;
 }
 
-constexpr double kBearingShare = 0.05;
-
 constexpr physics::ContactSide kTable{.body = 0}, kBox{.body = 1}, kPalm{.hand = 0, .link = -1};
 constexpr physics::ContactSide kFinger{.hand = 0, .link = 0}, kThumb{.hand = 0, .link = 1};
 
@@ -52,7 +50,7 @@ TEST(Sensing, TellsWhereAJointStands) {
   scene.joints.push_back({.kind = physics::JointKind::kSlider, .body = 1, .upper = 0.4});
   physics::Snapshot snapshot = StillSnapshot(1);
   snapshot.joints = {{.position = 0.1, .fraction = 0.25}};
-  Sensing sensing(scene, 480, kBearingShare);
+  Sensing sensing(scene, {.sensing_hz = 480});
   const grammar::Frame frame = sensing.Sense(snapshot);
   EXPECT_EQ(frame.entities[1].joint_fraction, 0.25);
   EXPECT_EQ(frame.entities[0].joint_fraction, 0);
@@ -68,7 +66,7 @@ TEST(Sensing, HandsWithDifferentStylesShareOneListOfNames) {
   physics::Snapshot snapshot = StillSnapshot(1);
   snapshot.hands.push_back(snapshot.hands[0]);
   snapshot.hands[0].style = 1;
-  Sensing sensing(scene, 480, kBearingShare);
+  Sensing sensing(scene, {.sensing_hz = 480});
   const grammar::Frame frame = sensing.Sense(snapshot);
   EXPECT_EQ(frame.hands[0].style, 1);  // pinch
   EXPECT_EQ(frame.hands[1].style, 2);  // jaws
@@ -77,7 +75,7 @@ TEST(Sensing, HandsWithDifferentStylesShareOneListOfNames) {
 TEST(Sensing, LooksAtEveryRateWithoutDrift) {
   const physics::Scene scene = TwoBodiesAndAHand();
   for (const int hz : {30, 60, 90, 240, 480, 7}) {
-    const Sensing sensing(scene, hz, kBearingShare);
+    const Sensing sensing(scene, {.sensing_hz = hz});
     int looks = 0;
     for (std::int64_t tick = 1; tick <= 480 * 10; ++tick) looks += sensing.Due(tick);
     EXPECT_EQ(looks, hz * 10);
@@ -86,7 +84,7 @@ TEST(Sensing, LooksAtEveryRateWithoutDrift) {
 
 TEST(Sensing, PointsOfAPairBecomeOneTouchWithItsForce) {
   const physics::Scene scene = TwoBodiesAndAHand();
-  Sensing sensing(scene, 240, kBearingShare);
+  Sensing sensing(scene, {.sensing_hz = 240});
   physics::Snapshot snapshot = StillSnapshot(2);
   // The normal points from the box into the table: down on the table, up on the box.
   snapshot.contacts = {Point(kTable, kBox, -1, 0.01), Point(kTable, kBox, -0.9, 0.01)};
@@ -101,7 +99,7 @@ TEST(Sensing, PointsOfAPairBecomeOneTouchWithItsForce) {
 
 TEST(Sensing, AStrayPointWithoutLoadDoesNotHold) {
   const physics::Scene scene = TwoBodiesAndAHand();
-  Sensing sensing(scene, 240, kBearingShare);
+  Sensing sensing(scene, {.sensing_hz = 240});
   physics::Snapshot snapshot = StillSnapshot(2);
   snapshot.contacts = {Point(kTable, kBox, 0, 1.0), Point(kTable, kBox, -1, 0.001)};
   EXPECT_NEAR(sensing.Sense(snapshot).touches[0].up_on_b, 0, 1e-12);
@@ -111,7 +109,7 @@ TEST(Sensing, AStrayPointWithoutLoadDoesNotHold) {
 
 TEST(Sensing, LinksBecomeSensorSetsOfTheHandEntity) {
   const physics::Scene scene = TwoBodiesAndAHand();
-  Sensing sensing(scene, 240, kBearingShare);
+  Sensing sensing(scene, {.sensing_hz = 240});
   physics::Snapshot snapshot = StillSnapshot(2);
   snapshot.contacts = {Point(kBox, kFinger, 0, 0.1), Point(kBox, kThumb, 0, 0.1)};
   const grammar::Frame frame = sensing.Sense(snapshot);
@@ -126,7 +124,7 @@ TEST(Sensing, LinksBecomeSensorSetsOfTheHandEntity) {
 
 TEST(Sensing, CollisionSpheresFollowPalmAndLinks) {
   const physics::Scene scene = TwoBodiesAndAHand();
-  Sensing sensing(scene, 240, kBearingShare);
+  Sensing sensing(scene, {.sensing_hz = 240});
   physics::Snapshot snapshot = StillSnapshot(2);
   snapshot.hands[0].palm.X_WB.p_m = {0, 0, 5};
   snapshot.hands[0].X_WL[0].p_m = {1, 0, 5};
@@ -148,7 +146,7 @@ TEST(Sensing, CollisionSpheresFollowPalmAndLinks) {
 /// All that a snapshot can say, from what rests and what moves, and back again.
 TEST(Sensing, ChangesAddUpToTheWhole) {
   const physics::Scene scene = TwoBodiesAndAHand();
-  Sensing by_changes(scene, 480, kBearingShare);
+  Sensing by_changes(scene, {.sensing_hz = 480});
   physics::Snapshot first = StillSnapshot(1);
   first.moved_tick = {0, 1};
   first.bodies[1].X_WB.p_m.z() = 0.1;
@@ -187,7 +185,7 @@ TEST(Sensing, ChangesAddUpToTheWhole) {
 
 TEST(Sensing, WhatHasNotMovedIsNotLookedAt) {
   const physics::Scene scene = TwoBodiesAndAHand();
-  Sensing sensing(scene, 240, kBearingShare);
+  Sensing sensing(scene, {.sensing_hz = 240});
   physics::Snapshot snapshot = StillSnapshot(2);
   snapshot.moved_tick = {0, 1};
   sensing.SenseChanges(snapshot);

@@ -76,7 +76,7 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
       {"a: 1\n'a': 2\n", "2:1: duplicate key 'a' | first given in line 1\n"},
       {"<<: {a: 1}\n", "1:1: merge keys ('<<') are not supported | write the keys out\n"},
       {"a: &x 1\nb: *x\n",
-       "1:4: anchors ('&name') are not supported | write values out where used\n"
+       "1:4: anchors ('&name') are not supported | write the value out where it is used\n"
        "2:4: aliases ('*name') are not supported | write the value out\n"},
       {"a: !!int 1\n", "1:4: tags ('!name') are not supported | remove the tag\n"},
       {"a: ! x\n", "1:4: tags ('!name') are not supported | remove the tag\n"},
@@ -85,28 +85,28 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
       {"a: 1\nb:\t2\n", "2:3: tab character | indent and separate with spaces\n"},
       {"[1, 2]: 3\n", "1:1: a key must be a word, not a list or mapping\n"},
       {"~: 3\n", "1:1: a key is missing here\n"},
-      {"# nothing\n", "0:0: the file is empty but for comments\n"},
+      {"# nothing\n", "0:0: the file contains only comments\n"},
       {"", "0:0: the file is empty\n"},
       {"a: {b: 1\n",
        "2:1: not valid YAML: a '{' before this is not closed | each '[' needs its ']', each '{' "
        "its '}'\n"},
       {"a: b: c\n",
-       "1:5: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in "
+       "1:5: not valid YAML: a second ':' in one value | text with ': ' in it goes in "
        "quotes, like \"first: second\"\n"},
       {"x: 1\na: b c:\n",
-       "2:7: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in "
+       "2:7: not valid YAML: a second ':' in one value | text with ': ' in it goes in "
        "quotes, like \"first: second\"\n"},
       {"a: {b: c: d}\n",
-       "1:9: not valid YAML: a second ':' in what is one text | text with ': ' in it goes in "
+       "1:9: not valid YAML: a second ':' in one value | text with ': ' in it goes in "
        "quotes, like \"first: second\"\n"},
       {"a: \"b\" c\n",
-       "1:8: not valid YAML: this cannot stand behind what is before it | text that begins with a "
-       "quote ends with it; put all of it in quotes\n"},
+       "1:8: not valid YAML: unexpected text after the value before it | put the whole value in "
+       "quotes\n"},
       {"a: * b\n",
-       "1:5: not valid YAML: no text begins with '*' | text with special characters goes in "
+       "1:5: not valid YAML: text cannot begin with '*' | text with special characters goes in "
        "quotes\n"},
       {"a: 1\n b: 2\n",
-       "2:3: not valid YAML: no ':' is expected here | a key begins a line, or stands in '{}'; "
+       "2:3: not valid YAML: no ':' is expected here | a key begins a line or is inside '{}'; "
        "text with ': ' goes in quotes\n"},
   };
   for (const Refused& refused : table)
@@ -136,9 +136,9 @@ const nlohmann::ordered_json kSchema = {
 
 TEST(LocatedYaml, QuotationsMustEnd) {
   EXPECT_EQ(DiagnosticList("a: 'it''s\n"),
-            "1:4: this quotation does not end | close it with the same quote\n");
+            "1:4: this quote is not closed | close it with the same quote\n");
   EXPECT_EQ(DiagnosticList("a: \"b\\\"\n"),
-            "1:4: this quotation does not end | close it with the same quote\n");
+            "1:4: this quote is not closed | close it with the same quote\n");
   EXPECT_EQ(DiagnosticList("a: 'it''s'\nb: \"c\\\\\"\nd: |\n  'e\n"), "");
 }
 

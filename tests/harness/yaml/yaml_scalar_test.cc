@@ -43,7 +43,7 @@ TEST(YamlScalar, AmbiguousScalarsSayWhy) {
       {"0x10", "a number in another base to some YAML readers"},
       {"0o17", "a number in another base to some YAML readers"},
       {"0b11", "a number in another base to some YAML readers"},
-      {"1_000", "'_' is a separator to some YAML readers only"},
+      {"1_000", "only some YAML readers take '_' for a separator"},
       {"1:30", "a number in base 60 to some YAML readers"},
       {"1:30.5", "a number in base 60 to some YAML readers"},
       {".5", "a number without a digit on both sides of the point"},

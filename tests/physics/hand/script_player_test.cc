@@ -10,7 +10,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-Beat One(StepAction action, double over_s) { return {{{0, std::move(action), over_s}}}; }
+ScriptStage One(StepAction action, double over_s) { return {{{0, std::move(action), over_s}}}; }
 
 /// The target at the end of a script, in a world that does not move.
 TargetState EndOf(const Scene& scene, Script script, int* ticks = nullptr) {
@@ -32,8 +32,8 @@ TEST(ScriptPlayerTest, MovesAreRelativeAndTriggersLast) {
   int ticks = 0;
   const TargetState end =
       EndOf(scene,
-            {.beats = {One(MoveStep{{0.1, 0, 0}}, 0.5), One(TriggerStep{0.7}, 0.25),
-                       One(MoveStep{{0, 0, 0.2}}, 0.5)},
+            {.stages = {One(MoveStep{{0.1, 0, 0}}, 0.5), One(TriggerStep{0.7}, 0.25),
+                        One(MoveStep{{0, 0, 0.2}}, 0.5)},
              .settle_s = 0.25},
             &ticks);
   EXPECT_EQ(ticks, 720);
@@ -45,24 +45,24 @@ TEST(ScriptPlayerTest, MovesAreRelativeAndTriggersLast) {
 
 TEST(ScriptPlayerTest, CarryBringsTheObjectsCentreThere) {
   const Scene scene = MakeScene({});
-  const Beat reach = One(ReachStep{"object"}, 0.5);
-  const TargetState reached = EndOf(scene, {.beats = {reach}});
-  const TargetState carried = EndOf(scene, {.beats = {reach, One(CarryStep{{0.2, -0.4}}, 0.5)}});
+  const ScriptStage reach = One(ReachStep{"object"}, 0.5);
+  const TargetState reached = EndOf(scene, {.stages = {reach}});
+  const TargetState carried = EndOf(scene, {.stages = {reach, One(CarryStep{{0.2, -0.4}}, 0.5)}});
   // The object stands at (0.2, 0.1).
   EXPECT_LT((carried.X_WH.p_m - reached.X_WH.p_m - Eigen::Vector3d(0, -0.5, 0)).norm(), 1e-9);
 }
 
 TEST(ScriptPlayerTest, RetreatGoesBackTheWayItCame) {
   const Scene scene = MakeScene({});
-  const Beat reach = One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5);
-  const TargetState reached = EndOf(scene, {.beats = {reach}});
-  const TargetState retreated = EndOf(scene, {.beats = {reach, One(RetreatStep{0.2}, 0.5)}});
+  const ScriptStage reach = One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5);
+  const TargetState reached = EndOf(scene, {.stages = {reach}});
+  const TargetState retreated = EndOf(scene, {.stages = {reach, One(RetreatStep{0.2}, 0.5)}});
   EXPECT_LT((retreated.X_WH.p_m - reached.X_WH.p_m - Eigen::Vector3d(0, 0, 0.2)).norm(), 1e-9);
 }
 
-/// What is said of the first beat.
-Texts NotesOf(const Scene& scene, const Beat& beat) {
-  const Script script{.beats = {beat}};
+/// What is said of the first stage.
+Texts NotesOf(const Scene& scene, const ScriptStage& stage) {
+  const Script script{.stages = {stage}};
   Simulation still(scene, {});
   ScriptPlayer player(scene, script);
   player.Advance(still.snapshot());
@@ -72,7 +72,7 @@ Texts NotesOf(const Scene& scene, const Beat& beat) {
 }
 
 TEST(ScriptPlayerTest, NotesAReachThatCannotKeepClear) {
-  const Beat from_above = One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5);
+  const ScriptStage from_above = One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5);
   Scene scene = MakeScene({});
   EXPECT_EQ(NotesOf(scene, from_above), Texts{});
   Body roof{.name = "roof", .shapes = {{Box{{1, 1, 0.02}}, {}}}, .fixed = true};
@@ -101,7 +101,7 @@ TEST(ScriptPlayerTest, ABeatLastsAsLongAsItsLongestStep) {
   Scene scene = MakeScene({});
   scene.hands.push_back({"other", LibraryHand("human_left"), {{-0.3, 0.3, 1.1}}});
   int ticks = 0;
-  EndOf(scene, {.beats = {{{{0, WaitStep{}, 0.1}, {1, WaitStep{}, 0.3}}}}, .settle_s = 0}, &ticks);
+  EndOf(scene, {.stages = {{{{0, WaitStep{}, 0.1}, {1, WaitStep{}, 0.3}}}}, .settle_s = 0}, &ticks);
   EXPECT_EQ(ticks, 144);
 }
 
@@ -113,7 +113,7 @@ TEST(ScriptPlayerTest, SayWhatIsUnknown) {
                                                       {PlaceStep{"shelf"}, "'shelf'"},
                                                       {PlaceStep{"table"}, "holds nothing"}};
   for (const auto& [action, said] : cases) {
-    ScriptPlayer player(scene, {.beats = {One(action, 0.5)}});
+    ScriptPlayer player(scene, {.stages = {One(action, 0.5)}});
     EXPECT_EQ(player.Advance(still.snapshot()), nullptr);
     EXPECT_NE(player.problem().find(said), std::string::npos) << player.problem();
     EXPECT_EQ(player.problem_hand(), 0);

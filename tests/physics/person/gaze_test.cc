@@ -29,7 +29,7 @@ Scene WithPerson(Eyes eyes = Eyes::kAhead) {
 
 Script Told(PersonAction action, double over_s = 1) {
   Script script;
-  script.beats.push_back({.steps = {}, .person_steps = {{0, std::move(action), over_s}}});
+  script.stages.push_back({.steps = {}, .person_steps = {{0, std::move(action), over_s}}});
   script.settle_s = 0;
   return script;
 }
@@ -125,8 +125,8 @@ TEST(GazeTest, EyesLeadTheHand) {
 
 TEST(GazeTest, ToldGoesBeforeOwnWishes) {
   Script script = MakeScript({});
-  script.beats[0].person_steps.push_back({0, LookAtStep{Vector3d(0.4, -0.3, kTop_m)}, 0.1});
-  script.beats[1].person_steps.push_back({0, EyesStep{Eyes::kLead}, 0.1});
+  script.stages[0].person_steps.push_back({0, LookAtStep{Vector3d(0.4, -0.3, kTop_m)}, 0.1});
+  script.stages[1].person_steps.push_back({0, EyesStep{Eyes::kLead}, 0.1});
   const auto gazes = GazesOf(WithPerson(Eyes::kLead), script);
   const int seen = FirstSeen(gazes, kObject);
   EXPECT_GE(seen, static_cast<int>(0.8 * 480));

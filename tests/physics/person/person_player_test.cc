@@ -51,7 +51,7 @@ struct Played {
 Played Play(const Scene& scene, std::vector<PersonStep> steps, const std::string& part = "") {
   Script script;
   script.settle_s = 0.3;
-  for (PersonStep& step : steps) script.beats.push_back({.steps = {}, .person_steps = {step}});
+  for (PersonStep& step : steps) script.stages.push_back({.steps = {}, .person_steps = {step}});
   Simulation simulation(scene, script);
   Played played;
   const int touching = PartNamed(scene, part);
@@ -134,7 +134,7 @@ TEST(PersonPlayerTest, ALimbYieldsToWhatResistsMoreThanItMayPush) {
   scene.bodies[kBlock].friction = 2;  // 60 kg * 9.81 * 2 * 0.8: it takes some 940 N to slide it
   const Vector3d there(0.33, -0.09, 0.4);
   std::vector<PersonStep> steps = Kick(there);
-  std::get<MoveLimbStep>(steps[1].action).most_n = 60;
+  std::get<MoveLimbStep>(steps[1].action).max_force_n = 60;
   const Played yielding = Play(scene, steps);
   // The first blow has the speed of the limb.
   EXPECT_LT(std::abs(yielding.end.bodies[kBlock].X_WB.p_m.x() - 0.45), 0.03);
@@ -146,21 +146,21 @@ TEST(PersonPlayerTest, ALimbYieldsToWhatResistsMoreThanItMayPush) {
 TEST(PersonPlayerTest, ALimbThatMayYieldStillPushesWhatIsLight) {
   const Scene scene = Before({0.45, -0.09, 0.4});
   std::vector<PersonStep> steps = Kick({0.35, -0.09, 0.4});
-  std::get<MoveLimbStep>(steps[1].action).most_n = 60;
+  std::get<MoveLimbStep>(steps[1].action).max_force_n = 60;
   EXPECT_GT(Play(scene, steps).end.bodies[kBlock].X_WB.p_m.x(), 0.52);
 }
 
-TEST(PersonPlayerTest, ARecordedFigureIsTakenAndLeft) {
+TEST(PersonPlayerTest, ARecordedPostureIsTakenAndLeft) {
   const Scene scene = Before({2, 2, 0.4});
   const Person& anna = scene.persons.front();
-  Posture kneeling = Standing(scene, anna);
-  Figure figure = FigureOf(anna, kneeling);
-  figure.hips_W_m += Vector3d(0.4, 0, -0.2);
-  figure.ways_W[Figure::kThigh] = Vector3d(0.8, 0, -0.6);
-  const PersonStep recorded{0, BodyPosesStep{{{0.4, figure}, {0.8, figure}}}, 0.8};
+  BodyTargets kneeling = Standing(scene, anna);
+  Posture posture = PostureOf(anna, kneeling);
+  posture.hips_W_m += Vector3d(0.4, 0, -0.2);
+  posture.directions_W[Posture::kThigh] = Vector3d(0.8, 0, -0.6);
+  const PersonStep recorded{0, BodyPosesStep{{{0.4, posture}, {0.8, posture}}}, 0.8};
   const auto pelvis = static_cast<std::size_t>(PartNamed(scene, "anna_pelvis"));
   const Snapshot held = Play(scene, {recorded}).end;
-  EXPECT_LT((held.bodies[pelvis].X_WB.p_m - figure.hips_W_m).norm(), 1e-9);
+  EXPECT_LT((held.bodies[pelvis].X_WB.p_m - posture.hips_W_m).norm(), 1e-9);
   const auto thigh = static_cast<std::size_t>(PartNamed(scene, "anna_right_thigh"));
   EXPECT_NEAR(std::abs((held.bodies[thigh].X_WB.q * Vector3d::UnitZ()).x()), 0.8, 1e-6);
   // Afterwards she stands where her hips are.

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 Person Anna() { return {.name = "anna", .has_body = true, .height_m = 1.8, .X_WS = {{1, 2, 0}}}; }
 
-Posture Upright(const Person& person) { return Standing({}, person); }
+BodyTargets Upright(const Person& person) { return Standing({}, person); }
 
 std::vector<std::string> NamesOf(const std::vector<Body>& parts) {
   std::vector<std::string> names;
@@ -22,12 +22,12 @@ std::vector<std::string> NamesOf(const std::vector<Body>& parts) {
   return names;
 }
 
-/// The part's place in a posture.
-Pose PlaceOf(const Person& person, const Posture& posture, const std::string& name) {
+/// The pose of a part.
+Pose PlaceOf(const Person& person, const BodyTargets& targets, const std::string& name) {
   const std::vector<std::string> names = NamesOf(PartsOf(person));
   const auto found = std::find(names.begin(), names.end(), name);
   EXPECT_NE(found, names.end()) << name;
-  return PlacesOf(person, posture, {})[static_cast<std::size_t>(found - names.begin())];
+  return PlacesOf(person, targets, {})[static_cast<std::size_t>(found - names.begin())];
 }
 
 double LengthOf(const Person& person, const std::string& name) {
@@ -73,49 +73,49 @@ TEST(SkeletonTest, StandsOnTheFloorAsTallAsSheIs) {
 
 TEST(SkeletonTest, RightIsRight) {
   const Person person = Anna();  // she faces x
-  const Posture posture = Upright(person);
-  EXPECT_LT(PlaceOf(person, posture, "anna_right_thigh").p_m.y(), 2);
-  EXPECT_GT(PlaceOf(person, posture, "anna_left_forearm").p_m.y(), 2);
-  EXPECT_GT(PlaceOf(person, posture, "anna_left_toes").p_m.x(), 1);
+  const BodyTargets targets = Upright(person);
+  EXPECT_LT(PlaceOf(person, targets, "anna_right_thigh").p_m.y(), 2);
+  EXPECT_GT(PlaceOf(person, targets, "anna_left_forearm").p_m.y(), 2);
+  EXPECT_GT(PlaceOf(person, targets, "anna_left_toes").p_m.x(), 1);
 }
 
 TEST(SkeletonTest, TheWristGoesWhereItIsSent) {
   const Person person = Anna();
-  Posture posture = Upright(person);
+  BodyTargets targets = Upright(person);
   const Vector3d there(1.35, 1.8, 1.2);
-  posture.limbs[0] = {LimbEnd::kRightWrist, there};
-  EXPECT_LT((PlaceOf(LimbEnd::kRightWrist, person, posture) - there).norm(), 1e-9);
+  targets.limbs[0] = {LimbEnd::kRightWrist, there};
+  EXPECT_LT((PlaceOf(LimbEnd::kRightWrist, person, targets) - there).norm(), 1e-9);
   // Bones keep their lengths, and the elbow hangs below the line from shoulder to wrist.
-  const Vector3d elbow = PlaceOf(LimbEnd::kRightElbow, person, posture);
+  const Vector3d elbow = PlaceOf(LimbEnd::kRightElbow, person, targets);
   EXPECT_NEAR((elbow - there).norm(), LengthOf(person, "anna_right_forearm"), 1e-9);
   EXPECT_LT(elbow.z(), there.z());
 }
 
 TEST(SkeletonTest, ALimbThatCannotReachIsStretched) {
   const Person person = Anna();
-  Posture posture = Upright(person);
-  posture.limbs[2] = {LimbEnd::kRightFoot, Vector3d(9, 1.9, 0.3)};
-  const Vector3d foot = PlaceOf(LimbEnd::kRightFoot, person, posture);
+  BodyTargets targets = Upright(person);
+  targets.limbs[2] = {LimbEnd::kRightFoot, Vector3d(9, 1.9, 0.3)};
+  const Vector3d foot = PlaceOf(LimbEnd::kRightFoot, person, targets);
   EXPECT_NEAR(foot.x(), 1.75, 0.2);
-  const Pose thigh = PlaceOf(person, posture, "anna_right_thigh"),
-             shank = PlaceOf(person, posture, "anna_right_shank");
+  const Pose thigh = PlaceOf(person, targets, "anna_right_thigh"),
+             shank = PlaceOf(person, targets, "anna_right_shank");
   EXPECT_GT((thigh.q * Vector3d::UnitZ()).dot(shank.q * Vector3d::UnitZ()), 0.99);
 }
 
 TEST(SkeletonTest, TheElbowGoesWhereItIsSentAndTheForearmIsFoldedUp) {
   const Person person = Anna();
-  Posture posture = Upright(person);
-  const Vector3d shoulder = RestOf(0, person, posture).p_W_m;  // roughly below it
-  posture.limbs[0] = {LimbEnd::kRightElbow, shoulder + Vector3d(0.3, 0, 0.3)};
-  const Vector3d elbow = PlaceOf(LimbEnd::kRightElbow, person, posture);
+  BodyTargets targets = Upright(person);
+  const Vector3d shoulder = RestOf(0, person, targets).p_W_m;  // roughly below it
+  targets.limbs[0] = {LimbEnd::kRightElbow, shoulder + Vector3d(0.3, 0, 0.3)};
+  const Vector3d elbow = PlaceOf(LimbEnd::kRightElbow, person, targets);
   EXPECT_GT(elbow.x(), 1.1);
-  EXPECT_GT(PlaceOf(LimbEnd::kRightWrist, person, posture).z(), elbow.z());
+  EXPECT_GT(PlaceOf(LimbEnd::kRightWrist, person, targets).z(), elbow.z());
 }
 
 TEST(SkeletonTest, LeaningBringsTheHeadForwardAndLeavesTheFeet) {
   const Person person = Anna();
-  const Posture upright = Upright(person);
-  Posture leaning = upright;
+  const BodyTargets upright = Upright(person);
+  BodyTargets leaning = upright;
   leaning.lean_rad = 0.5;
   EXPECT_GT(NeckTop(person, leaning).x(), NeckTop(person, upright).x() + 0.2);
   EXPECT_LT(NeckTop(person, leaning).z(), NeckTop(person, upright).z());
@@ -124,8 +124,8 @@ TEST(SkeletonTest, LeaningBringsTheHeadForwardAndLeavesTheFeet) {
 
 TEST(SkeletonTest, SwayingHipsLeaveTheFeetAndNearlyTheShoulders) {
   const Person person = Anna();
-  const Posture upright = Upright(person);
-  Posture swayed = upright;
+  const BodyTargets upright = Upright(person);
+  BodyTargets swayed = upright;
   swayed.sway_m = {0, 0.2};  // to her left, which is y
   const auto moved = [&](const char* part) -> Vector3d {
     return PlaceOf(person, swayed, part).p_m - PlaceOf(person, upright, part).p_m;
@@ -138,29 +138,29 @@ TEST(SkeletonTest, SwayingHipsLeaveTheFeetAndNearlyTheShoulders) {
   EXPECT_LT(std::abs(moved("anna_neck").y()), 0.02);
 }
 
-TEST(SkeletonTest, AFigureStandsAsThePostureThatItWasMadeOf) {
+TEST(SkeletonTest, APostureGivesThePartsOfItsTargets) {
   const Person person = Anna();
-  Posture posture = Upright(person);
-  posture.lean_rad = 0.4;
-  posture.limbs[0] = {LimbEnd::kRightWrist, Vector3d(1.35, 1.8, 1.2)};
-  posture.limbs[3] = {LimbEnd::kLeftFoot, Vector3d(1.3, 2.1, 0.4)};
-  posture.X_WHead = HeadToward(person, NeckTop(person, posture), {0.9, 0.3, -0.2});
-  Posture as_figure = Upright(person);
-  as_figure.figure = FigureOf(person, posture);
-  as_figure.X_WHead = HeadOfFigure(person, as_figure);
-  const std::vector<Pose> places = PlacesOf(person, posture, {}),
-                          again = PlacesOf(person, as_figure, {});
+  BodyTargets targets = Upright(person);
+  targets.lean_rad = 0.4;
+  targets.limbs[0] = {LimbEnd::kRightWrist, Vector3d(1.35, 1.8, 1.2)};
+  targets.limbs[3] = {LimbEnd::kLeftFoot, Vector3d(1.3, 2.1, 0.4)};
+  targets.X_WHead = HeadToward(person, NeckTop(person, targets), {0.9, 0.3, -0.2});
+  BodyTargets as_posture = Upright(person);
+  as_posture.posture = PostureOf(person, targets);
+  as_posture.X_WHead = HeadOfPosture(person, as_posture);
+  const std::vector<Pose> places = PlacesOf(person, targets, {}),
+                          again = PlacesOf(person, as_posture, {});
   for (std::size_t i = 0; i < places.size(); ++i)
     EXPECT_LT((places[i].p_m - again[i].p_m).norm(), 1e-9) << i;
 }
 
-TEST(SkeletonTest, AFigureSuitsATallerPerson) {
+TEST(SkeletonTest, APostureSuitsATallerPerson) {
   Person person = Anna();
-  Posture posture = Upright(person);
-  posture.figure = FigureOf(person, posture);
+  BodyTargets targets = Upright(person);
+  targets.posture = PostureOf(person, targets);
   person.height_m = 2.1;
-  EXPECT_NEAR((PlaceOf(LimbEnd::kRightElbow, person, posture) -
-               PlaceOf(LimbEnd::kRightWrist, person, posture))
+  EXPECT_NEAR((PlaceOf(LimbEnd::kRightElbow, person, targets) -
+               PlaceOf(LimbEnd::kRightWrist, person, targets))
                   .norm(),
               LengthOf(person, "anna_right_forearm"), 1e-9);
 }
@@ -200,14 +200,14 @@ TEST(SkeletonTest, ArmsFollowTheHandsOfTheScene) {
 
 TEST(SkeletonTest, PartsDoNotSpinWhenALimbSwingsOverhead) {
   const Person person = Anna();
-  Posture posture = Upright(person);
-  std::vector<Pose> before = PlacesOf(person, posture, {});
+  BodyTargets targets = Upright(person);
+  std::vector<Pose> before = PlacesOf(person, targets, {});
   const Vector3d shoulder(1, 2 - 0.129 * 1.8, 0.818 * 1.8);
   double most = 0;
   for (int i = 0; i <= 400; ++i) {
     const double angle = i * 0.01;
-    posture.limbs[0].p_W_m = shoulder + 0.55 * Vector3d(std::sin(angle), 0, -std::cos(angle));
-    const std::vector<Pose> now = PlacesOf(person, posture, before);
+    targets.limbs[0].p_W_m = shoulder + 0.55 * Vector3d(std::sin(angle), 0, -std::cos(angle));
+    const std::vector<Pose> now = PlacesOf(person, targets, before);
     if (i > 0) {
       for (std::size_t p = 0; p < now.size(); ++p)
         most = std::max(most, RotationVector(now[p].q * before[p].q.conjugate()).norm());

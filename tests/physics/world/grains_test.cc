@@ -26,7 +26,7 @@ Scene FilledMug() {
 }
 
 Snapshot After(const Scene& scene, double settle_s, std::uint64_t* hash = nullptr) {
-  Simulation simulation(scene, Script{.beats = {}, .settle_s = settle_s});
+  Simulation simulation(scene, Script{.stages = {}, .settle_s = settle_s});
   while (simulation.Step()) {
   }
   EXPECT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;

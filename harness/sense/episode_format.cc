@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/sense/episode_format.h. Tested by tests/harness/sense/episode_file_test.cc
+#include "harness/sense/episode_format.h"
+
+namespace prehend::harness::episode {
+namespace {
+
+constexpr double kMaxPosition_m = 1e4;
+constexpr double kMaxVelocity = 1e4;
+constexpr std::int64_t kLatestTick = 1'000'000'000'000;
+constexpr std::size_t kMaxMembers = 10'000;
+constexpr std::size_t kMaxFeelers = 1000;
+constexpr std::size_t kMaxSets = 32;
+constexpr std::size_t kMaxClasses = 100;
+
+ValueFormat<std::string> Name() {
+  return Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'");
+}
+ValueFormat<std::string> ClassName() {
+  return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'");
+}
+ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kMaxPosition_m, kMaxPosition_m); }
+ValueFormat<Eigen::Vector3d> Velocity() { return Vector<3>(-kMaxVelocity, kMaxVelocity); }
+
+}  // namespace
+
+ValueFormat<HeaderEntry> HeaderFormat() {
+  using M = MemberEntry;
+  const ValueFormat<M> member =
+      StructFormat<M>("entity")
+          .NamedByKey()
+          .Optional("class", &M::class_name, ClassName(), "")
+          .Optional("fixed", &M::fixed, Flag(), "")
+          .Optional("jointed", &M::jointed, Flag(), "")
+          .Optional("person", &M::person, Flag(), "")
+          .Optional("grains", &M::grains, Flag(), "")
+          .Optional("abstract", &M::abstract, Choice({"Region", "GazeTarget", "Camera", "Light"}),
+                    "")
+          .Optional("round", &M::round, Flag(), "")
+          .Optional("kinds", &M::kinds, ListOf(ClassName(), 0, kMaxClasses), "")
+          .Optional("hand", &M::hand, Flag(), "")
+          .Optional("centre_m", &M::centre_m, Position(), "")
+          .Required("size_m", &M::size_m, Vector<3>(0, kMaxPosition_m), "")
+          .Optional("mass_kg", &M::mass_kg, Number(0, 1e6), "")
+          .Optional("strength_n", &M::strength_n, Number(0, 1e6), "")
+          .Optional("part_of", &M::part_of, Name(), "")
+          .Optional("sensor_sets", &M::sensor_sets, ListOf(Name(), 1, kMaxSets), "")
+          .format();
+  using H = HeaderEntry;
+  return StructFormat<H>("the first line")
+      .Required("recording", &H::version, Integer<int>(kEpisodeVersion, kEpisodeVersion), "")
+      .Required("episode", &H::episode, Name(), "")
+      .Optional("grammar", &H::grammar, Name(), "")
+      .Required("ticks_per_second", &H::ticks_per_second, Integer<std::int64_t>(1, 1'000'000), "")
+      .Optional("styles", &H::styles, ListOf(Name(), 0, 1000), "")
+      .Required("entities", &H::entities, MapOf(Name(), member, 1, kMaxMembers), "")
+      .format();
+}
+
+ValueFormat<LineEntry> LineFormat() {
+  using L = SampleEntry;
+  const ValueFormat<L> look =
+      StructFormat<L>("look")
+          .NamedByKey()
+          .Required("at_m", &L::at_m, Position(), "")
+          .Optional("quat_wxyz", &L::quat_wxyz, UnitQuaternion(), "")
+          .Optional("v_m_per_s", &L::v_m_per_s, Velocity(), "")
+          .Optional("w_rad_per_s", &L::w_rad_per_s, Velocity(), "")
+          .Optional("asleep", &L::asleep, Flag(), "")
+          .Optional("joint_position", &L::joint_position, Number(-1e4, 1e4), "")
+          .Optional("joint_fraction", &L::joint_fraction, Number(0, 1), "")
+          .Optional("gazes_at", &L::gazes_at, Name(), "")
+          .format();
+  using H = HandYaml;
+  const ValueFormat<H> hand =
+      StructFormat<H>("hand")
+          .NamedByKey()
+          .Optional("trigger", &H::trigger, Number(0, 1), "")
+          .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
+          .Optional("feelers_m", &H::feelers_m,
+                    ListOf(Vector<4>(-kMaxPosition_m, kMaxPosition_m), 1, kMaxFeelers), "")
+          .Optional("style", &H::style, Name(), "")
+          .format();
+  using T = TouchEntry;
+  const ValueFormat<T> touch =
+      StructFormat<T>("a touch")
+          .Required("a", &T::a, Name(), "")
+          .Required("b", &T::b, Name(), "")
+          .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
+          .Optional("up_on_b", &T::up_on_b, Number(-1, 1), "")
+          .Optional("force_n", &T::force_n, Number(0, 1e9), "")
+          .Optional("vertical_speed_m_per_s", &T::vertical_speed_m_per_s, Number(0, 1e9), "")
+          .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
+          .format();
+  using F = FrameEntry;
+  const auto tick = Integer<std::int64_t>(-kLatestTick, kLatestTick);
+  return ByKey<LineEntry>(
+      "a line",
+      {{"tick", AsAlternative<LineEntry>(
+                    StructFormat<F>("a frame")
+                        .Required("tick", &F::tick, tick, "")
+                        .Optional("looks", &F::looks, MapOf(Name(), look, 0, kMaxMembers), "")
+                        .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
+                        .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
+                        .format())},
+       {"end_tick",
+        AsAlternative<LineEntry>(StructFormat<EndEntry>("the last line")
+                                     .Required("end_tick", &EndEntry::end_tick, tick, "")
+                                     .format())}});
+}
+
+}  // namespace prehend::harness::episode
