@@ -377,10 +377,7 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
                Quoted(builtin.name) + " needs two different positions, and both are the same",
                "name another one");
   }
-  const bool from_touch = node.op == Op::kHolds || node.op == Op::kSensorSets ||
-                          node.op == Op::kUp || node.op == Op::kForceBetween ||
-                          node.op == Op::kTouchSpeed || node.op == Op::kSensorSet;
-  if (from_touch) {
+  if (builtin.asks == Asks::kTouching || builtin.asks == Asks::kTouchValues) {
     node.slot = AddReference(
         {.rule = kTouchingRule, .roles = {node.roles[0], node.roles[1], kNone, kNone}});
   }

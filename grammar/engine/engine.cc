@@ -23,11 +23,11 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
     past_.LookBack(history_.AtLeastTicks(LooksBack_s(rule)));
   }
   instances_.BindUnguarded();
-  for (int i = 0; i < instances_.size(); ++i) Wake(i);
+  for (InstanceId i(0); i < instances_.end_id(); ++i) Wake(i);
   if (instances_.TooMany()) error_ = instances_.WhyTooMany();
 }
 
-void Engine::Wake(int index) {
+void Engine::Wake(InstanceId index) {
   RuleInstance& instance = instances_[index];
   if (instance.awake || instance.rule == kNone) return;
   instance.awake = true;
@@ -78,7 +78,7 @@ bool Engine::SaysTheSame(const RuleInstance& instance) const {
 bool Engine::MomentMayCome(const RuleInstance& instance) const {
   const Rule& rule = RuleOf(instance);
   if (rule.opened_by == kNone) return true;
-  const int event = instance.references[rule.opened_by];
+  const InstanceId event = instance.references[rule.opened_by];
   if (event == kNone) return true;  // nobody would wake this instance, as it has not asked yet
   const FrameNumber now = history_.now();
   return (rule.opened_by_end ? instances_.EndsAt(event, now) : instances_.BeginsAt(event, now)) !=
@@ -98,7 +98,7 @@ void Engine::NotifyWatchers(RuleInstance& instance) {
   if (!instance.dependents_made) {
     scratch_.clear();
     instances_.MakeDependents(instance.index, scratch_);
-    for (const int dependent : scratch_) Wake(dependent);
+    for (const InstanceId dependent : scratch_) Wake(dependent);
   }
   for (const Watcher& watcher : instance.watchers) {
     RuleInstance& watching = instances_[watcher.instance];
@@ -180,7 +180,7 @@ void Engine::Rest(RuleInstance& instance) {
 }
 
 void Engine::StepRule(int rule) {
-  std::erase_if(awake_[rule], [&](int index) {
+  std::erase_if(awake_[rule], [&](InstanceId index) {
     RuleInstance& instance = instances_[index];
     if (LooksTheSame(instance)) {
       Rest(instance);

@@ -20,9 +20,9 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/candidate_log.h"
 #include "grammar/base/event.h"
 #include "grammar/engine/alarms.h"
-#include "grammar/engine/candidate_log.h"
 #include "grammar/engine/evaluate.h"
 #include "grammar/engine/history.h"
 #include "grammar/engine/idle_queue.h"
@@ -67,7 +67,7 @@ class Engine {
   void Look(const HandSample& hand);
   void ApplyContacts(std::span<const Touch> touches);
   void BeginTouch(RuleInstance& touching);
-  void Part(int touching);
+  void Part(InstanceId touching);
   void CloseTouch(RuleInstance& touching, Moment end);
   void Keep(TouchingState& touching, const Touch& touch, bool swapped);
   void NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed);
@@ -77,7 +77,7 @@ class Engine {
   void BeginOrEnd(RuleInstance& instance);
 
   // Waking and resting.
-  void Wake(int instance);
+  void Wake(InstanceId instance);
   void WakeWatchers(const std::vector<Watch>& watchers);
   bool MayWake(const RuleInstance& instance) const;
   bool CanMeasure(const RuleInstance& instance) const;
@@ -170,17 +170,17 @@ class Engine {
   Evaluator evaluator_;
   std::vector<RuleTicks> rule_ticks_;
   Thresholds thresholds_;
-  bool recalls_touches_ = false;         // which thresholds they had crossed
-  bool keeps_touches_ = false;           // and all that they measured
-  std::vector<ThresholdSet> grips_;      // by entity: what its grip has crossed
-  std::vector<std::vector<int>> awake_;  // by rule
-  std::vector<int> touching_;            // the pairs that touch now
-  std::vector<int> contacts_;  // the instances of the touches of this frame, kNone: none yet
+  bool recalls_touches_ = false;                // which thresholds they had crossed
+  bool keeps_touches_ = false;                  // and all that they measured
+  std::vector<ThresholdSet> grips_;             // by entity: what its grip has crossed
+  std::vector<std::vector<InstanceId>> awake_;  // by rule
+  std::vector<InstanceId> touching_;            // the pairs that touch now
+  std::vector<InstanceId> contacts_;  // the instances of the touches of this frame, kNone: none yet
   Alarms alarms_;
   IdleQueue idle_;
   RememberedPast past_;
-  std::vector<int> scratch_;   // instances; kept for its memory
-  std::vector<int> notified_;  // likewise
+  std::vector<InstanceId> scratch_;   // instances; kept for its memory
+  std::vector<InstanceId> notified_;  // likewise
   bool finishing_ = false;
   Tick decided_ = 0;
   std::vector<Event>* out_ = nullptr;  // only during Advance and Finish

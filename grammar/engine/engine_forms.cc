@@ -88,7 +88,7 @@ bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
 
 bool Engine::StepAny(RuleInstance& instance, FrameNumber frame) {
   Kleene truth = Kleene::kFalse;
-  for (const int member : instance.As<AnyState>().members) {
+  for (const InstanceId member : instance.As<AnyState>().members) {
     truth = Or(truth, instances_.TruthAt(member, frame));
     if (truth == Kleene::kTrue) break;
   }

@@ -75,7 +75,7 @@ std::string DumpDrawing(const Drawing& drawing) {
     text += '"';
   }
   if (drawing.as == DrawnAs::kNothing) text += " without row";
-  if (drawing.ghost == Ghost::kNone) text += " without ghost";
+  if (drawing.ghost == Ghost::kNoGhost) text += " without ghost";
   if (drawing.ghost == Ghost::kAtEnd) text += " with ghost at end";
   return text;
 }

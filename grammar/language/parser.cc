@@ -288,7 +288,7 @@ class Parser : public LawParser {
       if (row && Accept("row")) {
         drawing.as = DrawnAs::kNothing;
       } else if (ghost && Accept("ghost")) {
-        drawing.ghost = Ghost::kNone;
+        drawing.ghost = Ghost::kNoGhost;
       } else {
         Fail(std::string(row     ? "expected 'row'"
                          : ghost ? "expected 'ghost'"

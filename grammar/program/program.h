@@ -15,14 +15,13 @@
 #include "grammar/base/diagnostic.h"
 #include "grammar/base/drawing.h"
 #include "grammar/base/event.h"
+#include "grammar/base/ids.h"
 #include "grammar/base/quantity.h"
 #include "grammar/base/source.h"
 #include "grammar/program/law.h"
 #include "grammar/program/thresholds.h"
 
 namespace prehend::grammar {
-
-inline constexpr int kNone = -1;
 
 enum class Op : std::uint8_t {
   // Truth values.

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "grammar/base/timeline.h"
-#include "grammar/program/program.h"
+#include "grammar/contents.h"
 
 namespace prehend::harness {
 

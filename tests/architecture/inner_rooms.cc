@@ -32,7 +32,7 @@ const Arrows& ProjectArrows() {
 
       {"harness/base", {"grammar/base"}},
       {"harness/process", {}},
-      {"harness/timeline", {"grammar/base", "grammar/program"}},
+      {"harness/timeline", {"grammar", "grammar/base"}},
       // A witness of its own: it never sees what it judges.
       {"harness/oracle", {"grammar/base", "physics/scene"}},
       {"harness/scenario", {"grammar/base", "harness/base", "physics/motion", "physics/scene"}},
@@ -50,9 +50,9 @@ const Arrows& ProjectArrows() {
        {"harness/base", "harness/build", "harness/format", "harness/motion", "harness/scenario",
         "harness/yaml", "physics/person", "physics/scene"}},
       {"harness/run",
-       {"grammar", "grammar/base", "grammar/compile", "grammar/program", "harness/base",
-        "harness/format", "harness/process", "harness/read", "harness/scenario", "harness/sense",
-        "harness/timeline", "physics", "physics/scene"}},
+       {"grammar", "grammar/base", "grammar/compile", "harness/base", "harness/format",
+        "harness/process", "harness/read", "harness/scenario", "harness/sense", "harness/timeline",
+        "physics", "physics/scene"}},
       {"harness/explain",
        {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/run",
         "harness/timeline"}},

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of each run of a rule, noted by the engine for those who want to know why. Noting is
-// off unless asked for. Tested by tests/harness/explain/explain_test.cc
+// What became of each run of a rule. The engine notes it for explanations, if it is asked to.
+// Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
 #include <vector>
 
-#include "grammar/engine/instances.h"
+#include "grammar/base/ids.h"
+#include "grammar/base/span.h"
 
 namespace prehend::grammar {
 
@@ -40,7 +41,7 @@ struct CandidateOutcome {
     kWalkedBack,   ///< an `until` with some; what becomes of them is noted next
   };
   Kind kind = Kind::kInterval;
-  int instance = kNone;
+  InstanceId instance;
   Span span;
   FrameNumber cause = kNever;
   Tick decided = 0;
