@@ -60,8 +60,8 @@ const Arrows& ProjectArrows() {
       {"harness/score",
        {"grammar/base", "harness/base", "harness/oracle", "harness/run", "harness/timeline"}},
       {"harness/speed",
-       {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/run",
-        "harness/scenario", "harness/sense"}},
+       {"grammar", "grammar/base", "harness/base", "harness/run", "harness/scenario",
+        "harness/sense"}},
       {"harness/judge",
        {"grammar", "grammar/base", "harness/base", "harness/golden", "harness/oracle",
         "harness/pictures", "harness/run", "harness/scenario", "harness/sense", "harness/timeline",
@@ -72,10 +72,10 @@ const Arrows& ProjectArrows() {
         "harness/timeline", "physics/scene"}},
       {"harness/report", {"harness/base", "harness/check", "harness/golden", "harness/timeline"}},
       {"harness/cli",
-       {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/check",
-        "harness/explain", "harness/format", "harness/golden", "harness/judge", "harness/oracle",
-        "harness/pictures", "harness/process", "harness/read", "harness/report", "harness/run",
-        "harness/score", "harness/sense", "harness/speed", "harness/timeline"}},
+       {"grammar", "grammar/base", "harness/base", "harness/check", "harness/explain",
+        "harness/format", "harness/golden", "harness/judge", "harness/oracle", "harness/pictures",
+        "harness/process", "harness/read", "harness/report", "harness/run", "harness/score",
+        "harness/sense", "harness/speed", "harness/timeline"}},
   };
   return arrows;
 }
