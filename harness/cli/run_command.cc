@@ -71,7 +71,7 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
     if (record_is_output && options.Has(of_output))
       return Complain(
           context, ExitCode::kBadInput,
-          fmt::format("--record - and {} contradict each other: both are printed", of_output));
+          fmt::format("--record - contradicts {}: both would be printed", of_output));
   }
   const ReadResult<LoadedRun> loaded = LoadRun(request, context.root);
   if (!loaded.value) return Complain(context, loaded.diagnostics);
