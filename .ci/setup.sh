@@ -1,12 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-# Shared by ./run, ./test and .ci/run: install what is missing, build a preset. Everything it says goes to stderr,
-# so that the standard output of ./run is the program's alone.
+# Shared by ./run, ./test and .ci/run: installs what is missing, builds a preset. Everything it prints goes to stderr, so
+# that the standard output of ./run is the program's alone. Each phase is announced with the time that it takes.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
+# CPU seconds of a first build of each preset (without ccache) and of the suite, as measured; they give the estimates.
+declare -A first_build_s=([release]=420 [test]=1500 [asan-ubsan]=500)
+suite_s=100
+
 say() { printf '%s\n' "$*" >&2; }
 
-# install_missing FILE...: the Debian packages listed in the files, when not there yet.
+# minutes CPU_SECONDS: how long that takes on this machine, in words.
+minutes() {
+  local cores m
+  cores=$(nproc)
+  m=$((($1 / cores + 30) / 60))
+  [ "$m" -gt 0 ] || { echo "less than a minute on $cores cores"; return; }
+  echo "about $m minute$([ "$m" -eq 1 ] || echo s) on $cores core$([ "$cores" -eq 1 ] || echo s)"
+}
+
+# install_missing FILE...: the Debian packages listed in the files, if they are not installed.
 install_missing() {
   local wanted missing=() name
   wanted=$(cat "$@" | sed 's/#.*//' | tr -s ' \t\n' ' ')
@@ -20,7 +33,7 @@ install_missing() {
     as_root=(sudo)
   fi
   command -v apt-get >/dev/null || { say "error: this is not Debian; install the equivalents of: ${missing[*]}"; exit 3; }
-  say "installing: ${missing[*]}"
+  say "installing packages, once: ${missing[*]} (a minute or two, depending on the network)"
   local log="$root/build/install.log"
   mkdir -p "$root/build"
   { "${as_root[@]}" apt-get update -qq && "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
@@ -28,20 +41,24 @@ install_missing() {
     { tail -n 20 "$log" >&2; say "error: installing packages failed; the whole log is in build/install.log"; exit 3; }
 }
 
-# build_preset PRESET TARGET...: configures once, then builds what changed.
+# build_preset PRESET TARGET...: configures once, then builds what changed. The first build shows its progress on a terminal.
 build_preset() {
   local preset=$1; shift
-  local log="$root/build/$preset.log"
+  local folder="$root/build/$preset" log="$root/build/$preset.log" quiet=(--quiet)
   mkdir -p "$root/build"
-  if [ ! -e "$root/build/$preset/build.ninja" ]; then
+  if [ ! -e "$folder/build.ninja" ]; then
     (cd "$root" && cmake --preset "$preset") >"$log" 2>&1 ||
-      { rm -f "$root/build/$preset/build.ninja"; tail -n 30 "$log" >&2; say "error: configuring failed; the whole log is in build/$preset.log"; exit 3; }
-    say "building build/$preset (once; later only what changed)"
+      { rm -f "$folder/build.ninja"; tail -n 30 "$log" >&2; say "error: configuring failed; the whole log is in build/$preset.log"; exit 3; }
+  fi
+  if [ ! -e "$folder/built" ]; then
+    say "building build/$preset: $(minutes "${first_build_s[$preset]}"), once; later only what changed"
+    quiet=()
   fi
   if [ -t 2 ]; then
-    ninja -C "$root/build/$preset" --quiet "$@" >&2 || { say "error: the build failed"; exit 3; }
+    ninja -C "$folder" "${quiet[@]}" "$@" >&2 || { say "error: the build failed"; exit 3; }
   else
-    ninja -C "$root/build/$preset" "$@" >"$log" 2>&1 ||
+    ninja -C "$folder" "$@" >"$log" 2>&1 ||
       { grep -E 'error|FAILED|warning' "$log" | head -n 40 >&2; tail -n 20 "$log" >&2; say "error: the build failed; the whole log is in build/$preset.log"; exit 3; }
   fi
+  touch "$folder/built"
 }

@@ -12,7 +12,9 @@
 #include "harness/run/load_run.h"
 #include "harness/run/run_scenario.h"
 #include "harness/run/run_text.h"
+#include "harness/speed/four_automata.h"
 #include "harness/speed/workload.h"
+#include "harness/speed/worlds.h"
 
 namespace prehend::harness {
 namespace {

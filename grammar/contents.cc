@@ -30,7 +30,11 @@ std::vector<EventSignature> EventSignatures(const Program& program) {
     EventSignature& event = events.emplace_back();
     event.name = rule.name;
     event.has_style = rule.style_role != kNone;
-    for (const RuleRole& role : rule.roles) event.roles.push_back(role.name);
+    event.drawing = rule.drawing;
+    for (const RuleRole& role : rule.roles) {
+      event.roles.push_back(role.name);
+      event.classes.push_back(role.class_name);
+    }
     for (const RuleAttribute& attribute : rule.attributes)
       event.attributes.push_back(attribute.name);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a compiled grammar names: its events, and what it expects of an episode. For everybody who
-// needs no more of a program than that. Tested by tests/grammar/contents_test.cc
+// What a compiled grammar names: its events, and what it expects of an episode. For callers
+// that need no more of a program than that. Tested by tests/grammar/contents_test.cc
 #pragma once
 
 #include <string>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grammar/base/diagnostic.h"
+#include "grammar/base/drawing.h"
 #include "grammar/base/source.h"
 
 namespace prehend::grammar {
@@ -25,8 +26,10 @@ bool HasEvent(const Program& program, std::string_view name);
 struct EventSignature {
   std::string name;
   std::vector<std::string> roles;       ///< in the order of the head
+  std::vector<std::string> classes;     ///< of the roles
   std::vector<std::string> attributes;  ///< of `with NAME = value`
   bool has_style = false;               ///< `with style = style(hand)`
+  Drawing drawing;                      ///< `drawn as ..`
 };
 /// Of the events, in the order of EventNames().
 std::vector<EventSignature> EventSignatures(const Program& program);

@@ -1,87 +1,133 @@
 // SPDX-License-Identifier: Apache-2.0
+// The engine with its log of candidates, sorted by instance when the episode is over.
 #include "grammar/replay_monitor.h"
 
 #include <algorithm>
 
+#include "grammar/engine/engine.h"
+
 namespace prehend::grammar {
 
+struct ReplayMonitor::State {
+  State(std::shared_ptr<const Program> program, EntityTable entity_table)
+      : engine(std::move(program), std::move(entity_table)) {
+    engine.Remember(log);
+  }
+  const RuleInstance& At(InstanceId instance) { return engine.instances()[instance]; }
+  Evaluator::View View(const Moment& at);
+
+  CandidateLog log;
+  Engine engine;
+  std::vector<Event> events;
+  Tick end_tick = 0;
+  IdVector<InstanceId, CandidateLog> by_instance;
+};
+
 ReplayMonitor::ReplayMonitor(std::shared_ptr<const Program> program, EntityTable entity_table)
-    : engine_(std::move(program), std::move(entity_table)) {
-  engine_.Remember(log_);
-}
+    : state_(std::make_unique<State>(std::move(program), std::move(entity_table))) {}
+ReplayMonitor::~ReplayMonitor() = default;
+
+const std::string& ReplayMonitor::error() const { return state_->engine.error(); }
+void ReplayMonitor::Advance(const Frame& frame) { state_->engine.Advance(frame, state_->events); }
 
 void ReplayMonitor::Finish(Tick end) {
-  engine_.Finish(end, events_);
-  end_tick_ = frames() == 0 ? end : std::max(end, engine_.history().At(frames() - 1).tick + 1);
-  by_instance_.resize(engine_.instances().size());
+  Engine& engine = state_->engine;
+  IdVector<InstanceId, CandidateLog>& by_instance = state_->by_instance;
+  engine.Finish(end, state_->events);
+  state_->end_tick =
+      frames() == 0 ? end : std::max(end, engine.history().At(frames() - 1).tick + 1);
+  by_instance.resize(engine.instances().end_id().index());
   // The fact has no outcomes: its intervals are what was seen.
-  for (int instance = 0; instance < engine_.instances().size(); ++instance) {
-    if (At(instance).rule != kTouchingRule) continue;
-    const RingBuffer<Span>& past = At(instance).past;
+  for (const InstanceId id : IdsOf(by_instance)) {
+    if (state_->At(id).rule != kTouchingRule) continue;
+    const RingBuffer<Span>& past = state_->At(id).past;
     for (std::size_t i = 0; i < past.size(); ++i) {
-      by_instance_[instance].push_back(
-          {.instance = instance, .span = past[i], .decided = past[i].end.tick});
+      by_instance[id].push_back({.instance = id, .span = past[i], .decided = past[i].end.tick});
     }
   }
-  for (CandidateOutcome& outcome : log_) {
-    if (outcome.kind == CandidateOutcome::Kind::kWalkedBack) {
-      by_instance_[outcome.instance].push_back(outcome);
-      continue;
+  using Kind = CandidateOutcome::Kind;
+  for (CandidateOutcome& outcome : state_->log) {
+    CandidateLog& outcomes = by_instance[outcome.instance];
+    if (outcome.kind != Kind::kWalkedBack) {
+      // It takes the place of the walk back to which it belongs.
+      const auto same = [&](const CandidateOutcome& other) {
+        return other.kind == Kind::kWalkedBack && other.span.end.frame == outcome.span.end.frame;
+      };
+      const auto walk = std::ranges::find_if(outcomes, same);
+      if (walk != outcomes.end()) outcome.walk = walk->walk;
+      std::erase_if(outcomes, same);
     }
-    // What became of a walk back takes its place.
-    std::vector<CandidateOutcome>& outcomes = by_instance_[outcome.instance];
-    const auto same = [&](const CandidateOutcome& other) {
-      return other.kind == CandidateOutcome::Kind::kWalkedBack &&
-             other.span.end.frame == outcome.span.end.frame;
-    };
-    if (const auto walk = std::find_if(outcomes.begin(), outcomes.end(), same);
-        walk != outcomes.end())
-      outcome.walk = walk->walk;
-    std::erase_if(outcomes, same);
     outcomes.push_back(outcome);
   }
-  for (std::vector<CandidateOutcome>& outcomes : by_instance_) {
+  for (CandidateLog& outcomes : by_instance) {
     std::erase_if(outcomes, [](const CandidateOutcome& outcome) {
-      return outcome.kind == CandidateOutcome::Kind::kWalkedBack;
+      return outcome.kind == Kind::kWalkedBack;
     });
-    std::stable_sort(outcomes.begin(), outcomes.end(),
-                     [](const CandidateOutcome& a, const CandidateOutcome& b) {
-                       return a.span.end.tick < b.span.end.tick;
-                     });
+    std::ranges::stable_sort(outcomes, {},
+                             [](const CandidateOutcome& outcome) { return outcome.span.end.tick; });
   }
 }
 
+const Program& ReplayMonitor::program() const { return state_->engine.program(); }
+const EntityTable& ReplayMonitor::entity_table() const { return state_->engine.entity_table(); }
+const std::vector<Event>& ReplayMonitor::events() const { return state_->events; }
+
+FrameNumber ReplayMonitor::frames() const { return state_->engine.history().now() + 1; }
+
 Tick ReplayMonitor::TickOf(FrameNumber frame) const {
-  return frame < frames() ? engine_.history().At(std::max<FrameNumber>(frame, 0)).tick : end_tick_;
+  return frame < frames() ? state_->engine.history().At(std::max<FrameNumber>(frame, 0)).tick
+                          : state_->end_tick;
 }
 
 FrameNumber ReplayMonitor::FrameAt(Tick tick) const {
-  return std::clamp<FrameNumber>(engine_.history().LastNotAfter(tick), 0,
+  return std::clamp<FrameNumber>(state_->engine.history().LastNotAfter(tick), 0,
                                  std::max<FrameNumber>(frames() - 1, 0));
 }
 
-std::vector<int> ReplayMonitor::InstancesOf(int rule) {
-  std::vector<int> instances;
-  for (int instance = 0; instance < engine_.instances().size(); ++instance) {
-    if (At(instance).rule == rule) instances.push_back(instance);
+Tick ReplayMonitor::AtMostTicks(double seconds) const {
+  return state_->engine.history().AtMostTicks(seconds);
+}
+
+InstanceId ReplayMonitor::InstanceOf(int rule, const Binding& entities) {
+  return state_->engine.instances().Ensure(rule, entities);
+}
+
+InstanceId ReplayMonitor::Referred(InstanceId instance, int slot) {
+  RuleInstances& instances = state_->engine.instances();
+  return instances.Resolve(instances[instance], slot);
+}
+
+std::vector<InstanceId> ReplayMonitor::InstancesOf(int rule) const {
+  std::vector<InstanceId> instances;
+  const InstanceId end = state_->engine.instances().end_id();
+  for (InstanceId instance(0); instance < end; ++instance) {
+    if (state_->At(instance).rule == rule) instances.push_back(instance);
   }
-  std::sort(instances.begin(), instances.end(),
-            [&](int a, int b) { return At(a).entities < At(b).entities; });
+  std::ranges::sort(instances, {}, [&](InstanceId instance) { return EntitiesOf(instance); });
   return instances;
 }
 
-std::vector<int> ReplayMonitor::MembersOf(int instance) {
-  const auto* any = At(instance).If<AnyState>();
-  return any != nullptr ? any->members : std::vector<int>();
+const Rule& ReplayMonitor::RuleOf(InstanceId instance) const {
+  return program().rules[state_->At(instance).rule];
 }
 
-const std::vector<CandidateOutcome>& ReplayMonitor::OutcomesOf(int instance) const {
-  static const std::vector<CandidateOutcome> kNoOutcomes;
-  return instance >= 0 && instance < static_cast<int>(by_instance_.size()) ? by_instance_[instance]
-                                                                           : kNoOutcomes;
+const Binding& ReplayMonitor::EntitiesOf(InstanceId instance) const {
+  return state_->At(instance).entities;
 }
 
-const CandidateOutcome* ReplayMonitor::LastBegun(int instance, FrameNumber frame) const {
+std::vector<InstanceId> ReplayMonitor::MembersOf(InstanceId instance) const {
+  const auto* any = state_->At(instance).If<AnyState>();
+  return any != nullptr ? any->members : std::vector<InstanceId>();
+}
+
+// A binding that was made after the end has none.
+const CandidateLog& ReplayMonitor::OutcomesOf(InstanceId instance) const {
+  static const CandidateLog kNoOutcomes;
+  const bool is_known = instance != kNone && instance < state_->by_instance.end_id();
+  return is_known ? state_->by_instance[instance] : kNoOutcomes;
+}
+
+const CandidateOutcome* ReplayMonitor::LastBegun(InstanceId instance, FrameNumber frame) const {
   const CandidateOutcome* last = nullptr;
   for (const CandidateOutcome& outcome : OutcomesOf(instance)) {
     if (outcome.kind == CandidateOutcome::Kind::kInterval && outcome.span.begin.frame <= frame)
@@ -90,32 +136,32 @@ const CandidateOutcome* ReplayMonitor::LastBegun(int instance, FrameNumber frame
   return last;
 }
 
-const CandidateOutcome* ReplayMonitor::Covering(int instance, FrameNumber frame) const {
+const CandidateOutcome* ReplayMonitor::Covering(InstanceId instance, FrameNumber frame) const {
   const CandidateOutcome* last = LastBegun(instance, frame);
   return last != nullptr && frame < last->span.end.frame ? last : nullptr;
 }
 
-Evaluator::View ReplayMonitor::View(const Moment& at) {
-  RuleInstance& instance = engine_.instances()[at.instance];
-  const FrameNumber last = frames() - 1;
+Evaluator::View ReplayMonitor::State::View(const Moment& at) {
+  RuleInstance& instance = engine.instances()[at.instance];
+  const FrameNumber last = engine.history().now();
   // After the episode every value is known.
   if (at.begin)
-    static_cast<void>(engine_.evaluator().CaptureAnchors(instance, std::min(*at.begin, last)));
+    static_cast<void>(engine.evaluator().CaptureAnchors(instance, std::min(*at.begin, last)));
   Evaluator::View view{.instance = instance, .frame = std::min(at.frame, last)};
   if (at.end) view.end = std::min(*at.end, last);
   return view;
 }
 
 bool ReplayMonitor::Truth(int node, const Moment& at) {
-  return engine_.evaluator().Truth(node, View(at)) == Kleene::kTrue;
+  return state_->engine.evaluator().Truth(node, state_->View(at)) == Kleene::kTrue;
 }
 
 std::optional<double> ReplayMonitor::Number(int node, const Moment& at) {
-  return engine_.evaluator().Number(node, View(at));
+  return state_->engine.evaluator().Number(node, state_->View(at));
 }
 
-std::optional<Evaluator::Reach> ReplayMonitor::ReachOf(int node, const Moment& at) {
-  return engine_.evaluator().ReachOf(program().nodes[node], View(at));
+std::optional<Reach> ReplayMonitor::ReachOf(int node, const Moment& at) {
+  return state_->engine.evaluator().ReachOf(program().nodes[node], state_->View(at));
 }
 
 }  // namespace prehend::grammar

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// An episode watched with nothing forgotten: afterwards, every clause of a grammar can be asked for
+// Watches an episode and forgets nothing. Afterwards, every clause of a grammar can be asked for
 // its value at every frame, and every run for what became of it. The values come from the engine's
 // own evaluator, the intervals from the engine itself, so an explanation cannot say anything else
-// than the monitor does. Takes memory for every frame of what moves: for explanations and plots,
-// not for watching. Tested by tests/harness/explain/explain_test.cc
+// than the monitor does. It takes memory for every frame of what moves: it is for explanations and
+// plots, not for watching. Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
 #include <memory>
@@ -11,75 +11,74 @@
 #include <string>
 #include <vector>
 
-#include "grammar/engine/engine.h"
+#include "grammar/base/candidate_log.h"
+#include "grammar/base/event.h"
+#include "grammar/base/reach.h"
+#include "grammar/base/span.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar {
 
 class ReplayMonitor {
  public:
   ReplayMonitor(std::shared_ptr<const Program> program, EntityTable entity_table);
+  ~ReplayMonitor();
+  ReplayMonitor(const ReplayMonitor&) = delete;
+  ReplayMonitor& operator=(const ReplayMonitor&) = delete;
 
   /// Empty, or why this program can't watch this entity table or these frames.
-  const std::string& error() const { return engine_.error(); }
-  void Advance(const Frame& frame) { engine_.Advance(frame, events_); }
+  const std::string& error() const;
+  void Advance(const Frame& frame);
   /// As Monitor::Finish(). Before, nothing below may be asked for, and after, nothing be added.
   void Finish(Tick end);
 
-  const Program& program() const { return engine_.program(); }
-  const EntityTable& entity_table() const { return engine_.entity_table(); }
-  const std::vector<Event>& events() const { return events_; }
+  const Program& program() const;
+  const EntityTable& entity_table() const;
+  const std::vector<Event>& events() const;
 
   /// Frames are numbered from 0; number frames() is the end of the episode.
-  FrameNumber frames() const { return engine_.history().now() + 1; }
+  FrameNumber frames() const;
   Tick TickOf(FrameNumber frame) const;
   /// The last frame at or before the tick; the first one if there is none.
   FrameNumber FrameAt(Tick tick) const;
   /// So many seconds in whole ticks, rounded down.
-  Tick AtMostTicks(double seconds) const { return engine_.history().AtMostTicks(seconds); }
+  Tick AtMostTicks(double seconds) const;
 
   /// The binding of a rule, whether or not anything ever happened to it; kNone if an entity's class
   /// does not fit.
-  int InstanceOf(int rule, const Binding& entities) {
-    return engine_.instances().Ensure(rule, entities);
-  }
+  InstanceId InstanceOf(int rule, const Binding& entities);
   /// The binding that a reference of this one means, likewise.
-  int Referred(int instance, int slot) {
-    return engine_.instances().Resolve(engine_.instances()[instance], slot);
-  }
-  const RuleInstance& At(int instance) { return engine_.instances()[instance]; }
-  /// Of a binding made for an `any`: the bindings of which one must hold. None for other rules.
-  std::vector<int> MembersOf(int instance);
-  const Rule& RuleOf(int instance) { return program().rules[At(instance).rule]; }
+  InstanceId Referred(InstanceId instance, int slot);
   /// All bindings of a rule that were ever looked at, by entities.
-  std::vector<int> InstancesOf(int rule);
+  std::vector<InstanceId> InstancesOf(int rule) const;
+  const Rule& RuleOf(InstanceId instance) const;
+  /// By role.
+  const Binding& EntitiesOf(InstanceId instance) const;
+  /// Of a binding made for an `any`: the bindings of which one must hold. None for other rules.
+  std::vector<InstanceId> MembersOf(InstanceId instance) const;
 
   /// What became of the runs of a binding, in the order of their ends.
-  const std::vector<CandidateOutcome>& OutcomesOf(int instance) const;
+  const CandidateLog& OutcomesOf(InstanceId instance) const;
   /// The last of its intervals that begins at or before the frame; null if there is none.
-  const CandidateOutcome* LastBegun(int instance, FrameNumber frame) const;
+  const CandidateOutcome* LastBegun(InstanceId instance, FrameNumber frame) const;
   /// The interval that contains the frame; null if there is none.
-  const CandidateOutcome* Covering(int instance, FrameNumber frame) const;
+  const CandidateOutcome* Covering(InstanceId instance, FrameNumber frame) const;
 
   /// A binding at a frame, with the boundaries of the interval that it is asked for, as far as the
   /// clause needs them.
   struct Moment {
-    int instance = kNone;
+    InstanceId instance;
     FrameNumber frame = 0;
     std::optional<FrameNumber> begin = std::nullopt;
     std::optional<FrameNumber> end = std::nullopt;
   };
   bool Truth(int node, const Moment& at);
   std::optional<double> Number(int node, const Moment& at);
-  std::optional<Evaluator::Reach> ReachOf(int node, const Moment& at);
+  std::optional<Reach> ReachOf(int node, const Moment& at);
 
  private:
-  Evaluator::View View(const Moment& at);
-
-  CandidateLog log_;
-  Engine engine_;
-  std::vector<Event> events_;
-  Tick end_tick_ = 0;
-  std::vector<std::vector<CandidateOutcome>> by_instance_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace prehend::grammar

@@ -16,7 +16,7 @@ namespace {
 
 /// A longer run is a mistake in the script: half an hour of simulated time takes minutes and fills
 /// memory.
-constexpr double kLongestRun_s = 1800;
+constexpr double kMaxRun_s = 1800;
 
 std::unique_ptr<World> MakeWorld(const Scene& scene, const std::vector<int>& styles) {
   return scene.world.engine == Engine::kBox2d ? MakeBox2dWorld(scene, styles)
@@ -28,7 +28,7 @@ std::unique_ptr<World> MakeWorld(const Scene& scene, const std::vector<int>& sty
 struct Simulation::State {
   State(Scene s, Script t)
       : scene(std::move(s)),
-        too_long(DurationOf(t) > kLongestRun_s),
+        too_long(DurationOf(t) > kMaxRun_s),
         world(MakeWorld(scene, ScriptPlayer::FirstStyles(scene, t))),
         player(scene, std::move(t)) {
     AddTrackers();

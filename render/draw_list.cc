@@ -65,14 +65,14 @@ void SetShape(const physics::Shape& shape, Item* item, DrawList* list) {
 }
 
 // Appearance and object number of a body or hand that is added to the list.
-struct Look {
+struct Appearance {
   Color color = {0.5f, 0.5f, 0.5f};
   float alpha = 1;
   float gloss = 0.25f;
   int object = 0;
 };
 
-Item MakeItem(const Affine3f& X_WI, const Look& look) {
+Item MakeItem(const Affine3f& X_WI, const Appearance& look) {
   return {.X_WI = X_WI,
           .color = look.color,
           .alpha = look.alpha,
@@ -80,7 +80,7 @@ Item MakeItem(const Affine3f& X_WI, const Look& look) {
           .object = look.object};
 }
 
-void AddBody(const physics::Body& body, const physics::Pose& X_WB, const Look& look,
+void AddBody(const physics::Body& body, const physics::Pose& X_WB, const Appearance& look,
              std::vector<Item>* items, DrawList* list) {
   for (const physics::PlacedShape& placed : body.shapes) {
     Item item = MakeItem(ToAffine(X_WB * placed.X_BS), look);
@@ -94,11 +94,11 @@ void AddAbstract(const physics::Body& body, int object, DrawList* list) {
   constexpr float kAbstractAlpha = 0.22f;
   using physics::Abstract;
   if (body.abstract == Abstract::kCamera || body.abstract == Abstract::kLight) return;
-  const Look look{.color = body.abstract == Abstract::kRegion ? Color(0.42f, 0.66f, 1.0f)
-                                                              : Color(0.95f, 0.45f, 0.75f),
-                  .alpha = kAbstractAlpha,
-                  .gloss = 0,
-                  .object = object};
+  const Appearance look{.color = body.abstract == Abstract::kRegion ? Color(0.42f, 0.66f, 1.0f)
+                                                                    : Color(0.95f, 0.45f, 0.75f),
+                        .alpha = kAbstractAlpha,
+                        .gloss = 0,
+                        .object = object};
   for (const physics::PlacedShape& placed : body.shapes) {
     Item item = MakeItem(ToAffine(body.X_WB * placed.X_BS), look);
     SetShape(placed.shape, &item, list);
@@ -109,7 +109,7 @@ void AddAbstract(const physics::Body& body, int object, DrawList* list) {
 /// `first`: index of the body's first grain in the snapshot; a snapshot without grains shows the
 /// initial positions.
 void AddGrains(const physics::Grains& grains, const physics::Snapshot& snapshot, std::size_t first,
-               const Look& look, std::vector<Item>* items, DrawList* list) {
+               const Appearance& look, std::vector<Item>* items, DrawList* list) {
   const bool moved = first + grains.p_WG_m.size() <= snapshot.grains.size();
   for (std::size_t i = 0; i < grains.p_WG_m.size(); ++i) {
     const physics::Pose X_WG{moved ? snapshot.grains[first + i] : grains.p_WG_m[i]};
@@ -119,8 +119,8 @@ void AddGrains(const physics::Grains& grains, const physics::Snapshot& snapshot,
   }
 }
 
-void AddHand(const physics::HandModel& model, const physics::HandState& state, const Look& look,
-             std::vector<Item>* items, DrawList* list) {
+void AddHand(const physics::HandModel& model, const physics::HandState& state,
+             const Appearance& look, std::vector<Item>* items, DrawList* list) {
   Item palm = MakeItem(ToAffine(state.palm.X_WB), look);
   SetRoundedBox(model.palm_size_m.cast<float>() / 2, 0.012f, &palm);
   AddItem(palm, items, list);
@@ -136,8 +136,8 @@ void AddHand(const physics::HandModel& model, const physics::HandState& state, c
 }
 
 // A hint of the forearm, which does not exist in the physics.
-void AddForearm(const physics::HandModel& model, const physics::HandState& state, const Look& look,
-                std::vector<Item>* items, DrawList* list) {
+void AddForearm(const physics::HandModel& model, const physics::HandState& state,
+                const Appearance& look, std::vector<Item>* items, DrawList* list) {
   constexpr float kLength_m = 0.17f;
   const float wrist = static_cast<float>(model.palm_size_m.x()) / 2;
   const float radius = 0.36f * static_cast<float>(model.palm_size_m.y());
@@ -165,8 +165,8 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
   list->first_body = static_cast<int>(list->objects.size());
   std::size_t first_grain = 0;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const Look look{.color = BodyColor(picture, i),
-                    .object = AddObject("body:" + scene.bodies[i].name, list)};
+    const Appearance look{.color = BodyColor(picture, i),
+                          .object = AddObject("body:" + scene.bodies[i].name, list)};
     if (scene.bodies[i].abstract != physics::Abstract::kNot) {
       AddAbstract(scene.bodies[i], look.object, list);
       continue;
@@ -179,17 +179,17 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
   }
   list->first_hand = static_cast<int>(list->objects.size());
   for (std::size_t i = 0; i < scene.hands.size(); ++i) {
-    const Look look{.color = kSkinColor,
-                    .gloss = 0.15f,
-                    .object = AddObject("hand:" + scene.hands[i].name, list)};
+    const Appearance look{.color = kSkinColor,
+                          .gloss = 0.15f,
+                          .object = AddObject("hand:" + scene.hands[i].name, list)};
     if (i >= picture.snapshot.hands.size()) continue;
     AddHand(scene.hands[i].model, picture.snapshot.hands[i], look, &list->solids, list);
   }
   for (std::size_t i = 0; i < std::min(scene.hands.size(), picture.snapshot.hands.size()); ++i) {
-    const Look look{.color = kSkinColor,
-                    .alpha = kForearmAlpha,
-                    .gloss = 0.15f,
-                    .object = AddObject("forearm:" + scene.hands[i].name, list)};
+    const Appearance look{.color = kSkinColor,
+                          .alpha = kForearmAlpha,
+                          .gloss = 0.15f,
+                          .object = AddObject("forearm:" + scene.hands[i].name, list)};
     AddForearm(scene.hands[i].model, picture.snapshot.hands[i], look, &list->ghosts.emplace_back(),
                list);
   }
@@ -202,7 +202,7 @@ void AddGhost(const Picture& picture, std::size_t number, DrawList* list) {
   const bool has_hand =
       ghost.hand >= 0 && hand < scene.hands.size() && hand < ghost.snapshot.hands.size();
   const std::string who = has_hand ? scene.hands[hand].name : "";
-  Look look{.alpha = kGhostAlpha, .gloss = 0.1f};
+  Appearance look{.alpha = kGhostAlpha, .gloss = 0.1f};
   look.object = AddObject("ghost:" + std::to_string(number) + ":" + who, list);
   std::vector<Item> items;
   if (has_hand) {

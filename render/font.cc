@@ -23,8 +23,8 @@ std::unique_ptr<Font> Font::Read(const std::string& file, std::string* error) {
   std::ifstream stream(file, std::ios::binary);
   state->bytes.assign(std::istreambuf_iterator<char>(stream), {});
   // stb_truetype trusts its input: the magic number and a plausible size are checked here.
-  constexpr std::size_t kSmallestFont = 1024;
-  const bool readable = state->bytes.size() >= kSmallestFont;
+  constexpr std::size_t kMinFont_bytes = 1024;
+  const bool readable = state->bytes.size() >= kMinFont_bytes;
   const int offset = readable ? stbtt_GetFontOffsetForIndex(state->bytes.data(), 0) : -1;
   if (offset < 0 || stbtt_InitFont(&state->info, state->bytes.data(), offset) == 0) {
     *error = "cannot read the font " + file + " (Debian package fonts-dejavu-core)";

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector2f;
 
 constexpr float kTextSize = 16;
-constexpr float kSmallestText = 10;
+constexpr float kMinText_px = 10;
 constexpr int kDirections = 16;
 constexpr float kDistances[] = {14, 28, 46, 70, 100, 140, 190, 250};
 constexpr float kPerPixel = 0.4f;     // cost of a pixel of distance from the anchor
@@ -28,7 +28,7 @@ constexpr float kCoveredAnchor = 40;  // of another object's anchor
 constexpr float kCoveredLeader = 90;  // of a leader line that it covers or crosses
 constexpr float kDownwards = 12;
 
-float TextSize(float scale) { return std::max(kSmallestText, kTextSize * scale); }
+float TextSize(float scale) { return std::max(kMinText_px, kTextSize * scale); }
 
 bool Contains(const Rect& rect, const Vector2f& p) {
   return p.x() >= rect.x && p.x() <= rect.right() && p.y() >= rect.y && p.y() <= rect.bottom();

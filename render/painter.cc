@@ -20,7 +20,7 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr float kTitleSize = 19;
-constexpr int kSmallestWithText_px = 120;  // text would hide a smaller picture
+constexpr int kMinSideWithText_px = 120;  // text would hide a smaller picture
 
 // The processor feature that pixels depend on.
 const char* FusedMultiplyAdd() {
@@ -56,7 +56,7 @@ Plan MakePlan(const Picture& picture, const Font& font) {
 }
 
 // Large objects (tables) would leave no free place; for labels they count as scenery.
-constexpr float kLargestExtent = 0.10f;  // of the picture's area
+constexpr float kMaxExtentShare = 0.10f;  // of the picture's area
 
 LabelRequest RequestLabel(const std::string& text, const Color& color, const Bounds& bounds,
                           const View& view) {
@@ -75,7 +75,7 @@ LabelRequest RequestLabel(const std::string& text, const Color& color, const Bou
   }
   const Vector2f size = high - low;
   const float area = static_cast<float>(view.width_px) * static_cast<float>(view.height_px);
-  if (size.x() * size.y() < kLargestExtent * area)
+  if (size.x() * size.y() < kMaxExtentShare * area)
     request.extent = {low.x(), low.y(), size.x(), size.y()};
   return request;
 }
@@ -126,7 +126,7 @@ Rect DrawTitle(const std::string& title, float scale, float width, Canvas* canva
 }
 
 void DrawOverlay(const Picture& picture, const Plan& plan, Canvas* canvas) {
-  if (std::min(picture.width_px, picture.height_px) < kSmallestWithText_px) return;
+  if (std::min(picture.width_px, picture.height_px) < kMinSideWithText_px) return;
   const float scale = OverlayScale(picture.height_px);
   const auto width = static_cast<float>(picture.width_px),
              height = static_cast<float>(picture.height_px);

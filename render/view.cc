@@ -16,7 +16,7 @@ using Eigen::Matrix4f;
 using Eigen::Vector3f;
 
 constexpr float kFilledShare = 0.90f;  // share of the picture filled by the box of a named camera
-constexpr float kNearestEye_m = 0.3f;
+constexpr float kMinEyeDistance_m = 0.3f;
 
 float HalfTangent(float field_of_view_deg) {
   return std::tan(field_of_view_deg * std::numbers::pi_v<float> / 360);
@@ -119,8 +119,8 @@ std::optional<Eigen::Vector2f> ToPixel(const View& view, const Vector3f& p_W_m) 
 Matrix4f WorldToLight(const Vector3f& to_light, const Vector3f& center_m, float radius_m) {
   Matrix4f ortho = Matrix4f::Identity();
   ortho.diagonal().head<2>().setConstant(1 / radius_m);
-  // Objects between the light and the sphere may cast shadows into it: the depth range starts
-  // before them.
+  // Objects between the light and the sphere may entity table shadows into it: the depth range
+  // starts before them.
   const float near = 0.1f, far = near + 6 * radius_m;
   ortho(2, 2) = -2 / (far - near);
   ortho(2, 3) = -(far + near) / (far - near);
@@ -155,7 +155,7 @@ Camera NamedCamera(const std::string& name, const Vector3f& low_m, const Vector3
   // then repeat.
   for (int round = 0; round < 4; ++round) {
     const std::array<Vector3f, 8> corners = CornersInView(axes, look_at, low_m, high_m);
-    distance = kNearestEye_m;
+    distance = kMinEyeDistance_m;
     for (const Vector3f& q : corners) {
       distance = std::max(distance, q.z() + (q.head<2>().array().abs() / tangent).maxCoeff());
     }

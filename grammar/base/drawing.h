@@ -16,7 +16,7 @@ enum class DrawnAs : std::uint8_t {
   kSupport,  ///< the first role stands on the second: a row of the first, a mark below it
 };
 
-enum class Ghost : std::uint8_t { kAtBegin, kAtEnd, kNone };
+enum class Ghost : std::uint8_t { kAtBegin, kAtEnd, kNoGhost };
 
 struct Drawing {
   DrawnAs as = DrawnAs::kRow;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// In this order: thresholds, references between rules, guards, moments that open a rule, what is
+// asked of entities at every frame, and how far a rule looks around.
 #include "grammar/compile/analyze_dependencies.h"
 
 #include <algorithm>
@@ -6,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "grammar/compile/builtins.h"
 #include "grammar/compile/contradictions.h"
 
 namespace prehend::grammar {
@@ -89,8 +92,8 @@ int ChooseGuard(const Program& program, const Rule& rule) {
       CollectNecessary(program, rule.As<FromToRule>().from, candidates);
       break;
     case Form::kUntilSince:
-      // If nobody asks where it is not, it is enough to wake at its end; else its truth must be
-      // known at all times. It ends a frame later than that what leads to it holds.
+      // If no rule asks where it does not hold, it is enough to wake at its end; else its truth
+      // must be known at all times. It ends a frame later than that what leads to it holds.
       CollectNecessary(program, rule.As<UntilSinceRule>().since, candidates, false);
       if (!rule.referenced) CollectNecessary(program, rule.As<UntilSinceRule>().until, candidates);
       break;
@@ -128,43 +131,10 @@ void FindOpening(const Program& program, Rule& rule, int index) {
   }
 }
 
+// Poses, hands or touches of the frame, not only whether two touch.
 bool IsLook(Op op) {
-  switch (op) {
-    case Op::kInSphere:
-    case Op::kBoxInSphere:
-    case Op::kInCylinder:
-    case Op::kTrigger:
-    case Op::kSensorSets:
-    case Op::kUp:
-    case Op::kForceBetween:
-    case Op::kTouchSpeed:
-    case Op::kGap:
-    case Op::kClosingSpeed:
-    case Op::kSurfaceSpeed:
-    case Op::kDistance:
-    case Op::kDistanceAlong:
-    case Op::kHeight:
-    case Op::kSpeed:
-    case Op::kVerticalSpeed:
-    case Op::kRelativeVerticalSpeed:
-    case Op::kSpeedAlong:
-    case Op::kDriftAlong:
-    case Op::kTurnRate:
-    case Op::kTilt:
-    case Op::kSensorSet:
-    case Op::kGazed:
-    case Op::kInside:
-    case Op::kJointFraction:
-    case Op::kJointAngle:
-    case Op::kJointTravel:
-    case Op::kRate:
-    case Op::kPosition:
-    case Op::kPositionOn:
-    case Op::kAhead:
-      return true;
-    default:
-      return false;
-  }
+  const Asks asks = AskedBy(op);
+  return asks != Asks::kNothing && asks != Asks::kTouching;
 }
 
 bool UsesLooks(const Program& program, int index) {
@@ -179,17 +149,8 @@ bool AsksTouches(const Program& program, int index) {
   if (index == kNone) return false;
   const Node& node = program.nodes[index];
   if (node.by_threshold.value != kNone) return false;
-  switch (node.op) {
-    case Op::kSensorSet:
-    case Op::kSensorSets:
-    case Op::kUp:
-    case Op::kForceBetween:
-    case Op::kTouchSpeed:
-      return true;
-    default:
-      break;
-  }
-  return std::any_of(node.args.begin(), node.args.end(),
+  return AskedBy(node.op) == Asks::kTouchValues ||
+         std::any_of(node.args.begin(), node.args.end(),
                      [&](int arg) { return AsksTouches(program, arg); });
 }
 
@@ -208,9 +169,7 @@ double LooksAround(const Program& program, int index) {
   const Node& node = program.nodes[index];
   double seconds = 0;
   for (const int arg : node.args) seconds = std::max(seconds, LooksAround(program, arg));
-  return node.op == Op::kDriftAlong || node.op == Op::kTurnRate || node.op == Op::kRate
-             ? seconds + node.number / 2
-             : seconds;
+  return HasWindow(node.op) ? seconds + node.number / 2 : seconds;
 }
 
 // The number of a threshold, entered if it is new; kNone if there are too many.
@@ -220,25 +179,6 @@ int Enter(Program& program, const Threshold& threshold) {
   if (place == kMaxThresholds) return kNone;
   if (found == program.thresholds.end()) program.thresholds.push_back(threshold);
   return place;
-}
-
-// What a touch or a grip measures, as it names its entities and the other way round.
-std::optional<std::array<Threshold::Value, 2>> MeasuredBy(Op op) {
-  using enum Threshold::Value;
-  switch (op) {
-    case Op::kSensorSets:
-      return {{kSensorSets, kSensorSets}};
-    case Op::kForceBetween:
-      return {{kForce, kForce}};
-    case Op::kTouchSpeed:
-      return {{kVerticalSpeed, kVerticalSpeed}};
-    case Op::kUp:
-      return {{kUpOnFirst, kUpOnSecond}};
-    case Op::kTrigger:
-      return {{kTrigger, kTrigger}};
-    default:
-      return std::nullopt;
-  }
 }
 
 // Nothing is larger than what is endless, nor at least what is no number.
@@ -256,13 +196,14 @@ void FindThreshold(Program& program, Node& node) {
   const Op op = mirrored ? Mirrored(node.op) : node.op;
   const int value = node.args[mirrored ? 1 : 0];
   const Node& number = program.nodes[node.args[mirrored ? 0 : 1]];
-  const auto measured = MeasuredBy(program.nodes[value].op);
-  if (number.op != Op::kNumber || !measured) return;
+  const Builtin* const signal = FindBuiltin(program.nodes[value].op);
+  if (number.op != Op::kNumber || signal == nullptr || !signal->measured_as) return;
+  const Measured& measured = *signal->measured_as;
   const bool strict = op == Op::kGreater || op == Op::kLessEqual;
   const bool when_crossed = op == Op::kGreater || op == Op::kGreaterEqual;
   const double at_least = strict ? NextLarger(number.number) : number.number;
-  const int as_named = Enter(program, {(*measured)[0], at_least});
-  const int swapped = Enter(program, {(*measured)[1], at_least});
+  const int as_named = Enter(program, {measured[0], at_least});
+  const int swapped = Enter(program, {measured[1], at_least});
   if (as_named != kNone && swapped != kNone)
     node.by_threshold = {value, {as_named, swapped}, when_crossed};
 }
@@ -332,36 +273,18 @@ void WatchEntities(const Program& program, Rule& rule, int index) {
   if (index == kNone) return;
   const Node& node = program.nodes[index];
   if (node.by_threshold.value != kNone) return WatchThresholds(program, rule, node.by_threshold);
-  switch (node.op) {
-    case Op::kHolds:
-    case Op::kPartOf:
-    case Op::kIsA:
-    case Op::kWeight:
-    case Op::kStrength:
-    case Op::kAtBegin:
-    case Op::kAtEnd:
-      return;
-    case Op::kSensorSets:
-    case Op::kUp:
-    case Op::kForceBetween:
-    case Op::kTouchSpeed:
-    case Op::kSensorSet:
-      rule.watches_press |= kAnyChange;
-      return;
-    case Op::kTrigger:
-      rule.watches_grips |= kAnyChange;
-      break;
-    default:
-      break;
-  }
+  if (node.op == Op::kAtEnd) return;
+  const Asks asks = AskedBy(node.op);
+  if (asks == Asks::kTouchValues) rule.watches_press |= kAnyChange;
+  if (asks == Asks::kGrip) rule.watches_grips |= kAnyChange;
   for (const int role : node.roles) {
-    if (role != kNone)
-      (node.op == Op::kTrigger ? rule.watches_grip : rule.watches_pose)[role] = true;
+    if (role != kNone && asks == Asks::kGrip) rule.watches_grip[role] = true;
+    if (role != kNone && asks == Asks::kPoses) rule.watches_pose[role] = true;
   }
   for (const int arg : node.args) WatchEntities(program, rule, arg);
 }
 
-// A composition is told of finished intervals; every other rule asks for the truth at a frame.
+// A composition gets finished intervals; every other rule asks for the truth at a frame.
 void MarkReferenced(Program& program, int index) {
   const Rule& rule = program.rules[index];
   const auto* composition = rule.If<ComposeRule>();

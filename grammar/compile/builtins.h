@@ -4,7 +4,9 @@
 // lists. Tested by tests/grammar/engine/signals_test.cc
 #pragma once
 
+#include <array>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +41,20 @@ struct Range {
   bool IsPoint() const { return low == high; }
 };
 
+/// What a signal asks a frame for.
+enum class Asks : std::uint8_t {
+  kNothing,      ///< it does not change while an episode goes on, or is made of its arguments
+  kTouching,     ///< whether two entities touch
+  kTouchValues,  ///< what is measured where they touch
+  kGrip,         ///< how far a hand is closed
+  kPoses,        ///< poses, joints and gazes
+};
+
+/// What a touch or a grip measures of it: as the signal names the two entities, and with them
+/// swapped.
+using Measured = std::array<Threshold::Value, 2>;
+
+/// A signal: all that the compiler knows about it.
 struct Builtin {
   std::string_view name;
   Op op;
@@ -46,7 +62,10 @@ struct Builtin {
   Dimension dimension;  ///< of a number
   std::vector<Argument> arguments;
   std::string_view meaning;  ///< one line for listings
-  Range range = {};          ///< of a number: what it can be at all
+  Asks asks;
+  Range range;  ///< of a number: what it can be at all
+  std::optional<Measured> measured_as =
+      std::nullopt;       ///< if comparing it with a constant gives a threshold
   double left_out_m = 0;  ///< what the last argument is, a length, where it is left out; 0: never
 };
 
@@ -56,5 +75,10 @@ std::span<const Builtin> Builtins();
 const Builtin* FindBuiltin(std::string_view name);
 /// Null for what is written otherwise.
 const Builtin* FindBuiltin(Op op);
+
+/// What a node asks a frame for, besides what its arguments do.
+Asks AskedBy(Op op);
+/// Whether its value at a frame is made of a window of time around it: Node::number.
+bool HasWindow(Op op);
 
 }  // namespace prehend::grammar

@@ -14,14 +14,14 @@ namespace prehend::grammar {
 
 class Alarms {
  public:
-  void Set(Tick tick, int instance) {
+  void Set(Tick tick, InstanceId instance) {
     heap_.push_back({tick, instance});
     std::ranges::push_heap(heap_, Later);
   }
 
   /// Calls wake(instance) for each alarm up to `now` and drops it.
   template <typename Wake>
-  void Ring(Tick now, const Wake& wake) {
+  void Sound(Tick now, const Wake& wake) {
     while (!heap_.empty() && heap_.front().tick <= now) {
       wake(heap_.front().instance);
       std::ranges::pop_heap(heap_, Later);
@@ -32,7 +32,7 @@ class Alarms {
  private:
   struct Alarm {
     Tick tick = 0;
-    int instance = kNone;
+    InstanceId instance;
   };
   static bool Later(const Alarm& a, const Alarm& b) { return a.tick > b.tick; }
 

@@ -3,7 +3,7 @@
 // Tested by tests/grammar/engine/forms_test.cc and tests/grammar/reference/reference_test.cc
 #pragma once
 
-#include "grammar/engine/candidate_log.h"
+#include "grammar/base/candidate_log.h"
 #include "grammar/engine/evaluate.h"
 
 namespace prehend::grammar {

@@ -20,9 +20,9 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/candidate_log.h"
 #include "grammar/base/event.h"
 #include "grammar/engine/alarms.h"
-#include "grammar/engine/candidate_log.h"
 #include "grammar/engine/evaluate.h"
 #include "grammar/engine/history.h"
 #include "grammar/engine/idle_queue.h"
@@ -67,7 +67,7 @@ class Engine {
   void Look(const HandSample& hand);
   void ApplyContacts(std::span<const Touch> touches);
   void BeginTouch(RuleInstance& touching);
-  void Part(int touching);
+  void Part(InstanceId touching);
   void CloseTouch(RuleInstance& touching, Moment end);
   void Keep(TouchingState& touching, const Touch& touch, bool swapped);
   void NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed);
@@ -77,7 +77,7 @@ class Engine {
   void BeginOrEnd(RuleInstance& instance);
 
   // Waking and resting.
-  void Wake(int instance);
+  void Wake(InstanceId instance);
   void WakeWatchers(const std::vector<Watch>& watchers);
   bool MayWake(const RuleInstance& instance) const;
   bool CanMeasure(const RuleInstance& instance) const;
@@ -91,8 +91,8 @@ class Engine {
     return part.press[swapped ? 1 : 0].Fit(touch.As<TouchingState>().crossed_thresholds);
   }
   bool SaysTheSame(const RuleInstance& instance) const;
-  /// What begins with a moment does not begin at others. That moment may be told of later in this
-  /// frame; whoever tells of it asks again.
+  /// A rule that begins with a moment begins at no other time. The moment may become known later in
+  /// this frame; then this is asked again.
   bool MayBegin(const RuleInstance& instance) const {
     return instance.moment >= history_.now() && MomentMayCome(instance);
   }
@@ -101,7 +101,7 @@ class Engine {
   void NotifyIfChanged(RuleInstance& instance);
   bool MayRest(const RuleInstance& instance);
   void Rest(RuleInstance& instance);
-  /// Nothing of it has been looked at, as nothing can have begun, but now it may be of no more use.
+  /// It was not stepped, as nothing can have begun; but from now on it may be of no more use.
   void RestOn(RuleInstance& instance) {
     instance.resting_since = history_.now();
     idle_.Queue(instance);
@@ -151,7 +151,7 @@ class Engine {
       log_->push_back({kind, instance.index, span, cause, DecidedAt(instance, span), walk});
   }
 
-  // Compositions are told of each finished interval of their parts.
+  // Compositions get each finished interval of their parts.
   void NotifyCompositions(const RuleInstance& part, const Span& span);
   FrameNumber Settled(const RuleInstance& instance) const;
   FrameNumber PartsSettled(const RuleInstance& composition) const;
@@ -170,17 +170,17 @@ class Engine {
   Evaluator evaluator_;
   std::vector<RuleTicks> rule_ticks_;
   Thresholds thresholds_;
-  bool recalls_touches_ = false;         // which thresholds they had crossed
-  bool keeps_touches_ = false;           // and all that they measured
-  std::vector<ThresholdSet> grips_;      // by entity: what its grip has crossed
-  std::vector<std::vector<int>> awake_;  // by rule
-  std::vector<int> touching_;            // the pairs that touch now
-  std::vector<int> contacts_;  // the instances of the touches of this frame, kNone: none yet
+  bool recalls_touches_ = false;                // which thresholds they had crossed
+  bool keeps_touches_ = false;                  // and all that they measured
+  std::vector<ThresholdSet> grips_;             // by entity: what its grip has crossed
+  std::vector<std::vector<InstanceId>> awake_;  // by rule
+  std::vector<InstanceId> touching_;            // the pairs that touch now
+  std::vector<InstanceId> contacts_;  // the instances of the touches of this frame, kNone: none yet
   Alarms alarms_;
   IdleQueue idle_;
   RememberedPast past_;
-  std::vector<int> scratch_;   // instances; kept for its memory
-  std::vector<int> notified_;  // likewise
+  std::vector<InstanceId> scratch_;   // instances; kept for its memory
+  std::vector<InstanceId> notified_;  // likewise
   bool finishing_ = false;
   Tick decided_ = 0;
   std::vector<Event>* out_ = nullptr;  // only during Advance and Finish

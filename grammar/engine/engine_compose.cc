@@ -112,8 +112,8 @@ class Combinations {
 
 }  // namespace
 
-// Roles of the composition that the part does not name are free: its interval counts for whoever
-// plays them.
+// Roles of the composition that the part does not name are free: its interval counts for every
+// entity that can play them.
 void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
   for (const PartOf& part_of : RuleOf(part).part_of) {
     const Rule& whole = program_->rules[part_of.rule];
@@ -126,7 +126,7 @@ void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
         entities[reference.roles[i]] = from[i];
       notified_.clear();
       instances_.EnsureAll(part_of.rule, entities, notified_);
-      for (const int index : notified_) {
+      for (const InstanceId index : notified_) {
         std::vector<Span>& spans = instances_[index].As<ComposeState>().parts[part_of.part];
         if (spans.size() == kRememberedSpans) spans.erase(spans.begin());
         spans.push_back(span);
@@ -151,7 +151,7 @@ FrameNumber Engine::Settled(const RuleInstance& instance) const {
 FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
   FrameNumber settled = finishing_ ? kNever : history_.now();
   for (const int part : RuleOf(composition).As<ComposeRule>().parts) {
-    const int index = instances_.Find(composition, part);
+    const InstanceId index = instances_.Find(composition, part);
     if (index != kNone) settled = std::min(settled, Settled(instances_[index]));
   }
   return settled;

@@ -34,11 +34,12 @@ bool Same(const Touch& a, bool swapped, const TouchSample& b) {
 
 }  // namespace
 
-// All at once: so one look-up does not wait for another one, as it would between changes.
+// All look-ups in one loop, so that they overlap in the processor instead of waiting for each
+// other.
 void Engine::LookUp(std::span<const Touch> touches) {
   contacts_.clear();
   for (const Touch& touch : touches) {
-    const int instance = instances_.FindTouch(touch.a, touch.b);
+    const InstanceId instance = instances_.FindTouch(touch.a, touch.b);
     if (instance != kNone) instances_.Fetch(instance);
     contacts_.push_back(instance);
   }
@@ -64,7 +65,7 @@ void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
   for (const HandSample& hand : changes.hands) Look(hand);
   ApplyContacts(changes.touches);
   for (const ContactEnd& contact_end : changes.contact_ends) {
-    const int index = instances_.FindTouch(contact_end.a, contact_end.b);
+    const InstanceId index = instances_.FindTouch(contact_end.a, contact_end.b);
     if (index != kNone && instances_[index].open) Part(index);
   }
   EndFrame();
@@ -85,7 +86,7 @@ bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
   decided_ = frame.tick;
   history_.BeginFrame(frame.tick);
   past_.BeginFrame(history_.now());
-  alarms_.Ring(decided_, [this](int instance) { Wake(instance); });
+  alarms_.Sound(decided_, [this](InstanceId instance) { Wake(instance); });
   return true;
 }
 
@@ -121,16 +122,16 @@ void Engine::Finish(Tick end, std::vector<Event>& out) {
   const Moment last{history_.now() + 1,
                     std::clamp(end, history_.At(history_.now()).tick + 1, kLatestTick + 1)};
   decided_ = last.tick;
-  for (const int touching : touching_) CloseTouch(instances_[touching], last);
+  for (const InstanceId touching : touching_) CloseTouch(instances_[touching], last);
   // What rests is decided; if it is open, it ends now.
-  for (int i = 0; i < instances_.size(); ++i) {
+  for (InstanceId i(0); i < instances_.end_id(); ++i) {
     RuleInstance& instance = instances_[i];
     if (instance.rule == kNone || instance.awake || !instance.open) continue;
     Wake(i);
     instance.next = history_.now() + 1;
   }
   for (const int rule : program_->schedule) {
-    for (const int instance : awake_[rule]) FinishInstance(instances_[instance], last);
+    for (const InstanceId instance : awake_[rule]) FinishInstance(instances_[instance], last);
     awake_[rule].clear();
   }
   SortNewEvents();
@@ -163,7 +164,7 @@ void Engine::ApplyContacts(std::span<const Touch> touches) {
   const FrameNumber now = history_.now();
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Touch& touch = touches[i];
-    const int index =
+    const InstanceId index =
         contacts_[i] != kNone
             ? contacts_[i]
             : instances_.Ensure(kTouchingRule, {touch.a, touch.b, kNoEntity, kNoEntity});
@@ -213,7 +214,7 @@ void Engine::BeginTouch(RuleInstance& touching) {
   NotifyWatchers(touching);
 }
 
-// The two touch as before, but press otherwise: these thresholds were crossed.
+// The two touch as before, but measured values crossed these thresholds.
 void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed) {
   for (const Watcher& watcher : touch.watchers) {
     if ((watcher.thresholds & changed) == 0) continue;
@@ -227,9 +228,9 @@ void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed)
   }
 }
 
-// The rest of what a resting instance asks for is known already: hands are looked at before touches
-// are, and no touch is told of twice. So its interval begins or ends here and now, if something has
-// changed.
+// Everything else that a resting instance asks for is known already: hands are looked at before
+// touches, and a frame contains each touch once. So if something changed, its interval begins or
+// ends at this frame.
 void Engine::BeginOrEnd(RuleInstance& instance) {
   const Moment now = history_.At(history_.now());
   if (instance.open) {
@@ -244,7 +245,7 @@ void Engine::BeginOrEnd(RuleInstance& instance) {
   NotifyWatchers(instance);
 }
 
-void Engine::Part(int touching) {
+void Engine::Part(InstanceId touching) {
   RuleInstance& instance = instances_[touching];
   const auto& state = instance.As<TouchingState>();
   if (state.touched == history_.now()) return;

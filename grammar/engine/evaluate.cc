@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// One function per kind of node; a new signal is a case in SignalOf().
 #include "grammar/engine/evaluate.h"
 
 #include <bit>
@@ -116,7 +117,7 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
   const bool begins = node.op == Op::kBegins;
   const Node& arg = program_.nodes[node.args[0]];
   if (arg.op == Op::kHolds) {
-    const int instance = instances_.Resolve(view.instance, arg.slot);
+    const InstanceId instance = instances_.Resolve(view.instance, arg.slot);
     return AtAnInstant(begins ? instances_.BeginsAt(instance, view.frame)
                               : instances_.EndsAt(instance, view.frame));
   }
@@ -175,7 +176,7 @@ Kleene Evaluator::Compare(const Node& node, const View& view) const {
   }
 }
 
-std::optional<Evaluator::Reach> Evaluator::ReachOf(const Node& node, const View& view) const {
+std::optional<Reach> Evaluator::ReachOf(const Node& node, const View& view) const {
   const bool box = node.op == Op::kBoxInSphere;
   const std::optional<Vector3d> centre = Position(node.args[box ? 0 : 1], view);
   const std::optional<double> radius = Number(node.args[box ? 1 : 2], view);
@@ -477,7 +478,7 @@ Vector3d Evaluator::RelativeVelocity(int a, int b, FrameNumber frame) const {
 
 // Null where the two do not touch.
 const RuleInstance* Evaluator::Touching(const Node& node, const View& view, bool& swapped) const {
-  const int index = instances_.Resolve(view.instance, node.slot);
+  const InstanceId index = instances_.Resolve(view.instance, node.slot);
   if (instances_.TruthAt(index, view.frame) != Kleene::kTrue) return nullptr;
   const RuleInstance& instance = instances_[index];
   swapped = instance.entities[0] != Entity(node, view, 0);

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "grammar/base/reach.h"
 #include "grammar/engine/instances.h"
 
 namespace prehend::grammar {
@@ -33,15 +34,6 @@ class Evaluator {
   std::optional<double> Number(int node, const View& view) const;
   std::optional<Eigen::Vector3d> Position(int node, const View& view) const;
 
-  /// How far something is from the centre of a region, and how far it may be; of a sphere, the
-  /// height does not count.
-  struct Reach {
-    double distance_m = 0;
-    double radius_m = 0;
-    double height_m = 0;
-    double most_height_m = 0;
-    bool IsInside() const { return distance_m <= radius_m && height_m <= most_height_m; }
-  };
   /// Of a node that tests for a region; nullopt like Number().
   std::optional<Reach> ReachOf(const Node& node, const View& view) const;
 

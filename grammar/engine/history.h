@@ -5,22 +5,13 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "grammar/base/frame.h"
+#include "grammar/base/span.h"
 #include "grammar/engine/ring_buffer.h"
 
 namespace prehend::grammar {
-
-/// Frames are numbered 0, 1, 2, ... as they arrive.
-using FrameNumber = std::int64_t;
-inline constexpr FrameNumber kNever = std::numeric_limits<FrameNumber>::max();
-
-struct Moment {
-  FrameNumber frame = 0;
-  Tick tick = 0;
-};
 
 /// What a hand was like from one frame on.
 struct HandAtFrame {

@@ -19,7 +19,7 @@ void IdleQueue::FreeOld() {
 
 // Most instances that only a freed one asked about have rested for as long: they are candidates,
 // too, so that the whole chain goes at once.
-void IdleQueue::FreeOrQueue(std::vector<int>& candidates) {
+void IdleQueue::FreeOrQueue(std::vector<InstanceId>& candidates) {
   RuleInstance& instance = instances_[candidates.back()];
   candidates.pop_back();
   if (instance.rule == kNone || instance.awake || instance.open || instance.idle_queued) return;
@@ -47,7 +47,7 @@ bool IdleQueue::CanBeFreed(const RuleInstance& instance) const {
 // to be remembered.
 bool IdleQueue::MayOverlap(const RuleInstance& instance) const {
   const int first_part = RuleOf(instance).As<ComposeRule>().parts.front();
-  const int index = instances_.Find(instance, first_part);
+  const InstanceId index = instances_.Find(instance, first_part);
   if (index == kNone) return false;
   const RuleInstance& first = instances_[index];
   return first.open || first.awake || !first.pending.empty() ||

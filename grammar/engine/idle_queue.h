@@ -27,10 +27,10 @@ class IdleQueue {
  private:
   struct IdleEntry {
     FrameNumber since = 0;
-    int instance = kNone;
+    InstanceId instance;
   };
 
-  void FreeOrQueue(std::vector<int>& candidates);
+  void FreeOrQueue(std::vector<InstanceId>& candidates);
   bool CanBeFreed(const RuleInstance& instance) const;
   bool MayOverlap(const RuleInstance& instance) const;
   const Rule& RuleOf(const RuleInstance& instance) const { return program_.rules[instance.rule]; }
@@ -39,7 +39,7 @@ class IdleQueue {
   const History& history_;
   RuleInstances& instances_;
   RingBuffer<IdleEntry> queue_;
-  std::vector<int> candidates_;  // kept for its memory
+  std::vector<InstanceId> candidates_;  // kept for its memory
 };
 
 }  // namespace prehend::grammar

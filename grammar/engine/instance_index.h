@@ -35,7 +35,7 @@ struct InstanceKey {
   }
 };
 
-/// The instance of a touch: two entities in any order. A frame asks for each pair that it tells of.
+/// The instance of a touch: two entities in any order. A frame looks up each pair that it contains.
 struct PairKey {
   std::uint64_t both = 0;
   PairKey() = default;
@@ -52,7 +52,7 @@ template <typename Key>
 class InstanceIndex {
  public:
   /// kNone if there is none.
-  int Find(const Key& key) const {
+  InstanceId Find(const Key& key) const {
     for (std::size_t at = Home(key); slots_[at].instance != kNone; at = Next(at)) {
       if (slots_[at].key == key) return slots_[at].instance;
     }
@@ -60,7 +60,7 @@ class InstanceIndex {
   }
 
   /// The key is not in the table yet.
-  void Insert(int instance, const Key& key) {
+  void Insert(InstanceId instance, const Key& key) {
     if (2 * ++count_ > slots_.size()) {
       std::vector<Slot> old(2 * slots_.size());
       old.swap(slots_);
@@ -89,7 +89,7 @@ class InstanceIndex {
  private:
   struct Slot {
     Key key;
-    int instance = kNone;
+    InstanceId instance;
   };
 
   std::size_t Home(const Key& key) const { return key.Hash() & last_; }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// How instances are made, linked to what they ask about, and freed.
 #include "grammar/engine/instances.h"
 
 #include <algorithm>
@@ -104,18 +105,18 @@ std::string RuleInstances::WhyTooMany() const {
          "(" + roles + ")': there are " + counts + "; give the roles narrower classes";
 }
 
-void RuleInstances::EnsureAll(int rule, Binding entities, std::vector<int>& made) {
+void RuleInstances::EnsureAll(int rule, Binding entities, std::vector<InstanceId>& made) {
   BindRest(rule, entities, 0, kNone, &made);
 }
 
 // Fills in the roles from `role` on that are still free, in all ways that fit.
-void RuleInstances::BindRest(int rule, Binding& entities, std::size_t role, int guard,
-                             std::vector<int>* made) {
+void RuleInstances::BindRest(int rule, Binding& entities, std::size_t role, InstanceId guard,
+                             std::vector<InstanceId>* made) {
   if (TooMany()) return;
   if (role == program_.rules[rule].roles.size()) {
     if (Canonical(rule, entities).entities != entities)
       return;  // of a symmetric pair, the other order is what counts
-    const int instance = Ensure(rule, entities);
+    const InstanceId instance = Ensure(rule, entities);
     if (instance == kNone || made == nullptr) return;
     if (guard != kNone) LinkToGuard(instance, guard);
     made->push_back(instance);
@@ -148,9 +149,9 @@ bool RuleInstances::Fits(int rule, const Binding& entities) const {
 // A place that is free, with a state for this form.
 RuleInstance& RuleInstances::UnusedFor(Form form) {
   FormState fresh = StateFor(form);
-  std::vector<int>& free = free_[fresh.index()];
+  std::vector<InstanceId>& free = free_[fresh.index()];
   if (free.empty()) {
-    const int index = size();
+    const InstanceId index = end_id();
     RuleInstance& instance = instances_.PushBack();
     instance.index = index;
     instance.of_form = std::move(fresh);
@@ -162,7 +163,7 @@ RuleInstance& RuleInstances::UnusedFor(Form form) {
   return instance;
 }
 
-int RuleInstances::Make(const InstanceKey& key) {
+InstanceId RuleInstances::Make(const InstanceKey& key) {
   if (!Fits(key.rule, key.entities)) return kNone;
   if (in_use() >= kMaxInstances) {
     too_many_ = key.rule;
@@ -172,7 +173,7 @@ int RuleInstances::Make(const InstanceKey& key) {
   RuleInstance& instance = UnusedFor(r.form());
   instance.rule = key.rule;
   instance.entities = key.entities;
-  instance.references.assign(r.references.size(), kNone);
+  instance.references.assign(r.references.size(), InstanceId());
   instance.anchors.assign(3 * r.anchors.size(), 0);
   if (const auto* composition = r.If<ComposeRule>())
     instance.As<ComposeState>().parts.resize(composition->parts.size());
@@ -187,7 +188,7 @@ int RuleInstances::Make(const InstanceKey& key) {
 
 // For every rule guarded by this instance's rule: its roles that the guard names are settled, the
 // rest are free.
-void RuleInstances::MakeDependents(int instance, std::vector<int>& made) {
+void RuleInstances::MakeDependents(InstanceId instance, std::vector<InstanceId>& made) {
   const int guard_rule = instances_[instance].rule;
   const bool both_orders = program_.rules[guard_rule].symmetric;
   for (const int rule : guarded_[guard_rule]) {
@@ -209,11 +210,11 @@ void RuleInstances::MakeDependents(int instance, std::vector<int>& made) {
   instances_[instance].dependents_made = true;
 }
 
-void RuleInstances::LinkToGuard(int index, int guard) {
+void RuleInstances::LinkToGuard(InstanceId index, InstanceId guard) {
   RuleInstance& instance = instances_[index];
   const Rule& rule = program_.rules[instance.rule];
   if (rule.form() == Form::kAny) {
-    std::vector<int>& members = instance.As<AnyState>().members;
+    std::vector<InstanceId>& members = instance.As<AnyState>().members;
     if (std::find(members.begin(), members.end(), guard) != members.end()) return;
     members.push_back(guard);
     instances_[guard].watchers.push_back({.instance = index, .kind = Watcher::Kind::kGuard});
@@ -223,7 +224,7 @@ void RuleInstances::LinkToGuard(int index, int guard) {
 }
 
 // From now on the instance's reference `slot` is this one, whose changes wake it.
-void RuleInstances::Refer(RuleInstance& instance, int slot, int target) {
+void RuleInstances::Refer(RuleInstance& instance, int slot, InstanceId target) {
   instance.references[slot] = target;
   if (target == kNone) return;
   const Rule& rule = program_.rules[instance.rule];
@@ -273,14 +274,14 @@ void RuleInstances::UnwatchEntities(const RuleInstance& instance) {
 
 // Before `instance` is freed: it is no watcher any more, and has to be made again when its guard
 // holds again.
-void RuleInstances::Unlink(int index, int watcher, std::vector<int>& orphans) {
+void RuleInstances::Unlink(InstanceId index, InstanceId watcher, std::vector<InstanceId>& orphans) {
   RuleInstance& instance = instances_[index];
   std::erase_if(instance.watchers, [&](const Watcher& one) { return one.instance == watcher; });
   instance.dependents_made = false;
   if (instance.watchers.empty()) orphans.push_back(index);
 }
 
-void RuleInstances::Free(int index, std::vector<int>& orphans) {
+void RuleInstances::Free(InstanceId index, std::vector<InstanceId>& orphans) {
   RuleInstance& instance = instances_[index];
   UnwatchEntities(instance);
   if (instance.rule == kTouchingRule) {
@@ -288,11 +289,11 @@ void RuleInstances::Free(int index, std::vector<int>& orphans) {
   } else {
     index_.Erase(instance);
   }
-  for (const int reference : instance.references) {
+  for (const InstanceId reference : instance.references) {
     if (reference != kNone) Unlink(reference, index, orphans);
   }
   if (const auto* any = instance.If<AnyState>()) {
-    for (const int member : any->members) Unlink(member, index, orphans);
+    for (const InstanceId member : any->members) Unlink(member, index, orphans);
   }
   for (const Watcher& any : instance.watchers)
     std::erase(instances_[any.instance].As<AnyState>().members, index);
@@ -310,10 +311,12 @@ void RuleInstances::Free(int index, std::vector<int>& orphans) {
 
 bool RuleInstances::GuardRests(const RuleInstance& instance) const {
   const Rule& rule = program_.rules[instance.rule];
-  const auto rests = [&](int guard) { return !instances_[guard].awake && !instances_[guard].open; };
+  const auto rests = [&](InstanceId guard) {
+    return !instances_[guard].awake && !instances_[guard].open;
+  };
   if (rule.form() == Form::kAny) return std::ranges::all_of(instance.As<AnyState>().members, rests);
   if (rule.guard == kNone) return false;
-  const int guard = instance.references[rule.guard];
+  const InstanceId guard = instance.references[rule.guard];
   return guard == kNone || rests(guard);
 }
 
@@ -326,7 +329,7 @@ InstanceKey RuleInstances::Referred(const RuleInstance& instance, int slot) cons
   return Canonical(reference.rule, entities);
 }
 
-int RuleInstances::Resolve(RuleInstance& instance, int slot) {
+InstanceId RuleInstances::Resolve(RuleInstance& instance, int slot) {
   if (instance.references[slot] != kNone) return instance.references[slot];
   const InstanceKey key = Referred(instance, slot);
   Refer(instance, slot, Ensure(key.rule, key.entities));

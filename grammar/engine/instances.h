@@ -26,19 +26,6 @@
 
 namespace prehend::grammar {
 
-/// An interval with the frames of its boundaries.
-struct Span {
-  Moment begin;
-  Moment end;
-  bool open_end = false;
-  Moment completed = {};  ///< of a composition: where its last part ends, if that is later
-
-  /// From here on it is known.
-  Moment Complete() const {
-    return completed.tick > end.tick && completed.frame > 0 ? completed : end;
-  }
-};
-
 /// Of each part of a composition only the last ones are kept.
 inline constexpr std::size_t kRememberedSpans = 64;
 
@@ -67,7 +54,7 @@ struct Watcher {
     kBeginGuard,  ///< its guard, and that must hold at the very frame in which something begins
     kCondition,   ///< anything else that it asks for
   };
-  int instance = kNone;
+  InstanceId instance;
   Kind kind = Kind::kCondition;
   bool opened = false;          ///< nothing of it begins but with a moment of the watched one
   bool swapped = false;         ///< `measured` names the two of the touch the other way round
@@ -99,7 +86,7 @@ struct TouchingState {
 
 /// An instance made for an `any`.
 struct AnyState {
-  std::vector<int> members;  ///< the instances of which one must hold
+  std::vector<InstanceId> members;  ///< the instances of which one must hold
   void Reset() { members.clear(); }
 };
 
@@ -127,7 +114,7 @@ using FormState = std::variant<NoState, TouchingState, AnyState, UntilSinceState
 /// The head stands first, in the order in which a frame needs it: what every look at an instance
 /// needs shares a line of the cache or two.
 struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is free
-  int index = kNone;
+  InstanceId index;
   bool awake = false;
   bool open = false;                 ///< a run has begun
   bool certain = false;              ///< the open run will be an interval whatever comes
@@ -145,8 +132,9 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
   // The third line: what instances are stepped with.
   FrameNumber next = 0;  ///< first frame not yet looked at; nothing while at rest
   FrameNumber resting_since = 0;
-  RingBuffer<Span> past;        ///< intervals, as long as they may be asked for
-  std::vector<int> references;  ///< instances, one per Rule::references; kNone: not asked for yet
+  RingBuffer<Span> past;  ///< intervals, as long as they may be asked for
+  std::vector<InstanceId>
+      references;  ///< instances, one per Rule::references; kNone: not asked for yet
   // The rest.
   std::vector<Pending> pending;
   Moment gap;
@@ -180,7 +168,7 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
 
 /// An instance that looks at an entity in one of its roles.
 struct Watch {
-  int instance = kNone;
+  InstanceId instance;
   int role = kNone;
 };
 
@@ -192,41 +180,43 @@ class RuleInstances {
   void BindUnguarded();
   /// Makes the instance, at rest, if it is not there. kNone if an entity's class does not fit, or
   /// there are TooMany().
-  int Ensure(int rule, const Binding& entities) {
+  InstanceId Ensure(int rule, const Binding& entities) {
     const InstanceKey key = Canonical(rule, entities);
-    const int found = Find(key);
+    const InstanceId found = Find(key);
     return found != kNone ? found : Make(key);
   }
-  /// Likewise, for everybody who can play the roles that are free, and appends them to `made`.
-  void EnsureAll(int rule, Binding entities, std::vector<int>& made);
+  /// Likewise, for all entities that can play the free roles; appends the instances to `made`.
+  void EnsureAll(int rule, Binding entities, std::vector<InstanceId>& made);
   /// Makes the instances that this one guards and appends them to `made`, those that were there
   /// already, too.
-  void MakeDependents(int instance, std::vector<int>& made);
+  void MakeDependents(InstanceId instance, std::vector<InstanceId>& made);
   /// Frees an instance that nothing but kAny instances watches. Appends the instances that it
   /// leaves without a watcher.
-  void Free(int instance, std::vector<int>& orphans);
+  void Free(InstanceId instance, std::vector<InstanceId>& orphans);
   bool TooMany() const { return too_many_ != kNone; }
   /// Which rule needs them, and how many can play each of its roles.
   std::string WhyTooMany() const;
 
-  RuleInstance& operator[](int instance) { return instances_[static_cast<std::size_t>(instance)]; }
-  const RuleInstance& operator[](int instance) const {
-    return instances_[static_cast<std::size_t>(instance)];
-  }
+  RuleInstance& operator[](InstanceId instance) { return instances_[instance]; }
+  const RuleInstance& operator[](InstanceId instance) const { return instances_[instance]; }
   /// Numbers of instances are below this, free ones included.
-  int size() const { return static_cast<int>(instances_.size()); }
-  int in_use() const { return size() - free_count_; }
+  InstanceId end_id() const { return instances_.end_id(); }
+  int in_use() const { return end_id().number() - free_count_; }
 
   /// The instance that reference `slot` of `instance` means, made if need be; from now on its
   /// changes wake this one.
-  int Resolve(RuleInstance& instance, int slot);
+  InstanceId Resolve(RuleInstance& instance, int slot);
   /// Likewise, kNone if it is not there.
-  int Find(const RuleInstance& instance, int slot) const { return Find(Referred(instance, slot)); }
-  int Find(int rule, const Binding& entities) const { return Find(Canonical(rule, entities)); }
-  int FindTouch(int a, int b) const { return touches_.Find(PairKey(a, b)); }
-  /// It will be looked at soon: what is far away in memory is on its way meanwhile.
-  void Fetch(int instance) const {
-    const char* at = reinterpret_cast<const char*>(&instances_[static_cast<std::size_t>(instance)]);
+  InstanceId Find(const RuleInstance& instance, int slot) const {
+    return Find(Referred(instance, slot));
+  }
+  InstanceId Find(int rule, const Binding& entities) const {
+    return Find(Canonical(rule, entities));
+  }
+  InstanceId FindTouch(int a, int b) const { return touches_.Find(PairKey(a, b)); }
+  /// Prefetches an instance that is about to be used.
+  void Fetch(InstanceId instance) const {
+    const char* at = reinterpret_cast<const char*>(&instances_[instance]);
     for (int line = 0; line < 3; ++line) __builtin_prefetch(at + 64 * line);
   }
 
@@ -236,7 +226,7 @@ class RuleInstances {
   /// The instance's guard is false, and known to be.
   bool GuardRests(const RuleInstance& instance) const;
 
-  Kleene TruthAt(int index, FrameNumber frame) const {
+  Kleene TruthAt(InstanceId index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
     const RuleInstance& instance = instances_[index];
     if (frame >= instance.known) return Kleene::kUnknown;
@@ -245,14 +235,14 @@ class RuleInstances {
       return frame >= past.begin.frame && frame < past.end.frame;
     });
   }
-  Kleene BeginsAt(int index, FrameNumber frame) const {
+  Kleene BeginsAt(InstanceId index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
     const RuleInstance& instance = instances_[index];
     if (frame >= instance.known) return Kleene::kUnknown;
     if (instance.open && instance.certain && frame == instance.begin.frame) return Kleene::kTrue;
     return AnyPast(instance, [frame](const Span& past) { return past.begin.frame == frame; });
   }
-  Kleene EndsAt(int index, FrameNumber frame) const {
+  Kleene EndsAt(InstanceId index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
     const RuleInstance& instance = instances_[index];
     if (frame >= instance.known) return Kleene::kUnknown;
@@ -266,17 +256,18 @@ class RuleInstances {
     const bool swap = symmetric_[rule] != 0 && name_rank_[entities[1]] < name_rank_[entities[0]];
     return {rule, swap ? Binding{entities[1], entities[0], entities[2], entities[3]} : entities};
   }
-  int Make(const InstanceKey& key);
+  InstanceId Make(const InstanceKey& key);
   RuleInstance& UnusedFor(Form form);
-  int Find(const InstanceKey& key) const {
+  InstanceId Find(const InstanceKey& key) const {
     return key.rule == kTouchingRule ? FindTouch(key.entities[0], key.entities[1])
                                      : index_.Find(key);
   }
-  void Refer(RuleInstance& instance, int slot, int target);
+  void Refer(RuleInstance& instance, int slot, InstanceId target);
   InstanceKey Referred(const RuleInstance& instance, int slot) const;
   bool Fits(int rule, const Binding& entities) const;
-  void BindRest(int rule, Binding& entities, std::size_t role, int guard, std::vector<int>* made);
-  void LinkToGuard(int instance, int guard);
+  void BindRest(int rule, Binding& entities, std::size_t role, InstanceId guard,
+                std::vector<InstanceId>* made);
+  void LinkToGuard(InstanceId instance, InstanceId guard);
   void WatchEntities(RuleInstance& instance);
   void UnwatchEntities(const RuleInstance& instance);
   template <typename Which>
@@ -286,11 +277,12 @@ class RuleInstances {
     }
     return Kleene::kFalse;
   }
-  void Unlink(int instance, int watcher, std::vector<int>& orphans);
+  void Unlink(InstanceId instance, InstanceId watcher, std::vector<InstanceId>& orphans);
   const Program& program_;
   const EntityTable& entity_table_;
-  StableBlocks<RuleInstance> instances_;  // an instance stays where it is when others are made
-  std::array<std::vector<int>, std::variant_size_v<FormState>> free_;  // by kind of state
+  StableBlocks<InstanceId, RuleInstance>
+      instances_;  // an instance stays where it is when others are made
+  std::array<std::vector<InstanceId>, std::variant_size_v<FormState>> free_;  // by kind of state
   int free_count_ = 0;
   InstanceIndex<InstanceKey> index_;
   InstanceIndex<PairKey> touches_;                    // the instances of kTouchingRule

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A growing sequence whose elements stay where they are, in blocks of many: found by a shift and a
-// mask. Tested by tests/grammar/engine/stable_blocks_test.cc
+// A growing sequence whose elements stay where they are, in blocks of many; an element is found by
+// a shift and a mask. Tested by tests/grammar/engine/stable_blocks_test.cc
 #pragma once
 
 #include <array>
@@ -8,27 +8,30 @@
 #include <memory>
 #include <vector>
 
-#include "grammar/base/check.h"
+#include "grammar/base/ids.h"
 
 namespace prehend::grammar {
 
-template <typename T>
+template <typename Key, typename T>
 class StableBlocks {
  public:
   std::size_t size() const { return size_; }
-  T& operator[](std::size_t i) {
-    PREHEND_DCHECK(i < size_);
-    return (*blocks_[i / kBlock])[i % kBlock];
+  /// The number of the next element to be added; all others are below it.
+  Key end_id() const { return Key(size_); }
+
+  T& operator[](Key key) {
+    PREHEND_DCHECK(key.index() < size_);
+    return (*blocks_[key.index() / kBlock])[key.index() % kBlock];
   }
-  const T& operator[](std::size_t i) const {
-    PREHEND_DCHECK(i < size_);
-    return (*blocks_[i / kBlock])[i % kBlock];
+  const T& operator[](Key key) const {
+    PREHEND_DCHECK(key.index() < size_);
+    return (*blocks_[key.index() / kBlock])[key.index() % kBlock];
   }
 
   T& PushBack() {
     if (size_ == kBlock * blocks_.size())
       blocks_.push_back(std::make_unique<std::array<T, kBlock>>());
-    return (*this)[size_++];
+    return (*this)[Key(size_++)];
   }
 
  private:

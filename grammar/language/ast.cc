@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a syntax tree as text again, for messages and tests.
 #include "grammar/language/ast.h"
 
 #include <string_view>
@@ -75,7 +76,7 @@ std::string DumpDrawing(const Drawing& drawing) {
     text += '"';
   }
   if (drawing.as == DrawnAs::kNothing) text += " without row";
-  if (drawing.ghost == Ghost::kNone) text += " without ghost";
+  if (drawing.ghost == Ghost::kNoGhost) text += " without ghost";
   if (drawing.ghost == Ghost::kAtEnd) text += " with ghost at end";
   return text;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// One function per form of a definition, then its modifiers in any order.
 #include "grammar/language/parser.h"
 
 #include "grammar/language/law_parser.h"
@@ -288,7 +289,7 @@ class Parser : public LawParser {
       if (row && Accept("row")) {
         drawing.as = DrawnAs::kNothing;
       } else if (ghost && Accept("ghost")) {
-        drawing.ghost = Ghost::kNone;
+        drawing.ghost = Ghost::kNoGhost;
       } else {
         Fail(std::string(row     ? "expected 'row'"
                          : ghost ? "expected 'ghost'"

@@ -15,14 +15,13 @@
 #include "grammar/base/diagnostic.h"
 #include "grammar/base/drawing.h"
 #include "grammar/base/event.h"
+#include "grammar/base/ids.h"
 #include "grammar/base/quantity.h"
 #include "grammar/base/source.h"
 #include "grammar/program/law.h"
 #include "grammar/program/thresholds.h"
 
 namespace prehend::grammar {
-
-inline constexpr int kNone = -1;
 
 enum class Op : std::uint8_t {
   // Truth values.
@@ -157,7 +156,7 @@ enum class Form : std::uint8_t {
   kCompose,
 };
 
-/// `touching`: the fact itself, as frames tell it.
+/// `touching`: the fact itself, as frames give it.
 struct TouchingRule {};
 
 /// Made for an `any`: some binding of the rule of references[0] holds.

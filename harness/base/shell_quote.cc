@@ -2,6 +2,8 @@
 // See harness/base/shell_quote.h. Tested by tests/harness/base/shell_quote_test.cc
 #include "harness/base/shell_quote.h"
 
+#include <cstdlib>
+
 namespace prehend::harness {
 
 std::string ShellQuoted(std::string_view word) {
@@ -11,6 +13,17 @@ std::string ShellQuoted(std::string_view word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
   return quoted + "'";
+}
+
+std::string ProgramName() {
+  const char* const called = std::getenv("PREHEND_COMMAND");
+  return called && *called ? ShellQuoted(called) : "prehend";
+}
+
+std::string CommandText(const std::vector<std::string>& words) {
+  std::string text = ProgramName();
+  for (const std::string& word : words) text += " " + ShellQuoted(word);
+  return text;
 }
 
 }  // namespace prehend::harness

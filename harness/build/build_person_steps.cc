@@ -48,9 +48,9 @@ struct PersonStepMaker {
   physics::PersonStep operator()(const RecordingYaml& e) const {
     if (!e.style.value.empty())
       errors.Add(e.style.where, "style: a person's recording moves the head, not a hand");
-    if (!e.figures.empty()) {
+    if (!e.postures.empty()) {
       CheckBody(e.recording.where, "recording");
-      return {0, physics::BodyPosesStep{e.figures}, e.figures.back().t_s};
+      return {0, physics::BodyPosesStep{e.postures}, e.postures.back().t_s};
     }
     const double over_s = e.poses.empty() ? 0 : e.poses.back().t_s;
     return {0, physics::HeadPosesStep{e.poses}, over_s};

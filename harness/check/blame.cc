@@ -12,12 +12,9 @@
 namespace prehend::harness {
 namespace {
 
-constexpr const char* kAgreed = "as when this last agreed with its golden";
-
-/// "scenarios/slide/NAME.yaml" and the like, "the program", and what the command line asks for. A
-/// grammar that the command line put in another's place did not change, nor did the one that it
-/// replaces.
-std::vector<std::string> WhatChanged(const CheckRecord& last_agreed, const Suspect& now,
+/// "scenarios/SKILL/NAME.yaml" and the like, "the program", and the options of the command line. A
+/// grammar that the command line chose did not change, nor did the one that it replaces.
+std::vector<std::string> WhatChanged(const CheckRecord& last_pass, const DifferingRun& now,
                                      const std::string& root) {
   std::vector<std::string> changed;
   const auto add = [&](const std::string& path) {
@@ -28,49 +25,54 @@ std::vector<std::string> WhatChanged(const CheckRecord& last_agreed, const Suspe
     if (!now.other_grammar || !path.ends_with(".grammar")) add(path);
   };
   for (const auto& [path, hash] : now.inputs) {
-    const auto before = last_agreed.verdict.inputs.find(path);
-    if (before == last_agreed.verdict.inputs.end()) {
-      if (hash != kNoFile) add_unless_replaced(path);  // who looks for more files found no more
+    const auto before = last_pass.verdict.inputs.find(path);
+    if (before == last_pass.verdict.inputs.end()) {
+      // A file that was looked for in vain did not change anything.
+      if (hash != kNoFile) add_unless_replaced(path);
     } else if (before->second != hash) {
       add(path);
     }
   }
-  for (const auto& [path, hash] : last_agreed.verdict.inputs) {
+  for (const auto& [path, hash] : last_pass.verdict.inputs) {
     if (!now.inputs.contains(path)) add_unless_replaced(path);
   }
-  if (last_agreed.program != now.program) changed.push_back("the program");
+  if (last_pass.program != now.program) changed.push_back("the program");
   changed.insert(changed.end(), now.options.begin(), now.options.end());
   return changed;
 }
 
+std::string PhysicsText(const Divergence& divergence, const DifferingRun& now) {
+  const std::string when =
+      fmt::format("{:.4f} s (tick {})", static_cast<double>(divergence.tick) / now.ticks_per_second,
+                  divergence.tick);
+  if (divergence.entity.empty())
+    return "physics. Only one of this run and the last passing run reaches " + when;
+  return fmt::format("physics. `{}` moves differently from the last passing run, first at {}",
+                     divergence.entity, when);
+}
+
+/// What differs between the two runs, without a full stop.
+std::string FirstCause(const PhysicsTrace& before, const DifferingRun& now) {
+  if (before.entities != now.trace.entities)
+    return "physics. The entities are not those of the last passing run";
+  if (const auto divergence = FirstDivergence(before, now.trace))
+    return PhysicsText(*divergence, now);
+  if (!SameTicks(before, now.trace))
+    return "sensing. Frames are at other ticks than in the last passing run; where both have one, "
+           "everything moves the same";
+  return "the grammar or the golden. Everything moves as in the last passing run";
+}
+
 }  // namespace
 
-std::string BlameText(const std::optional<CheckRecord>& last_agreed,
-                      const std::optional<PhysicsTrace>& its_trace, const Suspect& now,
+std::string CauseText(const std::optional<CheckRecord>& last_pass,
+                      const std::optional<PhysicsTrace>& its_trace, const DifferingRun& now,
                       const std::string& root) {
-  if (!last_agreed || !its_trace)
-    return "blame: unknown, this scenario has not agreed with its golden in this folder yet\n";
-  std::string text = fmt::format("blame: the grammar or the golden: everything moves {}", kAgreed);
-  if (const auto contact_end = FirstParting(*its_trace, now.trace)) {
-    text = "blame: physics";
-    if (its_trace->entities != now.trace.entities) {
-      text += ": other entities";
-    } else {
-      text += fmt::format(": since {:.4f} s (tick {}) {} {}",
-                          static_cast<double>(contact_end->tick) / now.ticks_per_second,
-                          contact_end->tick,
-                          contact_end->entity.empty() ? "the run is not as long"
-                                                      : contact_end->entity + " does not move",
-                          kAgreed);
-    }
-  } else if (!SameSample(*its_trace, now.trace)) {
-    text = fmt::format("blame: the looks are at other ticks; where both look everything moves {}",
-                       kAgreed);
-  }
-  const std::vector<std::string> changed = WhatChanged(*last_agreed, now, root);
-  return text + fmt::format("; changed since then: {}\n",
-                            changed.empty() ? "nothing that is known"
-                                            : fmt::format("{}", fmt::join(changed, ", ")));
+  if (!last_pass || !its_trace) return "cause: unknown. This scenario has not passed here yet.\n";
+  const std::vector<std::string> changed = WhatChanged(*last_pass, now, root);
+  return fmt::format(
+      "cause: {}. Changed since: {}\n", FirstCause(*its_trace, now),
+      changed.empty() ? "nothing that is known" : fmt::format("{}", fmt::join(changed, ", ")));
 }
 
 }  // namespace prehend::harness

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whose doing a difference is: did the world move otherwise than in the last run that agreed with
-// the golden, was it looked at otherwise, or did the grammar say something else about the same
-// looks? Tested by
-// tests/harness/check/blame_test.cc
+// Attributes a difference: did the physics diverge from the last passing run, did sensing, or did
+// the grammar? Tested by tests/harness/check/blame_test.cc
 #pragma once
 
 #include <optional>
@@ -14,20 +12,21 @@
 
 namespace prehend::harness {
 
-/// A run, and what decided it.
-struct Suspect {
+/// How a run that differs moved, and what decided it.
+struct DifferingRun {
   std::string program;  ///< ProgramHash()
   FileHashes inputs;
   std::vector<std::string> options;  ///< of its command line: "--grammar original_2020"
-  bool other_grammar = false;        ///< one of them chose the grammar
+  bool other_grammar = false;        ///< the command line chose the grammar
   PhysicsTrace trace;
   double ticks_per_second = 480;
 };
 
-/// One line that begins with "blame: " and ends with a line feed. `root` shortens paths; without a
-/// run that agreed the line says that there is nothing to compare with.
-std::string BlameText(const std::optional<CheckRecord>& last_agreed,
-                      const std::optional<PhysicsTrace>& its_trace, const Suspect& now,
+/// One line with its line feed: "cause: physics. `cup` moves differently from the last passing run,
+/// first at 0.0042 s (tick 2). Changed since: ..". Paths are relative to `root`. The cause is
+/// unknown without a run that passed, or was accepted.
+std::string CauseText(const std::optional<CheckRecord>& last_pass,
+                      const std::optional<PhysicsTrace>& its_trace, const DifferingRun& now,
                       const std::string& root);
 
 }  // namespace prehend::harness

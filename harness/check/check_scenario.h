@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One scenario against its golden and the invariants: play it once, draw it, compare, judge. What
-// differs or has no golden leaves a pending golden behind. Tested by
-// tests/program/command_line_test.cc
+// The check of one scenario: play it once, draw it, judge it, then store what the next check and
+// `prehend review` need. Tested by tests/harness/check/check_scenario_test.cc
 #pragma once
 
 #include <string>
@@ -14,21 +13,21 @@ namespace prehend::harness {
 
 struct CheckRequest {
   RunRequest run;
-  std::string id;             ///< skill/name, or the path of a scenario without golden
+  std::string id;             ///< skill/name, or the path of a scenario outside the project
   std::string root;           ///< the project's
   std::string report_folder;  ///< pictures go to its folder `pictures`
   bool pictures = true;
-  bool is_trial = false;   ///< leave nothing behind: neither a pending golden nor a trace
-  bool has_golden = true;  ///< or may have one; false: it is not of the project
-  std::string program;     ///< ProgramHash(), for the blame
-  ProgressCounters::Tick* last_tick = nullptr;  ///< told how far the run came; may be null
+  bool leave_nothing_behind = false;  ///< no pending golden, no trace; only the verdict
+  bool in_project = true;             ///< below scenarios/, so that it may have a golden
+  std::string program;                ///< ProgramHash(), to find the cause of differences
+  ProgressCounters::Tick* last_tick =
+      nullptr;  ///< gets the tick that the run has reached; may be null
 };
 
 /// Never fails: what goes wrong is the verdict.
 ScenarioVerdict CheckScenario(const CheckRequest& request);
 
-/// The command that asks about a scenario's events, with the grammar and settings of `changes`;
-/// every difference ends with it and a question.
+/// The command that asks about a scenario's events, with the grammar and settings of `changes`.
 std::string ExplainCommand(const std::string& id, const RunRequest& changes);
 
 /// The command that repeats a verdict.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/last_pass.h. What is damaged or of another version counts as not there. Tested
+// See harness/check/last_pass.h. A record that is damaged or of another version is ignored. Tested
 // by tests/harness/check/last_pass_test.cc
 #include "harness/check/last_pass.h"
 
@@ -11,9 +11,9 @@
 namespace prehend::harness {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
-/// Discarded when there is no such file or it is no JSON.
+/// Discarded when the file does not exist or is not JSON.
 Json ReadJson(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) return Json(Json::value_t::discarded);
@@ -37,7 +37,7 @@ std::optional<CheckRecord> CheckRecords::Read(const std::string& scenario) const
     CheckRecord record{.program = json.at("program"),
                        .passed = json.at("passed"),
                        .pictures = json.at("pictures"),
-                       .verdict = VerdictFromJson(json.at("verdict"))};
+                       .verdict = UnpackedVerdict(json.at("verdict"))};
     if (record.verdict.scenario != scenario || record.verdict.inputs.empty()) return std::nullopt;
     return record;
   } catch (const Json::exception&) {
@@ -49,7 +49,7 @@ std::string CheckRecords::Write(const CheckRecord& record) const {
   const Json json = {{"program", record.program},
                      {"passed", record.passed},
                      {"pictures", record.pictures},
-                     {"verdict", ToJson(record.verdict)}};
+                     {"verdict", Packed(record.verdict)}};
   return WriteTextFile(folder_ / (record.verdict.scenario + ".json"), json.dump(1) + "\n");
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `prehend check` remembers below build/check/, and never in the tree: per scenario the last
-// time that it agreed with its golden, with what that depended on, and how long each one took.
-// Losing it costs time only. Tested by tests/harness/check/last_pass_test.cc
+// What `prehend check` keeps in build/check/: of each scenario its last pass, with all inputs of
+// it, and its duration. Losing it costs time only. Tested by tests/harness/check/last_pass_test.cc
 #pragma once
 
 #include <filesystem>
@@ -14,16 +13,15 @@
 
 namespace prehend::harness {
 
-/// The last time that a scenario agreed with its golden: it passed, or what it yielded was
-/// accepted.
+/// The last time that a scenario agreed with its golden: it passed, or its timeline was accepted.
 struct CheckRecord {
   std::string program;      ///< ProgramHash() of then
-  bool passed = true;       ///< checked; what was only accepted has to be checked yet
-  bool pictures = false;    ///< whether pictures were drawn, too
+  bool passed = true;       ///< false: accepted, but not checked since
+  bool pictures = false;    ///< its pictures were drawn, too
   ScenarioVerdict verdict;  ///< its `inputs` are the files that decided it
 };
 
-/// Inputs of `record` that are no longer what they were, in order; paths.
+/// Paths of inputs that have changed since, sorted.
 std::vector<std::string> ChangedInputs(const CheckRecord& record);
 
 class CheckRecords {
@@ -31,7 +29,7 @@ class CheckRecords {
   explicit CheckRecords(const std::filesystem::path& project_root)
       : folder_(project_root / "build" / "check") {}
 
-  /// `scenario` is its id, here and below. Nothing when there is none, or when it cannot be read.
+  /// `scenario` is its id, here and below. Nothing without a readable record.
   std::optional<CheckRecord> Read(const std::string& scenario) const;
 
   /// Returns "" or what went wrong.

@@ -71,7 +71,7 @@ class Suite {
     return verdict;
   }
 
-  /// Who runs, in which order. Who is not known to be fast goes first.
+  /// The runs in their order: slowest first. A scenario that was never timed counts as slow.
   std::vector<Turn> Turns() {
     std::vector<Turn> turns;
     for (std::size_t i = 0; i < scenarios_.size(); ++i) {
@@ -106,18 +106,22 @@ class Suite {
         .root = request_.root,
         .report_folder = request_.report_folder,
         .pictures = request_.pictures && turn.repetition == 0,
-        .is_trial = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
-        .has_golden = InProject(turn.scenario),
+        .leave_nothing_behind = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
+        .in_project = InProject(turn.scenario),
         .program = program_,
         .last_tick = &last_tick};
-    return [check] { return ToJson(CheckScenario(check)).dump(); };
+    // CBOR, since JSON has no infinite numbers and refuses bytes that are no UTF-8.
+    return [check] {
+      const std::vector<std::uint8_t> bytes = nlohmann::json::to_cbor(Packed(CheckScenario(check)));
+      return std::string(bytes.begin(), bytes.end());
+    };
   }
 
   ScenarioVerdict VerdictOf(std::size_t scenario, const WorkerResult& result,
                             std::int64_t last_tick) const {
     ScenarioVerdict verdict;
     if (result.finished) {
-      verdict = VerdictFromJson(nlohmann::ordered_json::parse(result.output));
+      verdict = UnpackedVerdict(nlohmann::json::from_cbor(result.output));
     } else {
       verdict.scenario = Id(scenario);
       verdict.exit_code = ExitCode::kFailure;
@@ -149,8 +153,8 @@ class Suite {
       const ScenarioVerdict& merged = verdicts.back();
       if (merged.verdict == Verdict::kUnchanged || Changed() || !InProject(i)) continue;
       costs_[merged.scenario] = merged.seconds;
-      // Who can't write below build/ only loses time; the report, which is written there, too,
-      // complains.
+      // Without its record the next check takes longer; if build/ cannot be written, the report,
+      // which is in it, too, is an error.
       if (merged.verdict == Verdict::kPassed) {
         (void)records_.Write(
             {.program = program_, .pictures = request_.pictures, .verdict = merged});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many scenarios, each in a process of its own, several at a time: slowest first, repeated if asked
-// for, without those that nothing changed for. Tested by tests/program/runner_test.cc
+// Checks many scenarios, each in its own process, several at a time: slowest first, repeated on
+// request, without those whose inputs have not changed. Tested by tests/program/runner_test.cc
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct SuiteRequest {
   WorkerLimits limits;
 };
 
-/// Told after each run: how many of how many are done, and whose it was.
+/// Called after each run: how many of how many are done, and the id of the scenario.
 using SuiteProgress = std::function<void(std::size_t done, std::size_t all, const std::string& id)>;
 
 /// One verdict per scenario in the order of the selection, then one per orphan.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/select_scenarios.h. Tested by tests/program/command_line_test.cc
+// See harness/check/select_scenarios.h. Tested by tests/harness/check/select_scenarios_test.cc
 #include "harness/check/select_scenarios.h"
 
 #include <fnmatch.h>
@@ -23,7 +23,7 @@ bool Matches(const std::string& pattern, const ScenarioFile& file) {
          fnmatch(pattern.c_str(), IdOf(file).c_str(), 0) == 0;
 }
 
-/// A file that cannot be read has no tags, but is checked when it is named.
+/// A file that cannot be read has no tags; it is still checked when it is named.
 bool HasTag(const ScenarioFile& file, const std::string& tag, const ScenarioLibrary& library) {
   const Result<Scenario> scenario = ReadScenario(file.path, {}, library);
   return scenario && std::count(scenario->tags.begin(), scenario->tags.end(), tag) > 0;
@@ -36,7 +36,8 @@ bool PassesFilter(const ScenarioFile& file, const std::string& filter,
   return Matches(filter, file);
 }
 
-/// "" or that nothing passes a filter that is not a "not", with the nearest tag.
+/// Why no scenario passes this filter, with the nearest tag; "" if some do, or if it begins with
+/// '!'.
 std::string WhyNonePasses(const std::string& filter, const std::vector<ScenarioFile>& all,
                           const ScenarioLibrary& library) {
   if (filter.starts_with('!')) return "";
@@ -62,8 +63,8 @@ bool IsFile(const std::string& typed) {
   return is_there || typed.ends_with(".yaml") || typed.ends_with(".yml");
 }
 
-/// Scenarios that nobody's pattern matches, in words. A folder is not a pattern, but its scenarios
-/// have one.
+/// Why a pattern matches no scenario. For the name of a folder, the pattern of its scenarios is
+/// suggested.
 std::string WhyNoMatch(const std::string& typed, const std::vector<ScenarioFile>& all) {
   std::string folder = typed.starts_with("scenarios/") ? typed.substr(10) : typed;
   if (const std::size_t slash = folder.find('/'); slash != std::string::npos) folder.resize(slash);

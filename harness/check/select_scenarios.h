@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which scenarios a check is about. Tested by tests/program/command_line_test.cc
+// Which scenarios a check plays. Tested by tests/harness/check/select_scenarios_test.cc
 #pragma once
 
 #include <optional>
@@ -7,19 +7,19 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/check/unreferenced_goldens.h"
+#include "harness/judge/unreferenced_goldens.h"
 #include "harness/run/find_scenario.h"
 
 namespace prehend::harness {
 
 struct ScenarioSelection {
   std::vector<ScenarioFile> scenarios;
-  std::vector<Orphan> orphans;  ///< looked for when nothing narrows the selection
+  std::vector<Orphan> orphans;  ///< only when neither patterns nor filters narrow the selection
 };
 
 /// `patterns` are globs over names and skill/name, or files; none means all. A scenario must pass
-/// each of `filters`, which are globs, too, or tag:NAME; with a leading '!' it must not match. When
-/// a pattern matches nothing, or nothing is left, `problem` says so.
+/// each of `filters`, which are globs, too, or tag:NAME; with a leading '!' it must not match. If a
+/// pattern matches no scenario, or none is left, there is no value, and `problem` says why.
 std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
                                                  const std::vector<std::string>& filters,
                                                  const std::string& root, std::string& problem);
@@ -30,7 +30,7 @@ struct Shard {
   int count = 1;
 };
 
-/// "2/3"; nothing when it is no shard.
+/// Reads "2/3"; nothing for any other text.
 std::optional<Shard> ParseShard(std::string_view text);
 
 /// Every count-th scenario. Orphans are of the first shard.

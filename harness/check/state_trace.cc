@@ -38,18 +38,18 @@ std::int64_t WidestGap(const PhysicsTrace& trace) {
   return widest;
 }
 
-/// Nothing when both are as long; of runs that look at other ticks that is not known more exactly
-/// than to the next look.
-std::optional<PartingPlace> FirstTickOfTheLonger(const PhysicsTrace& a, const PhysicsTrace& b) {
+/// Nothing when both are equally long. If they have states of different ticks, that is known to the
+/// widest gap only.
+std::optional<Divergence> FirstTickOfTheLonger(const PhysicsTrace& a, const PhysicsTrace& b) {
   const auto last = [](const PhysicsTrace& run) {
     return run.ticks.empty() ? -1 : run.ticks.back();
   };
   const PhysicsTrace& longer = last(a) > last(b) ? a : b;
   const std::int64_t end = std::min(last(a), last(b));
-  const std::int64_t unseen = SameSample(a, b) ? 1 : std::max(WidestGap(a), WidestGap(b));
+  const std::int64_t unseen = SameTicks(a, b) ? 1 : std::max(WidestGap(a), WidestGap(b));
   if (last(longer) - end < unseen) return std::nullopt;
-  return PartingPlace{.tick = *std::upper_bound(longer.ticks.begin(), longer.ticks.end(), end),
-                      .entity = {}};
+  return Divergence{.tick = *std::upper_bound(longer.ticks.begin(), longer.ticks.end(), end),
+                    .entity = {}};
 }
 
 }  // namespace
@@ -66,14 +66,14 @@ PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snaps
   return trace;
 }
 
-bool SameSample(const PhysicsTrace& a, const PhysicsTrace& b) {
+bool SameTicks(const PhysicsTrace& a, const PhysicsTrace& b) {
   const auto both = static_cast<std::ptrdiff_t>(std::min(a.ticks.size(), b.ticks.size()));
   return std::equal(a.ticks.begin(), a.ticks.begin() + both, b.ticks.begin());
 }
 
-std::optional<PartingPlace> FirstParting(const PhysicsTrace& a, const PhysicsTrace& b) {
+std::optional<Divergence> FirstDivergence(const PhysicsTrace& a, const PhysicsTrace& b) {
   const std::size_t entities = a.entities.size();
-  if (a.entities != b.entities) return PartingPlace{};
+  if (a.entities != b.entities) return Divergence{};
   std::size_t i = 0, j = 0;
   while (i < a.ticks.size() && j < b.ticks.size()) {
     if (a.ticks[i] != b.ticks[j]) {
@@ -82,7 +82,7 @@ std::optional<PartingPlace> FirstParting(const PhysicsTrace& a, const PhysicsTra
     }
     for (std::size_t k = 0; k < entities; ++k) {
       if (a.hashes[i * entities + k] != b.hashes[j * entities + k])
-        return PartingPlace{.tick = a.ticks[i], .entity = a.entities[k]};
+        return Divergence{.tick = a.ticks[i], .entity = a.entities[k]};
     }
     ++i, ++j;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a run moved, as one short hash per entity and sensed tick: enough to find the first tick, and
-// the entity, where two runs part. Kept per build below build/check/, since another compiler may
-// round otherwise. Tested by tests/harness/check/state_trace_test.cc
+// How a run moved, as one short hash per entity and sensed tick: enough to find the first tick and
+// entity at which two runs diverge. Kept per build below build/check/, since another compiler may
+// round differently. Tested by tests/harness/check/state_trace_test.cc
 #pragma once
 
 #include <cstdint>
@@ -26,16 +26,16 @@ struct PhysicsTrace {
 /// Of at most 20,000 snapshots; of a longer recording every n-th.
 PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording);
 
-struct PartingPlace {
+struct Divergence {
   std::int64_t tick = 0;
   std::string entity;  ///< the first that differs; "" when one run has more ticks or other entities
 };
 
-/// Whether both look at the same ticks, as long as both run.
-bool SameSample(const PhysicsTrace& a, const PhysicsTrace& b);
+/// Whether both have states of the same ticks, as long as both last.
+bool SameTicks(const PhysicsTrace& a, const PhysicsTrace& b);
 
-/// Nothing when the two move the same, as far as both look, and are as long.
-std::optional<PartingPlace> FirstParting(const PhysicsTrace& a, const PhysicsTrace& b);
+/// Nothing when the two move the same at all ticks that both have, and are equally long.
+std::optional<Divergence> FirstDivergence(const PhysicsTrace& a, const PhysicsTrace& b);
 
 /// A text file; "" or what went wrong.
 std::string WriteTrace(const std::filesystem::path& path, const PhysicsTrace& trace);

@@ -60,9 +60,9 @@ class GoldenChecker {
     const auto line = static_cast<int>(std::ranges::count(text_.substr(0, found), '\n')) + 1;
     diagnostics_.push_back(grammar::DiagnosticAt(
         file_, text_, {line, 12},
-        fmt::format("this golden is of the grammar '{}', but the scenario is watched by '{}'",
-                    grammar, watching),
-        "accept what that yields: prehend accept"));
+        fmt::format("this golden is of the grammar '{}', but the scenario uses '{}'", grammar,
+                    watching),
+        "play it with that grammar and accept the result: prehend accept"));
   }
 
   grammar::Diagnostics Take() { return std::move(diagnostics_); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a golden can be what its scenario's grammar says of it: events, roles, values and names
-// that exist. What it expects otherwise is for `check` to find out. Tested by
+// Static checks of a golden: its events, roles, values and names exist in the scenario and its
+// grammar. Whether they are recognised is up to `check`. Tested by
 // tests/program/golden_workflow_test.cc
 #pragma once
 
@@ -11,12 +11,12 @@
 
 namespace prehend::harness {
 
-/// The golden of the scenario `id`, which was loaded as its file says.
+/// The golden of the scenario `id`, loaded without changes.
 grammar::Diagnostics CheckGoldenFile(const std::string& path, const std::string& id,
                                      const LoadedRun& loaded);
 
-/// A file wherever it is: below golden/ it must be of the scenario that its place says, elsewhere
-/// of the one that it names. `inputs` gets every path that was looked at.
+/// A golden anywhere: below golden/ its place says of which scenario it is, elsewhere its header.
+/// `inputs` gets every path that was read or looked for.
 grammar::Diagnostics CheckGoldenAlone(const std::string& path, const std::string& root,
                                       std::vector<std::string>& inputs);
 

@@ -5,15 +5,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
 #include <utility>
 
-namespace prehend::harness {
+#include "harness/timeline/event_text.h"
 
-using Json = nlohmann::ordered_json;
+namespace prehend::harness {
 
 std::string_view Name(Verdict verdict) {
   switch (verdict) {
@@ -37,77 +37,18 @@ std::string_view CommandLabel(const ScenarioVerdict& verdict) {
              : "again";
 }
 
-Json ToJson(const ScenarioVerdict& verdict) {
-  Json pictures = Json::array();
-  for (const ReportedPicture& picture : verdict.pictures) {
-    pictures.push_back({{"file", picture.file}, {"caption", picture.caption}});
-  }
-  Json boundaries = Json::array();
-  for (const BoundaryRoom& room : verdict.boundaries) {
-    boundaries.push_back({{"boundary", room.boundary},
-                          {"offset_ms", room.offset_ms},
-                          {"tolerance_ms", room.tolerance_ms}});
-  }
-  return {{"scenario", verdict.scenario},
-          {"verdict", Name(verdict.verdict)},
-          {"exit_code", static_cast<int>(verdict.exit_code)},
-          {"reason", verdict.reason},
-          {"details", verdict.details},
-          {"differences", verdict.differences},
-          {"relations", verdict.relations},
-          {"blame", verdict.blame},
-          {"headroom", verdict.headroom},
-          {"boundaries", std::move(boundaries)},
-          {"command", verdict.command},
-          {"shows", verdict.shows},
-          {"state_hash", verdict.state_hash},
-          {"ticks", verdict.ticks},
-          {"seconds", verdict.seconds},
-          {"peak_memory_kib", verdict.peak_memory_kib},
-          {"inputs", verdict.inputs},
-          {"pictures", std::move(pictures)},
-          {"picture_differences", verdict.picture_differences},
-          {"timeline_svg", verdict.timeline_svg}};
-}
-
-ScenarioVerdict VerdictFromJson(const Json& json) {
-  ScenarioVerdict verdict{.scenario = json.at("scenario"), .shows = json.at("shows")};
-  for (const Verdict candidate : {Verdict::kPassed, Verdict::kFailed, Verdict::kPending,
-                                  Verdict::kFlaky, Verdict::kUnchanged}) {
-    if (json.at("verdict") == Name(candidate)) verdict.verdict = candidate;
-  }
-  verdict.exit_code = static_cast<ExitCode>(json.at("exit_code").get<int>());
-  verdict.reason = json.at("reason");
-  verdict.details = json.at("details");
-  verdict.differences = json.at("differences");
-  verdict.relations = json.at("relations");
-  verdict.blame = json.at("blame");
-  verdict.headroom = json.at("headroom");
-  for (const Json& room : json.at("boundaries")) {
-    verdict.boundaries.push_back(
-        {room.at("boundary"), room.at("offset_ms"), room.at("tolerance_ms")});
-  }
-  verdict.command = json.at("command");
-  verdict.state_hash = json.at("state_hash");
-  verdict.ticks = json.at("ticks");
-  verdict.seconds = json.at("seconds");
-  verdict.peak_memory_kib = json.at("peak_memory_kib");
-  verdict.inputs = json.at("inputs").get<FileHashes>();
-  for (const Json& picture : json.at("pictures")) {
-    verdict.pictures.push_back({.file = picture.at("file"), .caption = picture.at("caption")});
-  }
-  verdict.picture_differences = json.at("picture_differences");
-  verdict.timeline_svg = json.at("timeline_svg");
-  return verdict;
+std::string MarginText(const ScenarioVerdict& verdict) {
+  const bool good = verdict.verdict == Verdict::kPassed || verdict.verdict == Verdict::kUnchanged;
+  return good && verdict.has_golden && verdict.comparison ? MarginText(*verdict.comparison) : "";
 }
 
 namespace {
 
-bool SaySame(const ScenarioVerdict& a, const ScenarioVerdict& b) {
-  const auto said = [](const ScenarioVerdict& v) {
+bool SameOutcome(const ScenarioVerdict& a, const ScenarioVerdict& b) {
+  const auto outcome = [](const ScenarioVerdict& v) {
     return std::tie(v.verdict, v.exit_code, v.reason, v.details, v.state_hash, v.ticks);
   };
-  return said(a) == said(b);
+  return outcome(a) == outcome(b);
 }
 
 /// "flaky: of 5 runs 3 passed, 2 failed; 2 different state hashes"
@@ -141,10 +82,10 @@ ScenarioVerdict JudgedByPictures(ScenarioVerdict verdict) {
 }  // namespace
 
 ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs) {
-  // What a failed run said is of more use than what a passed one did.
-  const auto telling = std::ranges::find_if(
+  // The text of a failed run is of more use than that of a passed one.
+  const auto failed = std::ranges::find_if(
       runs, [](const ScenarioVerdict& run) { return run.verdict != Verdict::kPassed; });
-  ScenarioVerdict merged = telling == runs.end() ? runs.front() : *telling;
+  ScenarioVerdict merged = failed == runs.end() ? runs.front() : *failed;
   for (const ScenarioVerdict& run : runs) {
     merged.seconds = std::max(merged.seconds, run.seconds);
     merged.peak_memory_kib = std::max(merged.peak_memory_kib, run.peak_memory_kib);
@@ -152,7 +93,7 @@ ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs) {
     if (!run.pictures.empty()) merged.pictures = run.pictures;
   }
   const bool agree = std::ranges::all_of(
-      runs, [&](const ScenarioVerdict& run) { return SaySame(run, runs.front()); });
+      runs, [&](const ScenarioVerdict& run) { return SameOutcome(run, runs.front()); });
   if (agree) return JudgedByPictures(std::move(merged));
   merged.verdict = Verdict::kFlaky;
   if (merged.exit_code != ExitCode::kFailure) merged.exit_code = ExitCode::kDiffers;
@@ -172,22 +113,22 @@ Tally Count(const std::vector<ScenarioVerdict>& verdicts) {
           .unchanged = count(Verdict::kUnchanged)};
 }
 
-std::string LeastHeadroomText(const std::vector<ScenarioVerdict>& verdicts) {
-  const auto left = [](const BoundaryRoom& room) {
-    return room.tolerance_ms - std::abs(room.offset_ms);
-  };
-  const ScenarioVerdict* whose = nullptr;
-  const BoundaryRoom* least = nullptr;
+std::string SmallestMarginText(const std::vector<ScenarioVerdict>& verdicts) {
+  double smallest_ms = std::numeric_limits<double>::infinity();
+  std::string text;
   for (const ScenarioVerdict& verdict : verdicts) {
-    for (const BoundaryRoom& room : verdict.boundaries) {
-      if (room.offset_ms == 0 || (least && left(*least) <= left(room))) continue;
-      whose = &verdict;
-      least = &room;
+    if (!verdict.has_golden || !verdict.comparison) continue;
+    const grammar::Tick ticks_per_second = verdict.comparison->ticks_per_second;
+    for (const Margin& margin : verdict.comparison->margins) {
+      const double left_ms = MillisecondsOf(margin.Left(), ticks_per_second);
+      if (margin.offset == 0 || left_ms >= smallest_ms) continue;
+      smallest_ms = left_ms;
+      text = fmt::format("smallest margin: {:.1f} of {:.1f} ms left at {} of {}", left_ms,
+                         MillisecondsOf(margin.tolerance, ticks_per_second), margin.Boundary(),
+                         verdict.scenario);
     }
   }
-  if (!least) return "";
-  return fmt::format("least headroom: {:.1f} of {:.1f} ms are left at {} of {}", left(*least),
-                     least->tolerance_ms, least->boundary, whose->scenario);
+  return text;
 }
 
 ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts) {

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `prehend check` found out about one scenario, as a value that travels from the worker to the
-// report. Tested by tests/harness/check/verdict_test.cc
+// What `prehend check` found out about one scenario: a value that the worker sends to its parent,
+// and that the report, JUnit and JSON are made from. Tested by tests/harness/check/verdict_test.cc
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/base/content_hash.h"
 #include "harness/base/exit_code.h"
+#include "harness/golden/compare.h"
+#include "harness/timeline/event_drawings.h"
 
 namespace prehend::harness {
 
@@ -29,13 +32,6 @@ struct ReportedPicture {
   std::string caption;
 };
 
-/// How near a boundary comes to its tolerance.
-struct BoundaryRoom {
-  std::string boundary;  ///< "begin of reaching(right_hand, milk)"
-  double offset_ms = 0;  ///< recognised - expected
-  double tolerance_ms = 0;
-};
-
 struct ScenarioVerdict {
   std::string scenario;  ///< skill/name
   std::string shows;
@@ -43,12 +39,12 @@ struct ScenarioVerdict {
   ExitCode exit_code = ExitCode::kAgrees;  ///< what a check of this scenario alone ends with
   std::string reason;                      ///< one line; empty when passed
   std::string details;  ///< differences, violations, diagnostics; several lines or empty
-  nlohmann::ordered_json differences = nlohmann::ordered_json::array();  ///< DifferencesJson()
-  nlohmann::ordered_json relations = nlohmann::ordered_json::array();    ///< RelationsJson()
-  std::string blame;                     ///< BlameText(): whose doing the differences are; or empty
-  std::string headroom;                  ///< HeadroomText()
-  std::vector<BoundaryRoom> boundaries;  ///< of all matched events
-  std::string command;                   ///< shows it again; of what is pending, what to accept
+  std::optional<Comparison> comparison;  ///< with the golden; without one every event is extra
+  bool has_golden = false;               ///< there is one, and it could be read
+  EventDrawings drawings;                ///< how the grammar wants the comparison drawn
+  std::string explain;                   ///< the command that asks about the scenario's events
+  std::string cause;    ///< CauseText(): what the differences are attributed to; or empty
+  std::string command;  ///< repeats the check; of what is pending, shows what to accept
   std::string state_hash;
   std::int64_t ticks = 0;
   double seconds = 0;                ///< wall time in its worker
@@ -56,29 +52,37 @@ struct ScenarioVerdict {
   FileHashes inputs;  ///< every file that decides what the verdict is, as it was before the run
   std::vector<ReportedPicture> pictures;
   std::string picture_differences;  ///< several lines; only one of several repetitions draws
-  std::string timeline_svg;
+
+  bool DiffersFromGolden() const { return has_golden && comparison && !comparison->Agrees(); }
 };
 
 /// What stands before its command: "again", or "next" of one that leads on.
 std::string_view CommandLabel(const ScenarioVerdict& verdict);
 
-/// Both directions; the JSON of a verdict from a worker has all fields.
-nlohmann::ordered_json ToJson(const ScenarioVerdict& verdict);
-ScenarioVerdict VerdictFromJson(const nlohmann::ordered_json& json);
+/// The smallest margin of what passed; else empty.
+std::string MarginText(const ScenarioVerdict& verdict);
 
-/// What runs of one scenario, or a single one, come to: their common verdict, or kFlaky when they
-/// differ in anything but time, memory and pictures. Of these the largest is kept. What passed in
-/// all fails when a picture differs. Needs at least one.
+/// As `prehend check --json` prints it: keys in docs/regression-suite.md.
+nlohmann::ordered_json VerdictJson(const ScenarioVerdict& verdict);
+
+/// Every field, for another process of the same program. Unpacking throws
+/// nlohmann::json::exception when a field is missing or of another type.
+nlohmann::json Packed(const ScenarioVerdict& verdict);
+ScenarioVerdict UnpackedVerdict(const nlohmann::json& packed);
+
+/// The verdict of one or several runs of a scenario: their common one, or kFlaky when they differ
+/// in anything but time, memory and pictures. Of these the largest is kept. A scenario that passed
+/// fails when a picture differs. Needs at least one run.
 ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs);
 
 struct Tally {
-  int passed = 0, failed = 0, pending = 0, unchanged = 0;  ///< `failed` has the flaky ones, too
+  int passed = 0, failed = 0, pending = 0, unchanged = 0;  ///< `failed` includes the flaky ones
 };
 Tally Count(const std::vector<ScenarioVerdict>& verdicts);
 
-/// The boundary that is nearest to its tolerance, of those that are off at all:
-/// "least headroom: 4.2 of 8.3 ms are left at .. of SCENARIO"; "" when none is.
-std::string LeastHeadroomText(const std::vector<ScenarioVerdict>& verdicts);
+/// The smallest margin of all boundaries that are not exact:
+/// "smallest margin: 4.2 of 8.3 ms left at .. of SCENARIO"; "" when all are exact.
+std::string SmallestMarginText(const std::vector<ScenarioVerdict>& verdicts);
 
 /// How the whole check ends: the worst of its scenarios.
 ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts);

@@ -7,8 +7,8 @@
 
 #include "harness/base/content_hash.h"
 #include "harness/base/shell_quote.h"
-#include "harness/check/unreferenced_goldens.h"
 #include "harness/golden/golden_files.h"
+#include "harness/judge/unreferenced_goldens.h"
 #include "harness/pictures/pictures.h"
 
 namespace prehend::harness {
@@ -16,14 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether it is the one that `check` left for a person to look at, if it left one.
+/// Whether `drawn` is the picture that `check` left for review, if it left one.
 bool IsThePictureShown(const GoldenFiles& files, const std::string& id, const fs::path& drawn) {
   const fs::path shown = files.PendingPicturePath(id, drawn.filename().string());
   std::error_code error;
   return !fs::exists(shown, error) || FileHash(shown.string()) == FileHash(drawn.string());
 }
 
-/// Removes the golden pictures that the scenario no longer asks for; how many.
+/// Removes the golden pictures that the scenario no longer defines; returns how many.
 int RemoveUnasked(const CommandContext& context, const std::string& id, const Scenario& scenario) {
   int removed = 0;
   for (const fs::path& picture : UnaskedPictures(id, scenario.pictures.size(), context.root)) {
@@ -35,8 +35,8 @@ int RemoveUnasked(const CommandContext& context, const std::string& id, const Sc
   return removed;
 }
 
-/// Moves it into its place unless it is there already, to the byte. Whether it was not; nothing
-/// when it cannot.
+/// Makes `drawn` the golden picture. Returns whether that changes a byte; nothing when it cannot be
+/// moved.
 std::optional<bool> Keep(const CommandContext& context, const std::string& id,
                          const fs::path& drawn) {
   const GoldenFiles files(context.root);
@@ -66,10 +66,9 @@ ExitCode AcceptPictures(const CommandContext& context, const std::string& reason
   for (const WrittenPicture& picture : drawn.pictures) {
     if (IsThePictureShown(files, id, picture.file)) continue;
     return Complain(context, ExitCode::kDiffers,
-                    "what waited for acceptance is not what the scenario looks like now, " +
-                        picture.file +
-                        "; nothing was accepted\n  let that wait and look at it: prehend check " +
-                        ShellQuoted(id) + ", then prehend review " + ShellQuoted(id));
+                    "the pending picture differs from what the scenario looks like now, " +
+                        picture.file + "; nothing was accepted\n  look at the new one: " +
+                        CommandText({"check", id}) + ", then " + CommandText({"review", id}));
   }
   int changed = RemoveUnasked(context, id, scenario);
   for (const WrittenPicture& picture : drawn.pictures) {
@@ -80,8 +79,8 @@ ExitCode AcceptPictures(const CommandContext& context, const std::string& reason
   }
   if (changed == 0) {
     context.out << "nothing to accept: "
-                << (drawn.pictures.empty() ? id + " asks for no pictures ('pictures:' in its file)"
-                                           : "the pictures of " + id + " are the same already")
+                << (drawn.pictures.empty() ? id + " defines no pictures ('pictures:' in its file)"
+                                           : "the pictures of " + id + " equal their goldens")
                 << "\n";
     return ExitCode::kAgrees;
   }

@@ -11,7 +11,8 @@
 
 namespace prehend::harness {
 
-/// `golden` is what its events have already; the reason goes into its header. The run was recorded.
+/// `golden` is the accepted one of the events; the reason is added to its header. `run` was
+/// recorded.
 ExitCode AcceptPictures(const CommandContext& context, const std::string& reason, Golden golden,
                         const Scenario& scenario, const RunResult& run);
 

@@ -2,7 +2,6 @@
 // prehend bench. Tested by tests/program/command_line_test.cc
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -14,12 +13,7 @@
 namespace prehend::harness {
 namespace {
 
-void Declare(CLI::App& options) {
-  DeclareFlag(options, "--quick", "a fraction of the work: to see that it runs, not how fast");
-  DeclareFlag(options, "--json", "one JSON object instead of a table");
-}
-
-// 1234567 -> "1.23 M"
+/// 1234567 -> "1.23 M"
 std::string Large(double value) {
   for (const auto& [unit, size] : {std::pair{" G", 1e9}, {" M", 1e6}, {" k", 1e3}}) {
     if (value >= size) return fmt::format("{:.3g}{}", value / size, unit);
@@ -41,7 +35,7 @@ std::vector<std::string> Cells(const SpeedFigure& f) {
           OrDash(f.by_hand_s > 0, f.agrees ? HashText(f.hash) : "DIFFERS")};
 }
 
-OrderedJson Json(const SpeedFigure& f) {
+OrderedJson FigureJson(const SpeedFigure& f) {
   OrderedJson json = {{"what", f.what},
                       {"unit", f.unit},
                       {"operations", f.operations},
@@ -60,39 +54,41 @@ OrderedJson Json(const SpeedFigure& f) {
   return json;
 }
 
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
+ExitCode RunBench(const ParsedOptions& options, const CommandContext& context) {
   const Result<std::vector<SpeedFigure>> measured =
-      MeasureSpeed(context.root, IsGiven(options, "--quick"));
+      MeasureSpeed(context.root, options.Has("--quick"));
   if (!measured) return Complain(context, measured.error());
   std::vector<std::vector<std::string>> rows = {{"what", "takes", "per", "per_second",
-                                                 "times_by_hand", "events/s", "times_real_time",
+                                                 "times_baseline", "events/s", "times_real_time",
                                                  "of_physics", "result"}};
   OrderedJson list = OrderedJson::array();
   for (const SpeedFigure& figure : *measured) {
     rows.push_back(Cells(figure));
-    list.push_back(Json(figure));
+    list.push_back(FigureJson(figure));
   }
-  if (IsGiven(options, "--json")) {
+  if (options.Has("--json")) {
     context.out << OrderedJson{{"figures", list}}.dump(2) << "\n";
   } else {
     for (const std::string& line : AlignColumns(rows)) context.out << line << "\n";
-    context.out << "One core. times_by_hand: the same rules as automata written by hand, in the "
-                   "same run.\n";
+    context.out << "On one core. times_baseline: speed relative to a hand-written baseline, which "
+                   "recognises the same events in the same run.\n";
   }
   const bool agrees = std::ranges::all_of(*measured, &SpeedFigure::agrees);
   if (agrees) return ExitCode::kAgrees;
   return Complain(context, ExitCode::kDiffers,
-                  "the grammar and the automata by hand recognise different events");
+                  "the grammar and the hand-written baseline recognise different events");
 }
 
 }  // namespace
 
 Command BenchCommand() {
   return {.name = "bench",
-          .summary = "Measure how fast grammars are watched on this machine",
-          .examples = "prehend bench\nprehend bench --json",
-          .declare = Declare,
-          .run = Run};
+          .summary = "Measure how fast grammars are evaluated on this machine",
+          .examples = {"bench", "bench --json"},
+          .options = {{.name = "--quick",
+                       .help = "do a fraction of the work: shows that it runs, not how fast"},
+                      {.name = "--json", .help = "print one JSON object instead of a table"}},
+          .run = RunBench};
 }
 
 }  // namespace prehend::harness

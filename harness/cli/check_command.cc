@@ -3,16 +3,14 @@
 // tests/program/runner_test.cc
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "harness/base/atomic_file.h"
+#include "harness/base/shell_quote.h"
 #include "harness/check/run_suite.h"
 #include "harness/cli/command.h"
-#include "harness/cli/number_in.h"
 #include "harness/report/junit.h"
 #include "harness/report/report.h"
 
@@ -21,118 +19,127 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kDefaultTimeLimit_s = "120";
-constexpr const char* kDefaultMemoryLimit_mb = "1000";
-constexpr int kMaxJobs = 256;
+constexpr double kDefaultTimeLimit_s = 120;
+constexpr std::uint64_t kDefaultMemoryLimit_mb = 1000;
 constexpr int kMaxRepeats = 10'000;
 
-void DeclareSelection(CLI::App& options) {
-  options.add_option("names", "names, skill/name, globs or files; nothing: all")
-      ->expected(-1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  const auto is_filter = [](const std::string& text) {
-    const std::size_t word = text.starts_with("!") ? 1 : 0;
-    const bool of_tag = text.compare(word, 4, "tag:") == 0;
-    if (text.empty() || text.size() > word + (of_tag ? 4 : 0)) return std::string();
-    return "'" + text + "' is followed by " +
-           (of_tag ? "a tag, like " : "what must not match, like ") + text +
-           (of_tag ? "smoke" : "reach/*");
-  };
-  options
-      .add_option("--filter",
-                  "only those that match this glob, or have tag:NAME; with a leading ! only the "
-                  "others; may be given again, then all must hold")
-      ->type_name("[!]GLOB|[!]tag:NAME")
-      ->expected(1)
-      ->check(CLI::Validator(is_filter, "", "filter"))
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  const auto is_shard = [](const std::string& text) {
-    return ParseShard(text) ? std::string()
-                            : "'" + text + "' is no shard; the second of three is 2/3";
-  };
-  options.add_option("--shard", "only the I-th of N parts of the selection")
-      ->type_name("I/N")
-      ->expected(1)
-      ->check(CLI::Validator(is_shard, "", "shard"));
-  DeclareFlag(options, "--changed",
-              "skip what passed before and depends on no file, and no part of the program, that "
-              "changed since");
+std::string FilterProblem(const std::string& filter) {
+  const bool negated = filter.starts_with('!');
+  const std::string rest = filter.substr(negated ? 1 : 0);
+  if (!rest.empty() && rest != "tag:") return "";
+  return fmt::format("found '{0}', wanted {1}, like {0}{2}", filter,
+                     rest.empty() ? "what must not match" : "a tag after it",
+                     rest.empty() ? "reach/*" : "smoke");
 }
 
-void DeclareRunning(CLI::App& options) {
-  options.add_option("--jobs,-j", "processes at a time; otherwise one per core")
-      ->type_name("N")
-      ->expected(1)
-      ->check(CLI::Range(1, kMaxJobs));
-  options
-      .add_option("--time-limit-s,--time-limit",
-                  "seconds that one scenario may take; otherwise 120")
-      ->type_name("S")
-      ->expected(1)
-      ->check(NumberIn(0.1, 86400));
-  options
-      .add_option("--memory-limit-mb",
-                  "private memory that one scenario may take; otherwise 1000, 0 is no limit")
-      ->type_name("MB")
-      ->expected(1)
-      ->check(CLI::Range(0, 1'000'000));
-  options
-      .add_option(
-          "--repeat",
-          "run each scenario N times; different results, or state hashes, are flaky and fail")
-      ->type_name("N")
-      ->expected(1)
-      ->check(CLI::Range(1, kMaxRepeats));
-  options
-      .add_option("--shuffle", "run in an order drawn with this seed; otherwise the slowest first")
-      ->type_name("SEED")
-      ->expected(1)
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62));
+std::string ShardProblem(const std::string& shard) {
+  return ParseShard(shard) ? ""
+                           : "found '" + shard + "', wanted I/N, like 2/3 for the second of three";
 }
 
-void Declare(CLI::App& options) {
-  DeclareSelection(options);
-  DeclareRunning(options);
-  options.add_option("--report", "folder for index.html and pictures; otherwise build/report")
-      ->type_name("DIR")
-      ->expected(1);
-  options
-      .add_option("--junit", "also write the verdicts as JUnit XML; -: print that instead of text")
-      ->type_name("FILE")
-      ->expected(1);
-  DeclareFlag(options, "--no-pictures", "do not draw");
-  DeclareFlag(options, "--json", "one JSON object instead of text");
-  DeclareRunOptions(options);
+/// Its limits are too large to be worth a place in the help.
+ValueRule AnySeed() {
+  ValueRule rule = IntegersFrom(0, std::int64_t{1} << 62);
+  rule.range.clear();
+  return rule;
 }
 
-std::uint64_t MemoryLimit_bytes(const CLI::App& options) {
+std::vector<Option> SelectionOptions() {
+  return InGroup(
+      "Which scenarios",
+      {
+          {.name = "names",
+           .help = "names, skill/name, globs or files; default: all scenarios",
+           .repeatable = true},
+          {.name = "--filter",
+           .help = "keep those that match this glob or have the tag; with a leading '!' drop\n"
+                   "them; may be repeated, then all must hold",
+           .placeholder = "[!]GLOB|[!]tag:NAME",
+           .rule = {.problem = FilterProblem},
+           .repeatable = true},
+          {.name = "--shard",
+           .help = "keep part I of N equal parts",
+           .placeholder = "I/N",
+           .rule = {.problem = ShardProblem}},
+          {.name = "--changed",
+           .help = "skip scenarios that passed, if no file and no part of the program that\n"
+                   "they depend on changed since"},
+      });
+}
+
+std::vector<Option> RunningOptions() {
+  return InGroup(
+      "How they run",
+      {
+          {.name = "--jobs",
+           .help = "scenarios at a time; default: one per core",
+           .placeholder = "N",
+           .other_name = "-j",
+           .rule = IntegersFrom(1, kMaxJobs)},
+          {.name = "--time-limit-s",
+           .help =
+               fmt::format("seconds that one scenario may take; default: {}", kDefaultTimeLimit_s),
+           .placeholder = "S",
+           .other_name = "--time-limit",
+           .rule = NumbersFrom(0.1, 86400)},
+          {.name = "--memory-limit-mb",
+           .help = fmt::format("memory that one scenario may take; 0: no limit; default: {}",
+                               kDefaultMemoryLimit_mb),
+           .placeholder = "MB",
+           .rule = IntegersFrom(0, 1'000'000)},
+          {.name = "--repeat",
+           .help = "run each scenario N times; a scenario whose results or state hashes\n"
+                   "differ is flaky and fails",
+           .placeholder = "N",
+           .rule = IntegersFrom(1, kMaxRepeats)},
+          {.name = "--shuffle",
+           .help = "run in a random order with this seed; default: the slowest first",
+           .placeholder = "SEED",
+           .rule = AnySeed()},
+          GrammarOption(),
+          SettingsOption(),
+      });
+}
+
+std::vector<Option> ResultOptions() {
+  return InGroup("What is written",
+                 {
+                     {.name = "--report",
+                      .help = "folder for index.html and pictures; default: build/report",
+                      .placeholder = "DIR"},
+                     {.name = "--junit",
+                      .help = "also write the verdicts as JUnit XML; -: print it instead of text",
+                      .placeholder = "FILE"},
+                     {.name = "--no-pictures", .help = "draw no pictures"},
+                     {.name = "--json", .help = "print one JSON object instead of text"},
+                 });
+}
+
+std::uint64_t MemoryLimit_bytes(const ParsedOptions& options) {
 #ifdef __SANITIZE_ADDRESS__
   (void)options;
-  return 0;  // shadow memory is larger than any limit
+  return 0;  // shadow memory exceeds any limit
 #else
-  return std::stoull(ValueOf(options, "--memory-limit-mb", kDefaultMemoryLimit_mb)) * kMegabyte;
+  return options.UnsignedOr("--memory-limit-mb", kDefaultMemoryLimit_mb) * kMegabyte;
 #endif
 }
 
-SuiteRequest RequestFrom(const CLI::App& options, const CommandContext& context,
+SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& context,
                          ScenarioSelection selection) {
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   SuiteRequest request{.selection = std::move(selection),
                        .changes = RequestOf(options, {}),
                        .root = context.root,
-                       .report_folder = ValueOf(options, "--report",
-                                                (fs::path(context.root) / "build/report").string()),
-                       .pictures = !IsGiven(options, "--no-pictures"),
-                       .only_changed = IsGiven(options, "--changed"),
-                       .repeat = std::stoi(ValueOf(options, "--repeat", "1")),
+                       .report_folder = options.TextOr(
+                           "--report", (fs::path(context.root) / "build/report").string()),
+                       .pictures = !options.Has("--no-pictures"),
+                       .only_changed = options.Has("--changed"),
+                       .repeat = options.IntOr("--repeat", 1),
                        .shuffle_seed = {},
                        .limits = {}};
-  if (IsGiven(options, "--shuffle"))
-    request.shuffle_seed = std::stoull(ValueOf(options, "--shuffle"));
-  request.limits = {
-      .jobs = std::stoi(ValueOf(options, "--jobs", std::to_string(cores))),
-      .time_limit_s = std::stod(ValueOf(options, "--time-limit-s", kDefaultTimeLimit_s)),
-      .memory_limit_bytes = MemoryLimit_bytes(options)};
+  if (options.Has("--shuffle")) request.shuffle_seed = options.UnsignedOr("--shuffle", 0);
+  request.limits = {.jobs = options.IntOr("--jobs", CoreCount()),
+                    .time_limit_s = options.NumberOr("--time-limit-s", kDefaultTimeLimit_s),
+                    .memory_limit_bytes = MemoryLimit_bytes(options)};
   return request;
 }
 
@@ -154,11 +161,12 @@ std::string Colored(Verdict verdict, bool colored) {
   return fmt::format("\033[{}m{}\033[0m", color, name);
 }
 
-/// `as_files_say`: nothing was changed by the command line, so that what differs can be accepted.
+/// `as_files_say`: the command line changed no grammar and no setting, so that a difference can be
+/// accepted.
 void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
                const std::string& page, const CommandContext& context) {
   for (const ScenarioVerdict& verdict : verdicts) {
-    const std::string& note = verdict.reason.empty() ? verdict.headroom : verdict.reason;
+    const std::string note = verdict.reason.empty() ? MarginText(verdict) : verdict.reason;
     context.out << fmt::format("{}  {}{}{}\n", Colored(verdict.verdict, context.colored),
                                verdict.scenario, note.empty() ? "" : "  ", note);
     if (verdict.exit_code == ExitCode::kAgrees) continue;
@@ -166,16 +174,21 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
     context.out << "    " << CommandLabel(verdict) << ": " << verdict.command << "\n";
   }
   const Tally tally = Count(verdicts);
-  const std::string least = LeastHeadroomText(verdicts);
-  if (!least.empty()) context.out << least << "\n";
+  const std::string smallest = SmallestMarginText(verdicts);
+  if (!smallest.empty()) context.out << smallest << "\n";
   context.out << "report: " << page << "\n";
-  const auto differs = [](const ScenarioVerdict& verdict) { return !verdict.differences.empty(); };
-  if (as_files_say && std::ranges::any_of(verdicts, differs))
-    context.out << "if what differs is right: prehend review says how to accept it\n";
-  if (tally.pending > 0)
-    context.out << fmt::format("{} pending: accept with a reason, or mend\n", tally.pending);
+  if (as_files_say && std::ranges::any_of(verdicts, &ScenarioVerdict::DiffersFromGolden))
+    context.out << "If the new behaviour is intended: " << CommandText({"review"}) << "\n";
+  if (tally.pending > 0) {
+    context.out << fmt::format(
+        "{}: review {}, then accept {} with a reason\n",
+        tally.pending == 1 ? "1 new scenario has no golden"
+                           : fmt::format("{} new scenarios have no golden", tally.pending),
+        tally.pending == 1 ? "it" : "them", tally.pending == 1 ? "it" : "each");
+  }
   if (tally.unchanged > 0)
-    context.out << fmt::format("{} unchanged since they passed, not run again\n", tally.unchanged);
+    context.out << fmt::format("{} unchanged since the last pass: not run again\n",
+                               tally.unchanged);
   context.out << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);
 }
 
@@ -184,41 +197,41 @@ nlohmann::ordered_json SummaryJson(const std::vector<ScenarioVerdict>& verdicts,
   const Tally tally = Count(verdicts);
   nlohmann::ordered_json scenarios = nlohmann::ordered_json::array();
   for (const ScenarioVerdict& verdict : verdicts) {
-    scenarios.push_back(ToJson(verdict));
-    scenarios.back().erase("timeline_svg");
-    scenarios.back().erase("picture_differences");  // they are among the details
+    scenarios.push_back(VerdictJson(verdict));
   }
   return {{"passed", tally.passed},       {"failed", tally.failed}, {"pending", tally.pending},
           {"unchanged", tally.unchanged}, {"report", page},         {"scenarios", scenarios}};
 }
 
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  if (IsGiven(options, "--changed") &&
-      (IsGiven(options, "--grammar") || IsGiven(options, "--set"))) {
+ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--changed") && (options.Has("--grammar") || options.Has("--set"))) {
     return Complain(context, ExitCode::kBadInput,
-                    "--changed is about scenarios as their files say: not with --grammar or --set");
+                    "--changed compares files; it cannot be combined with --grammar or --set");
   }
-  const std::string junit = ValueOf(options, "--junit");
-  if (junit == "-" && IsGiven(options, "--json")) {
+  for (const std::string& name : options.All("names")) {
+    if (const auto refused = RefuseRecording(name, context)) return *refused;
+  }
+  const std::string junit = options.Text("--junit");
+  if (junit == "-" && options.Has("--json")) {
     return Complain(context, ExitCode::kBadInput,
-                    "--junit - and --json contradict each other: both are printed");
+                    "--junit - contradicts --json: both would be printed");
   }
   std::string problem;
-  auto selection = SelectScenarios(ValuesOf(options, "names"), ValuesOf(options, "--filter"),
-                                   context.root, problem);
+  auto selection =
+      SelectScenarios(options.All("names"), options.All("--filter"), context.root, problem);
   if (!selection) return Complain(context, ExitCode::kNothing, problem);
-  if (IsGiven(options, "--shard")) {
-    KeepShard(*ParseShard(ValueOf(options, "--shard")), *selection);
+  if (options.Has("--shard")) {
+    KeepShard(*ParseShard(options.Text("--shard")), *selection);
     if (selection->scenarios.empty() && selection->orphans.empty())
       return Complain(context, ExitCode::kNothing,
-                      "this shard is empty: there are fewer scenarios");
+                      "this shard is empty; fewer scenarios are selected than there are shards");
   }
   const SuiteRequest request = RequestFrom(options, context, std::move(*selection));
   const std::string page = (fs::path(request.report_folder) / "index.html").string();
-  // Verdicts take long; what cannot be written is found before.
+  // Found out before the scenarios run, which takes long.
   problem = WhyNotWritable(page);
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--report: " + problem);
-  if (IsGiven(options, "--junit")) problem = WhyNotWritable(junit);
+  if (options.Has("--junit")) problem = WhyNotWritable(junit);
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--junit: " + problem);
   SuiteProgress progress;
   if (context.progress) {
@@ -229,15 +242,14 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
   const std::vector<ScenarioVerdict> verdicts = RunSuite(request, progress);
 
-  if (IsGiven(options, "--json")) {
+  if (options.Has("--json")) {
     context.out << SummaryJson(verdicts, page).dump(2) << "\n";
   } else if (junit != "-") {
-    const bool as_files_say = !IsGiven(options, "--grammar") && !IsGiven(options, "--set");
+    const bool as_files_say = !options.Has("--grammar") && !options.Has("--set");
     PrintText(verdicts, as_files_say, page, context);
   }
   problem = WriteTextFile(page, ReportHtml(verdicts));
-  if (problem.empty() && IsGiven(options, "--junit"))
-    problem = WriteTextFile(junit, JunitXml(verdicts));
+  if (problem.empty() && options.Has("--junit")) problem = WriteTextFile(junit, JunitXml(verdicts));
   return problem.empty() ? WorstOf(verdicts) : Complain(context, ExitCode::kFailure, problem);
 }
 
@@ -246,16 +258,12 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 Command CheckCommand() {
   return {.name = "check",
           .summary = "Run scenarios and compare them with their goldens: the regression suite",
-          .examples =
-              "prehend check\n"
-              "prehend check milk_carton_wrap 'slide/*' my/scenario.yaml\n"
-              "prehend check --filter tag:smoke --filter '!reach/*' --no-pictures --jobs 1\n"
-              "prehend check --changed\n"
-              "prehend check --shard 2/3 --junit verdicts.xml\n"
-              "prehend check 'slide/*' --repeat 10\n"
-              "prehend check --grammar my/rules.grammar --json",
-          .declare = Declare,
-          .run = Run};
+          .examples = {"check", "check milk_carton_wrap 'slide/*' my/scenario.yaml",
+                       "check --filter tag:smoke --filter '!reach/*' --no-pictures --jobs 1",
+                       "check --changed", "check --shard 2/3 --junit verdicts.xml",
+                       "check 'slide/*' --repeat 10", "check --grammar my/rules.grammar --json"},
+          .options = Joined(SelectionOptions(), Joined(RunningOptions(), ResultOptions())),
+          .run = RunCheck};
 }
 
 }  // namespace prehend::harness

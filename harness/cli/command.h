@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A command of `prehend`: what it is called, what it accepts, what it does. Each stands in a file
-// of its own and is listed in harness/cli/command_line.cc. Results go to `out`, diagnostics to
-// `err`. Tested by tests/program/command_line_test.cc
+// A command of `prehend`: its name, what it accepts, what it does. Each stands in a file of its own
+// and is listed in harness/cli/command_line.cc. Results go to `out`, diagnostics to `err`. Tested
+// by tests/program/command_line_test.cc
 #pragma once
 
 #include <optional>
@@ -13,34 +13,31 @@
 
 #include "grammar/base/diagnostic.h"
 #include "harness/base/exit_code.h"
+#include "harness/cli/options.h"
 #include "harness/run/find_scenario.h"
 #include "harness/run/load_run.h"
 #include "harness/run/open_episode.h"
 
-namespace CLI {
-class App;
-}
-
 namespace prehend::harness {
 
-/// What a command may know of the world around it.
+/// What a command may know about its surroundings.
 struct CommandContext {
   std::ostream& out;
   std::ostream& err;
-  std::string root;          ///< the project's folder
-  std::string today;         ///< YYYY-MM-DD
-  std::string command_line;  ///< as it could be typed again; ends every failure message
-  bool in_ci = false;        ///< nobody is there to accept anything
-  bool colored = false;      ///< out may be coloured
-  bool progress = false;     ///< err is a terminal
+  std::string root;                ///< the project's folder
+  std::string today;               ///< YYYY-MM-DD
+  std::vector<std::string> words;  ///< what was typed after the program's name
+  bool in_ci = false;              ///< there is no person who could accept a golden
+  bool colored = false;            ///< `out` may be coloured
+  bool progress = false;           ///< `err` is a terminal
 };
 
 struct Command {
   std::string name;
   std::string summary;
-  std::string examples;  ///< lines, without indentation
-  void (*declare)(CLI::App& options) = nullptr;
-  ExitCode (*run)(const CLI::App& options, const CommandContext& context) = nullptr;
+  std::vector<std::string> examples;  ///< without the program's name
+  std::vector<Option> options;
+  ExitCode (*run)(const ParsedOptions& options, const CommandContext& context) = nullptr;
 };
 
 Command ListCommand();
@@ -58,29 +55,44 @@ Command ScoreCommand();
 Command ExplainCommand();
 Command TracksCommand();
 
-// What was typed for an option; `name` is "--json", or "scenario" for a positional.
-bool IsGiven(const CLI::App& options, const std::string& name);
-std::string ValueOf(const CLI::App& options, const std::string& name,
-                    const std::string& fallback = {});
-std::vector<std::string> ValuesOf(const CLI::App& options, const std::string& name);
+constexpr int kMaxJobs = 256;
+/// The number of processes that keep this machine busy.
+int CoreCount();
 
-void DeclareFlag(CLI::App& options, const std::string& name, const std::string& help);
+// Options that several commands have.
+Option ScenarioArgument();
+Option EpisodeArgument();  ///< a scenario or a recording
+Option GrammarOption();
+Option SettingsOption();
+RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_file);
 
-/// --grammar and --set, and what was typed for them.
-void DeclareRunOptions(CLI::App& options);
-RunRequest RequestOf(const CLI::App& options, const std::string& scenario_file);
+/// Reports a file that is a recording where a scenario is wanted; nothing of any other.
+std::optional<ExitCode> RefuseRecording(const std::string& typed, const CommandContext& context);
 
-/// The scenario that was typed, by name or path; otherwise says so, with the nearest name.
-std::optional<ScenarioFile> FindScenarioOrComplain(const std::string& typed,
-                                                   const CommandContext& context);
-
-/// The episode that was typed for `scenario`, a scenario or a recording, with the run options;
-/// otherwise, after saying why not, the exit code.
-tl::expected<EpisodeSource, ExitCode> OpenEpisodeOrComplain(const CLI::App& options,
+/// The scenario that was typed, by name or path; otherwise, after reporting the nearest name, the
+/// exit code.
+tl::expected<ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& typed,
                                                             const CommandContext& context);
 
-/// Prints to `err`, followed by the command line, and returns `code`.
+/// The episode that was typed for `scenario`, a scenario or a recording, with the run options;
+/// otherwise, after reporting why there is none, the exit code.
+tl::expected<EpisodeSource, ExitCode> OpenEpisodeOrComplain(const ParsedOptions& options,
+                                                            const CommandContext& context);
+
+/// Prints "prehend: MESSAGE" to `err`, of a failure also the command that shows it again, and
+/// returns `code`.
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message);
+
+/// The same, with the words of the command that should have been typed.
+ExitCode ComplainWithCorrection(const CommandContext& context, ExitCode code,
+                                const std::string& message,
+                                const std::vector<std::string>& corrected);
+
+/// Prints what is wrong with files or with values of options. The command is printed again when
+/// there is a file to fix.
 ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& diagnostics);
+
+/// Prints warnings to `err`; nothing when there are none.
+void Warn(const CommandContext& context, const grammar::Diagnostics& warnings);
 
 }  // namespace prehend::harness

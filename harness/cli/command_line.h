@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line: chooses the command, explains itself, turns slips of the pen into suggestions.
+// The command line: dispatches to a command, reports usage errors, prints help.
 // Tested by tests/program/command_line_test.cc
 #pragma once
 
@@ -7,7 +7,8 @@
 
 namespace prehend::harness {
 
-/// All of `prehend`. Reads the environment: PREHEND_HOME, CI, NO_COLOR.
+/// All of `prehend`. Reads the environment: PREHEND_HOME, PREHEND_COMMAND, CI,
+/// NO_COLOR.
 ExitCode RunCommandLine(int argc, const char* const* argv);
 
 }  // namespace prehend::harness

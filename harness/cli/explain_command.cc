@@ -3,7 +3,6 @@
 // Tested by tests/program/explain_command_test.cc
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "harness/base/shell_quote.h"
@@ -19,21 +18,6 @@ namespace {
 
 using explain::Ask;
 using explain::WhyEvent;
-
-void Declare(CLI::App& options) {
-  options.add_option("scenario", "a name, skill/name or a file; or a recording")
-      ->required()
-      ->expected(1);
-  options
-      .add_option("--event", "one that happened: reaching@1.24s, 'sliding right_hand milk @2.0s'")
-      ->type_name("EVENT[@TIME]")
-      ->expected(1);
-  options.add_option("--expected", "one that did not: 'sliding right_hand milk @2.0s'")
-      ->type_name("EVENT[@TIME]")
-      ->expected(1);
-  DeclareRunOptions(options);
-  DeclareFlag(options, "--json", "one JSON object instead of text");
-}
 
 OrderedJson ToJson(const std::string& episode, const grammar::ReplayMonitor& past) {
   return {{"episode", episode},
@@ -53,9 +37,10 @@ void PrintEvents(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_se
     out << (&why == &events.front() ? "" : "\n") << explain::Text(why, ticks_per_second);
 }
 
-ExitCode ComplainOfNone(const CLI::App& options, grammar::ReplayMonitor& past, const Ask& ask,
-                        const CommandContext& context) {
-  const std::string typed = ValueOf(options, "--event");
+/// Reports that no such event was recognised, with the nearest ones.
+ExitCode ComplainOfNoEvent(const ParsedOptions& options, grammar::ReplayMonitor& past,
+                           const Ask& ask, const CommandContext& context) {
+  const std::string typed = options.Text("--event");
   const std::vector<WhyEvent> nearest = explain::NearestEvents(past, ask);
   std::string message = fmt::format("--event: there is no '{}'{}", typed,
                                     nearest.empty() ? " in the whole episode" : "; the nearest:");
@@ -64,24 +49,25 @@ ExitCode ComplainOfNone(const CLI::App& options, grammar::ReplayMonitor& past, c
                            IntervalText(other.interval, past.entity_table().ticks_per_second));
   }
   message += fmt::format("\n  why not: {} --expected {}",
-                         ExplainCommand(ValueOf(options, "scenario"), RequestOf(options, {})),
+                         ExplainCommand(options.Text("scenario"), RequestOf(options, {})),
                          ShellQuoted(typed));
   return Complain(context, ExitCode::kNothing, message);
 }
 
-/// What is asked for; nothing: everything.
+/// What is asked for; when neither is set: all events.
 struct Question {
   std::optional<Ask> event;
   std::optional<Ask> expected;
 };
 
-ExitCode Answer(const CLI::App& options, const CommandContext& context, const std::string& episode,
-                const Question& question, grammar::ReplayMonitor& past) {
+ExitCode Answer(const ParsedOptions& options, const CommandContext& context,
+                const std::string& episode, const Question& question,
+                grammar::ReplayMonitor& past) {
   const grammar::Tick per_second = past.entity_table().ticks_per_second;
-  const bool as_json = IsGiven(options, "--json");
+  const bool as_json = options.Has("--json");
   OrderedJson json = ToJson(episode, past);
   if (question.expected) {
-    // What is there is explained, what is not is blamed.
+    // An event that did happen is explained like any other.
     const std::vector<WhyEvent> there = explain::ExplainEvents(past, *question.expected);
     if (there.empty()) {
       const explain::WhyMissing why = explain::ExplainMissing(past, *question.expected);
@@ -94,24 +80,24 @@ ExitCode Answer(const CLI::App& options, const CommandContext& context, const st
     }
   } else if (question.event) {
     const std::vector<WhyEvent> events = explain::ExplainEvents(past, *question.event);
-    if (events.empty()) return ComplainOfNone(options, past, *question.event, context);
+    if (events.empty()) return ComplainOfNoEvent(options, past, *question.event, context);
     json["events"] = ToJson(events, per_second);
     if (!as_json) PrintEvents(events, per_second, context.out);
   } else {
     const std::vector<WhyEvent> events = explain::ExplainAll(past);
     json["events"] = ToJson(events, per_second);
     if (!as_json && events.empty())
-      context.out << "nothing was recognised; --expected EVENT says why\n";
+      context.out << "no event was recognised; --expected EVENT tells why\n";
     if (!as_json && !events.empty()) context.out << explain::Table(events, per_second);
   }
   if (as_json) context.out << json.dump(2) << "\n";
   return ExitCode::kAgrees;
 }
 
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  if (IsGiven(options, "--event") && IsGiven(options, "--expected")) {
+ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--event") && options.Has("--expected")) {
     return Complain(context, ExitCode::kBadInput,
-                    "--event and --expected are two questions; ask one at a time");
+                    "--event contradicts --expected; give one of them");
   }
   const auto source = OpenEpisodeOrComplain(options, context);
   if (!source) return source.error();
@@ -119,9 +105,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   Question question;
   for (const auto& [option, ask] :
        {std::pair{"--event", &question.event}, std::pair{"--expected", &question.expected}}) {
-    if (!IsGiven(options, option)) continue;
+    if (!options.Has(option)) continue;
     const Result<Ask> read =
-        explain::ParseAsk(option, ValueOf(options, option), *source->program, source->entity_table);
+        explain::ParseAsk(option, options.Text(option), *source->program, source->entity_table);
     if (!read) return Complain(context, read.error());
     *ask = *read;
   }
@@ -136,15 +122,23 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 
 Command ExplainCommand() {
   return {.name = "explain",
-          .summary = "Say why events began and ended when they did, or why one did not happen",
-          .examples =
-              "prehend explain milk_carton_wrap\n"
-              "prehend explain milk_carton_wrap --event reaching@0.5s\n"
-              "prehend explain milk_carton_wrap --expected 'sliding right_hand milk @2.0s'\n"
-              "prehend explain milk_carton_wrap --set lift_rise=40cm --expected picking_up --json\n"
-              "prehend explain milk.jsonl --event 'grasping(right_hand, milk)'",
-          .declare = Declare,
-          .run = Run};
+          .summary = "Explain why events began and ended when they did, or why one did not happen",
+          .examples = {"explain milk_carton_wrap", "explain milk_carton_wrap --event reaching@0.5s",
+                       "explain milk_carton_wrap --expected 'sliding right_hand milk @2.0s'",
+                       "explain milk_carton_wrap --set lift_rise=40cm --expected picking_up --json",
+                       "explain milk.jsonl --event 'grasping(right_hand, milk)'"},
+          .options = {EpisodeArgument(),
+                      {.name = "--event",
+                       .help = "an event that happened: reaching@1.24s, 'sliding right_hand milk "
+                               "@2.0s'",
+                       .placeholder = "EVENT[@TIME]"},
+                      {.name = "--expected",
+                       .help = "an event that did not happen: 'sliding right_hand milk @2.0s'",
+                       .placeholder = "EVENT[@TIME]"},
+                      GrammarOption(),
+                      SettingsOption(),
+                      {.name = "--json", .help = "print one JSON object instead of text"}},
+          .run = RunExplain};
 }
 
 }  // namespace prehend::harness

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/command.h"
@@ -14,11 +13,7 @@
 namespace prehend::harness {
 namespace {
 
-void Declare(CLI::App& options) {
-  DeclareFlag(options, "--json", "one JSON object instead of a table");
-}
-
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
+ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
   std::vector<std::vector<std::string>> rows = {{"scenario", "shows", "tags"}};
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   grammar::Diagnostics diagnostics;
@@ -36,8 +31,8 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
   if (list.empty())
     return Complain(context, ExitCode::kNothing,
-                    "no scenarios below " + context.root + "/scenarios");
-  if (IsGiven(options, "--json")) {
+                    "there is no scenario in " + context.root + "/scenarios");
+  if (options.Has("--json")) {
     context.out << nlohmann::ordered_json{{"scenarios", list}}.dump(2) << "\n";
   } else {
     for (const std::string& line : AlignColumns(rows)) context.out << line << "\n";
@@ -49,10 +44,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 
 Command ListCommand() {
   return {.name = "list",
-          .summary = "List the scenarios: name, what it shows, tags",
-          .examples = "prehend list\nprehend list --json",
-          .declare = Declare,
-          .run = Run};
+          .summary = "List the scenarios: name, what each shows, tags",
+          .examples = {"list", "list --json"},
+          .options = {{.name = "--json", .help = "print one JSON object instead of a table"}},
+          .run = RunList};
 }
 
 }  // namespace prehend::harness

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend new: a commented scenario to start from. Tested by tests/program/command_line_test.cc
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
-#include <regex>
 
 #include "harness/base/atomic_file.h"
 #include "harness/base/default_grammar.h"
+#include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
 #include "harness/cli/command.h"
 #include "harness/format/scenario_copy.h"
@@ -49,28 +47,17 @@ pictures:
   - {at: transporting.begin, camera: three_quarter}
 )";
 
-void Declare(CLI::App& options) {
-  options
-      .add_option("name",
-                  "what the scenario claims, like carton_slides_then_is_lifted; or skill/name")
-      ->required()
-      ->expected(1);
-  options.add_option("--like", "start from this scenario instead")
-      ->type_name("SCENARIO")
-      ->expected(1);
-}
-
 constexpr std::string_view kModeline = "# yaml-language-server: $schema=../scenario.schema.json\n";
 
-/// Where new scenarios start from.
+/// The text that a new scenario starts from.
 struct Model {
-  std::string path;  ///< also of the template, as if it stood in the default folder
+  std::string path;  ///< of the template: where it would stand in the default folder
   std::string text = kTemplate;
   std::string skill = kDefaultSkill;
 };
 
-/// The scenario as it will stand in `path`, with the line that editors look for; nothing after a
-/// complaint: nobody should have to find the mistakes of another file in one of their own.
+/// The text of the scenario for `path`, with the line that editors look for. Errors of the model
+/// are reported in the model's own file; then nothing is returned.
 std::optional<std::string> Composed(const Model& model, const std::filesystem::path& path,
                                     const CommandContext& context) {
   const ScenarioLibrary library = ProjectLibrary(context.root);
@@ -93,45 +80,48 @@ std::optional<std::string> Composed(const Model& model, const std::filesystem::p
   return std::nullopt;
 }
 
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  const std::string typed = ValueOf(options, "name");
-  static const std::regex well_formed("([a-z][a-z0-9_]{0,63}/)?[a-z][a-z0-9_]{0,63}");
-  if (!std::regex_match(typed, well_formed)) {
+/// A small letter, then small letters, digits and '_', at most 64 in all.
+bool IsName(std::string_view word) {
+  return !word.empty() && word.size() <= 64 && word.front() >= 'a' && word.front() <= 'z' &&
+         word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == word.npos;
+}
+
+ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
+  const std::string typed = options.Text("name");
+  const std::size_t slash = typed.find('/');
+  const std::string name = slash == std::string::npos ? typed : typed.substr(slash + 1);
+  const bool has_folder = slash != std::string::npos;
+  if (!IsName(name) || (has_folder && !IsName(typed.substr(0, slash)))) {
     return Complain(
         context, ExitCode::kBadInput,
         "'" + typed +
-            "' is no name of a scenario: a small letter, then small letters, digits and '_', at "
-            "most 64; "
-            "a folder may stand in front, like slide_then_transport or slide/slide_then_transport");
+            "' is not a scenario name; wanted a small letter, then small letters, digits and '_', "
+            "at most 64 in all, like slide_then_transport; a folder may precede it, like "
+            "slide/slide_then_transport");
   }
   namespace fs = std::filesystem;
   const fs::path scenarios = fs::path(context.root) / "scenarios";
   Model model{.path = (scenarios / kDefaultSkill / "name.yaml").string()};
-  if (IsGiven(options, "--like")) {
-    const auto like = FindScenarioOrComplain(ValueOf(options, "--like"), context);
-    if (!like) return ExitCode::kNothing;
+  if (options.Has("--like")) {
+    const auto like = FindScenarioOrComplain(options.Text("--like"), context);
+    if (!like) return like.error();
     Result<std::string> read = ReadTextFile(like->path);
     if (!read) return Complain(context, read.error());
     model = {.path = like->path,
              .text = std::move(*read),
              .skill = like->skill.empty() ? kDefaultSkill : like->skill};
   }
-  std::string skill = model.skill;
-  const std::size_t slash = typed.find('/');
-  if (slash != std::string::npos) skill = typed.substr(0, slash);
-  const std::string name = slash == std::string::npos ? typed : typed.substr(slash + 1);
-
+  const std::string skill = has_folder ? typed.substr(0, slash) : model.skill;
   if (skill == kShowsErrors) {
     return Complain(context, ExitCode::kBadInput,
-                    "scenarios/invalid/ holds files that show errors, no command takes them for "
-                    "scenarios; choose another "
-                    "skill, like " +
+                    "scenarios/invalid/ holds examples of errors, which no command reads as "
+                    "scenarios; choose another folder, like " +
                         std::string(kDefaultSkill) + "/" + name);
   }
   for (const ScenarioFile& scenario : ListScenarios(context.root)) {
     if (scenario.name == name)
       return Complain(context, ExitCode::kBadInput,
-                      "there is a scenario of this name: " + scenario.path);
+                      "a scenario of this name exists: " + scenario.path);
   }
   const fs::path path = scenarios / skill / (name + ".yaml");
   const auto text = Composed(model, path, context);
@@ -139,14 +129,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   const std::string problem = WriteTextFile(path, *text);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   const std::string id = ScenarioId(skill, name);
-  context.out << path.string() << "\n"
-              << "next: edit it, then\n"
-              << "  prehend validate " << id << "\n"
-              << "  prehend run " << id << "\n"
-              << "  prehend render " << id << "\n"
-              << "  prehend check " << id << "\n"
-              << "  prehend review " << id << "\n"
-              << "  prehend accept " << id << " --reason \"...\"\n";
+  context.out << path.string() << "\nnext: edit it, then\n";
+  for (const char* command : {"validate", "run", "render", "check", "review"})
+    context.out << "  " << CommandText({command, id}) << "\n";
+  context.out << "  " << CommandText({"accept", id}) << " --reason \"...\"\n";
   return ExitCode::kAgrees;
 }
 
@@ -155,11 +141,16 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 Command NewCommand() {
   return {.name = "new",
           .summary = "Write a commented, runnable scenario to start from",
-          .examples =
-              "prehend new carton_is_lifted\n"
-              "prehend new slide/carton_slides_far --like carton_slides_then_is_transported",
-          .declare = Declare,
-          .run = Run};
+          .examples = {"new carton_is_lifted",
+                       "new slide/carton_slides_far --like carton_slides_then_is_transported"},
+          .options = {{.name = "name",
+                       .help = "what the scenario claims, like carton_slides_then_is_lifted; or "
+                               "skill/name",
+                       .required = true},
+                      {.name = "--like",
+                       .help = "start from this scenario instead of the template",
+                       .placeholder = "SCENARIO"}},
+          .run = RunNew};
 }
 
 }  // namespace prehend::harness

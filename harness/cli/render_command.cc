@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend render. Tested by tests/program/command_line_test.cc
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -15,37 +14,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void Declare(CLI::App& options) {
-  options.add_option("scenario", "a name, skill/name or a file")->required()->expected(1);
-  options.add_option("-o,--output", "the PNG file; otherwise build/pictures/SKILL/NAME.png")
-      ->type_name("FILE")
-      ->expected(1);
-  options.add_option("--at", "the moment: EVENT.begin, EVENT.end, or seconds")
-      ->type_name("MOMENT")
-      ->expected(1);
-  options
-      .add_option("--camera",
-                  "from where: front, left, right, top, three_quarter, or a camera of the scenario")
-      ->type_name("CAMERA")
-      ->expected(1);
-  DeclareRunOptions(options);
-  DeclareFlag(options, "--json", "the run as one JSON object, with the pictures' files");
-}
-
-/// What the command line asks for instead of the scenario's own pictures; nothing when it does not.
-std::optional<PictureYaml> AskedPicture(const CLI::App& options, const Scenario& scenario) {
-  if (!IsGiven(options, "--at") && !IsGiven(options, "--camera") && !IsGiven(options, "--output"))
+/// The picture that the command line asks for instead of the scenario's own; nothing when it asks
+/// for none.
+std::optional<PictureYaml> AskedPicture(const ParsedOptions& options, const Scenario& scenario) {
+  if (!options.Has("--at") && !options.Has("--camera") && !options.Has("--output"))
     return std::nullopt;
   PictureYaml entry =
       scenario.pictures.empty() ? PictureYaml{.at = {"0", {}}} : scenario.pictures.front();
-  entry.at.value = ValueOf(options, "--at", entry.at.value);
-  entry.camera.value = ValueOf(options, "--camera", entry.camera.value);
+  entry.at.value = options.TextOr("--at", entry.at.value);
+  entry.camera.value = options.TextOr("--camera", entry.camera.value);
   return entry;
 }
 
-PictureResult Draw(const CLI::App& options, const ScenarioFile& file, const LoadedRun& loaded,
+PictureResult Draw(const ParsedOptions& options, const ScenarioFile& file, const LoadedRun& loaded,
                    const RunResult& run, const std::string& root) {
-  const std::string output = ValueOf(options, "--output");
+  const std::string output = options.Text("--output");
   if (!output.empty())
     return DrawPicture(loaded.scenario, run, loaded.scenario.pictures.front(), output);
   const fs::path folder = fs::path(root) / "build" / "pictures" / file.skill;
@@ -54,14 +37,14 @@ PictureResult Draw(const CLI::App& options, const ScenarioFile& file, const Load
   return DrawPictures(loaded.scenario, run, folder.string());
 }
 
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  const auto file = FindScenarioOrComplain(ValueOf(options, "scenario"), context);
-  if (!file) return ExitCode::kNothing;
+ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) {
+  const auto file = FindScenarioOrComplain(options.Text("scenario"), context);
+  if (!file) return file.error();
   Result<LoadedRun> loaded = LoadRun(RequestOf(options, file->path), context.root);
   if (!loaded) return Complain(context, loaded.error());
   if (auto asked = AskedPicture(options, loaded->scenario)) {
     const auto problem = WhyNoEventTime(asked->at.value, *loaded->program);
-    if (problem && IsGiven(options, "--at")) {
+    if (problem && options.Has("--at")) {
       return Complain(context, ExitCode::kBadInput,
                       "--at: " + problem->message + "; " + problem->hint);
     }
@@ -71,11 +54,11 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   }
   if (loaded->scenario.pictures.empty()) {
     return Complain(context, ExitCode::kNothing,
-                    "the scenario asks for no pictures; ask for one with --at");
+                    "the scenario defines no pictures; --at asks for one");
   }
 
-  if (IsGiven(options, "--output")) {
-    const std::string output = ValueOf(options, "--output");
+  if (options.Has("--output")) {
+    const std::string output = options.Text("--output");
     const std::string why = output == "-" ? "found '-', wanted a file; pictures are not printed"
                                           : AtomicFile(output).problem();
     if (!why.empty()) return Complain(context, ExitCode::kBadInput, "--output: " + why);
@@ -86,9 +69,9 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
   for (const WrittenPicture& picture : drawn.pictures) {
     if (!picture.missed.empty())
       context.err << "prehend: warning: " << picture.file << ": " << picture.missed
-                  << "; it shows the end\n";
+                  << "; the picture shows the end of the run\n";
   }
-  if (IsGiven(options, "--json")) {
+  if (options.Has("--json")) {
     OrderedJson json = RunJson(loaded->scenario, run);
     json["pictures"] = OrderedJson::array();
     for (const WrittenPicture& picture : drawn.pictures) {
@@ -107,14 +90,28 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 }  // namespace
 
 Command RenderCommand() {
-  return {.name = "render",
-          .summary = "Draw a scenario's pictures, or one of your own",
-          .examples =
-              "prehend render milk_carton_wrap\n"
-              "prehend render milk_carton_wrap -o milk.png\n"
-              "prehend render milk_carton_wrap --at transporting.begin --camera left -o left.png",
-          .declare = Declare,
-          .run = Run};
+  return {
+      .name = "render",
+      .summary = "Draw a scenario's pictures, or one of your own",
+      .examples = {"render milk_carton_wrap", "render milk_carton_wrap -o milk.png",
+                   "render milk_carton_wrap --at transporting.begin --camera left -o left.png"},
+      .options = {ScenarioArgument(),
+                  {.name = "--output",
+                   .help = "the PNG file; default: build/pictures/SKILL/NAME.png",
+                   .placeholder = "FILE",
+                   .other_name = "-o"},
+                  {.name = "--at",
+                   .help = "when: EVENT.begin, EVENT.end, or seconds",
+                   .placeholder = "TIME"},
+                  {.name = "--camera",
+                   .help = "from where: front, left, right, top, three_quarter, or a camera of\n"
+                           "the scenario",
+                   .placeholder = "CAMERA"},
+                  GrammarOption(),
+                  SettingsOption(),
+                  {.name = "--json",
+                   .help = "print the run as one JSON object, with the files of its pictures"}},
+      .run = RunRender};
 }
 
 }  // namespace prehend::harness

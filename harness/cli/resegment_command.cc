@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend resegment: a recorded episode under another grammar, without physics.
 // Tested by tests/program/recording_test.cc
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "grammar/contents.h"
 #include "grammar/name_events.h"
 #include "harness/cli/command.h"
-#include "harness/cli/warn.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/run_text.h"
 #include "harness/sense/episode_file.h"
@@ -15,46 +13,30 @@
 namespace prehend::harness {
 namespace {
 
-void Declare(CLI::App& options) {
-  options
-      .add_option("recording",
-                  "a file from 'prehend run --record', or from you: docs/recording-format.md")
-      ->required()
-      ->expected(1);
-  options.add_option("--grammar", "another grammar: a name of the library or a .grammar file")
-      ->type_name("NAME|FILE")
-      ->expected(1);
-  options.add_option("--set", "change a parameter of the grammar (reach_radius=25cm)")
-      ->type_name("NAME=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  DeclareFlag(options, "--json", "one JSON object instead of a table");
-}
-
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  Result<Episode> episode = ReadEpisode(ValueOf(options, "recording"));
+ExitCode RunResegment(const ParsedOptions& options, const CommandContext& context) {
+  Result<Episode> episode = ReadEpisode(options.Text("recording"));
   if (!episode) return Complain(context, episode.error());
-  Result<grammar::Overrides> settings = ParameterSettings(ValuesOf(options, "--set"));
+  Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
   if (!settings) return Complain(context, settings.error());
   const grammar::CompileResult compiled =
-      LoadGrammar(context.root, ValueOf(options, "--grammar", episode->header.grammar), *settings);
+      LoadGrammar(context.root, options.TextOr("--grammar", episode->header.grammar), *settings);
   if (!compiled.program) return Complain(context, compiled.diagnostics);
 
   const grammar::EntityTable& entity_table = episode->header.entity_table;
-  WarnOf(*compiled.program, entity_table, context);
+  Warn(context, Warnings(*compiled.program, entity_table));
   grammar::Monitor monitor(compiled.program, entity_table);
   std::vector<grammar::Event> events;
   for (EpisodeFrame& frame : episode->frames) monitor.Advance(frame.View(), events);
   monitor.Finish(episode->end_tick, events);
   if (!monitor.error().empty()) {
     return Complain(context, ExitCode::kBadInput,
-                    "the grammar cannot watch this recording: " + monitor.error());
+                    "the grammar cannot segment this recording: " + monitor.error());
   }
   RunResult run;
   run.status.kind = physics::RunStatus::Kind::kCompleted;
   run.ticks = episode->end_tick - 1;
   run.timeline = grammar::NameEvents(*compiled.program, entity_table, events);
-  if (!IsGiven(options, "--json")) {
+  if (!options.Has("--json")) {
     context.out << RunTable(run);
     return ExitCode::kAgrees;
   }
@@ -70,15 +52,22 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 }  // namespace
 
 Command ResegmentCommand() {
-  return {.name = "resegment",
-          .summary = "Segment a recorded episode again, with any grammar",
-          .examples =
-              "prehend run milk_carton_wrap --record milk.jsonl\n"
-              "prehend resegment milk.jsonl\n"
-              "prehend resegment milk.jsonl --grammar my/rules.grammar --json\n"
-              "prehend resegment milk.jsonl --set lift_rise=10cm",
-          .declare = Declare,
-          .run = Run};
+  return {
+      .name = "resegment",
+      .summary = "Segment a recorded episode again, with any grammar",
+      .examples = {"run milk_carton_wrap --record milk.jsonl", "resegment milk.jsonl",
+                   "resegment milk.jsonl --grammar my/rules.grammar --json",
+                   "resegment milk.jsonl --set lift_rise=10cm"},
+      .options = {{.name = "recording",
+                   .help = "a file from 'run --record', or your own (docs/recording-format.md)",
+                   .required = true},
+                  GrammarOption(),
+                  {.name = "--set",
+                   .help = "set a parameter of the grammar (reach_radius=25cm); may be repeated",
+                   .placeholder = "NAME=VALUE",
+                   .repeatable = true},
+                  {.name = "--json", .help = "print one JSON object instead of a table"}},
+      .run = RunResegment};
 }
 
 }  // namespace prehend::harness

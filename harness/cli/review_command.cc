@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend review: what waits to be accepted. Reads files only; `check` left the pending ones
-// behind. Tested by tests/program/golden_workflow_test.cc
+// prehend review: what is to be accepted. Reads files only: the pending ones are from `check`.
+// Tested by tests/program/golden_workflow_test.cc
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "harness/base/shell_quote.h"
-#include "harness/check/accept_golden.h"
 #include "harness/check/check_scenario.h"
-#include "harness/check/compare_engines.h"
 #include "harness/check/select_scenarios.h"
-#include "harness/check/unreferenced_goldens.h"
 #include "harness/cli/command.h"
 #include "harness/golden/compare.h"
 #include "harness/golden/golden_files.h"
+#include "harness/judge/accept_golden.h"
+#include "harness/judge/compare_engines.h"
+#include "harness/judge/unreferenced_goldens.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
 #include "harness/timeline/event_text.h"
@@ -27,22 +26,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What waits of a scenario, in words.
+/// One thing to review.
 struct Review {
   std::string id;
   std::string kind;  ///< "new", "changed", "same", "engines", "picture", "unreadable", "orphan"
-  std::string text;  ///< events of a new one, differences, complaints; several lines or empty
-  std::string fingerprint = {};  ///< of what is shown; with it `accept` takes nothing else
+  std::string text;  ///< events of a new scenario, differences, errors; several lines or empty
+  std::string fingerprint = {};  ///< of the pending golden; lets `accept` take nothing else
   std::vector<std::string> files =
       {};  ///< of a picture: golden, new, difference; of an orphan: what to remove
 };
-
-void Declare(CLI::App& options) {
-  options.add_option("names", "names, skill/name or globs; nothing: all that is pending")
-      ->expected(-1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  DeclareFlag(options, "--json", "one JSON object instead of text");
-}
 
 std::string EventLines(const Golden& golden) {
   std::vector<std::vector<std::string>> rows;
@@ -90,7 +82,7 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
   return review;
 }
 
-/// A picture that differs from its golden, as `check` left it.
+/// A picture that differs from its golden.
 Review PictureReview(const KeptPicture& pending, const std::string& root) {
   const GoldenFiles files(root);
   const std::string name = pending.path.filename().string();
@@ -107,7 +99,7 @@ Review PictureReview(const KeptPicture& pending, const std::string& root) {
   return review;
 }
 
-/// What there is to say about one scenario: its events, then its pictures.
+/// Reviews of one scenario: its events, then its pictures.
 void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pending,
                 const std::vector<KeptPicture>& pending_pictures, std::vector<Review>& reviews) {
   if (!file.in_project) return;
@@ -127,9 +119,10 @@ void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pendi
         {IdOf(file), "orphan", UnaskedText(picture, asked) + "\n", "", {picture.string()}});
 }
 
-/// Nothing after a complaint.
-std::optional<std::vector<Review>> Reviews(const CLI::App& options, const CommandContext& context) {
-  const std::vector<std::string> patterns = ValuesOf(options, "names");
+/// Nothing when the selection is wrong, which has been reported then.
+std::optional<std::vector<Review>> Reviews(const ParsedOptions& options,
+                                           const CommandContext& context) {
+  const std::vector<std::string> patterns = options.All("names");
   std::string problem;
   const auto selection = SelectScenarios(patterns, {}, context.root, problem);
   if (!selection && !patterns.empty()) {
@@ -146,7 +139,7 @@ std::optional<std::vector<Review>> Reviews(const CLI::App& options, const Comman
     const std::string file = GoldenFiles(context.root).PendingPath(id).string();
     reviews.push_back({id,
                        "orphan",
-                       "pending, but there is no such scenario: remove " + file + "\n",
+                       "the scenario of this pending golden does not exist; remove " + file + "\n",
                        "",
                        {file}});
   }
@@ -158,13 +151,11 @@ std::optional<std::vector<Review>> Reviews(const CLI::App& options, const Comman
   return reviews;
 }
 
-/// What to do about it, in one line; or nothing.
+/// The next step, in one line, or "".
 std::string NextStep(const Review& review, bool engines_differ) {
   if (review.kind == "engines" || (engines_differ && !review.fingerprint.empty()))
     return kUntilEnginesAgree;
-  if (review.kind == "picture")
-    return fmt::format("if right: prehend accept {} --pictures --reason \"...\"",
-                       ShellQuoted(review.id));
+  if (review.kind == "picture") return "if right: " + AcceptPicturesCommand(review.id);
   if (review.kind != "new" && review.kind != "changed") return "";
   return "if right: " + AcceptCommandLine(review.id, review.fingerprint);
 }
@@ -185,13 +176,14 @@ void Print(const std::vector<Review>& reviews, const CommandContext& context) {
     if (!next.empty()) context.out << "    " << next << "\n";
   }
   if (reviews.empty())
-    context.out << "nothing is pending ('prehend check' finds out what should be)\n";
+    context.out << "nothing is pending ('" << CommandText({"check"})
+                << "' finds what differs from its golden)\n";
 }
 
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
+ExitCode RunReview(const ParsedOptions& options, const CommandContext& context) {
   const auto reviews = Reviews(options, context);
   if (!reviews) return ExitCode::kNothing;
-  if (IsGiven(options, "--json")) {
+  if (options.Has("--json")) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Review& review : *reviews)
       list.push_back({{"scenario", review.id},
@@ -210,12 +202,13 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 
 Command ReviewCommand() {
   return {.name = "review",
-          .summary = "Show what waits to be accepted, and how it differs from the goldens",
-          .examples =
-              "prehend review\n"
-              "prehend review milk_carton_wrap 'slide/*'",
-          .declare = Declare,
-          .run = Run};
+          .summary = "Show what is pending, and how it differs from the goldens",
+          .examples = {"review", "review milk_carton_wrap 'slide/*'"},
+          .options = {{.name = "names",
+                       .help = "names, skill/name or globs; default: all that is pending",
+                       .repeatable = true},
+                      {.name = "--json", .help = "print one JSON object instead of text"}},
+          .run = RunReview};
 }
 
 }  // namespace prehend::harness

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend schema. Tested by tests/program/command_line_test.cc
-#include <CLI/CLI.hpp>
 
 #include "harness/cli/command.h"
 #include "harness/format/scenario_fields.h"
@@ -8,9 +7,7 @@
 namespace prehend::harness {
 namespace {
 
-void Declare(CLI::App&) {}
-
-ExitCode Run(const CLI::App&, const CommandContext& context) {
+ExitCode RunSchema(const ParsedOptions&, const CommandContext& context) {
   context.out << ScenarioSchema();
   return ExitCode::kAgrees;
 }
@@ -20,9 +17,9 @@ ExitCode Run(const CLI::App&, const CommandContext& context) {
 Command SchemaCommand() {
   return {.name = "schema",
           .summary = "Print the JSON Schema of scenario files",
-          .examples = "prehend schema > scenarios/scenario.schema.json",
-          .declare = Declare,
-          .run = Run};
+          .examples = {"schema > scenarios/scenario.schema.json"},
+          .options = {},
+          .run = RunSchema};
 }
 
 }  // namespace prehend::harness

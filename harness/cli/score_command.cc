@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "grammar/contents.h"
 #include "harness/base/default_grammar.h"
 #include "harness/base/project_paths.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/cli/command.h"
-#include "harness/cli/number_in.h"
 #include "harness/oracle/oracle.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"
@@ -30,44 +27,12 @@ using score::EpisodeToScore;
 constexpr double kDefaultCollar_ms = 50;
 constexpr double kTimeLimit_s = 300;
 
-void Declare(CLI::App& options) {
-  options.add_option("names", "names, skill/name, globs or files; nothing: all")
-      ->expected(-1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  options
-      .add_option("--filter",
-                  "only those that match this glob, or have tag:NAME; see prehend check --help")
-      ->type_name("[!]GLOB|[!]tag:NAME")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  options
-      .add_option(
-          "--grammar",
-          "a grammar to score, may be given again; otherwise pick_and_place and original_2020")
-      ->type_name("NAME|FILE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  options
-      .add_option("--events",
-                  "only these events, for every grammar; otherwise all that docs/events.md defines")
-      ->type_name("NAME,..")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  options
-      .add_option("--collar-ms",
-                  "how far off a boundary may be for the scores at a collar; otherwise 50")
-      ->type_name("MS")
-      ->expected(1)
-      ->check(NumberIn(0, 10000));
-  DeclareFlag(options, "--json", "one JSON object instead of tables");
-}
-
 /// What a worker sends: {"problem", "bad_input"} or {"episodes": [{"ticks", "truth", "found",
 /// "not_judged"}, ..]}, one per grammar.
 std::string Judged(const ScoreRequest& request) {
   const auto episodes = EpisodesToScore(request);
   if (!episodes)
-    return Json{{"problem", Format(episodes.error().diagnostics)},
+    return Json{{"problem", grammar::Format(episodes.error().diagnostics)},
                 {"bad_input", episodes.error().is_bad_input}}
         .dump();
   Json sent = Json::array();
@@ -80,8 +45,8 @@ std::string Judged(const ScoreRequest& request) {
   return Json{{"episodes", std::move(sent)}}.dump();
 }
 
-/// Episodes by grammar; what could not be played is told on `context.err`, and `worst` says what
-/// kind it was.
+/// Episodes by grammar. A scenario that could not be scored is reported on `context.err`; `worst`
+/// becomes the exit code for it.
 std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selection,
                                                   const std::vector<std::string>& grammars,
                                                   const std::vector<std::string>& events,
@@ -93,9 +58,7 @@ std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selec
     const ScoreRequest request{file.path, ids.back(), context.root, grammars, events};
     jobs.push_back([request] { return Judged(request); });
   }
-  const WorkerLimits limits{
-      .jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency())),
-      .time_limit_s = kTimeLimit_s};
+  const WorkerLimits limits{.jobs = CoreCount(), .time_limit_s = kTimeLimit_s};
   const std::vector<WorkerResult> results = RunInWorkers(jobs, limits);
   std::vector<std::vector<EpisodeToScore>> by_grammar(grammars.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -103,7 +66,7 @@ std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selec
                                           : Json{{"problem", results[i].reason + "\n"}};
     if (sent.contains("problem")) {
       context.err << "prehend: " << ids[i]
-                  << " is not scored: " << sent["problem"].get<std::string>();
+                  << " was not scored: " << sent["problem"].get<std::string>();
       const bool bad_input = sent.value("bad_input", false);
       if (worst != ExitCode::kFailure) worst = bad_input ? ExitCode::kBadInput : ExitCode::kFailure;
       continue;
@@ -117,7 +80,7 @@ std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selec
   return by_grammar;
 }
 
-/// Between commas; what is empty stays, so that it can be complained about.
+/// The names between the commas; empty ones stay, so that they can be reported.
 std::vector<std::string> NamesIn(const std::vector<std::string>& lists) {
   std::vector<std::string> names;
   for (const std::string& list : lists) {
@@ -130,12 +93,12 @@ std::vector<std::string> NamesIn(const std::vector<std::string>& lists) {
   return names;
 }
 
-/// Why these events cannot be chosen, or "".
+/// Why these events cannot be selected, or "".
 std::string UnknownEvent(const std::vector<std::string>& events) {
   const std::vector<std::string> known(OracleEvents().begin(), OracleEvents().end());
   for (const std::string& event : events) {
     if (OracleDefines(event)) continue;
-    if (event.empty()) return "--events: a name is missing beside a comma; write NAME,NAME";
+    if (event.empty()) return "--events: a name is missing next to a comma; write NAME,NAME";
     const std::string near = grammar::NearestName(event, known);
     return fmt::format("--events: docs/events.md defines no '{}'; {}", event,
                        near.empty() ? fmt::format("it defines {}", fmt::join(known, ", "))
@@ -166,10 +129,10 @@ void Print(const std::vector<score::Score>& scores, double collar_s, std::ostrea
          "events.\n";
 }
 
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  std::vector<std::string> grammars = ValuesOf(options, "--grammar");
+ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
+  std::vector<std::string> grammars = options.All("--grammar");
   if (grammars.empty()) grammars = {kDefaultGrammar, "original_2020"};
-  const std::vector<std::string> events = NamesIn(ValuesOf(options, "--events"));
+  const std::vector<std::string> events = NamesIn(options.All("--events"));
   if (const std::string unknown = UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);
   std::vector<std::vector<std::string>> not_covered;
@@ -178,22 +141,24 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     if (!compiled.program) return Complain(context, compiled.diagnostics);
     not_covered.push_back(NotCovered(*compiled.program, events));
   }
+  for (const std::string& name : options.All("names")) {
+    if (const auto refused = RefuseRecording(name, context)) return *refused;
+  }
   std::string problem;
-  const auto selection = SelectScenarios(ValuesOf(options, "names"), ValuesOf(options, "--filter"),
-                                         context.root, problem);
+  const auto selection =
+      SelectScenarios(options.All("names"), options.All("--filter"), context.root, problem);
   if (!selection) return Complain(context, ExitCode::kNothing, problem);
 
   ExitCode worst = ExitCode::kAgrees;
   const auto by_grammar = JudgeAll(*selection, grammars, events, context, worst);
   if (by_grammar.front().empty()) return worst;  // no table of nothing
-  const double collar_s =
-      std::stod(ValueOf(options, "--collar-ms", std::to_string(kDefaultCollar_ms))) / 1000;
+  const double collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
   std::vector<score::Score> scores;
   for (std::size_t g = 0; g < grammars.size(); ++g) {
     scores.push_back(ScoreOf(grammars[g], by_grammar[g], collar_s));
     scores.back().not_covered = not_covered[g];
   }
-  if (IsGiven(options, "--json"))
+  if (options.Has("--json"))
     context.out << ScoresJson(scores, collar_s).dump(2) << "\n";
   else
     Print(scores, collar_s, context.out);
@@ -205,13 +170,33 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 Command ScoreCommand() {
   return {.name = "score",
           .summary = "Score grammars against what physically happened",
-          .examples =
-              "prehend score\n"
-              "prehend score --grammar pick_and_place --grammar my/rules.grammar\n"
-              "prehend score --grammar my/rules.grammar --events grasping,sliding\n"
-              "prehend score 'slide/*' --collar-ms 20 --json",
-          .declare = Declare,
-          .run = Run};
+          .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
+                       "score --grammar my/rules.grammar --events grasping,sliding",
+                       "score 'slide/*' --collar-ms 20 --json"},
+          .options = {{.name = "names",
+                       .help = "names, skill/name, globs or files; default: all scenarios",
+                       .repeatable = true},
+                      {.name = "--filter",
+                       .help = "keep those that match this glob or have the tag; as of 'check'",
+                       .placeholder = "[!]GLOB|[!]tag:NAME",
+                       .repeatable = true},
+                      {.name = "--grammar",
+                       .help = "a grammar to score; may be repeated; default: pick_and_place and\n"
+                               "original_2020",
+                       .placeholder = "NAME|FILE",
+                       .repeatable = true},
+                      {.name = "--events",
+                       .help = "score only these events; default: all that docs/events.md defines",
+                       .placeholder = "NAME,..",
+                       .repeatable = true},
+                      {.name = "--collar-ms",
+                       .help = fmt::format("tolerance of a boundary for the scores at a collar; "
+                                           "default: {}",
+                                           kDefaultCollar_ms),
+                       .placeholder = "MS",
+                       .rule = NumbersFrom(0, 10000)},
+                      {.name = "--json", .help = "print one JSON object instead of tables"}},
+          .run = RunScore};
 }
 
 }  // namespace prehend::harness

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "grammar/contents.h"
@@ -16,25 +15,8 @@
 namespace prehend::harness {
 namespace {
 
-void Declare(CLI::App& options) {
-  options.add_option("scenario", "a name, skill/name or a file; or a recording")
-      ->required()
-      ->expected(1);
-  options.add_option("-o,--output", "the file to write, .csv or .json; - or nothing: print CSV")
-      ->type_name("FILE")
-      ->expected(1);
-  options
-      .add_option("--only",
-                  "an event, condition or signal (speed_along), may be given again; otherwise all")
-      ->type_name("NAME")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  DeclareRunOptions(options);
-  DeclareFlag(options, "--json", "print JSON instead of CSV");
-}
-
-/// "" or which of the names nobody knows.
-std::string WhyNotKnown(const std::vector<std::string>& only, const grammar::Program& program) {
+/// Which of the names the grammar does not know; "" when it knows all.
+std::string UnknownTrack(const std::vector<std::string>& only, const grammar::Program& program) {
   const std::vector<std::string> known = explain::TrackNames(program);
   for (const std::string& name : only) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
@@ -42,32 +24,32 @@ std::string WhyNotKnown(const std::vector<std::string>& only, const grammar::Pro
     return fmt::format(
         "--only: found '{}', wanted an event, condition or signal of grammar '{}'; {}", name,
         GrammarName(program),
-        near.empty() ? fmt::format("there are: {}", fmt::join(known, ", "))
+        near.empty() ? fmt::format("known: {}", fmt::join(known, ", "))
                      : fmt::format("did you mean '{}'?", near));
   }
   return "";
 }
 
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  std::string output = ValueOf(options, "--output");
+ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) {
+  std::string output = options.Text("--output");
   if (output == "-") output.clear();
-  const bool as_json = IsGiven(options, "--json") || output.ends_with(".json");
+  const bool as_json = options.Has("--json") || output.ends_with(".json");
   if (!output.empty() && !output.ends_with(".json") && !output.ends_with(".csv")) {
     return Complain(
         context, ExitCode::kBadInput,
         fmt::format("--output: found '{}', wanted a file that ends with .csv or .json", output));
   }
-  if (IsGiven(options, "--json") && output.ends_with(".csv")) {
+  if (options.Has("--json") && output.ends_with(".csv")) {
     return Complain(context, ExitCode::kBadInput,
-                    "--json and a file that ends with .csv contradict each other");
+                    "--json contradicts an --output that ends with .csv");
   }
   const auto source = OpenEpisodeOrComplain(options, context);
   if (!source) return source.error();
-  const std::vector<std::string> only = ValuesOf(options, "--only");
-  const std::string unknown = WhyNotKnown(only, *source->program);
+  const std::vector<std::string> only = options.All("--only");
+  const std::string unknown = UnknownTrack(only, *source->program);
   if (!unknown.empty()) return Complain(context, ExitCode::kBadInput, unknown);
 
-  // What cannot be written is refused before the episode is played.
+  // Found out before the episode is played.
   std::optional<AtomicFile> file;
   if (!output.empty()) file.emplace(output);
   if (file && !file->problem().empty())
@@ -98,12 +80,23 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 Command TracksCommand() {
   return {.name = "tracks",
           .summary = "Write conditions and signals over time, for plots",
-          .examples =
-              "prehend tracks milk_carton_wrap -o milk.csv\n"
-              "prehend tracks milk_carton_wrap --only grasping --only speed_along\n"
-              "prehend tracks milk.jsonl --grammar my/rules.grammar -o milk.json",
-          .declare = Declare,
-          .run = Run};
+          .examples = {"tracks milk_carton_wrap -o milk.csv",
+                       "tracks milk_carton_wrap --only grasping --only speed_along",
+                       "tracks milk.jsonl --grammar my/rules.grammar -o milk.json"},
+          .options = {EpisodeArgument(),
+                      {.name = "--output",
+                       .help = "the file to write, .csv or .json; - or nothing: print CSV",
+                       .placeholder = "FILE",
+                       .other_name = "-o"},
+                      {.name = "--only",
+                       .help = "an event, condition or signal (speed_along); may be repeated;\n"
+                               "default: all",
+                       .placeholder = "NAME",
+                       .repeatable = true},
+                      GrammarOption(),
+                      SettingsOption(),
+                      {.name = "--json", .help = "print JSON instead of CSV"}},
+          .run = RunTracks};
 }
 
 }  // namespace prehend::harness

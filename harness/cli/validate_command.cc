@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend validate: reads, never runs. Tested by tests/program/command_line_test.cc
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -12,11 +11,10 @@
 #include "grammar/describe.h"
 #include "harness/base/content_hash.h"
 #include "harness/base/text_file.h"
-#include "harness/check/unreferenced_goldens.h"
 #include "harness/check/validate_golden.h"
 #include "harness/cli/command.h"
-#include "harness/cli/warn.h"
 #include "harness/golden/golden_files.h"
+#include "harness/judge/unreferenced_goldens.h"
 #include "harness/run/load_grammar.h"
 
 namespace prehend::harness {
@@ -29,25 +27,14 @@ struct Validated {
   grammar::Diagnostics diagnostics;
   std::string description = {};  ///< of a grammar without errors
   grammar::Diagnostics warnings = {};
-  std::vector<std::string> inputs = {};  ///< every file that was looked at
+  std::vector<std::string> inputs = {};  ///< every file that was read
 };
 
-void Declare(CLI::App& options) {
-  options
-      .add_option("files",
-                  "scenarios (names or files), .grammar or .timeline files; nothing: all scenarios")
-      ->expected(-1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  DeclareRunOptions(options);
-  DeclareFlag(options, "--json", "one JSON object");
-  DeclareFlag(options, "--watch", "go on until interrupted: read again what a save affects");
-}
-
 /// With the parameters that `--set` gives.
-Validated ValidateGrammar(const std::string& name_or_path, const CLI::App& options,
+Validated ValidateGrammar(const std::string& name_or_path, const ParsedOptions& options,
                           const std::string& root) {
   Validated validated{.file = GrammarFile(root, name_or_path)};
-  Result<grammar::Overrides> settings = ParameterSettings(ValuesOf(options, "--set"));
+  Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
   if (!settings) {
     validated.diagnostics = std::move(settings.error());
     return validated;
@@ -59,16 +46,16 @@ Validated ValidateGrammar(const std::string& name_or_path, const CLI::App& optio
   return validated;
 }
 
-/// What is kept in golden/ for a scenario. Its events are those of the scenario's own grammar, not
-/// of another.
-void AddGolden(const ScenarioFile& file, const CLI::App& options, const Result<LoadedRun>& loaded,
-               const std::string& root, Validated& validated) {
+/// Checks the golden of a scenario. Its events belong to the scenario's own grammar: with another
+/// one only its syntax is checked.
+void AddGolden(const ScenarioFile& file, const ParsedOptions& options,
+               const Result<LoadedRun>& loaded, const std::string& root, Validated& validated) {
   const GoldenFiles goldens(root);
   const std::string path = goldens.GoldenPath(IdOf(file)).string();
   validated.inputs.push_back(path);
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
-  const bool as_it_is = !IsGiven(options, "--grammar") && !IsGiven(options, "--set");
+  const bool as_it_is = !options.Has("--grammar") && !options.Has("--set");
   std::ranges::move(loaded && as_it_is ? CheckGoldenFile(path, IdOf(file), *loaded)
                                        : goldens.ReadGoldenOf(IdOf(file)).diagnostics,
                     std::back_inserter(validated.diagnostics));
@@ -82,7 +69,7 @@ void AddGolden(const ScenarioFile& file, const CLI::App& options, const Result<L
                                                         .hint = {}});
 }
 
-/// What is kept in golden/ for scenarios that are gone.
+/// A golden whose scenario no longer exists.
 Validated ValidateOrphan(const Orphan& orphan) {
   Validated validated{.file = orphan.files.front().string(), .diagnostics = {}};
   for (const fs::path& file : orphan.files)
@@ -95,9 +82,9 @@ Validated ValidateOrphan(const Orphan& orphan) {
   return validated;
 }
 
-/// Nothing when it is the name of no scenario.
-std::optional<Validated> Validate(const std::string& typed, const CLI::App& options,
-                                  const CommandContext& context) {
+/// After reporting that there is no such file or scenario, the exit code.
+tl::expected<Validated, ExitCode> Validate(const std::string& typed, const ParsedOptions& options,
+                                           const CommandContext& context) {
   if (typed.ends_with(".grammar")) return ValidateGrammar(typed, options, context.root);
   if (typed.ends_with(".timeline")) {
     Validated validated{.file = typed, .diagnostics = {}};
@@ -105,7 +92,7 @@ std::optional<Validated> Validate(const std::string& typed, const CLI::App& opti
     return validated;
   }
   const auto file = FindScenarioOrComplain(typed, context);
-  if (!file) return std::nullopt;
+  if (!file) return tl::unexpected(file.error());
   Validated validated{.file = file->path};
   Result<LoadedRun> loaded =
       LoadRun(RequestOf(options, file->path), context.root, &validated.inputs);
@@ -134,18 +121,17 @@ nlohmann::ordered_json ToJson(const Validated& validated) {
           {"warnings", ToJson(validated.warnings)}};
 }
 
-/// What was typed; nothing typed is every scenario, or the grammar of --grammar alone.
-std::vector<std::string> Names(const CLI::App& options, const CommandContext& context) {
-  std::vector<std::string> names = ValuesOf(options, "files");
+/// What was typed; by default every scenario, or with --grammar that grammar alone.
+std::vector<std::string> Names(const ParsedOptions& options, const CommandContext& context) {
+  std::vector<std::string> names = options.All("files");
   if (!names.empty()) return names;
-  if (IsGiven(options, "--grammar"))
-    return {GrammarFile(context.root, ValueOf(options, "--grammar"))};
+  if (options.Has("--grammar")) return {GrammarFile(context.root, options.Text("--grammar"))};
   for (const ScenarioFile& file : ListScenarios(context.root)) names.push_back(IdOf(file));
   return names;
 }
 
-/// Reads everything; after each save again what it affects, and scenarios that are new.
-[[noreturn]] void Watch(const CLI::App& options, const CommandContext& context) {
+/// Validates everything, then again what a saved file affects, and new scenarios.
+[[noreturn]] void Watch(const ParsedOptions& options, const CommandContext& context) {
   constexpr auto kPeriod = std::chrono::milliseconds(300);
   std::map<std::string, FileHashes> seen;
   for (;; std::this_thread::sleep_for(kPeriod)) {
@@ -161,24 +147,24 @@ std::vector<std::string> Names(const CLI::App& options, const CommandContext& co
       if (!validated) continue;
       context.out << (validated->diagnostics.empty() ? "ok: " : "wrong: ") << validated->file
                   << "\n"
-                  << Format(validated->diagnostics) << std::flush;
+                  << grammar::Format(validated->diagnostics) << std::flush;
     }
   }
 }
 
-ExitCode Run(const CLI::App& options, const CommandContext& context) {
-  if (IsGiven(options, "--watch")) Watch(options, context);
+ExitCode RunValidate(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--watch")) Watch(options, context);
   const std::vector<std::string> names = Names(options, context);
   if (names.empty())
     return Complain(context, ExitCode::kNothing,
-                    "no scenarios below " + context.root + "/scenarios");
+                    "there is no scenario in " + context.root + "/scenarios");
   std::vector<Validated> all;
   for (const std::string& name : names) {
     auto validated = Validate(name, options, context);
-    if (!validated) return ExitCode::kNothing;
+    if (!validated) return validated.error();
     all.push_back(std::move(*validated));
   }
-  const bool everything = ValuesOf(options, "files").empty() && !IsGiven(options, "--grammar");
+  const bool everything = options.All("files").empty() && !options.Has("--grammar");
   for (const Orphan& orphan :
        everything ? OrphansAmong(ListScenarios(context.root), context.root) : std::vector<Orphan>())
     all.push_back(ValidateOrphan(orphan));
@@ -190,11 +176,10 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
     diagnostics.insert(diagnostics.end(), validated.diagnostics.begin(),
                        validated.diagnostics.end());
     Warn(context, validated.warnings);
-    if (!IsGiven(options, "--json") && validated.diagnostics.empty())
+    if (!options.Has("--json") && validated.diagnostics.empty())
       context.out << "ok: " << validated.file << "\n" << validated.description;
   }
-  if (IsGiven(options, "--json"))
-    context.out << nlohmann::ordered_json{{"files", json}}.dump(2) << "\n";
+  if (options.Has("--json")) context.out << nlohmann::ordered_json{{"files", json}}.dump(2) << "\n";
   return diagnostics.empty() ? ExitCode::kAgrees : Complain(context, diagnostics);
 }
 
@@ -203,14 +188,19 @@ ExitCode Run(const CLI::App& options, const CommandContext& context) {
 Command ValidateCommand() {
   return {.name = "validate",
           .summary = "Read scenarios, grammars and goldens without running anything",
-          .examples =
-              "prehend validate\n"
-              "prehend validate milk_carton_wrap my/scenario.yaml\n"
-              "prehend validate my/rules.grammar\n"
-              "prehend validate --grammar pick_and_place\n"
-              "prehend validate --watch",
-          .declare = Declare,
-          .run = Run};
+          .examples = {"validate", "validate milk_carton_wrap my/scenario.yaml",
+                       "validate my/rules.grammar", "validate --grammar pick_and_place",
+                       "validate --watch"},
+          .options = {{.name = "files",
+                       .help = "scenarios (names or files), .grammar or .timeline files; default:\n"
+                               "all scenarios",
+                       .repeatable = true},
+                      GrammarOption(),
+                      SettingsOption(),
+                      {.name = "--json", .help = "print one JSON object instead of text"},
+                      {.name = "--watch",
+                       .help = "validate again what a saved file affects, until interrupted"}},
+          .run = RunValidate};
 }
 
 }  // namespace prehend::harness

@@ -8,16 +8,17 @@ namespace prehend::harness::explain {
 namespace {
 
 using grammar::Binding;
+using grammar::InstanceId;
 using grammar::kNone;
 using grammar::ReplayMonitor;
 
 // Fills the open roles from `role` on with everybody whose class fits.
 void Fill(ReplayMonitor& past, int rule, Binding& entities, std::size_t role,
-          std::vector<int>& instances) {
+          std::vector<InstanceId>& instances) {
   const std::size_t roles = past.program().rules[rule].roles.size();
   if (instances.size() >= kMaxBindings) return;
   if (role == roles) {
-    const int instance = past.InstanceOf(rule, entities);
+    const InstanceId instance = past.InstanceOf(rule, entities);
     if (instance != kNone &&
         std::find(instances.begin(), instances.end(), instance) == instances.end())
       instances.push_back(instance);
@@ -34,11 +35,11 @@ void Fill(ReplayMonitor& past, int rule, Binding& entities, std::size_t role,
 
 }  // namespace
 
-std::vector<int> BindingsThatFit(ReplayMonitor& past, int rule, const Binding& wanted) {
+std::vector<InstanceId> BindingsThatFit(ReplayMonitor& past, int rule, const Binding& wanted) {
   const grammar::Rule& asked = past.program().rules[rule];
-  std::vector<int> instances;
-  for (const int instance : past.InstancesOf(rule)) {
-    const Binding& entities = past.At(instance).entities;
+  std::vector<InstanceId> instances;
+  for (const InstanceId instance : past.InstancesOf(rule)) {
+    const Binding& entities = past.EntitiesOf(instance);
     const auto fits = [&](const Binding& open) {
       for (std::size_t i = 0; i < asked.roles.size(); ++i) {
         if (open[i] != kNone && open[i] != entities[i]) return false;

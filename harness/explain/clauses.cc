@@ -14,6 +14,7 @@ namespace prehend::harness::explain {
 
 using grammar::CandidateOutcome;
 using grammar::FrameNumber;
+using grammar::InstanceId;
 using grammar::kNone;
 using grammar::Node;
 using grammar::Op;
@@ -121,7 +122,7 @@ Reason Clauses::Leaf(int node, const Moment& at, bool truth, bool brief) {
   return reason;
 }
 
-Reason Clauses::Boundary(int instance, const CandidateOutcome& outcome, bool end,
+Reason Clauses::Boundary(InstanceId instance, const CandidateOutcome& outcome, bool end,
                          const Follow& follow) {
   const grammar::Rule& rule = past_.RuleOf(instance);
   const FrameNumber frame = end ? outcome.span.end.frame : outcome.span.begin.frame;
@@ -137,7 +138,7 @@ Reason Clauses::Boundary(int instance, const CandidateOutcome& outcome, bool end
 }
 
 // Somebody's class does not fit, or somebody would play two roles.
-Reason Clauses::Impossible(int instance, int slot) {
+Reason Clauses::Impossible(InstanceId instance, int slot) {
   const grammar::Reference& reference = past_.RuleOf(instance).references[slot];
   const grammar::Rule& rule = past_.program().rules[reference.rule];
   std::string names;
@@ -145,7 +146,7 @@ Reason Clauses::Impossible(int instance, int slot) {
   for (std::size_t role = 0; role < rule.roles.size(); ++role) {
     if (reference.roles[role] == kNone) continue;
     const grammar::EntityInfo& member =
-        past_.entity_table().entities[past_.At(instance).entities[reference.roles[role]]];
+        past_.entity_table().entities[past_.EntitiesOf(instance)[reference.roles[role]]];
     const std::string& wanted = rule.roles[role].class_name;
     names += (names.empty() ? "" : ", ") + member.name;
     if (std::ranges::count(member.classes, wanted) == 0)
@@ -156,9 +157,9 @@ Reason Clauses::Impossible(int instance, int slot) {
           .how = "impossible: " + why};
 }
 
-Reason Clauses::Reference(int instance, int slot, FrameNumber frame, bool truth,
+Reason Clauses::Reference(InstanceId instance, int slot, FrameNumber frame, bool truth,
                           const Follow& follow) {
-  const int target = past_.Referred(instance, slot);
+  const InstanceId target = past_.Referred(instance, slot);
   if (target == kNone) return Impossible(instance, slot);
   const CandidateOutcome* begun = past_.LastBegun(target, frame);
   Reason reason{.mark = Mark::kHeld,
@@ -202,7 +203,7 @@ void Clauses::Edge(int node, const Moment& at, bool truth, const Follow& follow,
   } else if (arg.op != Op::kHolds) {
     Collect(n.args[0], at, !end, follow, brief, out);
   } else {
-    const int target = past_.Referred(at.instance, arg.slot);
+    const InstanceId target = past_.Referred(at.instance, arg.slot);
     for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
       const FrameNumber boundary = end ? outcome.span.end.frame : outcome.span.begin.frame;
       if (outcome.kind != CandidateOutcome::Kind::kInterval || boundary != at.frame) continue;
@@ -246,7 +247,7 @@ Reasons Clauses::Change(int node, const Moment& at, bool truth, const Follow& fo
 std::string Clauses::WhenInstead(const Node& edge, const Moment& at) {
   const bool begins = edge.op == Op::kBegins;
   if ((!begins && edge.op != Op::kEnds) || NodeAt(edge.args[0]).op != Op::kHolds) return {};
-  const int target = past_.Referred(at.instance, NodeAt(edge.args[0]).slot);
+  const InstanceId target = past_.Referred(at.instance, NodeAt(edge.args[0]).slot);
   std::optional<FrameNumber> last;
   if (target == kNone) return {};
   for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
@@ -280,9 +281,9 @@ Reasons Clauses::State(int node, const Moment& at, bool truth) {
   return reasons;
 }
 
-double Clauses::NearestMember(int any_instance, FrameNumber frame, int depth) {
+double Clauses::NearestMember(InstanceId any_instance, FrameNumber frame, int depth) {
   double nearest = 0;
-  for (const int member : past_.MembersOf(any_instance)) {
+  for (const InstanceId member : past_.MembersOf(any_instance)) {
     const auto* holds = past_.RuleOf(member).If<grammar::WhileRule>();
     if (holds == nullptr) continue;
     nearest = std::max(nearest, 0.9 * Nearness(holds->condition,
@@ -302,7 +303,7 @@ double Clauses::Nearness(int node, const Moment& at, bool truth, int depth) {
     return (n.op == Op::kAnd) == truth ? (left + right) / 2 : std::max(left, right);
   }
   if (n.op == Op::kHolds) {
-    const int target = past_.Referred(at.instance, n.slot);
+    const InstanceId target = past_.Referred(at.instance, n.slot);
     if (!truth || target == kNone || depth == kMaxDepth) return 0;
     const grammar::Rule& rule = past_.RuleOf(target);
     if (const auto* holds = rule.If<grammar::WhileRule>()) {

@@ -17,8 +17,8 @@ using Moment = grammar::ReplayMonitor::Moment;
 class Clauses {
  public:
   /// Reasons that stand behind a boundary of another rule's interval: (binding, interval, its end).
-  using Follow =
-      std::function<Reasons(int instance, const grammar::CandidateOutcome& outcome, bool end)>;
+  using Follow = std::function<Reasons(grammar::InstanceId instance,
+                                       const grammar::CandidateOutcome& outcome, bool end)>;
 
   explicit Clauses(grammar::ReplayMonitor& past) : past_(past) {}
 
@@ -26,7 +26,7 @@ class Clauses {
   /// very frame is followed. `brief` leaves out what was so already.
   Reasons Change(int node, const Moment& at, bool truth, const Follow& follow, bool brief = false);
   /// The same for a reference of the binding.
-  Reason Reference(int instance, int slot, grammar::FrameNumber frame, bool truth,
+  Reason Reference(grammar::InstanceId instance, int slot, grammar::FrameNumber frame, bool truth,
                    const Follow& follow);
 
   /// The clauses of the node, as they were at the frame: those that are not `truth` have failed.
@@ -60,7 +60,7 @@ class Clauses {
     std::string of;  ///< " from the centre"
   };
   std::optional<Measured> Measure(int node, const Moment& at);
-  Reason Boundary(int instance, const grammar::CandidateOutcome& outcome, bool end,
+  Reason Boundary(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, bool end,
                   const Follow& follow);
   void Edge(int node, const Moment& at, bool truth, const Follow& follow, bool brief, Reasons& out);
   Reason Leaf(int node, const Moment& at, bool truth, bool brief);
@@ -69,8 +69,8 @@ class Clauses {
                Reasons& out);
   void Split(int node, const Moment& at, bool truth, std::vector<Clause>& out);
   std::string WhenInstead(const grammar::Node& edge, const Moment& at);
-  Reason Impossible(int instance, int slot);
-  double NearestMember(int any_instance, grammar::FrameNumber frame, int depth);
+  Reason Impossible(grammar::InstanceId instance, int slot);
+  double NearestMember(grammar::InstanceId any_instance, grammar::FrameNumber frame, int depth);
   std::string Since(int node, const Moment& at, bool truth);
   const grammar::Node& NodeAt(int node) const { return past_.program().nodes[node]; }
 

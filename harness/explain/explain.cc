@@ -15,12 +15,13 @@ namespace prehend::harness::explain {
 namespace {
 
 using grammar::CandidateOutcome;
+using grammar::InstanceId;
 using grammar::ReplayMonitor;
 using grammar::Tick;
 
 std::vector<const CandidateOutcome*> IntervalsOf(ReplayMonitor& past, const Ask& ask) {
   std::vector<const CandidateOutcome*> intervals;
-  for (const int instance : BindingsThatFit(past, ask.rule, ask.entities)) {
+  for (const InstanceId instance : BindingsThatFit(past, ask.rule, ask.entities)) {
     for (const CandidateOutcome& outcome : past.OutcomesOf(instance)) {
       if (outcome.kind == CandidateOutcome::Kind::kInterval) intervals.push_back(&outcome);
     }
@@ -49,7 +50,7 @@ std::vector<WhyEvent> ExplainAll(ReplayMonitor& past) {
   EventReasons reasons(past);
   for (std::size_t rule = 0; rule < past.program().rules.size(); ++rule) {
     if (!past.program().rules[rule].printed) continue;
-    for (const int instance : past.InstancesOf(static_cast<int>(rule))) {
+    for (const InstanceId instance : past.InstancesOf(static_cast<int>(rule))) {
       for (const CandidateOutcome& outcome : past.OutcomesOf(instance)) {
         if (outcome.kind == CandidateOutcome::Kind::kInterval)
           events.push_back(reasons.Explain(instance, outcome, true));
@@ -95,7 +96,7 @@ std::vector<WhyEvent> NearestEvents(ReplayMonitor& past, const Ask& ask) {
 WhyMissing ExplainMissing(ReplayMonitor& past, const Ask& ask) {
   std::optional<grammar::FrameNumber> at;
   if (ask.time_s) at = past.FrameAt(TickOf(ask, past));
-  const std::vector<int> instances = BindingsThatFit(past, ask.rule, ask.entities);
+  const std::vector<InstanceId> instances = BindingsThatFit(past, ask.rule, ask.entities);
   if (!instances.empty()) return MissingReasons(past).Explain(instances, at);
   WhyMissing why;
   why.event = past.program().rules[ask.rule].name;

@@ -13,6 +13,7 @@
 namespace prehend::harness::explain {
 
 using grammar::Dimension;
+using grammar::InstanceId;
 using grammar::kNone;
 using grammar::Place;
 using grammar::ReplayMonitor;
@@ -58,13 +59,13 @@ std::string Duration(Tick ticks, Tick ticks_per_second) {
                       grammar::kSeconds);
 }
 
-const std::string& RuleName(ReplayMonitor& past, int instance) {
+const std::string& RuleName(ReplayMonitor& past, InstanceId instance) {
   return past.RuleOf(instance).name;
 }
 
-std::string Label(ReplayMonitor& past, int instance) {
+std::string Label(ReplayMonitor& past, InstanceId instance) {
   const Rule& rule = past.RuleOf(instance);
-  const auto& entities = past.At(instance).entities;
+  const auto& entities = past.EntitiesOf(instance);
   const bool is_any = rule.form() == grammar::Form::kAny;
   const Rule& named = is_any ? past.program().rules[rule.references[0].rule] : rule;
   std::string roles;
@@ -85,7 +86,7 @@ std::string Source(const std::string& file, const Place& place) {
                      place.line);
 }
 
-std::string ClauseText(ReplayMonitor& past, int instance, int node) {
+std::string ClauseText(ReplayMonitor& past, InstanceId instance, int node) {
   const std::string& written = NoteOf(past.program(), node).text;
   std::string text;
   for (std::size_t i = 0; i < written.size(); ++i) {
@@ -95,7 +96,7 @@ std::string ClauseText(ReplayMonitor& past, int instance, int node) {
       text += written[i];
       continue;
     }
-    text += past.entity_table().entities[past.At(instance).entities[written[i + 1] - '0']].name;
+    text += past.entity_table().entities[past.EntitiesOf(instance)[written[i + 1] - '0']].name;
     i += 2;
   }
   return text;

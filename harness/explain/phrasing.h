@@ -26,13 +26,13 @@ std::string At(grammar::Tick tick, grammar::Tick ticks_per_second);
 std::string Duration(grammar::Tick ticks, grammar::Tick ticks_per_second);
 
 /// "grasping(right_hand, milk)"; of a rule made for an `any`: "supported_by(milk, any)".
-std::string Label(grammar::ReplayMonitor& past, int instance);
+std::string Label(grammar::ReplayMonitor& past, grammar::InstanceId instance);
 /// The rule of the binding, as the grammar calls it.
-const std::string& RuleName(grammar::ReplayMonitor& past, int instance);
+const std::string& RuleName(grammar::ReplayMonitor& past, grammar::InstanceId instance);
 /// "pick_and_place.grammar:42"
 std::string Source(const std::string& file, const grammar::Place& place);
 
 /// What stood in the grammar for a node, with the entities' names for the roles.
-std::string ClauseText(grammar::ReplayMonitor& past, int instance, int node);
+std::string ClauseText(grammar::ReplayMonitor& past, grammar::InstanceId instance, int node);
 
 }  // namespace prehend::harness::explain

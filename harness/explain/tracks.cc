@@ -17,6 +17,7 @@ namespace {
 
 using grammar::CandidateOutcome;
 using grammar::FrameNumber;
+using grammar::InstanceId;
 using grammar::kNone;
 using grammar::Node;
 using grammar::Op;
@@ -109,7 +110,7 @@ class Collector {
   void AddIntervals(int rule) {
     const Track::Kind kind =
         past_.program().rules[rule].printed ? Track::Kind::kEvent : Track::Kind::kCondition;
-    for (const int instance : past_.InstancesOf(rule)) {
+    for (const InstanceId instance : past_.InstancesOf(rule)) {
       auto* values = tracks_.problem.empty() ? Add(Label(past_, instance), kind, "") : nullptr;
       if (values == nullptr) continue;
       std::fill(values->begin(), values->end(), 0);
@@ -126,13 +127,13 @@ class Collector {
     const Rule& asked = past_.program().rules[rule];
     for (const Signal& signal : SignalsOf(past_.program(), asked)) {
       if (!Wanted(NameOf(past_.program(), signal)) && !Wanted(asked.name)) continue;
-      for (const int instance : past_.InstancesOf(rule)) {
+      for (const InstanceId instance : past_.InstancesOf(rule)) {
         if (tracks_.problem.empty()) AddSignal(instance, signal);
       }
     }
   }
 
-  void AddSignal(int instance, const Signal& signal) {
+  void AddSignal(InstanceId instance, const Signal& signal) {
     const Program& program = past_.program();
     const bool anchored =
         AsksFor(program, signal.node, Op::kAtBegin) || AsksFor(program, signal.node, Op::kAtEnd);

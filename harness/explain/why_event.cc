@@ -17,6 +17,7 @@ using grammar::CandidateOutcome;
 using grammar::Form;
 using grammar::FrameNumber;
 using grammar::FromToRule;
+using grammar::InstanceId;
 using grammar::kNone;
 using grammar::RestOfRule;
 using grammar::Rule;
@@ -55,7 +56,7 @@ std::string EventReasons::Seconds(double seconds) const {
 }
 
 Clauses::Follow EventReasons::FollowFrom(int depth) {
-  return [this, depth](int instance, const CandidateOutcome& outcome, bool end) {
+  return [this, depth](InstanceId instance, const CandidateOutcome& outcome, bool end) {
     if (depth >= kMaxDepth) return Reasons{};
     return end ? End(instance, outcome, depth + 1) : Begin(instance, outcome, depth + 1);
   };
@@ -65,7 +66,7 @@ Reasons EventReasons::Change(int node, const Moment& at, bool truth, int depth) 
   return node == kNone ? Reasons{} : clauses_.Change(node, at, truth, FollowFrom(depth), brief_);
 }
 
-Reasons EventReasons::Begin(int instance, const CandidateOutcome& outcome, int depth) {
+Reasons EventReasons::Begin(InstanceId instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const FrameNumber begin = outcome.span.begin.frame;
   switch (rule.form()) {
@@ -95,7 +96,7 @@ Reasons EventReasons::Begin(int instance, const CandidateOutcome& outcome, int d
   return {};
 }
 
-Reasons EventReasons::End(int instance, const CandidateOutcome& outcome, int depth) {
+Reasons EventReasons::End(InstanceId instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const FrameNumber begin = outcome.span.begin.frame;
   const FrameNumber end = outcome.span.end.frame;
@@ -138,7 +139,7 @@ Reasons EventReasons::End(int instance, const CandidateOutcome& outcome, int dep
 }
 
 // What stopped the walk back from the end.
-Reasons EventReasons::BeginOfWalk(int instance, const CandidateOutcome& outcome, int depth) {
+Reasons EventReasons::BeginOfWalk(InstanceId instance, const CandidateOutcome& outcome, int depth) {
   const UntilSinceRule& rule = past_.RuleOf(instance).As<UntilSinceRule>();
   const std::optional<grammar::Approach>& approach = rule.approach;
   const FrameNumber begin = outcome.span.begin.frame;
@@ -196,11 +197,12 @@ Reasons EventReasons::BeginOfWalk(int instance, const CandidateOutcome& outcome,
   return reasons;
 }
 
-Reasons EventReasons::BeginOrEndOfRest(int instance, FrameNumber frame, bool begins, int depth) {
+Reasons EventReasons::BeginOrEndOfRest(InstanceId instance, FrameNumber frame, bool begins,
+                                       int depth) {
   const RestOfRule& rule = past_.RuleOf(instance).As<RestOfRule>();
   Reasons reasons;
   const auto add = [&](int slot, bool truth) {
-    const int target = past_.Referred(instance, slot);
+    const InstanceId target = past_.Referred(instance, slot);
     const bool holds = target != kNone && past_.Covering(target, frame) != nullptr;
     if (holds != truth) return;
     Reason reason = clauses_.Reference(instance, slot, frame, truth, FollowFrom(depth));
@@ -212,12 +214,12 @@ Reasons EventReasons::BeginOrEndOfRest(int instance, FrameNumber frame, bool beg
 }
 
 // The bindings that begin or end here; of several that hold, others go on.
-Reasons EventReasons::BeginOrEndOfAny(int instance, FrameNumber frame, bool end, int depth) {
+Reasons EventReasons::BeginOrEndOfAny(InstanceId instance, FrameNumber frame, bool end, int depth) {
   Reasons reasons;
-  std::vector<int> members = past_.MembersOf(instance);
+  std::vector<InstanceId> members = past_.MembersOf(instance);
   std::sort(members.begin(), members.end(),
-            [&](int a, int b) { return past_.At(a).entities < past_.At(b).entities; });
-  for (const int member : members) {
+            [&](InstanceId a, InstanceId b) { return past_.EntitiesOf(a) < past_.EntitiesOf(b); });
+  for (const InstanceId member : members) {
     for (const CandidateOutcome& outcome : past_.OutcomesOf(member)) {
       const FrameNumber boundary = end ? outcome.span.end.frame : outcome.span.begin.frame;
       if (outcome.kind != CandidateOutcome::Kind::kInterval || boundary != frame) continue;
@@ -235,12 +237,12 @@ Reasons EventReasons::BeginOrEndOfAny(int instance, FrameNumber frame, bool end,
   return reasons;
 }
 
-bool EventReasons::ChooseParts(int instance, const CandidateOutcome& whole,
+bool EventReasons::ChooseParts(InstanceId instance, const CandidateOutcome& whole,
                                std::vector<const CandidateOutcome*>& chosen) {
   const auto& composition = past_.RuleOf(instance).As<grammar::ComposeRule>();
   const std::size_t part = chosen.size();
   if (part == composition.parts.size()) return true;
-  const int target = past_.Referred(instance, composition.parts[part]);
+  const InstanceId target = past_.Referred(instance, composition.parts[part]);
   for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
     if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
     if (part == 0 && outcome.span.begin.frame != whole.span.begin.frame) continue;
@@ -262,7 +264,7 @@ bool EventReasons::ChooseParts(int instance, const CandidateOutcome& whole,
   return false;
 }
 
-Reasons EventReasons::Parts(int instance, const CandidateOutcome& outcome, int depth) {
+Reasons EventReasons::Parts(InstanceId instance, const CandidateOutcome& outcome, int depth) {
   std::vector<const CandidateOutcome*> chosen;
   Reasons reasons;
   if (!ChooseParts(instance, outcome, chosen)) return reasons;
@@ -278,7 +280,7 @@ Reasons EventReasons::Parts(int instance, const CandidateOutcome& outcome, int d
   return reasons;
 }
 
-Reasons EventReasons::Counted(int instance, const CandidateOutcome& outcome) {
+Reasons EventReasons::Counted(InstanceId instance, const CandidateOutcome& outcome) {
   const Rule& rule = past_.RuleOf(instance);
   const Tick per_second = past_.entity_table().ticks_per_second;
   Reasons reasons;
@@ -297,8 +299,8 @@ Reasons EventReasons::Counted(int instance, const CandidateOutcome& outcome) {
     }
   }
   if (rule.confirmed_by != kNone && outcome.cause != grammar::kNever) {
-    const int by = past_.Referred(instance, rule.confirmed_by);
-    const int within = past_.Referred(instance, rule.confirmed_within);
+    const InstanceId by = past_.Referred(instance, rule.confirmed_by);
+    const InstanceId within = past_.Referred(instance, rule.confirmed_within);
     reasons.push_back(Remark("confirmed by " + Label(past_, by),
                              "it began at " + clauses_.Time(outcome.cause) + ", while " +
                                  Label(past_, within) + " held"));
@@ -307,7 +309,7 @@ Reasons EventReasons::Counted(int instance, const CandidateOutcome& outcome) {
 }
 
 // Why it was not known at its end already.
-Reasons EventReasons::Waited(int instance, const CandidateOutcome& outcome, int depth) {
+Reasons EventReasons::Waited(InstanceId instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const Tick end = outcome.span.end.tick;
   Reasons reasons;
@@ -332,27 +334,27 @@ Reasons EventReasons::Waited(int instance, const CandidateOutcome& outcome, int 
 
 // How far back it may turn out to have held: it looks back itself, or begins with what does. 0: not
 // at all.
-double EventReasons::LooksBack_s(int instance) {
+double EventReasons::LooksBack_s(InstanceId instance) {
   const Rule& rule = past_.RuleOf(instance);
   if (const auto* looks_back = rule.If<UntilSinceRule>()) return looks_back->back_s;
   int begins_with = kNone;
   if (const auto* rest = rule.If<RestOfRule>()) begins_with = rest->whole;
   if (rule.form() == Form::kFromTo) begins_with = rule.opened_by;
-  const int target = begins_with == kNone ? kNone : past_.Referred(instance, begins_with);
+  const InstanceId target = begins_with == kNone ? kNone : past_.Referred(instance, begins_with);
   return target == kNone ? 0 : LooksBack_s(target);
 }
 
 // What it refers to and was known at that very moment only; or what might still have come in that
 // time.
-Reasons EventReasons::WaitedFor(int instance, const CandidateOutcome& outcome, int depth) {
+Reasons EventReasons::WaitedFor(InstanceId instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  std::vector<int> targets = past_.MembersOf(instance);
+  std::vector<InstanceId> targets = past_.MembersOf(instance);
   for (std::size_t slot = 0; slot < rule.references.size() && rule.form() != Form::kAny; ++slot) {
     targets.push_back(past_.Referred(instance, static_cast<int>(slot)));
   }
   std::erase(targets, kNone);
   Reasons reasons;
-  for (const int target : targets) {
+  for (const InstanceId target : targets) {
     const std::vector<CandidateOutcome>& outcomes = past_.OutcomesOf(target);
     const auto only_then = [&](const CandidateOutcome& other) {
       return other.decided == outcome.decided && other.span.end.tick < other.decided;
@@ -363,7 +365,7 @@ Reasons EventReasons::WaitedFor(int instance, const CandidateOutcome& outcome, i
     reason.because = Waited(target, *other, depth + 1);
     reasons.push_back(std::move(reason));
   }
-  for (const int target : targets) {
+  for (const InstanceId target : targets) {
     const double back_s = LooksBack_s(target);
     if (!reasons.empty() || back_s <= 0) continue;
     reasons.push_back(Remark(
@@ -374,7 +376,7 @@ Reasons EventReasons::WaitedFor(int instance, const CandidateOutcome& outcome, i
   return reasons;
 }
 
-WhyEvent EventReasons::Explain(int instance, const CandidateOutcome& outcome, bool brief) {
+WhyEvent EventReasons::Explain(InstanceId instance, const CandidateOutcome& outcome, bool brief) {
   brief_ = brief;
   const Rule& rule = past_.RuleOf(instance);
   WhyEvent why{.event = Label(past_, instance),

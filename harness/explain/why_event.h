@@ -13,22 +13,29 @@ class EventReasons {
   explicit EventReasons(grammar::ReplayMonitor& past) : past_(past), clauses_(past) {}
 
   /// Everything about one interval of a binding. `brief`: only what turned, for one line per event.
-  WhyEvent Explain(int instance, const grammar::CandidateOutcome& outcome, bool brief = false);
+  WhyEvent Explain(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
+                   bool brief = false);
 
-  Reasons Begin(int instance, const grammar::CandidateOutcome& outcome, int depth = 0);
-  Reasons End(int instance, const grammar::CandidateOutcome& outcome, int depth = 0);
+  Reasons Begin(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
+                int depth = 0);
+  Reasons End(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
+              int depth = 0);
 
  private:
-  Reasons BeginOfWalk(int instance, const grammar::CandidateOutcome& outcome, int depth);
-  Reasons BeginOrEndOfRest(int instance, grammar::FrameNumber frame, bool begins, int depth);
-  Reasons BeginOrEndOfAny(int instance, grammar::FrameNumber frame, bool end, int depth);
-  Reasons Parts(int instance, const grammar::CandidateOutcome& outcome, int depth);
-  bool ChooseParts(int instance, const grammar::CandidateOutcome& whole,
+  Reasons BeginOfWalk(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
+                      int depth);
+  Reasons BeginOrEndOfRest(grammar::InstanceId instance, grammar::FrameNumber frame, bool begins,
+                           int depth);
+  Reasons BeginOrEndOfAny(grammar::InstanceId instance, grammar::FrameNumber frame, bool end,
+                          int depth);
+  Reasons Parts(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, int depth);
+  bool ChooseParts(grammar::InstanceId instance, const grammar::CandidateOutcome& whole,
                    std::vector<const grammar::CandidateOutcome*>& chosen);
-  Reasons Counted(int instance, const grammar::CandidateOutcome& outcome);
-  Reasons Waited(int instance, const grammar::CandidateOutcome& outcome, int depth);
-  Reasons WaitedFor(int instance, const grammar::CandidateOutcome& outcome, int depth);
-  double LooksBack_s(int instance);
+  Reasons Counted(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);
+  Reasons Waited(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, int depth);
+  Reasons WaitedFor(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
+                    int depth);
+  double LooksBack_s(grammar::InstanceId instance);
   Reasons Change(int node, const Moment& at, bool truth, int depth);
   Clauses::Follow FollowFrom(int depth);
   const grammar::Node& NodeAt(int node) const { return past_.program().nodes[node]; }

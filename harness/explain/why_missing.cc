@@ -17,6 +17,7 @@ namespace prehend::harness::explain {
 using grammar::CandidateOutcome;
 using grammar::FrameNumber;
 using grammar::FromToRule;
+using grammar::InstanceId;
 using grammar::kNone;
 using grammar::Rule;
 using grammar::Tick;
@@ -63,12 +64,12 @@ MissingReasons::Window MissingReasons::Within(const Window& window, FrameNumber 
   return {std::max(around.first, window.first), std::min(around.last, window.last), frame};
 }
 
-WhyMissing MissingReasons::Explain(const std::vector<int>& instances,
+WhyMissing MissingReasons::Explain(const std::vector<InstanceId>& instances,
                                    std::optional<FrameNumber> at) {
   const Window window = at ? Around(*at) : Whole();
   std::optional<Blame> worst;
-  int blamed = instances.front();
-  for (const int instance : instances) {
+  InstanceId blamed = instances.front();
+  for (const InstanceId instance : instances) {
     Blame blame = OfInstance(instance, window, 0);
     if (worst && blame.closeness <= worst->closeness) continue;
     worst = std::move(blame);
@@ -105,7 +106,8 @@ WhyMissing MissingReasons::Explain(const std::vector<int>& instances,
   return why;
 }
 
-MissingReasons::Blame MissingReasons::OfInstance(int instance, const Window& window, int depth) {
+MissingReasons::Blame MissingReasons::OfInstance(InstanceId instance, const Window& window,
+                                                 int depth) {
   if (instance == kNone || depth >= kMaxDepth) return {};
   if (const CandidateOutcome* run = NearestRun(instance, window))
     return OfRun(*run, depth, window.at ? grammar::kNever : window.last);
@@ -114,7 +116,7 @@ MissingReasons::Blame MissingReasons::OfInstance(int instance, const Window& win
 
 // Of the runs within the window that came to nothing, the one that was nearest to being an
 // interval.
-const CandidateOutcome* MissingReasons::NearestRun(int instance, const Window& window) {
+const CandidateOutcome* MissingReasons::NearestRun(InstanceId instance, const Window& window) {
   const CandidateOutcome* nearest = nullptr;
   double closeness = 0;
   for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
@@ -158,7 +160,7 @@ double MissingReasons::RunCloseness(const CandidateOutcome& outcome) {
   }
 }
 
-std::string MissingReasons::Awaited(int instance) {
+std::string MissingReasons::Awaited(InstanceId instance) {
   const FromToRule& rule = past_.RuleOf(instance).As<FromToRule>();
   return (rule.absence ? "without " : "to ") + ClauseText(past_, instance, rule.to);
 }
@@ -191,9 +193,9 @@ Reasons MissingReasons::Requirement(const CandidateOutcome& outcome, int depth) 
   for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
     Reason reason = clauses_.Told(clause, at);
     const grammar::Node& n = past_.program().nodes[clause.node];
-    const int target = n.op == grammar::Op::kHolds && clause.truth
-                           ? past_.Referred(outcome.instance, n.slot)
-                           : kNone;
+    const InstanceId target = n.op == grammar::Op::kHolds && clause.truth
+                                  ? past_.Referred(outcome.instance, n.slot)
+                                  : kNone;
     if (reason.mark == Mark::kFailed && target != kNone)
       reason.because = OfInstance(target, run, depth + 1).reasons;
     reason.what = "requires " + reason.what;
@@ -227,7 +229,7 @@ Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameN
 
 MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int depth,
                                             FrameNumber look_until) {
-  const int instance = outcome.instance;
+  const InstanceId instance = outcome.instance;
   const Rule& rule = past_.RuleOf(instance);
   const Tick per_second = past_.entity_table().ticks_per_second;
   const FrameNumber begin = outcome.span.begin.frame;
@@ -262,8 +264,8 @@ MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int
       break;
     case CandidateOutcome::Kind::kUnconfirmed: {
       run.how += "not confirmed";
-      const int by = past_.Referred(instance, rule.confirmed_by);
-      const int within = past_.Referred(instance, rule.confirmed_within);
+      const InstanceId by = past_.Referred(instance, rule.confirmed_by);
+      const InstanceId within = past_.Referred(instance, rule.confirmed_within);
       const bool episode = outcome.cause >= past_.frames();
       fail("confirmed by " + Label(past_, by),
            "it did not begin before " +

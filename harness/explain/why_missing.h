@@ -15,7 +15,8 @@ class MissingReasons {
 
   /// Of the bindings the one that came closest. `at`: where it should have been; otherwise
   /// anywhere.
-  WhyMissing Explain(const std::vector<int>& instances, std::optional<grammar::FrameNumber> at);
+  WhyMissing Explain(const std::vector<grammar::InstanceId>& instances,
+                     std::optional<grammar::FrameNumber> at);
 
  private:
   /// The frames to look at, and the one that it is about.
@@ -33,11 +34,11 @@ class MissingReasons {
   /// Likewise, for what stands behind something else: not beyond the moment that was asked for.
   Window Within(const Window& window, grammar::FrameNumber frame);
 
-  Blame OfInstance(int instance, const Window& window, int depth);
-  const grammar::CandidateOutcome* NearestRun(int instance, const Window& window);
+  Blame OfInstance(grammar::InstanceId instance, const Window& window, int depth);
+  const grammar::CandidateOutcome* NearestRun(grammar::InstanceId instance, const Window& window);
   double RunCloseness(const grammar::CandidateOutcome& outcome);
   /// "to touching(hand, cup) ends", "without touching(hand, cup) begins"
-  std::string Awaited(int instance);
+  std::string Awaited(grammar::InstanceId instance);
   std::string HowLate(const grammar::CandidateOutcome& outcome);
   /// `look_until`: what came later than that could not have helped.
   Blame OfRun(const grammar::CandidateOutcome& outcome, int depth,
@@ -45,25 +46,25 @@ class MissingReasons {
   Reasons Requirement(const grammar::CandidateOutcome& outcome, int depth);
   Reasons EndThatNeverCame(const grammar::CandidateOutcome& outcome,
                            grammar::FrameNumber look_until);
-  Blame OfForm(int instance, const Window& window, int depth);
-  Blame OfWhile(int instance, const Window& window, int depth);
-  Blame OfFromTo(int instance, const Window& window, int depth);
-  Blame OfUntil(int instance, const Window& window, int depth);
-  std::optional<Blame> OfLaterEnd(int instance, grammar::FrameNumber at, int depth);
-  Blame OfRest(int instance, const Window& window, int depth);
-  Blame OfAny(int instance, const Window& window, int depth);
-  Blame OfCompose(int instance, const Window& window, int depth);
-  Blame OfFact(int instance, const Window& window);
+  Blame OfForm(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfWhile(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfFromTo(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfUntil(grammar::InstanceId instance, const Window& window, int depth);
+  std::optional<Blame> OfLaterEnd(grammar::InstanceId instance, grammar::FrameNumber at, int depth);
+  Blame OfRest(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfAny(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfCompose(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfFact(grammar::InstanceId instance, const Window& window);
 
   /// The clauses of a condition where they came closest to holding, the first failed one followed.
   Blame OfClauses(int node, Moment at, const Window& window, int depth);
-  void Follow(Reason& reason, int target, grammar::FrameNumber frame, const Window& window,
-              int depth);
-  Reason ClosestApproach(int instance, const Window& window);
+  void Follow(Reason& reason, grammar::InstanceId target, grammar::FrameNumber frame,
+              const Window& window, int depth);
+  Reason ClosestApproach(grammar::InstanceId instance, const Window& window);
   grammar::FrameNumber Closest(int node, Moment at, const Window& window);
   /// The moment never came.
-  Blame OfMoment(int node, int instance, const Window& window, int depth);
-  Reason Intervals(int instance, std::string how);
+  Blame OfMoment(int node, grammar::InstanceId instance, const Window& window, int depth);
+  Reason Intervals(grammar::InstanceId instance, std::string how);
 
   grammar::ReplayMonitor& past_;
   Clauses clauses_;

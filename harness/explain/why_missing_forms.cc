@@ -17,6 +17,7 @@ namespace prehend::harness::explain {
 using grammar::CandidateOutcome;
 using grammar::Form;
 using grammar::FrameNumber;
+using grammar::InstanceId;
 using grammar::kNone;
 using grammar::Op;
 using grammar::Rule;
@@ -42,7 +43,7 @@ Reason Failed(std::string what, std::string how, Reasons because = {}) {
 }  // namespace
 
 // "contact(hand, cup)  1.0..2.0 s, 3.0..4.0 s"
-Reason MissingReasons::Intervals(int instance, std::string how) {
+Reason MissingReasons::Intervals(InstanceId instance, std::string how) {
   std::size_t count = 0;
   for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
     if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
@@ -55,7 +56,7 @@ Reason MissingReasons::Intervals(int instance, std::string how) {
   return {.mark = Mark::kNote, .what = Label(past_, instance), .how = count == 0 ? "never" : how};
 }
 
-MissingReasons::Blame MissingReasons::OfForm(int instance, const Window& window, int depth) {
+MissingReasons::Blame MissingReasons::OfForm(InstanceId instance, const Window& window, int depth) {
   switch (past_.RuleOf(instance).form()) {
     case Form::kTouching:
       return OfFact(instance, window);
@@ -75,7 +76,7 @@ MissingReasons::Blame MissingReasons::OfForm(int instance, const Window& window,
   return {};
 }
 
-MissingReasons::Blame MissingReasons::OfFact(int instance, const Window& window) {
+MissingReasons::Blame MissingReasons::OfFact(InstanceId instance, const Window& window) {
   const bool at = window.at.has_value();
   Reason reason =
       Failed(Label(past_, instance),
@@ -136,8 +137,8 @@ MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Windo
 
 // Into the rule that is to blame. What never held is looked for everywhere, if no moment was asked
 // for.
-void MissingReasons::Follow(Reason& reason, int target, FrameNumber frame, const Window& window,
-                            int depth) {
+void MissingReasons::Follow(Reason& reason, InstanceId target, FrameNumber frame,
+                            const Window& window, int depth) {
   if (target == kNone || past_.RuleOf(target).form() == Form::kTouching) return;
   const bool never = past_.LastBegun(target, past_.frames()) == nullptr;
   Reasons behind =
@@ -150,7 +151,8 @@ void MissingReasons::Follow(Reason& reason, int target, FrameNumber frame, const
   reason.because = std::move(behind);
 }
 
-MissingReasons::Blame MissingReasons::OfWhile(int instance, const Window& window, int depth) {
+MissingReasons::Blame MissingReasons::OfWhile(InstanceId instance, const Window& window,
+                                              int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const int condition = rule.As<grammar::WhileRule>().condition;
   Blame inner = OfClauses(condition, {.instance = instance}, window, depth);
@@ -162,7 +164,7 @@ MissingReasons::Blame MissingReasons::OfWhile(int instance, const Window& window
   return {{std::move(reason)}, inner.closeness};
 }
 
-MissingReasons::Blame MissingReasons::OfMoment(int node, int instance, const Window& window,
+MissingReasons::Blame MissingReasons::OfMoment(int node, InstanceId instance, const Window& window,
                                                int depth) {
   // Some of it happened, but not all at once.
   const Moment at{.instance = instance, .frame = Closest(node, {.instance = instance}, window)};
@@ -176,7 +178,7 @@ MissingReasons::Blame MissingReasons::OfMoment(int node, int instance, const Win
     const grammar::Node& arg = past_.program().nodes[n.args[0]];
     Blame blame;
     if (arg.op == Op::kHolds) {
-      const int target = past_.Referred(instance, arg.slot);
+      const InstanceId target = past_.Referred(instance, arg.slot);
       if (target == kNone) continue;
       const bool ever = past_.LastBegun(target, past_.frames()) != nullptr;
       const CandidateOutcome* last = past_.LastBegun(target, window.last);
@@ -194,7 +196,8 @@ MissingReasons::Blame MissingReasons::OfMoment(int node, int instance, const Win
   return best;
 }
 
-MissingReasons::Blame MissingReasons::OfFromTo(int instance, const Window& window, int depth) {
+MissingReasons::Blame MissingReasons::OfFromTo(InstanceId instance, const Window& window,
+                                               int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const auto& [opens, closes, during, or_drop, absence, within_s] = rule.As<grammar::FromToRule>();
   // The last moment that should have begun it.
@@ -238,7 +241,7 @@ MissingReasons::Blame MissingReasons::OfFromTo(int instance, const Window& windo
   return {{std::move(reason)}, 0.8};
 }
 
-Reason MissingReasons::ClosestApproach(int instance, const Window& window) {
+Reason MissingReasons::ClosestApproach(InstanceId instance, const Window& window) {
   const int signal = past_.RuleOf(instance).As<UntilSinceRule>().approach->signal;
   Reason reason{.mark = Mark::kNote, .what = ClauseText(past_, instance, signal)};
   double smallest = 0;
@@ -257,7 +260,7 @@ Reason MissingReasons::ClosestApproach(int instance, const Window& window) {
 
 // Whatever ended later begins too late; whatever came to nothing later, did so; unless it looks
 // back less far than that.
-std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(int instance, FrameNumber at,
+std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(InstanceId instance, FrameNumber at,
                                                                 int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const double back_s = rule.As<UntilSinceRule>().back_s;
@@ -281,7 +284,8 @@ std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(int instance, Fr
   return std::nullopt;
 }
 
-MissingReasons::Blame MissingReasons::OfUntil(int instance, const Window& window, int depth) {
+MissingReasons::Blame MissingReasons::OfUntil(InstanceId instance, const Window& window,
+                                              int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const UntilSinceRule& part = rule.As<UntilSinceRule>();
   if (window.at) {
@@ -304,13 +308,13 @@ MissingReasons::Blame MissingReasons::OfUntil(int instance, const Window& window
   return {{std::move(reason)}, 0.5 * blame.closeness};
 }
 
-MissingReasons::Blame MissingReasons::OfRest(int instance, const Window& window, int depth) {
+MissingReasons::Blame MissingReasons::OfRest(InstanceId instance, const Window& window, int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const auto& rest = rule.As<grammar::RestOfRule>();
-  const int whole = past_.Referred(instance, rest.whole);
+  const InstanceId whole = past_.Referred(instance, rest.whole);
   Reason reason = Failed(Label(past_, instance), "", {});
   reason.where = Source(rule.file, rule.place);
-  const auto covers = [&](int target, FrameNumber frame) {
+  const auto covers = [&](InstanceId target, FrameNumber frame) {
     return target != kNone && past_.Covering(target, frame) != nullptr;
   };
   FrameNumber frame = window.at.value_or(window.first);
@@ -326,7 +330,7 @@ MissingReasons::Blame MissingReasons::OfRest(int instance, const Window& window,
   }
   reason.how = "nothing is left of " + Label(past_, whole) + " at " + clauses_.Time(frame);
   for (const int slot : rest.outside) {
-    const int target = past_.Referred(instance, slot);
+    const InstanceId target = past_.Referred(instance, slot);
     if (!covers(target, frame)) continue;
     const CandidateOutcome& outcome = *past_.Covering(target, frame);
     Reason covered =
@@ -345,26 +349,27 @@ MissingReasons::Blame MissingReasons::OfRest(int instance, const Window& window,
   return {{std::move(reason)}, 0.7};
 }
 
-MissingReasons::Blame MissingReasons::OfAny(int instance, const Window& window, int depth) {
+MissingReasons::Blame MissingReasons::OfAny(InstanceId instance, const Window& window, int depth) {
   Blame best{{Failed(Label(past_, instance), "nothing that fits was there")}, -1};
   const grammar::Reference& reference = past_.RuleOf(instance).references[0];
   grammar::Binding wanted = grammar::kUnbound;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (reference.roles[i] != kNone) wanted[i] = past_.At(instance).entities[reference.roles[i]];
+    if (reference.roles[i] != kNone) wanted[i] = past_.EntitiesOf(instance)[reference.roles[i]];
   }
-  for (const int candidate : BindingsThatFit(past_, reference.rule, wanted)) {
+  for (const InstanceId candidate : BindingsThatFit(past_, reference.rule, wanted)) {
     Blame blame = OfInstance(candidate, window, depth + 1);
     if (blame.closeness > best.closeness) best = std::move(blame);
   }
   return best;
 }
 
-MissingReasons::Blame MissingReasons::OfCompose(int instance, const Window& window, int depth) {
+MissingReasons::Blame MissingReasons::OfCompose(InstanceId instance, const Window& window,
+                                                int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const auto& composition = rule.As<grammar::ComposeRule>();
   Reason reason = Failed(Label(past_, instance), "needs all its parts", {});
   reason.where = Source(rule.file, rule.place);
-  std::vector<int> parts;
+  std::vector<InstanceId> parts;
   bool complete = true;
   for (const int slot : composition.parts) {
     parts.push_back(past_.Referred(instance, slot));

@@ -236,10 +236,10 @@ struct RecordingYaml {
   double max_gap_s = 0.25;
   double max_jump_m = 0.1;
   std::optional<Located<double>> scale;  ///< metres per unit of a .bvh file
-  // What harness/read/place_recordings.h makes of the file: poses of the palm or head, or figures
+  // What harness/read/place_recordings.h makes of the file: poses of the palm or head, or postures
   // of a body.
   std::vector<physics::TimedPose> poses;
-  std::vector<physics::TimedFigure> figures;
+  std::vector<physics::TimedPosture> postures;
 };
 // Steps of persons.
 struct LookAtYaml {

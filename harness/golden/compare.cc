@@ -93,15 +93,15 @@ std::optional<int> Unlikeness(const NamedEvent& expected, const NamedEvent& actu
   return some_equal ? std::optional(different) : std::nullopt;
 }
 
-std::vector<Headroom> HeadroomOf(const std::vector<Pairing>& pairings) {
-  std::vector<Headroom> headroom;
+std::vector<Margin> MarginsOf(const std::vector<Pairing>& pairings) {
+  std::vector<Margin> margins;
   for (const Pairing& pairing : pairings) {
     if (pairing.agreement != LineVerdict::kMatched) continue;
     const std::string label = pairing.event().Label();
-    headroom.push_back({"begin of " + label, pairing.begin_offset, pairing.tolerance});
-    headroom.push_back({"end of " + label, pairing.end_offset, pairing.tolerance});
+    margins.push_back({label, false, pairing.begin_offset, pairing.tolerance});
+    margins.push_back({label, true, pairing.end_offset, pairing.tolerance});
   }
-  return headroom;
+  return margins;
 }
 
 class Pairer {
@@ -133,7 +133,7 @@ class Pairer {
         [](const Pairing& a, const Pairing& b) { return ComesBefore(a.event(), b.event()); });
     comparison_.ticks_per_second = ticks_per_second_;
     comparison_.relations = ChangedRelations(comparison_.pairings);
-    comparison_.headroom = HeadroomOf(comparison_.pairings);
+    comparison_.margins = MarginsOf(comparison_.pairings);
     return std::move(comparison_);
   }
 
@@ -265,9 +265,12 @@ Tick Pairing::DivergenceTick() const {
   return only_the_end ? std::min(was.end, is.end) : std::min(was.begin, is.begin);
 }
 
-const Headroom* Comparison::Tightest() const {
-  const auto found = std::ranges::min_element(headroom, {}, &Headroom::Left);
-  return found == headroom.end() ? nullptr : &*found;
+const Margin* Comparison::Smallest() const {
+  const Margin* smallest = nullptr;
+  for (const Margin& margin : margins) {
+    if (margin.offset != 0 && (!smallest || margin.Left() < smallest->Left())) smallest = &margin;
+  }
+  return smallest;
 }
 
 std::vector<const Pairing*> Comparison::Differing() const {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was recognised against what must be recognised, as a value.
-// Events are paired per label (name and roles) so that as many as possible find a partner and the
-// partners are as close as possible; what is left over and overlaps a pair of its label is a piece
-// of it; then pairs are made across labels where only a role, or only the event's name, changed;
-// the rest is missing or extra. Tested by tests/harness/golden/compare_test.cc
+// Compares a recognised timeline with a golden; the result is a value. Events are matched within
+// their label (name and roles). An event without partner that overlaps a pair of its label is a
+// fragment of that. Then events of different labels are paired if only a role, or only the event's
+// name, changed. The rest is missing or extra. Tested by tests/harness/golden/compare_test.cc
 #pragma once
 
 #include <cstdlib>
@@ -31,8 +30,8 @@ enum class LineVerdict {
 /// "matched", "shifted", ...
 std::string_view Name(LineVerdict agreement);
 
-/// An expected event and its partner; one of the two is empty when missing or extra, and for the
-/// further pieces of what is fragmented or merged.
+/// An expected event and its partner. One of the two is empty when missing or extra, and for all
+/// but one of several fragments.
 struct Pairing {
   LineVerdict agreement = LineVerdict::kMatched;
   std::optional<grammar::NamedEvent> expected, actual;
@@ -45,39 +44,40 @@ struct Pairing {
 
   const grammar::NamedEvent& event() const { return expected ? *expected : *actual; }
 
-  /// A further piece, told of by the one that has a partner.
+  /// One of several fragments; reported with the one that has a partner.
   bool IsFurtherPiece() const;
 
-  /// The first tick at which expected and recognised part.
+  /// The first tick at which expected and recognised diverge.
   grammar::Tick DivergenceTick() const;
 };
 
-/// Two events that are both there, but lie to each other in another way, by more than the
-/// tolerance.
+/// Two events whose relation in time is not that of the golden, by more than the tolerance.
 struct RelationChange {
   std::string first, second;     ///< labels
   std::string expected, actual;  ///< names of Allen's relations
 };
 
-/// How near a boundary of a matched event comes to its tolerance.
-struct Headroom {
-  std::string boundary;  ///< "begin of reaching(right_hand, milk)"
-  grammar::Tick offset = 0;
+/// How far a boundary of a matched event is from the limit of its tolerance.
+struct Margin {
+  std::string label;  ///< "reaching(right_hand, milk)"
+  bool at_end = false;
+  grammar::Tick offset = 0;  ///< recognised - expected
   grammar::Tick tolerance = 0;
 
   grammar::Tick Left() const { return tolerance - std::abs(offset); }
+  std::string Boundary() const { return (at_end ? "end of " : "begin of ") + label; }
 };
 
 struct Comparison {
   grammar::Tick ticks_per_second = 480;
   std::vector<Pairing> pairings;  ///< in the order of time
   std::vector<RelationChange>
-      relations;  ///< between differing events and all others that share their roles
-  std::vector<Headroom> headroom;  ///< of every boundary of the matched events
+      relations;                ///< between differing events and all others that share their roles
+  std::vector<Margin> margins;  ///< of every boundary of the matched events
 
   bool Agrees() const;
   int Count(LineVerdict agreement) const;
-  const Headroom* Tightest() const;        ///< null without matched events
+  const Margin* Smallest() const;  ///< of those that are off; null when all boundaries are exact
   const Pairing* FirstDivergence() const;  ///< null when all agree
   std::vector<const Pairing*> Differing()
       const;  ///< first divergence first; pieces are told of by one
@@ -87,8 +87,8 @@ struct Comparison {
 /// count as equal when they are no further apart than the tolerance.
 std::vector<RelationChange> ChangedRelations(const std::vector<Pairing>& pairings);
 
-/// Compares in the ticks of `actual`; `default_tolerance` (ticks) is for golden lines without their
-/// own.
+/// Compares in the ticks of `actual`. `default_tolerance` (ticks) holds for golden lines without a
+/// tolerance.
 Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
                    grammar::Tick default_tolerance);
 
@@ -100,12 +100,12 @@ grammar::Tick DefaultTolerance(int rate_hz, int sensing_hz);
 bool ValuesAgree(double expected, double actual);
 
 /// The differences as text, first divergence first, each with both intervals, signed offsets in
-/// milliseconds, and what of `command`, "prehend explain ..", tells why; `facts` are of the first.
-/// Empty when all agree.
+/// milliseconds, and the question for `command`, "prehend explain ..". `facts` are shown with the
+/// first difference. Empty when all agree.
 std::string DifferenceText(const Comparison& comparison, std::string_view command,
                            std::string_view facts = {});
 
-/// What `prehend explain` is to be asked about a difference: "--event 'sliding hand cup @0.1000s'".
+/// The question to `prehend explain` about a difference: "--event 'sliding hand cup @0.1000s'".
 std::string QuestionAbout(const Pairing& pairing, grammar::Tick ticks_per_second);
 
 /// The same differences, and the relations that changed, as lists for programs: keys in
@@ -113,8 +113,9 @@ std::string QuestionAbout(const Pairing& pairing, grammar::Tick ticks_per_second
 nlohmann::ordered_json DifferencesJson(const Comparison& comparison, std::string_view command);
 nlohmann::ordered_json RelationsJson(const Comparison& comparison);
 
-/// One line: "headroom: 4.2 of 8.3 ms are left at begin of reaching(right_hand, milk)", or "".
-std::string HeadroomText(const Comparison& comparison);
+/// One line about the smallest margin, or "" without matched events:
+/// "margin: 4.2 of 8.3 ms left at begin of reaching(right_hand, milk)"
+std::string MarginText(const Comparison& comparison);
 
 /// Where events lie to each other otherwise than the golden says: of every two pairs that share
 /// their entities and of which at least one differs. Two boundaries count as equal when they are no

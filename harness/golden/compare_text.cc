@@ -71,8 +71,8 @@ std::string_view Name(LineVerdict agreement) {
   return "";
 }
 
-// Why it is as it is, or why it is missing. Of what is in pieces the first one is asked about,
-// whose end is where it broke.
+// Asks why an event is as it is, or why it is missing; of a fragmented event about the first
+// fragment, which ends where the event broke.
 std::string QuestionAbout(const Pairing& pairing, Tick ticks_per_second) {
   const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
   const bool in_pieces = pairing.agreement == LineVerdict::kFragmented && !pairing.pieces.empty();
@@ -100,14 +100,17 @@ std::string DifferenceText(const Comparison& comparison, std::string_view comman
   return text;
 }
 
-std::string HeadroomText(const Comparison& comparison) {
-  const Headroom* tightest = comparison.Tightest();
-  if (!tightest) return "";
-  if (tightest->Left() == tightest->tolerance) return "headroom: every boundary is exact";
-  return fmt::format("headroom: {:.1f} of {:.1f} ms are left at {}",
-                     MillisecondsOf(tightest->Left(), comparison.ticks_per_second),
-                     MillisecondsOf(tightest->tolerance, comparison.ticks_per_second),
-                     tightest->boundary);
+std::string MarginText(const Comparison& comparison) {
+  if (comparison.margins.empty()) return "";
+  const Margin* smallest = comparison.Smallest();
+  if (!smallest) return "margin: all boundaries match exactly";
+  const auto ms = [&](Tick ticks) { return MillisecondsOf(ticks, comparison.ticks_per_second); };
+  if (smallest->Left() == 0)
+    return fmt::format("passed at the limit: {} {} {:.1f} ms off (tolerance {:.1f} ms)",
+                       smallest->label, smallest->at_end ? "ends" : "begins",
+                       ms(std::abs(smallest->offset)), ms(smallest->tolerance));
+  return fmt::format("margin: {:.1f} of {:.1f} ms left at {}", ms(smallest->Left()),
+                     ms(smallest->tolerance), smallest->Boundary());
 }
 
 }  // namespace prehend::harness

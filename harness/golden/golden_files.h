@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where goldens and what waits to become one are kept: golden/SKILL/NAME.timeline and
+// Where goldens and pending goldens are kept: golden/SKILL/NAME.timeline and
 // build/pending/SKILL/NAME.timeline. Tested by tests/harness/golden/golden_files_test.cc
 #pragma once
 
@@ -21,11 +21,11 @@ struct KeptPicture {
   std::filesystem::path path;
 };
 
-/// That a golden says of itself that it is of another scenario; nothing when it does not.
+/// An error if the golden's header names another scenario; else nothing.
 grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view text,
                                        const Golden& golden, const std::string& scenario);
 
-/// Where the name stands in the line "# scenario: ..".
+/// The place of the name in the line "# scenario: ..".
 grammar::Place ScenarioLine(std::string_view text);
 
 class GoldenFiles {
@@ -46,8 +46,8 @@ class GoldenFiles {
   std::string WriteAccepted(const Golden& golden) const;
   void RemovePending(const std::string& scenario) const;
 
-  /// How a planar scenario differs between the engines, as `check` saw it last; "" where it does
-  /// not. Writing "" removes it.
+  /// How a planar scenario differs between the engines, as the last `check` found; "" if it does
+  /// not. Writing "" removes the file.
   std::filesystem::path EngineDifferencePath(const std::string& scenario) const;
   std::string ReadEngineDifference(const std::string& scenario) const;
   std::string WriteEngineDifference(const std::string& scenario, const std::string& text) const;
@@ -64,7 +64,8 @@ class GoldenFiles {
   std::vector<KeptPicture> PicturesOf(const std::string& scenario) const;
   std::vector<KeptPicture> Pictures() const;
 
-  /// A picture that differs from its golden waits there, and beside it what shows where.
+  /// Where a picture that differs from its golden waits for review, and beside it the picture that
+  /// shows the differences.
   std::filesystem::path PendingPicturePath(const std::string& scenario,
                                            const std::string& file) const {
     return PendingPath(scenario).parent_path() / file;

@@ -96,7 +96,7 @@ class GoldenReader {
       golden_.comments.push_back(comment);
   }
 
-  /// False when the key is none of ours, so that the line is an ordinary comment.
+  /// False for any other key: the line is an ordinary comment.
   bool ReadProvenance(std::string_view key, std::size_t value_offset) {
     const std::size_t key_column = column_;
     column_ += value_offset;

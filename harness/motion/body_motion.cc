@@ -12,7 +12,7 @@ namespace prehend::harness {
 namespace {
 
 using Eigen::Vector3d;
-using physics::Figure;
+using physics::Posture;
 
 /// The joints that are needed; of pairs the right one comes first.
 enum Role {
@@ -195,35 +195,36 @@ class TrackMaker {
     const Vector3d up = Vector3d::UnitY(), left = up.cross(ahead_);
 
     BodySample sample{.t_s = static_cast<double>(frame) * bvh_.frame_time_s,
-                      .figure = {},
+                      .posture = {},
                       .points = {},
                       .place = bvh_.places[frame]};
-    sample.figure.hips_W_m = ToOurAxes(hips);
-    auto& ways = sample.figure.ways_W;
-    ways[Figure::kTrunk] = way(hips, shoulders, up);
-    ways[Figure::kNeck] = way(shoulders, pose(kHead).p, up);
-    ways[Figure::kFace] = ToOurAxes(pose(kHead).q * ahead_);
-    ways[Figure::kCrown] = ToOurAxes(pose(kHead).q * up);
-    ways[Figure::kAcrossHips] = way(pose(kHip).p, pose(kHip + 1).p, left);
-    ways[Figure::kAcrossShoulders] = way(pose(kShoulder).p, pose(kShoulder + 1).p, left);
+    sample.posture.hips_W_m = ToOurAxes(hips);
+    auto& directions = sample.posture.directions_W;
+    directions[Posture::kTrunk] = way(hips, shoulders, up);
+    directions[Posture::kNeck] = way(shoulders, pose(kHead).p, up);
+    directions[Posture::kFace] = ToOurAxes(pose(kHead).q * ahead_);
+    directions[Posture::kCrown] = ToOurAxes(pose(kHead).q * up);
+    directions[Posture::kAcrossHips] = way(pose(kHip).p, pose(kHip + 1).p, left);
+    directions[Posture::kAcrossShoulders] = way(pose(kShoulder).p, pose(kShoulder + 1).p, left);
     for (int side = 0; side < 2; ++side) {
       const auto at = static_cast<std::size_t>(side);
-      ways[Figure::kUpperArm + at] = way(pose(kShoulder + side).p, pose(kElbow + side).p, -up);
-      ways[Figure::kForearm + at] = way(pose(kElbow + side).p, pose(kWrist + side).p, -up);
-      ways[Figure::kHand + at] = HandWay(side, pose(kWrist + side).q);
-      ways[Figure::kThigh + at] = way(pose(kHip + side).p, pose(kKnee + side).p, -up);
-      ways[Figure::kShank + at] = way(pose(kKnee + side).p, pose(kAnkle + side).p, -up);
-      ways[Figure::kFoot + at] = ToOurAxes(pose(kAnkle + side).q * ahead_);
-      ways[Figure::kSole + at] = ToOurAxes(pose(kAnkle + side).q * -up);
+      directions[Posture::kUpperArm + at] =
+          way(pose(kShoulder + side).p, pose(kElbow + side).p, -up);
+      directions[Posture::kForearm + at] = way(pose(kElbow + side).p, pose(kWrist + side).p, -up);
+      directions[Posture::kHand + at] = HandDirection(side, pose(kWrist + side).q);
+      directions[Posture::kThigh + at] = way(pose(kHip + side).p, pose(kKnee + side).p, -up);
+      directions[Posture::kShank + at] = way(pose(kKnee + side).p, pose(kAnkle + side).p, -up);
+      directions[Posture::kFoot + at] = ToOurAxes(pose(kAnkle + side).q * ahead_);
+      directions[Posture::kSole + at] = ToOurAxes(pose(kAnkle + side).q * -up);
     }
-    sample.points = {sample.figure.hips_W_m, ToOurAxes(pose(kWrist).p),
+    sample.points = {sample.posture.hips_W_m, ToOurAxes(pose(kWrist).p),
                      ToOurAxes(pose(kWrist + 1).p), ToOurAxes(pose(kAnkle).p),
                      ToOurAxes(pose(kAnkle + 1).p)};
     return sample;
   }
 
   /// At rest the hand continues the direction of the forearm.
-  Vector3d HandWay(int side, const Eigen::Quaterniond& q) const {
+  Vector3d HandDirection(int side, const Eigen::Quaterniond& q) const {
     const auto wrist = static_cast<std::size_t>(roles_[static_cast<std::size_t>(kWrist + side)]);
     const Vector3d& offset = bvh_.joints[wrist].offset;
     return ToOurAxes(q *

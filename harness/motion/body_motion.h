@@ -20,7 +20,7 @@ inline constexpr std::size_t kRightAnklePoint = 3, kLeftAnklePoint = 4;
 struct BodySample {
   double t_s = 0;  ///< since the first frame
   /// Position of the hips in units of the file, and directions, in our axes: x ahead, y left, z up.
-  physics::Figure figure;
+  physics::Posture posture;
   std::array<Eigen::Vector3d, kWatchedPoints.size()> points;  ///< units of the file, our axes
   grammar::Place place;                                       ///< in the file
 };

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Events are drawn as the grammar asks (harness/timeline/event_drawings.h). Tested by
+// tests/harness/pictures/compose_picture_test.cc
 #include "harness/pictures/compose_picture.h"
 
 #include <fmt/format.h>
@@ -152,7 +154,7 @@ std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunR
     for (const grammar::NamedEvent& event : run.timeline.events) {
       if (!IsOfHand(run, event, DrawnAs::kPhase, scene.hands[h].name)) continue;
       const grammar::Ghost ghost = run.drawings.Of(event.event).ghost;
-      if (ghost == grammar::Ghost::kNone) continue;
+      if (ghost == grammar::Ghost::kNoGhost) continue;
       const grammar::Tick tick =
           ghost == grammar::Ghost::kAtEnd ? event.interval.end : event.interval.begin;
       if (std::abs(Seconds(tick - moment, run)) < 0.15) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded run becomes a render::Picture: which moment, which ghosts, which colours, which rows
-// in the strip. Tested by tests/program/acceptance_test.cc
+// Composes a render::Picture of a recorded run at one moment: camera, colours, paths, ghosts,
+// markers, and the rows of the strip. Tested by tests/harness/pictures/compose_picture_test.cc
 #pragma once
 
 #include "harness/pictures/pictures.h"

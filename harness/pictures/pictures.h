@@ -35,9 +35,14 @@ PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
 PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureYaml& entry,
                           const std::string& file);
 
-/// Whether a picture is as its golden: at most 1 % of the pixels may differ, by more than 24 of 255
-/// in some colour (smoothed edges and another rasteriser do less). "" or what is different.
-std::string PictureDifference(const std::string& golden_file, const std::string& drawn_file);
+struct PictureDifference {
+  std::string text;        ///< "12.3 % of its pixels differ, .."; empty: none
+  bool same_size = false;  ///< both could be read and have the same size
+};
+
+/// Compares a picture with its golden: at most 1 % of the pixels may differ, by more than 24 of 255
+/// in some colour (smoothed edges and another rasteriser do less).
+PictureDifference ComparePicture(const std::string& golden_file, const std::string& drawn_file);
 
 /// Writes the golden in pale grey with every pixel that differs in red; both must have one size.
 /// False when it cannot.

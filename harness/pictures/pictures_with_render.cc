@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Draws and compares pictures, with render/. Tested by tests/program/acceptance_test.cc
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -66,21 +67,22 @@ PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const 
   return result;
 }
 
-std::string PictureDifference(const std::string& golden_file, const std::string& drawn_file) {
+PictureDifference ComparePicture(const std::string& golden_file, const std::string& drawn_file) {
   constexpr double kMaxPixelShare = 0.01;
   const render::Image golden = render::ReadPng(golden_file), drawn = render::ReadPng(drawn_file);
-  if (golden.rgb.empty()) return golden_file + " cannot be read";
+  if (golden.rgb.empty()) return {golden_file + " cannot be read"};
   if (!SameSize(golden, drawn)) {
-    return fmt::format("it has {} x {} pixels, its golden {} x {}", drawn.width_px, drawn.height_px,
-                       golden.width_px, golden.height_px);
+    return {fmt::format("it has {} x {} pixels, its golden {} x {}", drawn.width_px,
+                        drawn.height_px, golden.width_px, golden.height_px)};
   }
   std::size_t differing = 0;
   for (std::size_t i = 0; i < golden.rgb.size(); i += 3) differing += Differs(golden, drawn, i);
   const double share =
       static_cast<double>(differing) / (static_cast<double>(golden.rgb.size()) / 3);
-  if (share <= kMaxPixelShare) return "";
-  return fmt::format("{:.1f} % of its pixels differ, at most {:g} % may", 100 * share,
-                     100 * kMaxPixelShare);
+  if (share <= kMaxPixelShare) return {.text = "", .same_size = true};
+  return {.text = fmt::format("{:.1f} % of its pixels differ, at most {:g} % may", 100 * share,
+                              100 * kMaxPixelShare),
+          .same_size = true};
 }
 
 bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Answers of a build without render/: it cannot draw.
 #include "harness/pictures/pictures.h"
 
 namespace prehend::harness {
@@ -18,7 +19,7 @@ PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureYaml&,
   return NoRenderRoom();
 }
 
-std::string PictureDifference(const std::string&, const std::string&) { return ""; }
+PictureDifference ComparePicture(const std::string&, const std::string&) { return {}; }
 
 bool WritePictureDifference(const std::string&, const std::string&, const std::string&) {
   return false;

@@ -70,8 +70,8 @@ std::vector<physics::TimedPose> Place(const RecordingYaml& entry, const MotionTr
 
 /// The person in the world, at every frame, with her own bone lengths. Her lowest ankle is as high
 /// above the floor as when she stands.
-std::vector<physics::TimedFigure> Place(const RecordingYaml& entry, const BodyTrack& track,
-                                        const PersonActorYaml& person, double scale) {
+std::vector<physics::TimedPosture> Place(const RecordingYaml& entry, const BodyTrack& track,
+                                         const PersonActorYaml& person, double scale) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const BodySample& sample : track.samples)
     lowest =
@@ -80,16 +80,16 @@ std::vector<physics::TimedFigure> Place(const RecordingYaml& entry, const BodyTr
   const Eigen::Quaterniond yaw = physics::FromRollPitchYaw({0, 0, entry.yaw_deg});
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
   if (entry.start_at_m)
-    shift_m = *entry.start_at_m - yaw * (scale * track.samples.front().figure.hips_W_m);
+    shift_m = *entry.start_at_m - yaw * (scale * track.samples.front().posture.hips_W_m);
   shift_m.z() = floor_m + physics::AnkleHeight(person.height_m) - scale * lowest;
-  std::vector<physics::TimedFigure> figures;
+  std::vector<physics::TimedPosture> postures;
   for (const BodySample& sample : track.samples) {
-    physics::Figure figure = sample.figure;
-    figure.hips_W_m = yaw * (scale * figure.hips_W_m) + shift_m;
-    for (Eigen::Vector3d& way : figure.ways_W) way = yaw * way;
-    figures.push_back({entry.join_s + sample.t_s, figure});
+    physics::Posture posture = sample.posture;
+    posture.hips_W_m = yaw * (scale * posture.hips_W_m) + shift_m;
+    for (Eigen::Vector3d& way : posture.directions_W) way = yaw * way;
+    postures.push_back({entry.join_s + sample.t_s, posture});
   }
-  return figures;
+  return postures;
 }
 
 /// Further warnings would repeat the same.
@@ -172,9 +172,9 @@ class RecordingReader {
     if (!CheckScale(entry, scale * track->leg_units, person->value)) return;
     if (!Accept(entry, CheckBodyTrack(*track, entry, scale))) return;
     if (!HasRoom(entry, track->samples.size())) return;
-    entry.figures = Place(entry, *track, person->value, scale);
-    for (std::size_t i = 0; i < entry.figures.size(); ++i) {
-      if (entry.figures[i].figure.hips_W_m.norm() <= kMaxDistance_m) continue;
+    entry.postures = Place(entry, *track, person->value, scale);
+    for (std::size_t i = 0; i < entry.postures.size(); ++i) {
+      if (entry.postures[i].posture.hips_W_m.norm() <= kMaxDistance_m) continue;
       return Refuse(
           entry,
           {grammar::DiagnosticAt(

@@ -211,12 +211,6 @@ Result<Scenario> ReadDocumentAs(const std::string& file, Result<YamlDocument> do
 
 Result<Scenario> ReadScenario(const std::string& file, const std::vector<std::string>& overrides,
                               const ScenarioLibrary& library) {
-  if (file.ends_with(".jsonl")) {
-    return tl::unexpected(
-        Diagnostics{{.file = file,
-                     .message = "this is a recording, not a scenario",
-                     .hint = "use `prehend resegment`, `prehend explain` or `prehend tracks`"}});
-  }
   return ReadDocumentAs(file, ReadYamlFile(file), overrides, library);
 }
 

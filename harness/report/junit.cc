@@ -3,14 +3,13 @@
 #include "harness/report/junit.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "harness/base/markup.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
 namespace {
@@ -29,39 +28,25 @@ const char* Element(const ScenarioVerdict& verdict) {
   return broken ? kError : kFailure;
 }
 
-/// "0.0042..0.3021 s", or "nothing".
-std::string SideText(const nlohmann::ordered_json& side) {
-  if (side.is_null()) return "nothing";
-  return fmt::format("{:.4f}..{:.4f} s", side.at("begin_s").get<double>(),
-                     side.at("end_s").get<double>());
-}
-
-/// "supported_by(carton, table)"
-std::string LabelOf(const nlohmann::ordered_json& difference) {
-  const nlohmann::ordered_json& side =
-      difference.at(difference.at("expected").is_null() ? "recognised" : "expected");
-  std::vector<std::string> roles;
-  for (const auto& [name, value] : side.at("roles").items())
-    roles.push_back(value.get<std::string>());
-  return fmt::format("{}({})", difference.at("event").get<std::string>(), fmt::join(roles, ", "));
-}
-
 /// What servers show first: the reason, and of differences the first one, with its numbers.
 std::string Message(const ScenarioVerdict& verdict) {
-  if (verdict.differences.empty()) {
+  if (!verdict.DiffersFromGolden()) {
     const std::string first = verdict.details.substr(0, verdict.details.find('\n'));
     return first.empty() ? verdict.reason : verdict.reason + "; first: " + first;
   }
-  const nlohmann::ordered_json& difference = verdict.differences.front();
-  std::string text =
-      fmt::format("{}; first: {} {}: expected {}, recognised {}", verdict.reason,
-                  difference.at("kind").get<std::string>(), LabelOf(difference),
-                  SideText(difference.at("expected")), SideText(difference.at("recognised")));
-  if (!difference.at("begin_ms").is_null())
-    text +=
-        fmt::format(", begin {:+.1f} ms, end {:+.1f} ms", difference.at("begin_ms").get<double>(),
-                    difference.at("end_ms").get<double>());
-  for (const auto& change : difference.at("changes")) text += ", " + change.get<std::string>();
+  const grammar::Tick ticks_per_second = verdict.comparison->ticks_per_second;
+  const Pairing& difference = *verdict.comparison->FirstDivergence();
+  const auto side = [&](const std::optional<grammar::NamedEvent>& event) {
+    return event ? IntervalText(event->interval, ticks_per_second) : std::string("nothing");
+  };
+  std::string text = fmt::format("{}; first: {} {}: expected {}, recognised {}", verdict.reason,
+                                 Name(difference.agreement), difference.event().Label(),
+                                 side(difference.expected), side(difference.actual));
+  if (difference.expected && difference.actual)
+    text += fmt::format(", begin {:+.1f} ms, end {:+.1f} ms",
+                        MillisecondsOf(difference.begin_offset, ticks_per_second),
+                        MillisecondsOf(difference.end_offset, ticks_per_second));
+  for (const std::string& change : difference.changes) text += ", " + change;
   return text;
 }
 
@@ -86,7 +71,8 @@ void AddCase(pugi::xml_node suite, const ScenarioVerdict& verdict) {
                   {"name", has_skill ? verdict.scenario.substr(slash + 1) : verdict.scenario},
                   {"time", fmt::format("{:.3f}", verdict.seconds)}});
   AddOutcome(test_case, verdict);
-  if (!verdict.headroom.empty()) AddElement(test_case, "system-out", {}, verdict.headroom);
+  const std::string margin = MarginText(verdict);
+  if (!margin.empty()) AddElement(test_case, "system-out", {}, margin);
 }
 
 }  // namespace

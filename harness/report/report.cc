@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "harness/base/markup.h"
+#include "harness/golden/timeline_svg.h"
 
 namespace prehend::harness {
 namespace {
@@ -66,7 +67,7 @@ void AddTableRow(pugi::xml_node table, const ScenarioVerdict& verdict) {
   AddElement(scenario, "a", {{"href", "#" + verdict.scenario}}, verdict.scenario);
   AddElement(scenario, "br");
   AddElement(scenario, "span", {{"class", "soft"}}, verdict.shows);
-  AddElement(row, "td", {}, verdict.reason.empty() ? verdict.headroom : verdict.reason);
+  AddElement(row, "td", {}, verdict.reason.empty() ? MarginText(verdict) : verdict.reason);
   AddElement(row, "td", {{"class", "number"}}, fmt::format("{:.2f} s", verdict.seconds));
   AddText(table, kNewLine);
 }
@@ -86,8 +87,10 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict) {
   AddElement(section, "div", {{"class", "soft"}}, verdict.shows);
   if (!verdict.reason.empty()) AddElement(section, "p", {{"class", name}}, verdict.reason);
   if (!verdict.details.empty()) AddElement(section, "pre", {}, verdict.details);
-  AddMarkup(section, verdict.timeline_svg);
-  if (!verdict.headroom.empty()) AddElement(section, "div", {{"class", "soft"}}, verdict.headroom);
+  if (verdict.comparison)
+    AddMarkup(section, TimelineSvg(*verdict.comparison, verdict.ticks + 1, verdict.drawings));
+  const std::string margin = MarginText(verdict);
+  if (!margin.empty()) AddElement(section, "div", {{"class", "soft"}}, margin);
   for (const ReportedPicture& picture : verdict.pictures) AddPicture(section, picture);
   AddElement(section, "pre", {}, verdict.command);
   AddText(body, kNewLine);

@@ -92,16 +92,21 @@ std::string IdOf(const ScenarioFile& file) {
   return file.skill.empty() ? file.name : file.skill + "/" + file.name;
 }
 
-std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed) {
-  std::vector<std::string> names, in_skills;
+std::string NearestScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed) {
+  if (!Matching(scenarios, typed).empty()) return "";  // a name that several skills share
+  std::vector<std::string> names;
   for (const ScenarioFile& scenario : scenarios) names.push_back(scenario.name);
-  for (const ScenarioFile* scenario : Matching(scenarios, typed)) {
-    in_skills.push_back(IdOf(*scenario));
-  }
-  if (in_skills.size() > 1) return fmt::format("which one: {}?", fmt::join(in_skills, ", "));
   const std::string name = typed.substr(typed.rfind('/') + 1);
-  std::string near = grammar::NearestName(name, names);
-  if (near.empty()) near = ShortestWith(name, names);
+  const std::string near = grammar::NearestName(name, names);
+  return near.empty() ? ShortestWith(name, names) : near;
+}
+
+std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed) {
+  std::vector<std::string> in_skills;
+  for (const ScenarioFile* scenario : Matching(scenarios, typed))
+    in_skills.push_back(IdOf(*scenario));
+  if (in_skills.size() > 1) return fmt::format("which one: {}?", fmt::join(in_skills, ", "));
+  const std::string near = NearestScenario(scenarios, typed);
   return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
 }
 

@@ -9,7 +9,7 @@
 
 namespace prehend::harness {
 
-/// The folder of scenarios/ whose files are not scenarios, but show what the reader refuses.
+/// The folder of scenarios/ whose files are examples of errors.
 inline constexpr std::string_view kShowsErrors = "invalid";
 
 struct ScenarioFile {
@@ -19,25 +19,26 @@ struct ScenarioFile {
   bool in_project = true;  ///< below root/scenarios, so that it has a golden
 };
 
-/// All below root/scenarios, sorted by skill and name, without the folder `invalid` (which shows
-/// errors).
+/// All below root/scenarios, sorted by skill and name, without the folder `invalid`.
 std::vector<ScenarioFile> ListScenarios(const std::string& root);
 
-/// The file for what a user typed: a path, "name" or "skill/name". Nothing when there is none, or
-/// when a bare name is that of several skills.
+/// The file for what a user typed: a path, "name" or "skill/name". No value if there is none, or if
+/// several skills have a scenario of this name.
 std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenarios,
                                         const std::string& typed);
 
-/// The one of `scenarios` that is the file at `path`; for another file one that is not of the
-/// project.
+/// The one of `scenarios` that is the file at `path`; otherwise one that is not of the project.
 ScenarioFile ScenarioAt(const std::vector<ScenarioFile>& scenarios, const std::string& path);
 
-/// "skill/name", how goldens, reports and the command line call it; what is not of the project is
-/// called by its path.
+/// "skill/name", as in goldens, reports and on the command line; for a file outside of the project,
+/// its path.
 std::string IdOf(const ScenarioFile& file);
 
-/// "did you mean 'milk_carton_wrap'?", or which skills share the name, or "". For when
-/// FindScenario() found nothing.
+/// If FindScenario() found nothing: the scenario that was probably meant, or "".
+std::string NearestScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);
+
+/// If FindScenario() found nothing: "did you mean 'milk_carton_wrap'?", or which skills share the
+/// name, or "".
 std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);
 
 }  // namespace prehend::harness

@@ -64,10 +64,10 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
 
 namespace {
 
-// What the grammar names and nobody in the episode has.
-void WarnOfStrangers(const std::vector<grammar::NameInSource>& names,
-                     const std::set<std::string>& known, std::string_view message,
-                     const std::string& remedy, grammar::Diagnostics& warnings) {
+// Warns of names in the grammar that nothing in the episode has.
+void WarnOfUnknownNames(const std::vector<grammar::NameInSource>& names,
+                        const std::set<std::string>& known, std::string_view message,
+                        const std::string& remedy, grammar::Diagnostics& warnings) {
   for (const grammar::NameInSource& named : names) {
     if (known.contains(named.name)) continue;
     const bool is_number = named.name.find_first_not_of("0123456789") == std::string::npos;
@@ -94,13 +94,15 @@ grammar::Diagnostics Warnings(const grammar::Program& program,
     for (std::size_t i = 1; i <= member.sensor_sets.size(); ++i) numbers.insert(std::to_string(i));
   }
   grammar::Diagnostics warnings = CompileWarnings(program);
-  WarnOfStrangers(NamedClasses(program), classes, "nobody in this episode is a", "", warnings);
-  WarnOfStrangers(
+  WarnOfUnknownNames(NamedClasses(program), classes, "no entity of this episode is a", "",
+                     warnings);
+  WarnOfUnknownNames(
       NamedSensorSets(program), sensor_sets, "no hand of this episode has a sensor set",
       sensor_sets.empty() ? "" : fmt::format("there are: {}", fmt::join(sensor_sets, ", ")),
       warnings);
-  WarnOfStrangers(NumberedSensorSets(program), numbers, "no hand of this episode has a sensor set",
-                  fmt::format("a hand has {} of them here at most", numbers.size()), warnings);
+  WarnOfUnknownNames(NumberedSensorSets(program), numbers,
+                     "no hand of this episode has a sensor set",
+                     fmt::format("a hand has {} of them here at most", numbers.size()), warnings);
   return warnings;
 }
 

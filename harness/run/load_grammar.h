@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A grammar from its file, with the files it uses. Tested by tests/program/command_line_test.cc
+// Reads a grammar from its file, with the files that it uses. Tested by
+// tests/program/command_line_test.cc
 #pragma once
 
 #include <string>
@@ -12,14 +13,14 @@ namespace prehend::harness {
 /// The file for a name of the library, or for a path (it has a slash, or ends with ".grammar").
 std::string GrammarFile(const std::string& root, const std::string& name_or_path);
 
-/// What it uses is looked for beside it, then in the library. `files` gets every path that was
-/// looked at, whether there is a file or not.
+/// Grammars that it uses are searched beside it, then in the library. `files` receives every path
+/// that was tried, whether or not the file exists.
 grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
                                    const grammar::Overrides& overrides = {},
                                    std::vector<std::string>* files = nullptr);
 
-/// What is allowed and yet looks like a mistake: names that are not used; classes that nobody of
-/// the entity table has, so that the rules about them never see anybody.
+/// What is allowed but is probably a mistake: names that are not used; classes that no entity has,
+/// so that their rules never apply.
 grammar::Diagnostics Warnings(const grammar::Program& program,
                               const grammar::EntityTable& entity_table);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/run/load_run.h. Tested by tests/program/command_line_test.cc
+// See harness/run/load_run.h. Tested by tests/harness/run/load_run_test.cc
 #include "harness/run/load_run.h"
 
 #include <algorithm>
@@ -65,8 +65,8 @@ grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Prog
   return diagnostics;
 }
 
-/// The grammar that a scenario asks for which cannot be read, so that all that is wrong is told at
-/// once; "" when that is not known, or when there is none of this name, which the reader has said.
+/// The grammar of a scenario that cannot be read, so that all errors are reported at once. Empty if
+/// it is not known, or not in the library (which the reader has reported).
 std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
   const Result<YamlDocument> document = ReadYamlFile(request.scenario_file);
   const bool is_set = std::ranges::any_of(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything a run needs, from files: the scenario and its compiled grammar, with what the command
-// line changes. Tested by tests/program/command_line_test.cc
+// Reads what a run needs from files: the scenario and its compiled grammar, with the changes of the
+// command line. Tested by tests/harness/run/load_run_test.cc
 #pragma once
 
 #include <memory>
@@ -21,24 +21,24 @@ struct RunRequest {
 };
 
 struct LoadedRun {
-  Scenario scenario;  ///< its `grammar` is what the one that is used calls itself
+  Scenario scenario;  ///< its `grammar` is the name of the grammar that is used
   std::shared_ptr<const grammar::Program> program;
   grammar::Diagnostics
-      warnings;  ///< of scenario and grammar: what is allowed and yet looks like a mistake
+      warnings;  ///< of scenario and grammar: what is allowed but is probably a mistake
 };
 
-/// `files` gets every path that was looked at, also when the result is no run.
+/// `files` receives every path that was tried, also if there is no result.
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
                           std::vector<std::string>* files = nullptr);
 
-/// Whether this name in a setting means a field of the scenario, and not a parameter of its
+/// Whether this name in a setting is a field of the scenario; otherwise it is a parameter of its
 /// grammar.
 bool IsFieldOfScenario(const std::string& name);
 
-/// "name=value" settings that can only mean parameters of a grammar.
+/// Settings "name=value" that are all parameters of a grammar.
 Result<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings);
 
-/// "skill/name": how goldens, reports and the command line call it.
+/// "skill/name", as in goldens, reports and on the command line.
 std::string ScenarioId(const std::string& skill, const std::string& name);
 
 }  // namespace prehend::harness

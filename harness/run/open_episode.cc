@@ -33,7 +33,11 @@ Result<EpisodeSource> OpenScenario(const std::string& file, const std::string& g
                        .entity_table = MakeEntityTable(scenario),
                        .play = {}};
   source.play = [run = std::move(*loaded)](const EpisodeSource::Watcher& watch) {
-    const RunResult result = RunScenario(run.scenario, run.program, {.watch = watch});
+    ScenarioRun playing(run.scenario, run.program);
+    while (playing.Step()) {
+      if (playing.sensed()) watch(playing.frame());
+    }
+    const RunResult result = playing.Finish();
     const bool completed = result.status.kind == physics::RunStatus::Kind::kCompleted;
     return EpisodeSource::Played{result.ticks + 1, completed ? "" : StatusText(result)};
   };

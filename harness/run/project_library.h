@@ -10,8 +10,8 @@
 
 namespace prehend::harness {
 
-/// Grammars and hands of the project. `files` gets the path of every hand that is read, and must
-/// live as long.
+/// Grammars and hands of the project. `files` receives the path of every hand that is read, and
+/// must outlive the result.
 ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>* files = nullptr);
 
 }  // namespace prehend::harness

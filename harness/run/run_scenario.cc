@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// See harness/run/run_scenario.h. Tested by tests/harness/run/run_scenario_test.cc
 #include "harness/run/run_scenario.h"
 
 #include <chrono>
 
 #include "grammar/name_events.h"
-#include "harness/run/outcome.h"
 #include "harness/sense/entity_table.h"
 #include "harness/sense/sensing.h"
 
@@ -15,65 +15,102 @@ namespace {
 /// Adds the time since the last lap to one of the counters; costs nothing when not measuring.
 class LapClock {
  public:
-  explicit LapClock(bool on) : on_(on) { Lap(ignored_); }
+  explicit LapClock(bool on) : on_(on) {}
   void Lap(double& counter_s) {
     if (!on_) return;
     const auto now = std::chrono::steady_clock::now();
     counter_s += std::chrono::duration<double>(now - last_).count();
     last_ = now;
   }
+  /// The time since the last lap belongs to none of the counters.
+  void Restart() {
+    if (on_) last_ = std::chrono::steady_clock::now();
+  }
 
  private:
   bool on_;
-  double ignored_ = 0;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_;
 };
 
 }  // namespace
 
+struct ScenarioRun::State {
+  physics::Simulation simulation;
+  Sensing sensing;
+  std::shared_ptr<const grammar::Program> program;
+  const grammar::EntityTable entity_table;
+  grammar::Monitor monitor;
+  LapClock clock;
+  const bool record;
+  bool sensed = false;
+  std::vector<grammar::Event> events;
+  RunResult result;
+};
+
+ScenarioRun::ScenarioRun(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
+                         const RunOptions& options) {
+  const grammar::EntityTable entity_table = MakeEntityTable(scenario);
+  state_.reset(new State{.simulation = {scenario.scene, scenario.script},
+                         .sensing = {scenario.scene, scenario.sensing},
+                         .program = program,
+                         .entity_table = entity_table,
+                         .monitor = {program, entity_table},
+                         .clock = LapClock(options.measure),
+                         .record = options.record});
+}
+
+ScenarioRun::~ScenarioRun() = default;
+
+const physics::Snapshot& ScenarioRun::snapshot() const { return state_->simulation.snapshot(); }
+bool ScenarioRun::sensed() const { return state_->sensed; }
+grammar::Frame ScenarioRun::frame() { return state_->sensing.Whole(); }
+
+bool ScenarioRun::Step() {
+  State& run = *state_;
+  RunSeconds& seconds = run.result.seconds;
+  run.sensed = false;
+  run.clock.Restart();
+  if (!run.monitor.error().empty() || !run.simulation.Step()) return false;
+  run.clock.Lap(seconds.physics);
+  const physics::Snapshot& snapshot = run.simulation.snapshot();
+  if (!run.sensing.Due(snapshot.tick)) return true;
+  const grammar::FrameChanges changes = run.sensing.SenseChanges(snapshot);
+  run.clock.Lap(seconds.sensing);
+  run.monitor.AdvanceBy(changes, run.events);
+  run.clock.Lap(seconds.grammar);
+  run.sensed = true;
+  if (run.record) run.result.recording.push_back(snapshot);
+  return true;
+}
+
+RunResult ScenarioRun::Finish() {
+  State& run = *state_;
+  RunResult& result = run.result;
+  if (!run.monitor.error().empty()) {
+    result.status = {physics::RunStatus::Kind::kFailed, 0, "",
+                     "the grammar can't watch this scene: " + run.monitor.error(),
+                     "use fewer entities or rules with narrower role classes"};
+    return std::move(result);
+  }
+  run.clock.Restart();
+  result.ticks = run.simulation.snapshot().tick;
+  run.monitor.Finish(result.ticks + 1, run.events);
+  result.status = run.simulation.status();
+  result.notes = run.simulation.notes();
+  result.state_hash = run.simulation.state_hash();
+  result.timeline = grammar::NameEvents(*run.program, run.entity_table, run.events);
+  result.drawings = EventDrawings(*run.program);
+  run.clock.Lap(result.seconds.grammar);
+  result.seconds.total = result.seconds.physics + result.seconds.sensing + result.seconds.grammar;
+  return std::move(result);
+}
+
 RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                       const RunOptions& options) {
-  RunResult result;
-  physics::Simulation simulation(scenario.scene, scenario.script);
-  Sensing sensing(scenario.scene, scenario.sensing);
-  const grammar::EntityTable entity_table = MakeEntityTable(scenario);
-  grammar::Monitor monitor(program, entity_table);
-  if (!monitor.error().empty()) {
-    result.status = {physics::RunStatus::Kind::kFailed, 0, "",
-                     "the grammar can't watch this scene: " + monitor.error(),
-                     "use fewer entities or rules with narrower role classes"};
-    return result;
+  ScenarioRun run(scenario, std::move(program), options);
+  while (run.Step()) {
   }
-  std::vector<grammar::Event> events;
-  std::optional<OutcomeWatch> judge;
-  if (options.judge) judge.emplace(scenario.scene, scenario.outcomes);
-  LapClock clock(options.measure);
-
-  while (simulation.Step()) {
-    clock.Lap(result.seconds.physics);
-    const physics::Snapshot& snapshot = simulation.snapshot();
-    if (judge) judge->Look(snapshot);
-    if (!sensing.Due(snapshot.tick)) continue;
-    const grammar::FrameChanges changes = sensing.SenseChanges(snapshot);
-    clock.Lap(result.seconds.sensing);
-    monitor.AdvanceBy(changes, events);
-    clock.Lap(result.seconds.grammar);
-    if (options.watch) options.watch(sensing.Whole());
-    if (options.record) result.recording.push_back(snapshot);
-  }
-
-  result.ticks = simulation.snapshot().tick;
-  monitor.Finish(result.ticks + 1, events);
-  result.status = simulation.status();
-  result.notes = simulation.notes();
-  if (judge && result.status.kind == physics::RunStatus::Kind::kCompleted)
-    result.outcome = judge->Judge(simulation.snapshot());
-  result.state_hash = simulation.state_hash();
-  result.timeline = grammar::NameEvents(*program, entity_table, events);
-  result.drawings = EventDrawings(*program);
-  clock.Lap(result.seconds.grammar);
-  result.seconds.total = result.seconds.physics + result.seconds.sensing + result.seconds.grammar;
-  return result;
+  return run.Finish();
 }
 
 grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,

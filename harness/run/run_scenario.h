@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One scenario, simulated and watched: the main loop. The result is a value.
-// Tested by tests/harness/run/one_hash_test.cc
+// One scenario, simulated and segmented: the main loop. The result is a value.
+// Tested by tests/harness/run/run_scenario_test.cc
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -19,10 +18,8 @@
 namespace prehend::harness {
 
 struct RunOptions {
-  bool record = false;  ///< keep a snapshot per sensed frame (pictures, oracle)
-  std::function<void(const grammar::Frame&)> watch;  ///< shown every sensed frame; may be empty
-  bool judge = false;                                ///< by the scenario's outcomes
-  bool measure = false;                              ///< clock physics, sensing and grammar apart
+  bool record = false;   ///< keep a snapshot per sensed frame (pictures, oracle)
+  bool measure = false;  ///< time physics, sensing and grammar separately
 };
 
 /// Where the time of a run went; all zero unless measured.
@@ -34,19 +31,50 @@ struct RunResult {
   physics::RunStatus status;
   grammar::Tick ticks = 0;
   std::uint64_t state_hash = 0;
-  grammar::Timeline timeline;                ///< what was recognised up to where the run ended
+  grammar::Timeline timeline;                ///< what was recognised up to the end of the run
   EventDrawings drawings;                    ///< how the grammar wants its events drawn
   std::vector<physics::Snapshot> recording;  ///< empty unless asked for
   std::vector<physics::ScriptNote> notes;
-  std::string outcome;  ///< empty unless judged
+  std::string outcome;  ///< of the scenario's outcomes; empty unless judged (harness/run/outcome.h)
   RunSeconds seconds;
 };
 
+/// A scenario while it is played. The caller has the loop and may look at each tick:
+///
+///   ScenarioRun run(scenario, program);
+///   while (run.Step()) Look(run.snapshot());
+///   const RunResult result = run.Finish();
+class ScenarioRun {
+ public:
+  /// The scenario outlives the run.
+  ScenarioRun(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
+              const RunOptions& options = {});
+  ~ScenarioRun();
+
+  /// Plays one tick of physics, and senses and segments it if a frame is due. False when the run is
+  /// over, or when the grammar cannot be applied to this scene.
+  bool Step();
+
+  /// The world after the last tick.
+  const physics::Snapshot& snapshot() const;
+  /// Whether the last tick was sensed, and what the grammar saw then.
+  bool sensed() const;
+  grammar::Frame frame();
+
+  /// To be called once, after the last Step().
+  RunResult Finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Plays a scenario to its end.
 RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                       const RunOptions& options = {});
 
-/// What another grammar makes of the same episode, without simulating it again. `recording` has the
-/// sensed snapshots.
+/// What another grammar recognises in the same episode, without simulating it again. `recording`
+/// has the sensed snapshots.
 grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
                             std::shared_ptr<const grammar::Program> program, grammar::Tick end);
 

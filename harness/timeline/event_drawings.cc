@@ -11,12 +11,12 @@ namespace {
 constexpr std::array<std::uint32_t, 6> kPalette = {0x0072B2, 0xE69F00, 0x009E73,
                                                    0xCC79A7, 0x56B4E9, 0xD55E00};
 
-EventDrawing DrawingOf(const grammar::Rule& rule, std::size_t& next_color) {
-  EventDrawing drawing{.as = rule.drawing.as, .ghost = rule.drawing.ghost};
+EventDrawing DrawingOf(const grammar::EventSignature& event, std::size_t& next_color) {
+  EventDrawing drawing{.as = event.drawing.as, .ghost = event.drawing.ghost};
   drawing.color =
-      rule.drawing.color ? *rule.drawing.color : kPalette[next_color++ % kPalette.size()];
-  const auto hand = std::ranges::find(rule.roles, "Hand", &grammar::RuleRole::class_name);
-  drawing.hand = static_cast<std::size_t>(hand - rule.roles.begin());
+      event.drawing.color ? *event.drawing.color : kPalette[next_color++ % kPalette.size()];
+  const auto hand = std::ranges::find(event.classes, "Hand");
+  drawing.hand = static_cast<std::size_t>(hand - event.classes.begin());
   const bool holds = drawing.as == grammar::DrawnAs::kGrasp;
   drawing.first = holds && drawing.hand == 0 ? 1 : 0;
   drawing.last = 1;
@@ -27,9 +27,8 @@ EventDrawing DrawingOf(const grammar::Rule& rule, std::size_t& next_color) {
 
 EventDrawings::EventDrawings(const grammar::Program& program) {
   std::size_t next_color = 0;
-  for (const grammar::Rule& rule : program.rules) {
-    if (rule.printed) drawings_[rule.name] = DrawingOf(rule, next_color);
-  }
+  for (const grammar::EventSignature& event : EventSignatures(program))
+    drawings_[event.name] = DrawingOf(event, next_color);
 }
 
 const EventDrawing& EventDrawings::Of(std::string_view event) const {

@@ -9,9 +9,10 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "grammar/base/timeline.h"
-#include "grammar/program/program.h"
+#include "grammar/contents.h"
 
 namespace prehend::harness {
 
@@ -26,14 +27,19 @@ struct EventDrawing {
 
 class EventDrawings {
  public:
+  using ByEvent = std::map<std::string, EventDrawing, std::less<>>;
+
   EventDrawings() = default;  ///< no event is known
+  explicit EventDrawings(ByEvent drawings) : drawings_(std::move(drawings)) {}
   explicit EventDrawings(const grammar::Program& program);
 
   /// Of an event that the grammar does not have: a grey row.
   const EventDrawing& Of(std::string_view event) const;
 
+  const ByEvent& all() const { return drawings_; }
+
  private:
-  std::map<std::string, EventDrawing, std::less<>> drawings_;  // by event
+  ByEvent drawings_;
 };
 
 }  // namespace prehend::harness

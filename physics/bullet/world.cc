@@ -124,7 +124,7 @@ void BulletWorld::Configure() {
   info.m_erp2 = kErrorReduction;
   info.m_splitImpulse = true;
   info.m_splitImpulsePenetrationThreshold = kSplitImpulseThreshold_m;
-  info.m_restitutionVelocityThreshold = kSlowestImpact_m_per_s;
+  info.m_restitutionVelocityThreshold = kMinImpact_m_per_s;
   info.m_minimumSolverBatchSize = kSolverBatch;
   info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   info.m_solverMode &= ~SOLVER_RANDMIZE_ORDER;

@@ -12,7 +12,7 @@ namespace prehend::physics {
 namespace {
 
 constexpr int kBallsPerPalmEdge = 5;
-constexpr int kLeastBallsPerLink = 3;
+constexpr int kMinBallsPerLink = 3;
 /// Largest distance between neighbouring spheres on a link, in radii.
 constexpr double kBallsApart_radii = 4;
 /// Radius of the spheres at the corners of a jaw's end, which is not round like a fingertip.
@@ -41,7 +41,7 @@ HandClearance::HandClearance(const HandModel& model, const std::vector<double>& 
     const double radius = link.half_thickness_m;
     const double half_length = std::max(link.length_m / 2 - radius, 0.0);
     const int gaps = static_cast<int>(std::ceil(2 * half_length / (kBallsApart_radii * radius)));
-    const int last = std::max(gaps, kLeastBallsPerLink - 1);
+    const int last = std::max(gaps, kMinBallsPerLink - 1);
     for (int k = 0; k <= last; ++k) {
       const double x = half_length * (2.0 * k / last - 1);
       balls_.push_back({X_HL[i] * Eigen::Vector3d(x, 0, 0), radius});

@@ -20,7 +20,7 @@ namespace {
 constexpr double kPress_m = 0.002;
 /// The integral of the palm's PID carries the object's weight and takes a second to decay: the
 /// target goes lower by the extension of the palm's spring under that weight, at most this much.
-constexpr double kMostSpring_m = 0.01;
+constexpr double kMaxSpring_m = 0.01;
 /// Share of a put-down's time after which the motion ends; the object settles in the rest.
 constexpr double kLoweringShare = 0.85;
 /// The open hand is approximated by spheres, which protrude by less than this.
@@ -204,7 +204,7 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
         scene_.hands[static_cast<std::size_t>(step_.hand)].model.translation.proportional;
     const double weight_n =
         scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / HandsOn(held, now_);
-    const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMostSpring_m);
+    const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMaxSpring_m);
     MoveBy({0, 0, -drop - kPress_m - spring}, kLoweringShare * step_.over_s);
   }
 }

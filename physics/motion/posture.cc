@@ -12,39 +12,40 @@ Eigen::Vector3d TurnedToward(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
   return Eigen::Quaterniond::Identity().slerp(share, whole) * a;
 }
 
-Trajectory HipsOf(const std::vector<TimedFigure>& figures) {
+Trajectory HipsOf(const std::vector<TimedPosture>& postures) {
   std::vector<TimedPose> poses;
-  for (const TimedFigure& timed : figures)
-    poses.push_back({.t_s = timed.t_s, .X_WH = {timed.figure.hips_W_m}, .trigger = {}});
+  for (const TimedPosture& timed : postures)
+    poses.push_back({.t_s = timed.t_s, .X_WH = {timed.posture.hips_W_m}, .trigger = {}});
   return WaypointTrajectory({}, poses);
 }
 
-std::vector<TimedFigure> StartingWith(const Figure& from, std::vector<TimedFigure> figures) {
-  if (figures.front().t_s > 0) figures.insert(figures.begin(), {0, from});
-  return figures;
+std::vector<TimedPosture> StartingWith(const Posture& from, std::vector<TimedPosture> postures) {
+  if (postures.front().t_s > 0) postures.insert(postures.begin(), {0, from});
+  return postures;
 }
 
 }  // namespace
 
-Figure Mix(const Figure& a, const Figure& b, double share) {
-  Figure mixed{.hips_W_m = a.hips_W_m + share * (b.hips_W_m - a.hips_W_m), .ways_W = {}};
-  for (std::size_t i = 0; i < Figure::kWays; ++i)
-    mixed.ways_W[i] = TurnedToward(a.ways_W[i], b.ways_W[i], share);
+Posture Mix(const Posture& a, const Posture& b, double share) {
+  Posture mixed{.hips_W_m = a.hips_W_m + share * (b.hips_W_m - a.hips_W_m), .directions_W = {}};
+  for (std::size_t i = 0; i < Posture::kDirections; ++i)
+    mixed.directions_W[i] = TurnedToward(a.directions_W[i], b.directions_W[i], share);
   return mixed;
 }
 
-FigureTrack::FigureTrack(const Figure& from, std::vector<TimedFigure> figures)
-    : figures_(StartingWith(from, std::move(figures))), hips_(HipsOf(figures_)) {}
+PostureTrack::PostureTrack(const Posture& from, std::vector<TimedPosture> postures)
+    : postures_(StartingWith(from, std::move(postures))), hips_(HipsOf(postures_)) {}
 
-Figure FigureTrack::At(double t_s) const {
-  const auto next = std::upper_bound(figures_.begin(), figures_.end(), t_s,
-                                     [](double t, const TimedFigure& f) { return t < f.t_s; });
-  if (next == figures_.begin()) return figures_.front().figure;
-  if (next == figures_.end()) return figures_.back().figure;
-  const TimedFigure& before = *std::prev(next);
-  Figure figure = Mix(before.figure, next->figure, (t_s - before.t_s) / (next->t_s - before.t_s));
-  figure.hips_W_m = hips_.At(t_s).X_WH.p_m;
-  return figure;
+Posture PostureTrack::At(double t_s) const {
+  const auto next = std::upper_bound(postures_.begin(), postures_.end(), t_s,
+                                     [](double t, const TimedPosture& f) { return t < f.t_s; });
+  if (next == postures_.begin()) return postures_.front().posture;
+  if (next == postures_.end()) return postures_.back().posture;
+  const TimedPosture& before = *std::prev(next);
+  Posture posture =
+      Mix(before.posture, next->posture, (t_s - before.t_s) / (next->t_s - before.t_s));
+  posture.hips_W_m = hips_.At(t_s).X_WH.p_m;
+  return posture;
 }
 
 }  // namespace prehend::physics

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a body holds itself, as directions of its bones, so that the same figure suits a tall and a
-// small person. A recording of a whole body becomes figures, and figures can be interpolated.
+// How a body holds itself, as directions of its bones, so that the same posture suits a tall and a
+// small person. A recording of a whole body becomes postures, and postures can be interpolated.
 // Tested by tests/physics/motion/posture_test.cc
 #pragma once
 
@@ -11,9 +11,9 @@
 
 namespace prehend::physics {
 
-struct Figure {
+struct Posture {
   /// Limbs have two entries each: kThigh is the right one, kThigh + 1 the left one.
-  enum Way : std::size_t {
+  enum Direction : std::size_t {
     kTrunk,            ///< from midway between the hip joints to midway between the shoulders
     kNeck,             ///< from there to the joint of the head
     kFace,             ///< direction of the face
@@ -27,32 +27,32 @@ struct Figure {
     kShank = kThigh + 2,
     kFoot = kShank + 2,  ///< from the heel to the toes
     kSole = kFoot + 2,   ///< from the ankle into the floor
-    kWays = kSole + 2
+    kDirections = kSole + 2
   };
-  Eigen::Vector3d hips_W_m = Eigen::Vector3d::Zero();  ///< midway between the hip joints
-  std::array<Eigen::Vector3d, kWays> ways_W;           ///< unit
+  Eigen::Vector3d hips_W_m = Eigen::Vector3d::Zero();     ///< midway between the hip joints
+  std::array<Eigen::Vector3d, kDirections> directions_W;  ///< unit
 };
 
 /// Interpolates from `a` (share 0) to `b` (share 1): every direction turns evenly along the
 /// shortest arc.
-Figure Mix(const Figure& a, const Figure& b, double share);
+Posture Mix(const Posture& a, const Posture& b, double share);
 
-struct TimedFigure {
+struct TimedPosture {
   double t_s = 0;  ///< since the step's start, increasing
-  Figure figure;
+  Posture posture;
 };
 
-/// A motion through figures without stops: the hips move on the monotone cubic of
+/// A motion through postures without stops: the hips move on the monotone cubic of
 /// WaypointTrajectory(), directions turn evenly between neighbours.
-class FigureTrack {
+class PostureTrack {
  public:
-  /// Starts from `from` unless the first figure is at time 0. Requires at least one figure.
-  FigureTrack(const Figure& from, std::vector<TimedFigure> figures);
-  /// The figure at a time; the first one before its begin, the last one after its end.
-  Figure At(double t_s) const;
+  /// Starts from `from` unless the first posture is at time 0. Requires at least one posture.
+  PostureTrack(const Posture& from, std::vector<TimedPosture> postures);
+  /// The posture at a time; the first one before its begin, the last one after its end.
+  Posture At(double t_s) const;
 
  private:
-  std::vector<TimedFigure> figures_;
+  std::vector<TimedPosture> postures_;
   Trajectory hips_;
 };
 

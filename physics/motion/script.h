@@ -91,7 +91,7 @@ struct HeadPosesStep {  ///< recorded head; the eyes look along its x
   std::vector<TimedPose> poses;
 };
 struct BodyPosesStep {  ///< recorded whole body
-  std::vector<TimedFigure> figures;
+  std::vector<TimedPosture> postures;
 };
 using PersonAction = std::variant<WaitStep, LookAtStep, EyesStep, WalkStep, TurnStep, LeanStep,
                                   SwayStep, MoveLimbStep, HeadPosesStep, BodyPosesStep>;

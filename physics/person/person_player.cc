@@ -69,8 +69,8 @@ class PersonPlayer::Resolver {
     player_.head_ = {WaypointTrajectory(from, head.poses), player_.t_s_};
   }
   void operator()(const BodyPosesStep& body) {
-    const Figure from = FigureOf(player_.person_, player_.targets_);
-    player_.body_ = RecordedBody{FigureTrack(from, body.figures), player_.t_s_};
+    const Posture from = PostureOf(player_.person_, player_.targets_);
+    player_.body_ = RecordedBody{PostureTrack(from, body.postures), player_.t_s_};
     player_.leaving_.reset();
   }
 
@@ -107,7 +107,7 @@ void PersonPlayer::Begin(std::size_t stage, const Snapshot& now) {
     if (step.person != index_) continue;
     head_.reset();
     if (body_) {
-      leaving_ = Leaving{*targets_.figure, {0, 1, t_s_, step.over_s}};
+      leaving_ = Leaving{*targets_.posture, {0, 1, t_s_, step.over_s}};
       body_.reset();
     }
     Resolver resolver(*this, step.over_s);
@@ -161,37 +161,37 @@ void PersonPlayer::Yield(int limb, const Snapshot& now) {
   // Resistance in the solver grows with speed, so the pace is divided by the excess. It then grows
   // back exponentially from where it was: a resistance that was met at a slow pace is met at a slow
   // pace again.
-  constexpr double kGrow_s = 0.1, kLeastPace = 0.01;
+  constexpr double kGrow_s = 0.1, kMinPace = 0.01;
   const double dt_s = 1.0 / scene_.world.rate_hz;
   LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
   if (!motion.max_force_n) return;
   const double resistance_n = ResistanceTo(limb, now);
   motion.pace = resistance_n > *motion.max_force_n
                     ? motion.pace * *motion.max_force_n / resistance_n
-                    : std::min(1.0, std::max(motion.pace, kLeastPace) * (1 + dt_s / kGrow_s));
+                    : std::min(1.0, std::max(motion.pace, kMinPace) * (1 + dt_s / kGrow_s));
   motion.behind_s += (1 - motion.pace) * dt_s;
 }
 
-void PersonPlayer::StandBelow(const Figure& figure) {
+void PersonPlayer::StandBelow(const Posture& posture) {
   const auto rest = [](double at) { return Motion{at, at, 0, 0}; };
-  const Vector3d& left = figure.ways_W[Figure::kAcrossHips];
-  x_ = rest(figure.hips_W_m.x());
-  y_ = rest(figure.hips_W_m.y());
+  const Vector3d& left = posture.directions_W[Posture::kAcrossHips];
+  x_ = rest(posture.hips_W_m.x());
+  y_ = rest(posture.hips_W_m.y());
   if (std::hypot(left.x(), left.y()) > 1e-6) yaw_ = rest(std::atan2(-left.x(), left.y()));
   lean_ = sway_ahead_ = sway_left_ = rest(0);
   for (int limb = 0; limb < 4; ++limb)
     limbs_[static_cast<std::size_t>(limb)] = LimbMotion{.end = RestOf(limb, person_, targets_).end};
 }
 
-void PersonPlayer::HoldFigure() {
+void PersonPlayer::HoldPosture() {
   if (body_) {
-    const Figure figure = body_->track.At(t_s_ - body_->begin_s);
-    StandBelow(figure);
-    targets_.figure = figure;
+    const Posture posture = body_->track.At(t_s_ - body_->begin_s);
+    StandBelow(posture);
+    targets_.posture = posture;
   } else if (leaving_) {
     const double share = leaving_->progress.At(t_s_);
     if (share < 1)
-      targets_.figure = Mix(leaving_->from, FigureOf(person_, targets_), share);
+      targets_.posture = Mix(leaving_->from, PostureOf(person_, targets_), share);
     else
       leaving_.reset();
   }
@@ -199,7 +199,7 @@ void PersonPlayer::HoldFigure() {
 
 void PersonPlayer::TurnHead(const Snapshot& now) {
   if (body_) {
-    targets_.X_WHead = HeadOfFigure(person_, targets_);
+    targets_.X_WHead = HeadOfPosture(person_, targets_);
     gaze_.Set(targets_.X_WHead.q * Vector3d::UnitX());
     return;
   }
@@ -221,7 +221,7 @@ void PersonPlayer::TurnHead(const Snapshot& now) {
 
 void PersonPlayer::Advance(const Snapshot& now, World& world) {
   t_s_ = static_cast<double>(++tick_) / scene_.world.rate_hz;
-  targets_.figure.reset();
+  targets_.posture.reset();
   targets_.X_WS = {{x_.At(t_s_), y_.At(t_s_), person_.X_WS.p_m.z()},
                    Eigen::Quaterniond(Eigen::AngleAxisd(yaw_.At(t_s_), Vector3d::UnitZ()))};
   targets_.lean_rad = lean_.At(t_s_);
@@ -230,7 +230,7 @@ void PersonPlayer::Advance(const Snapshot& now, World& world) {
     Yield(limb, now);
     targets_.limbs[static_cast<std::size_t>(limb)] = LimbAt(limb, now);
   }
-  HoldFigure();
+  HoldPosture();
   TurnHead(now);
   places_ = PlacesOf(person_, targets_, places_);
   for (std::size_t i = 0; i < places_.size(); ++i)

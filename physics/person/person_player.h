@@ -48,11 +48,11 @@ class PersonPlayer {
     double behind_s = 0;                ///< delay that yielding has caused
   };
   struct RecordedBody {
-    FigureTrack track;
+    PostureTrack track;
     double begin_s = 0;
   };
   struct Leaving {  ///< the transition from the end of a recording
-    Figure from;
+    Posture from;
     Motion progress;
   };
   class Resolver;
@@ -61,8 +61,8 @@ class PersonPlayer {
   /// Slows a limb down that meets too much resistance, and speeds it up again afterwards.
   void Yield(int limb, const Snapshot& now);
   double ResistanceTo(int limb, const Snapshot& now) const;
-  void HoldFigure();
-  void StandBelow(const Figure& figure);
+  void HoldPosture();
+  void StandBelow(const Posture& posture);
   void TurnHead(const Snapshot& now);
 
   const Scene& scene_;

@@ -49,10 +49,11 @@ Vector3d SwayOf(const Person& person, const Pose& X_WS, const Eigen::Vector2d& s
 }
 
 Torso TorsoOf(const Person& person, const BodyTargets& targets) {
-  if (targets.figure) {
-    const Figure& figure = *targets.figure;
-    return {figure.hips_W_m, figure.ways_W[Figure::kTrunk], figure.ways_W[Figure::kNeck],
-            figure.ways_W[Figure::kAcrossHips], figure.ways_W[Figure::kAcrossShoulders]};
+  if (targets.posture) {
+    const Posture& posture = *targets.posture;
+    return {posture.hips_W_m, posture.directions_W[Posture::kTrunk],
+            posture.directions_W[Posture::kNeck], posture.directions_W[Posture::kAcrossHips],
+            posture.directions_W[Posture::kAcrossShoulders]};
   }
   const double h = person.height_m;
   const Eigen::Quaterniond& q = targets.X_WS.q;
@@ -110,8 +111,8 @@ bool FollowsHand(const Person& person, bool right) {
   return (right ? person.right_hand : person.left_hand) >= 0;
 }
 
-Vector3d WayOf(const BodyTargets& targets, std::size_t way, bool right) {
-  return targets.figure->ways_W[way + (right ? 0 : 1)];
+Vector3d DirectionOf(const BodyTargets& targets, std::size_t way, bool right) {
+  return targets.posture->directions_W[way + (right ? 0 : 1)];
 }
 
 Arm ArmOf(const Person& person, const BodyTargets& targets, bool right) {
@@ -122,10 +123,10 @@ Arm ArmOf(const Person& person, const BodyTargets& targets, bool right) {
           .elbow = {},
           .wrist = {},
           .palm_toward = {}};
-  if (targets.figure && !FollowsHand(person, right)) {
-    arm.elbow = arm.shoulder + kUpperArm * h * WayOf(targets, Figure::kUpperArm, right);
-    arm.wrist = arm.elbow + kForearm * h * WayOf(targets, Figure::kForearm, right);
-    arm.palm_toward = WayOf(targets, Figure::kHand, right);
+  if (targets.posture && !FollowsHand(person, right)) {
+    arm.elbow = arm.shoulder + kUpperArm * h * DirectionOf(targets, Posture::kUpperArm, right);
+    arm.wrist = arm.elbow + kForearm * h * DirectionOf(targets, Posture::kForearm, right);
+    arm.palm_toward = DirectionOf(targets, Posture::kHand, right);
     return arm;
   }
   if (limb.end == LimbEnd::kRightElbow || limb.end == LimbEnd::kLeftElbow) {
@@ -158,11 +159,11 @@ Leg LegOf(const Person& person, const BodyTargets& targets, bool right) {
   const double h = person.height_m;
   const Eigen::Quaterniond& q = targets.X_WS.q;
   const Vector3d hip = HipOf(person, TorsoOf(person, targets), right);
-  if (targets.figure) {
-    const Vector3d knee = hip + kThigh * h * WayOf(targets, Figure::kThigh, right);
-    const Vector3d ankle = knee + kShank * h * WayOf(targets, Figure::kShank, right);
-    return {hip, knee, ankle, WayOf(targets, Figure::kFoot, right),
-            WayOf(targets, Figure::kSole, right)};
+  if (targets.posture) {
+    const Vector3d knee = hip + kThigh * h * DirectionOf(targets, Posture::kThigh, right);
+    const Vector3d ankle = knee + kShank * h * DirectionOf(targets, Posture::kShank, right);
+    return {hip, knee, ankle, DirectionOf(targets, Posture::kFoot, right),
+            DirectionOf(targets, Posture::kSole, right)};
   }
   const Vector3d wanted = targets.limbs[right ? 2 : 3].p_W_m - q * FootFromAnkle(h);
   const TwoBones bones =
@@ -293,18 +294,18 @@ Eigen::Vector3d NeckTop(const Person& person, const BodyTargets& targets) {
 
 Pose HeadToward(const Person& person, const Vector3d& p_W_neck, const Vector3d& toward_W) {
   // Yaw and pitch, no roll. Yaw is undefined straight up and down, so the pitch is limited.
-  constexpr double kMostNod = 0.98;
+  constexpr double kMaxPitchSine = 0.98;
   const double level = std::hypot(toward_W.x(), toward_W.y());
   const double yaw = level > 1e-9 ? std::atan2(toward_W.y(), toward_W.x()) : 0;
-  const double pitch = -std::asin(std::clamp(toward_W.z(), -kMostNod, kMostNod));
+  const double pitch = -std::asin(std::clamp(toward_W.z(), -kMaxPitchSine, kMaxPitchSine));
   const Eigen::Quaterniond q =
       Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY());
   return {p_W_neck + q * Vector3d(0, 0, kHeadCentre * person.height_m), q};
 }
 
-Pose HeadOfFigure(const Person& person, const BodyTargets& targets) {
-  const Vector3d& crown = targets.figure->ways_W[Figure::kCrown];
-  const Vector3d& face = targets.figure->ways_W[Figure::kFace];
+Pose HeadOfPosture(const Person& person, const BodyTargets& targets) {
+  const Vector3d& crown = targets.posture->directions_W[Posture::kCrown];
+  const Vector3d& face = targets.posture->directions_W[Posture::kFace];
   const Vector3d level = face - face.dot(crown) * crown;
   Eigen::Matrix3d axes;
   axes.col(0) = level.norm() > 1e-6 ? Vector3d(level.normalized()) : crown.unitOrthogonal();
@@ -314,30 +315,30 @@ Pose HeadOfFigure(const Person& person, const BodyTargets& targets) {
           Eigen::Quaterniond(axes).normalized()};
 }
 
-Figure FigureOf(const Person& person, const BodyTargets& targets) {
-  if (targets.figure) return *targets.figure;
+Posture PostureOf(const Person& person, const BodyTargets& targets) {
+  if (targets.posture) return *targets.posture;
   const Torso torso = TorsoOf(person, targets);
-  Figure figure{.hips_W_m = torso.hips, .ways_W = {}};
-  auto& ways = figure.ways_W;
-  ways[Figure::kTrunk] = torso.trunk_up;
-  ways[Figure::kNeck] = torso.neck_up;
-  ways[Figure::kFace] = targets.X_WHead.q * Vector3d::UnitX();
-  ways[Figure::kCrown] = targets.X_WHead.q * Vector3d::UnitZ();
-  ways[Figure::kAcrossHips] = torso.hips_left;
-  ways[Figure::kAcrossShoulders] = torso.shoulders_left;
+  Posture posture{.hips_W_m = torso.hips, .directions_W = {}};
+  auto& directions = posture.directions_W;
+  directions[Posture::kTrunk] = torso.trunk_up;
+  directions[Posture::kNeck] = torso.neck_up;
+  directions[Posture::kFace] = targets.X_WHead.q * Vector3d::UnitX();
+  directions[Posture::kCrown] = targets.X_WHead.q * Vector3d::UnitZ();
+  directions[Posture::kAcrossHips] = torso.hips_left;
+  directions[Posture::kAcrossShoulders] = torso.shoulders_left;
   for (const bool right : {true, false}) {
     const std::size_t side = right ? 0 : 1;
     const Arm arm = ArmOf(person, targets, right);
-    ways[Figure::kUpperArm + side] = (arm.elbow - arm.shoulder).normalized();
-    ways[Figure::kForearm + side] = (arm.wrist - arm.elbow).normalized();
-    ways[Figure::kHand + side] = arm.palm_toward;
+    directions[Posture::kUpperArm + side] = (arm.elbow - arm.shoulder).normalized();
+    directions[Posture::kForearm + side] = (arm.wrist - arm.elbow).normalized();
+    directions[Posture::kHand + side] = arm.palm_toward;
     const Leg leg = LegOf(person, targets, right);
-    ways[Figure::kThigh + side] = (leg.knee - leg.hip).normalized();
-    ways[Figure::kShank + side] = (leg.ankle - leg.knee).normalized();
-    ways[Figure::kFoot + side] = leg.foot_ahead;
-    ways[Figure::kSole + side] = leg.sole_down;
+    directions[Posture::kThigh + side] = (leg.knee - leg.hip).normalized();
+    directions[Posture::kShank + side] = (leg.ankle - leg.knee).normalized();
+    directions[Posture::kFoot + side] = leg.foot_ahead;
+    directions[Posture::kSole + side] = leg.sole_down;
   }
-  return figure;
+  return posture;
 }
 
 double LegLength(double height_m) { return (kThigh + kShank) * height_m; }
@@ -356,7 +357,7 @@ namespace {
 
 /// Targets of a standing person with hanging arms, without the head's pose.
 BodyTargets Resting(const Person& person) {
-  BodyTargets targets{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}, .figure = {}};
+  BodyTargets targets{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}, .posture = {}};
   for (int limb = 0; limb < 4; ++limb)
     targets.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, targets);
   return targets;

@@ -31,7 +31,7 @@ struct BodyTargets {
   std::array<Limb, 4> limbs;  ///< right arm, left arm, right leg, left leg
   Pose X_WHead;               ///< x is the direction of the face
   /// If set, it replaces all of the above except the head and arms that follow hands of the scene.
-  std::optional<Figure> figure;
+  std::optional<Posture> posture;
 };
 
 /// Index into BodyTargets::limbs.
@@ -50,10 +50,10 @@ Eigen::Vector3d NeckTop(const Person& person, const BodyTargets& targets);
 /// Pose of a head that looks in this direction.
 Pose HeadToward(const Person& person, const Eigen::Vector3d& p_W_neck,
                 const Eigen::Vector3d& toward_W);
-/// Pose of the head for targets that have a figure.
-Pose HeadOfFigure(const Person& person, const BodyTargets& targets);
-/// The figure that solves the targets; their own figure if they have one.
-Figure FigureOf(const Person& person, const BodyTargets& targets);
+/// Pose of the head for targets that have a posture.
+Pose HeadOfPosture(const Person& person, const BodyTargets& targets);
+/// The posture that solves the targets; their own posture if they have one.
+Posture PostureOf(const Person& person, const BodyTargets& targets);
 /// Length from the hip joint over the knee to the ankle, metres.
 double LegLength(double height_m);
 /// Height of the ankles over the floor in stance, metres.

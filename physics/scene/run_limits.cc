@@ -40,7 +40,7 @@ std::optional<RunProblem> CheckState(const std::string& name, const BodyState& s
 
 /// The iterative solver does not converge if one of two bodies pressed together is so many times
 /// heavier.
-constexpr double kMostMassRatio = 1000;
+constexpr double kMaxMassRatio = 1000;
 
 double MassOf(const Scene& scene, const ContactSide& side) {
   if (side.hand >= 0) return 0;
@@ -62,7 +62,7 @@ std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const Contac
       most_kg = std::max(most_kg, mass_kg);
     }
   }
-  if (most_kg > kMostMassRatio * least_kg)
+  if (most_kg > kMaxMassRatio * least_kg)
     return Say("a mass presses on one that is %.0f times smaller; make them more similar",
                most_kg / least_kg);
   return scene.hands.empty() ? "start them apart, or let them meet more slowly"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state of the world after one tick, as a value. Bodies and hands are named by their index in
-// the Scene.
+// the Scene. Tested by tests/physics/simulation_test.cc
 #pragma once
 
 #include <array>

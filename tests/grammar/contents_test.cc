@@ -10,11 +10,11 @@ namespace {
 
 constexpr const char* kGrammar = R"(grammar kitchen
 condition near(hand: Hand, object: Cup) while distance(hand, object) < 10 cm
-event holding(hand: Hand, object: Cup) while sensor_set(hand, object, "palm")
+event holding(hand: Hand, object: Cup) while sensor_set(hand, palm, object)
   with style = style(hand)
   with force = force(hand, object)
 symmetric event meeting(a: Thing, b: Thing) while touching(a, b)
-event pinching(hand: Hand, object: Cup) while sensor_set(hand, object, 3)
+event pinching(hand: Hand, object: Cup) while sensor_set(hand, 3, object) drawn as grasp
 )";
 
 std::vector<std::string> NamesOf(const std::vector<NameInSource>& names) {
@@ -46,10 +46,13 @@ TEST_F(Contents, TellsWhatAnEventIsAbout) {
   ASSERT_EQ(events.size(), 3U);
   EXPECT_EQ(events[0].name, "holding");
   EXPECT_EQ(events[0].roles, (std::vector<std::string>{"hand", "object"}));
+  EXPECT_EQ(events[0].classes, (std::vector<std::string>{"Hand", "Cup"}));
   EXPECT_EQ(events[0].attributes, std::vector<std::string>{"force"});
   EXPECT_TRUE(events[0].has_style);
   EXPECT_TRUE(events[1].attributes.empty());
   EXPECT_FALSE(events[1].has_style);
+  EXPECT_EQ(events[1].drawing.as, DrawnAs::kRow);
+  EXPECT_EQ(events[2].drawing.as, DrawnAs::kGrasp);
 }
 
 TEST_F(Contents, ListsWhatAnEpisodeMayNotHave) {

@@ -52,26 +52,32 @@ TEST_F(CommandLine, SaysItsVersion) {
   EXPECT_TRUE(std::regex_match(said.out, std::regex("prehend \\d+\\.\\d+\\.\\d+\n"))) << said.out;
 }
 
+/// A command line that is refused.
 struct Slip {
   const char* arguments;
   int code;
   const char* err;  ///< regular expression for all of it
 };
 
-TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
+TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
   const std::vector<Slip> slips = {
       {"chekc", 2,
-       "prehend: unknown command 'chekc'; did you mean 'check'\\?\n  see: prehend --help\n"},
+       "prehend: unknown command 'chekc'; did you mean 'check'\\?\n  again: prehend check\n  see: "
+       "prehend --help\n"},
       {"run carton_rests --jsn", 2,
-       "prehend: unknown option '--jsn'; did you mean '--json'\\?\n  see: prehend run --help\n"},
-      {"run", 2, "prehend: scenario is required\n  see: prehend run --help\n"},
+       "prehend: unknown option '--jsn'; did you mean '--json'\\?\n  again: prehend run "
+       "carton_rests "
+       "--json\n  see: prehend run --help\n"},
+      {"run", 2, "prehend: the argument 'scenario' is missing\n  see: prehend run --help\n"},
       {"list more", 2, "prehend: unexpected argument 'more'\n  see: prehend list --help\n"},
-      {"check --jobs none", 2, "prehend: .*\n  see: prehend check --help\n"},
+      {"check --jobs none", 2,
+       "prehend: --jobs: found 'none', wanted a whole number from 1 to 256\n  see: prehend check "
+       "--help\n"},
       {"run carton_rest", 4,
-       "prehend: no scenario 'carton_rest'; did you mean 'carton_rests'\\?.*\n  again: prehend run "
-       "carton_rest\n"},
+       "prehend: no scenario 'carton_rest'; did you mean 'carton_rests'\\? \\('prehend list' shows "
+       "all\\)\n  again: prehend run carton_rests\n"},
       {"check slide/*", 4,
-       "prehend: no scenario matches 'slide/\\*'.*\n  again: prehend check 'slide/\\*'\n"},
+       "prehend: no scenario matches 'slide/\\*' \\('prehend list' shows all\\)\n"},
       {"check rest", 4, "prehend: no scenario matches 'rest'; did you mean 'rest/\\*'\\?[^]*"},
       {"check scenarios/rest/", 4,
        "prehend: no scenario matches 'scenarios/rest/'; did you mean 'rest/\\*'\\?[^]*"},
@@ -82,30 +88,31 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
       {"run carton_rests --grammar pick_and_plac", 2,
        "[^]*/pick_and_plac.grammar: error: no such file\n  hint: did you mean "
        "'pick_and_place'\\?\n[^]*"},
-      {"new invalid/x", 2, "prehend: scenarios/invalid/ holds files that show errors, [^]*"},
+      {"new invalid/x", 2, "prehend: scenarios/invalid/ holds examples of errors, [^]*"},
       {"check --shard 0/2", 2,
-       "prehend: --shard: '0/2' is no shard; the second of three is 2/3\n[^]*"},
+       "prehend: --shard: found '0/2', wanted I/N, like 2/3 for the second of three\n[^]*"},
       {"check --shard 2/2", 4, "prehend: this shard is empty[^]*"},
       {"check --repeat 0", 2, "prehend: [^]*"},
-      {"check --changed --set lift_rise=1cm", 2, "prehend: --changed is about [^]*"},
+      {"check --changed --set lift_rise=1cm", 2,
+       "prehend: --changed compares files; it cannot be combined with --grammar or --set\n"},
       {"check --filter tag:quiet --filter !*rests", 4, "prehend: no scenario is selected[^]*"},
       {"run carton_rests --record no/such/folder/e.jsonl", 2,
        "prehend: --record: cannot write no/such/folder/e.jsonl: [^]*"},
       {"check --filter tag:none", 4,
-       "prehend: --filter: no scenario has the tag 'none' .*\n  again: .*\n"},
+       "prehend: --filter: no scenario has the tag 'none' \\('prehend list' shows all\\)\n"},
       {"check --filter tag:quite", 4,
        "prehend: --filter: no scenario has the tag 'quite'; did you mean 'quiet'\\?[^]*"},
       {"check --filter !", 2,
-       "prehend: --filter: '!' is followed by what must not match, like !reach/\\*\n[^]*"},
+       "prehend: --filter: found '!', wanted what must not match, like !reach/\\*\n[^]*"},
       {"check --filter !tag:", 2,
-       "prehend: --filter: '!tag:' is followed by a tag, like !tag:smoke\n[^]*"},
+       "prehend: --filter: found '!tag:', wanted a tag after it, like !tag:smoke\n[^]*"},
       {"check --filter nothing*", 4, "prehend: --filter: no scenario matches 'nothing\\*' [^]*"},
       {"run carton_rests --trials 2 --record x", 2,
-       "prehend: --record is about one run, --trials about many\n[^]*"},
+       "prehend: --record needs a single run; --trials makes many\n"},
       {"run carton_rests --grammar xyz", 2,
        "[^]*no such file\n  hint: there are: [^]*pick_and_place[^]*"},
-      {"run missing.yaml", 2, "missing.yaml: error: [^]*\n  again: prehend run missing.yaml\n"},
-      {"run carton_rests --set lift_ris=3cm", 2, "[^]*error: [^]*lift_rise[^]*\n  again: [^]*\n"},
+      {"run missing.yaml", 2, "missing.yaml: error: no such file\n"},
+      {"run carton_rests --set lift_ris=3cm", 2, "[^]*error: [^]*lift_rise[^]*"},
       {"run carton_rests --set lift_rise", 2, "--set:1:1: error: expected NAME=VALUE\n[^]*"},
       {"run carton_rests --set lift_rise=", 2, "--set:1:1: error: expected NAME=VALUE\n[^]*"},
       {"run carton_rests --set lift_rise=1cm --set lift_rise=2cm", 2,
@@ -126,17 +133,19 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
       {"run carton_rests --set entities.carton.mass=1", 2, "--set[^]*error: [^]*mass_kg[^]*"},
       {"run carton_rests --grammar none.grammar", 2, "none.grammar: error: [^]*"},
       {"accept carton_rests", 2,
-       "prehend: accepting needs a reason: [^]*\n  again: prehend accept carton_rests\n"},
+       "prehend: accept needs a reason: --reason \"why this is right\"\n"},
       {"accept rest/* --reason x", 2,
-       "prehend: 'rest/\\*' may mean several scenarios; goldens are accepted one by one, by "
-       "name\n[^]*"},
+       "prehend: 'rest/\\*' may match several scenarios; accept takes one scenario at a time, by "
+       "name\n"},
       {"new Wrong-Name", 2,
-       "prehend: 'Wrong-Name' is no name of a scenario: a small letter, then [^]*"},
-      {"check --time-limit-s nan", 2, "prehend: --time-limit-s: Value nan is no number\n[^]*"},
-      {"score --collar-ms nan", 2, "prehend: --collar-ms: Value nan is no number\n[^]*"},
+       "prehend: 'Wrong-Name' is not a scenario name; wanted a small letter, then [^]*"},
+      {"check --time-limit-s nan", 2,
+       "prehend: --time-limit-s: found 'nan', wanted a number from 0.1 to 86400\n[^]*"},
+      {"score --collar-ms nan", 2,
+       "prehend: --collar-ms: found 'nan', wanted a number from 0 to 10000\n[^]*"},
       {"check --time-limit-s 0", 2,
-       "prehend: --time-limit-s: Value 0 not in range 0.1 to 86400\n[^]*"},
-      {"new carton_rests", 2, "prehend: there is a scenario of this name: [^]*"},
+       "prehend: --time-limit-s: found '0', wanted a number from 0.1 to 86400\n[^]*"},
+      {"new carton_rests", 2, "prehend: a scenario of this name exists: [^]*"},
   };
   for (const Slip& slip : slips) {
     const Said ended = Do(slip.arguments);
@@ -147,13 +156,39 @@ TEST_F(CommandLine, SlipsOfThePenEndWithASuggestion) {
   }
 }
 
-TEST_F(CommandLine, WhatIsGivenAsNothingIsRefused) {
+TEST_F(CommandLine, ARecordingIsNotAScenario) {
+  const std::string file = (root_ / "cup.jsonl").string();
+  ASSERT_EQ(Do("run carton_rests --record " + file).exit_code, 0);
+  for (const std::string command :
+       {"run ", "render ", "check ", "score ", "validate ", "new copy --like "}) {
+    const Said said = Do(command + file);
+    EXPECT_EQ(said.exit_code, 2) << command;
+    EXPECT_EQ(said.out, "");
+    EXPECT_EQ(said.err, "prehend: " + file +
+                            " is a recording, not a scenario; use 'prehend resegment', 'explain' "
+                            "or 'tracks'\n");
+  }
+}
+
+TEST_F(CommandLine, PrintedCommandsHaveTheNameThatTheProgramWasCalledBy) {
+  const std::vector<std::string> environment = {"PREHEND_HOME=" + root_.string(),
+                                                "PREHEND_COMMAND=./run"};
+  EXPECT_EQ(Prehend({"run", "carton_rest"}, environment).err,
+            "prehend: no scenario 'carton_rest'; did you mean 'carton_rests'? ('./run list' shows "
+            "all)\n  again: ./run run carton_rests\n");
+  EXPECT_EQ(Prehend({"list", "more"}, environment).err,
+            "prehend: unexpected argument 'more'\n  see: ./run list --help\n");
+  const Said help = Prehend({"list", "--help"}, environment);
+  EXPECT_NE(help.out.find("\n  ./run list --json\n"), std::string::npos) << help.out;
+}
+
+TEST_F(CommandLine, AnEmptyValueIsRefused) {
   for (const std::vector<std::string>& words : {std::vector<std::string>{"run", ""},
                                                 {"run", "carton_rests", "--grammar", ""},
                                                 {"check", "--filter", ""}}) {
     const Said said = Prehend(words, {"PREHEND_HOME=" + root_.string()});
     EXPECT_EQ(said.exit_code, 2) << said.out;
-    EXPECT_NE(said.err.find("an empty word is given for it"), std::string::npos) << said.err;
+    EXPECT_NE(said.err.find(": the value is empty\n"), std::string::npos) << said.err;
   }
   const Said homeless = Prehend({"list"}, {"PREHEND_HOME=/nowhere"});
   EXPECT_EQ(homeless.exit_code, 2);
@@ -227,7 +262,7 @@ TEST_F(CommandLine, WarningsOfAGrammarStopNothing) {
             "grammar odd\nparam unused = 1 cm\nevent high(c: Cartoon) while height(c) > 1 m\n");
   const std::string file = (root_ / "odd.grammar").string();
   const std::string unused = file + ":2:7: warning: the parameter 'unused' is not used\n";
-  const std::string nobody = file + ":3:12: warning: nobody in this episode is a 'Cartoon'\n";
+  const std::string nobody = file + ":3:12: warning: no entity of this episode is a 'Cartoon'\n";
   const Said validated = Do("validate " + file);
   EXPECT_EQ(validated.exit_code, 0);
   EXPECT_NE(validated.err.find(unused), std::string::npos) << validated.err;
@@ -264,7 +299,8 @@ TEST_F(CommandLine, AGoldenIsPendingThenAcceptedThenKept) {
   const Said pending = Do("check --no-pictures");
   EXPECT_EQ(pending.exit_code, 5) << pending.err;
   EXPECT_TRUE(
-      pending.out.ends_with("\n1 pending: accept with a reason, or mend\n0 passed, 0 failed\n"))
+      pending.out.ends_with("\n1 new scenario has no golden: review it, then accept it with a "
+                            "reason\n0 passed, 0 failed\n"))
       << pending.out;
   EXPECT_TRUE(fs::exists(Pending()));
   EXPECT_FALSE(fs::exists(Golden())) << "a run must never write a golden";
@@ -296,7 +332,7 @@ TEST_F(CommandLine, OnlyScenariosOfTheProjectHaveGoldens) {
                                       "carton_waits"));
   const Said ended = Do("accept " + loose.string() + " --reason because");
   EXPECT_EQ(ended.exit_code, 2);
-  EXPECT_NE(ended.err.find("goldens are kept of scenarios in scenarios/ only"), std::string::npos)
+  EXPECT_NE(ended.err.find("only scenarios in scenarios/ have goldens"), std::string::npos)
       << ended.err;
   EXPECT_FALSE(fs::exists(root_ / "golden"));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Differences as a person meets them: what differs, who is to blame, what waits for acceptance, and
-// what acceptance keeps.
+// Differences as a person meets them: what differs and why, what waits for acceptance, and what
+// acceptance keeps.
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <thread>
@@ -21,7 +21,8 @@ class GoldenWorkflow : public SmallProject {
 };
 
 TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
-  EXPECT_EQ(Do("review").out, "nothing is pending ('prehend check' finds out what should be)\n");
+  EXPECT_EQ(Do("review").out,
+            "nothing is pending ('prehend check' finds what differs from its golden)\n");
   EXPECT_EQ(Do("review").exit_code, 0);
   EXPECT_EQ(Do("check --no-pictures").exit_code, 5);
   const Said fresh = Do("review");
@@ -45,14 +46,14 @@ TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
 
   fs::remove(Scenario());
   const Said orphans = Do("review");
-  EXPECT_TRUE(
-      SaysIn(orphans, "orphan  rest/carton_rests\n    pending, but there is no such scenario"))
+  EXPECT_TRUE(SaysIn(
+      orphans, "orphan  rest/carton_rests\n    the scenario of this pending golden does not exist"))
       << orphans.out;
   EXPECT_TRUE(SaysIn(orphans, "carton_rests.timeline belongs to no scenario: remove it"))
       << orphans.out;
 }
 
-TEST_F(GoldenWorkflow, TheGrammarIsToBlameWhenNothingMovesOtherwise) {
+TEST_F(GoldenWorkflow, TheGrammarIsTheCauseWhenEverythingMovesAsBefore) {
   Accept();
   ASSERT_EQ(Do("check --no-pictures").exit_code, 0);
   const fs::path grammar = root_ / "grammar/library/pick_and_place.grammar";
@@ -62,12 +63,12 @@ TEST_F(GoldenWorkflow, TheGrammarIsToBlameWhenNothingMovesOtherwise) {
   EXPECT_EQ(said.exit_code, 1) << said.out << said.err;
   EXPECT_TRUE(
       SaysIn(said,
-             "blame: the grammar or the golden: everything moves as when this last agreed "
-             "with its golden; changed since then: grammar/library/pick_and_place.grammar\n"))
+             "cause: the grammar or the golden\\. Everything moves as in the last passing run\\. "
+             "Changed since: grammar/library/pick_and_place.grammar\n"))
       << said.out;
 }
 
-TEST_F(GoldenWorkflow, ThePhysicsIsToBlameFromTheTickItParts) {
+TEST_F(GoldenWorkflow, ThePhysicsIsTheCauseFromTheTickOfDivergence) {
   Accept();
   ASSERT_EQ(Do("check --no-pictures").exit_code, 0);
   WriteFile(Scenario(), Replaced(kCartonRests, "mass_kg: 0.3, on: table, at_m: [0.15, 0.15]",
@@ -75,14 +76,14 @@ TEST_F(GoldenWorkflow, ThePhysicsIsToBlameFromTheTickItParts) {
   const Said said = Do("check --no-pictures");
   EXPECT_EQ(said.exit_code, 1) << said.out << said.err;
   EXPECT_TRUE(SaysIn(said,
-                     "blame: physics: since 0\\.00\\d+ s \\(tick \\d\\) carton does not move as "
-                     "when this last agreed with its golden; changed since then: "
+                     "cause: physics\\. `carton` moves differently from the last passing run, "
+                     "first at 0\\.00\\d+ s \\(tick \\d\\)\\. Changed since: "
                      "scenarios/rest/carton_rests.yaml\n"))
       << said.out;
   EXPECT_TRUE(SaysIn(said, "\n      facts at [0-9.]+ s \\(tick \\d+\\):\n")) << said.out;
 }
 
-TEST_F(GoldenWorkflow, WhatWasAcceptedIsWhatTheNextBlameComparesWith) {
+TEST_F(GoldenWorkflow, TheCauseIsFoundAgainstWhatWasAccepted) {
   Accept();
   ASSERT_EQ(Do("check --no-pictures").exit_code, 0);
   WriteFile(Scenario(), Replaced(kCartonRests, "mass_kg: 0.3, on: table, at_m: [0.15, 0.15]",
@@ -90,12 +91,11 @@ TEST_F(GoldenWorkflow, WhatWasAcceptedIsWhatTheNextBlameComparesWith) {
   Accept();
   WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.1 0.2 hand=right_hand object=carton\n");
   EXPECT_TRUE(SaysIn(Do("check --no-pictures"),
-                     "blame: the grammar or the golden: everything moves as when this last agreed "
-                     "with its golden; "
-                     "changed since then: golden/rest/carton_rests.timeline\n"));
+                     "cause: the grammar or the golden\\. Everything moves as in the last passing "
+                     "run\\. Changed since: golden/rest/carton_rests.timeline\n"));
   EXPECT_TRUE(
       SaysIn(Do("check --no-pictures --grammar original_2020"),
-             "changed since then: golden/rest/carton_rests.timeline, --grammar original_2020\n"));
+             "Changed since: golden/rest/carton_rests.timeline, --grammar original_2020\n"));
 }
 
 TEST_F(GoldenWorkflow, WhatWasAcceptedIsStillChecked) {
@@ -104,12 +104,12 @@ TEST_F(GoldenWorkflow, WhatWasAcceptedIsStillChecked) {
   EXPECT_TRUE(SaysIn(Do("check --changed --no-pictures"), "1 unchanged"));
 }
 
-TEST_F(GoldenWorkflow, WithoutARunThatAgreedTheBlameIsUnknown) {
+TEST_F(GoldenWorkflow, WithoutARunThatPassedTheCauseIsUnknown) {
   Accept();
   fs::remove_all(root_ / "build/check");
   WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.1 0.2 hand=right_hand object=carton\n");
   EXPECT_TRUE(SaysIn(Do("check --no-pictures"),
-                     "blame: unknown, this scenario has not agreed with its golden"));
+                     "cause: unknown\\. This scenario has not passed here yet\\.\n"));
 }
 
 TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
@@ -118,7 +118,7 @@ TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
   WriteFile(Scenario(), Replaced(kCartonRests, "wait_s: 0.2", "wait_s: 0.3"));
   const std::string by_fingerprint = " --reviewed " + shown;
   for (const auto& [how, why] :
-       {std::pair(std::string(), "was " + shown + ", but the scenario yields something else now"),
+       {std::pair(std::string(), "is " + shown + ", but the scenario now yields"),
         std::pair(by_fingerprint, ", not " + shown)}) {
     const Said refused = Do("accept carton_rests --reason seen" + how);
     EXPECT_EQ(refused.exit_code, 1) << refused.err;
@@ -131,11 +131,9 @@ TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {
     const Said no_fingerprint = Do("accept carton_rests --reason seen --reviewed " + typed);
     EXPECT_EQ(no_fingerprint.exit_code, 2);
     EXPECT_EQ(no_fingerprint.err,
-              "prehend: --reviewed: '" + typed +
-                  "' is no fingerprint; 'prehend review' prints it, 16 digits from 0-9 and a-f, "
-                  "like 3fa90c11d27e5b60\n  again: prehend accept carton_rests --reason seen "
-                  "--reviewed " +
-                  typed + "\n");
+              "prehend: --reviewed: found '" + typed +
+                  "', wanted the 16 digits from 0-9 and a-f that 'prehend review' prints, like "
+                  "3fa90c11d27e5b60\n  see: prehend accept --help\n");
   }
   EXPECT_EQ(Do("accept carton_rests --reason seen --reviewed " + now).exit_code, 0);
 }
@@ -233,7 +231,7 @@ TEST_F(GoldenWorkflow, WhatAGoldenNamesMustExist) {
   says("b=table", "", file + ":7:1: error: 'contact' has a role 'b', which is missing here\n");
   says("# grammar: pick_and_place", "# grammar: contact",
        file +
-           ":2:12: error: this golden is of the grammar 'contact', but the scenario is watched by "
+           ":2:12: error: this golden is of the grammar 'contact', but the scenario uses "
            "'pick_and_place'\n");
   says(
       "# scenario: rest/carton_rests", "# scenario: rest/carton",
@@ -259,8 +257,7 @@ TEST_F(GoldenWorkflow, WhatMovedWithinTheToleranceIsNotWrittenUnseen) {
   EXPECT_EQ(ReadFile(Golden()).substr(ReadFile(Golden()).find(table)),
             golden.substr(golden.find(table)));
   const Said again = Do("accept carton_rests --reason again");
-  EXPECT_TRUE(
-      SaysIn(again, "nothing to accept: .*; headroom: 6.2 of 8.3 ms are left at end of contact"))
+  EXPECT_TRUE(SaysIn(again, "nothing to accept: .*; margin: 6.2 of 8.3 ms left at end of contact"))
       << again.out;
 }
 
@@ -366,8 +363,7 @@ TEST_F(GoldenWorkflow, WhatDiffersBetweenEnginesIsShownAndNotAccepted) {
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_TRUE(SaysIn(refused, "recognised in bullet, expected as recognised in box2d:\n"))
       << refused.out;
-  EXPECT_NE(refused.err.find(
-                "bullet does not lead to the same events (shown above); nothing was accepted"),
+  EXPECT_NE(refused.err.find("bullet yields other events (printed above); nothing was accepted"),
             std::string::npos)
       << refused.err;
   EXPECT_FALSE(fs::exists(Golden("rest/stones_tumble")));
@@ -377,7 +373,7 @@ TEST_F(GoldenWorkflow, WhatDiffersBetweenEnginesIsShownAndNotAccepted) {
   EXPECT_EQ(Do("check stones_tumble --no-pictures").exit_code, 5);
   Accept("stones_tumble");
   EXPECT_EQ(Do("review stones_tumble").out,
-            "nothing is pending ('prehend check' finds out what should be)\n");
+            "nothing is pending ('prehend check' finds what differs from its golden)\n");
 }
 
 }  // namespace

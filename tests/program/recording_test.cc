@@ -31,27 +31,23 @@ TEST(Recording, ResegmentingGivesTheSameTimelineAndOtherGrammarsTheirs) {
 
 TEST(Recording, ADashPrintsIt) {
   const auto file = (FreshFolder("printed_recording") / "rests.jsonl").string();
-  ASSERT_EQ(Prehend({"run", "carton_rests", "--record", file}).exit_code, 0);
-  const Said printed = Prehend({"run", "carton_rests", "--record", "-"});
+  ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", file}).exit_code, 0);
+  const Said printed = Prehend({"run", "milk_carton_wrap", "--record", "-"});
   EXPECT_EQ(printed.exit_code, 0);
   EXPECT_EQ(printed.out, ReadFile(file));
-  const Said both = Prehend({"run", "carton_rests", "--record", "-", "--json"});
+  const Said both = Prehend({"run", "milk_carton_wrap", "--record", "-", "--json"});
   EXPECT_EQ(both.exit_code, 2);
   EXPECT_EQ(both.out, "");
-  EXPECT_EQ(
-      both.err,
-      "prehend: --record - and --json contradict each other: both are printed\n  again: prehend "
-      "run carton_rests --record - --json\n");
+  EXPECT_EQ(both.err, "prehend: --record - contradicts --json: both would be printed\n");
 }
 
 TEST(Recording, ADeviceIsNotReplacedByAFile) {
-  const Said said = Prehend({"run", "carton_rests", "--record", "/dev/full"});
+  const Said said = Prehend({"run", "milk_carton_wrap", "--record", "/dev/full"});
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_EQ(said.out, "");
   EXPECT_EQ(said.err,
             "prehend: --record: cannot write /dev/full: it is a device or a pipe, wanted a file; "
-            "standard output is written as '-'\n  again: prehend run carton_rests --record "
-            "/dev/full\n");
+            "standard output is written as '-'\n");
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The suite goes on, and says what is true, whatever one of its scenarios does.
-#include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>

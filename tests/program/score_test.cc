@@ -54,7 +54,8 @@ TEST_F(ScoreCommand, WhatIsMisspeltIsListedByName) {
       other.out.find("\nnot covered: contact (1 true), supported_by (1 true), grasping (0 true), "),
       std::string::npos)
       << other.out;
-  EXPECT_NE(other.out.find("; no rule prints them, they count as missed\n"), std::string::npos);
+  EXPECT_NE(other.out.find("; no rule of the grammar prints them, so they count as missed\n"),
+            std::string::npos);
 }
 
 TEST_F(ScoreCommand, EventsCanBeChosen) {
@@ -75,7 +76,7 @@ TEST_F(ScoreCommand, EveryCommaHasNamesBesideIt) {
   for (const char* events : {"reaching,,", ",reaching", "reaching,,grasping"}) {
     const Said wrong = Do(std::string("score --events ") + events);
     EXPECT_EQ(wrong.exit_code, 2) << events;
-    EXPECT_NE(wrong.err.find("--events: a name is missing beside a comma; write NAME,NAME"),
+    EXPECT_NE(wrong.err.find("--events: a name is missing next to a comma; write NAME,NAME"),
               std::string::npos)
         << wrong.err;
   }
@@ -87,7 +88,7 @@ TEST_F(ScoreCommand, WhatCannotBeReadIsBadInputAndNoTable) {
   const Said said = Do("score " + path);
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_EQ(said.out, "");
-  EXPECT_NE(said.err.find("is not scored"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("was not scored"), std::string::npos) << said.err;
 }
 
 }  // namespace

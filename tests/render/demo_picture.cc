@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "render/mesh.h"
+
 namespace prehend::render {
 namespace {
 

@@ -19,7 +19,7 @@ constexpr int kTilts = 3;
 constexpr btScalar kTilt_rad = 0.005;
 /// Least cosine between normals of one face; the normal of an edge tilts with the body.
 constexpr btScalar kSameNormal = 0.9995;
-constexpr int kMostPoints = 4;
+constexpr int kMaxPoints = 4;
 /// The point that Bullet finds is the deepest one; deeper ones are errors of its search.
 constexpr btScalar kSlack_m = 1e-4;
 
@@ -37,7 +37,7 @@ class PointsOfTilted final : public btManifoldResult {
   void addContactPoint(const btVector3& normal_W, const btVector3& p_W,
                        btScalar distance) override {
     if (normal_W.dot(deepest_.m_normalWorldOnB) < kSameNormal) return;
-    if (getPersistentManifold()->getNumContacts() >= kMostPoints) return;
+    if (getPersistentManifold()->getNumContacts() >= kMaxPoints) return;
     btVector3 on_a = p_W + normal_W * distance, on_b = p_W;
     btVector3& moved = tilted_is_first_ ? on_a : on_b;
     moved = back_ * moved;
@@ -73,7 +73,7 @@ class ImpactAlgorithm final : public btConvexConvexAlgorithm {
     const btPersistentManifold& manifold = *found->getPersistentManifold();
     const int count = manifold.getNumContacts();
     if (count == 0 || count > 2 || !CanMeetFlat(*a) || !CanMeetFlat(*b)) return;
-    if (ApproachSpeed(manifold, manifold.getContactPoint(0)) < kSlowestImpact_m_per_s) return;
+    if (ApproachSpeed(manifold, manifold.getContactPoint(0)) < kMinImpact_m_per_s) return;
     const btManifoldPoint deepest = manifold.getContactPoint(0);
     for (int i = 0; i < kTilts; ++i) Tilt(*a, *b, info, deepest, SIMD_2_PI * i / kTilts, *found);
   }

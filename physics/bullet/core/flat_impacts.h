@@ -10,7 +10,7 @@
 namespace prehend::physics {
 
 /// Slower contacts do not bounce.
-inline constexpr btScalar kSlowestImpact_m_per_s = 0.2;
+inline constexpr btScalar kMinImpact_m_per_s = 0.2;
 
 /// Bullet's collision detection, which finds all of a face in the tick of its impact. Slower
 /// contacts and those of spheres, hands and persons are stock.

@@ -41,7 +41,7 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   // No row of a multibody is warm-started: its speeds start at zero here, and their final values
   // are added to the multibody.
   terms_.clear();
-  met_.clear();
+  multibodies_.clear();
   Flatten(m_multiBodyNonContactConstraints, joints_);
   Flatten(m_multiBodyNormalContactConstraints, normals_);
   Flatten(m_multiBodyFrictionContactConstraints, frictions_);
@@ -85,7 +85,7 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody* multibody, int solver_bod
                                           const btVector3& angular_response) {
   Side side;
   if (multibody) {
-    Meet(*multibody, speeds);
+    RegisterMultibody(*multibody, speeds);
     side.speeds = speeds;
     side.response = jacobian;
     side.speed_count = multibody->getNumDofs() + 6;
@@ -101,11 +101,11 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody* multibody, int solver_bod
   return side;
 }
 
-void BulletSolver::Meet(btMultiBody& multibody, int speeds) {
-  const auto known = [&](const Met& met) { return met.multibody == &multibody; };
-  if (std::any_of(met_.begin(), met_.end(), known)) return;
+void BulletSolver::RegisterMultibody(btMultiBody& multibody, int speeds) {
+  const auto known = [&](const MultibodyUse& use) { return use.multibody == &multibody; };
+  if (std::any_of(multibodies_.begin(), multibodies_.end(), known)) return;
   multibody.setPosUpdated(false);
-  met_.push_back({&multibody, speeds});
+  multibodies_.push_back({&multibody, speeds});
 }
 
 btScalar BulletSolver::SpeedAlong(const Side& side) const {
@@ -223,8 +223,8 @@ btScalar BulletSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies,
   for (const Rows* rows : {&joints_, &normals_, &frictions_, &rolling_, &spinning_})
     for (const Row& row : *rows) row.source->m_appliedImpulse = row.impulse;
   rigid_.WriteBack(RigidPools());
-  for (const Met& met : met_)
-    met.multibody->applyDeltaVeeMultiDof2(&m_data.m_deltaVelocities[met.speeds], 1);
+  for (const MultibodyUse& use : multibodies_)
+    use.multibody->applyDeltaVeeMultiDof2(&m_data.m_deltaVelocities[use.speeds], 1);
   return btMultiBodyConstraintSolver::solveGroupCacheFriendlyFinish(bodies, body_count, info);
 }
 

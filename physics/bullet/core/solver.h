@@ -78,16 +78,16 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   btScalar SolveCone(Row& first, Row& second);
   btScalar SolvePairs(Rows& rows, bool only_pressed);
   /// Remembers where this multibody's speeds are.
-  void Meet(btMultiBody& multibody, int speeds);
+  void RegisterMultibody(btMultiBody& multibody, int speeds);
 
-  struct Met {
+  struct MultibodyUse {
     btMultiBody* multibody;
     int speeds;  ///< index of its first in m_data.m_deltaVelocities
   };
   RigidRows rigid_;
   Rows joints_, normals_, frictions_, rolling_, spinning_;
   std::vector<Term> terms_;
-  std::vector<Met> met_;
+  std::vector<MultibodyUse> multibodies_;
 };
 
 }  // namespace prehend::physics

@@ -15,15 +15,15 @@ void BehavesAsAMap(const std::vector<Key>& keys) {
   std::mt19937 random(1);
   for (int step = 0; step < 30000; ++step) {
     const int instance = static_cast<int>(random() % keys.size());
-    ASSERT_EQ(index.Find(keys[instance]), inside[instance] ? instance : kNone);
+    ASSERT_EQ(index.Find(keys[instance]), inside[instance] ? InstanceId(instance) : kNone);
     // Fills and empties in turns, so that long runs of neighbours come and go.
     const bool insert = random() % 100 < (step / 5000 % 2 == 0 ? 80u : 20u);
     if (insert == inside[instance]) continue;
-    insert ? index.Insert(instance, keys[instance]) : index.Erase(keys[instance]);
+    insert ? index.Insert(InstanceId(instance), keys[instance]) : index.Erase(keys[instance]);
     inside[instance] = insert;
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    ASSERT_EQ(index.Find(keys[i]), inside[i] ? static_cast<int>(i) : kNone);
+    ASSERT_EQ(index.Find(keys[i]), inside[i] ? InstanceId(i) : kNone);
   }
 }
 
@@ -41,8 +41,8 @@ TEST(InstanceIndex, BehavesAsAMapOfPairs) {
 
 TEST(InstanceIndex, APairHasNoOrder) {
   InstanceIndex<PairKey> index;
-  index.Insert(7, PairKey(2, 1));
-  EXPECT_EQ(index.Find(PairKey(1, 2)), 7);
+  index.Insert(InstanceId(7), PairKey(2, 1));
+  EXPECT_EQ(index.Find(PairKey(1, 2)), InstanceId(7));
   EXPECT_EQ(index.Find(PairKey(2, 2)), kNone);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The blame names what moved otherwise, or says that nothing did, and which files changed.
+// The cause names the entity that moved differently, or says that none did, and the files that
+// changed.
 #include "harness/check/blame.h"
 
 #include <gtest/gtest.h>
@@ -8,85 +9,87 @@ namespace prehend::harness {
 namespace {
 
 struct Runs {
-  CheckRecord last_agreed{.program = "p", .pictures = false, .verdict = {.scenario = "slide/x"}};
+  CheckRecord last_pass{.program = "p", .pictures = false, .verdict = {.scenario = "slide/x"}};
   PhysicsTrace trace{.entities = {"cup"}, .ticks = {0, 2}, .hashes = {1, 2}};
-  Suspect now{.program = "p", .inputs = {}, .trace = trace, .ticks_per_second = 480};
+  DifferingRun now{.program = "p", .inputs = {}, .trace = trace, .ticks_per_second = 480};
   Runs() {
-    last_agreed.verdict.inputs = {{"/root/a.grammar", "1"}, {"/root/x.yaml", "2"}};
-    now.inputs = last_agreed.verdict.inputs;
+    last_pass.verdict.inputs = {{"/root/a.grammar", "1"}, {"/root/x.yaml", "2"}};
+    now.inputs = last_pass.verdict.inputs;
   }
-  std::string Text() const { return BlameText(last_agreed, trace, now, "/root"); }
+  std::string Text() const { return CauseText(last_pass, trace, now, "/root"); }
 };
 
-TEST(Blame, IsTheGrammarsWhenEverythingMovesAsBefore) {
+TEST(Cause, IsTheGrammarWhenEverythingMovesAsBefore) {
   Runs runs;
   runs.now.inputs["/root/a.grammar"] = "3";
-  EXPECT_EQ(runs.Text(),
-            "blame: the grammar or the golden: everything moves as when this last agreed with its "
-            "golden; changed since then: a.grammar\n");
+  EXPECT_EQ(
+      runs.Text(),
+      "cause: the grammar or the golden. Everything moves as in the last passing run. Changed "
+      "since: a.grammar\n");
 }
 
-TEST(Blame, IsThePhysicsFromWhereItParts) {
+TEST(Cause, IsThePhysicsFromTheFirstDivergence) {
   Runs runs;
   runs.now.trace.hashes[1] = 7;
   runs.now.program = "q";
   runs.now.inputs.erase("/root/x.yaml");
   runs.now.inputs["/elsewhere/y.yaml"] = "2";
   EXPECT_EQ(runs.Text(),
-            "blame: physics: since 0.0042 s (tick 2) cup does not move as when this last agreed "
-            "with its golden; changed since then: /elsewhere/y.yaml, x.yaml, the program\n");
+            "cause: physics. `cup` moves differently from the last passing run, first at 0.0042 s "
+            "(tick 2). Changed since: /elsewhere/y.yaml, x.yaml, the program\n");
   runs.now.trace = {.entities = {"mug"}, .ticks = {0}, .hashes = {1}};
-  EXPECT_TRUE(runs.Text().starts_with("blame: physics: other entities; ")) << runs.Text();
+  EXPECT_TRUE(runs.Text().starts_with(
+      "cause: physics. The entities are not those of the last passing run. Changed since: "))
+      << runs.Text();
 }
 
-TEST(Blame, WithoutAnyChangedFileNothingIsKnown) {
+TEST(Cause, WithoutAnyChangedFileNothingIsKnown) {
   Runs runs;
   runs.now.trace.ticks.pop_back();
   runs.now.trace.hashes.pop_back();
-  EXPECT_EQ(
-      runs.Text(),
-      "blame: physics: since 0.0042 s (tick 2) the run is not as long as when this last agreed "
-      "with its golden; changed since then: nothing that is known\n");
+  EXPECT_EQ(runs.Text(),
+            "cause: physics. Only one of this run and the last passing run reaches 0.0042 s (tick "
+            "2). Changed since: nothing that is known\n");
 }
 
-TEST(Blame, IsTheLooksWhenTheyAreAtOtherTicksOfTheSameMotion) {
+TEST(Cause, IsSensingWhenFramesAreAtOtherTicksOfTheSameMotion) {
   Runs runs;
   runs.trace = {.entities = {"cup"}, .ticks = {0, 2, 4, 6, 8, 10}, .hashes = {1, 2, 3, 4, 5, 6}};
   runs.now.trace = {.entities = {"cup"}, .ticks = {0, 4, 8}, .hashes = {1, 3, 5}};
   runs.now.options = {"--set world.sensing_hz=60"};
   EXPECT_EQ(runs.Text(),
-            "blame: the looks are at other ticks; where both look everything moves as when this "
-            "last agreed with its golden; changed since then: --set world.sensing_hz=60\n");
+            "cause: sensing. Frames are at other ticks than in the last passing run; where both "
+            "have one, everything moves the same. Changed since: --set world.sensing_hz=60\n");
   runs.now.trace.hashes[1] = 7;
-  EXPECT_TRUE(runs.Text().starts_with("blame: physics: since 0.0083 s (tick 4) cup does not move "))
+  EXPECT_TRUE(runs.Text().starts_with(
+      "cause: physics. `cup` moves differently from the last passing run, first at 0.0083 s (tick "
+      "4). "))
       << runs.Text();
   runs.now.trace = {.entities = {"cup"}, .ticks = {0, 4}, .hashes = {1, 3}};
-  EXPECT_TRUE(
-      runs.Text().starts_with("blame: physics: since 0.0125 s (tick 6) the run is not as "
-                              "long "))
+  EXPECT_TRUE(runs.Text().starts_with(
+      "cause: physics. Only one of this run and the last passing run reaches 0.0125 s (tick 6). "))
       << runs.Text();
 }
 
-TEST(Blame, AGrammarThatTheCommandLineChoseDidNotChange) {
+TEST(Cause, AGrammarThatTheCommandLineChoseDidNotChange) {
   Runs runs;
   runs.now.inputs.erase("/root/a.grammar");
   runs.now.inputs["/root/b.grammar"] = "4";
   runs.now.options = {"--grammar b", "--set slide_min=2s"};
   runs.now.other_grammar = true;
   const std::string with_options = runs.Text();
-  EXPECT_TRUE(with_options.ends_with("; changed since then: --grammar b, --set slide_min=2s\n"))
+  EXPECT_TRUE(with_options.ends_with(". Changed since: --grammar b, --set slide_min=2s\n"))
       << with_options;
   runs.now.options.clear();
   runs.now.other_grammar = false;
-  EXPECT_TRUE(runs.Text().ends_with("; changed since then: b.grammar, a.grammar\n")) << runs.Text();
+  EXPECT_TRUE(runs.Text().ends_with(". Changed since: b.grammar, a.grammar\n")) << runs.Text();
 }
 
-TEST(Blame, IsUnknownWithoutARunThatAgreed) {
+TEST(Cause, IsUnknownWithoutARunThatPassed) {
   const Runs runs;
-  EXPECT_EQ(BlameText(std::nullopt, runs.trace, runs.now, "/root"),
-            "blame: unknown, this scenario has not agreed with its golden in this folder yet\n");
-  EXPECT_EQ(BlameText(runs.last_agreed, std::nullopt, runs.now, "/root"),
-            "blame: unknown, this scenario has not agreed with its golden in this folder yet\n");
+  const std::string unknown = "cause: unknown. This scenario has not passed here yet.\n";
+  EXPECT_EQ(CauseText(std::nullopt, runs.trace, runs.now, "/root"), unknown);
+  EXPECT_EQ(CauseText(runs.last_pass, std::nullopt, runs.now, "/root"), unknown);
 }
 
 }  // namespace

@@ -31,16 +31,16 @@ std::vector<physics::Snapshot> Recording(int count) {
 TEST(PhysicsTrace, FindsWhereTwoRunsPart) {
   const physics::Scene scene = TwoBodies();
   const PhysicsTrace trace = TraceOf(scene, Recording(10));
-  EXPECT_FALSE(FirstParting(trace, trace));
+  EXPECT_FALSE(FirstDivergence(trace, trace));
 
   auto other = Recording(10);
   other[7].bodies[1].v_WB_m_per_s.z() = 1e-12;
-  const auto contact_end = FirstParting(trace, TraceOf(scene, other));
-  ASSERT_TRUE(contact_end);
-  EXPECT_EQ(contact_end->tick, 14);
-  EXPECT_EQ(contact_end->entity, "milk");
+  const auto divergence = FirstDivergence(trace, TraceOf(scene, other));
+  ASSERT_TRUE(divergence);
+  EXPECT_EQ(divergence->tick, 14);
+  EXPECT_EQ(divergence->entity, "milk");
 
-  const auto shorter = FirstParting(trace, TraceOf(scene, Recording(8)));
+  const auto shorter = FirstDivergence(trace, TraceOf(scene, Recording(8)));
   ASSERT_TRUE(shorter);
   EXPECT_EQ(shorter->tick, 16);
   EXPECT_EQ(shorter->entity, "");

@@ -9,18 +9,29 @@
 namespace prehend::harness {
 namespace {
 
-TEST(Verdict, TravelsAsJson) {
+/// The cup's slide ends `offset` ticks late, of 10 that it may; 1000 ticks a second.
+Comparison ComparedWith(grammar::Tick offset) {
+  Golden golden{.scenario = "slide/x", .grammar = "g", .ticks_per_second = 1000};
+  grammar::NamedEvent event{.event = "sliding",
+                            .roles = {{"hand", "hand"}, {"object", "cup"}, {"style", "wrap"}},
+                            .interval = {100, 200},
+                            .values = {{"force", 12.5, "N"}}};
+  golden.events.push_back({.event = event, .tolerance_ms = {}, .because = {}, .comments = {}});
+  event.interval.end += offset;
+  return Compare(golden, {.ticks_per_second = 1000, .events = {event}}, 10);
+}
+
+TEST(Verdict, TravelsWithAllItsFields) {
   const ScenarioVerdict verdict{.scenario = "slide/x",
                                 .shows = "a \"slide\"",
                                 .verdict = Verdict::kPending,
                                 .exit_code = ExitCode::kPending,
                                 .reason = "no golden yet",
                                 .details = "a\nb\n",
-                                .differences = {{{"kind", "missing"}, {"begin_ms", nullptr}}},
-                                .relations = {{{"first", "a"}}},
-                                .blame = "blame: physics\n",
-                                .headroom = "h",
-                                .boundaries = {{"begin of x", -1.5, 8.25}},
+                                .comparison = ComparedWith(50),
+                                .has_golden = true,
+                                .explain = "prehend explain slide/x",
+                                .cause = "cause: physics\n",
                                 .command = "prehend accept slide/x",
                                 .state_hash = "0x1",
                                 .ticks = 5,
@@ -28,10 +39,39 @@ TEST(Verdict, TravelsAsJson) {
                                 .peak_memory_kib = 9,
                                 .inputs = {{"a.yaml", "0123"}},
                                 .pictures = {{"p.png", "caption"}},
-                                .timeline_svg = "<svg/>"};
-  const auto json = ToJson(verdict);
-  EXPECT_EQ(json["verdict"], "pending");
-  EXPECT_EQ(ToJson(VerdictFromJson(nlohmann::ordered_json::parse(json.dump()))), json);
+                                .picture_differences = "picture p.png\n"};
+  const std::string packed = Packed(verdict).dump();
+  const ScenarioVerdict unpacked = UnpackedVerdict(nlohmann::json::parse(packed));
+  EXPECT_EQ(Packed(unpacked).dump(), packed);
+  EXPECT_EQ(VerdictJson(unpacked), VerdictJson(verdict));
+  EXPECT_TRUE(unpacked.DiffersFromGolden());
+  EXPECT_EQ(DifferenceText(*unpacked.comparison, "x"), DifferenceText(*verdict.comparison, "x"));
+  EXPECT_FALSE(UnpackedVerdict(Packed(ScenarioVerdict{})).comparison);
+  EXPECT_THROW(UnpackedVerdict(nlohmann::json::object()), nlohmann::json::exception);
+}
+
+TEST(Verdict, IsPrintedWithTheDocumentedKeys) {
+  ScenarioVerdict verdict{.scenario = "slide/x", .shows = {}, .verdict = Verdict::kPassed};
+  verdict.comparison = ComparedWith(4);
+  verdict.has_golden = true;
+  const auto json = VerdictJson(verdict);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  EXPECT_EQ(keys, (std::vector<std::string>{"scenario", "verdict", "exit_code", "reason", "details",
+                                            "differences", "relations", "blame", "headroom",
+                                            "boundaries", "command", "shows", "state_hash", "ticks",
+                                            "seconds", "peak_memory_kib", "inputs", "pictures"}));
+  EXPECT_EQ(json["verdict"], "passed");
+  EXPECT_EQ(json["headroom"], "margin: 6.0 of 10.0 ms left at end of sliding(hand, cup)");
+  const nlohmann::ordered_json end_of_slide = {
+      {"boundary", "end of sliding(hand, cup)"}, {"offset_ms", 4.0}, {"tolerance_ms", 10.0}};
+  EXPECT_EQ(json["boundaries"][1], end_of_slide);
+  verdict.comparison = ComparedWith(20);
+  verdict.verdict = Verdict::kFailed;
+  EXPECT_EQ(VerdictJson(verdict)["differences"].size(), 1u);
+  EXPECT_EQ(VerdictJson(verdict)["headroom"], "") << "what failed has no margin";
+  verdict.has_golden = false;
+  EXPECT_EQ(VerdictJson(verdict)["differences"].size(), 0u) << "nothing to compare with";
 }
 
 struct Case {
@@ -64,16 +104,17 @@ TEST(Verdict, AreCounted) {
   EXPECT_EQ(tally.pending, 0);
 }
 
-TEST(Verdict, TheLeastHeadroomOfAllIsTold) {
+TEST(Verdict, TheSmallestMarginOfAllIsReported) {
   ScenarioVerdict exact{.scenario = "a/exact", .shows = {}}, near = exact, nearer = exact;
-  EXPECT_EQ(LeastHeadroomText({exact}), "");
-  exact.boundaries = {{"begin of x", 0, 1}};
-  EXPECT_EQ(LeastHeadroomText({exact}), "") << "what is exact needs no headroom";
-  near.boundaries = {{"begin of x", 0, 8}, {"end of x", -2, 8}};
+  EXPECT_EQ(SmallestMarginText({exact}), "");
+  exact.has_golden = near.has_golden = nearer.has_golden = true;
+  exact.comparison = ComparedWith(0);
+  EXPECT_EQ(SmallestMarginText({exact}), "") << "an exact boundary needs no margin";
+  near.comparison = ComparedWith(-2);
   nearer.scenario = "b/near";
-  nearer.boundaries = {{"end of y", 5, 10}};
-  EXPECT_EQ(LeastHeadroomText({exact, near, nearer}),
-            "least headroom: 5.0 of 10.0 ms are left at end of y of b/near");
+  nearer.comparison = ComparedWith(5);
+  EXPECT_EQ(SmallestMarginText({exact, near, nearer}),
+            "smallest margin: 5.0 of 10.0 ms left at end of sliding(hand, cup) of b/near");
 }
 
 TEST(Verdict, RepeatsThatAgreeAreOneVerdict) {
@@ -119,7 +160,7 @@ TEST(Verdict, APictureThatDiffersFailsWithoutBeingFlaky) {
   EXPECT_EQ(merged.details, "picture x.png: 5 % differ\n");
   runs[0].verdict = Verdict::kFailed;
   EXPECT_EQ(MergeRepeats(runs).verdict, Verdict::kFlaky);
-  EXPECT_EQ(VerdictFromJson(ToJson(runs[1])).picture_differences, runs[1].picture_differences);
+  EXPECT_EQ(UnpackedVerdict(Packed(runs[1])).picture_differences, runs[1].picture_differences);
 }
 
 }  // namespace

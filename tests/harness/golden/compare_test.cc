@@ -148,12 +148,17 @@ TEST(Compare, AnEndByTheEpisodeIsNotAnEndOfItsOwn) {
             std::vector<std::string>{"end: of its own -> of the episode"});
 }
 
-TEST(Compare, HeadroomIsThatOfTheTightestBoundary) {
+TEST(Compare, TheMarginIsThatOfTheBoundaryNearestToItsTolerance) {
   const Comparison comparison =
       CompareEvents({Event("grasping", "cup", 100, 200), Event("sliding", "cup", 150, 180)},
                     {Event("grasping", "cup", 101, 200), Event("sliding", "cup", 150, 175)});
-  EXPECT_EQ(HeadroomText(comparison),
-            "headroom: 3.0 of 8.0 ms are left at end of sliding(hand, cup)");
+  EXPECT_EQ(MarginText(comparison), "margin: 3.0 of 8.0 ms left at end of sliding(hand, cup)");
+  const Comparison at_the_limit =
+      CompareEvents({Event("grasping", "cup", 100, 200)}, {Event("grasping", "cup", 92, 200)});
+  EXPECT_TRUE(at_the_limit.Agrees());
+  EXPECT_EQ(MarginText(at_the_limit),
+            "passed at the limit: grasping(hand, cup) begins 8.0 ms off (tolerance 8.0 ms)");
+  EXPECT_EQ(MarginText(CompareEvents({}, {})), "");
 }
 
 TEST(Compare, TheTextSaysWhatWhenHowMuchAndHowToSeeIt) {
@@ -173,7 +178,7 @@ TEST(Compare, TheTextSaysWhatWhenHowMuchAndHowToSeeIt) {
   const Comparison agrees =
       CompareEvents({Event("grasping", "cup", 100, 200)}, {Event("grasping", "cup", 100, 200)});
   EXPECT_EQ(DifferenceText(agrees, "explain x"), "");
-  EXPECT_EQ(HeadroomText(agrees), "headroom: every boundary is exact");
+  EXPECT_EQ(MarginText(agrees), "margin: all boundaries match exactly");
 }
 
 TEST(Compare, PiecesAreToldTogetherAndTheFirstDivergenceFirst) {

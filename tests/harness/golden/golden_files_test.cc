@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "harness/check/unreferenced_goldens.h"
+#include "harness/judge/unreferenced_goldens.h"
 
 namespace prehend::harness {
 namespace {

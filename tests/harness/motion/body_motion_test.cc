@@ -14,7 +14,7 @@ namespace prehend::harness {
 namespace {
 
 using Eigen::Vector3d;
-using physics::Figure;
+using physics::Posture;
 
 /// A person of sticks: arms hang, legs of 40 + 40. Names of the parts that have one.
 struct Names {
@@ -64,13 +64,13 @@ TEST(BodyTrackTest, AxesBecomeOurs) {
   const BodySample &a = read->samples[0], &b = read->samples[1];
   EXPECT_DOUBLE_EQ(read->leg_units, 80);
   EXPECT_DOUBLE_EQ(b.t_s, 0.1);
-  EXPECT_LT((a.figure.hips_W_m - Vector3d(3, 1, 90)).norm(), 1e-9);
-  EXPECT_LT((a.figure.ways_W[Figure::kTrunk] - Vector3d::UnitZ()).norm(), 1e-9);
-  EXPECT_LT((a.figure.ways_W[Figure::kFace] - Vector3d::UnitX()).norm(), 1e-9);
-  EXPECT_LT((a.figure.ways_W[Figure::kAcrossHips] - Vector3d::UnitY()).norm(), 1e-9);
-  EXPECT_LT((a.figure.ways_W[Figure::kHand] + Vector3d::UnitZ()).norm(), 1e-9);
+  EXPECT_LT((a.posture.hips_W_m - Vector3d(3, 1, 90)).norm(), 1e-9);
+  EXPECT_LT((a.posture.directions_W[Posture::kTrunk] - Vector3d::UnitZ()).norm(), 1e-9);
+  EXPECT_LT((a.posture.directions_W[Posture::kFace] - Vector3d::UnitX()).norm(), 1e-9);
+  EXPECT_LT((a.posture.directions_W[Posture::kAcrossHips] - Vector3d::UnitY()).norm(), 1e-9);
+  EXPECT_LT((a.posture.directions_W[Posture::kHand] + Vector3d::UnitZ()).norm(), 1e-9);
   // A turn by 90 degrees about y takes z to x, which is our left.
-  EXPECT_LT((b.figure.ways_W[Figure::kFace] - Vector3d::UnitY()).norm(), 1e-9);
+  EXPECT_LT((b.posture.directions_W[Posture::kFace] - Vector3d::UnitY()).norm(), 1e-9);
   EXPECT_LT((b.points[3] - Vector3d(3 + 10, 1, 10)).norm(), 1e-9);  // her right ankle
 }
 
@@ -78,11 +78,11 @@ TEST(BodyTrackTest, ALegThatIsBentForwards) {
   const auto read =
       Read(Person({}) + Rows("0 90 0 0" + kStill, "0 90 0 0 0  0 0 0 -90 90 0  0 0 0 0 0 0"));
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
-  const auto& ways = read->samples[1].figure.ways_W;
-  EXPECT_LT((ways[Figure::kThigh] - Vector3d::UnitX()).norm(), 1e-9);
-  EXPECT_LT((ways[Figure::kShank] + Vector3d::UnitZ()).norm(), 1e-9);
-  EXPECT_LT((ways[Figure::kFoot] - Vector3d::UnitX()).norm(), 1e-9);
-  EXPECT_LT((ways[Figure::kThigh + 1] + Vector3d::UnitZ()).norm(), 1e-9);
+  const auto& directions = read->samples[1].posture.directions_W;
+  EXPECT_LT((directions[Posture::kThigh] - Vector3d::UnitX()).norm(), 1e-9);
+  EXPECT_LT((directions[Posture::kShank] + Vector3d::UnitZ()).norm(), 1e-9);
+  EXPECT_LT((directions[Posture::kFoot] - Vector3d::UnitX()).norm(), 1e-9);
+  EXPECT_LT((directions[Posture::kThigh + 1] + Vector3d::UnitZ()).norm(), 1e-9);
 }
 
 TEST(BodyTrackTest, NamesOfManyConventions) {

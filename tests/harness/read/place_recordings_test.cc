@@ -193,35 +193,36 @@ class RecordedBodyTest : public RecordedInputTest {
       text.erase(at, folder.size());
     return text;
   }
-  std::vector<physics::TimedFigure> Figures(const std::string& step) {
+  std::vector<physics::TimedPosture> Postures(const std::string& step) {
     const auto read = ReadBody(step);
     EXPECT_TRUE(read) << Brief(ErrorsOf(read));
     if (!read) return {};
-    return std::get<physics::BodyPosesStep>(read->script.stages[0].person_steps[0].action).figures;
+    return std::get<physics::BodyPosesStep>(read->script.stages[0].person_steps[0].action).postures;
   }
 };
 
 TEST_F(RecordedBodyTest, IsScaledToHerLegsAndStandsOnHerFloor) {
-  const auto figures = Figures("recording: sticks.bvh, join_s: 0.3, max_jump_m: 9");
-  ASSERT_EQ(figures.size(), 3u);
-  EXPECT_NEAR(figures[1].t_s, 0.5, 1e-12);
+  const auto postures = Postures("recording: sticks.bvh, join_s: 0.3, max_jump_m: 9");
+  ASSERT_EQ(postures.size(), 3u);
+  EXPECT_NEAR(postures[1].t_s, 0.5, 1e-12);
   // Her legs are 0.491 of 2 m, the file's 80: so 50 is 0.6138 m; x of the file is our y.
-  EXPECT_NEAR(figures[0].figure.hips_W_m.y(), 50 * 0.982 / 80, 1e-9);
+  EXPECT_NEAR(postures[0].posture.hips_W_m.y(), 50 * 0.982 / 80, 1e-9);
   // Hips over the ankles, and those as high over the floor as when she stands.
-  EXPECT_NEAR(figures[0].figure.hips_W_m.z(), 0.1 + 0.039 * 2 + 0.982, 1e-9);
-  EXPECT_NEAR(figures[2].figure.hips_W_m.x() - figures[0].figure.hips_W_m.x(), 100 * 0.982 / 80,
+  EXPECT_NEAR(postures[0].posture.hips_W_m.z(), 0.1 + 0.039 * 2 + 0.982, 1e-9);
+  EXPECT_NEAR(postures[2].posture.hips_W_m.x() - postures[0].posture.hips_W_m.x(), 100 * 0.982 / 80,
               1e-9);
 }
 
 TEST_F(RecordedBodyTest, ScalePlaceAndYawAreTheScenarios) {
-  const auto figures = Figures(
+  const auto postures = Postures(
       "recording: sticks.bvh, scale: 0.01, start_at_m: [1, 2, 0.5], yaw_deg: 90, join_s: 0, "
       "max_jump_m: 9");
-  ASSERT_EQ(figures.size(), 3u);
-  EXPECT_NEAR(figures[0].figure.hips_W_m.x(), 1, 1e-9);
-  EXPECT_NEAR(figures[2].figure.hips_W_m.y(), 3, 1e-9);
-  EXPECT_NEAR(figures[0].figure.hips_W_m.z(), 0.5 + 0.078 + 0.8, 1e-9);
-  EXPECT_LT((figures[0].figure.ways_W[physics::Figure::kFace] - Vector3d::UnitY()).norm(), 1e-9);
+  ASSERT_EQ(postures.size(), 3u);
+  EXPECT_NEAR(postures[0].posture.hips_W_m.x(), 1, 1e-9);
+  EXPECT_NEAR(postures[2].posture.hips_W_m.y(), 3, 1e-9);
+  EXPECT_NEAR(postures[0].posture.hips_W_m.z(), 0.5 + 0.078 + 0.8, 1e-9);
+  EXPECT_LT((postures[0].posture.directions_W[physics::Posture::kFace] - Vector3d::UnitY()).norm(),
+            1e-9);
 }
 
 TEST_F(RecordedBodyTest, Refuses) {

@@ -187,11 +187,5 @@ TEST(MakeEntityTable, BodiesFirstThenHands) {
   EXPECT_EQ(entity_table.styles, (std::vector<std::string>{"wrap", "pinch"}));
 }
 
-TEST(ReadScenario, ARecordingIsNamedAsOne) {
-  EXPECT_EQ(grammar::Format(ErrorsOf(ReadScenario("cup.jsonl", {}, ProbeLibrary()))),
-            "cup.jsonl: error: this is a recording, not a scenario\n"
-            "  hint: use `prehend resegment`, `prehend explain` or `prehend tracks`\n");
-}
-
 }  // namespace
 }  // namespace prehend::harness

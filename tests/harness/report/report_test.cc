@@ -9,14 +9,23 @@
 namespace prehend::harness {
 namespace {
 
+Comparison Compared() {
+  const grammar::NamedEvent event{
+      .event = "sliding", .roles = {{"hand", "h"}, {"object", "cup"}}, .interval = {100, 200}};
+  Golden golden{.scenario = "s/x", .grammar = "g", .ticks_per_second = 100};
+  golden.events.push_back({.event = event, .tolerance_ms = {}, .because = {}, .comments = {}});
+  return Compare(golden, {.ticks_per_second = 100, .events = {event}}, 2);
+}
+
 std::vector<ScenarioVerdict> Verdicts() {
   return {{.scenario = "slide/good",
            .shows = "it <slides>",
            .verdict = Verdict::kPassed,
-           .headroom = "headroom: 1 of 2 ms",
+           .comparison = Compared(),
+           .has_golden = true,
            .command = "prehend check slide/good",
-           .pictures = {{.file = "pictures/slide/good.png", .caption = "sliding.begin"}},
-           .timeline_svg = "<svg></svg>"},
+           .ticks = 400,
+           .pictures = {{.file = "pictures/slide/good.png", .caption = "sliding.begin"}}},
           {.scenario = "slide/bad",
            .verdict = Verdict::kFailed,
            .exit_code = ExitCode::kDiffers,
@@ -40,8 +49,9 @@ TEST(Report, HasVerdictsTimelinesPicturesDifferencesAndCommands) {
   const std::string html = ReportHtml(Verdicts());
   for (const char* part :
        {"1 passed", "1 failed", "1 pending", "href=\"#slide/good\"", "<section id=\"slide/bad\">",
-        "src=\"pictures/slide/good.png\"", "<svg/>", "In every row", "shifted sliding(hand, cup)",
-        "prehend check slide/bad", "it &lt;slides&gt;", "headroom: 1 of 2 ms", "no golden yet"}) {
+        "src=\"pictures/slide/good.png\"", "golden sliding(h, cup), 1.0000..2.0000 s: matched",
+        "In every row", "shifted sliding(hand, cup)", "prehend check slide/bad",
+        "it &lt;slides&gt;", "margin: all boundaries match exactly", "no golden yet"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(html.find("<slides>"), std::string::npos);

@@ -16,7 +16,7 @@ RunResult RunWithReach() {
   return run;
 }
 
-TEST(Moment, IsATimeOrABoundary) {
+TEST(EventTime, IsATimeOrABoundary) {
   EXPECT_EQ(ParseEventTime("1.25")->time_s, 1.25);
   EXPECT_EQ(ParseEventTime("reaching.begin")->event, "reaching");
   EXPECT_TRUE(ParseEventTime("reaching.end")->end);
@@ -25,7 +25,7 @@ TEST(Moment, IsATimeOrABoundary) {
   }
 }
 
-TEST(Moment, IsFoundInTheEpisode) {
+TEST(EventTime, IsFoundInTheEpisode) {
   const RunResult run = RunWithReach();
   EXPECT_EQ(FindEventTime("reaching.begin", run).tick, 100);
   EXPECT_EQ(FindEventTime("reaching.end", run).tick, 200);
@@ -33,7 +33,7 @@ TEST(Moment, IsFoundInTheEpisode) {
   EXPECT_EQ(FindEventTime("1", run).missed, "");
 }
 
-TEST(Moment, OneThatIsMissedIsTheEndAndSaysWhy) {
+TEST(EventTime, OneThatIsMissedIsTheEndAndSaysWhy) {
   const RunResult run = RunWithReach();
   EXPECT_EQ(FindEventTime("sliding.end", run).tick, 960);
   EXPECT_EQ(FindEventTime("sliding.end", run).missed, "sliding.end did not happen");
@@ -41,7 +41,7 @@ TEST(Moment, OneThatIsMissedIsTheEndAndSaysWhy) {
   EXPECT_EQ(FindEventTime("500", run).missed, "500 s is after the end");
 }
 
-TEST(Moment, TheGrammarMustHaveTheEvent) {
+TEST(EventTime, TheGrammarMustHaveTheEvent) {
   grammar::Program program;
   program.name = "probe";
   program.rules.push_back({.name = "reaching", .printed = true});
@@ -52,7 +52,7 @@ TEST(Moment, TheGrammarMustHaveTheEvent) {
             "grammar 'probe' has no event 'reching'");
   EXPECT_EQ(WhyNoEventTime("reching.begin", program)->hint, "did you mean 'reaching'?");
   EXPECT_TRUE(WhyNoEventTime("hidden.begin", program));
-  EXPECT_EQ(WhyNoEventTime("soon", program)->message, "'soon' is no moment");
+  EXPECT_EQ(WhyNoEventTime("soon", program)->message, "'soon' is not a time");
 }
 
 }  // namespace

@@ -86,11 +86,11 @@ TEST_F(LoadGrammarFiles, WarnsOfClassesThatNobodyHas) {
                    {.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}}}};
   EXPECT_EQ(Format(Warnings(*loaded.program, entity_table)),
             file +
-                ":2:21: warning: nobody in this episode is a 'Cupp'\n"
+                ":2:21: warning: no entity of this episode is a 'Cupp'\n"
                 "  event near(h: Hand, c: Cupp) while distance(h, c) < 1 cm\n"
                 "                      ^\n  hint: did you mean 'Cup'?\n" +
                 file +
-                ":3:52: warning: nobody in this episode is a 'Pot'\n"
+                ":3:52: warning: no entity of this episode is a 'Pot'\n"
                 "  event on(c: Cup) while near(any Hand, c) and is(c, Pot)\n"
                 "                                                     ^\n");
 }

@@ -32,7 +32,7 @@ RunResult SampleRun() {
   return run;
 }
 
-TEST(RunOutput, TheTableIsAlignedAndEndsWithTheStatus) {
+TEST(RunText, TheTableIsAlignedAndEndsWithTheStatus) {
   EXPECT_EQ(RunTable(SampleRun()),
             "event     begin_s  end_s   roles\n"
             "contact   0.0000   2.0021  a=cup            b=table                 open_end\n"
@@ -40,7 +40,7 @@ TEST(RunOutput, TheTableIsAlignedAndEndsWithTheStatus) {
             "completed: 2.0000 s, 960 ticks\n");
 }
 
-TEST(RunOutput, JsonKeepsTheContract) {
+TEST(RunText, JsonKeepsTheContract) {
   const OrderedJson json = RunJson(Scenario{.name = "x", .grammar = "pick_and_place"}, SampleRun());
   EXPECT_EQ(json["scenario"], "x");
   EXPECT_EQ(json["status"], "completed");
@@ -55,7 +55,7 @@ TEST(RunOutput, JsonKeepsTheContract) {
       R"("begin_tick":120,"end_tick":480,"begin_s":0.25,"end_s":1.0,"decided_tick":510,"open_end":false})");
 }
 
-TEST(RunOutput, AFailedRunSaysWhoWhenWhyAndWhatToDo) {
+TEST(RunText, AFailedRunNamesEntityTickReasonAndAdvice) {
   RunResult run = SampleRun();
   run.status = {.kind = physics::RunStatus::Kind::kFailed,
                 .tick = 240,
@@ -69,7 +69,7 @@ TEST(RunOutput, AFailedRunSaysWhoWhenWhyAndWhatToDo) {
             R"({"tick":240,"entity":"cup","reason":"runaway speed","advice":"lower the gains"})");
 }
 
-TEST(RunOutput, SharesAreOfTheMeasuredTime) {
+TEST(RunText, SharesAreOfTheMeasuredTime) {
   const Measurement measurement{
       .seconds = {.physics = 0.15, .sensing = 0.03, .grammar = 0.02, .total = 0.2},
       .simulated_s = 5,

@@ -77,7 +77,8 @@ TEST(RunTrials, TheTableNamesTheWorstAndHowToRepeatThem) {
 TEST(RunTrials, NeedsOutcomes) {
   const auto trials = RunTrials({.scenario_file = BallFile("")}, kRoot, {.count = 1});
   ASSERT_FALSE(trials);
-  EXPECT_EQ(trials.error()[0].message, "the scenario has no outcomes, so trials cannot be judged");
+  EXPECT_EQ(trials.error()[0].message,
+            "the scenario has no outcomes, so its trials cannot be classified");
 }
 
 }  // namespace

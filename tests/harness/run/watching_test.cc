@@ -12,6 +12,7 @@
 #include "harness/pictures/pictures.h"
 #include "harness/run/find_scenario.h"
 #include "harness/run/load_run.h"
+#include "harness/run/outcome.h"
 #include "harness/run/run_scenario.h"
 #include "harness/sense/entity_table.h"
 #include "harness/sense/episode_file.h"
@@ -35,11 +36,13 @@ class Watching : public testing::TestWithParam<int> {
     const Scenario& scenario = loaded.scenario;
     std::ostringstream episode;
     EpisodeWriter writer(episode, {scenario.name, scenario.grammar, MakeEntityTable(scenario)});
-    RunOptions options{.record = true,
-                       .watch = [&](const grammar::Frame& frame) { writer.Write(frame); },
-                       .judge = !scenario.outcomes.empty(),
-                       .measure = true};
-    RunResult run = RunScenario(scenario, loaded.program, options);
+    OutcomeWatch outcomes(scenario.scene, scenario.outcomes);
+    ScenarioRun playing(scenario, loaded.program, {.record = true, .measure = true});
+    while (playing.Step()) {
+      outcomes.Look(playing.snapshot());
+      if (playing.sensed()) writer.Write(playing.frame());
+    }
+    RunResult run = playing.Finish();
     EXPECT_FALSE(run.recording.empty());
     EXPECT_FALSE(episode.str().empty());
     if (CanDrawPictures()) {

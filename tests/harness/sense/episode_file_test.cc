@@ -95,7 +95,7 @@ TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
             "2:43: 'cup' cannot touch itself\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"touches\": [{\"a\": \"cup\", \"b\": \"table\"}, {\"a\": "
                       "\"table\", \"b\": \"cup\"}]}\n"),
-            "2:60: the touch of 'table' and 'cup' is given twice\n");
+            "2:59: the touch of 'table' and 'cup' is given twice\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"toches\": []}\n"),
             "2:13: unknown key 'toches' in a frame | did you mean 'touches'?\n");
   EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"end_tick\": 1}\n"),

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/speed/four_automata.h"
+#include "harness/speed/worlds.h"
+
 namespace prehend::harness {
 namespace {
 

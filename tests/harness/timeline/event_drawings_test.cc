@@ -39,7 +39,7 @@ TEST(EventDrawings, AreWhatTheGrammarSays) {
   EXPECT_EQ(drawings.Of("d").first, 0u);
   EXPECT_EQ(drawings.Of("d").last, 1u);
   EXPECT_EQ(drawings.Of("e").as, DrawnAs::kNothing);
-  EXPECT_EQ(drawings.Of("f").ghost, Ghost::kNone);
+  EXPECT_EQ(drawings.Of("f").ghost, Ghost::kNoGhost);
 }
 
 TEST(EventDrawings, GiveEventsWithoutAColourOneEach) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures: mixing, and going through them in time.
+// Postures: mixing, and going through them in time.
 
 #include "physics/motion/posture.h"
 
@@ -12,42 +12,44 @@ namespace {
 
 using Eigen::Vector3d;
 
-Figure AllWays(const Vector3d& way, const Vector3d& hips_m) {
-  Figure figure{.hips_W_m = hips_m, .ways_W = {}};
-  figure.ways_W.fill(way);
-  return figure;
+Posture AllDirections(const Vector3d& way, const Vector3d& hips_m) {
+  Posture posture{.hips_W_m = hips_m, .directions_W = {}};
+  posture.directions_W.fill(way);
+  return posture;
 }
 
-TEST(FigureTest, HalfWayBetweenTwoWaysIsTheirBisector) {
-  const Figure mixed =
-      Mix(AllWays(Vector3d::UnitX(), {0, 0, 1}), AllWays(Vector3d::UnitZ(), {1, 0, 1}), 0.5);
-  EXPECT_LT((mixed.ways_W[Figure::kTrunk] - Vector3d(std::sqrt(0.5), 0, std::sqrt(0.5))).norm(),
+TEST(PostureTest, HalfWayBetweenTwoWaysIsTheirBisector) {
+  const Posture mixed = Mix(AllDirections(Vector3d::UnitX(), {0, 0, 1}),
+                            AllDirections(Vector3d::UnitZ(), {1, 0, 1}), 0.5);
+  EXPECT_LT(
+      (mixed.directions_W[Posture::kTrunk] - Vector3d(std::sqrt(0.5), 0, std::sqrt(0.5))).norm(),
+      1e-12);
+  EXPECT_LT((mixed.directions_W[Posture::kSole + 1] - mixed.directions_W[Posture::kTrunk]).norm(),
             1e-12);
-  EXPECT_LT((mixed.ways_W[Figure::kSole + 1] - mixed.ways_W[Figure::kTrunk]).norm(), 1e-12);
   EXPECT_LT((mixed.hips_W_m - Vector3d(0.5, 0, 1)).norm(), 1e-12);
 }
 
-TEST(FigureTest, WaysStayUnitEvenWhenTheyTurnRound) {
-  const Figure mixed = Mix(AllWays(Vector3d::UnitX(), Vector3d::Zero()),
-                           AllWays(-Vector3d::UnitX(), Vector3d::Zero()), 0.3);
-  for (const Vector3d& way : mixed.ways_W) EXPECT_NEAR(way.norm(), 1, 1e-9);
+TEST(PostureTest, WaysStayUnitEvenWhenTheyTurnRound) {
+  const Posture mixed = Mix(AllDirections(Vector3d::UnitX(), Vector3d::Zero()),
+                            AllDirections(-Vector3d::UnitX(), Vector3d::Zero()), 0.3);
+  for (const Vector3d& way : mixed.directions_W) EXPECT_NEAR(way.norm(), 1, 1e-9);
 }
 
-TEST(FigureTrackTest, PassesEveryFigureAtItsTime) {
-  const Figure from = AllWays(Vector3d::UnitX(), {0, 0, 0.9});
-  const FigureTrack track(from, {{0.5, AllWays(Vector3d::UnitY(), {0.2, 0, 0.9})},
-                                 {1.5, AllWays(Vector3d::UnitZ(), {0.3, 0, 0.8})}});
+TEST(PostureTrackTest, PassesEveryPostureAtItsTime) {
+  const Posture from = AllDirections(Vector3d::UnitX(), {0, 0, 0.9});
+  const PostureTrack track(from, {{0.5, AllDirections(Vector3d::UnitY(), {0.2, 0, 0.9})},
+                                  {1.5, AllDirections(Vector3d::UnitZ(), {0.3, 0, 0.8})}});
   EXPECT_EQ(track.At(-1).hips_W_m, from.hips_W_m);
   EXPECT_LT((track.At(0.5).hips_W_m - Vector3d(0.2, 0, 0.9)).norm(), 1e-12);
-  EXPECT_LT((track.At(0.5).ways_W[0] - Vector3d::UnitY()).norm(), 1e-12);
-  EXPECT_NEAR(track.At(0.25).ways_W[0].x(), std::sqrt(0.5), 1e-12);
-  EXPECT_LT((track.At(9).ways_W[0] - Vector3d::UnitZ()).norm(), 1e-12);
+  EXPECT_LT((track.At(0.5).directions_W[0] - Vector3d::UnitY()).norm(), 1e-12);
+  EXPECT_NEAR(track.At(0.25).directions_W[0].x(), std::sqrt(0.5), 1e-12);
+  EXPECT_LT((track.At(9).directions_W[0] - Vector3d::UnitZ()).norm(), 1e-12);
 }
 
-TEST(FigureTrackTest, AFirstFigureAtZeroIsJumpedTo) {
-  const FigureTrack track(AllWays(Vector3d::UnitX(), Vector3d::Zero()),
-                          {{0, AllWays(Vector3d::UnitY(), Vector3d::Zero())}});
-  EXPECT_LT((track.At(0).ways_W[0] - Vector3d::UnitY()).norm(), 1e-12);
+TEST(PostureTrackTest, AFirstPostureAtZeroIsJumpedTo) {
+  const PostureTrack track(AllDirections(Vector3d::UnitX(), Vector3d::Zero()),
+                           {{0, AllDirections(Vector3d::UnitY(), Vector3d::Zero())}});
+  EXPECT_LT((track.At(0).directions_W[0] - Vector3d::UnitY()).norm(), 1e-12);
 }
 
 }  // namespace

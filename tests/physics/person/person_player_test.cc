@@ -150,17 +150,17 @@ TEST(PersonPlayerTest, ALimbThatMayYieldStillPushesWhatIsLight) {
   EXPECT_GT(Play(scene, steps).end.bodies[kBlock].X_WB.p_m.x(), 0.52);
 }
 
-TEST(PersonPlayerTest, ARecordedFigureIsTakenAndLeft) {
+TEST(PersonPlayerTest, ARecordedPostureIsTakenAndLeft) {
   const Scene scene = Before({2, 2, 0.4});
   const Person& anna = scene.persons.front();
   BodyTargets kneeling = Standing(scene, anna);
-  Figure figure = FigureOf(anna, kneeling);
-  figure.hips_W_m += Vector3d(0.4, 0, -0.2);
-  figure.ways_W[Figure::kThigh] = Vector3d(0.8, 0, -0.6);
-  const PersonStep recorded{0, BodyPosesStep{{{0.4, figure}, {0.8, figure}}}, 0.8};
+  Posture posture = PostureOf(anna, kneeling);
+  posture.hips_W_m += Vector3d(0.4, 0, -0.2);
+  posture.directions_W[Posture::kThigh] = Vector3d(0.8, 0, -0.6);
+  const PersonStep recorded{0, BodyPosesStep{{{0.4, posture}, {0.8, posture}}}, 0.8};
   const auto pelvis = static_cast<std::size_t>(PartNamed(scene, "anna_pelvis"));
   const Snapshot held = Play(scene, {recorded}).end;
-  EXPECT_LT((held.bodies[pelvis].X_WB.p_m - figure.hips_W_m).norm(), 1e-9);
+  EXPECT_LT((held.bodies[pelvis].X_WB.p_m - posture.hips_W_m).norm(), 1e-9);
   const auto thigh = static_cast<std::size_t>(PartNamed(scene, "anna_right_thigh"));
   EXPECT_NEAR(std::abs((held.bodies[thigh].X_WB.q * Vector3d::UnitZ()).x()), 0.8, 1e-6);
   // Afterwards she stands where her hips are.

@@ -138,26 +138,26 @@ TEST(SkeletonTest, SwayingHipsLeaveTheFeetAndNearlyTheShoulders) {
   EXPECT_LT(std::abs(moved("anna_neck").y()), 0.02);
 }
 
-TEST(SkeletonTest, AFigureStandsAsThePostureThatItWasMadeOf) {
+TEST(SkeletonTest, APostureGivesThePartsOfItsTargets) {
   const Person person = Anna();
   BodyTargets targets = Upright(person);
   targets.lean_rad = 0.4;
   targets.limbs[0] = {LimbEnd::kRightWrist, Vector3d(1.35, 1.8, 1.2)};
   targets.limbs[3] = {LimbEnd::kLeftFoot, Vector3d(1.3, 2.1, 0.4)};
   targets.X_WHead = HeadToward(person, NeckTop(person, targets), {0.9, 0.3, -0.2});
-  BodyTargets as_figure = Upright(person);
-  as_figure.figure = FigureOf(person, targets);
-  as_figure.X_WHead = HeadOfFigure(person, as_figure);
+  BodyTargets as_posture = Upright(person);
+  as_posture.posture = PostureOf(person, targets);
+  as_posture.X_WHead = HeadOfPosture(person, as_posture);
   const std::vector<Pose> places = PlacesOf(person, targets, {}),
-                          again = PlacesOf(person, as_figure, {});
+                          again = PlacesOf(person, as_posture, {});
   for (std::size_t i = 0; i < places.size(); ++i)
     EXPECT_LT((places[i].p_m - again[i].p_m).norm(), 1e-9) << i;
 }
 
-TEST(SkeletonTest, AFigureSuitsATallerPerson) {
+TEST(SkeletonTest, APostureSuitsATallerPerson) {
   Person person = Anna();
   BodyTargets targets = Upright(person);
-  targets.figure = FigureOf(person, targets);
+  targets.posture = PostureOf(person, targets);
   person.height_m = 2.1;
   EXPECT_NEAR((PlaceOf(LimbEnd::kRightElbow, person, targets) -
                PlaceOf(LimbEnd::kRightWrist, person, targets))

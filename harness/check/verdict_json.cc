@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// A verdict as JSON: for people's programs with documented keys, for the pipe of a worker and the
+// record of the last pass with all fields of its structs. Tested by
+// tests/harness/check/verdict_test.cc
+#include <nlohmann/json.hpp>
+
+#include "harness/check/verdict.h"
+#include "harness/timeline/event_text.h"
+
+namespace nlohmann {
+
+template <typename T>
+struct adl_serializer<std::optional<T>> {
+  static void to_json(json& packed, const std::optional<T>& value) {
+    packed = value ? json(*value) : json(nullptr);
+  }
+  static void from_json(const json& packed, std::optional<T>& value) {
+    value = packed.is_null() ? std::nullopt : std::optional<T>(packed.get<T>());
+  }
+};
+
+}  // namespace nlohmann
+
+namespace prehend::grammar {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Interval, begin, end)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Role, name, value)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NamedValue, name, value, unit)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NamedEvent, event, roles, interval, decided, open_end, values)
+
+}  // namespace prehend::grammar
+
+namespace prehend::harness {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EventDrawing, as, color, ghost, hand, first, last)
+
+inline void to_json(nlohmann::json& packed, const EventDrawings& drawings) {
+  packed = drawings.all();
+}
+inline void from_json(const nlohmann::json& packed, EventDrawings& drawings) {
+  drawings = EventDrawings(packed.get<EventDrawings::ByEvent>());
+}
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Pairing, agreement, expected, actual, golden_line, begin_offset,
+                                   end_offset, tolerance, changes, pieces)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RelationChange, first, second, expected, actual)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Margin, label, at_end, offset, tolerance)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, ticks_per_second, pairings, relations, margins)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
+                                   details, comparison, has_golden, drawings, explain, cause,
+                                   command, state_hash, ticks, seconds, peak_memory_kib, inputs,
+                                   pictures, picture_differences)
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json BoundariesJson(const Comparison& comparison) {
+  Json boundaries = Json::array();
+  for (const Margin& margin : comparison.margins) {
+    boundaries.push_back(
+        {{"boundary", margin.Boundary()},
+         {"offset_ms", MillisecondsOf(margin.offset, comparison.ticks_per_second)},
+         {"tolerance_ms", MillisecondsOf(margin.tolerance, comparison.ticks_per_second)}});
+  }
+  return boundaries;
+}
+
+}  // namespace
+
+Json VerdictJson(const ScenarioVerdict& verdict) {
+  const Comparison none;
+  const Comparison& compared =
+      verdict.has_golden && verdict.comparison ? *verdict.comparison : none;
+  Json pictures = Json::array();
+  for (const ReportedPicture& picture : verdict.pictures)
+    pictures.push_back({{"file", picture.file}, {"caption", picture.caption}});
+  return {{"scenario", verdict.scenario},
+          {"verdict", Name(verdict.verdict)},
+          {"exit_code", static_cast<int>(verdict.exit_code)},
+          {"reason", verdict.reason},
+          {"details", verdict.details},
+          {"differences", DifferencesJson(compared, verdict.explain)},
+          {"relations", RelationsJson(compared)},
+          {"blame", verdict.cause},
+          {"headroom", MarginText(verdict)},
+          {"boundaries", BoundariesJson(compared)},
+          {"command", verdict.command},
+          {"shows", verdict.shows},
+          {"state_hash", verdict.state_hash},
+          {"ticks", verdict.ticks},
+          {"seconds", verdict.seconds},
+          {"peak_memory_kib", verdict.peak_memory_kib},
+          {"inputs", verdict.inputs},
+          {"pictures", std::move(pictures)}};
+}
+
+nlohmann::json Packed(const ScenarioVerdict& verdict) { return verdict; }
+
+ScenarioVerdict UnpackedVerdict(const nlohmann::json& packed) {
+  return packed.get<ScenarioVerdict>();
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What was sensed where a difference begins: position, speed and contacts of the participants of
+// both sides. Shown with the first difference. Tested by
+// tests/harness/judge/difference_context_test.cc
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "harness/golden/compare.h"
+#include "harness/scenario/scenario.h"
+#include "physics/scene/snapshot.h"
+
+namespace prehend::harness {
+
+/// Lines indented by two blanks; "" without a recording. Contacts are as sensed: no gap is
+/// tolerated.
+std::string FactsAround(const Scenario& scenario, std::span<const physics::Snapshot> recording,
+                        const Pairing& difference);
+
+}  // namespace prehend::harness

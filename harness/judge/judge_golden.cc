@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/judge/judge_golden.h. Tested by tests/harness/judge/judge_golden_test.cc
+#include "harness/judge/judge_golden.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/judge/accept_golden.h"
+#include "harness/judge/difference_context.h"
+
+namespace prehend::harness {
+namespace {
+
+Finding DifferenceFinding(const Comparison& comparison, const CheckedRun& checked,
+                          const std::string& cause) {
+  const std::string context =
+      FactsAround(checked.loaded.scenario, checked.result.recording, *comparison.FirstDivergence());
+  const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
+    return pairing.agreement != LineVerdict::kMatched;
+  });
+  return {.exit_code = ExitCode::kDiffers,
+          .reason = fmt::format("{} of {} events differ from the golden", differing,
+                                comparison.pairings.size()),
+          .details = DifferenceText(comparison, checked.explain, context) + cause};
+}
+
+Finding TruthFinding(const GoldenComparison& compared) {
+  std::string reason = DifferingText(compared.truth.Differing());
+  if (compared.accepted_differing > 0)
+    reason += fmt::format(", the golden says {}", compared.accepted_differing);
+  return {.exit_code = ExitCode::kDiffers,
+          .reason = std::move(reason),
+          .details = GroundTruthText(compared.truth)};
+}
+
+}  // namespace
+
+GoldenComparison CompareWithGolden(const std::optional<Golden>& golden, const CheckedRun& checked) {
+  const Scenario& scenario = checked.loaded.scenario;
+  const grammar::Timeline& timeline = checked.result.timeline;
+  const Golden none{.ticks_per_second = timeline.ticks_per_second};
+  GoldenComparison compared{
+      .has_golden = golden.has_value(),
+      .comparison =
+          Compare(golden.value_or(none), timeline,
+                  DefaultTolerance(scenario.scene.world.rate_hz, scenario.sensing.sensing_hz)),
+      .truth = CompareWithOracle(scenario, *checked.loaded.program, checked.result),
+      .accepted_differing = golden ? AcceptedDiffering(golden->derived) : 0,
+      .pending = {}};
+  compared.pending = PendingGolden(golden, timeline, checked.id, scenario.grammar, compared.truth);
+  return compared;
+}
+
+Findings JudgeGolden(const GoldenComparison& compared, const CheckedRun& checked,
+                     const std::string& cause) {
+  if (!compared.has_golden)
+    return {{.exit_code = ExitCode::kPending,
+             .reason = checked.in_project ? "no golden yet"
+                                          : "no golden: only scenarios below scenarios/ have one",
+             .details = GroundTruthText(compared.truth)}};
+  Findings findings;
+  if (compared.Differs())
+    findings.push_back(DifferenceFinding(compared.comparison, checked, cause));
+  if (!compared.TruthIsAccepted()) findings.push_back(TruthFinding(compared));
+  return findings;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A run against its golden and the ground truth. Tested by tests/harness/judge/judge_golden_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "harness/golden/compare.h"
+#include "harness/judge/compare_with_oracle.h"
+#include "harness/judge/judge.h"
+
+namespace prehend::harness {
+
+struct GoldenComparison {
+  bool has_golden = false;  ///< false: the comparison is with an empty one
+  Comparison comparison;
+  OracleComparison truth;
+  int accepted_differing = 0;  ///< from the ground truth, by the golden
+  Golden pending;              ///< what the run proposes
+
+  bool Differs() const { return has_golden && !comparison.Agrees(); }
+  bool TruthIsAccepted() const { return truth.Differing() == accepted_differing; }
+  /// Nothing waits for review.
+  bool Holds() const { return has_golden && comparison.Agrees() && TruthIsAccepted(); }
+};
+
+GoldenComparison CompareWithGolden(const std::optional<Golden>& golden, const CheckedRun& checked);
+
+/// `cause` is CauseText() of a run that differs. Without a golden the finding is that there is
+/// none.
+Findings JudgeGolden(const GoldenComparison& compared, const CheckedRun& checked,
+                     const std::string& cause);
+
+}  // namespace prehend::harness

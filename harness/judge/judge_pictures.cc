@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/judge/judge_pictures.h. Tested by tests/harness/judge/judge_pictures_test.cc
+#include "harness/judge/judge_pictures.h"
+
+#include <fmt/format.h>
+
+#include "harness/golden/golden_files.h"
+#include "harness/judge/unreferenced_goldens.h"
+#include "harness/pictures/pictures.h"
+
+namespace prehend::harness {
+
+namespace fs = std::filesystem;
+
+std::vector<PictureComparison> ComparePictures(const std::string& id,
+                                               const std::vector<fs::path>& drawn,
+                                               const std::string& root, bool shown) {
+  const GoldenFiles files(root);
+  std::vector<PictureComparison> compared;
+  for (const fs::path& picture : drawn) {
+    const std::string name = picture.filename().string();
+    const fs::path golden = files.PicturePath(id, name);
+    std::error_code ignored;
+    if (!fs::exists(golden, ignored)) continue;
+    const PictureDifference difference = ComparePicture(golden.string(), picture.string());
+    const bool can_be_shown = shown && difference.same_size && !difference.text.empty();
+    compared.push_back({.golden = golden,
+                        .drawn = picture,
+                        .difference = difference.text,
+                        .shown_in = can_be_shown ? files.DifferencePath(id, name) : fs::path()});
+  }
+  return compared;
+}
+
+std::string PictureDifferencesText(const std::vector<PictureComparison>& compared,
+                                   const std::string& accept) {
+  std::string text;
+  for (const PictureComparison& picture : compared) {
+    if (picture.difference.empty()) continue;
+    text += fmt::format("picture {}: {}\n  expected {}\n", picture.drawn.string(),
+                        picture.difference, picture.golden.string());
+    if (!picture.shown_in.empty())
+      text += fmt::format("  difference {}\n", picture.shown_in.string());
+    if (!accept.empty()) text += fmt::format("  accept it with: {}\n", accept);
+  }
+  return text;
+}
+
+Findings JudgeUnrequestedPictures(const std::string& id, std::size_t requested,
+                                  const std::string& root, const std::string& accept) {
+  Findings findings;
+  for (const fs::path& picture : UnaskedPictures(id, requested, root)) {
+    findings.push_back(
+        {.exit_code = ExitCode::kDiffers,
+         .reason = "a golden picture that the scenario does not ask for",
+         .details = UnaskedText(picture, requested) + "\n  remove it, or: " + accept + "\n"});
+  }
+  return findings;
+}
+
+void StorePictures(const std::string& id, const std::vector<PictureComparison>& compared,
+                   const std::string& root) {
+  const GoldenFiles files(root);
+  for (const PictureComparison& picture : compared) {
+    const std::string name = picture.drawn.filename().string();
+    files.RemovePendingPicture(id, name);
+    if (picture.difference.empty()) continue;
+    const fs::path pending = files.PendingPicturePath(id, name);
+    std::error_code ignored;  // `accept` draws the picture again, and reports what it cannot write
+    fs::create_directories(pending.parent_path(), ignored);
+    fs::copy_file(picture.drawn, pending, ignored);
+    if (!picture.shown_in.empty())
+      WritePictureDifference(picture.golden.string(), picture.drawn.string(),
+                             picture.shown_in.string());
+  }
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/judge/unreferenced_goldens.h. Tested by tests/harness/golden/golden_files_test.cc
+#include "harness/judge/unreferenced_goldens.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+#include "harness/golden/golden_files.h"
+
+namespace prehend::harness {
+
+namespace fs = std::filesystem;
+
+std::vector<Orphan> OrphansAmong(const std::vector<ScenarioFile>& all, const std::string& root) {
+  std::set<std::string> known;
+  for (const ScenarioFile& file : all) known.insert(IdOf(file));
+  const GoldenFiles goldens(root);
+  std::map<std::string, std::vector<fs::path>> files;
+  for (const std::string& id : goldens.List()) {
+    if (!known.contains(id)) files[id].push_back(goldens.GoldenPath(id));
+  }
+  for (const KeptPicture& picture : goldens.Pictures()) {
+    if (!known.contains(picture.scenario)) files[picture.scenario].push_back(picture.path);
+  }
+  std::vector<Orphan> orphans;
+  for (auto& [id, paths] : files) orphans.push_back({id, std::move(paths)});
+  return orphans;
+}
+
+std::string Text(const Orphan& orphan) {
+  std::string text;
+  for (const fs::path& file : orphan.files) {
+    text += fmt::format("{} belongs to no scenario: remove it, or bring scenarios/{}.yaml back\n",
+                        file.string(), orphan.scenario);
+  }
+  return text;
+}
+
+std::vector<fs::path> UnaskedPictures(const std::string& scenario, std::size_t asked,
+                                      const std::string& root) {
+  std::vector<fs::path> unasked;
+  for (const KeptPicture& picture : GoldenFiles(root).PicturesOf(scenario)) {
+    if (static_cast<std::size_t>(picture.number) > asked) unasked.push_back(picture.path);
+  }
+  return unasked;
+}
+
+std::string UnaskedText(const fs::path& picture, std::size_t asked) {
+  return fmt::format("{} belongs to no picture: the scenario asks for {}", picture.string(),
+                     asked == 0 ? std::string("none") : std::to_string(asked));
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// docs/claims.md says what the shipped grammars make of the scenarios that prove the claims. Every
+// row of its tables is played here: what it says must be what comes out, ours must be what truly
+// happened, and where the page says that the authors' rules fail, they must. A row is
+//   | claim | `skill/scenario` | `event(role, ..)` | ours | original_2020 |
+// with intervals in seconds, "1.10-2.25, 3.00-4.10", "none", or "the same" for what ours says, to a
+// frame or two.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+
+#include "harness/base/text_file.h"
+#include "harness/golden/compare.h"
+#include "harness/oracle/oracle.h"
+#include "harness/run/load_grammar.h"
+#include "harness/timeline/match_events.h"
+#include "tests/harness/judge/played_scenario.h"
+
+namespace prehend::harness {
+namespace {
+
+struct Row {
+  std::string claim, scenario, event, ours, original;
+};
+
+std::string WithoutBlanksAndQuotes(const std::string& cell) {
+  const std::size_t first = cell.find_first_not_of(" `"), last = cell.find_last_not_of(" `");
+  return first == std::string::npos ? "" : cell.substr(first, last - first + 1);
+}
+
+/// The rows whose second cell is the name of a scenario.
+std::vector<Row> Rows() {
+  const Result<std::string> page =
+      ReadTextFile(std::string(PREHEND_SOURCE_DIR) + "/docs/claims.md");
+  EXPECT_TRUE(page);
+  std::vector<Row> rows;
+  std::istringstream lines(page.value_or(""));
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> cells;
+    std::istringstream parts(line);
+    for (std::string cell; std::getline(parts, cell, '|');)
+      cells.push_back(WithoutBlanksAndQuotes(cell));
+    if (cells.size() == 6 && cells[2].find('/') != std::string::npos)
+      rows.push_back({cells[1], cells[2], cells[3], cells[4], cells[5]});
+  }
+  return rows;
+}
+
+/// The timeline's events with this label.
+grammar::Timeline Only(const grammar::Timeline& timeline, const std::string& label) {
+  grammar::Timeline only{timeline.ticks_per_second, {}};
+  for (const grammar::NamedEvent& event : timeline.events)
+    if (event.Label() == label) only.events.push_back(event);
+  return only;
+}
+
+std::string Intervals(const grammar::Timeline& timeline) {
+  std::string text;
+  const auto per_s = static_cast<double>(timeline.ticks_per_second);
+  for (const grammar::NamedEvent& event : timeline.events) {
+    char interval[64];
+    std::snprintf(interval, sizeof interval, "%.2f-%.2f",
+                  static_cast<double>(event.interval.begin) / per_s,
+                  static_cast<double>(event.interval.end) / per_s);
+    text += (text.empty() ? "" : ", ") + std::string(interval);
+  }
+  return text.empty() ? "none" : text;
+}
+
+TEST(Claims, AreWhatComesOutOfTheScenarios) {
+  const std::vector<Row> rows = Rows();
+  ASSERT_GE(rows.size(), 25u);
+  const auto original = LoadGrammar(PREHEND_SOURCE_DIR, "original_2020").program;
+  ASSERT_TRUE(original);
+  std::map<std::string, PlayedScenario> played;
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.claim + ", " + row.scenario + ", " + row.event);
+    if (!played.contains(row.scenario)) played.emplace(row.scenario, Play(row.scenario));
+    const PlayedScenario& play = played.at(row.scenario);
+    const grammar::Tick tolerance =
+        DefaultTolerance(play.scenario.scene.world.rate_hz, play.scenario.sensing.sensing_hz);
+    const grammar::Timeline truth =
+        Only(TrueTimeline(play.scenario.scene, play.run.recording, play.end()), row.event);
+    const grammar::Timeline ours = Only(play.run.timeline, row.event);
+    const grammar::Timeline theirs = Only(play.WatchedBy(original), row.event);
+    EXPECT_EQ(DescribeDisagreement(Agree(truth, ours, tolerance), tolerance), "");
+    EXPECT_EQ(row.ours, Intervals(ours));
+    const bool same = Agree(truth, theirs, tolerance).Within(tolerance);
+    EXPECT_EQ(row.original, same ? "the same" : Intervals(theirs));
+  }
+}
+
+}  // namespace
+}  // namespace prehend::harness

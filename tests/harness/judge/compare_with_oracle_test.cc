@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a golden says about where it comes from, on a real run that is then falsified.
+#include "harness/judge/compare_with_oracle.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "harness/run/load_run.h"
+#include "harness/timeline/event_text.h"
+
+namespace prehend::harness {
+namespace {
+
+class DerivationTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const RunRequest request{.scenario_file = PREHEND_SOURCE_DIR
+                             "/scenarios/pick_and_place/milk_carton_wrap.yaml"};
+    auto read = LoadRun(request, PREHEND_SOURCE_DIR);
+    ASSERT_TRUE(read) << grammar::Format(ErrorsOf(read));
+    loaded = std::move(*read);
+    run = RunScenario(loaded.scenario, loaded.program, {.record = true});
+  }
+  grammar::NamedEvent& Find(const std::string& event) {
+    return *std::ranges::find(run.timeline.events, event, &grammar::NamedEvent::event);
+  }
+
+  std::string When(const std::string& event) {
+    return IntervalText(Find(event).interval, run.timeline.ticks_per_second);
+  }
+  OracleComparison Compared() const {
+    return CompareWithOracle(loaded.scenario, *loaded.program, run);
+  }
+
+  LoadedRun loaded;
+  RunResult run;
+};
+
+TEST_F(DerivationTest, TheRunAsItWasFollows) {
+  const OracleComparison compared = Compared();
+  EXPECT_EQ(compared.Differing(), 0) << GroundTruthText(compared);
+  EXPECT_EQ(GroundTruthText(compared), "");
+  const std::string all = std::to_string(run.timeline.events.size());
+  EXPECT_EQ(OracleLine(compared), "oracle: " + all + " of " + all +
+                                      " events follow from the definitions of docs/events.md, "
+                                      "boundaries at most 0.0 ms off");
+}
+
+TEST_F(DerivationTest, AShiftedBoundaryDoesNot) {
+  Find("picking_up").interval.begin += 20;
+  const OracleComparison compared = Compared();
+  EXPECT_EQ(compared.Differing(), 1);
+  EXPECT_EQ(GroundTruthText(compared),
+            "ground truth: picking_up(right_hand, milk) begins 41.7 ms earlier than recognised; "
+            "its end agrees (recognised " +
+                When("picking_up") + ")\n");
+  EXPECT_NE(OracleLine(compared).find("; 1 more begins or ends up to 41.7 ms elsewhere"),
+            std::string::npos)
+      << OracleLine(compared);
+  Find("picking_up").interval.end -= 20;
+  EXPECT_NE(GroundTruthText(Compared())
+                .find(" begins 41.7 ms earlier than recognised and ends 41.7 ms later than "
+                      "recognised (recognised "),
+            std::string::npos)
+      << GroundTruthText(Compared());
+  Find("picking_up").interval.begin -= 20;
+  EXPECT_NE(GroundTruthText(Compared())
+                .find(" ends 41.7 ms later than recognised; its begin agrees (recognised "),
+            std::string::npos)
+      << GroundTruthText(Compared());
+}
+
+TEST_F(DerivationTest, AMissingAndAnInventedEventDoNot) {
+  const std::string when = When("transporting");
+  Find("transporting").event = "sliding";
+  const OracleComparison compared = Compared();
+  EXPECT_EQ(compared.Differing(), 2);
+  EXPECT_EQ(GroundTruthText(compared),
+            "ground truth: no sliding(right_hand, milk), recognised " + when +
+                "\nground truth: transporting(right_hand, milk) " + when + ", not recognised\n");
+  EXPECT_EQ(AcceptedDiffering({OracleLine(compared)}), 2);
+}
+
+TEST_F(DerivationTest, EventsWithoutADefinitionAreCountedNotJudged) {
+  run.timeline.events.push_back({.event = "stirring", .roles = {}, .interval = {10, 20}});
+  const OracleComparison compared = Compared();
+  EXPECT_EQ(compared.Differing(), 0);
+  EXPECT_TRUE(OracleLine(compared).ends_with(" ms off (1 events of other kinds not judged)"))
+      << OracleLine(compared);
+}
+
+TEST(AcceptedDiffering, IsReadFromTheLineOfAGolden) {
+  EXPECT_EQ(AcceptedDiffering({}), 0);
+  EXPECT_EQ(AcceptedDiffering({"seen in the picture", "12 of 13 events follow"}), 0);
+  EXPECT_EQ(AcceptedDiffering({"by eye", "oracle: 12 of 13 events follow from .., boundaries"}), 1);
+  EXPECT_EQ(AcceptedDiffering({"oracle: 9 of 9 events follow from the definitions of "
+                               "docs/events.md; 1 more begins or ends up to 9.9 ms elsewhere; 3 "
+                               "that follow are not recognised (2 events of other kinds not "
+                               "judged)"}),
+            3);
+  EXPECT_EQ(AcceptedDiffering({"oracle: many events follow"}), 0);
+}
+
+TEST(DifferingText, CountsEvents) {
+  EXPECT_EQ(DifferingText(0), "no event differs from the ground truth");
+  EXPECT_EQ(DifferingText(1), "1 event differs from the ground truth");
+  EXPECT_EQ(DifferingText(2), "2 events differ from the ground truth");
+}
+
+TEST(RenewedDerivation, KeepsWhatPeopleWrote) {
+  EXPECT_EQ(RenewedDerivation({"seen in the picture", "oracle: old"}, "oracle: new"),
+            (std::vector<std::string>{"seen in the picture", "oracle: new"}));
+}
+
+}  // namespace
+}  // namespace prehend::harness
