@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a compiled grammar names: its events, and what it expects of an episode. For everybody who
-// needs no more of a program than that. Tested by tests/grammar/contents_test.cc
+// What a compiled grammar names: its events, and what it expects of an episode. For callers
+// that need no more of a program than that. Tested by tests/grammar/contents_test.cc
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// How long each rule waits, in the order of the schedule: what a rule refers to is known before it.
 #include "grammar/describe.h"
 
 #include <algorithm>
@@ -80,7 +81,7 @@ class Waits {
     Wait wait;  // from there on
   };
 
-  // Null if it is none of that, or of other roles than the rule that asks.
+  // Null if that is no such rule, or if its roles are not those of the rule that asks.
   const Settled* SettledBy(const Reference& reference) const {
     const std::optional<Settled>& settled = settled_[static_cast<std::size_t>(reference.rule)];
     for (std::size_t i = 0; i < program_.rules[reference.rule].roles.size(); ++i) {

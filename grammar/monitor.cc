@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The facade: everything is done by the engine.
 #include "grammar/monitor.h"
 
 #include "grammar/engine/engine.h"

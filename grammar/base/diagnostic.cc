@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Layout of a diagnostic as text: the place, the source line with a caret below it, the hint.
 #include "grammar/base/diagnostic.h"
 
 #include <algorithm>
@@ -106,7 +107,7 @@ Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place plac
 }
 
 std::string NearestName(std::string_view name, const std::vector<std::string>& candidates) {
-  // Comparing takes time proportional to both lengths; nobody mistypes a name of this length.
+  // Comparing takes time proportional to both lengths; names of this length are not typed by hand.
   constexpr std::size_t kLongestName = 100;
   if (name.size() > kLongestName) return {};
   std::string best;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A complaint about somebody's input: where, what was found, what was wanted.
+// A message about wrong input: where, what was found, what was wanted.
 // Shared by the grammar language and by every YAML reader, so that all errors look alike.
 // Tested by tests/grammar/base/diagnostic_test.cc
 #pragma once

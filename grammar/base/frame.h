@@ -121,7 +121,7 @@ struct EntityChange {
   EntitySample look;
 };
 
-/// Two entities that touch no more, in any order.
+/// Two entities that have stopped touching, in any order.
 struct ContactEnd {
   int a = kNoEntity;
   int b = kNoEntity;
@@ -134,7 +134,7 @@ struct FrameChanges {
   Tick tick = 0;
   std::span<const EntityChange> entities;  ///< each entity at most once
   std::span<const HandSample> hands;       ///< each hand at most once
-  std::span<const Touch> touches;          ///< begun, or pressed otherwise than before
+  std::span<const Touch> touches;          ///< that began, or whose measured values changed
   std::span<const ContactEnd> contact_ends;
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The table of units, and how numbers with units are read and written.
 #include "grammar/base/quantity.h"
 
 #include <array>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The canonical order of events, and their labels.
 #include "grammar/base/timeline.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Path consistency: a relation is narrowed by every way through a third interval until nothing
+// changes.
 #include "grammar/compile/allen_network.h"
 
 #include <array>

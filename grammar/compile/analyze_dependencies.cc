@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// In this order: thresholds, references between rules, guards, moments that open a rule, what is
+// asked of entities at every frame, and how far a rule looks around.
 #include "grammar/compile/analyze_dependencies.h"
 
 #include <algorithm>
@@ -90,8 +92,8 @@ int ChooseGuard(const Program& program, const Rule& rule) {
       CollectNecessary(program, rule.As<FromToRule>().from, candidates);
       break;
     case Form::kUntilSince:
-      // If nobody asks where it is not, it is enough to wake at its end; else its truth must be
-      // known at all times. It ends a frame later than that what leads to it holds.
+      // If no rule asks where it does not hold, it is enough to wake at its end; else its truth
+      // must be known at all times. It ends a frame later than that what leads to it holds.
       CollectNecessary(program, rule.As<UntilSinceRule>().since, candidates, false);
       if (!rule.referenced) CollectNecessary(program, rule.As<UntilSinceRule>().until, candidates);
       break;
@@ -282,7 +284,7 @@ void WatchEntities(const Program& program, Rule& rule, int index) {
   for (const int arg : node.args) WatchEntities(program, rule, arg);
 }
 
-// A composition is told of finished intervals; every other rule asks for the truth at a frame.
+// A composition gets finished intervals; every other rule asks for the truth at a frame.
 void MarkReferenced(Program& program, int index) {
   const Rule& rule = program.rules[index];
   const auto* composition = rule.If<ComposeRule>();

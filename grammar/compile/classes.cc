@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The six classes and the few facts about them.
 #include "grammar/compile/classes.h"
 
 #include <algorithm>

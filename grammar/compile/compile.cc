@@ -250,7 +250,7 @@ class Compiler {
     CheckParamsAgainstDefines();
   }
 
-  // Of two that are called the same, whoever comes later is told.
+  // Of two definitions with the same name, the later one is reported.
   void CheckParamsAgainstDefines() {
     for (const Source& source : sources_) {
       for (const ast::Param& param : source.file.params) {
@@ -421,8 +421,8 @@ class Compiler {
     }
   }
 
-  // Rules that each use the next one, and the last one the first; those made for an `any` are not
-  // told.
+  // Rules that each use the next one, and the last one the first; those that the compiler made
+  // are left out.
   void ComplainCycle(std::vector<int> circle) {
     std::erase_if(circle, [&](int rule) { return program_.rules[rule].hidden; });
     const Rule& first = program_.rules[circle.front()];

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Bounds of one value are intersected; an alternative is tried on a copy of what is known.
 #include "grammar/compile/contradictions.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the parts of an `and` say about the same value: `speed(x) > 5 cm/s and speed(x) < 3 cm/s` is
-// never true, and whoever writes it made a mistake. Starts from what each value can be at all.
-// Compares values by how they are written, so it misses what is the same in other words. Tested by
+// Finds contradictions between the parts of an `and`: `speed(x) > 5 cm/s and speed(x) < 3 cm/s` is
+// never true, so it is reported as an error. Starts from the range of each value. Two values count
+// as the same if they are written alike, so some contradictions are missed. Tested by
 // tests/grammar/compile/compile_test.cc
 #pragma once
 

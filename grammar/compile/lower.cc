@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Names, literals and arithmetic. Calls are in grammar/compile/lower_calls.cc, conditions in
+// grammar/compile/lower_conditions.cc.
 #include "grammar/compile/lower.h"
 
 #include <algorithm>
@@ -183,7 +185,7 @@ int Lowering::Add(Node node) {
   return static_cast<int>(nodes.size()) - 1;
 }
 
-// What is observed of somebody; an attribute takes it where the interval begins.
+// A value observed of an entity; an attribute takes it where the interval begins.
 int Lowering::AddSignal(Node node) {
   const int here = Add(node);
   const bool observes = node.roles[0] != kNone || node.op == Op::kRate;
@@ -297,7 +299,7 @@ Lowering::Typed Lowering::Number(const Expr& expr) {
 }
 
 Lowering::Typed Lowering::Position(const Expr& expr) {
-  // The name of a role stands for the place of who plays it.
+  // The name of a role stands for the position of the entity that plays it.
   if (expr.kind == Expr::Kind::kName) {
     if (const int role = FindRole(expr.text); role != kNone) {
       role_used_[role] = true;

@@ -102,7 +102,7 @@ class Lowering {
   bool RoleUsed(std::size_t role) const { return role_used_[role]; }
   void Complain(Place place, std::string message, std::string hint = {});
   /// Likewise; only a warning, if a parameter was set from outside. Nothing where a condition is
-  /// never or always true: that has been told.
+  /// never or always true: that is reported already.
   void ComplainOrWarn(Place place, std::string message, std::string hint = {});
   /// How many there were so far.
   std::size_t complaints() const { return diagnostics_.size(); }

@@ -116,7 +116,7 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
     reference.roles[count++] = *role;
   }
   if (kept.empty()) return Bad(expr.place, "at least one role must be named; all are 'any'");
-  // It may begin long before it is complete, so nobody can be told in time where it holds.
+  // It may begin long before it is complete, so its truth at a frame is not known in time.
   const bool composed = symbols_.program.rules[rule].form() == Form::kCompose;
   if (composed && (!part_ || narrowed || kept.size() < wanted.size())) {
     return Bad(
@@ -175,7 +175,7 @@ int Lowering::MakeAnyRule(int rule, const std::vector<int>& kept) {
   return entry->second;
 }
 
-// The place of a parameter in a definition tells what it must be.
+// The class of a definition's parameter says what the argument must be.
 bool Lowering::BindParameter(const DefineSource& source, std::size_t index, const Expr& arg,
                              Scope& scope) {
   const ast::Role& parameter = source.define->parameters[index];
@@ -271,7 +271,7 @@ Lowering::Typed Lowering::LowerIs(const Expr& expr) {
   }
   const std::optional<int> role = RoleArgument(expr.args[0], "Entity", "is");
   if (!role) return {.bad = true};
-  // Within a definition, this depends on who calls it.
+  // Within a definition, this depends on the call.
   const std::string& class_name = rule().roles[*role].class_name;
   const bool both_known = IsBuiltinClass(class_name) && IsBuiltinClass(expr.args[1].text);
   if ((scope_ == nullptr || checking_) && both_known &&

@@ -13,7 +13,7 @@ namespace {
 
 using ast::Expr;
 
-constexpr std::size_t kMostDoubts = 200;  // that are told, of one clause and as warnings
+constexpr std::size_t kMostDoubts = 200;  // that are reported, of one clause and as warnings
 
 // The names that stand in it, each once.
 void CollectNames(const Expr& expr, std::vector<std::string>& names) {
@@ -76,13 +76,13 @@ Lowering::Typed Lowering::LowerNot(const Expr& expr) {
 
 void Lowering::Doubt(Place place, std::string message, std::string hint, bool is_handed_in) {
   if (doubts_.size() >= kMostDoubts && is_handed_in) return;
-  if (doubts_.size() >= kMostDoubts) doubts_.pop_back();  // a mistake is told in any case
+  if (doubts_.size() >= kMostDoubts) doubts_.pop_back();  // an error is reported in any case
   doubts_.push_back(
       {DiagnosticAt(source_->file, source_->text, place, std::move(message), std::move(hint)),
        is_handed_in});
 }
 
-// A whole clause that is decided is a mistake, unless somebody else gave it its numbers.
+// A whole clause that is decided is an error, unless its numbers were set from outside.
 int Lowering::Settled(const Typed& clause) {
   bool sound = !clause.bad;
   for (std::size_t i = 0; !clause.bad && i < doubts_.size(); ++i) {
@@ -135,7 +135,7 @@ std::string Lowering::WhatSidesCanBe(const Expr& comparison, const Typed& left,
   return text;
 }
 
-// What the parameters in it are: whoever sets them from outside does not see it here.
+// The values of the parameters in it: where they are set from outside, the text does not show them.
 std::string Lowering::WithParams(const Expr& expr, std::string remedy) const {
   std::vector<std::string> names;
   CollectNames(expr, names);
@@ -157,7 +157,7 @@ std::string Lowering::WithParams(const Expr& expr, std::string remedy) const {
 }
 
 // What is wrong with an `and` of which the parts exclude each other, or with an `or` of which one
-// always holds. What is decided alone has been told already.
+// always holds. A part that is decided alone is reported already.
 std::optional<Diagnostic> Lowering::Contradiction(const Expr& chain,
                                                   const std::vector<Typed>& parts) const {
   if (checking_) return std::nullopt;

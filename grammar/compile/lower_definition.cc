@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The form of a definition first, then its modifiers; each is checked as soon as it is lowered.
 #include "grammar/compile/lower_definition.h"
 
 #include <algorithm>

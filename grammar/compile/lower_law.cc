@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Its head and calls, the relations between them, and then whether all roles are named.
 #include "grammar/compile/lower_law.h"
 
 #include <algorithm>
@@ -174,7 +175,7 @@ class LawLowering {
     }
   }
 
-  // Of a role that a subject leaves out nobody could say whether the law holds for one or for all.
+  // If a subject left out a role, it would be open whether the law holds for one entity or for all.
   void CheckRolesAreNamed() {
     for (std::size_t role = 0; role < law_.roles.size(); ++role) {
       if (!role_used_[role]) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Interval arithmetic over the nodes of a program.
 #include "grammar/compile/value_ranges.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between what and what the numbers of a program can lie at all, and what that says about
-// comparisons: one that is never or always true is a mistake of whoever wrote it. What single
-// signals can be stands in the table of grammar/compile/builtins.cc. Tested by
+// The range of each number of a program. A comparison that can only be true, or only be false, is
+// reported as an error. The ranges of single signals are in the table of
+// grammar/compile/builtins.cc. Tested by
 // tests/grammar/compile/value_ranges_test.cc
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See backward_walk.h.
+// See grammar/engine/backward_walk.h.
 //
 // Needs: the frame `end` at which `until` is true; `since`, and with `approaching` a signal and its
 // speed, at every frame before it.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Construction, and when instances wake and rest. See grammar/engine/engine.h for the whole
+// algorithm.
 #include "grammar/engine/engine.h"
 
 #include <algorithm>
@@ -43,12 +45,12 @@ void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
   }
 }
 
-// What is not open does not begin while its guard rests, whatever else happens.
+// An instance that is not open cannot begin while its guard rests, whatever else happens.
 bool Engine::MayWake(const RuleInstance& instance) const {
   return instance.open || (MayBegin(instance) && !instances_.GuardRests(instance));
 }
 
-// Something must be measured where this instance begins, and it is known. At the end of the episode
+// Whether what must be measured for this instance to begin is known. At the end of the episode all
 // touches are over.
 bool Engine::CanMeasure(const RuleInstance& instance) const {
   const MeasuredPart& part = RuleOf(instance).measured;
@@ -56,7 +58,7 @@ bool Engine::CanMeasure(const RuleInstance& instance) const {
          (part.touch == kNone || instance.references[part.touch] != kNone);
 }
 
-// What must be so of a touch and of a grip is so now.
+// Whether the touch and the grip are now as the condition wants them.
 bool Engine::IsMeasured(const RuleInstance& instance) const {
   const MeasuredPart& part = RuleOf(instance).measured;
   const int hand = part.hand == kNone ? kNoEntity : instance.entities[part.hand];
@@ -79,7 +81,7 @@ bool Engine::MomentMayCome(const RuleInstance& instance) const {
   const Rule& rule = RuleOf(instance);
   if (rule.opened_by == kNone) return true;
   const InstanceId event = instance.references[rule.opened_by];
-  if (event == kNone) return true;  // nobody would wake this instance, as it has not asked yet
+  if (event == kNone) return true;  // it has not asked yet, so nothing would wake it
   const FrameNumber now = history_.now();
   return (rule.opened_by_end ? instances_.EndsAt(event, now) : instances_.BeginsAt(event, now)) !=
          Kleene::kFalse;
@@ -134,8 +136,8 @@ void Engine::NotifyIfChanged(RuleInstance& instance) {
   NotifyWatchers(instance);
 }
 
-// Every frame is decided, and the next one says the same unless something changes or an alarm
-// rings. A form that is not listed here never rests while it is open.
+// Every frame is decided, and the next one gives the same result unless something changes or an
+// alarm comes. A form that is not listed here never rests while it is open.
 bool Engine::MayRest(const RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
   if (instance.next <= history_.now() || !instance.pending.empty() || evaluator_.depends_on_time())
@@ -192,8 +194,7 @@ void Engine::StepRule(int rule) {
       Rest(instance);
       return true;
     }
-    // What ended at a gap may be asked for what it was like there when it is known that nothing
-    // bridges the gap.
+    // When it is known that nothing bridges a gap, values at the frame of the gap may be asked for.
     const FrameNumber needed = instance.in_gap ? instance.gap.frame : instance.next;
     past_.Need(needed);
     for (const Pending& pending : instance.pending) past_.Need(pending.next);

@@ -91,8 +91,8 @@ class Engine {
     return part.press[swapped ? 1 : 0].Fit(touch.As<TouchingState>().crossed_thresholds);
   }
   bool SaysTheSame(const RuleInstance& instance) const;
-  /// What begins with a moment does not begin at others. That moment may be told of later in this
-  /// frame; whoever tells of it asks again.
+  /// A rule that begins with a moment begins at no other time. The moment may become known later in
+  /// this frame; then this is asked again.
   bool MayBegin(const RuleInstance& instance) const {
     return instance.moment >= history_.now() && MomentMayCome(instance);
   }
@@ -101,7 +101,7 @@ class Engine {
   void NotifyIfChanged(RuleInstance& instance);
   bool MayRest(const RuleInstance& instance);
   void Rest(RuleInstance& instance);
-  /// Nothing of it has been looked at, as nothing can have begun, but now it may be of no more use.
+  /// It was not stepped, as nothing can have begun; but from now on it may be of no more use.
   void RestOn(RuleInstance& instance) {
     instance.resting_since = history_.now();
     idle_.Queue(instance);
@@ -151,7 +151,7 @@ class Engine {
       log_->push_back({kind, instance.index, span, cause, DecidedAt(instance, span), walk});
   }
 
-  // Compositions are told of each finished interval of their parts.
+  // Compositions get each finished interval of their parts.
   void NotifyCompositions(const RuleInstance& part, const Span& span);
   FrameNumber Settled(const RuleInstance& instance) const;
   FrameNumber PartsSettled(const RuleInstance& composition) const;

@@ -112,8 +112,8 @@ class Combinations {
 
 }  // namespace
 
-// Roles of the composition that the part does not name are free: its interval counts for whoever
-// plays them.
+// Roles of the composition that the part does not name are free: its interval counts for every
+// entity that can play them.
 void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
   for (const PartOf& part_of : RuleOf(part).part_of) {
     const Rule& whole = program_->rules[part_of.rule];

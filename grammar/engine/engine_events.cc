@@ -104,15 +104,15 @@ void Engine::Emit(RuleInstance& instance, const Pending& finished) {
   event.attributes = finished.attributes;
 }
 
-// As long as somebody may ask about it.
+// Keeps an interval as long as another rule may ask about it.
 void Engine::Keep(RuleInstance& instance, const Span& span) {
   while (!instance.past.empty() && instance.past.front().end.frame < history_.first())
     instance.past.PopFront();
   instance.past.PushBack() = span;
 }
 
-// A deadline that passes between two frames decides at once; the later frame only tells that time
-// went on.
+// A deadline between two frames decides at its own tick: the later frame only shows that time went
+// on.
 Tick Engine::DeadlineOf(const Span& span) const {
   const FrameNumber before = finishing_ ? history_.now() : history_.now() - 1;
   const bool just_passed = before >= history_.first() && span.end.tick > history_.At(before).tick;

@@ -34,8 +34,8 @@ bool Engine::StepFrame(RuleInstance& instance) {
       const bool was_open = instance.open;
       decided = StepFromTo(instance, instance.next);
       if (was_open && !instance.open)
-        evaluator_.MarkTimeDependent();  // what may begin the next one was not asked for, so
-                                         // nothing of it would wake
+        // The begin of the next run was not asked for in this frame, so no change would wake it.
+        evaluator_.MarkTimeDependent();
       break;
     }
     case Form::kUntilSince:
@@ -49,9 +49,9 @@ bool Engine::StepFrame(RuleInstance& instance) {
   return decided;
 }
 
-// Most looks find everything as it was: the instance rests on, and there is nothing to tell and
-// nothing to wait for. If something is new, the frame may have been stepped, and the rest is left
-// to StepInstance.
+// Fast path: if nothing changed, the instance stays idle, with nothing to report and nothing to
+// wait for. If something is new, the frame may have been stepped already; StepInstance() does the
+// rest.
 bool Engine::LooksTheSame(RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
   const FrameNumber now = history_.now();
@@ -173,8 +173,8 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
   return closes == Kleene::kTrue || Open(instance, frame);
 }
 
-// What is open, but waits no longer: without the end that it waited for, it is dropped, or that is
-// what it is about.
+// An open run whose deadline has passed: without the end that it waited for it is dropped; of a
+// `without` it is an interval.
 bool Engine::MeetDeadline(RuleInstance& instance, Moment now) {
   const FromToRule& rule = RuleOf(instance).As<FromToRule>();
   const Tick deadline = instance.begin.tick + TicksOf(instance).within;

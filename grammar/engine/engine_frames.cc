@@ -34,7 +34,8 @@ bool Same(const Touch& a, bool swapped, const TouchSample& b) {
 
 }  // namespace
 
-// All at once: so one look-up does not wait for another one, as it would between changes.
+// All look-ups in one loop, so that they overlap in the processor instead of waiting for each
+// other.
 void Engine::LookUp(std::span<const Touch> touches) {
   contacts_.clear();
   for (const Touch& touch : touches) {
@@ -213,7 +214,7 @@ void Engine::BeginTouch(RuleInstance& touching) {
   NotifyWatchers(touching);
 }
 
-// The two touch as before, but press otherwise: these thresholds were crossed.
+// The two touch as before, but measured values crossed these thresholds.
 void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed) {
   for (const Watcher& watcher : touch.watchers) {
     if ((watcher.thresholds & changed) == 0) continue;
@@ -227,9 +228,9 @@ void Engine::NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed)
   }
 }
 
-// The rest of what a resting instance asks for is known already: hands are looked at before touches
-// are, and no touch is told of twice. So its interval begins or ends here and now, if something has
-// changed.
+// Everything else that a resting instance asks for is known already: hands are looked at before
+// touches, and a frame contains each touch once. So if something changed, its interval begins or
+// ends at this frame.
 void Engine::BeginOrEnd(RuleInstance& instance) {
   const Moment now = history_.At(history_.now());
   if (instance.open) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// One function per kind of node; a new signal is a case in SignalOf().
 #include "grammar/engine/evaluate.h"
 
 #include <bit>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Samples are stored where they change; binary search finds the one that holds at a frame.
 #include "grammar/engine/history.h"
 
 #include <algorithm>

@@ -35,7 +35,7 @@ struct InstanceKey {
   }
 };
 
-/// The instance of a touch: two entities in any order. A frame asks for each pair that it tells of.
+/// The instance of a touch: two entities in any order. A frame looks up each pair that it contains.
 struct PairKey {
   std::uint64_t both = 0;
   PairKey() = default;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// How instances are made, linked to what they ask about, and freed.
 #include "grammar/engine/instances.h"
 
 #include <algorithm>

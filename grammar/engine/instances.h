@@ -185,7 +185,7 @@ class RuleInstances {
     const InstanceId found = Find(key);
     return found != kNone ? found : Make(key);
   }
-  /// Likewise, for everybody who can play the roles that are free, and appends them to `made`.
+  /// Likewise, for all entities that can play the free roles; appends the instances to `made`.
   void EnsureAll(int rule, Binding entities, std::vector<InstanceId>& made);
   /// Makes the instances that this one guards and appends them to `made`, those that were there
   /// already, too.
@@ -214,7 +214,7 @@ class RuleInstances {
     return Find(Canonical(rule, entities));
   }
   InstanceId FindTouch(int a, int b) const { return touches_.Find(PairKey(a, b)); }
-  /// It will be looked at soon: what is far away in memory is on its way meanwhile.
+  /// Prefetches an instance that is about to be used.
   void Fetch(InstanceId instance) const {
     const char* at = reinterpret_cast<const char*>(&instances_[instance]);
     for (int line = 0; line < 3; ++line) __builtin_prefetch(at + 64 * line);

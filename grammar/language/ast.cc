@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a syntax tree as text again, for messages and tests.
 #include "grammar/language/ast.h"
 
 #include <string_view>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// One function per level of precedence.
 #include "grammar/language/expression_parser.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The three forms of a law: `rest of .. is empty`, `.. do not overlap`, and relations of intervals.
 #include "grammar/language/law_parser.h"
 
 namespace prehend::grammar {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks the text as a whole, then cuts it into tokens.
 #include "grammar/language/lexer.h"
 
 #include <array>
@@ -137,7 +138,7 @@ class Lexer {
     while (text().substr(at_, length) == found) at_ += length;  // `&&` is one mistake
   }
 
-  /// What people mean by it who are used to other languages.
+  /// What it means in other languages.
   static std::string HintFor(std::string_view found) {
     if (found == "&") return "both must hold: F and G";
     if (found == "|") return "one of them must hold: F or G";

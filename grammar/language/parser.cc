@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// One function per form of a definition, then its modifiers in any order.
 #include "grammar/language/parser.h"
 
 #include "grammar/language/law_parser.h"

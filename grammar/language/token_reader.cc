@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The reserved words, and hints for words of other languages.
 #include "grammar/language/token_reader.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ constexpr std::array<std::string_view, 34> kOtherWords = {
     "without",  "approaching", "receding", "slower",    "than",    "begins",  "ends",
     "and",      "or",          "not",      "any",       "style",   "drawn"};
 
-/// What people write who are used to other languages, and how it is said here.
+/// Words of other languages, and what to write here instead.
 struct Habit {
   std::string_view found;
   std::string_view hint;

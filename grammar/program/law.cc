@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// A law in the words of the language.
 #include "grammar/program/law.h"
 
 namespace prehend::grammar {

@@ -156,7 +156,7 @@ enum class Form : std::uint8_t {
   kCompose,
 };
 
-/// `touching`: the fact itself, as frames tell it.
+/// `touching`: the fact itself, as frames give it.
 struct TouchingRule {};
 
 /// Made for an `any`: some binding of the rule of references[0] holds.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which of a grammar's thresholds a touch or a grip has crossed: a measured value is compared once,
-// when a frame tells it. Tested by tests/grammar/program/thresholds_test.cc
+// when a frame gives it. Tested by tests/grammar/program/thresholds_test.cc
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A command of `prehend`: its name, what it accepts, what it does. Each stands in a file of its own
-// and is listed in command_line.cc. Results go to `out`, diagnostics to `err`. Tested by
-// tests/program/command_line_test.cc
+// and is listed in harness/cli/command_line.cc. Results go to `out`, diagnostics to `err`. Tested
+// by tests/program/command_line_test.cc
 #pragma once
 
 #include <optional>

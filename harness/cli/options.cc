@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See options.h. Tested by tests/harness/cli/parse_arguments_test.cc
+// See harness/cli/options.h. Tested by tests/harness/cli/parse_arguments_test.cc
 #include "harness/cli/options.h"
 
 #include <fmt/format.h>

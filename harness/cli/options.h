@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What can be typed after a command's name, described as data, and what was typed for it. Knows no
-// parser: parse_arguments.cc turns the description into one. Tested by
+// parser: harness/cli/parse_arguments.cc turns the description into one. Tested by
 // tests/harness/cli/parse_arguments_test.cc
 #pragma once
 

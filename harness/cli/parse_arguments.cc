@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See parse_arguments.h. CLI11 splits the words and prints the help; what is wrong with them is
-// worded here. Tested by tests/harness/cli/parse_arguments_test.cc
+// See harness/cli/parse_arguments.h. CLI11 splits the words and prints the help; what is wrong with
+// them is worded here. Tested by tests/harness/cli/parse_arguments_test.cc
 #include "harness/cli/parse_arguments.h"
 
 #include <fmt/format.h>

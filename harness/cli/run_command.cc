@@ -86,9 +86,8 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   const bool record_is_output = options.Text("--record") == "-";
   for (const char* of_output : {"--json", "--measure"}) {
     if (record_is_output && options.Has(of_output))
-      return Complain(
-          context, ExitCode::kBadInput,
-          fmt::format("--record - contradicts {}: both would be printed", of_output));
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("--record - contradicts {}: both would be printed", of_output));
   }
   const ReadResult<LoadedRun> loaded = LoadRun(request, context.root);
   if (!loaded.value) return Complain(context, loaded.diagnostics);

@@ -35,7 +35,7 @@ struct RunResult {
   EventDrawings drawings;                    ///< how the grammar wants its events drawn
   std::vector<physics::Snapshot> recording;  ///< empty unless asked for
   std::vector<physics::ScriptNote> notes;
-  std::string outcome;  ///< of the scenario's outcomes; empty unless judged (outcome.h)
+  std::string outcome;  ///< of the scenario's outcomes; empty unless judged (harness/run/outcome.h)
   RunSeconds seconds;
 };
 

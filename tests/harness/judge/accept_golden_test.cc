@@ -141,7 +141,7 @@ TEST(PendingGolden, RenewsTheOracleLineWhenItsCountIsNotTrueAnyMore) {
 TEST(Fingerprint, TellsEveryTickAndEveryOldGoldenApart) {
   const OracleComparison agrees;
   const Golden pending = PendingGolden(Old(), kShiftedWithoutFixation, "slide/x", "g", agrees);
-  EXPECT_EQ(Fingerprint(pending).size(), 8u);
+  EXPECT_EQ(Fingerprint(pending).size(), 16u);
   EXPECT_EQ(Fingerprint(pending), Fingerprint(ReadGolden("x", WriteGolden(pending)).value.value()));
   auto a_tick_later = kShiftedWithoutFixation;
   a_tick_later.events[0].interval.begin += 1;

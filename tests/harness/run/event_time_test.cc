@@ -52,7 +52,7 @@ TEST(EventTime, TheGrammarMustHaveTheEvent) {
             "grammar 'probe' has no event 'reching'");
   EXPECT_EQ(WhyNoEventTime("reching.begin", program)->hint, "did you mean 'reaching'?");
   EXPECT_TRUE(WhyNoEventTime("hidden.begin", program));
-  EXPECT_EQ(WhyNoEventTime("soon", program)->message, "'soon' is no moment");
+  EXPECT_EQ(WhyNoEventTime("soon", program)->message, "'soon' is not a time");
 }
 
 }  // namespace

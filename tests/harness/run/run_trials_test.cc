@@ -78,7 +78,7 @@ TEST(RunTrials, NeedsOutcomes) {
   const auto trials = RunTrials({.scenario_file = BallFile("")}, kRoot, {.count = 1});
   ASSERT_FALSE(trials.value);
   EXPECT_EQ(trials.diagnostics[0].message,
-            "the scenario has no outcomes, so trials cannot be judged");
+            "the scenario has no outcomes, so its trials cannot be classified");
 }
 
 }  // namespace
