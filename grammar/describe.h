@@ -19,8 +19,8 @@ struct Wait {
 };
 
 struct RuleDescription {
-  std::string name;  ///< "lifted"
-  std::string head;  ///< "event lifted(hand: Hand, object: Movable)"
+  std::string name;  ///< "waving"
+  std::string head;  ///< "event waving(hand: Hand)"
   bool printed = false;
   Wait latency;  ///< from an interval's end to its decision, besides a frame for each of the waits
   std::string watched;  ///< which bindings cost time: "pairs that touch", "every hand and object"

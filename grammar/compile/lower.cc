@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names, literals and arithmetic. Calls are in lower_calls.cc, conditions in lower_conditions.cc.
+// Names, literals and arithmetic. Calls are in grammar/compile/lower_calls.cc, conditions in
+// grammar/compile/lower_conditions.cc.
 #include "grammar/compile/lower.h"
 
 #include <algorithm>

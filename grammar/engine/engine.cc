@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Construction, and when instances wake and rest. See engine.h for the whole algorithm.
+// Construction, and when instances wake and rest. See grammar/engine/engine.h for the whole
+// algorithm.
 #include "grammar/engine/engine.h"
 
 #include <algorithm>
