@@ -37,10 +37,10 @@ TEST_F(RunScenarioTest, TheCallerSeesEveryTickAndWhatIsSensedInIt) {
   }
   const RunResult result = playing.Finish();
   EXPECT_EQ(result.ticks, last);
-  EXPECT_EQ(result.ticks, 1584) << "a script of 3.2 s and 0.1 s after it, at 480 Hz";
+  EXPECT_EQ(result.ticks, 48) << "0.1 s at 480 Hz";
   for (const physics::Snapshot& snapshot : result.recording) recorded.push_back(snapshot.tick);
   EXPECT_EQ(recorded, sensed);
-  EXPECT_EQ(sensed.size(), 792u) << "3.3 s at 240 Hz";
+  EXPECT_EQ(sensed.size(), 24u) << "0.1 s at 240 Hz";
   EXPECT_EQ(playing.snapshot().tick, last) << "the last snapshot stays";
 }
 
