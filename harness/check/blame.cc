@@ -12,7 +12,7 @@
 namespace prehend::harness {
 namespace {
 
-/// "scenarios/SKILL/NAME.yaml" and the like, "the program", and the options of the command line. A
+/// "scenarios/slide/NAME.yaml" and the like, "the program", and the options of the command line. A
 /// grammar that the command line chose did not change, nor did the one that it replaces.
 std::vector<std::string> WhatChanged(const CheckRecord& last_pass, const DifferingRun& now,
                                      const std::string& root) {

@@ -128,12 +128,12 @@ void JudgeAgainstGolden(const CheckRequest& request, const CheckedRun& checked,
                         const FileHashes& inputs, Judgement& judgement) {
   std::optional<Golden> golden;
   if (request.in_project) {
-    ReadResult<Golden> read = GoldenFiles(request.root).ReadGoldenOf(request.id);
-    if (!read.diagnostics.empty()) {
+    auto read = GoldenFiles(request.root).ReadGoldenOf(request.id);
+    if (!read) {
       return judgement.findings.push_back(
-          {ExitCode::kBadInput, "the golden cannot be read", Format(read.diagnostics)});
+          {ExitCode::kBadInput, "the golden cannot be read", Format(read.error())});
     }
-    golden = std::move(read.value);
+    golden = std::move(*read);
   }
   judgement.golden = CompareWithGolden(golden, checked);
   if (judgement.golden->Differs()) judgement.cause = CauseOf(request, checked, inputs);

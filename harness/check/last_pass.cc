@@ -11,13 +11,13 @@
 namespace prehend::harness {
 namespace {
 
-using Json = nlohmann::json;
+using RecordJson = nlohmann::json;
 
 /// Discarded when the file does not exist or is not JSON.
-Json ReadJson(const std::filesystem::path& path) {
+RecordJson ReadJson(const std::filesystem::path& path) {
   std::ifstream file(path);
-  if (!file) return Json(Json::value_t::discarded);
-  return Json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!file) return RecordJson(RecordJson::value_t::discarded);
+  return RecordJson::parse(file, nullptr, /*allow_exceptions=*/false);
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ std::vector<std::string> ChangedInputs(const CheckRecord& record) {
 }
 
 std::optional<CheckRecord> CheckRecords::Read(const std::string& scenario) const {
-  const Json json = ReadJson(folder_ / (scenario + ".json"));
+  const RecordJson json = ReadJson(folder_ / (scenario + ".json"));
   if (json.is_discarded()) return std::nullopt;
   try {
     CheckRecord record{.program = json.at("program"),
@@ -40,21 +40,21 @@ std::optional<CheckRecord> CheckRecords::Read(const std::string& scenario) const
                        .verdict = UnpackedVerdict(json.at("verdict"))};
     if (record.verdict.scenario != scenario || record.verdict.inputs.empty()) return std::nullopt;
     return record;
-  } catch (const Json::exception&) {
+  } catch (const RecordJson::exception&) {
     return std::nullopt;
   }
 }
 
 std::string CheckRecords::Write(const CheckRecord& record) const {
-  const Json json = {{"program", record.program},
-                     {"passed", record.passed},
-                     {"pictures", record.pictures},
-                     {"verdict", Packed(record.verdict)}};
+  const RecordJson json = {{"program", record.program},
+                           {"passed", record.passed},
+                           {"pictures", record.pictures},
+                           {"verdict", Packed(record.verdict)}};
   return WriteTextFile(folder_ / (record.verdict.scenario + ".json"), json.dump(1) + "\n");
 }
 
 CheckRecords::Costs CheckRecords::ReadCosts() const {
-  const Json json = ReadJson(folder_ / "costs.json");
+  const RecordJson json = ReadJson(folder_ / "costs.json");
   Costs costs;
   if (!json.is_object()) return costs;
   for (const auto& [scenario, seconds] : json.items()) {
@@ -64,7 +64,7 @@ CheckRecords::Costs CheckRecords::ReadCosts() const {
 }
 
 std::string CheckRecords::WriteCosts(const Costs& costs) const {
-  return WriteTextFile(folder_ / "costs.json", Json(costs).dump(1) + "\n");
+  return WriteTextFile(folder_ / "costs.json", RecordJson(costs).dump(1) + "\n");
 }
 
 }  // namespace prehend::harness

@@ -137,13 +137,13 @@ grammar::Diagnostics CheckGoldenFile(const std::string& path, const std::string&
                                      const LoadedRun& loaded) {
   Result<std::string> text = ReadTextFile(path);
   if (!text) return std::move(text.error());
-  ReadResult<Golden> golden = ReadGolden(path, *text);
-  if (!golden.value) return std::move(golden.diagnostics);
-  grammar::Diagnostics other = OfAnotherScenario(path, *text, *golden.value, id);
+  Result<Golden> golden = ReadGolden(path, *text);
+  if (!golden) return std::move(golden.error());
+  grammar::Diagnostics other = OfAnotherScenario(path, *text, *golden, id);
   if (!other.empty()) return other;
   GoldenChecker checker(path, *text, loaded);
-  checker.CheckGrammar(golden.value->grammar, loaded.scenario.grammar);
-  for (const GoldenEvent& line : golden.value->events) checker.CheckLine(line);
+  checker.CheckGrammar(golden->grammar, loaded.scenario.grammar);
+  for (const GoldenEvent& line : golden->events) checker.CheckLine(line);
   return checker.Take();
 }
 
@@ -152,10 +152,10 @@ grammar::Diagnostics CheckGoldenAlone(const std::string& path, const std::string
   inputs.push_back(path);
   Result<std::string> text = ReadTextFile(path);
   if (!text) return std::move(text.error());
-  ReadResult<Golden> golden = ReadGolden(path, *text);
-  if (!golden.value) return std::move(golden.diagnostics);
+  Result<Golden> golden = ReadGolden(path, *text);
+  if (!golden) return std::move(golden.error());
   const std::string of = ScenarioOfGoldenAt(path, root);
-  const std::string& id = of.empty() ? golden.value->scenario : of;
+  const std::string& id = of.empty() ? golden->scenario : of;
   const std::vector<ScenarioFile> all = ListScenarios(root);
   const auto scenario = std::ranges::find(all, id, IdOf);
   if (scenario == all.end()) {

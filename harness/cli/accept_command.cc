@@ -92,8 +92,8 @@ void LeaveBaseline(const CommandContext& context, const Played& played) {
 std::string NotWhatWasShown(const ParsedOptions& options, const CommandContext& context,
                             const Golden& pending) {
   const std::string now = Fingerprint(pending);
-  const ReadResult<Golden> waiting = GoldenFiles(context.root).ReadPendingOf(pending.scenario);
-  const std::string shown = waiting.value ? Fingerprint(*waiting.value) : now;
+  const auto waiting = GoldenFiles(context.root).ReadPendingOf(pending.scenario);
+  const std::string shown = waiting && *waiting ? Fingerprint(**waiting) : now;
   const std::string reviewed = options.Has("--reviewed") ? options.Text("--reviewed") : shown;
   if (reviewed == now) return "";
   if (reviewed == shown)
@@ -194,9 +194,9 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
   Result<LoadedRun> loaded = LoadRun({.scenario_file = file->path}, context.root, &played.files);
   if (!loaded) return Complain(context, loaded.error());
   played.loaded = std::move(*loaded);
-  ReadResult<Golden> old = GoldenFiles(context.root).ReadGoldenOf(played.id);
-  if (!old.diagnostics.empty()) return Complain(context, old.diagnostics);
-  played.old = std::move(old.value);
+  auto old = GoldenFiles(context.root).ReadGoldenOf(played.id);
+  if (!old) return Complain(context, old.error());
+  played.old = std::move(*old);
   if (options.Has("--pictures") && !played.old) {
     return Complain(
         context, ExitCode::kPending,

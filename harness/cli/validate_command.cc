@@ -57,7 +57,7 @@ void AddGolden(const ScenarioFile& file, const ParsedOptions& options,
   if (!fs::exists(path, ignored)) return;
   const bool as_it_is = !options.Has("--grammar") && !options.Has("--set");
   std::ranges::move(loaded && as_it_is ? CheckGoldenFile(path, IdOf(file), *loaded)
-                                       : goldens.ReadGoldenOf(IdOf(file)).diagnostics,
+                                       : ErrorsOf(goldens.ReadGoldenOf(IdOf(file))),
                     std::back_inserter(validated.diagnostics));
   if (!loaded || !as_it_is) return;
   const std::size_t asked = loaded->scenario.pictures.size();

@@ -18,16 +18,16 @@ namespace {
 constexpr const char* kExtension = ".timeline";
 constexpr const char* kDifference = ".difference.png";
 
-ReadResult<Golden> ReadFrom(const fs::path& path, const std::string& scenario) {
+Result<std::optional<Golden>> ReadFrom(const fs::path& path, const std::string& scenario) {
   std::error_code ignored;
-  if (!fs::exists(path, ignored)) return {};
+  if (!fs::exists(path, ignored)) return std::nullopt;
   Result<std::string> text = ReadTextFile(path.string());
-  if (!text) return {std::nullopt, std::move(text.error())};
-  ReadResult<Golden> golden = ReadGolden(path.string(), *text);
-  if (!golden.value) return golden;
-  grammar::Diagnostics other = OfAnotherScenario(path.string(), *text, *golden.value, scenario);
-  if (!other.empty()) return {std::nullopt, std::move(other)};
-  return golden;
+  if (!text) return tl::unexpected(std::move(text.error()));
+  Result<Golden> golden = ReadGolden(path.string(), *text);
+  if (!golden) return tl::unexpected(std::move(golden.error()));
+  grammar::Diagnostics other = OfAnotherScenario(path.string(), *text, *golden, scenario);
+  if (!other.empty()) return tl::unexpected(std::move(other));
+  return std::move(*golden);
 }
 
 /// Ids of all timelines below a folder, sorted.
@@ -112,11 +112,11 @@ fs::path GoldenFiles::PendingPath(const std::string& scenario) const {
   return root_ / "build" / "pending" / (scenario + kExtension);
 }
 
-ReadResult<Golden> GoldenFiles::ReadGoldenOf(const std::string& scenario) const {
+Result<std::optional<Golden>> GoldenFiles::ReadGoldenOf(const std::string& scenario) const {
   return ReadFrom(GoldenPath(scenario), scenario);
 }
 
-ReadResult<Golden> GoldenFiles::ReadPendingOf(const std::string& scenario) const {
+Result<std::optional<Golden>> GoldenFiles::ReadPendingOf(const std::string& scenario) const {
   return ReadFrom(PendingPath(scenario), scenario);
 }
 

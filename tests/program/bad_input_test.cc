@@ -38,7 +38,7 @@ std::vector<Case> Cases() {
   binary.append(64, '\0');
   return {
       {"empty", "", "empty"},
-      {"only_a_comment", "# nothing\n", "probe.yaml: error: the file contains only comments"},
+      {"only_a_comment", "# nothing\n", "probe.yaml: error: the file contains only comments\n"},
       {"binary", binary, "probe.yaml:1:"},
       {"not_utf8", "scenario: \xff\xfe\n", "probe.yaml:1:11: error"},
       {"brackets", std::string(10'000, '['), "probe.yaml:1:"},
@@ -64,7 +64,7 @@ std::vector<Case> Cases() {
        "probe.yaml:3:10: error"},
       {"unknown_hand", edited("hand: human_right", "hand: human_write"), "probe.yaml:9:"},
       {"unended_quote", edited("a carton on a table", "'a carton").substr(0, 33),
-       "probe.yaml:2:8: error: this quote is not closed"},
+       "probe.yaml:2:8: error: this quote is not closed\n"},
       {"place_without_reach", edited("reach: milk, style: wrap", "place_on: table"),
        "probe.yaml:11:17: error: place_on: right_hand cannot hold anything here"},
       {"carry_without_reach", edited("reach: milk, style: wrap", "carry_to_m: [0, 0]"),

@@ -175,9 +175,10 @@ struct Witness {
 std::vector<Witness> Witnesses() {
   std::vector<Witness> witnesses;
   for (const char* id : kScenarios) {
-    const ReadResult<Golden> golden = GoldenFiles(PREHEND_SOURCE_DIR).ReadGoldenOf(id);
-    EXPECT_TRUE(golden.value) << id << " has no golden";
-    if (golden.value) witnesses.push_back({id, Play(id), *golden.value});
+    const auto golden = GoldenFiles(PREHEND_SOURCE_DIR).ReadGoldenOf(id);
+    const bool is_there = golden && *golden;
+    EXPECT_TRUE(is_there) << id << " has no golden";
+    if (is_there) witnesses.push_back({id, Play(id), **golden});
   }
   return witnesses;
 }

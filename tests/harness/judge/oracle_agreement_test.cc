@@ -36,12 +36,12 @@ bool SpeaksOfIt(const grammar::Program& program) {
 
 /// Of a scenario whose two frames are at most kTolerance, for which `check` does the rest.
 void ExpectAllToFollow(const ScenarioFile& file, const grammar::Program& program) {
-  const ReadResult<Golden> golden = GoldenFiles(PREHEND_SOURCE_DIR).ReadGoldenOf(IdOf(file));
-  ASSERT_TRUE(golden.value) << "no golden, or one that cannot be read\n"
-                            << Format(golden.diagnostics);
-  const std::vector<GoldenEvent>& lines = golden.value->events;
+  const auto golden = GoldenFiles(PREHEND_SOURCE_DIR).ReadGoldenOf(IdOf(file));
+  ASSERT_TRUE(golden && *golden) << "no golden, or one that cannot be read\n"
+                                 << grammar::Format(ErrorsOf(golden));
+  const std::vector<GoldenEvent>& lines = (*golden)->events;
   EXPECT_FALSE(lines.empty());
-  const std::vector<std::string>& derived = golden.value->derived;
+  const std::vector<std::string>& derived = (*golden)->derived;
   EXPECT_TRUE(std::ranges::any_of(
       derived, [](const std::string& line) { return line.starts_with(kOracleLine); }));
   EXPECT_EQ(AcceptedDiffering(derived), 0);
