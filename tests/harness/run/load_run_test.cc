@@ -21,7 +21,7 @@ class PrepareRunTest : public CheckedScenario {
   }
   std::string Problems(const std::vector<std::string>& settings, const std::string& grammar = {}) {
     std::string text;
-    for (const grammar::Diagnostic& problem : Prepared(settings, grammar).diagnostics)
+    for (const grammar::Diagnostic& problem : ErrorsOf(Prepared(settings, grammar)))
       text += problem.message + (problem.hint.empty() ? "" : " | " + problem.hint) + "\n";
     return text;
   }
@@ -44,7 +44,7 @@ TEST_F(PrepareRunTest, SettingsGoToTheScenarioOrToItsGrammar) {
 }
 
 TEST_F(PrepareRunTest, EveryFileThatWasUsedIsNamed) {
-  ASSERT_TRUE(Prepared({}).value);
+  ASSERT_TRUE(Prepared({}));
   EXPECT_EQ(files_.front(), Request().scenario_file);
   const std::string grammar = (root_ / "grammar/library/pick_and_place.grammar").string();
   EXPECT_EQ(std::ranges::count(files_, grammar), 1);
