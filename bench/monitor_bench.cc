@@ -48,7 +48,7 @@ void FourRules(benchmark::State& state) {
   const int objects = static_cast<int>(state.range(0));
   const int frames = FramesFor(objects);
   const ChangeLog log = MakeStations(objects, frames, kPeriod_s);
-  Play(state, log, 1.0 * kFourRules * objects * frames, kWatch);
+  Play(state, log, static_cast<double>(harness::FourRules::kCount) * objects * frames, kWatch);
 }
 BENCHMARK(FourRules<ByGrammar>)
     ->Arg(1)
@@ -80,7 +80,8 @@ void Dense(benchmark::State& state) {
   constexpr int kObjects = 1024, kFrames = 1000;
   const ChangeLog log =
       MakeFlicker(kObjects, kFrames, kObjects / static_cast<int>(state.range(0)), Flicker::kFact);
-  Play(state, log, 1.0 * kFourRules * kObjects * (kFrames - 1), kWatch);
+  Play(state, log, static_cast<double>(harness::FourRules::kCount) * kObjects * (kFrames - 1),
+       kWatch);
 }
 BENCHMARK(Dense<ByGrammar>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMillisecond);
 BENCHMARK(Dense<ByHand>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMillisecond);
@@ -122,7 +123,7 @@ void Binding(benchmark::State& state) {
     grammar::Monitor monitor(program, log.entity_table);
     std::vector<grammar::Event> events;
     monitor.AdvanceBy(log[0], events);
-    bindings = monitor.lanes_in_use();
+    bindings = monitor.instances_in_use();
   }
   state.counters["bindings"] =
       benchmark::Counter(bindings, benchmark::Counter::kIsIterationInvariantRate);

@@ -35,7 +35,7 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
                      const std::string& scenario, const std::string& grammar,
                      const OracleComparison& truth);
 
-/// Eight hexadecimal digits that identify a pending golden.
+/// Sixteen hexadecimal digits that identify a pending golden.
 std::string Fingerprint(const Golden& pending);
 
 /// The command that accepts the pending golden with this fingerprint and nothing else.

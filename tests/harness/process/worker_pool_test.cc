@@ -106,14 +106,14 @@ INSTANTIATE_TEST_SUITE_P(
 #ifndef __SANITIZE_ADDRESS__  // its shadow memory alone is above any limit
 WorkerResult RunWithin(std::uint64_t limit_mb, const WorkerJob& job) {
   const WorkerLimits limits{
-      .jobs = 1, .time_limit_s = 10, .memory_limit_bytes = limit_mb * kMegabyte};
+      .jobs = 1, .time_limit_s = 300, .memory_limit_bytes = limit_mb * kMegabyte};
   return RunInWorkers({job}, limits).front();
 }
 
 TEST(WorkerPool, MemoryHasALimit) {
   const WorkerJob greedy = [] { return std::string(1'000'000'000, 'x'); };
   const auto results = RunInWorkers(
-      {greedy, Good}, {.jobs = 1, .time_limit_s = 10, .memory_limit_bytes = 500'000'000});
+      {greedy, Good}, {.jobs = 1, .time_limit_s = 300, .memory_limit_bytes = 500'000'000});
   EXPECT_EQ(results[0].reason, "it needs more memory than 500 MB");
   EXPECT_EQ(results[0].stderr_tail, "");
   EXPECT_TRUE(results[1].finished);
@@ -148,12 +148,12 @@ TEST(WorkerPool, ALibraryThatIsRefusedMemoryEndsNearTheLimit) {
     return Good();
   };
   const auto reason_is = [](const WorkerJob& job, const std::string& end) {
-    const WorkerResult result = RunWithin(500, job);
+    const WorkerResult result = RunWithin(200, job);
     const std::int64_t peak_mb = result.peak_memory_kib * 1024 / 1'000'000;
-    EXPECT_GT(peak_mb, 400);
-    EXPECT_LT(peak_mb, 600);
+    EXPECT_GT(peak_mb, 150);
+    EXPECT_LT(peak_mb, 300);
     EXPECT_EQ(result.reason,
-              end + " at " + std::to_string(peak_mb) + " MB of memory, limit 500 MB");
+              end + " at " + std::to_string(peak_mb) + " MB of memory, limit 200 MB");
   };
   reason_is(does_not_look, "crashed (segmentation fault, signal 11)");
   reason_is(aborts, "aborted (signal 6)");
