@@ -3,8 +3,6 @@
 // in Store() only. Tested by tests/harness/check/check_scenario_test.cc
 #include "harness/check/check_scenario.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 
@@ -36,7 +34,7 @@ std::vector<std::string> OptionsOf(const RunRequest& changes) {
 }
 
 std::string Command(const char* name, const std::string& id, const RunRequest& changes) {
-  std::string command = fmt::format("prehend {} {}", name, ShellQuoted(id));
+  std::string command = CommandText({name, id});
   for (const std::string& option : OptionsOf(changes)) command += " " + option;
   return command;
 }
