@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/command.h"
@@ -20,7 +22,7 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
   const ScenarioLibrary library = ProjectLibrary(context.root);
   for (const ScenarioFile& file : ListScenarios(context.root)) {
     Result<Scenario> read = ReadScenario(file.path, {}, library);
-    diagnostics.insert(diagnostics.end(), read.error().begin(), read.error().end());
+    std::ranges::copy(ErrorsOf(read), std::back_inserter(diagnostics));
     const Scenario scenario = std::move(read).value_or(Scenario{.shows = "(cannot be read)"});
     const std::string id = ScenarioId(file.skill, file.name);
     rows.push_back({id, scenario.shows, fmt::format("{}", fmt::join(scenario.tags, " "))});

@@ -11,7 +11,8 @@ namespace prehend::physics {
 
 inline HandModel LibraryHand(const std::string& name) {
   auto read = harness::ReadHandModel(PREHEND_SOURCE_DIR "/physics/library/" + name + ".hand.yaml");
-  if (!read) throw std::runtime_error("hand file " + name + ": " + harness::ErrorsOf(read).front().message);
+  if (!read)
+    throw std::runtime_error("hand file " + name + ": " + harness::ErrorsOf(read).front().message);
   return std::move(*read);
 }
 
