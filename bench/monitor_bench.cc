@@ -90,8 +90,7 @@ BENCHMARK(Dense<ByHand>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMillisecond)
 void RecordedCarton(benchmark::State& state) {
   const std::string root = FindProjectRoot().value_or(".");
   const LoadedRun carton =
-      *LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root)
-           .value;
+      *LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root);
   const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
   std::size_t events = 0;
   for (auto _ : state)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The passes, in order:
-//   1. depth from the light (solids and paths cast shadows);
+//   1. depth from the light (solids and paths entity table shadows);
 //   2. backdrop, ground, solids, paths into a multisampled buffer;
 //   3. ambient occlusion at half size from its depth, blurred there and multiplied in;
 //   4. hidden parts of paths, faintly; ghosts, each after its own depth so that inner joints do not

@@ -119,7 +119,7 @@ std::optional<Eigen::Vector2f> ToPixel(const View& view, const Vector3f& p_W_m) 
 Matrix4f WorldToLight(const Vector3f& to_light, const Vector3f& center_m, float radius_m) {
   Matrix4f ortho = Matrix4f::Identity();
   ortho.diagonal().head<2>().setConstant(1 / radius_m);
-  // Objects between the light and the sphere may cast shadows into it: the depth range
+  // Objects between the light and the sphere may entity table shadows into it: the depth range
   // starts before them.
   const float near = 0.1f, far = near + 6 * radius_m;
   ortho(2, 2) = -2 / (far - near);

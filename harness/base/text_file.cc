@@ -127,12 +127,12 @@ Diagnostics CheckText(const std::string& file, std::string_view text) {
   return {};
 }
 
-ReadResult<std::string> ReadTextFile(const std::string& path) {
+Result<std::string> ReadTextFile(const std::string& path) {
   const auto refuse = [&](std::string why) {
     Diagnostic diagnostic;
     diagnostic.file = path;
     diagnostic.message = std::move(why);
-    return ReadResult<std::string>{std::nullopt, {diagnostic}};
+    return tl::unexpected(grammar::Diagnostics{diagnostic});
   };
   if (auto why = WhyNotReadable(path); !why.empty()) return refuse(std::move(why));
   std::ifstream stream(path, std::ios::binary);
@@ -140,8 +140,8 @@ ReadResult<std::string> ReadTextFile(const std::string& path) {
   std::string text = WithUnixLineEnds({std::istreambuf_iterator<char>(stream), {}});
   if (stream.bad()) return refuse("cannot be read to its end");
   if (auto diagnostics = CheckText(path, text); !diagnostics.empty())
-    return {std::nullopt, std::move(diagnostics)};
-  return {std::move(text), {}};
+    return tl::unexpected(std::move(diagnostics));
+  return text;
 }
 
 }  // namespace prehend::harness

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
@@ -17,7 +17,7 @@ inline constexpr std::uintmax_t kMaxTextFileBytes = 4u << 20;
 /// The text, without a byte order mark and with CR LF turned into LF. Reports a file that is
 /// missing, unreadable or too large (by its size, without reading it), a directory or device, and
 /// what CheckText() reports.
-ReadResult<std::string> ReadTextFile(const std::string& path);
+Result<std::string> ReadTextFile(const std::string& path);
 
 /// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file).
 grammar::Diagnostics CheckText(const std::string& file, std::string_view text);

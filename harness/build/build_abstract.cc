@@ -8,8 +8,8 @@ namespace {
 /// A camera or a light is a point; bodies have shapes.
 constexpr double kPointRadius_m = 0.005;
 
-/// x ahead, z as far up as that allows; a camera that looks straight up or down has its upper side
-/// at the world's y.
+/// An orientation with x along `way` and z as close to up as possible. A camera that looks straight
+/// up or down has its top towards the world's y.
 Eigen::Quaterniond LookingAlong(const Eigen::Vector3d& way) {
   constexpr double kVertical = 1e-6;
   Eigen::Matrix3d R;

@@ -10,7 +10,8 @@
 
 namespace prehend::harness {
 
-/// The body's shape, and of a camera its pose. `entity` is abstract, the body at its place.
+/// Sets the body's shape and, for a camera, its orientation. `entity` is abstract; the body is at
+/// its position.
 void MakeAbstract(const EntityYaml& entity, physics::Body& body);
 
 /// "a region" for a body without matter, "grains" for grains; "" for a thing.

@@ -11,10 +11,10 @@ namespace {
 
 using physics::JointKind;
 
-/// A relation of every entity to at most one other, without rings.
+/// A relation of each entity to at most one other, without cycles.
 class Relation {
  public:
-  /// `to_itself`: what is wrong with a ring of them, "is part of itself".
+  /// `to_itself` is the message about a cycle: "is part of itself".
   Relation(const ScenarioYaml& entry, std::string to_itself, DiagnosticList& errors)
       : to_itself_(std::move(to_itself)),
         errors_(errors),
@@ -22,7 +22,7 @@ class Relation {
     for (const auto& named : entry.entities) names_.push_back(named.name);
   }
 
-  /// False after complaining.
+  /// False after an error.
   bool Add(std::size_t i, const char* key, const Located<std::string>& name) {
     const auto found = std::find(names_.begin(), names_.end(), name.value);
     if (found == names_.end()) {

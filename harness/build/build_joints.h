@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From entries to joints and parts: what hangs on what, and what belongs to what.
-// Tested by tests/harness/build/build_joints_test.cc
+// From entities to joints and parts: what is attached to what, and what is part of what. Tested by
+// tests/harness/build/build_joints_test.cc
 #pragma once
 
 #include "harness/format/scenario_yaml.h"
@@ -9,12 +9,12 @@
 
 namespace prehend::harness {
 
-/// The joints, in the order of their entities. Complains about entities that are unknown, that hang
-/// on themselves, or that are fixed to something that cannot move.
+/// The joints, in the order of their entities. Reports entities that are unknown, that are attached
+/// to themselves, or that are fixed to something that cannot move.
 std::vector<physics::Joint> BuildJoints(const ScenarioYaml& entry, DiagnosticList& errors);
 
-/// For every entity the index of the one that it is part of, or grammar::kNoEntity. Complains about
-/// unknown names and about entities that are, directly or not, parts of themselves.
+/// For every entity the index of the one that it is part of, or grammar::kNoEntity. Reports unknown
+/// names and entities that are, directly or not, parts of themselves.
 std::vector<int> PartsOf(const ScenarioYaml& entry, DiagnosticList& errors);
 
 }  // namespace prehend::harness

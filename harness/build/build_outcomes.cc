@@ -11,7 +11,7 @@
 namespace prehend::harness {
 namespace {
 
-/// Names to bodies and joints, as far as the scene has them.
+/// Resolves names to bodies and joints of the scene.
 class ConditionBuilder {
  public:
   ConditionBuilder(const physics::Scene& scene, const physics::Script& script,
@@ -43,7 +43,7 @@ class ConditionBuilder {
   }
 
  private:
-  /// -1 after complaining.
+  /// -1 after an error.
   int Find(const char* key, const std::string& name, const Where& where) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     if (found != names_.end()) return static_cast<int>(found - names_.begin());

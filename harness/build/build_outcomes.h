@@ -13,8 +13,7 @@
 
 namespace prehend::harness {
 
-/// Complains about unknown entities, about joints that are asked for but not there, and about
-/// moments after the end.
+/// Reports unknown entities, conditions on joints of entities without one, and times after the end.
 std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<ConditionYaml>>>& entries,
                                    const physics::Scene& scene, const physics::Script& script,
                                    DiagnosticList& errors);

@@ -63,7 +63,7 @@ struct PersonStepMaker {
   }
 
  private:
-  /// Whether a body is her head or another part of her; those of a person follow her head.
+  /// Whether a body is a part of this person. Her parts follow her head in the scene's bodies.
   bool IsHers(std::size_t body) const {
     const auto next = std::ranges::find_if(
         scene.persons, [&](const physics::Person& other) { return other.head > person.head; });

@@ -8,8 +8,7 @@
 
 namespace prehend::harness {
 
-/// Complains about a step that is for hands, about things to look at that are not there, and about
-/// limbs that are not free to go.
+/// Reports steps that are for hands, unknown entities to look at, and limbs that follow a hand.
 physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,
                                    const physics::Scene& scene, DiagnosticList& errors);
 

@@ -9,9 +9,8 @@
 
 namespace prehend::harness {
 
-/// Adds the persons and, after all other bodies, their parts to a scene that has its hands.
-/// Complains about hands that are not there or belong to two arms, and about parts whose names are
-/// taken.
+/// Adds the persons and, after all other bodies, their parts to a scene that has its hands. Reports
+/// hands that are unknown or belong to two arms, and parts whose names are taken.
 void AddPersons(const ScenarioYaml& entry, physics::Scene& scene, DiagnosticList& errors);
 
 }  // namespace prehend::harness

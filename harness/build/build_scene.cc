@@ -47,7 +47,7 @@ std::vector<physics::PlacedShape> ShapesOf(const EntityYaml& entity) {
   return shapes;
 }
 
-/// Everything but the place.
+/// Everything except the position.
 physics::Body MakeBody(const Named<EntityYaml>& named) {
   const EntityYaml& entity = named.value;
   physics::Body body;
@@ -70,12 +70,12 @@ physics::Body MakeBody(const Named<EntityYaml>& named) {
   return body;
 }
 
-/// 1: as it is built; -1: on its head.
+/// Cosine of the tilt: 1 upright, -1 upside down.
 double Uprightness(const physics::Body& body) { return (body.X_WB.q * Vector3d::UnitZ()).z(); }
 constexpr double kUpright = 0.999;
 
-/// Is the point above the body? An upright body is asked in its own axes, a tilted one by its world
-/// box.
+/// Whether the point is above the body: for an upright body in its own axes, for a tilted one by
+/// its box in the world.
 bool StandsAbove(const physics::Body& support, const Eigen::Vector2d& p_W) {
   const Vector3d top_W(p_W.x(), p_W.y(), support.X_WB.p_m.z());
   if (std::abs(Uprightness(support)) < kUpright) {
@@ -90,7 +90,7 @@ bool StandsAbove(const physics::Body& support, const Eigen::Vector2d& p_W) {
   return std::abs(offset.x()) <= box.half_size_m.x() && std::abs(offset.y()) <= box.half_size_m.y();
 }
 
-/// The same place, higher than anything.
+/// The same point, higher than any body.
 physics::Pose Above(physics::Pose X_WB) {
   X_WB.p_m.z() = 1e6;
   return X_WB;
@@ -110,7 +110,7 @@ class Stacking {
 
   /// Iterative, since a stack may be thousands high.
   void Place(std::size_t i) {
-    std::vector<std::size_t> above;  // to be placed when their support is
+    std::vector<std::size_t> above;  // placed once their support is
     std::optional<std::size_t> next = i;
     while (next && progress_[*next] == Progress::kWaiting) {
       progress_[*next] = Progress::kBegun;
@@ -157,7 +157,7 @@ class Stacking {
     return found->second;
   }
 
-  /// Of what has been placed already and is a thing.
+  /// The index of a physical body that has been placed already.
   const physics::Body* Placed(const std::optional<Located<std::string>>& name) const {
     const auto found = name ? index_.find(name->value) : index_.end();
     if (found == index_.end() || progress_[found->second] != Progress::kDone) return nullptr;
@@ -169,7 +169,7 @@ class Stacking {
     const EntityYaml& entity = entry_.entities[i].value;
     physics::Body& body = bodies[i];
     const physics::Body* vessel = Placed(entity.in);
-    if (!vessel || !entity.grains) return;  // was complained about
+    if (!vessel || !entity.grains) return;  // already reported
     if (Uprightness(*vessel) < kUpright) {
       return errors_.Add(entity.in->where, fmt::format("in: '{}' is not upright", vessel->name));
     }
@@ -201,7 +201,7 @@ class Stacking {
     const EntityYaml& entity = entry_.entities[i].value;
     physics::Body& body = bodies[i];
     const std::vector<double>& at = entity.at_m.value;
-    if (at.size() < 2) return;  // was complained about
+    if (at.size() < 2) return;  // already reported
     body.X_WB.p_m = {at[0], at[1], at.size() > 2 ? at[2] : 0};
     const physics::Body* placed = Placed(entity.on);
     if (!placed) return;  // unknown or cyclic

@@ -17,7 +17,7 @@
 namespace prehend::harness {
 namespace {
 
-/// So far outside of a thing a point to grasp may be: written numbers are rounded.
+/// How far outside an entity a point to grasp may be, since written numbers are rounded.
 constexpr double kMaxOutside_m = 0.005;
 
 template <class T>
@@ -40,7 +40,7 @@ physics::TimedPose TimedPoseOf(const PoseYaml& pose) {
   return timed;
 }
 
-/// Makes one step of each kind of entry; the names in it must be among those of the scenario.
+/// Builds a step from each kind of entry; the names in it must be those of the scenario.
 struct StepMaker {
   const std::vector<std::string>& entities;
   const physics::Scene& scene;
@@ -104,7 +104,7 @@ struct StepMaker {
   }
 
  private:
-  /// Complains about what does not exist or is no thing.
+  /// Reports entities that do not exist or are not physical objects.
   void CheckEntity(const char* key, const Located<std::string>& name) const {
     const auto found = std::find(entities.begin(), entities.end(), name.value);
     if (found != entities.end()) {
@@ -120,7 +120,7 @@ struct StepMaker {
                           name.value, entities);
   }
 
-  /// A point to grasp has to be on the thing or in it.
+  /// A point to grasp must be on or in the entity.
   void CheckPoint(const ReachYaml& e) const {
     const auto found = std::find(entities.begin(), entities.end(), e.reach.value);
     if (!e.point_m || found == entities.end()) return;
@@ -136,7 +136,7 @@ struct StepMaker {
 
   void CheckJoint(const Located<std::string>& name) const {
     const auto found = std::find(entities.begin(), entities.end(), name.value);
-    if (found == entities.end()) return;  // was complained about
+    if (found == entities.end()) return;  // already reported
     const int joint = physics::JointThatMoves(scene, static_cast<int>(found - entities.begin()));
     if (joint >= 0 &&
         scene.joints[static_cast<std::size_t>(joint)].kind != physics::JointKind::kBall)
@@ -152,7 +152,7 @@ struct StepMaker {
     return {0, std::move(step), over_s};
   }
 
-  /// Null after complaining, and when the hand is not known.
+  /// Null after an error, and when the hand is unknown.
   const physics::GraspStyle* FindStyle(const std::string& name, const Where& where) const {
     if (!model || model->styles.empty()) return nullptr;
     const int style = physics::FindStyle(*model, name);
@@ -182,7 +182,7 @@ double DurationOf(const physics::ScriptStage& stage) {
   return longest_s;
 }
 
-/// Limits that concern the script as a whole, at the stage where they are passed.
+/// Checks the limits of the whole script; the error is at the stage that exceeds them.
 void CheckLength(const ScenarioYaml& entry, const physics::Script& script, DiagnosticList& errors) {
   double total_s = script.settle_s;
   std::size_t poses = 0;
@@ -201,13 +201,13 @@ void CheckLength(const ScenarioYaml& entry, const physics::Script& script, Diagn
   }
 }
 
-/// What a hand's steps so far allow the next one to take for granted.
+/// What the earlier steps of a hand guarantee to the next one.
 struct HandSoFar {
   std::string reached;  ///< the entity last reached for
   bool closed = false;  ///< its grip has been commanded
 };
 
-/// Steps about the held thing need a hand that may hold something.
+/// Steps that move a held object need a hand that may hold one.
 void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
   std::map<std::string, HandSoFar> hands;
   const auto check_holds = [&](const std::string& key, const Named<StepYaml>& step,

@@ -9,13 +9,13 @@
 
 namespace prehend::harness {
 
-/// Complains about unknown actors, entities and styles, about approaches a style does not have, and
-/// about a script that is too long. `scene` has the hands and persons of `entry`, in that order;
-/// hands without styles are not checked for theirs.
+/// Reports unknown actors, entities and styles, approaches that a style does not have, and a script
+/// that is too long. `scene` has the hands and persons of `entry`, in that order; hands without
+/// styles are not checked for theirs.
 physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
                             DiagnosticList& errors);
 
-/// How long the script takes, with what is simulated after it.
+/// Duration of the script in seconds, including the time simulated after it.
 double DurationOf(const physics::Script& script);
 
 /// A way-point as the hand's pose.

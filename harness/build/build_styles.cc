@@ -25,9 +25,9 @@ class StyleBuilder {
   std::vector<std::vector<double>> JointNumbers(const Located<PerDigit>& numbers,
                                                 bool one_is_enough, Concerned concerned);
   std::vector<std::vector<double>> FramesOf(const Named<StyleYaml>& style);
-  /// Complains about joints that are to go where their limits do not let them.
+  /// Reports joint targets outside the joint's limits.
   void CheckRanges(const Located<PerDigit>& frame, const char* unit);
-  /// False after complaining about a digit that the hand does not have.
+  /// False after an error: the hand has no such digit.
   bool CheckDigitNames(const Located<PerDigit>& numbers);
 
   const std::vector<Named<DigitYaml>>& digits_;
@@ -104,7 +104,7 @@ void StyleBuilder::CheckRanges(const Located<PerDigit>& frame, const char* unit)
   }
 }
 
-/// From open to closed, one number per link; empty after complaining.
+/// From open to closed, one number per link; empty after an error.
 std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleYaml>& style) {
   const auto& angles = style.value.frames_deg;
   const auto& ways = style.value.frames_m;

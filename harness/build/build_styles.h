@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grasp styles as they are written -> ordered frames of joint targets, and effort. Tested by
+// From grasp styles as written to ordered frames of joint targets, and effort. Tested by
 // tests/harness/read/read_hand_model_test.cc
 #pragma once
 
@@ -9,10 +9,10 @@
 
 namespace prehend::harness {
 
-/// What becomes of a style of the same name as an earlier one.
+/// How a style with the name of an earlier one is treated.
 enum class SameName { kIsRefused, kTakesItsPlace };
 
-/// Of a hand with these digits.
+/// Appends the styles of a hand with these digits to `to`.
 void AddStyles(const std::vector<Named<DigitYaml>>& digits,
                const std::vector<Named<StyleYaml>>& styles, SameName rule, DiagnosticList& errors,
                std::vector<physics::GraspStyle>& to);

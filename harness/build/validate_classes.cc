@@ -11,19 +11,19 @@
 namespace prehend::harness {
 namespace {
 
-/// The class that this one is a kind of; nullptr when that is not said.
-const Named<Located<std::string>>* KindOf(const ScenarioYaml& entry,
+/// The declaration of this class and its base class; null if there is none.
+const Named<Located<std::string>>* BaseOf(const ScenarioYaml& entry,
                                           const std::string& class_name) {
   const auto found =
       std::ranges::find(entry.classes, class_name, &Named<Located<std::string>>::name);
   return found == entry.classes.end() ? nullptr : &*found;
 }
 
-bool IsKindOfItself(const ScenarioYaml& entry, const Named<Located<std::string>>& kind) {
+bool IsItsOwnBase(const ScenarioYaml& entry, const Named<Located<std::string>>& kind) {
   const Named<Located<std::string>>* next = &kind;
   for (std::size_t steps = 0; next && steps <= entry.classes.size(); ++steps) {
     if (next->value.value == kind.name) return true;
-    next = KindOf(entry, next->value.value);
+    next = BaseOf(entry, next->value.value);
   }
   return false;
 }
@@ -31,7 +31,7 @@ bool IsKindOfItself(const ScenarioYaml& entry, const Named<Located<std::string>>
 }  // namespace
 
 void ValidateClasses(const ScenarioYaml& entry, DiagnosticList& errors) {
-  std::vector<std::string> used;  // classes that something is of
+  std::vector<std::string> used;  // classes that an entity or another class has
   for (const auto& entity : entry.entities) used.push_back(entity.value.class_name.value);
   for (const auto& kind : entry.classes) used.push_back(kind.value.value);
   for (const auto& kind : entry.classes) {
@@ -45,7 +45,7 @@ void ValidateClasses(const ScenarioYaml& entry, DiagnosticList& errors) {
       errors.AddUnknownName(kind.name_where,
                             fmt::format("classes: no entity has the class '{}'", kind.name),
                             kind.name, used);
-    if (IsKindOfItself(entry, kind))
+    if (IsItsOwnBase(entry, kind))
       errors.Add(kind.value.where,
                  fmt::format("classes: '{}' is, directly or not, its own base class", kind.name));
   }

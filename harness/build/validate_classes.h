@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the classes that a scenario writes can be. Tested by tests/harness/build/classes_test.cc
+// Validates the classes that a scenario declares. Tested by tests/harness/build/classes_test.cc
 #pragma once
 
 #include "harness/format/scenario_yaml.h"
@@ -7,7 +7,7 @@
 
 namespace prehend::harness {
 
-/// Complains about kinds of themselves, and about classes that nothing is of.
+/// Reports classes that are their own base class, and classes that no entity has.
 void ValidateClasses(const ScenarioYaml& entry, DiagnosticList& errors);
 
 }  // namespace prehend::harness

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sort and sweep along x, then separating axes. Complains once per thing, so that a mess stays
-// readable. Tested by tests/harness/read/read_scenario_test.cc
+// Sort and sweep along x, then separating axes. Each body is reported once, so that the output
+// stays readable. Tested by tests/harness/read/read_scenario_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kMaxOverlap_m = 0.001;  // as deep as collision margins hide
+constexpr double kMaxOverlap_m = 0.001;  // hidden by the collision margins
 
 /// A body or a hand.
 struct Occupant {
@@ -42,7 +42,7 @@ Occupant OccupantOf(const physics::Body& body, Where where) {
                     .person = body.kinematic,
                     .solids = {},
                     .bounds = {}};
-  if (body.abstract != physics::Abstract::kNot) return occupant;  // there is room for others
+  if (body.abstract != physics::Abstract::kNot) return occupant;  // it takes no space
   for (const auto& placed : body.shapes) AddSolid(placed.shape, body.X_WB * placed.X_BS, occupant);
   if (!body.grains) return occupant;
   occupant.grains = true;
@@ -78,13 +78,13 @@ double Depth(const Occupant& a, const Occupant& b) {
   return deepest;
 }
 
-/// Bodies on the two sides of a joint never touch: a drawer may stand in its cabinet.
+/// Bodies on the two sides of a joint never collide: a drawer may overlap its cabinet.
 bool Joined(const physics::Scene& scene, std::size_t a, std::size_t b) {
   if (std::max(a, b) >= scene.bodies.size()) return false;
   return physics::NeverTouch(scene, static_cast<int>(a), static_cast<int>(b));
 }
 
-/// A person goes through what is fixed, through hands and other persons.
+/// A person does not collide with fixed bodies, hands and other persons.
 bool MayOverlap(const Occupant& a, const Occupant& b) {
   if (!a.person) return b.person && MayOverlap(b, a);
   return b.person || b.hand || b.fixed;

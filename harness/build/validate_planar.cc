@@ -16,10 +16,10 @@ namespace {
 
 constexpr double kOnPlane_m = 1e-6;
 
-/// The hint for a place or a way.
+/// The hint for a position or a displacement.
 constexpr const char* kZeroY = "y must be 0 in a planar world";
 
-/// The places of the joint that an entity hangs on.
+/// Where the keys of an entity's joint are.
 Where JointPlace(const EntityYaml& entity) {
   if (entity.slider) return entity.slider->where;
   if (entity.hinge) return entity.hinge->where;
@@ -30,7 +30,7 @@ const char* RemedyFor(physics::JointKind kind) {
   return kind == physics::JointKind::kSlider ? "axis: [x, 0, z]" : "hinge with axis: [0, 1, 0]";
 }
 
-/// Asks the steps of one actor after another whether they stay in the plane.
+/// Checks for each actor's steps whether they stay in the plane.
 struct StepCheck {
   const physics::Scene& scene;
   const physics::Hand& hand;

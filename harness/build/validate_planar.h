@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a planar world cannot play: whatever stands beside, reaches out of or turns out of the plane
-// y = 0. Tested by tests/harness/build/validate_planar_test.cc
+// What a planar world cannot simulate: everything outside the plane y = 0, or that moves or rotates
+// out of it. Tested by tests/harness/build/validate_planar_test.cc
 #pragma once
 
 #include "harness/format/scenario_yaml.h"
@@ -9,8 +9,8 @@
 
 namespace prehend::harness {
 
-/// Complains about everything in the scenario that does not stay in the plane. The scene is the one
-/// that was built of `entry`; bodies, hands and joints stand in the order of their entries.
+/// Reports everything in the scenario that does not stay in the plane. The scene is the one that
+/// was built of `entry`; bodies, hands and joints stand in the order of their entries.
 void ValidatePlanar(const ScenarioYaml& entry, const physics::Scene& scene, DiagnosticList& errors);
 
 }  // namespace prehend::harness

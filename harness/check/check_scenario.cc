@@ -3,8 +3,6 @@
 // in Store() only. Tested by tests/harness/check/check_scenario_test.cc
 #include "harness/check/check_scenario.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 
@@ -36,7 +34,7 @@ std::vector<std::string> OptionsOf(const RunRequest& changes) {
 }
 
 std::string Command(const char* name, const std::string& id, const RunRequest& changes) {
-  std::string command = fmt::format("prehend {} {}", name, ShellQuoted(id));
+  std::string command = CommandText({name, id});
   for (const std::string& option : OptionsOf(changes)) command += " " + option;
   return command;
 }
@@ -128,12 +126,12 @@ void JudgeAgainstGolden(const CheckRequest& request, const CheckedRun& checked,
                         const FileHashes& inputs, Judgement& judgement) {
   std::optional<Golden> golden;
   if (request.in_project) {
-    ReadResult<Golden> read = GoldenFiles(request.root).ReadGoldenOf(request.id);
-    if (!read.diagnostics.empty()) {
+    auto read = GoldenFiles(request.root).ReadGoldenOf(request.id);
+    if (!read) {
       return judgement.findings.push_back(
-          {ExitCode::kBadInput, "the golden cannot be read", Format(read.diagnostics)});
+          {ExitCode::kBadInput, "the golden cannot be read", Format(read.error())});
     }
-    golden = std::move(read.value);
+    golden = std::move(*read);
   }
   judgement.golden = CompareWithGolden(golden, checked);
   if (judgement.golden->Differs()) judgement.cause = CauseOf(request, checked, inputs);
@@ -190,19 +188,19 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.command = RepeatCommand(request.id, request.run);
   verdict.explain = ExplainCommand(request.id, request.run);
   std::vector<std::string> files;
-  ReadResult<LoadedRun> loaded = LoadRun(request.run, request.root, &files);
-  std::ranges::move(FilesOfGolden(request, loaded.value ? &loaded.value->scenario : nullptr),
+  Result<LoadedRun> loaded = LoadRun(request.run, request.root, &files);
+  std::ranges::move(FilesOfGolden(request, loaded ? &loaded->scenario : nullptr),
                     std::back_inserter(files));
   verdict.inputs = HashFiles(files);
-  if (!loaded.value) {
-    Conclude({{ExitCode::kBadInput, "cannot be read", Format(loaded.diagnostics)}}, verdict);
+  if (!loaded) {
+    Conclude({{ExitCode::kBadInput, "cannot be read", Format(loaded.error())}}, verdict);
     verdict.command = Command("validate", request.id, request.run);
     return verdict;
   }
 
   CheckedRun checked{.id = request.id,
                      .in_project = request.in_project,
-                     .loaded = std::move(*loaded.value),
+                     .loaded = std::move(*loaded),
                      .result = {},
                      .explain = verdict.explain};
   checked.result = Play(request, checked.loaded);

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <random>
 
+#include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
 #include "harness/check/check_scenario.h"
 #include "harness/check/last_pass.h"
@@ -172,7 +173,7 @@ class Suite {
     verdict.exit_code = ExitCode::kDiffers;
     verdict.reason = "a golden without scenario";
     verdict.details = Text(orphan);
-    verdict.command = "prehend check";
+    verdict.command = CommandText({"check"});
     return verdict;
   }
 

@@ -25,9 +25,8 @@ bool Matches(const std::string& pattern, const ScenarioFile& file) {
 
 /// A file that cannot be read has no tags; it is still checked when it is named.
 bool HasTag(const ScenarioFile& file, const std::string& tag, const ScenarioLibrary& library) {
-  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, library);
-  return scenario.value &&
-         std::count(scenario.value->tags.begin(), scenario.value->tags.end(), tag) > 0;
+  const Result<Scenario> scenario = ReadScenario(file.path, {}, library);
+  return scenario && std::count(scenario->tags.begin(), scenario->tags.end(), tag) > 0;
 }
 
 bool PassesFilter(const ScenarioFile& file, const std::string& filter,
@@ -48,9 +47,8 @@ std::string WhyNonePasses(const std::string& filter, const std::vector<ScenarioF
     return some ? "" : "--filter: no scenario matches '" + filter + "'";
   std::vector<std::string> tags;
   for (const ScenarioFile& file : all) {
-    const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, library);
-    if (scenario.value)
-      tags.insert(tags.end(), scenario.value->tags.begin(), scenario.value->tags.end());
+    const Result<Scenario> scenario = ReadScenario(file.path, {}, library);
+    if (scenario) tags.insert(tags.end(), scenario->tags.begin(), scenario->tags.end());
   }
   const std::string tag = filter.substr(kTag.size());
   const std::string near = grammar::NearestName(tag, tags);

@@ -135,35 +135,35 @@ std::string ScenarioOfGoldenAt(const std::string& path, const std::string& root)
 
 grammar::Diagnostics CheckGoldenFile(const std::string& path, const std::string& id,
                                      const LoadedRun& loaded) {
-  ReadResult<std::string> text = ReadTextFile(path);
-  if (!text.value) return std::move(text.diagnostics);
-  ReadResult<Golden> golden = ReadGolden(path, *text.value);
-  if (!golden.value) return std::move(golden.diagnostics);
-  grammar::Diagnostics other = OfAnotherScenario(path, *text.value, *golden.value, id);
+  Result<std::string> text = ReadTextFile(path);
+  if (!text) return std::move(text.error());
+  Result<Golden> golden = ReadGolden(path, *text);
+  if (!golden) return std::move(golden.error());
+  grammar::Diagnostics other = OfAnotherScenario(path, *text, *golden, id);
   if (!other.empty()) return other;
-  GoldenChecker checker(path, *text.value, loaded);
-  checker.CheckGrammar(golden.value->grammar, loaded.scenario.grammar);
-  for (const GoldenEvent& line : golden.value->events) checker.CheckLine(line);
+  GoldenChecker checker(path, *text, loaded);
+  checker.CheckGrammar(golden->grammar, loaded.scenario.grammar);
+  for (const GoldenEvent& line : golden->events) checker.CheckLine(line);
   return checker.Take();
 }
 
 grammar::Diagnostics CheckGoldenAlone(const std::string& path, const std::string& root,
                                       std::vector<std::string>& inputs) {
   inputs.push_back(path);
-  ReadResult<std::string> text = ReadTextFile(path);
-  if (!text.value) return std::move(text.diagnostics);
-  ReadResult<Golden> golden = ReadGolden(path, *text.value);
-  if (!golden.value) return std::move(golden.diagnostics);
+  Result<std::string> text = ReadTextFile(path);
+  if (!text) return std::move(text.error());
+  Result<Golden> golden = ReadGolden(path, *text);
+  if (!golden) return std::move(golden.error());
   const std::string of = ScenarioOfGoldenAt(path, root);
-  const std::string& id = of.empty() ? golden.value->scenario : of;
+  const std::string& id = of.empty() ? golden->scenario : of;
   const std::vector<ScenarioFile> all = ListScenarios(root);
   const auto scenario = std::ranges::find(all, id, IdOf);
   if (scenario == all.end()) {
-    return {grammar::DiagnosticAt(path, *text.value, ScenarioLine(*text.value),
+    return {grammar::DiagnosticAt(path, *text, ScenarioLine(*text),
                                   "there is no scenario '" + id + "'", HintForScenario(all, id))};
   }
-  const ReadResult<LoadedRun> loaded = LoadRun({.scenario_file = scenario->path}, root, &inputs);
-  return loaded.value ? CheckGoldenFile(path, id, *loaded.value) : loaded.diagnostics;
+  const Result<LoadedRun> loaded = LoadRun({.scenario_file = scenario->path}, root, &inputs);
+  return loaded ? CheckGoldenFile(path, id, *loaded) : loaded.error();
 }
 
 }  // namespace prehend::harness

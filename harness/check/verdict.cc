@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "harness/base/shell_quote.h"
 #include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
@@ -32,7 +33,8 @@ std::string_view Name(Verdict verdict) {
 }
 
 std::string_view CommandLabel(const ScenarioVerdict& verdict) {
-  return verdict.verdict == Verdict::kPending && verdict.command.starts_with("prehend review")
+  return verdict.verdict == Verdict::kPending &&
+                 verdict.command.starts_with(CommandText({"review"}))
              ? "next"
              : "again";
 }

@@ -92,8 +92,8 @@ void LeaveBaseline(const CommandContext& context, const Played& played) {
 std::string NotWhatWasShown(const ParsedOptions& options, const CommandContext& context,
                             const Golden& pending) {
   const std::string now = Fingerprint(pending);
-  const ReadResult<Golden> waiting = GoldenFiles(context.root).ReadPendingOf(pending.scenario);
-  const std::string shown = waiting.value ? Fingerprint(*waiting.value) : now;
+  const auto waiting = GoldenFiles(context.root).ReadPendingOf(pending.scenario);
+  const std::string shown = waiting && *waiting ? Fingerprint(**waiting) : now;
   const std::string reviewed = options.Has("--reviewed") ? options.Text("--reviewed") : shown;
   if (reviewed == now) return "";
   if (reviewed == shown)
@@ -181,8 +181,8 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
         context, ExitCode::kBadInput,
         "'" + typed +
             "' may match several scenarios; accept takes one scenario at a time, by name");
-  const auto [file, not_found] = FindScenarioOrComplain(typed, context);
-  if (!file) return not_found;
+  const auto file = FindScenarioOrComplain(typed, context);
+  if (!file) return file.error();
   if (!file->in_project) {
     return Complain(context, ExitCode::kBadInput,
                     "only scenarios in scenarios/ have goldens; move the file there and accept it "
@@ -191,13 +191,12 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
   Played played;
   played.id = ScenarioId(file->skill, file->name);
   played.files = {GoldenFiles(context.root).GoldenPath(played.id).string()};
-  ReadResult<LoadedRun> loaded =
-      LoadRun({.scenario_file = file->path}, context.root, &played.files);
-  if (!loaded.value) return Complain(context, loaded.diagnostics);
-  played.loaded = std::move(*loaded.value);
-  ReadResult<Golden> old = GoldenFiles(context.root).ReadGoldenOf(played.id);
-  if (!old.diagnostics.empty()) return Complain(context, old.diagnostics);
-  played.old = std::move(old.value);
+  Result<LoadedRun> loaded = LoadRun({.scenario_file = file->path}, context.root, &played.files);
+  if (!loaded) return Complain(context, loaded.error());
+  played.loaded = std::move(*loaded);
+  auto old = GoldenFiles(context.root).ReadGoldenOf(played.id);
+  if (!old) return Complain(context, old.error());
+  played.old = std::move(*old);
   if (options.Has("--pictures") && !played.old) {
     return Complain(
         context, ExitCode::kPending,

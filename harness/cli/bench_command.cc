@@ -55,14 +55,14 @@ OrderedJson FigureJson(const SpeedFigure& f) {
 }
 
 ExitCode RunBench(const ParsedOptions& options, const CommandContext& context) {
-  const ReadResult<std::vector<SpeedFigure>> measured =
+  const Result<std::vector<SpeedFigure>> measured =
       MeasureSpeed(context.root, options.Has("--quick"));
-  if (!measured.value) return Complain(context, measured.diagnostics);
+  if (!measured) return Complain(context, measured.error());
   std::vector<std::vector<std::string>> rows = {{"what", "takes", "per", "per_second",
                                                  "times_baseline", "events/s", "times_real_time",
                                                  "of_physics", "result"}};
   OrderedJson list = OrderedJson::array();
-  for (const SpeedFigure& figure : *measured.value) {
+  for (const SpeedFigure& figure : *measured) {
     rows.push_back(Cells(figure));
     list.push_back(FigureJson(figure));
   }
@@ -73,7 +73,7 @@ ExitCode RunBench(const ParsedOptions& options, const CommandContext& context) {
     context.out << "On one core. times_baseline: speed relative to a hand-written baseline, which "
                    "recognises the same events in the same run.\n";
   }
-  const bool agrees = std::ranges::all_of(*measured.value, &SpeedFigure::agrees);
+  const bool agrees = std::ranges::all_of(*measured, &SpeedFigure::agrees);
   if (agrees) return ExitCode::kAgrees;
   return Complain(context, ExitCode::kDiffers,
                   "the grammar and the hand-written baseline recognise different events");

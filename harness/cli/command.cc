@@ -51,10 +51,11 @@ std::optional<ExitCode> RefuseRecording(const std::string& typed, const CommandC
                       "', 'explain' or 'tracks'");
 }
 
-FoundScenario FindScenarioOrComplain(const std::string& typed, const CommandContext& context) {
-  if (const auto refused = RefuseRecording(typed, context)) return {{}, *refused};
+tl::expected<ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& typed,
+                                                            const CommandContext& context) {
+  if (const auto refused = RefuseRecording(typed, context)) return tl::unexpected(*refused);
   const std::vector<ScenarioFile> scenarios = ListScenarios(context.root);
-  if (const auto path = FindScenario(scenarios, typed)) return {ScenarioAt(scenarios, *path)};
+  if (const auto path = FindScenario(scenarios, typed)) return ScenarioAt(scenarios, *path);
   std::string message = "no scenario '" + typed + "'";
   const std::string hint = HintForScenario(scenarios, typed);
   if (!hint.empty()) message += "; " + hint;
@@ -64,22 +65,24 @@ FoundScenario FindScenarioOrComplain(const std::string& typed, const CommandCont
     corrected = context.words;
     std::ranges::replace(corrected, typed, near);
   }
-  return {{}, ComplainWithCorrection(context, ExitCode::kNothing, message, corrected)};
+  return tl::unexpected(ComplainWithCorrection(context, ExitCode::kNothing, message, corrected));
 }
 
-OpenedEpisode OpenEpisodeOrComplain(const ParsedOptions& options, const CommandContext& context) {
+tl::expected<EpisodeSource, ExitCode> OpenEpisodeOrComplain(const ParsedOptions& options,
+                                                            const CommandContext& context) {
   const std::string typed = options.Text("scenario");
   const RunRequest request = RequestOf(options, typed);
-  ReadResult<EpisodeSource> source;
+  const auto reported = [&](const grammar::Diagnostics& diagnostics) {
+    return Complain(context, diagnostics);
+  };
   if (IsRecording(typed)) {
-    source = OpenRecording(typed, request.grammar, request.settings, context.root);
-  } else {
-    const FoundScenario file = FindScenarioOrComplain(typed, context);
-    if (!file.value) return {std::nullopt, file.exit_code};
-    source = OpenScenario(file.value->path, request.grammar, request.settings, context.root);
+    return OpenRecording(typed, request.grammar, request.settings, context.root)
+        .map_error(reported);
   }
-  if (!source.value) return {std::nullopt, Complain(context, source.diagnostics)};
-  return {std::move(source.value), ExitCode::kAgrees};
+  const auto file = FindScenarioOrComplain(typed, context);
+  if (!file) return tl::unexpected(file.error());
+  return OpenScenario(file->path, request.grammar, request.settings, context.root)
+      .map_error(reported);
 }
 
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message) {

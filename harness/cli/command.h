@@ -8,6 +8,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <tl/expected.hpp>
 #include <vector>
 
 #include "grammar/base/diagnostic.h"
@@ -68,20 +69,15 @@ RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_f
 /// Reports a file that is a recording where a scenario is wanted; nothing of any other.
 std::optional<ExitCode> RefuseRecording(const std::string& typed, const CommandContext& context);
 
-/// The scenario that was typed, by name or path; otherwise reports the nearest name.
-struct FoundScenario {
-  std::optional<ScenarioFile> value;
-  ExitCode exit_code = ExitCode::kAgrees;
-};
-FoundScenario FindScenarioOrComplain(const std::string& typed, const CommandContext& context);
+/// The scenario that was typed, by name or path; otherwise, after reporting the nearest name, the
+/// exit code.
+tl::expected<ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& typed,
+                                                            const CommandContext& context);
 
 /// The episode that was typed for `scenario`, a scenario or a recording, with the run options;
-/// otherwise reports why there is none.
-struct OpenedEpisode {
-  std::optional<EpisodeSource> value;
-  ExitCode exit_code = ExitCode::kAgrees;
-};
-OpenedEpisode OpenEpisodeOrComplain(const ParsedOptions& options, const CommandContext& context);
+/// otherwise, after reporting why there is none, the exit code.
+tl::expected<EpisodeSource, ExitCode> OpenEpisodeOrComplain(const ParsedOptions& options,
+                                                            const CommandContext& context);
 
 /// Prints "prehend: MESSAGE" to `err`, of a failure also the command that shows it again, and
 /// returns `code`.

@@ -100,20 +100,20 @@ ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context)
                     "--event contradicts --expected; give one of them");
   }
   const auto source = OpenEpisodeOrComplain(options, context);
-  if (!source.value) return source.exit_code;
+  if (!source) return source.error();
 
   Question question;
   for (const auto& [option, ask] :
        {std::pair{"--event", &question.event}, std::pair{"--expected", &question.expected}}) {
     if (!options.Has(option)) continue;
-    const ReadResult<Ask> read = explain::ParseAsk(
-        option, options.Text(option), *source.value->program, source.value->entity_table);
-    if (!read.value) return Complain(context, read.diagnostics);
-    *ask = *read.value;
+    const Result<Ask> read =
+        explain::ParseAsk(option, options.Text(option), *source->program, source->entity_table);
+    if (!read) return Complain(context, read.error());
+    *ask = *read;
   }
-  const explain::Watched watched = explain::Watch(*source.value);
+  const explain::Watched watched = explain::Watch(*source);
   if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
-  const ExitCode code = Answer(options, context, source.value->name, question, *watched.past);
+  const ExitCode code = Answer(options, context, source->name, question, *watched.past);
   if (watched.failure.empty() || code != ExitCode::kAgrees) return code;
   return Complain(context, ExitCode::kFailure, watched.failure);
 }
@@ -122,8 +122,7 @@ ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context)
 
 Command ExplainCommand() {
   return {.name = "explain",
-          .summary =
-              "NotifyWatchers why events began and ended when they did, or why one did not happen",
+          .summary = "Explain why events began and ended when they did, or why one did not happen",
           .examples = {"explain milk_carton_wrap", "explain milk_carton_wrap --event reaching@0.5s",
                        "explain milk_carton_wrap --expected 'sliding right_hand milk @2.0s'",
                        "explain milk_carton_wrap --set lift_rise=40cm --expected picking_up --json",

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/command.h"
@@ -19,9 +21,9 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
   grammar::Diagnostics diagnostics;
   const ScenarioLibrary library = ProjectLibrary(context.root);
   for (const ScenarioFile& file : ListScenarios(context.root)) {
-    ReadResult<Scenario> read = ReadScenario(file.path, {}, library);
-    diagnostics.insert(diagnostics.end(), read.diagnostics.begin(), read.diagnostics.end());
-    const Scenario scenario = std::move(read.value).value_or(Scenario{.shows = "(cannot be read)"});
+    Result<Scenario> read = ReadScenario(file.path, {}, library);
+    std::ranges::copy(ErrorsOf(read), std::back_inserter(diagnostics));
+    const Scenario scenario = std::move(read).value_or(Scenario{.shows = "(cannot be read)"});
     const std::string id = ScenarioId(file.skill, file.name);
     rows.push_back({id, scenario.shows, fmt::format("{}", fmt::join(scenario.tags, " "))});
     list.push_back({{"scenario", id},

@@ -61,20 +61,22 @@ struct Model {
 std::optional<std::string> Composed(const Model& model, const std::filesystem::path& path,
                                     const CommandContext& context) {
   const ScenarioLibrary library = ProjectLibrary(context.root);
-  const ReadResult<Scenario> as_it_is = ReadScenarioText(model.path, model.text, {}, library);
-  ReadResult<std::string> copy = as_it_is.value ? CopyOfScenario(model.path, model.text, path)
-                                                : ReadResult<std::string>{{}, as_it_is.diagnostics};
-  if (copy.value) {
-    const bool has_modeline = copy.value->find("yaml-language-server:") != std::string::npos;
-    if (!has_modeline) copy.value->insert(0, kModeline);
+  if (const auto as_it_is = ReadScenarioText(model.path, model.text, {}, library); !as_it_is) {
+    Complain(context, as_it_is.error());
+    return std::nullopt;
+  }
+  Result<std::string> copy = CopyOfScenario(model.path, model.text, path);
+  if (copy) {
+    const bool has_modeline = copy->find("yaml-language-server:") != std::string::npos;
+    if (!has_modeline) copy->insert(0, kModeline);
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);  // for paths that go through it
-    const ReadResult<Scenario> read = ReadScenarioText(path.string(), *copy.value, {}, library);
-    if (read.value) return copy.value;
+    const Result<Scenario> read = ReadScenarioText(path.string(), *copy, {}, library);
+    if (read) return *copy;
     std::filesystem::remove(path.parent_path(), error);  // only when it is empty
-    copy.diagnostics = read.diagnostics;
+    copy = tl::unexpected(read.error());
   }
-  Complain(context, copy.diagnostics);
+  Complain(context, copy.error());
   return std::nullopt;
 }
 
@@ -101,12 +103,12 @@ ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
   const fs::path scenarios = fs::path(context.root) / "scenarios";
   Model model{.path = (scenarios / kDefaultSkill / "name.yaml").string()};
   if (options.Has("--like")) {
-    const auto [like, not_found] = FindScenarioOrComplain(options.Text("--like"), context);
-    if (!like) return not_found;
-    ReadResult<std::string> read = ReadTextFile(like->path);
-    if (!read.value) return Complain(context, read.diagnostics);
+    const auto like = FindScenarioOrComplain(options.Text("--like"), context);
+    if (!like) return like.error();
+    Result<std::string> read = ReadTextFile(like->path);
+    if (!read) return Complain(context, read.error());
     model = {.path = like->path,
-             .text = std::move(*read.value),
+             .text = std::move(*read),
              .skill = like->skill.empty() ? kDefaultSkill : like->skill};
   }
   const std::string skill = has_folder ? typed.substr(0, slash) : model.skill;

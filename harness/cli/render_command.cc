@@ -38,21 +38,21 @@ PictureResult Draw(const ParsedOptions& options, const ScenarioFile& file, const
 }
 
 ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) {
-  const auto [file, not_found] = FindScenarioOrComplain(options.Text("scenario"), context);
-  if (!file) return not_found;
-  ReadResult<LoadedRun> loaded = LoadRun(RequestOf(options, file->path), context.root);
-  if (!loaded.value) return Complain(context, loaded.diagnostics);
-  if (auto asked = AskedPicture(options, loaded.value->scenario)) {
-    const auto problem = WhyNoEventTime(asked->at.value, *loaded.value->program);
+  const auto file = FindScenarioOrComplain(options.Text("scenario"), context);
+  if (!file) return file.error();
+  Result<LoadedRun> loaded = LoadRun(RequestOf(options, file->path), context.root);
+  if (!loaded) return Complain(context, loaded.error());
+  if (auto asked = AskedPicture(options, loaded->scenario)) {
+    const auto problem = WhyNoEventTime(asked->at.value, *loaded->program);
     if (problem && options.Has("--at")) {
       return Complain(context, ExitCode::kBadInput,
                       "--at: " + problem->message + "; " + problem->hint);
     }
-    if (const auto why = WhyNoCamera(loaded.value->scenario, asked->camera.value))
+    if (const auto why = WhyNoCamera(loaded->scenario, asked->camera.value))
       return Complain(context, ExitCode::kBadInput, "--" + *why);
-    loaded.value->scenario.pictures = {std::move(*asked)};
+    loaded->scenario.pictures = {std::move(*asked)};
   }
-  if (loaded.value->scenario.pictures.empty()) {
+  if (loaded->scenario.pictures.empty()) {
     return Complain(context, ExitCode::kNothing,
                     "the scenario defines no pictures; --at asks for one");
   }
@@ -64,16 +64,15 @@ ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) 
     if (!why.empty()) return Complain(context, ExitCode::kBadInput, "--output: " + why);
   }
 
-  const RunResult run =
-      RunScenario(loaded.value->scenario, loaded.value->program, {.record = true});
-  const PictureResult drawn = Draw(options, *file, *loaded.value, run, context.root);
+  const RunResult run = RunScenario(loaded->scenario, loaded->program, {.record = true});
+  const PictureResult drawn = Draw(options, *file, *loaded, run, context.root);
   for (const WrittenPicture& picture : drawn.pictures) {
     if (!picture.missed.empty())
       context.err << "prehend: warning: " << picture.file << ": " << picture.missed
                   << "; the picture shows the end of the run\n";
   }
   if (options.Has("--json")) {
-    OrderedJson json = RunJson(loaded.value->scenario, run);
+    OrderedJson json = RunJson(loaded->scenario, run);
     json["pictures"] = OrderedJson::array();
     for (const WrittenPicture& picture : drawn.pictures) {
       json["pictures"].push_back({{"file", picture.file}, {"caption", picture.caption}});

@@ -14,34 +14,34 @@ namespace prehend::harness {
 namespace {
 
 ExitCode RunResegment(const ParsedOptions& options, const CommandContext& context) {
-  ReadResult<Episode> episode = ReadEpisode(options.Text("recording"));
-  if (!episode.value) return Complain(context, episode.diagnostics);
-  ReadResult<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
-  if (!settings.value) return Complain(context, settings.diagnostics);
-  const grammar::CompileResult compiled = LoadGrammar(
-      context.root, options.TextOr("--grammar", episode.value->header.grammar), *settings.value);
+  Result<Episode> episode = ReadEpisode(options.Text("recording"));
+  if (!episode) return Complain(context, episode.error());
+  Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
+  if (!settings) return Complain(context, settings.error());
+  const grammar::CompileResult compiled =
+      LoadGrammar(context.root, options.TextOr("--grammar", episode->header.grammar), *settings);
   if (!compiled.program) return Complain(context, compiled.diagnostics);
 
-  const grammar::EntityTable& entity_table = episode.value->header.entity_table;
+  const grammar::EntityTable& entity_table = episode->header.entity_table;
   Warn(context, Warnings(*compiled.program, entity_table));
   grammar::Monitor monitor(compiled.program, entity_table);
   std::vector<grammar::Event> events;
-  for (EpisodeFrame& frame : episode.value->frames) monitor.Advance(frame.View(), events);
-  monitor.Finish(episode.value->end_tick, events);
+  for (EpisodeFrame& frame : episode->frames) monitor.Advance(frame.View(), events);
+  monitor.Finish(episode->end_tick, events);
   if (!monitor.error().empty()) {
     return Complain(context, ExitCode::kBadInput,
                     "the grammar cannot segment this recording: " + monitor.error());
   }
   RunResult run;
   run.status.kind = physics::RunStatus::Kind::kCompleted;
-  run.ticks = episode.value->end_tick - 1;
+  run.ticks = episode->end_tick - 1;
   run.timeline = grammar::NameEvents(*compiled.program, entity_table, events);
   if (!options.Has("--json")) {
     context.out << RunTable(run);
     return ExitCode::kAgrees;
   }
   Scenario watched;
-  watched.name = episode.value->header.episode;
+  watched.name = episode->header.episode;
   watched.grammar = GrammarName(*compiled.program);
   OrderedJson json = RunJson(watched, run);
   json.erase("state_hash");  // nothing was simulated

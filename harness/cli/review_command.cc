@@ -61,22 +61,22 @@ std::string DerivationLines(const Golden& pending, const std::vector<std::string
 Review ReviewOf(const ScenarioFile& file, const std::string& root) {
   const GoldenFiles files(root);
   Review review{.id = ScenarioId(file.skill, file.name), .kind = "unreadable", .text = {}};
-  const ReadResult<Golden> pending = files.ReadPendingOf(review.id);
-  const ReadResult<Golden> golden = files.ReadGoldenOf(review.id);
-  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
-  review.text =
-      Format(pending.diagnostics) + Format(golden.diagnostics) + Format(scenario.diagnostics);
-  if (!pending.value || !scenario.value || !golden.diagnostics.empty()) return review;
-  review.fingerprint = Fingerprint(*pending.value);
-  if (!golden.value) {
+  const auto pending = files.ReadPendingOf(review.id);
+  const auto golden = files.ReadGoldenOf(review.id);
+  const Result<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
+  review.text = Format(ErrorsOf(pending)) + Format(ErrorsOf(golden)) + Format(ErrorsOf(scenario));
+  if (!pending || !*pending || !scenario || !golden) return review;
+  const Golden& proposed = **pending;
+  review.fingerprint = Fingerprint(proposed);
+  if (!*golden) {
     review.kind = "new";
-    review.text = EventLines(*pending.value) + DerivationLines(*pending.value, {});
+    review.text = EventLines(proposed) + DerivationLines(proposed, {});
     return review;
   }
-  const Comparison comparison = Compare(
-      *golden.value, ToTimeline(*pending.value),
-      DefaultTolerance(scenario.value->scene.world.rate_hz, scenario.value->sensing.sensing_hz));
-  const std::string derivation = DerivationLines(*pending.value, golden.value->derived);
+  const Comparison comparison =
+      Compare(**golden, ToTimeline(proposed),
+              DefaultTolerance(scenario->scene.world.rate_hz, scenario->sensing.sensing_hz));
+  const std::string derivation = DerivationLines(proposed, (*golden)->derived);
   review.kind = comparison.Agrees() && derivation.empty() ? "same" : "changed";
   review.text = DifferenceText(comparison, ExplainCommand(review.id, {})) + derivation;
   return review;
@@ -111,9 +111,9 @@ void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pendi
     if (picture.scenario == IdOf(file)) reviews.push_back(PictureReview(picture, root));
   }
   if (GoldenFiles(root).PicturesOf(IdOf(file)).empty()) return;
-  const ReadResult<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
-  if (!scenario.value) return;
-  const std::size_t asked = scenario.value->pictures.size();
+  const Result<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
+  if (!scenario) return;
+  const std::size_t asked = scenario->pictures.size();
   for (const fs::path& picture : UnaskedPictures(IdOf(file), asked, root))
     reviews.push_back(
         {IdOf(file), "orphan", UnaskedText(picture, asked) + "\n", "", {picture.string()}});

@@ -41,11 +41,11 @@ ExitCode CountTrials(const ParsedOptions& options, const RunRequest& request,
       context.err << "\r\033[K[" << done << "/" << settings.count << "]" << std::flush;
   });
   if (context.progress) context.err << "\r\033[K" << std::flush;
-  if (!report.value) return Complain(context, report.diagnostics);
+  if (!report) return Complain(context, report.error());
   if (options.Has("--json")) {
-    context.out << TrialJson(*report.value).dump(2) << "\n";
+    context.out << TrialJson(*report).dump(2) << "\n";
   } else {
-    context.out << TrialTable(*report.value, TrialCommand(options));
+    context.out << TrialTable(*report, TrialCommand(options));
   }
   return ExitCode::kAgrees;
 }
@@ -67,8 +67,8 @@ RunResult Play(const LoadedRun& loaded, bool measure, EpisodeWriter* recorder) {
 }
 
 ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
-  const auto [file, not_found] = FindScenarioOrComplain(options.Text("scenario"), context);
-  if (!file) return not_found;
+  const auto file = FindScenarioOrComplain(options.Text("scenario"), context);
+  if (!file) return file.error();
   RunRequest request = RequestOf(options, file->path);
   for (const char* of_one_run : {"--trial", "--record", "--measure"}) {
     if (options.Has("--trials") && options.Has(of_one_run))
@@ -78,10 +78,10 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--trials")) return CountTrials(options, request, context);
   if (options.Has("--trial")) {
     auto varied = RequestOfTrial(request, context.root, options.IntOr("--trial", 1));
-    if (!varied.value) return Complain(context, varied.diagnostics);
-    for (std::size_t i = request.settings.size(); i < varied.value->settings.size(); ++i)
-      context.err << "sampled: " << varied.value->settings[i] << "\n";
-    request = std::move(*varied.value);
+    if (!varied) return Complain(context, varied.error());
+    for (std::size_t i = request.settings.size(); i < varied->settings.size(); ++i)
+      context.err << "sampled: " << varied->settings[i] << "\n";
+    request = std::move(*varied);
   }
   const bool record_is_output = options.Text("--record") == "-";
   for (const char* of_output : {"--json", "--measure"}) {
@@ -89,9 +89,9 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("--record - contradicts {}: both would be printed", of_output));
   }
-  const ReadResult<LoadedRun> loaded = LoadRun(request, context.root);
-  if (!loaded.value) return Complain(context, loaded.diagnostics);
-  Warn(context, loaded.value->warnings);
+  const Result<LoadedRun> loaded = LoadRun(request, context.root);
+  if (!loaded) return Complain(context, loaded.error());
+  Warn(context, loaded->warnings);
 
   const bool measure = options.Has("--measure");
   std::optional<AtomicFile> record;
@@ -100,20 +100,19 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
     record.emplace(options.Text("--record"));
     if (!record->problem().empty())
       return Complain(context, ExitCode::kBadInput, "--record: " + record->problem());
-    const Scenario& scenario = loaded.value->scenario;
+    const Scenario& scenario = loaded->scenario;
     recorder.emplace(record->stream(),
                      EpisodeHeader{scenario.name, scenario.grammar, MakeEntityTable(scenario)});
   }
-  const RunResult run = Play(*loaded.value, measure, recorder ? &*recorder : nullptr);
-  for (const std::string& note : NoteLines(loaded.value->scenario, run))
-    context.err << note << "\n";
+  const RunResult run = Play(*loaded, measure, recorder ? &*recorder : nullptr);
+  for (const std::string& note : NoteLines(loaded->scenario, run)) context.err << note << "\n";
   std::string not_recorded;
   if (recorder) {
     recorder->Finish(run.ticks + 1);
     not_recorded = record->Commit();
   }
   if (options.Has("--json")) {
-    OrderedJson json = RunJson(loaded.value->scenario, run);
+    OrderedJson json = RunJson(loaded->scenario, run);
     if (measure) json["measured"] = MeasurementJson(Measure(run));
     context.out << json.dump(2) << "\n";
   } else if (!record_is_output) {

@@ -30,13 +30,13 @@ constexpr double kTimeLimit_s = 300;
 /// What a worker sends: {"problem", "bad_input"} or {"episodes": [{"ticks", "truth", "found",
 /// "not_judged"}, ..]}, one per grammar.
 std::string Judged(const ScoreRequest& request) {
-  bool bad_input = false;
-  const auto episodes = EpisodesToScore(request, bad_input);
-  if (!episodes.value)
-    return Json{{"problem", grammar::Format(episodes.diagnostics)}, {"bad_input", bad_input}}
+  const auto episodes = EpisodesToScore(request);
+  if (!episodes)
+    return Json{{"problem", grammar::Format(episodes.error().diagnostics)},
+                {"bad_input", episodes.error().is_bad_input}}
         .dump();
   Json sent = Json::array();
-  for (const EpisodeToScore& episode : *episodes.value) {
+  for (const EpisodeToScore& episode : *episodes) {
     sent.push_back({{"ticks", episode.ticks},
                     {"truth", TimelineJson(episode.truth)},
                     {"found", TimelineJson(episode.found)},

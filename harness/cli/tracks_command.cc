@@ -43,10 +43,10 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
     return Complain(context, ExitCode::kBadInput,
                     "--json contradicts an --output that ends with .csv");
   }
-  const OpenedEpisode source = OpenEpisodeOrComplain(options, context);
-  if (!source.value) return source.exit_code;
+  const auto source = OpenEpisodeOrComplain(options, context);
+  if (!source) return source.error();
   const std::vector<std::string> only = options.All("--only");
-  const std::string unknown = UnknownTrack(only, *source.value->program);
+  const std::string unknown = UnknownTrack(only, *source->program);
   if (!unknown.empty()) return Complain(context, ExitCode::kBadInput, unknown);
 
   // Found out before the episode is played.
@@ -55,13 +55,13 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
   if (file && !file->problem().empty())
     return Complain(context, ExitCode::kBadInput, "--output: " + file->problem());
 
-  const explain::Watched watched = explain::Watch(*source.value);
+  const explain::Watched watched = explain::Watch(*source);
   if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
   const explain::Tracks tracks = explain::CollectTracks(*watched.past, {only.begin(), only.end()});
   if (!tracks.problem.empty()) return Complain(context, ExitCode::kBadInput, tracks.problem);
   std::ostream& out = file ? file->stream() : context.out;
   if (as_json) {
-    explain::WriteJson(tracks, source.value->name, GrammarName(*source.value->program), out);
+    explain::WriteJson(tracks, source->name, GrammarName(*source->program), out);
   } else {
     explain::WriteCsv(tracks, out);
   }

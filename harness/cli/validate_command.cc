@@ -34,13 +34,12 @@ struct Validated {
 Validated ValidateGrammar(const std::string& name_or_path, const ParsedOptions& options,
                           const std::string& root) {
   Validated validated{.file = GrammarFile(root, name_or_path)};
-  ReadResult<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
-  if (!settings.value) {
-    validated.diagnostics = std::move(settings.diagnostics);
+  Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
+  if (!settings) {
+    validated.diagnostics = std::move(settings.error());
     return validated;
   }
-  grammar::CompileResult compiled =
-      LoadGrammar(root, name_or_path, *settings.value, &validated.inputs);
+  grammar::CompileResult compiled = LoadGrammar(root, name_or_path, *settings, &validated.inputs);
   validated.diagnostics = std::move(compiled.diagnostics);
   if (compiled.program) validated.description = Text(Describe(*compiled.program));
   validated.warnings = std::move(compiled.warnings);
@@ -50,8 +49,7 @@ Validated ValidateGrammar(const std::string& name_or_path, const ParsedOptions& 
 /// Checks the golden of a scenario. Its events belong to the scenario's own grammar: with another
 /// one only its syntax is checked.
 void AddGolden(const ScenarioFile& file, const ParsedOptions& options,
-               const std::optional<LoadedRun>& loaded, const std::string& root,
-               Validated& validated) {
+               const Result<LoadedRun>& loaded, const std::string& root, Validated& validated) {
   const GoldenFiles goldens(root);
   const std::string path = goldens.GoldenPath(IdOf(file)).string();
   validated.inputs.push_back(path);
@@ -59,7 +57,7 @@ void AddGolden(const ScenarioFile& file, const ParsedOptions& options,
   if (!fs::exists(path, ignored)) return;
   const bool as_it_is = !options.Has("--grammar") && !options.Has("--set");
   std::ranges::move(loaded && as_it_is ? CheckGoldenFile(path, IdOf(file), *loaded)
-                                       : goldens.ReadGoldenOf(IdOf(file)).diagnostics,
+                                       : ErrorsOf(goldens.ReadGoldenOf(IdOf(file))),
                     std::back_inserter(validated.diagnostics));
   if (!loaded || !as_it_is) return;
   const std::size_t asked = loaded->scenario.pictures.size();
@@ -84,29 +82,24 @@ Validated ValidateOrphan(const Orphan& orphan) {
   return validated;
 }
 
-/// `exit_code` when there is no such file or scenario; it has been reported then.
-struct ValidatedOrNot {
-  std::optional<Validated> value;
-  ExitCode exit_code = ExitCode::kAgrees;
-};
-
-ValidatedOrNot Validate(const std::string& typed, const ParsedOptions& options,
-                        const CommandContext& context) {
-  if (typed.ends_with(".grammar")) return {ValidateGrammar(typed, options, context.root)};
+/// After reporting that there is no such file or scenario, the exit code.
+tl::expected<Validated, ExitCode> Validate(const std::string& typed, const ParsedOptions& options,
+                                           const CommandContext& context) {
+  if (typed.ends_with(".grammar")) return ValidateGrammar(typed, options, context.root);
   if (typed.ends_with(".timeline")) {
     Validated validated{.file = typed, .diagnostics = {}};
     validated.diagnostics = CheckGoldenAlone(typed, context.root, validated.inputs);
-    return {validated};
+    return validated;
   }
-  const auto [file, not_found] = FindScenarioOrComplain(typed, context);
-  if (!file) return {{}, not_found};
+  const auto file = FindScenarioOrComplain(typed, context);
+  if (!file) return tl::unexpected(file.error());
   Validated validated{.file = file->path};
-  ReadResult<LoadedRun> loaded =
+  Result<LoadedRun> loaded =
       LoadRun(RequestOf(options, file->path), context.root, &validated.inputs);
-  validated.diagnostics = std::move(loaded.diagnostics);
-  if (file->in_project) AddGolden(*file, options, loaded.value, context.root, validated);
-  if (loaded.value) validated.warnings = std::move(loaded.value->warnings);
-  return {validated};
+  validated.diagnostics = ErrorsOf(loaded);
+  if (file->in_project) AddGolden(*file, options, loaded, context.root, validated);
+  if (loaded) validated.warnings = std::move(loaded->warnings);
+  return validated;
 }
 
 nlohmann::ordered_json ToJson(const grammar::Diagnostics& diagnostics) {
@@ -149,7 +142,7 @@ std::vector<std::string> Names(const ParsedOptions& options, const CommandContex
             return FileHash(file.first) != file.second;
           });
       if (!affected) continue;
-      const auto validated = Validate(name, options, context).value;
+      const auto validated = Validate(name, options, context);
       seen[name] = validated ? HashFiles(validated->inputs) : FileHashes{};
       if (!validated) continue;
       context.out << (validated->diagnostics.empty() ? "ok: " : "wrong: ") << validated->file
@@ -167,8 +160,8 @@ ExitCode RunValidate(const ParsedOptions& options, const CommandContext& context
                     "there is no scenario in " + context.root + "/scenarios");
   std::vector<Validated> all;
   for (const std::string& name : names) {
-    auto [validated, not_found] = Validate(name, options, context);
-    if (!validated) return not_found;
+    auto validated = Validate(name, options, context);
+    if (!validated) return validated.error();
     all.push_back(std::move(*validated));
   }
   const bool everything = options.All("files").empty() && !options.Has("--grammar");

@@ -27,7 +27,7 @@ class AskReader {
             const grammar::EntityTable& entity_table)
       : option_(option), text_(text), program_(program), entity_table_(entity_table) {}
 
-  ReadResult<Ask> Read() {
+  Result<Ask> Read() {
     const std::size_t at = text_.find('@');
     const std::vector<Word> words = Words(text_.substr(0, at));
     if (words.empty()) {
@@ -36,8 +36,8 @@ class AskReader {
       for (std::size_t i = 1; i < words.size(); ++i) ReadRole(words[i], i - 1);
     }
     if (at != std::string::npos) ReadTime(text_.substr(at + 1), static_cast<int>(at) + 2);
-    if (!diagnostics_.empty()) return {std::nullopt, std::move(diagnostics_)};
-    return {ask_, {}};
+    if (!diagnostics_.empty()) return tl::unexpected(std::move(diagnostics_));
+    return ask_;
   }
 
  private:
@@ -165,9 +165,8 @@ class AskReader {
 
 }  // namespace
 
-ReadResult<Ask> ParseAsk(const std::string& option, const std::string& text,
-                         const grammar::Program& program,
-                         const grammar::EntityTable& entity_table) {
+Result<Ask> ParseAsk(const std::string& option, const std::string& text,
+                     const grammar::Program& program, const grammar::EntityTable& entity_table) {
   return AskReader(option, text, program, entity_table).Read();
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "grammar/program/program.h"
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness::explain {
 
@@ -21,7 +21,7 @@ struct Ask {
 /// Complains about names, classes and times with the place in the text, which is called `option`.
 /// Roles come in the order of the rule's head or as role=entity; `any`, or none at all, leaves them
 /// open.
-ReadResult<Ask> ParseAsk(const std::string& option, const std::string& text,
-                         const grammar::Program& program, const grammar::EntityTable& entity_table);
+Result<Ask> ParseAsk(const std::string& option, const std::string& text,
+                     const grammar::Program& program, const grammar::EntityTable& entity_table);
 
 }  // namespace prehend::harness::explain

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "grammar/replay_monitor.h"
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness::explain {
 

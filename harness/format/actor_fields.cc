@@ -36,15 +36,15 @@ ValueFormat<GainsOverride> GainsFormat() {
       .format();
 }
 
-/// What would need more losses than there are looks.
+/// Reports a share of lost samples that losses of the given mean length cannot reach.
 void CheckLosses(const YamlNode& node, const physics::TrackerSettings& t, DiagnosticList& errors) {
   if (t.dropped_run_s <= 0) return;
-  const double run_looks = std::max(1.0, t.dropped_run_s * t.tracker_hz);
-  const double least_looks = t.dropped_share / (1 - t.dropped_share);
-  if (run_looks >= least_looks) return;
+  const double run_samples = std::max(1.0, t.dropped_run_s * t.tracker_hz);
+  const double min_samples = t.dropped_share / (1 - t.dropped_share);
+  if (run_samples >= min_samples) return;
   errors.Add(node.Find("dropped_run_s")->where,
              fmt::format("dropped_run_s: a share of {} needs losses of at least {:.3f} s",
-                         t.dropped_share, least_looks / t.tracker_hz));
+                         t.dropped_share, min_samples / t.tracker_hz));
 }
 
 ValueFormat<physics::TrackerSettings> TrackingFormat() {

@@ -16,9 +16,9 @@ namespace {
 constexpr std::size_t kMaxParts = 256;
 constexpr double kMaxResistance = 1e5;
 constexpr double kMaxSlide_m = 10;
-constexpr double kMaxTurn_deg = 170;  // at half a turn the two ways could not be told apart
+constexpr double kMaxTurn_deg = 170;  // at half a turn the two directions are the same
 
-/// A joint's range is [least, most] and holds 0, where it was placed.
+/// A joint's range is [min, max] and contains 0, the position as placed.
 void CheckRange(const YamlNode&, const JointYaml& joint, DiagnosticList& errors) {
   const Eigen::Vector2d& range = joint.range.value;
   if (range[0] <= 0 && range[1] >= 0 && range[0] < range[1]) return;
@@ -42,7 +42,7 @@ void CheckAxis(const YamlNode& node, const JointYaml& joint, DiagnosticList& err
   errors.Add(node.Find("axis")->where, "axis: expected a direction other than [0, 0, 0]");
 }
 
-/// A rest without a spring would do nothing; one of no stiffness is somebody's choice.
+/// A rest position without a spring has no effect. A spring of stiffness 0 is allowed.
 std::function<void(const YamlNode&, const JointYaml&, DiagnosticList&)> SpringPullsTo(
     const char* rest, const char* spring) {
   return [rest, spring](const YamlNode& node, const JointYaml&, DiagnosticList& errors) {
@@ -112,7 +112,7 @@ void CheckClass(const EntityYaml& entity, DiagnosticList& errors) {
       "name what the entity is, for example Cup");
 }
 
-/// What hangs on a joint moves, and what is fixed to something has its surface.
+/// An entity on a joint can move, and one that is fixed to another has the surface of that one.
 void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
   const std::string title = "entity '" + node.key + "'";
   for (const char* key : {"fixed_to", "slider", "hinge", "ball_joint"}) {
@@ -135,7 +135,7 @@ void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& 
   }
 }
 
-/// Grains lie in a vessel, and nothing else does. They are many: what one thing has, they have not.
+/// Only grains are placed in a vessel. They are many, so the keys of a single body do not apply.
 void CheckGrains(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
   const std::string title = "entity '" + node.key + "'";
   if (entity.in && !entity.grains)

@@ -41,7 +41,7 @@ ValueFormat<PerDigit> PerDigitFormat(double lowest, double highest) {
   return MapOf(Identifier(), WithPlace(ListOf(WithPlace(Number(lowest, highest)), 1, 8)), 1, 16);
 }
 
-/// Names, each of them once.
+/// Distinct names.
 ValueFormat<std::vector<std::string>> DifferentNames(std::size_t most) {
   const auto list = ListOf(Identifier(), 1, most);
   return ValueFormat<std::vector<std::string>>(
@@ -67,7 +67,7 @@ double DegreesBetween(const Vector3d& a, const Vector3d& b) {
   return std::acos(std::min(1.0, std::abs(a.dot(b)))) * kDegPerRad;
 }
 
-/// Complains unless `direction`, which `key` of the node gives, is across another one.
+/// Reports a `direction`, given by `key` of the node, that is not perpendicular to another one.
 void CheckAcross(const YamlNode& node, const char* key, const Vector3d& direction,
                  const std::string& other_key, const Vector3d& other, DiagnosticList& errors,
                  const std::string& hint) {
@@ -140,7 +140,7 @@ Member Link::*Of(Member LinkYaml::*member) {
   return member;
 }
 
-/// `record` with what a phalanx and a jaw have in common; the units are those of its joint.
+/// Adds the fields that a phalanx and a jaw share; the units are those of its joint.
 template <class Link>
 StructFormat<Link> LinkRecord(StructFormat<Link> record, const char* strength, double strongest,
                               const char* range, double farthest) {
@@ -177,7 +177,7 @@ ValueFormat<JawYaml> JawFormat() {
   return LinkRecord(record, "strength_n", 1000, "range_m", 0.5).format();
 }
 
-/// A joint at the last part that turns it about its own length neither opens nor closes anything.
+/// A last joint along the digit's own direction neither opens nor closes it.
 void CheckLastJoint(const YamlNode& node, const DigitYaml& digit, DiagnosticList& errors) {
   constexpr double kMinAngle_deg = 1;
   if (digit.phalanges.empty()) return;
@@ -233,8 +233,8 @@ StructFormat<GraspApproach> ApproachRecord(const std::string& noun) {
                 "H's origin stays this high above what is below the object; negative: below it.");
 }
 
-/// The grip closes across the way of arrival, and what is up is across it, too: else no turn of the
-/// hand suits.
+/// The grip axis and the up direction must be perpendicular to the approach; otherwise no
+/// orientation of the hand fits.
 void CheckApproaches(const YamlNode& node, const StyleYaml& style, DiagnosticList& errors) {
   const auto check_toward = [&](const char* key, const GraspApproach& approach) {
     CheckAcross(*node.Find(key), "toward", approach.toward, "grip.axis", style.grip.axis, errors,

@@ -34,7 +34,7 @@ struct PhalanxYaml : LinkYaml {
   Eigen::Vector3d joint_axis = Eigen::Vector3d::UnitY();
 };
 
-/// Slides straight, as those of a gripper do.
+/// Slides along a line, like a gripper's.
 struct JawYaml : LinkYaml {
   Eigen::Vector3d slides = Eigen::Vector3d::UnitX();
 };

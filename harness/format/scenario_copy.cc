@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As every YAML reader takes it for a string: `on`, `no` or `null` need quotes.
+/// Quoted if some YAML reader would not read a string: `on`, `no`, `null`.
 std::string YamlWord(const std::string& value) {
   constexpr const char* kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
@@ -65,17 +65,17 @@ struct Edit {
 
 }  // namespace
 
-ReadResult<std::string> CopyOfScenario(const fs::path& from, const std::string& text,
-                                       const fs::path& to) {
-  const ReadResult<YamlDocument> document = ParseYaml(from.string(), text);
-  if (!document.value) return {std::nullopt, document.diagnostics};
+Result<std::string> CopyOfScenario(const fs::path& from, const std::string& text,
+                                   const fs::path& to) {
+  const Result<YamlDocument> document = ParseYaml(from.string(), text);
+  if (!document) return tl::unexpected(document.error());
   std::vector<Edit> edits;
-  if (const YamlNode* name = document.value->root.Find("scenario");
+  if (const YamlNode* name = document->root.Find("scenario");
       name && name->kind == YamlNode::Kind::kScalar)
     edits.push_back({name, to.stem().string()});
   const fs::path old_folder = fs::absolute(from).lexically_normal().parent_path();
   const fs::path new_folder = fs::absolute(to).lexically_normal().parent_path();
-  ForEachFile(document.value->root, [&](const YamlNode& node) {
+  ForEachFile(document->root, [&](const YamlNode& node) {
     const fs::path file = node.text;
     if (old_folder == new_folder || file.is_absolute()) return;
     edits.push_back({&node, (old_folder / file).lexically_relative(new_folder).generic_string()});
@@ -85,7 +85,7 @@ ReadResult<std::string> CopyOfScenario(const fs::path& from, const std::string& 
     const std::size_t offset = OffsetOf(edit->node->where.place, copy);
     copy.replace(offset, LengthAt(offset, *edit->node, copy), YamlWord(edit->value));
   }
-  return {copy, {}};
+  return copy;
 }
 
 }  // namespace prehend::harness

@@ -6,14 +6,14 @@
 #include <filesystem>
 #include <string>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
-/// `text` of the scenario `from` as it has to stand in `to`: it says the name of that file, and
-/// what lies beside `from`, its recordings, hands and grasps, is found from there. Complains about
-/// YAML that cannot be read.
-ReadResult<std::string> CopyOfScenario(const std::filesystem::path& from, const std::string& text,
-                                       const std::filesystem::path& to);
+/// `text` of the scenario `from`, changed for the file `to`: its name is that of the new file, and
+/// the paths of its recordings, hands and grasps are relative to the new folder. On failure: the
+/// errors of the YAML.
+Result<std::string> CopyOfScenario(const std::filesystem::path& from, const std::string& text,
+                                   const std::filesystem::path& to);
 
 }  // namespace prehend::harness

@@ -58,7 +58,7 @@ ValueFormat<std::string> ClassName() {
   return Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'");
 }
 
-/// A moment is an event's boundary or a time; PictureYaml keeps both as text.
+/// An event's boundary or a time; PictureYaml keeps both as text.
 ValueFormat<std::string> MomentFormat() {
   const auto seconds = Number(0, kMaxDuration_s);
   const auto boundary =

@@ -15,7 +15,7 @@
 
 namespace prehend::harness {
 
-// harness/format/entity_fields.cc: shape, material, and what it hangs on.
+// harness/format/entity_fields.cc: shape, material, joints.
 ValueFormat<EntityYaml> EntityFormat();
 
 // harness/format/shape_fields.cc
@@ -31,20 +31,20 @@ ValueFormat<physics::Hull> HullFormat();
 ValueFormat<GrainsYaml> GrainsFormat();
 ValueFormat<PartYaml> PartFormat();
 
-// harness/format/abstract_fields.cc: what has a place but no matter.
+// harness/format/abstract_fields.cc: entities with a position but no mass.
 ValueFormat<RegionYaml> RegionFormat();
 ValueFormat<GazeTargetYaml> GazeTargetFormat();
 ValueFormat<CameraYaml> CameraFormat();
 ValueFormat<LightYaml> LightFormat();
 
-/// Complains about what only matter has: a mass, a surface, joints, something that it stands on.
+/// Reports keys that apply only to physical bodies: mass, surface, joints, support.
 void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors);
 
 // harness/format/actor_fields.cc
 ValueFormat<ActorYaml> ActorFormat();
 ValueFormat<physics::Eyes> EyesFormat();
 
-// harness/format/step_fields.cc: each step is told by its action key.
+// harness/format/step_fields.cc: each step is recognised by its action key.
 ValueFormat<StepYaml> StepFormat();
 
 // harness/format/trial_fields.cc

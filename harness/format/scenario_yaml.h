@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scenario as it is written, before names are resolved and places computed.
+// A scenario as written, before names are resolved and positions computed.
 // harness/format/scenario_fields.cc says how each field is called and bounded;
 // harness/build/build_scene.h and harness/build/build_script.h make bodies, hands and steps of it.
 #pragma once
@@ -36,7 +36,7 @@ struct GrainsYaml {
   double radius_m = 0;
 };
 
-// What is abstract: it has a place, and no matter.
+// Abstract entities have a position but no mass.
 struct RegionYaml {
   std::optional<Eigen::Vector3d> size_m;  ///< of a box
   std::optional<double> radius_m;         ///< of a ball
@@ -124,12 +124,12 @@ inline const char* NounOf(physics::Abstract abstract) {
   return "";
 }
 
-/// Where it is said where it is.
+/// The place in the file of the key that says where the entity is.
 inline const Where& PlaceOf(const EntityYaml& entity) {
   return entity.in ? entity.in->where : entity.at_m.where;
 }
 
-/// What is not given keeps the value of the hand file.
+/// Values that are not set keep those of the hand file.
 struct PidOverride {
   std::optional<double> proportional, derivative, integral, limit;
 };
@@ -141,7 +141,7 @@ struct HandActorYaml {
   Where where;
   Located<std::string> hand;
   std::vector<Located<std::string>>
-      grasps;  ///< paths of grasp files, seen from the scenario's folder
+      grasps;  ///< paths of grasp files, relative to the scenario's folder
   Located<Eigen::Vector3d> at_m;
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
   std::optional<Located<GainsOverride>> gains;
@@ -302,7 +302,7 @@ struct ScenarioYaml {
   std::vector<std::string> tags;
   WorldYaml world;
   std::vector<Named<EntityYaml>> entities;
-  std::vector<Named<Located<std::string>>> classes;  ///< and what each is a kind of
+  std::vector<Named<Located<std::string>>> classes;  ///< each with its base class
   std::vector<Named<ActorYaml>> actors;
   std::vector<Named<HandActorYaml>> hands;      ///< those of the actors; see SortActors()
   std::vector<Named<PersonActorYaml>> persons;  ///< the others

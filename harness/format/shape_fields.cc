@@ -9,7 +9,7 @@ namespace prehend::harness {
 namespace {
 
 constexpr double kMinSize_m =
-    0.001;  // below, the collision margins (1 mm) would be larger than the thing
+    0.001;  // below, the collision margins (1 mm) would be larger than the body
 constexpr double kMaxSize_m = 100;
 constexpr double kMaxPartOffset_m = 10;
 constexpr int kMaxBoards = 20;
@@ -26,7 +26,7 @@ ValueFormat<Round> RoundFormat(const std::string& noun, const std::string& lengt
       .format();
 }
 
-/// Complains about walls that leave no room inside. `narrow_m`: the narrowest way across.
+/// Reports walls that leave no room inside. `narrow_m`: the smallest outer extent across.
 void CheckWall(const YamlNode& node, double wall_m, double narrow_m, DiagnosticList& errors) {
   if (2 * wall_m < narrow_m) return;
   const YamlNode* wall = node.Find("wall_m");

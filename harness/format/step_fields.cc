@@ -13,15 +13,15 @@ namespace prehend::harness {
 namespace {
 
 constexpr double kMaxMove_m = 10;
-constexpr double kMaxSway_m = 0.4;   // farther, nobody stays on her feet
-constexpr double kMinStep_s = 0.01;  // below, no human hand moves
+constexpr double kMaxSway_m = 0.4;   // farther, she would fall
+constexpr double kMinStep_s = 0.01;  // shorter than any human movement
 constexpr double kMaxStep_s = 600;
 
 ValueFormat<double> Duration() { return Number(kMinStep_s, kMaxStep_s); }
 const std::string kOverDoc = "Duration in seconds.";
 const std::string kStyleDoc = "The grasp style that the hand takes; default: unchanged.";
 
-/// A record with one number, list or name and a duration; most steps are of this kind.
+/// A step with one value and a duration; most steps are of this kind.
 template <class Entry, class M, class F>
 ValueFormat<StepYaml> TimedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
                                 const std::string& doc) {
@@ -109,7 +109,7 @@ ValueFormat<StepYaml> PosesFormat() {
           .format());
 }
 
-/// What belongs to another kind of file.
+/// Reports keys that apply to another kind of file.
 void CheckKindOfRecording(const YamlNode& node, const RecordingYaml& entry,
                           DiagnosticList& errors) {
   const bool body = entry.recording.value.ends_with(".bvh");

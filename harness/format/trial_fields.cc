@@ -13,7 +13,7 @@
 namespace prehend::harness {
 namespace {
 
-/// A text, or a number or flag as it is written: what a field can be set to.
+/// A text, or a number or flag as written: a value that a field can be set to.
 ValueFormat<std::string> Value() {
   const ValueFormat<std::string> text = Text();
   return ValueFormat<std::string>(
@@ -27,7 +27,7 @@ ValueFormat<std::string> Value() {
       });
 }
 
-/// What can never hold, or always does.
+/// Reports conditions that can never hold, or always do.
 void CheckCondition(const YamlNode& node, const ConditionYaml& wanted, DiagnosticList& errors) {
   const auto report = [&](const char* key, const std::string& message) {
     errors.Add(node.Find(key)->where, std::string(key) + ": " + message);

@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "grammar/base/timeline.h"
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
@@ -60,7 +60,7 @@ struct Golden {
 };
 
 /// `file` is only named in the diagnostics.
-ReadResult<Golden> ReadGolden(std::string_view file, std::string_view text);
+Result<Golden> ReadGolden(std::string_view file, std::string_view text);
 
 /// ReadGolden(WriteGolden(x)) == x. Lines that were read stay as they were written; others are
 /// canonical.

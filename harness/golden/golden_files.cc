@@ -18,17 +18,16 @@ namespace {
 constexpr const char* kExtension = ".timeline";
 constexpr const char* kDifference = ".difference.png";
 
-ReadResult<Golden> ReadFrom(const fs::path& path, const std::string& scenario) {
+Result<std::optional<Golden>> ReadFrom(const fs::path& path, const std::string& scenario) {
   std::error_code ignored;
-  if (!fs::exists(path, ignored)) return {};
-  ReadResult<std::string> text = ReadTextFile(path.string());
-  if (!text.value) return {std::nullopt, std::move(text.diagnostics)};
-  ReadResult<Golden> golden = ReadGolden(path.string(), *text.value);
-  if (!golden.value) return golden;
-  grammar::Diagnostics other =
-      OfAnotherScenario(path.string(), *text.value, *golden.value, scenario);
-  if (!other.empty()) return {std::nullopt, std::move(other)};
-  return golden;
+  if (!fs::exists(path, ignored)) return std::nullopt;
+  Result<std::string> text = ReadTextFile(path.string());
+  if (!text) return tl::unexpected(std::move(text.error()));
+  Result<Golden> golden = ReadGolden(path.string(), *text);
+  if (!golden) return tl::unexpected(std::move(golden.error()));
+  grammar::Diagnostics other = OfAnotherScenario(path.string(), *text, *golden, scenario);
+  if (!other.empty()) return tl::unexpected(std::move(other));
+  return std::move(*golden);
 }
 
 /// Ids of all timelines below a folder, sorted.
@@ -113,11 +112,11 @@ fs::path GoldenFiles::PendingPath(const std::string& scenario) const {
   return root_ / "build" / "pending" / (scenario + kExtension);
 }
 
-ReadResult<Golden> GoldenFiles::ReadGoldenOf(const std::string& scenario) const {
+Result<std::optional<Golden>> GoldenFiles::ReadGoldenOf(const std::string& scenario) const {
   return ReadFrom(GoldenPath(scenario), scenario);
 }
 
-ReadResult<Golden> GoldenFiles::ReadPendingOf(const std::string& scenario) const {
+Result<std::optional<Golden>> GoldenFiles::ReadPendingOf(const std::string& scenario) const {
   return ReadFrom(PendingPath(scenario), scenario);
 }
 
@@ -145,7 +144,7 @@ fs::path GoldenFiles::EngineDifferencePath(const std::string& scenario) const {
 }
 
 std::string GoldenFiles::ReadEngineDifference(const std::string& scenario) const {
-  return ReadTextFile(EngineDifferencePath(scenario).string()).value.value_or("");
+  return ReadTextFile(EngineDifferencePath(scenario).string()).value_or("");
 }
 
 std::string GoldenFiles::WriteEngineDifference(const std::string& scenario,

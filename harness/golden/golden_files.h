@@ -36,9 +36,9 @@ class GoldenFiles {
   std::filesystem::path GoldenPath(const std::string& scenario) const;
   std::filesystem::path PendingPath(const std::string& scenario) const;
 
-  /// No value and no diagnostics: there is no golden yet, or nothing pending.
-  ReadResult<Golden> ReadGoldenOf(const std::string& scenario) const;
-  ReadResult<Golden> ReadPendingOf(const std::string& scenario) const;
+  /// nullopt: there is no golden yet, or nothing is pending.
+  Result<std::optional<Golden>> ReadGoldenOf(const std::string& scenario) const;
+  Result<std::optional<Golden>> ReadPendingOf(const std::string& scenario) const;
 
   /// All return "" or what went wrong. Accepting a golden removes what was pending.
   std::string WritePending(const Golden& golden) const;

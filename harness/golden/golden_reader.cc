@@ -48,7 +48,7 @@ class GoldenReader {
  public:
   GoldenReader(std::string_view file, std::string_view text) : file_(file), text_(text) {}
 
-  ReadResult<Golden> Read() {
+  Result<Golden> Read() {
     std::string_view rest = text_;
     while (!rest.empty()) {
       const std::size_t newline = rest.find('\n');
@@ -60,11 +60,11 @@ class GoldenReader {
     }
     golden_.closing_comments = std::move(pending_comments_);
     CheckWhole();
-    if (!diagnostics_.empty()) return {std::nullopt, std::move(diagnostics_)};
+    if (!diagnostics_.empty()) return tl::unexpected(std::move(diagnostics_));
     std::sort(
         golden_.events.begin(), golden_.events.end(),
         [](const GoldenEvent& a, const GoldenEvent& b) { return ComesBefore(a.event, b.event); });
-    return {std::move(golden_), {}};
+    return std::move(golden_);
   }
 
  private:
@@ -377,9 +377,9 @@ class GoldenReader {
 
 }  // namespace
 
-ReadResult<Golden> ReadGolden(std::string_view file, std::string_view text) {
+Result<Golden> ReadGolden(std::string_view file, std::string_view text) {
   grammar::Diagnostics not_text = CheckText(std::string(file), text);
-  if (!not_text.empty()) return {std::nullopt, std::move(not_text)};
+  if (!not_text.empty()) return tl::unexpected(std::move(not_text));
   return GoldenReader(file, text).Read();
 }
 

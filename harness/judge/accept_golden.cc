@@ -134,12 +134,11 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
 std::string Fingerprint(const Golden& pending) { return ContentHash(WriteGolden(pending)); }
 
 std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint) {
-  return fmt::format("prehend accept {} --reviewed {} --reason \"...\"", ShellQuoted(scenario),
-                     fingerprint);
+  return CommandText({"accept", scenario, "--reviewed", fingerprint}) + " --reason \"...\"";
 }
 
 std::string AcceptPicturesCommand(const std::string& scenario) {
-  return fmt::format("prehend accept {} --pictures --reason \"...\"", ShellQuoted(scenario));
+  return CommandText({"accept", scenario, "--pictures"}) + " --reason \"...\"";
 }
 
 }  // namespace prehend::harness

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using physics::Posture;
 
-/// What is needed of the file's joints; of pairs the right one comes first.
+/// The joints that are needed; of pairs the right one comes first.
 enum Role {
   kHead,
   kShoulder,
@@ -27,12 +27,12 @@ enum Role {
 };
 
 struct RoleNames {
-  const char* called;              ///< in complaints
-  std::vector<std::string> names;  ///< the first that the file has is taken
+  const char* called;              ///< in messages
+  std::vector<std::string> names;  ///< the first that the file has is used
 };
 
-/// The names without their side; the best known conventions. "Shoulder" is the collar bone of those
-/// who have an "Arm", so it comes last; the same goes for "Hip".
+/// The names without their side; the best known conventions. "Shoulder" is the collar bone in files
+/// that have an "Arm", so it comes last; likewise "Hip".
 const std::map<Role, RoleNames>& NamesOfRoles() {
   static const std::map<Role, RoleNames> names = {
       {kHead, {"head", {"head"}}},
@@ -124,7 +124,7 @@ class TrackMaker {
     }
   }
 
-  /// The first of these names that there is; -1: none.
+  /// The index of the first of these names that exists; -1: none.
   static int Find(const std::vector<std::string>& names, const std::map<std::string, int>& joints) {
     for (const std::string& name : names) {
       if (const auto found = joints.find(name); found != joints.end()) return found->second;
@@ -186,7 +186,7 @@ class TrackMaker {
       return poses[static_cast<std::size_t>(roles_[static_cast<std::size_t>(role)])];
     };
     const auto middle = [&](int role) { return Vector3d((pose(role).p + pose(role + 1).p) / 2); };
-    // Joints in one place have no direction: then it is that of the rest.
+    // Joints at the same point have no direction; the one of the rest pose is used.
     const auto way = [&](const Vector3d& from, const Vector3d& to, const Vector3d& otherwise) {
       const Vector3d d = to - from;
       return ToOurAxes(d.norm() > 1e-9 ? Vector3d(d.normalized()) : otherwise);
@@ -223,7 +223,7 @@ class TrackMaker {
     return sample;
   }
 
-  /// At rest the hand goes on as the forearm does.
+  /// At rest the hand continues the direction of the forearm.
   Vector3d HandDirection(int side, const Eigen::Quaterniond& q) const {
     const auto wrist = static_cast<std::size_t>(roles_[static_cast<std::size_t>(kWrist + side)]);
     const Vector3d& offset = bvh_.joints[wrist].offset;
@@ -238,13 +238,13 @@ class TrackMaker {
 
 }  // namespace
 
-ReadResult<BodyTrack> ReadBodyTrack(const std::string& path) {
-  ReadResult<BvhFile> bvh = ReadBvh(path);
-  if (!bvh.value) return {std::nullopt, std::move(bvh.diagnostics)};
-  TrackMaker maker(*bvh.value);
+Result<BodyTrack> ReadBodyTrack(const std::string& path) {
+  Result<BvhFile> bvh = ReadBvh(path);
+  if (!bvh) return tl::unexpected(std::move(bvh.error()));
+  TrackMaker maker(*bvh);
   maker.Make();
-  if (!maker.diagnostics.empty()) return {std::nullopt, std::move(maker.diagnostics)};
-  return {std::move(maker.track), {}};
+  if (!maker.diagnostics.empty()) return tl::unexpected(std::move(maker.diagnostics));
+  return std::move(maker.track);
 }
 
 }  // namespace prehend::harness

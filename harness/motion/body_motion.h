@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The recorded motion of a whole body, from a BVH file: finds the joints of a person among those of
-// the file, by their names, and tells at every frame how she holds herself. Tested by
-// tests/harness/motion/body_motion_test.cc
+// The recorded motion of a whole body, from a BVH file: finds a person's joints by their names and
+// returns her posture at every frame. Tested by tests/harness/motion/body_motion_test.cc
 #pragma once
 
 #include <array>
@@ -20,7 +19,7 @@ inline constexpr std::size_t kRightAnklePoint = 3, kLeftAnklePoint = 4;
 
 struct BodySample {
   double t_s = 0;  ///< since the first frame
-  /// Where the hips are, in units of the file; the ways in our axes: x ahead, y left, z up.
+  /// Position of the hips in units of the file, and directions, in our axes: x ahead, y left, z up.
   physics::Posture posture;
   std::array<Eigen::Vector3d, kWatchedPoints.size()> points;  ///< units of the file, our axes
   grammar::Place place;                                       ///< in the file
@@ -30,11 +29,11 @@ struct BodyTrack {
   std::vector<BodySample> samples;  ///< at least two
   double leg_units = 0;             ///< from hip over knee to ankle, in the hierarchy
   std::string file;
-  std::string text;  ///< of the file, for complaints
+  std::string text;  ///< of the file, for messages
 };
 
-/// BVH has y up, and a person whose joints are all at 0 stands upright and, mostly, looks along z:
-/// where she really looks then follows from which hip is her left one.
-ReadResult<BodyTrack> ReadBodyTrack(const std::string& path);
+/// BVH has y up. A person whose joints are all at 0 stands upright and usually looks along z; where
+/// she really looks follows from which hip is the left one.
+Result<BodyTrack> ReadBodyTrack(const std::string& path);
 
 }  // namespace prehend::harness

@@ -9,11 +9,10 @@
 namespace prehend::harness {
 namespace {
 
-/// Unevenness of a tracker is no gap, nor is a single look that is missing at 90 Hz.
+/// An uneven rate is not a gap, nor is a single missing sample at 90 Hz.
 constexpr double kMinGap_s = 0.05;
 constexpr double kGapOfMedian = 4;
-/// A hand is slower than this, and noise moves it less far (thrown balls leave the hand at 40 m/s,
-/// but nobody throws with a tracker).
+/// Hands are slower than this, and noise moves them less far.
 constexpr double kJumpSpeed_m_per_s = 8;
 constexpr double kMinJump_m = 0.03;
 constexpr std::size_t kMaxReported = 12;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recorded motions of a hand or head, from files: looks of a tracker with their times, as they were
-// recorded. Two formats, by the ending of the name: CSV (docs/recorded-input.md) and the JSON of
-// A-Frame's motion-capture components. Tested by tests/harness/motion/hand_motion_test.cc
+// Recorded motions of a hand or head, from files: samples of a tracker with their times. Two
+// formats, by the ending of the name: CSV (docs/recorded-input.md) and the JSON of A-Frame's
+// motion-capture components. Tested by tests/harness/motion/hand_motion_test.cc
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 #include "physics/scene/pose.h"
 
 namespace prehend::harness {
@@ -29,24 +29,23 @@ struct TrackSample {
 struct MotionTrack {
   std::vector<TrackSample> samples;  ///< at least two
   std::string file;
-  std::string text;            ///< of the file, for complaints about samples
-  std::set<int> buttons = {};  ///< of a captured device: those that are pressed in it
+  std::string text;            ///< of the file, for messages about samples
+  std::set<int> buttons = {};  ///< of a captured device: those that are ever pressed
 };
 
 /// Columns with their units in the header: `t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger`.
-ReadResult<MotionTrack> ReadMotionCsv(const std::string& path);
+Result<MotionTrack> ReadMotionCsv(const std::string& path);
 
-/// One device of a recording by aframe-motion-capture-components. A press of `button` that tells no
-/// value is a trigger that rises within `press_s`; its release the same way down.
+/// One device of a recording by aframe-motion-capture-components. A press of `button` without a
+/// value is a trigger that rises within `press_s`; a release falls as fast.
 struct CapturedDevice {
   std::string name;  ///< its key in the file: "camera", "left", "right"
   int button = 1;
   double press_s = 0.25;
 };
-ReadResult<MotionTrack> ReadMotionCapture(const std::string& path, const CapturedDevice& device);
+Result<MotionTrack> ReadMotionCapture(const std::string& path, const CapturedDevice& device);
 
-/// What is odd about the times and places of the samples: gaps and jumps. Errors where they are
-/// larger than the limits, else warnings; at most a dozen.
+/// Gaps and jumps of the samples: errors if larger than the limits, else warnings; at most a dozen.
 struct TrackLimits {
   double gap_s = 0.25;
   double jump_m = 0.1;

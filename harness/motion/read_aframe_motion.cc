@@ -56,7 +56,7 @@ physics::Pose ToOurAxes(const CapturedPose& pose) {
           Eigen::Quaterniond(q.w(), -q.z(), -q.x(), q.y())};
 }
 
-/// A change of the trigger. Events may say less than this; see ReadPresses().
+/// A change of the trigger. Events may have less information; see ReadPresses().
 struct Press {
   double t_s = 0;
   double value = 0;
@@ -125,7 +125,7 @@ class CaptureReader {
     return nullptr;
   }
 
-  /// What an event of a button says; nothing of other events, and after complaining.
+  /// The button's event; nothing for other events and after an error.
   struct ButtonEvent {
     std::string name;
     int id = 0;
@@ -145,14 +145,14 @@ class CaptureReader {
     ButtonEvent read{.name = name->text};
     bool good = Integer<int>(0, kMaxButtons).Read(*id, errors_, read.id);
     good &= Number(-1e15, 1e15).Read(*at, errors_, read.at_ms);
-    // Many recordings have lost their values: then there is none, or an empty one.
+    // Many recordings have lost their values: the value is missing or empty.
     const bool has_value =
         good && read.id == device_.button && value && value->kind == YamlNode::Kind::kScalar;
     if (has_value) good &= Number(0, 1).Read(*value, errors_, read.value.emplace());
     return good ? std::optional(std::move(read)) : std::nullopt;
   }
 
-  /// Changes without a value are skipped when the button's ups and downs are there.
+  /// Changes without a value are skipped if the button's presses and releases are recorded.
   std::vector<Press> ReadPresses(const YamlNode& device, double begin_ms, std::set<int>& buttons) {
     std::vector<Press> presses;
     const YamlNode* events = device.Find("events");
@@ -180,7 +180,7 @@ class CaptureReader {
 
   void AddTrigger(const std::vector<Press>& presses, MotionTrack& track) const {
     std::size_t next = 0;
-    double before = 0, now = 0;  // the trigger when the present press began, and where it goes
+    double before = 0, now = 0;  // the trigger when this press began, and its target
     double begin_s = 0;
     bool ramp = false;
     const auto value_at = [&](double t_s) {
@@ -206,20 +206,20 @@ class CaptureReader {
 
 }  // namespace
 
-ReadResult<MotionTrack> ReadMotionCapture(const std::string& path, const CapturedDevice& device) {
-  ReadResult<YamlDocument> document = ReadYamlFile(path);
-  if (!document.value) {
-    for (grammar::Diagnostic& wrong : document.diagnostics) {
+Result<MotionTrack> ReadMotionCapture(const std::string& path, const CapturedDevice& device) {
+  Result<YamlDocument> document = ReadYamlFile(path);
+  if (!document) {
+    for (grammar::Diagnostic& wrong : document.error()) {
       if (const std::size_t at = wrong.message.find("YAML"); at != std::string::npos)
         wrong.message.replace(at, 4, "JSON");
     }
-    return {std::nullopt, std::move(document.diagnostics)};
+    return tl::unexpected(std::move(document.error()));
   }
-  CaptureReader reader(*document.value, device);
+  CaptureReader reader(*document, device);
   MotionTrack track = reader.Read();
   grammar::Diagnostics diagnostics = reader.diagnostics();
-  if (!diagnostics.empty()) return {std::nullopt, std::move(diagnostics)};
-  return {std::move(track), {}};
+  if (!diagnostics.empty()) return tl::unexpected(std::move(diagnostics));
+  return track;
 }
 
 }  // namespace prehend::harness

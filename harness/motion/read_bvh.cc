@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -42,8 +43,8 @@ const std::vector<std::string>& ChannelNames() {
   return names;
 }
 
-/// Goes through the lines that are not empty. The first complaint about the hierarchy ends it,
-/// since what follows would mean something else; of the rows twenty are shown.
+/// Goes through the non-empty lines. The first error in the hierarchy ends it, since what follows
+/// could be misread; of the errors in rows twenty are shown.
 class BvhReader {
  public:
   BvhReader(const std::string& path, std::string text) {
@@ -77,7 +78,7 @@ class BvhReader {
         grammar::DiagnosticAt(bvh.file, bvh.text, place, std::move(message), std::move(hint)));
   }
 
-  /// To the next line with words; false at the end, where it stays.
+  /// Advances to the next line with words; false at the end.
   bool NextLine() {
     const std::string_view text = bvh.text;
     while (next_ < text.size()) {
@@ -104,7 +105,7 @@ class BvhReader {
     return false;
   }
 
-  /// A line that is this one word.
+  /// A line with only this word.
   bool Expect(const char* word) {
     const bool found = NextLine() && words_.size() == 1 && words_.front().text == word;
     return found || Wrong(fmt::format("'{}'", word));
@@ -272,13 +273,13 @@ class BvhReader {
 
 }  // namespace
 
-ReadResult<BvhFile> ReadBvh(const std::string& path) {
-  ReadResult<std::string> text = ReadTextFile(path);
-  if (!text.value) return {std::nullopt, std::move(text.diagnostics)};
-  BvhReader reader(path, std::move(*text.value));
+Result<BvhFile> ReadBvh(const std::string& path) {
+  Result<std::string> text = ReadTextFile(path);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  BvhReader reader(path, std::move(*text));
   reader.Read();
-  if (!reader.diagnostics.empty()) return {std::nullopt, std::move(reader.diagnostics)};
-  return {std::move(reader.bvh), {}};
+  if (!reader.diagnostics.empty()) return tl::unexpected(std::move(reader.diagnostics));
+  return std::move(reader.bvh);
 }
 
 }  // namespace prehend::harness

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
@@ -39,9 +39,9 @@ struct BvhFile {
   std::vector<std::vector<double>> rows;  ///< at least two
   std::vector<grammar::Place> places;     ///< of the rows
   std::string file;
-  std::string text;  ///< of the file, for complaints
+  std::string text;  ///< of the file, for messages
 };
 
-ReadResult<BvhFile> ReadBvh(const std::string& path);
+Result<BvhFile> ReadBvh(const std::string& path);
 
 }  // namespace prehend::harness

@@ -76,7 +76,7 @@ std::vector<Cell> Cells(std::string_view line) {
   return cells;
 }
 
-/// What to do about a column that nobody knows.
+/// The hint for an unknown column.
 std::string ColumnRemedy(const std::string& name) {
   std::vector<std::string> names;
   for (const auto& [known, column] : KnownColumns()) names.push_back(known);
@@ -102,7 +102,7 @@ class CsvReader {
       ++line_;
       TakeLine(text.substr(begin, end - begin));
       begin = end + 1;
-      if (header_ && columns_.empty()) return;  // nothing makes sense without it
+      if (header_ && columns_.empty()) return;  // rows have no meaning without it
     }
     if (!diagnostics.empty()) return;
     if (track.samples.size() < 2)
@@ -250,13 +250,13 @@ class CsvReader {
 
 }  // namespace
 
-ReadResult<MotionTrack> ReadMotionCsv(const std::string& path) {
-  ReadResult<std::string> text = ReadTextFile(path);
-  if (!text.value) return {std::nullopt, std::move(text.diagnostics)};
-  CsvReader reader(path, std::move(*text.value));
+Result<MotionTrack> ReadMotionCsv(const std::string& path) {
+  Result<std::string> text = ReadTextFile(path);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  CsvReader reader(path, std::move(*text));
   reader.Read();
-  if (!reader.diagnostics.empty()) return {std::nullopt, std::move(reader.diagnostics)};
-  return {std::move(reader.track), {}};
+  if (!reader.diagnostics.empty()) return tl::unexpected(std::move(reader.diagnostics));
+  return std::move(reader.track);
 }
 
 }  // namespace prehend::harness

@@ -23,7 +23,7 @@ constexpr int kUsualButton = 1;
 
 bool IsCapture(const RecordingYaml& entry) { return entry.recording.value.ends_with(".json"); }
 
-ReadResult<MotionTrack> ReadTrack(const std::string& path, const RecordingYaml& entry) {
+Result<MotionTrack> ReadTrack(const std::string& path, const RecordingYaml& entry) {
   if (!IsCapture(entry)) return ReadMotionCsv(path);
   return ReadMotionCapture(
       path, {entry.device->value, entry.button.value_or(Located<int>{kUsualButton, {}}).value,
@@ -68,8 +68,8 @@ std::vector<physics::TimedPose> Place(const RecordingYaml& entry, const MotionTr
   return poses;
 }
 
-/// The person in the world, at every frame: as tall as she is, and where she stands lowest, her
-/// ankle is as high as when she stands.
+/// The person in the world, at every frame, with her own bone lengths. Her lowest ankle is as high
+/// above the floor as when she stands.
 std::vector<physics::TimedPosture> Place(const RecordingYaml& entry, const BodyTrack& track,
                                          const PersonActorYaml& person, double scale) {
   double lowest = std::numeric_limits<double>::infinity();
@@ -92,10 +92,10 @@ std::vector<physics::TimedPosture> Place(const RecordingYaml& entry, const BodyT
   return postures;
 }
 
-/// More would say the same again.
+/// Further warnings would repeat the same.
 constexpr std::size_t kMaxOddities = 12;
 
-/// What is odd about how hips, hands and feet go, in metres.
+/// Reports gaps and jumps of hips, hands and feet, in metres.
 grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingYaml& entry,
                                     double scale) {
   const double frame_s = track.samples[1].t_s - track.samples[0].t_s;
@@ -136,19 +136,19 @@ class RecordingReader {
   void Fill(const std::string& actor, RecordingYaml& entry) {
     if (entry.recording.value.ends_with(".bvh")) return FillBody(actor, entry);
     if (!CheckKind(entry)) return;
-    ReadResult<MotionTrack> track = ReadTrack(PathOf(entry), entry);
-    if (!track.value) return Refuse(entry, std::move(track.diagnostics));
-    if (!CheckButton(entry, *track.value)) return;
-    if (!Cut(entry, *track.value, errors_)) return;
-    if (!Accept(entry, CheckTrack(*track.value, {entry.max_gap_s, entry.max_jump_m}))) return;
-    if (!HasRoom(entry, track.value->samples.size())) return;
-    entry.poses = Place(entry, *track.value);
+    Result<MotionTrack> track = ReadTrack(PathOf(entry), entry);
+    if (!track) return Refuse(entry, std::move(track.error()));
+    if (!CheckButton(entry, *track)) return;
+    if (!Cut(entry, *track, errors_)) return;
+    if (!Accept(entry, CheckTrack(*track, {entry.max_gap_s, entry.max_jump_m}))) return;
+    if (!HasRoom(entry, track->samples.size())) return;
+    entry.poses = Place(entry, *track);
     for (std::size_t i = 0; i < entry.poses.size(); ++i) {
       if (entry.poses[i].X_WH.p_m.norm() <= kMaxDistance_m) continue;
       return Refuse(
           entry,
           {grammar::DiagnosticAt(
-              track.value->file, track.value->text, track.value->samples[i].place,
+              track->file, track->text, track->samples[i].place,
               fmt::format("the motion is more than {} m from the origin here", kMaxDistance_m),
               "start_at_m shifts the whole motion")});
     }
@@ -163,28 +163,28 @@ class RecordingReader {
                          "recording: a BVH file moves a whole body, not a hand",
                          "give this step to a person; hands follow .csv and .json files");
     }
-    ReadResult<BodyTrack> track = ReadBodyTrack(PathOf(entry));
-    if (!track.value) return Refuse(entry, std::move(track.diagnostics));
-    if (!Cut(entry, *track.value, errors_)) return;
+    Result<BodyTrack> track = ReadBodyTrack(PathOf(entry));
+    if (!track) return Refuse(entry, std::move(track.error()));
+    if (!Cut(entry, *track, errors_)) return;
     const double scale = entry.scale
                              ? entry.scale->value
-                             : physics::LegLength(person->value.height_m) / track.value->leg_units;
-    if (!CheckScale(entry, scale * track.value->leg_units, person->value)) return;
-    if (!Accept(entry, CheckBodyTrack(*track.value, entry, scale))) return;
-    if (!HasRoom(entry, track.value->samples.size())) return;
-    entry.postures = Place(entry, *track.value, person->value, scale);
+                             : physics::LegLength(person->value.height_m) / track->leg_units;
+    if (!CheckScale(entry, scale * track->leg_units, person->value)) return;
+    if (!Accept(entry, CheckBodyTrack(*track, entry, scale))) return;
+    if (!HasRoom(entry, track->samples.size())) return;
+    entry.postures = Place(entry, *track, person->value, scale);
     for (std::size_t i = 0; i < entry.postures.size(); ++i) {
       if (entry.postures[i].posture.hips_W_m.norm() <= kMaxDistance_m) continue;
       return Refuse(
           entry,
           {grammar::DiagnosticAt(
-              track.value->file, track.value->text, track.value->samples[i].place,
+              track->file, track->text, track->samples[i].place,
               fmt::format("the hips are more than {} m from the origin here", kMaxDistance_m),
               "give the file's unit with scale: metres per unit")});
     }
   }
 
-  /// Nobody's legs are a third or three times as long as hers: those are other units.
+  /// Legs a third or three times as long as hers mean that the file has another unit.
   bool CheckScale(const RecordingYaml& entry, double legs_m, const PersonActorYaml& person) {
     constexpr double kMaxRatio = 3;
     const double hers_m = physics::LegLength(person.height_m), ratio = legs_m / hers_m;
@@ -215,7 +215,7 @@ class RecordingReader {
     return !refused;
   }
 
-  /// The same file may be played often, but not without end.
+  /// The same file may be played several times, up to a limit in all.
   bool HasRoom(const RecordingYaml& entry, std::size_t samples) {
     samples_ += samples;
     if (samples_ <= kMaxTrackSamples) return true;
@@ -224,17 +224,17 @@ class RecordingReader {
     return false;
   }
 
-  /// "left or right", as far as the file can be read.
+  /// The devices as a hint, "left or right"; "right" if the file cannot be read.
   std::string NamesOfDevices(const RecordingYaml& entry) const {
-    const ReadResult<YamlDocument> file = ReadYamlFile(PathOf(entry));
-    if (!file.value || file.value->root.children.empty()) return "right";
+    const Result<YamlDocument> file = ReadYamlFile(PathOf(entry));
+    if (!file || file->root.children.empty()) return "right";
     std::vector<std::string> names;
-    for (const YamlNode& device : file.value->root.children) names.push_back(device.key);
+    for (const YamlNode& device : file->root.children) names.push_back(device.key);
     return fmt::format("{}", fmt::join(names, " or "));
   }
 
-  /// A button that is asked for has to be pressed; that the usual one is not, while others are, is
-  /// odd.
+  /// A button that the step names must be pressed in the recording. If the default button is never
+  /// pressed but others are, that is a warning.
   bool CheckButton(const RecordingYaml& entry, const MotionTrack& track) {
     if (!IsCapture(entry) || (!entry.button && track.buttons.empty())) return true;
     const int wanted = entry.button.value_or(Located<int>{kUsualButton, {}}).value;

@@ -12,8 +12,8 @@
 namespace prehend::harness {
 
 /// Fills in the poses of every recording step of the script; the files' paths start at the folder
-/// of `scenario_file`. Complains about steps that don't fit their recording. What is wrong in a
-/// recording, and warnings about it, go to `in_recordings`.
+/// of `scenario_file`. Reports steps that do not fit their recording to `errors`; errors and
+/// warnings inside a recording go to `in_recordings`.
 void ReadRecordings(const std::string& scenario_file, ScenarioYaml& entry,
                     const ScenarioLibrary& library, DiagnosticList& errors,
                     grammar::Diagnostics& in_recordings);

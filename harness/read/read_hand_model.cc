@@ -22,7 +22,7 @@ using physics::HandModel;
 
 constexpr const char* kGraspsEnding = ".grasps.yaml";
 
-/// Turns an entry into a model and complains about names and counts that do not fit together.
+/// Turns a parsed hand file into a model; reports names and counts that do not fit together.
 class HandBuilder {
  public:
   HandBuilder(const HandYaml& entry, DiagnosticList& errors) : entry_(entry), errors_(errors) {}
@@ -63,7 +63,7 @@ int HandBuilder::SensorSet(const Located<std::string>& name) {
   return 0;
 }
 
-/// Everything but its name, its place and its joint's axis.
+/// Everything except its name, its position and its joint's axis.
 physics::HandLink LinkOf(const LinkYaml& link, double joint_unit, int sensor_set) {
   return {.length_m = link.length_m,
           .half_width_m = link.half_width_m,
@@ -113,7 +113,7 @@ void CheckName(const std::string& path, const char* ending, const char* key,
       "rename one of them");
 }
 
-/// The path of the file that a hand's file names, in its own folder; nothing after complaining.
+/// The path of a file that a hand file names, in the same folder; nothing after an error.
 std::optional<std::string> FindBeside(const std::string& path, const char* ending, const char* key,
                                       const Located<std::string>& name, DiagnosticList& errors) {
   const fs::path folder = fs::path(path).parent_path();
@@ -127,26 +127,26 @@ std::optional<std::string> FindBeside(const std::string& path, const char* endin
   return std::nullopt;
 }
 
-/// Reads a hand's files, and keeps account of them.
+/// Reads the files of a hand and records their paths.
 class HandReader {
  public:
   HandReader(const std::vector<std::string>& more_grasps, std::vector<std::string>* files)
       : more_grasps_(more_grasps), files_(files) {}
 
-  ReadResult<HandModel> Read(const std::string& path) {
-    ReadResult<YamlDocument> document = ReadFile(path);
-    if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
-    return document.value->root.Find("mirror_of") ? ReadMirror(path, *document.value)
-                                                  : ReadHand(path, *document.value);
+  Result<HandModel> Read(const std::string& path) {
+    Result<YamlDocument> document = ReadFile(path);
+    if (!document) return tl::unexpected(std::move(document.error()));
+    return document->root.Find("mirror_of") ? ReadMirror(path, *document)
+                                            : ReadHand(path, *document);
   }
 
  private:
-  ReadResult<YamlDocument> ReadFile(const std::string& path) {
+  Result<YamlDocument> ReadFile(const std::string& path) {
     if (files_) files_->push_back(path);
     return ReadYamlFile(path);
   }
-  ReadResult<HandModel> ReadHand(const std::string& path, const YamlDocument& document);
-  ReadResult<HandModel> ReadMirror(const std::string& path, const YamlDocument& document);
+  Result<HandModel> ReadHand(const std::string& path, const YamlDocument& document);
+  Result<HandModel> ReadMirror(const std::string& path, const YamlDocument& document);
   Diagnostics AddGrasps(const std::string& path, const HandYaml& hand, SameName same_name,
                         HandModel& model);
 
@@ -154,24 +154,24 @@ class HandReader {
   std::vector<std::string>* files_;
 };
 
-/// The styles of a grasp file. Returns what is wrong in it.
+/// Appends the styles of a grasp file. Returns its errors.
 Diagnostics HandReader::AddGrasps(const std::string& path, const HandYaml& hand, SameName same_name,
                                   HandModel& model) {
-  ReadResult<YamlDocument> document = ReadFile(path);
-  if (!document.value) return std::move(document.diagnostics);
-  DiagnosticList errors(*document.value);
+  Result<YamlDocument> document = ReadFile(path);
+  if (!document) return std::move(document.error());
+  DiagnosticList errors(*document);
   GraspsYaml entry;
-  if (GraspsFormat().Read(document.value->root, errors, entry)) {
+  if (GraspsFormat().Read(document->root, errors, entry)) {
     CheckName(path, kGraspsEnding, "grasps", entry.name, errors);
     AddStyles(hand.digits, entry.styles, same_name, errors, model.styles);
   }
   return errors.Sorted();
 }
 
-ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDocument& document) {
+Result<HandModel> HandReader::ReadHand(const std::string& path, const YamlDocument& document) {
   DiagnosticList errors(document);
   HandYaml entry;
-  if (!HandFormat().Read(document.root, errors, entry)) return {std::nullopt, errors.Sorted()};
+  if (!HandFormat().Read(document.root, errors, entry)) return tl::unexpected(errors.Sorted());
   CheckName(path, kHandEnding, "hand", entry.name, errors);
   HandModel model = HandBuilder(entry, errors).Build();
   Diagnostics in_grasps;
@@ -190,42 +190,41 @@ ReadResult<HandModel> HandReader::ReadHand(const std::string& path, const YamlDo
   for (const std::string& grasps : more_grasps_) add(grasps, SameName::kTakesItsPlace);
   Diagnostics diagnostics = errors.Sorted();
   diagnostics.insert(diagnostics.end(), in_grasps.begin(), in_grasps.end());
-  if (!diagnostics.empty()) return {std::nullopt, std::move(diagnostics)};
-  return {std::move(model), {}};
+  if (!diagnostics.empty()) return tl::unexpected(std::move(diagnostics));
+  return model;
 }
 
-ReadResult<HandModel> HandReader::ReadMirror(const std::string& path,
-                                             const YamlDocument& document) {
+Result<HandModel> HandReader::ReadMirror(const std::string& path, const YamlDocument& document) {
   DiagnosticList errors(document);
   MirrorYaml entry;
-  if (!MirrorFormat().Read(document.root, errors, entry)) return {std::nullopt, errors.Sorted()};
+  if (!MirrorFormat().Read(document.root, errors, entry)) return tl::unexpected(errors.Sorted());
   CheckName(path, kHandEnding, "hand", entry.name, errors);
   if (entry.mirror_of.value == entry.name.value)
     errors.Add(entry.mirror_of.where, "a hand cannot mirror itself");
-  if (!errors.empty()) return {std::nullopt, errors.Sorted()};
+  if (!errors.empty()) return tl::unexpected(errors.Sorted());
 
   const auto original_path = FindBeside(path, kHandEnding, "mirror_of", entry.mirror_of, errors);
-  if (!original_path) return {std::nullopt, errors.Sorted()};
-  ReadResult<YamlDocument> original_file = ReadFile(*original_path);
-  if (!original_file.value) return {std::nullopt, std::move(original_file.diagnostics)};
-  if (original_file.value->root.Find("mirror_of")) {
+  if (!original_path) return tl::unexpected(errors.Sorted());
+  Result<YamlDocument> original_file = ReadFile(*original_path);
+  if (!original_file) return tl::unexpected(std::move(original_file.error()));
+  if (original_file->root.Find("mirror_of")) {
     errors.Add(entry.mirror_of.where,
                fmt::format("'{}' is itself a mirror image", entry.mirror_of.value));
-    return {std::nullopt, errors.Sorted()};
+    return tl::unexpected(errors.Sorted());
   }
-  ReadResult<HandModel> original = ReadHand(*original_path, *original_file.value);
-  if (original.value) {
-    original.value = physics::Mirrored(std::move(*original.value));
-    original.value->name = entry.name.value;
+  Result<HandModel> original = ReadHand(*original_path, *original_file);
+  if (original) {
+    *original = physics::Mirrored(std::move(*original));
+    original->name = entry.name.value;
   }
   return original;
 }
 
 }  // namespace
 
-ReadResult<HandModel> ReadHandModel(const std::string& path,
-                                    const std::vector<std::string>& more_grasps,
-                                    std::vector<std::string>* files) {
+Result<HandModel> ReadHandModel(const std::string& path,
+                                const std::vector<std::string>& more_grasps,
+                                std::vector<std::string>* files) {
   return HandReader(more_grasps, files).Read(path);
 }
 

@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 #include "physics/scene/hand_model.h"
 
 namespace prehend::harness {
 
-/// The styles of `more_grasps`, paths of grasp files, come after those of the hand; one of the same
-/// name as an earlier one takes its place. Of a mirror image they are written for the hand that it
-/// mirrors. `files` is told of every file that was looked at.
-ReadResult<physics::HandModel> ReadHandModel(const std::string& path,
-                                             const std::vector<std::string>& more_grasps = {},
-                                             std::vector<std::string>* files = nullptr);
+/// The styles of `more_grasps`, paths of grasp files, come after those of the hand; a style
+/// replaces an earlier one of the same name. For a mirror image they are written for the original
+/// hand. The paths of all files that were read are appended to `files`.
+Result<physics::HandModel> ReadHandModel(const std::string& path,
+                                         const std::vector<std::string>& more_grasps = {},
+                                         std::vector<std::string>* files = nullptr);
 
 }  // namespace prehend::harness

@@ -55,7 +55,7 @@ void CheckNames(const std::string& file, const ScenarioYaml& entry, const Scenar
   }
 }
 
-/// The actor's model, or an empty one after complaining; what is wrong in a hand's file goes to
+/// The actor's model, or an empty one after an error; errors inside a hand file go to
 /// `in_hand_files`.
 physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
                             const ScenarioLibrary& library, DiagnosticList& errors,
@@ -78,20 +78,21 @@ physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
       errors.Add(more.where, fmt::format("grasps: '{}' is given twice", more.value));
   }
   auto model = library.read_hand(is_file ? beside(hand.value) : hand.value, grasps);
-  if (model.value) return std::move(*model.value);
-  // Blamed is the file where something is wrong. What has no place could not be opened.
+  if (model) return std::move(*model);
+  // The error names the file that is wrong. Diagnostics without a place mean that it could not be
+  // opened.
   const auto blame = [&](const char* key, const Located<std::string>& named, bool is_open) {
     errors.Add(named.where, fmt::format("{}: '{}' cannot be used, see below", key, named.value),
                is_open ? "" : "the path is relative to the scenario's folder");
   };
   std::map<std::string, bool> bad;  ///< and whether they could be opened
-  for (const grammar::Diagnostic& found : model.diagnostics) bad[found.file] = found.place.line > 0;
+  for (const grammar::Diagnostic& found : model.error()) bad[found.file] = found.place.line > 0;
   for (std::size_t i = 0; i < grasps.size(); ++i) {
     const auto file_of_grasps = bad.extract(grasps[i]);
     if (file_of_grasps) blame("grasps", actor.grasps[i], file_of_grasps.mapped());
   }
   if (!bad.empty()) blame("hand", hand, !is_file || bad.begin()->second);
-  in_hand_files.insert(in_hand_files.end(), model.diagnostics.begin(), model.diagnostics.end());
+  in_hand_files.insert(in_hand_files.end(), model.error().begin(), model.error().end());
   return {};
 }
 
@@ -100,7 +101,7 @@ std::string SkillOf(const std::string& file) {
   return folder.parent_path().filename() == "scenarios" ? folder.filename().string() : "";
 }
 
-/// A person is her head; her other parts are part of it.
+/// The head stands for the person; her other bodies are parts of it.
 void AddPersonClasses(Scenario& scenario) {
   for (std::size_t i = scenario.body_classes.size(); i < scenario.scene.bodies.size(); ++i) {
     const auto& persons = scenario.scene.persons;
@@ -113,14 +114,14 @@ void AddPersonClasses(Scenario& scenario) {
   }
 }
 
-ReadResult<Scenario> AllOf(const DiagnosticList& errors, const Diagnostics& in_other_files) {
+Result<Scenario> AllOf(const DiagnosticList& errors, const Diagnostics& in_other_files) {
   Diagnostics diagnostics = errors.Sorted();
   diagnostics.insert(diagnostics.end(), in_other_files.begin(), in_other_files.end());
-  return {std::nullopt, std::move(diagnostics)};
+  return tl::unexpected(std::move(diagnostics));
 }
 
-ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& document,
-                             const ScenarioLibrary& library) {
+Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
+                         const ScenarioLibrary& library) {
   DiagnosticList errors(document);
   ScenarioYaml entry;
   const bool well_formed = ScenarioFormat().Read(document.root, errors, entry);
@@ -128,7 +129,7 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   CheckNames(file, entry, library, errors);
   Diagnostics in_other_files;
   if (!well_formed) {
-    // Names can be looked up without the rest.
+    // Names can be checked even if other fields are malformed.
     for (const auto& actor : entry.hands) {
       if (!actor.value.hand.value.empty())
         FindHand(file, actor.value, library, errors, in_other_files);
@@ -173,7 +174,8 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   for (const auto& entity : entry.entities)
     scenario.body_classes.push_back(entity.value.class_name.value);
   AddPersonClasses(scenario);
-  for (const auto& kind : entry.classes) scenario.kinds.push_back({kind.name, kind.value.value});
+  for (const auto& kind : entry.classes)
+    scenario.base_classes.push_back({kind.name, kind.value.value});
   scenario.variations = std::move(entry.vary);
   scenario.pictures = std::move(entry.pictures);
   for (const PictureYaml& picture : scenario.pictures) {
@@ -185,38 +187,36 @@ ReadResult<Scenario> Resolve(const std::string& file, const YamlDocument& docume
   }
   if (!errors.empty()) return AllOf(errors, in_other_files);
   scenario.warnings = std::move(in_other_files);
-  return {std::move(scenario), {}};
+  return scenario;
 }
 
-ReadResult<Scenario> ReadDocumentAs(const std::string& file, ReadResult<YamlDocument> document,
-                                    const std::vector<std::string>& overrides,
-                                    const ScenarioLibrary& library) {
-  if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
+Result<Scenario> ReadDocumentAs(const std::string& file, Result<YamlDocument> document,
+                                const std::vector<std::string>& overrides,
+                                const ScenarioLibrary& library) {
+  if (!document) return tl::unexpected(std::move(document.error()));
   for (const std::string& assignment : overrides) {
-    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema(), *document.value);
-        !bad.empty())
-      return {std::nullopt, std::move(bad)};
+    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema(), *document); !bad.empty())
+      return tl::unexpected(std::move(bad));
   }
-  ReadResult<Scenario> scenario = Resolve(file, *document.value, library);
-  if (!scenario.value) return scenario;
+  Result<Scenario> scenario = Resolve(file, *document, library);
+  if (!scenario) return scenario;
   Diagnostics unreadable = CheckDraws(
-      *document.value, scenario.value->variations,
-      [&](const YamlDocument& varied) { return Resolve(file, varied, library).diagnostics; });
-  if (!unreadable.empty()) return {std::nullopt, std::move(unreadable)};
+      *document, scenario->variations,
+      [&](const YamlDocument& varied) { return ErrorsOf(Resolve(file, varied, library)); });
+  if (!unreadable.empty()) return tl::unexpected(std::move(unreadable));
   return scenario;
 }
 
 }  // namespace
 
-ReadResult<Scenario> ReadScenario(const std::string& file,
-                                  const std::vector<std::string>& overrides,
-                                  const ScenarioLibrary& library) {
+Result<Scenario> ReadScenario(const std::string& file, const std::vector<std::string>& overrides,
+                              const ScenarioLibrary& library) {
   return ReadDocumentAs(file, ReadYamlFile(file), overrides, library);
 }
 
-ReadResult<Scenario> ReadScenarioText(const std::string& file, std::string text,
-                                      const std::vector<std::string>& overrides,
-                                      const ScenarioLibrary& library) {
+Result<Scenario> ReadScenarioText(const std::string& file, std::string text,
+                                  const std::vector<std::string>& overrides,
+                                  const ScenarioLibrary& library) {
   return ReadDocumentAs(file, ParseYaml(file, std::move(text)), overrides, library);
 }
 

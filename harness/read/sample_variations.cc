@@ -15,15 +15,16 @@ namespace {
 
 using physics::Random;
 
-/// Every variation of every trial has a generator of its own: adding one leaves the others as they
-/// were.
+/// Each variation of each trial has its own generator, so adding a variation does not change the
+/// samples of the others.
 Random GeneratorFor(std::uint64_t seed, int trial, std::size_t variation) {
   Random mixed(seed);
   mixed = Random(mixed.Next() ^ static_cast<std::uint64_t>(trial));
   return Random(mixed.Next() ^ variation);
 }
 
-/// Chance may not leave the bounds that the reader has tried.
+/// Normal samples are cut off here, so that they stay within the bounds that ValidateVariations()
+/// has tried.
 constexpr double kMaxDeviations = 3;
 
 Draw SampleFrom(const VariationYaml& variation, Random& random) {

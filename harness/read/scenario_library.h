@@ -7,22 +7,22 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 #include "physics/scene/hand_model.h"
 
 namespace prehend::harness {
 
-/// What the names in a scenario may stand for. ProjectLibrary() in harness/run/project_library.h
+/// What the names in a scenario can refer to. ProjectLibrary() in harness/run/project_library.h
 /// makes the usual one.
 struct ScenarioLibrary {
   std::vector<std::string> grammars;
   std::vector<std::string> hands;
   /// The model for one of `hands`, or for the path of a .hand.yaml file, with the styles of these
   /// .grasps.yaml files.
-  std::function<ReadResult<physics::HandModel>(const std::string& name_or_path,
-                                               const std::vector<std::string>& grasps)>
+  std::function<Result<physics::HandModel>(const std::string& name_or_path,
+                                           const std::vector<std::string>& grasps)>
       read_hand;
-  /// Told of every recording before it is read; may be empty.
+  /// Called with the path of each recording before it is read; may be empty.
   std::function<void(const std::string& path)> reads_recording = {};
 };
 

@@ -35,12 +35,12 @@ bool IsSetOnCommandLine(const YamlDocument& document, const std::string& field) 
   return node && node->where.source > 0;
 }
 
-/// Whether what is wrong stands in the path of a setting, and not in its value or elsewhere.
+/// Whether the error is in the path of the setting, not in its value or elsewhere.
 bool IsAboutThePath(const grammar::Diagnostic& wrong, const std::string& setting) {
   return wrong.file == "--set" && wrong.place.column <= static_cast<int>(setting.find('=')) + 1;
 }
 
-/// Nobody can put a drawn number in quotes.
+/// A hint to quote the value makes no sense for a sampled number.
 std::string HintFor(const grammar::Diagnostic& wrong, const VariationYaml& variation) {
   const bool wants_text = wrong.hint.starts_with("put it in quotes");
   return wants_text && !variation.choose ? "use choose: [...] for texts" : wrong.hint;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `vary:` can draw has to be a scenario, too: found out when the file is read, and not at the
-// first trial that draws it. Tested by tests/harness/read/validate_variations_test.cc
+// Checks at load time that every value `vary:` can produce gives a valid scenario, so that no trial
+// fails later. Tested by tests/harness/read/validate_variations_test.cc
 #pragma once
 
 #include <functional>
@@ -11,17 +11,17 @@
 
 namespace prehend::harness {
 
-/// Complains about fields that lead nowhere, that are varied twice, or that are no numbers where
-/// numbers are varied.
+/// Reports fields that do not exist, that are varied twice, or that are not numbers although
+/// numbers are sampled.
 void ValidateVariations(const YamlDocument& document, const std::vector<VariationYaml>& variations,
                         DiagnosticList& errors);
 
-/// What the reader says of a scenario: nothing, if it can be read.
+/// The errors of reading a scenario; empty if it is valid.
 using Reader = std::function<grammar::Diagnostics(const YamlDocument&)>;
 
-/// Applies the bounds of each variation, all else as written, and complains about the first one
-/// that cannot be read. What the command line sets is not varied, and so not looked at.
-/// ValidateVariations() found nothing.
+/// Applies each bound of each variation alone and reports the first that gives an invalid scenario.
+/// Fields set on the command line are not varied and are skipped. ValidateVariations() found
+/// nothing.
 grammar::Diagnostics CheckDraws(const YamlDocument& document,
                                 const std::vector<VariationYaml>& variations, const Reader& read);
 

@@ -34,17 +34,17 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
   };
   const std::string file = GrammarFile(root, name_or_path);
   note(file);
-  ReadResult<std::string> text = ReadTextFile(file);
+  Result<std::string> text = ReadTextFile(file);
   const std::vector<std::string> known = ProjectLibrary(root).grammars;
-  if (!text.value) {
+  if (!text) {
     const bool is_name = file != name_or_path;
     if (is_name && std::ranges::count(known, name_or_path) == 0) {
       const std::string near = grammar::NearestName(name_or_path, known);
-      text.diagnostics.front().hint = near.empty()
-                                          ? fmt::format("there are: {}", fmt::join(known, ", "))
-                                          : fmt::format("did you mean '{}'?", near);
+      text.error().front().hint = near.empty()
+                                      ? fmt::format("there are: {}", fmt::join(known, ", "))
+                                      : fmt::format("did you mean '{}'?", near);
     }
-    return {nullptr, std::move(text.diagnostics)};
+    return {nullptr, std::move(text.error())};
   }
   const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
     const std::string name(used);
@@ -54,12 +54,12 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
                                                     : std::vector{beside, GrammarPath(root, name)};
     for (const std::string& candidate : candidates) {
       note(candidate);
-      ReadResult<std::string> found = ReadTextFile(candidate);
-      if (found.value) return grammar::GrammarText{candidate, std::move(*found.value)};
+      Result<std::string> found = ReadTextFile(candidate);
+      if (found) return grammar::GrammarText{candidate, std::move(*found)};
     }
     return std::nullopt;
   };
-  return grammar::Compile({file, std::move(*text.value)}, include, overrides, known);
+  return grammar::Compile({file, std::move(*text)}, include, overrides, known);
 }
 
 namespace {
@@ -74,7 +74,7 @@ void WarnOfUnknownNames(const std::vector<grammar::NameInSource>& names,
     const std::string near =
         is_number ? "" : grammar::NearestName(named.name, {known.begin(), known.end()});
     warnings.push_back(
-        grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value.value_or(""), named.place,
+        grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value_or(""), named.place,
                               fmt::format("{} '{}'", message, named.name),
                               near.empty() ? remedy : "did you mean '" + near + "'?"));
     warnings.back().is_warning = true;

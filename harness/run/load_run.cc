@@ -57,10 +57,9 @@ grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Prog
     const auto problem = WhyNoEventTime(picture.at.value, program);
     if (!problem) continue;
     const bool in_file = picture.at.where.source == 0;
-    const ReadResult<std::string> text =
-        in_file ? ReadTextFile(scenario.file) : ReadResult<std::string>{};
+    const Result<std::string> text = in_file ? ReadTextFile(scenario.file) : std::string();
     diagnostics.push_back(grammar::DiagnosticAt(in_file ? scenario.file : "--set",
-                                                text.value.value_or(""), picture.at.where.place,
+                                                text.value_or(""), picture.at.where.place,
                                                 "at: " + problem->message, problem->hint));
   }
   return diagnostics;
@@ -69,11 +68,11 @@ grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Prog
 /// The grammar of a scenario that cannot be read, so that all errors are reported at once. Empty if
 /// it is not known, or not in the library (which the reader has reported).
 std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
-  const ReadResult<YamlDocument> document = ReadYamlFile(request.scenario_file);
+  const Result<YamlDocument> document = ReadYamlFile(request.scenario_file);
   const bool is_set = std::ranges::any_of(
       request.settings, [](const auto& set) { return set.starts_with("grammar="); });
-  if (!document.value || is_set) return "";
-  const YamlNode* node = document.value->root.Find("grammar");
+  if (!document || is_set) return "";
+  const YamlNode* node = document->root.Find("grammar");
   const std::string name = node ? node->text : ScenarioYaml{}.grammar.value;
   return std::ranges::count(ProjectLibrary(root).grammars, name) > 0 ? name : "";
 }
@@ -85,40 +84,39 @@ bool IsFieldOfScenario(const std::string& name) {
          ScenarioFormat().schema().at("properties").contains(name);
 }
 
-ReadResult<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
-                              std::vector<std::string>* files) {
+Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                          std::vector<std::string>* files) {
   Settings settings = Split(request.settings, IsFieldOfScenario);
-  if (!settings.diagnostics.empty()) return {std::nullopt, std::move(settings.diagnostics)};
+  if (!settings.diagnostics.empty()) return tl::unexpected(std::move(settings.diagnostics));
   if (files) files->push_back(request.scenario_file);
-  ReadResult<Scenario> scenario =
+  Result<Scenario> scenario =
       ReadScenario(request.scenario_file, settings.of_scenario, ProjectLibrary(root, files));
   const std::string grammar = !request.grammar.empty() ? request.grammar
-                              : scenario.value         ? scenario.value->grammar
+                              : scenario               ? scenario->grammar
                                                        : GrammarNamedIn(request, root);
   grammar::CompileResult compiled = grammar.empty()
                                         ? grammar::CompileResult{}
                                         : LoadGrammar(root, grammar, settings.of_grammar, files);
-  if (!scenario.value || !compiled.program) {
-    grammar::Diagnostics diagnostics = std::move(scenario.diagnostics);
+  if (!scenario || !compiled.program) {
+    grammar::Diagnostics diagnostics = ErrorsOf(scenario);
     std::ranges::move(compiled.diagnostics, std::back_inserter(diagnostics));
-    return {std::nullopt, std::move(diagnostics)};
+    return tl::unexpected(std::move(diagnostics));
   }
   if (request.grammar.empty()) {
-    grammar::Diagnostics pictures = CheckPictures(*scenario.value, *compiled.program);
-    if (!pictures.empty()) return {std::nullopt, std::move(pictures)};
+    grammar::Diagnostics pictures = CheckPictures(*scenario, *compiled.program);
+    if (!pictures.empty()) return tl::unexpected(std::move(pictures));
   }
-  scenario.value->grammar = GrammarName(*compiled.program);
-  grammar::Diagnostics warnings = scenario.value->warnings;
-  std::ranges::move(Warnings(*compiled.program, MakeEntityTable(*scenario.value)),
+  scenario->grammar = GrammarName(*compiled.program);
+  grammar::Diagnostics warnings = scenario->warnings;
+  std::ranges::move(Warnings(*compiled.program, MakeEntityTable(*scenario)),
                     std::back_inserter(warnings));
-  return {LoadedRun{std::move(*scenario.value), std::move(compiled.program), std::move(warnings)},
-          {}};
+  return LoadedRun{std::move(*scenario), std::move(compiled.program), std::move(warnings)};
 }
 
-ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings) {
+Result<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings) {
   Settings split = Split(settings, [](const std::string&) { return false; });
-  if (!split.diagnostics.empty()) return {std::nullopt, std::move(split.diagnostics)};
-  return {std::move(split.of_grammar), {}};
+  if (!split.diagnostics.empty()) return tl::unexpected(std::move(split.diagnostics));
+  return std::move(split.of_grammar);
 }
 
 std::string ScenarioId(const std::string& skill, const std::string& name) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "grammar/monitor.h"
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 #include "harness/scenario/scenario.h"
 
 namespace prehend::harness {
@@ -28,15 +28,15 @@ struct LoadedRun {
 };
 
 /// `files` receives every path that was tried, also if there is no result.
-ReadResult<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
-                              std::vector<std::string>* files = nullptr);
+Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                          std::vector<std::string>* files = nullptr);
 
 /// Whether this name in a setting is a field of the scenario; otherwise it is a parameter of its
 /// grammar.
 bool IsFieldOfScenario(const std::string& name);
 
 /// Settings "name=value" that are all parameters of a grammar.
-ReadResult<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings);
+Result<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings);
 
 /// "skill/name", as in goldens, reports and on the command line.
 std::string ScenarioId(const std::string& skill, const std::string& name);

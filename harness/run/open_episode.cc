@@ -22,17 +22,17 @@ bool IsRecording(const std::string& typed) {
   return file.get() == '{';
 }
 
-ReadResult<EpisodeSource> OpenScenario(const std::string& file, const std::string& grammar,
-                                       const std::vector<std::string>& settings,
-                                       const std::string& root) {
-  ReadResult<LoadedRun> loaded = LoadRun({file, grammar, settings}, root);
-  if (!loaded.value) return {std::nullopt, std::move(loaded.diagnostics)};
-  const Scenario& scenario = loaded.value->scenario;
+Result<EpisodeSource> OpenScenario(const std::string& file, const std::string& grammar,
+                                   const std::vector<std::string>& settings,
+                                   const std::string& root) {
+  Result<LoadedRun> loaded = LoadRun({file, grammar, settings}, root);
+  if (!loaded) return tl::unexpected(std::move(loaded.error()));
+  const Scenario& scenario = loaded->scenario;
   EpisodeSource source{.name = scenario.name,
-                       .program = loaded.value->program,
+                       .program = loaded->program,
                        .entity_table = MakeEntityTable(scenario),
                        .play = {}};
-  source.play = [run = std::move(*loaded.value)](const EpisodeSource::Watcher& watch) {
+  source.play = [run = std::move(*loaded)](const EpisodeSource::Watcher& watch) {
     ScenarioRun playing(run.scenario, run.program);
     while (playing.Step()) {
       if (playing.sensed()) watch(playing.frame());
@@ -41,29 +41,29 @@ ReadResult<EpisodeSource> OpenScenario(const std::string& file, const std::strin
     const bool completed = result.status.kind == physics::RunStatus::Kind::kCompleted;
     return EpisodeSource::Played{result.ticks + 1, completed ? "" : StatusText(result)};
   };
-  return {std::move(source), {}};
+  return source;
 }
 
-ReadResult<EpisodeSource> OpenRecording(const std::string& file, const std::string& grammar,
-                                        const std::vector<std::string>& settings,
-                                        const std::string& root) {
-  ReadResult<Episode> episode = ReadEpisode(file);
-  if (!episode.value) return {std::nullopt, std::move(episode.diagnostics)};
-  ReadResult<grammar::Overrides> parameters = ParameterSettings(settings);
-  if (!parameters.value) return {std::nullopt, std::move(parameters.diagnostics)};
-  const EpisodeHeader& header = episode.value->header;
+Result<EpisodeSource> OpenRecording(const std::string& file, const std::string& grammar,
+                                    const std::vector<std::string>& settings,
+                                    const std::string& root) {
+  Result<Episode> episode = ReadEpisode(file);
+  if (!episode) return tl::unexpected(std::move(episode.error()));
+  Result<grammar::Overrides> parameters = ParameterSettings(settings);
+  if (!parameters) return tl::unexpected(std::move(parameters.error()));
+  const EpisodeHeader& header = episode->header;
   grammar::CompileResult compiled =
-      LoadGrammar(root, grammar.empty() ? header.grammar : grammar, *parameters.value);
-  if (!compiled.program) return {std::nullopt, std::move(compiled.diagnostics)};
+      LoadGrammar(root, grammar.empty() ? header.grammar : grammar, *parameters);
+  if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   EpisodeSource source{.name = header.episode,
                        .program = std::move(compiled.program),
                        .entity_table = header.entity_table,
                        .play = {}};
-  source.play = [recorded = std::move(*episode.value)](const EpisodeSource::Watcher& watch) {
+  source.play = [recorded = std::move(*episode)](const EpisodeSource::Watcher& watch) {
     for (EpisodeFrame frame : recorded.frames) watch(frame.View());
     return EpisodeSource::Played{recorded.end_tick, ""};
   };
-  return {std::move(source), {}};
+  return source;
 }
 
 }  // namespace prehend::harness

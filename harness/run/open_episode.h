@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "grammar/monitor.h"
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
@@ -32,11 +32,11 @@ bool IsRecording(const std::string& typed);
 
 /// If `grammar` is empty, the episode's own. `settings` are those of `prehend run --set`; for a
 /// recording, only parameters of the grammar.
-ReadResult<EpisodeSource> OpenScenario(const std::string& file, const std::string& grammar,
-                                       const std::vector<std::string>& settings,
-                                       const std::string& root);
-ReadResult<EpisodeSource> OpenRecording(const std::string& file, const std::string& grammar,
-                                        const std::vector<std::string>& settings,
-                                        const std::string& root);
+Result<EpisodeSource> OpenScenario(const std::string& file, const std::string& grammar,
+                                   const std::vector<std::string>& settings,
+                                   const std::string& root);
+Result<EpisodeSource> OpenRecording(const std::string& file, const std::string& grammar,
+                                    const std::vector<std::string>& settings,
+                                    const std::string& root);
 
 }  // namespace prehend::harness

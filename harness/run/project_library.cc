@@ -14,7 +14,7 @@ ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>
   // Most scenarios have the same hand; its files are read once.
   struct Known {
     std::vector<std::string> files;
-    ReadResult<physics::HandModel> hand;
+    Result<physics::HandModel> hand;
   };
   const auto known = std::make_shared<std::map<std::string, Known>>();
   return {.grammars = NamesIn(GrammarFolder(root), kGrammarEnding),

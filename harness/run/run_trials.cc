@@ -26,17 +26,17 @@ struct Nominal {
   YamlDocument document;
 };
 
-ReadResult<Nominal> ReadNominal(const RunRequest& request, const std::string& root) {
-  ReadResult<LoadedRun> loaded = LoadRun(request, root);
-  if (!loaded.value) return {std::nullopt, std::move(loaded.diagnostics)};
-  ReadResult<YamlDocument> document = ReadYamlFile(request.scenario_file);
-  if (!document.value) return {std::nullopt, std::move(document.diagnostics)};
+Result<Nominal> ReadNominal(const RunRequest& request, const std::string& root) {
+  Result<LoadedRun> loaded = LoadRun(request, root);
+  if (!loaded) return tl::unexpected(std::move(loaded.error()));
+  Result<YamlDocument> document = ReadYamlFile(request.scenario_file);
+  if (!document) return tl::unexpected(std::move(document.error()));
   for (const std::string& setting : request.settings) {
     if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
-      (void)ApplyOverride(setting, ScenarioFormat().schema(),
-                          *document.value);  // LoadRun() has accepted it
+      // LoadRun() has accepted the setting, so it cannot fail.
+      (void)ApplyOverride(setting, ScenarioFormat().schema(), *document);
   }
-  return {Nominal{std::move(*loaded.value), std::move(*document.value)}, {}};
+  return Nominal{std::move(*loaded), std::move(*document)};
 }
 
 /// Draws one trial. A field that the command line sets is not varied.
@@ -92,34 +92,31 @@ std::size_t CountOf(const std::string& outcome, const TrialReport& report) {
 
 }  // namespace
 
-ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root,
-                                      int trial) {
-  const ReadResult<Nominal> nominal = ReadNominal(request, root);
-  if (!nominal.value) return {std::nullopt, nominal.diagnostics};
-  return {WithDraws(request, *nominal.value, trial), {}};
+Result<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root, int trial) {
+  const Result<Nominal> nominal = ReadNominal(request, root);
+  if (!nominal) return tl::unexpected(nominal.error());
+  return WithDraws(request, *nominal, trial);
 }
 
-ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
-                                  const TrialSettings& settings,
-                                  const std::function<void(int done)>& progress) {
-  const ReadResult<Nominal> nominal = ReadNominal(request, root);
-  if (!nominal.value) return {std::nullopt, nominal.diagnostics};
-  const Scenario& scenario = nominal.value->run.scenario;
+Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
+                              const TrialSettings& settings,
+                              const std::function<void(int done)>& progress) {
+  const Result<Nominal> nominal = ReadNominal(request, root);
+  if (!nominal) return tl::unexpected(nominal.error());
+  const Scenario& scenario = nominal->run.scenario;
   if (scenario.outcomes.empty()) {
-    return {
-        std::nullopt,
-        {grammar::DiagnosticAt(request.scenario_file, "", {1, 1},
-                               "the scenario has no outcomes, so its trials cannot be classified",
-                               "outcomes: {lifted: [{entity: milk, above_m: 0.9}]}")}};
+    return tl::unexpected(grammar::Diagnostics{
+        grammar::DiagnosticAt(request.scenario_file, "", {1, 1},
+                              "the scenario has no outcomes, so its trials cannot be classified",
+                              "outcomes: {lifted: [{entity: milk, above_m: 0.9}]}")});
   }
   std::vector<WorkerJob> jobs;
   for (int trial = 1; trial <= settings.count; ++trial) {
     jobs.push_back([&, trial]() -> std::string {
-      const auto loaded = LoadRun(WithDraws(request, *nominal.value, trial), root);
-      if (!loaded.value)
-        return ToJson(
-            {trial, kFailed, "it cannot be read:\n" + grammar::Format(loaded.diagnostics)});
-      return ToJson(RunTrial(loaded.value->scenario, trial));
+      const auto loaded = LoadRun(WithDraws(request, *nominal, trial), root);
+      if (!loaded)
+        return ToJson({trial, kFailed, "it cannot be read:\n" + grammar::Format(loaded.error())});
+      return ToJson(RunTrial(loaded->scenario, trial));
     });
   }
   int done = 0;
@@ -131,7 +128,7 @@ ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& 
   for (const Outcome& outcome : scenario.outcomes) report.outcomes.push_back(outcome.name);
   for (std::size_t i = 0; i < workers.size(); ++i)
     report.results.push_back(FromWorker(static_cast<int>(i) + 1, workers[i]));
-  return {std::move(report), {}};
+  return report;
 }
 
 nlohmann::ordered_json TrialJson(const TrialReport& report) {

@@ -29,13 +29,12 @@ struct TrialReport {
 };
 
 /// Runs the trials 1 .. count of a scenario. A scenario without outcomes is an error.
-ReadResult<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
-                                  const TrialSettings& settings,
-                                  const std::function<void(int done)>& progress = {});
+Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
+                              const TrialSettings& settings,
+                              const std::function<void(int done)>& progress = {});
 
 /// The request, with the values drawn for one trial added to its settings.
-ReadResult<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root,
-                                      int trial);
+Result<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root, int trial);
 
 /// For programs: `trials`, `outcomes` (name to count) and `results` (`trial`, `outcome`, `reason`).
 nlohmann::ordered_json TrialJson(const TrialReport& report);

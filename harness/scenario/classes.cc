@@ -8,7 +8,7 @@
 namespace prehend::harness {
 namespace {
 
-/// What hangs on a joint is neither fixed nor can it be picked up.
+/// A body on a joint is neither fixed nor free to be picked up.
 const char* MobilityOf(const physics::Scene& scene, int body) {
   if (scene.bodies[static_cast<std::size_t>(body)].fixed) return "Fixed";
   return physics::MovesFreely(scene, body) ? "Movable" : "Jointed";
@@ -44,18 +44,19 @@ bool IsScenarioBuiltinClass(const std::string& name) {
 }
 
 std::vector<std::string> WithBaseClasses(const std::string& class_name,
-                                         const std::vector<BaseClass>& kinds) {
+                                         const std::vector<BaseClass>& base_classes) {
   std::vector<std::string> all = {class_name};
-  while (all.size() <= kinds.size()) {
-    const auto found = std::ranges::find(kinds, all.back(), &BaseClass::name);
-    if (found == kinds.end()) break;
+  while (all.size() <= base_classes.size()) {
+    const auto found = std::ranges::find(base_classes, all.back(), &BaseClass::name);
+    if (found == base_classes.end()) break;
     all.push_back(found->of);
   }
   return all;
 }
 
 std::vector<std::string> ClassesOf(const Scenario& scenario, std::size_t body) {
-  std::vector<std::string> classes = WithBaseClasses(scenario.body_classes[body], scenario.kinds);
+  std::vector<std::string> classes =
+      WithBaseClasses(scenario.body_classes[body], scenario.base_classes);
   for (std::string& given : BuiltInClassesOf(scenario.scene, body))
     classes.push_back(std::move(given));
   return classes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Classes of entities and what they are kinds of: the built-in ones, and those that a scenario
+// Classes of entities and their base classes: the built-in ones, and those that a scenario
 // declares. Tested by tests/harness/build/classes_test.cc
 #pragma once
 
@@ -15,7 +15,7 @@ bool IsScenarioBuiltinClass(const std::string& name);
 
 /// A class and its base classes, the most special first.
 std::vector<std::string> WithBaseClasses(const std::string& class_name,
-                                         const std::vector<BaseClass>& kinds);
+                                         const std::vector<BaseClass>& base_classes);
 
 /// All classes of a body of the scenario, most special first: its own and their base classes, then
 /// the built-in ones.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scenario format, version 1, as one struct. Its YAML face is the field table in
-// harness/format/scenario_fields.cc, which drives both the reader (harness/read/read_scenario.h)
-// and the JSON Schema. What it means to physics and grammar is what BuildScene() etc. make of it.
+// A scenario that is read, checked and resolved: names are indices, entities are bodies, actors are
+// hands and persons. What the file says is ScenarioYaml (harness/format/scenario_yaml.h);
+// harness/read/read_scenario.h turns one into the other.
 #pragma once
 
 #include <map>
@@ -18,13 +18,13 @@
 
 namespace prehend::harness {
 
-/// When the grammar sees the scene, and what of it.
+/// When the grammar sees the scene, and which contacts count as support.
 struct SensingSettings {
   int sensing_hz = 240;         ///< at most the world's rate
-  double bearing_share = 0.05;  ///< of the load of two that touch: a point with less bears nothing
+  double bearing_share = 0.05;  ///< contact points with less of the load are not support
 };
 
-/// A class and what it is a kind of: every Mug is a Cup.
+/// A class and its base class: every Mug is a Cup.
 struct BaseClass {
   std::string name;
   std::string of;
@@ -36,11 +36,11 @@ struct PictureYaml {
   Located<std::string> camera{"three_quarter",
                               {}};  ///< one of CameraWords(), or an entity that is a camera
 };
-/// Cameras that every scenario has; the same as render::CameraNames(), which is there only with the
-/// render room.
+/// Cameras that every scenario has. The same as render::CameraNames(), which exists only in builds
+/// with rendering.
 const std::vector<std::string>& CameraWords();
 
-/// A whole scenario, read, checked and resolved: entities and actors are already bodies and hands.
+/// A whole scenario.
 struct Scenario {
   std::string name;
   std::string file;   ///< where it was read from
@@ -51,19 +51,19 @@ struct Scenario {
   physics::Scene scene;  ///< its world has the engine, the rate and the seed
   SensingSettings sensing;
   std::vector<std::string> body_classes;  ///< one per scene body
-  std::vector<BaseClass> kinds;           ///< each class at most once
+  std::vector<BaseClass> base_classes;    ///< each class at most once
   std::vector<int> body_part_of;  ///< one per scene body: a scene body, or grammar::kNoEntity
   physics::Script script;
   std::vector<VariationYaml> variations;
   std::vector<Outcome> outcomes;
   std::vector<PictureYaml> pictures;
-  grammar::Diagnostics warnings;  ///< about what can be used, but is odd
+  grammar::Diagnostics warnings;  ///< about valid but suspicious input
 };
 
-/// From where pictures can be made: CameraWords(), and the entities that are cameras.
+/// The names that `camera:` accepts: CameraWords() and the entities that are cameras.
 std::vector<std::string> CamerasOf(const Scenario& scenario);
 
-/// Why no picture can be made from this camera, or nothing.
+/// An error message if there is no such camera.
 std::optional<std::string> WhyNoCamera(const Scenario& scenario, const std::string& camera);
 
 }  // namespace prehend::harness

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scenario says about trials: `vary:`, what differs from one to the next, and `outcomes:`,
-// how one can end. Their YAML face is in harness/format/trial_fields.cc. Tested by
+// The trials of a scenario: `vary:`, what differs between them, and `outcomes:`, how one can end.
+// harness/format/trial_fields.cc declares their keys. Tested by
 // tests/harness/read/sample_variations_test.cc and tests/harness/run/outcome_test.cc
 #pragma once
 
@@ -13,18 +13,18 @@
 
 namespace prehend::harness {
 
-/// One draw for all its fields; exactly one distribution is given.
+/// One sample for all its fields. Exactly one distribution is set.
 struct VariationYaml {
   Where where;
-  std::vector<std::string> fields;         ///< paths as of --set
-  std::optional<Eigen::Vector2d> uniform;  ///< [least, most]
+  std::vector<std::string> fields;         ///< paths as for --set
+  std::optional<Eigen::Vector2d> uniform;  ///< [min, max]
   std::optional<Eigen::Vector2d> normal;   ///< [mean, standard deviation]
-  std::optional<Eigen::Vector2d> plus;     ///< uniform, added to what is written
-  std::optional<Eigen::Vector2d> times;    ///< uniform, multiplied with what is written
+  std::optional<Eigen::Vector2d> plus;     ///< uniform, added to the written value
+  std::optional<Eigen::Vector2d> times;    ///< uniform, multiplied with the written value
   std::optional<std::vector<std::string>> choose;
 };
 
-/// What has to be true of one entity; everything that is given.
+/// A condition on one entity; it holds when everything that is set holds.
 struct ConditionYaml {
   Where where;
   std::string entity;
@@ -45,7 +45,7 @@ struct Outcome {
   struct Condition {
     int body = 0;
     int joint = -1;   ///< index into Scene::joints
-    int vessel = -1;  ///< what it has to be inside of
+    int vessel = -1;  ///< index of the body that it must be inside
     ConditionYaml wanted;
   };
   std::string name;

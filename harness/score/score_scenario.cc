@@ -27,29 +27,24 @@ void KeepScored(const std::vector<std::string>& wanted, score::EpisodeToScore& e
 
 }  // namespace
 
-ReadResult<std::vector<score::EpisodeToScore>> EpisodesToScore(const ScoreRequest& request,
-                                                               bool& bad_input) {
-  bad_input = true;
-  const ReadResult<LoadedRun> loaded = LoadRun(
+tl::expected<std::vector<score::EpisodeToScore>, ScoreFailure> EpisodesToScore(
+    const ScoreRequest& request) {
+  const Result<LoadedRun> loaded = LoadRun(
       {.scenario_file = request.scenario_file, .grammar = request.grammars.front()}, request.root);
-  if (!loaded.value) return {std::nullopt, loaded.diagnostics};
-  bad_input = false;
-  const Scenario& scenario = loaded.value->scenario;
-  const RunResult run = RunScenario(scenario, loaded.value->program, {.record = true});
+  if (!loaded) return tl::unexpected(ScoreFailure{loaded.error()});
+  const Scenario& scenario = loaded->scenario;
+  const RunResult run = RunScenario(scenario, loaded->program, {.record = true});
   if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
-    return {std::nullopt,
-            {{.file = request.scenario_file,
-              .place = {},
-              .message = StatusText(run),
-              .source_line = {},
-              .hint = {}}}};
+    const grammar::Diagnostic failed{
+        .file = request.scenario_file, .place = {}, .message = StatusText(run)};
+    return tl::unexpected(ScoreFailure{.diagnostics = {failed}, .is_bad_input = false});
   }
   const grammar::Tick end = run.ticks + 1;
   const grammar::Timeline truth = TrueTimeline(scenario.scene, run.recording, end);
   std::vector<score::EpisodeToScore> episodes;
   for (const std::string& name : request.grammars) {
     const grammar::CompileResult compiled = LoadGrammar(request.root, name);
-    if (!compiled.program) return {std::nullopt, compiled.diagnostics};
+    if (!compiled.program) return tl::unexpected(ScoreFailure{compiled.diagnostics});
     score::EpisodeToScore& episode = episodes.emplace_back();
     episode = {.scenario = request.id,
                .ticks = end,
@@ -58,7 +53,7 @@ ReadResult<std::vector<score::EpisodeToScore>> EpisodesToScore(const ScoreReques
                .not_judged = {}};
     KeepScored(request.events, episode);
   }
-  return {std::move(episodes), {}};
+  return episodes;
 }
 
 }  // namespace prehend::harness

@@ -4,9 +4,10 @@
 #pragma once
 
 #include <string>
+#include <tl/expected.hpp>
 #include <vector>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 #include "harness/score/score.h"
 
 namespace prehend::harness {
@@ -19,11 +20,15 @@ struct ScoreRequest {
   std::vector<std::string> events;    ///< only these are scored; empty: all that the oracle defines
 };
 
+/// Why an episode cannot be scored.
+struct ScoreFailure {
+  grammar::Diagnostics diagnostics;
+  bool is_bad_input = true;  ///< else the run did not complete
+};
+
 /// One episode per grammar, all with the same truth: a grammar that does not define a kind of
-/// event, or misspells it, has missed all such events. Without a value: an input that cannot be
-/// read
-/// (`bad_input`), or a run that did not complete.
-ReadResult<std::vector<score::EpisodeToScore>> EpisodesToScore(const ScoreRequest& request,
-                                                               bool& bad_input);
+/// event, or misspells it, has missed all such events.
+tl::expected<std::vector<score::EpisodeToScore>, ScoreFailure> EpisodesToScore(
+    const ScoreRequest& request);
 
 }  // namespace prehend::harness

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
@@ -45,7 +45,7 @@ struct Episode {
 };
 
 /// Reports errors with file, line and column. The limits are those above.
-ReadResult<Episode> ReadEpisode(const std::string& path);
+Result<Episode> ReadEpisode(const std::string& path);
 
 /// Writes each frame as it comes.
 class EpisodeWriter {

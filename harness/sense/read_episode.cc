@@ -41,16 +41,15 @@ class EpisodeReader {
     ++line_;
     if (text.find_first_not_of(" \r") == std::string::npos) return;
     auto document = ParseYaml(file_, text);
-    if (!document.value) return Report(std::move(document.diagnostics));
-    DiagnosticList errors(*document.value);
+    if (!document) return Report(std::move(document.error()));
+    DiagnosticList errors(*document);
     if (!header_) {
       HeaderEntry header;
-      if (episode::HeaderFormat().Read(document.value->root, errors, header))
-        TakeHeader(header, errors);
+      if (episode::HeaderFormat().Read(document->root, errors, header)) TakeHeader(header, errors);
       header_ = true;
     } else {
       LineEntry line;
-      if (line_format_.Read(document.value->root, errors, line)) {
+      if (line_format_.Read(document->root, errors, line)) {
         std::visit([&](const auto& entry) { Take(entry, errors); }, line);
       }
     }
@@ -292,7 +291,7 @@ grammar::Frame EpisodeFrame::View() {
   return {tick, entities, hands, touches};
 }
 
-ReadResult<Episode> ReadEpisode(const std::string& path) {
+Result<Episode> ReadEpisode(const std::string& path) {
   EpisodeReader reader(path);
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
@@ -302,7 +301,7 @@ ReadResult<Episode> ReadEpisode(const std::string& path) {
          .message = std::filesystem::exists(path, error) ? "is not a regular file" : "no such file",
          .source_line = {},
          .hint = {}});
-    return {std::nullopt, std::move(reader.diagnostics)};
+    return tl::unexpected(std::move(reader.diagnostics));
   }
   if (const auto size = std::filesystem::file_size(path, error); error || size > kMaxEpisodeBytes) {
     reader.diagnostics.push_back(
@@ -311,7 +310,7 @@ ReadResult<Episode> ReadEpisode(const std::string& path) {
          .message = fmt::format("is larger than {} MiB", kMaxEpisodeBytes >> 20),
          .source_line = {},
          .hint = {}});
-    return {std::nullopt, std::move(reader.diagnostics)};
+    return tl::unexpected(std::move(reader.diagnostics));
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
@@ -320,7 +319,7 @@ ReadResult<Episode> ReadEpisode(const std::string& path) {
                                   .message = std::string("cannot be read: ") + std::strerror(errno),
                                   .source_line = {},
                                   .hint = {}});
-    return {std::nullopt, std::move(reader.diagnostics)};
+    return tl::unexpected(std::move(reader.diagnostics));
   }
   for (std::string line; reader.diagnostics.empty() && std::getline(stream, line);) {
     if (line.ends_with('\r')) line.pop_back();  // written on Windows
@@ -334,8 +333,8 @@ ReadResult<Episode> ReadEpisode(const std::string& path) {
     reader.TakeLine(line);
   }
   reader.Finish();
-  if (!reader.diagnostics.empty()) return {std::nullopt, std::move(reader.diagnostics)};
-  return {std::move(reader.episode), {}};
+  if (!reader.diagnostics.empty()) return tl::unexpected(std::move(reader.diagnostics));
+  return std::move(reader.episode);
 }
 
 }  // namespace prehend::harness

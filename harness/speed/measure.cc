@@ -195,10 +195,10 @@ SpeedFigure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool 
 
 }  // namespace
 
-ReadResult<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool quick) {
-  ReadResult<LoadedRun> carton =
+Result<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool quick) {
+  Result<LoadedRun> carton =
       LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root);
-  if (!carton.value) return {.value = std::nullopt, .diagnostics = std::move(carton.diagnostics)};
+  if (!carton) return tl::unexpected(std::move(carton.error()));
   const Measuring measuring(quick);
   std::vector<SpeedFigure> figures = {
       measuring.Stations(1, 1'000'000, 2400, 10),
@@ -212,9 +212,9 @@ ReadResult<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool 
       measuring.Touches("a touch makes a condition true or false", "fact edge", Flicker::kFact),
       measuring.Touches("a touch begins or ends a grasp", "event boundary", Flicker::kGrasp),
       measuring.Binding(),
-      WatchCarton(*carton.value, quick),
-      WatchSleepers(carton.value->program, quick)};
-  return {.value = std::move(figures), .diagnostics = {}};
+      WatchCarton(*carton, quick),
+      WatchSleepers(carton->program, quick)};
+  return figures;
 }
 
 }  // namespace prehend::harness

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
@@ -27,6 +27,6 @@ struct SpeedFigure {
 
 /// Fails only if `root` lacks the scenario that is played. Takes seconds; with `quick` a fraction
 /// of one, for tests.
-ReadResult<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool quick);
+Result<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool quick);
 
 }  // namespace prehend::harness

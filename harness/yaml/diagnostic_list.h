@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects what is wrong with one document while it is read, in any order, and hands it over sorted
-// by place. Tested by tests/harness/yaml/struct_format_test.cc
+// Collects the errors of one document while it is read, in any order, and returns them sorted by
+// place. Tested by tests/harness/yaml/struct_format_test.cc
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ class DiagnosticList {
                       const std::vector<std::string>& candidates);
 
   bool empty() const { return found_.empty(); }
-  /// Sorted by place; complaints about one place in the order they came.
+  /// Sorted by place; errors at the same place in the order they were added.
   grammar::Diagnostics Sorted() const;
 
  private:

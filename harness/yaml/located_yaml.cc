@@ -101,8 +101,7 @@ class TreeBuilder : public YAML::EventHandler {
     return std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), text_.size());
   }
 
-  /// Whether the quotation that opens here is closed; yaml-cpp takes the end of the file for its
-  /// end.
+  /// Whether the quote that opens here is closed. yaml-cpp accepts the end of the file instead.
   bool IsClosed(std::size_t open) const {
     const char quote = open < text_.size() ? text_[open] : '\0';
     if (quote != '"' && quote != '\'') return true;  // a block scalar
@@ -195,7 +194,7 @@ class TreeBuilder : public YAML::EventHandler {
   int documents_ = 0;
 };
 
-/// yaml-cpp takes some tabs for spaces and stumbles over others, so none is let through.
+/// yaml-cpp treats some tabs as spaces and fails on others, so all are refused.
 Diagnostics CheckTabs(const std::string& file, const std::string& text) {
   const auto tab = text.find('\t');
   if (tab == std::string::npos) return {};
@@ -212,7 +211,7 @@ std::string_view LineOf(std::string_view text, int line) {
   return text.substr(0, text.find('\n'));
 }
 
-/// What yaml-cpp says of a syntax error, as message and hint for people who don't write parsers.
+/// Rewords yaml-cpp's message of a syntax error as message and hint.
 std::pair<std::string, std::string> InPlainWords(const std::string& message, std::string_view text,
                                                  Place place) {
   struct Words {
@@ -266,9 +265,9 @@ const YamlNode* YamlNode::Find(std::string_view name) const {
   return nullptr;
 }
 
-ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
-  if (auto bad = CheckText(file, text); !bad.empty()) return {std::nullopt, std::move(bad)};
-  if (auto bad = CheckTabs(file, text); !bad.empty()) return {std::nullopt, std::move(bad)};
+Result<YamlDocument> ParseYaml(const std::string& file, std::string text) {
+  if (auto bad = CheckText(file, text); !bad.empty()) return tl::unexpected(std::move(bad));
+  if (auto bad = CheckTabs(file, text); !bad.empty()) return tl::unexpected(std::move(bad));
   TreeBuilder builder(file, text);
   try {
     std::istringstream stream(text);
@@ -277,7 +276,7 @@ ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
     while (parser.HandleNextDocument(builder)) any = true;
     if (!any) builder.Complain({}, "the file contains only comments", "");
   } catch (const Stop&) {
-    // The builder has said why.
+    // The builder has reported why.
   } catch (const YAML::Exception& error) {
     builder.diagnostics.clear();  // they may be consequences
     const Place place =
@@ -285,14 +284,14 @@ ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text) {
     const auto [message, hint] = InPlainWords(error.msg, text, place);
     builder.Complain(place, message, hint);
   }
-  if (!builder.diagnostics.empty()) return {std::nullopt, std::move(builder.diagnostics)};
-  return {YamlDocument{{{file, std::move(text)}}, std::move(builder.root)}, {}};
+  if (!builder.diagnostics.empty()) return tl::unexpected(std::move(builder.diagnostics));
+  return YamlDocument{{{file, std::move(text)}}, std::move(builder.root)};
 }
 
-ReadResult<YamlDocument> ReadYamlFile(const std::string& path) {
+Result<YamlDocument> ReadYamlFile(const std::string& path) {
   auto text = ReadTextFile(path);
-  if (!text.value) return {std::nullopt, std::move(text.diagnostics)};
-  return ParseYaml(path, std::move(*text.value));
+  if (!text) return tl::unexpected(std::move(text.error()));
+  return ParseYaml(path, std::move(*text));
 }
 
 }  // namespace prehend::harness

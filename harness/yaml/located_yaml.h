@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// YAML as a tree in which every key and value knows where it stands. A strict subset: one document
-// of plain mappings, sequences and scalars. What makes YAML ambiguous or dangerous is refused with
-// its place: duplicate keys, `<<` merges, anchors and aliases, tags, several documents, tabs, deep
-// nesting. What the scalars mean is decided by harness/yaml/value_format.h. Tested by
-// tests/harness/yaml/located_yaml_test.cc
+// YAML as a tree in which every key and value knows its place in the source. A strict subset: one
+// document of plain mappings, sequences and scalars. What makes YAML ambiguous or dangerous is
+// refused with its place: duplicate keys, `<<` merges, anchors and aliases, tags, several
+// documents, tabs, deep nesting. harness/yaml/value_format.h decides what the scalars mean. Tested
+// by tests/harness/yaml/located_yaml_test.cc
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "harness/base/located.h"
-#include "harness/base/read_result.h"
+#include "harness/base/result.h"
 
 namespace prehend::harness {
 
@@ -32,8 +32,8 @@ struct YamlNode {
   const YamlNode* Find(std::string_view name) const;
 };
 
-/// The child called `step` of a mapping, or of a sequence the one with this index; null when there
-/// is none.
+/// The child called `step` of a mapping, or the one with that index of a sequence; null if there is
+/// none.
 const YamlNode* ChildOf(const YamlNode& node, std::string_view step);
 
 /// A text that nodes come from: the file, or one `--set` from the command line.
@@ -47,19 +47,19 @@ struct YamlDocument {
   YamlNode root;
 };
 
-/// Parses `text`, which CheckText() has passed or will refuse here.
-ReadResult<YamlDocument> ParseYaml(const std::string& file, std::string text);
+/// Parses `text` after CheckText(). On failure: diagnostics with places in `file`.
+Result<YamlDocument> ParseYaml(const std::string& file, std::string text);
 /// ReadTextFile() and ParseYaml().
-ReadResult<YamlDocument> ReadYamlFile(const std::string& path);
+Result<YamlDocument> ReadYamlFile(const std::string& path);
 
 /// Replaces (or adds) a value: `entities.milk.mass_kg=8`, `pictures.0.camera=left`. The value is
-/// YAML, too. The new node's place is in a source called `--set`. Complains when the path leads
-/// nowhere; a mapping that is left out in the file is made when the JSON Schema knows a field of
-/// that name there.
+/// YAML, too. The new node's place is in a source called `--set`. Returns an error if the path does
+/// not exist. A mapping that the file leaves out is created if the JSON Schema has a field of that
+/// name there.
 grammar::Diagnostics ApplyOverride(const std::string& assignment,
                                    const nlohmann::ordered_json& schema, YamlDocument& document);
 
-/// Whether the field that `path` leads to takes whole numbers only, says the JSON Schema.
+/// Whether the JSON Schema requires a whole number at `path`.
 bool IsWholeNumber(const std::string& path, const nlohmann::ordered_json& schema,
                    const YamlDocument& document);
 

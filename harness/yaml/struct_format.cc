@@ -56,7 +56,7 @@ std::string ReportUnknownKey(const YamlNode& child, const std::string& title,
   return grammar::NearestName(child.key, known);
 }
 
-/// Where a complaint about the whole of a mapping is best seen: at its name, if it has one.
+/// Where an error about a whole mapping is shown: at its name, if it has one.
 Where HeadOf(const YamlNode& node) {
   const bool in_list = node.key.ends_with(']');
   return node.key.empty() || in_list || node.key_where.place.line == 0 ? node.where
@@ -73,7 +73,7 @@ std::vector<std::string> KeysPresent(const YamlNode& node, const std::vector<std
 
 Json Requires(const std::vector<std::string>& keys) { return {{"required", keys}}; }
 
-/// The index of the one key of `cases` that is in the mapping; nothing after complaining.
+/// The index of the one key of `cases` that is in the mapping; nothing after an error.
 std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& noun,
                                     const std::vector<std::string>& cases, DiagnosticList& errors) {
   if (node.kind != YamlNode::Kind::kMapping) {
@@ -170,7 +170,7 @@ bool StructRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const 
   std::vector<std::string> known;
   for (const Field& field : fields) known.push_back(field.key);
   bool good = true;
-  std::set<std::string> meant;  // but misspelt: not to be called missing, too
+  std::set<std::string> meant;  // but misspelt: not reported as missing, too
   for (const YamlNode& child : node.children) {
     if (std::find(known.begin(), known.end(), child.key) != known.end()) continue;
     meant.insert(ReportUnknownKey(child, TitleOf(node), known, renamed, errors));

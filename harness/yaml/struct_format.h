@@ -21,7 +21,7 @@
 
 namespace prehend::harness {
 
-/// Reads a value with `read` and stores it in the member, if it is one.
+/// Reads a value with `read` and stores it in the member. False after an error.
 using MemberReader = bool (*)(const ErasedFormat::Read& read, const YamlNode& node,
                               DiagnosticList& errors, void* member);
 
@@ -53,7 +53,7 @@ struct StructRules {
   std::vector<std::pair<std::string, std::string>> renamed;  ///< a former key, and what it is now
   std::vector<Check> checks;
 
-  /// `initial` is what the member is without the key, or null when that is not shown.
+  /// `initial` is the member's default value, or null if the schema shows none.
   void Add(std::string_view key, bool required, std::ptrdiff_t offset, MemberReader read_member,
            const ErasedFormat& format, std::string_view doc, const void* initial);
   bool Read(const YamlNode& node, DiagnosticList& errors, void* value) const;
@@ -62,8 +62,7 @@ struct StructRules {
  private:
   /// "a box", or "entity 'milk'".
   std::string TitleOf(const YamlNode& node) const;
-  /// Complains when the node is no mapping, and about unknown and missing keys. False after
-  /// complaining.
+  /// Reports a node that is no mapping, unknown keys and missing keys. False after an error.
   bool CheckKeys(const YamlNode& node, DiagnosticList& errors) const;
 };
 
@@ -98,7 +97,7 @@ struct MemberOf {
     return true;
   }
 
-  /// What stands for the default in the schema, or null.
+  /// The default value for the schema, or null if there is none.
   static const void* Shown(const M& member) {
     if constexpr (std::is_same_v<M, F>) return &member;
     if constexpr (std::is_same_v<M, Located<F>>) return &member.value;
@@ -109,13 +108,13 @@ struct MemberOf {
 template <class T>
 class StructFormat {
  public:
-  /// `noun` is how complaints call it: "a box".
+  /// `noun` is its name in messages: "a box".
   explicit StructFormat(std::string noun) : rules_(std::move(noun)) {
     if constexpr (requires(T & t) { t.where = Where{}; })
       rules_.where_offset = OffsetOf(defaults_.where);
   }
 
-  /// DiagnosticList call it by its key: "entity 'milk'" for noun "entity".
+  /// Messages name it by its key: "entity 'milk'" for the noun "entity".
   StructFormat& NamedByKey() {
     rules_.named_by_key = true;
     return *this;
@@ -139,7 +138,7 @@ class StructFormat {
     rules_.at_most_one.push_back(std::move(keys));
     return *this;
   }
-  /// The key was called `former` once; whoever still writes that is told the new name.
+  /// The key was called `former`; the error about the former key names the new one.
   StructFormat& Renamed(std::string former, std::string key) {
     rules_.renamed.emplace_back(std::move(former), std::move(key));
     return *this;

@@ -44,7 +44,7 @@ bool HasControlCharacters(const std::string& text) {
   });
 }
 
-/// The node's text when it is unmistakably a string, else a complaint.
+/// The node's text if it is unmistakably a string; nothing after an error.
 std::optional<std::string> StringOf(const YamlNode& node, DiagnosticList& errors,
                                     const std::string& wanted) {
   if (node.kind == YamlNode::Kind::kScalar) {
@@ -74,7 +74,7 @@ std::optional<ScalarMeaning> NumericMeaning(const YamlNode& node) {
   return meaning;
 }
 
-/// What to do about a text where a number is wanted: "0.3kg", "0,3".
+/// The hint for a text where a number is expected: "0.3kg", "0,3".
 std::string NumberRemedy(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kScalar || node.quoted) return "";
   const std::string& text = node.text;
@@ -131,7 +131,7 @@ bool ReportExpected(const YamlNode& node, DiagnosticList& errors, const std::str
 
 namespace {
 
-/// Complains when the node is no list, or has a wrong number of items. The same for mappings.
+/// Reports a node that is no list, or has a wrong number of items. The same for mappings.
 bool IsListOf(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most) {
   if (node.kind == YamlNode::Kind::kSequence) return HasSize(node, errors, least, most);
   const std::string wanted = least == most ? fmt::format("a list of {}", least) : "a list";

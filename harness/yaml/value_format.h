@@ -35,7 +35,7 @@ using Json = nlohmann::ordered_json;
 /// A format without the type of its values: `value` points to one. Lists, mappings and structs are
 /// made of these, so that only a few lines are compiled anew for each type.
 struct ErasedFormat {
-  /// False, after complaining, when the node is not such a value; then the value means nothing.
+  /// False after an error; then the value is meaningless.
   using Read = std::function<bool(const YamlNode&, DiagnosticList&, void* value)>;
   /// How a value is written, for defaults in the schema.
   using Show = std::function<Json(const void* value)>;
@@ -74,11 +74,11 @@ class ValueFormat : public FormatHolder {
                         return read(node, errors, *static_cast<T*>(value));
                       }}) {}
 
-  /// False, after complaining, when the node is not such a value; then the value means nothing.
+  /// False after an error; then the value is meaningless.
   bool Read(const YamlNode& node, DiagnosticList& errors, T& value) const {
     return erased_.read(node, errors, &value);
   }
-  /// The same, with values shown as `other` shows them.
+  /// The same, with defaults shown in the schema as `other` shows them.
   ValueFormat ShownAs(const ValueFormat& other) && {
     erased_.show = other.erased_.show;
     return std::move(*this);
@@ -93,10 +93,10 @@ struct Named {
   T value{};
 };
 
-/// Complains "KEY: expected WANTED, found ..." and, about an ambiguous scalar, why. Returns false.
+/// Reports "KEY: expected WANTED, found ..." and, for an ambiguous scalar, why. Returns false.
 bool ReportExpected(const YamlNode& node, DiagnosticList& errors, const std::string& wanted);
 
-/// A finite number, bounds included. Units belong into the key.
+/// A finite number, bounds included. Units belong in the key.
 ValueFormat<double> Number(double lowest, double highest);
 /// True or false.
 ValueFormat<bool> Flag();
@@ -113,7 +113,7 @@ ValueFormat<std::string> Choice(std::vector<std::string> words);
 /// [w, x, y, z] of length 1.
 ValueFormat<Eigen::Vector4d> UnitQuaternion();
 
-/// Complains "KEY: expected [least, most], found ..." unless the first of the two is smaller.
+/// Reports "KEY: expected [min, max], found ..." unless the first of the two is smaller.
 void CheckLeastMost(const std::string& key, const Eigen::Vector2d& range, Where where,
                     DiagnosticList& errors);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `--set a.b.c=value`: changes a tree before it is read, so that every check of the file holds for
-// it, too. Tested by tests/harness/yaml/located_yaml_test.cc
+// `--set a.b.c=value`: changes the tree before it is read, so every check of the file applies to
+// it. Tested by tests/harness/yaml/located_yaml_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,8 +32,7 @@ void Relocate(YamlNode& node, int source, int column_offset) {
 
 using Schema = nlohmann::ordered_json;
 
-/// The schema of the field called `step`, or of the item of a list; null when it says nothing of
-/// one.
+/// The schema of the field called `step`, or of a list's items; null if there is none.
 const Schema* FieldSchema(const Schema* schema, const std::string& step) {
   if (!schema) return nullptr;
   const auto properties = schema->find("properties");
@@ -45,7 +44,7 @@ const Schema* FieldSchema(const Schema* schema, const std::string& step) {
   return nullptr;
 }
 
-/// Of a schema with alternatives (an actor is a hand or a person) the first that knows every key of
+/// For a schema with alternatives (an actor is a hand or a person): the first that has every key of
 /// the node.
 const Schema* Alternative(const Schema* schema, const YamlNode& node) {
   if (!schema || !schema->contains("oneOf")) return schema;
@@ -66,7 +65,7 @@ bool IsOptionalMapping(const Schema* schema, const std::string& step) {
          (*schema)["properties"][step].contains("properties");
 }
 
-/// What a mapping has, and what its schema says it may have.
+/// The keys that a mapping has and those that its schema allows.
 std::vector<std::string> NamesIn(const YamlNode& node, const Schema* schema) {
   std::vector<std::string> names;
   if (schema && schema->contains("properties")) {
@@ -105,7 +104,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema,
     return report(0, "expected PATH=VALUE", "for example entities.milk.mass_kg=8");
   }
   auto parsed = ParseYaml("--set", assignment.substr(equals + 1));
-  if (!parsed.value) return std::move(parsed.diagnostics);
+  if (!parsed) return std::move(parsed.error());
 
   document.sources.push_back({"--set", assignment});
   const int source = static_cast<int>(document.sources.size()) - 1;
@@ -132,7 +131,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema,
     begin = end + 1;
   }
 
-  YamlNode value = std::move(parsed.value->root);
+  YamlNode value = std::move(parsed->root);
   value.key = node->key;
   Relocate(value, source, static_cast<int>(equals) + 1);
   value.key_where = {source, {1, 1}};

@@ -20,8 +20,7 @@ std::size_t Digits(std::string_view text, std::size_t at) {
   return n;
 }
 
-/// A number as JSON writes it (RFC 8259): all YAML readers agree about these, and from_chars()
-/// reads them.
+/// A number as in JSON (RFC 8259): all YAML readers agree on these, and from_chars() reads them.
 struct JsonNumber {
   bool matches = false;
   bool integer = false;
@@ -67,7 +66,7 @@ ScalarMeaning Ambiguous(std::string reason, std::string remedy) {
   return meaning;
 }
 
-/// Scalars that only look like a number, or are one to some readers only.
+/// Scalars that look like a number, or are a number only to some readers.
 std::optional<ScalarMeaning> AmbiguousNumber(const std::string& text) {
   const std::string_view unsigned_text =
       std::string_view(text).substr(text.find_first_not_of("+-") == 1 ? 1 : 0);

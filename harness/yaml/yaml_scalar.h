@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a plain YAML scalar means, when all YAML versions agree about it. YAML 1.1 and 1.2 read
-// `no`, `010`, `1:30` or `1_000` differently, so these are refused wherever a value is wanted; the
-// writer says what is meant. Tested by tests/harness/yaml/yaml_scalar_test.cc
+// `no`, `010`, `1:30` or `1_000` differently, so these are refused wherever a value is expected,
+// with a hint how to write what is meant. Tested by tests/harness/yaml/yaml_scalar_test.cc
 #pragma once
 
 #include <optional>
@@ -31,10 +31,10 @@ ScalarMeaning MeaningOf(const YamlNode& node);
 /// The number that is written there, if it is one and no larger than kMaxNumber.
 std::optional<double> NumberOf(const YamlNode& node);
 
-/// How to call a node in a complaint: "'heavy'", "a list", "a mapping", "nothing".
+/// How messages describe a node: "'heavy'", "a list", "a mapping", "nothing".
 std::string Describe(const YamlNode& node);
 
-/// What to do about signs that only look like those of YAML, as word processors write them; or "".
+/// A hint about characters that resemble ASCII ones, as word processors insert them; or "".
 std::string LookAlikeRemedy(std::string_view text);
 
 }  // namespace prehend::harness

@@ -53,6 +53,7 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"fmt", std::regex("fmt/.*"), std::regex("(harness|tests|bench)/.*")},
       {"CLI11", std::regex("CLI/.*"), std::regex("harness/cli/parse_arguments\\.cc")},
       {"pugixml", std::regex("pugixml\\.hpp"), std::regex("(harness|tests)/.*")},
+      {"tl::expected", std::regex("tl/.*"), std::regex("harness/.*")},
       {"xxHash", std::regex("xxhash\\.h"), std::regex("harness/(.*/)?content_hash\\.cc")},
       {"OpenGL and OSMesa", std::regex("(GL/.*|GLES.*|EGL/.*)"), std::regex("render/.*")},
       {"libpng", std::regex("png\\.h"), std::regex("(render|tests/render)/.*")},

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const ScenarioLibrary library = ProjectLibrary(PREHEND_SOURCE_DIR);
   const auto read = ReadScenarioText(
       "fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size), {}, library);
-  if (!read.value && read.diagnostics.empty()) std::abort();  // refused without a word
-  (void)Format(read.diagnostics);
+  if (!read && ErrorsOf(read).empty()) std::abort();  // refused without a word
+  (void)Format(ErrorsOf(read));
   return 0;
 }

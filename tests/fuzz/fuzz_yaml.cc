@@ -22,10 +22,9 @@ void CheckPlaces(const prehend::harness::YamlNode& node, int lines) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   const auto read = prehend::harness::ParseYaml("fuzz.yaml", text);
-  if (read.value.has_value() != read.diagnostics.empty())
-    std::abort();  // a tree or errors, never both
-  (void)Format(read.diagnostics);
-  if (read.value)
-    CheckPlaces(read.value->root, static_cast<int>(std::count(text.begin(), text.end(), '\n')));
+  if (!read && read.error().empty()) std::abort();  // no tree and no reason
+  const std::string shown = Format(prehend::harness::ErrorsOf(read));
+  if (read.has_value() != shown.empty()) std::abort();
+  if (read) CheckPlaces(read->root, static_cast<int>(std::count(text.begin(), text.end(), '\n')));
   return 0;
 }

@@ -25,14 +25,10 @@ ScenarioLibrary ProbeLibrary() {
   return {.grammars = {"pick_and_place"},
           .hands = {"human_left", "human_right"},
           .read_hand = [](const std::string& name,
-                          const std::vector<std::string>&) -> ReadResult<physics::HandModel> {
+                          const std::vector<std::string>&) -> Result<physics::HandModel> {
             if (name.ends_with("broken.hand.yaml")) {
-              return {std::nullopt,
-                      {{.file = name,
-                        .place = {3, 4},
-                        .message = "no links",
-                        .source_line = {},
-                        .hint = {}}}};
+              return tl::unexpected(
+                  grammar::Diagnostics{{.file = name, .place = {3, 4}, .message = "no links"}});
             }
             physics::HandModel model;
             model.name = name;
@@ -45,7 +41,7 @@ ScenarioLibrary ProbeLibrary() {
                                     .side = physics::GraspApproach{}});
             model.styles.push_back(
                 {.name = "pinch", .frames = {{}, {}}, .above = physics::GraspApproach{}});
-            return {model, {}};
+            return model;
           }};
 }
 

@@ -11,9 +11,9 @@ namespace prehend::physics {
 
 inline HandModel LibraryHand(const std::string& name) {
   auto read = harness::ReadHandModel(PREHEND_SOURCE_DIR "/physics/library/" + name + ".hand.yaml");
-  if (!read.value)
-    throw std::runtime_error("hand file " + name + ": " + read.diagnostics.front().message);
-  return std::move(*read.value);
+  if (!read)
+    throw std::runtime_error("hand file " + name + ": " + harness::ErrorsOf(read).front().message);
+  return std::move(*read);
 }
 
 }  // namespace prehend::physics

@@ -26,8 +26,8 @@ class TextFile : public testing::Test {
   /// The only complaint about a file.
   static std::string Complaint(const std::string& path) {
     const auto read = ReadTextFile(path);
-    EXPECT_FALSE(read.value.has_value());
-    return read.diagnostics.size() == 1 ? read.diagnostics[0].message : "not one complaint";
+    EXPECT_FALSE(read.has_value());
+    return ErrorsOf(read).size() == 1 ? ErrorsOf(read)[0].message : "not one complaint";
   }
 
   std::filesystem::path folder_;
@@ -36,14 +36,13 @@ class TextFile : public testing::Test {
 TEST_F(TextFile, DropsByteOrderMarkAndCarriageReturns) {
   EXPECT_EQ(ReadTextFile(Write("dos",
                                "\xEF\xBB\xBF"
-                               "a: 1\r\nb: 2\r\n"))
-                .value,
+                               "a: 1\r\nb: 2\r\n")),
             "a: 1\nb: 2\n");
 }
 
 TEST_F(TextFile, KeepsUnicode) {
   const std::string text = "shows: Milchtüte \xF0\x9F\xA5\x9B\n";
-  EXPECT_EQ(ReadTextFile(Write("unicode", text)).value, text);
+  EXPECT_EQ(ReadTextFile(Write("unicode", text)), text);
 }
 
 TEST_F(TextFile, RefusesWhatIsNoTextFile) {

@@ -33,14 +33,14 @@ const char* const kSlider =
     "slider: {to: chest, axis: [-1, 0, 0], range_m: [0, 0.3], friction_n: 3}";
 const char* const kFixed = "part_of: drawer, fixed_to: drawer";
 
-ReadResult<Scenario> Read(const std::string& text) {
+Result<Scenario> Read(const std::string& text) {
   return ReadScenarioText("probe.yaml", text, {}, ProbeLibrary());
 }
 
 TEST(BuildJoints, ADrawerWithAHandle) {
   const auto read = Read(Furniture(kSlider, kFixed));
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  const auto& joints = read.value->scene.joints;
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  const auto& joints = read->scene.joints;
   ASSERT_EQ(joints.size(), 2u);
   EXPECT_EQ(joints[0].kind, JointKind::kSlider);
   EXPECT_EQ(joints[0].body, 1);
@@ -50,7 +50,7 @@ TEST(BuildJoints, ADrawerWithAHandle) {
   EXPECT_EQ(joints[0].friction, 3);
   EXPECT_EQ(joints[1].kind, JointKind::kFixed);
   EXPECT_EQ(joints[1].base, 1);
-  const grammar::EntityTable entity_table = MakeEntityTable(*read.value);
+  const grammar::EntityTable entity_table = MakeEntityTable(*read);
   EXPECT_EQ(entity_table.entities[2].part_of, 1);
   EXPECT_EQ(entity_table.entities[1].part_of, grammar::kNoEntity);
   EXPECT_EQ(entity_table.entities[0].classes[1], "Fixed");
@@ -63,8 +63,8 @@ TEST(BuildJoints, AHingeIsInDegrees) {
       Furniture("hinge: {to: chest, at_m: [0.3, 0.15, 0.5], axis: [0, 0, 1], range_deg: [-90, 45], "
                 "spring_nm_per_rad: 2, rest_deg: 90}",
                 kFixed));
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  const physics::Joint& joint = read.value->scene.joints[0];
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  const physics::Joint& joint = read->scene.joints[0];
   EXPECT_NEAR(joint.lower, -std::numbers::pi / 2, 1e-12);
   EXPECT_NEAR(joint.rest, std::numbers::pi / 2, 1e-12);
   EXPECT_EQ(joint.spring, 2);
@@ -81,8 +81,8 @@ TEST(BuildJoints, CompoundsAndWhatStandsInThem) {
       "  cup: {mass_kg: 0.2, mug: {radius_m: 0.04, height_m: 0.1}, on: tray, at_m: [0.02, 0.01]}\n"
       "  bell: {mass_kg: 1, on: floor, at_m: [0.6, 0], parts: [{sphere: {radius_m: 0.05}}, "
       "{box: {size_m: [0.1, 0.02, 0.02]}, at_m: [0.1, 0, 0], rpy_deg: [0, 0, 90]}]}\n");
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  const auto& bodies = read.value->scene.bodies;
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  const auto& bodies = read->scene.bodies;
   EXPECT_EQ(bodies[1].shapes.size(), 5u);
   EXPECT_NEAR(bodies[2].X_WB.p_m.z(), 0.01 + 0.05, 1e-9);  // on the tray's floor, not on its rim
   ASSERT_EQ(bodies[3].shapes.size(), 2u);
@@ -132,8 +132,8 @@ TEST(BuildJoints, RefusesWhatCannotBe) {
        "11:26: follow_joint: 'block' has no slider or hinge | give it one, or use 'move_by_m'\n"}};
   for (const Case& c : cases) {
     const auto read = Read(c.text);
-    EXPECT_FALSE(read.value) << c.name;
-    EXPECT_EQ(Brief(read.diagnostics), c.errors) << c.name;
+    EXPECT_FALSE(read) << c.name;
+    EXPECT_EQ(Brief(ErrorsOf(read)), c.errors) << c.name;
   }
 }
 

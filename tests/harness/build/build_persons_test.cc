@@ -22,15 +22,15 @@ std::string WithActor(const std::string& actor, const std::string& stage = "") {
   return text;
 }
 
-ReadResult<Scenario> Read(const std::string& text) {
+Result<Scenario> Read(const std::string& text) {
   return ReadScenarioText("probe.yaml", text, {}, ProbeLibrary());
 }
-std::string ErrorsAbout(const std::string& text) { return Brief(Read(text).diagnostics); }
+std::string ErrorsAbout(const std::string& text) { return Brief(ErrorsOf(Read(text))); }
 
 TEST(PersonsTest, ABodyIsAnEntityWithParts) {
   const auto read = Read(WithActor("{person: body, at_m: [-0.9, 0, 0], right_hand: right_hand}"));
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  const Scenario& scenario = *read.value;
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  const Scenario& scenario = *read;
   ASSERT_EQ(scenario.scene.persons.size(), 1u);
   EXPECT_EQ(scenario.scene.persons[0].head, 2);
   EXPECT_EQ(scenario.scene.persons[0].right_hand, 0);
@@ -52,9 +52,9 @@ TEST(PersonsTest, StepsAreUnderstood) {
                                    "anna: {move_limb: left_foot, to_m: [-0.5, 0.1, 0.3]}\n"
                                    "  - anna: {move_limb: left_foot, max_force_n: 30}\n  - anna: "
                                    "{sway_by_m: [0.1, -0.2]}\n  - anna: {wait_s: 0.1}"));
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  EXPECT_EQ(read.value->script.stages[0].person_steps.size(), 1u);
-  EXPECT_TRUE(read.value->script.stages[0].steps.empty());
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  EXPECT_EQ(read->script.stages[0].person_steps.size(), 1u);
+  EXPECT_TRUE(read->script.stages[0].steps.empty());
 }
 
 struct Bad {
@@ -107,20 +107,20 @@ std::string WithTracking(const std::string& tracking) {
 
 TEST(TrackingOfAHandTest, IsReadWithItsDefaults) {
   const auto read = Read(WithTracking("{jitter_mm: 1.5, dropped_share: 0.2, dropped_run_s: 0.1}"));
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  const auto& tracking = read.value->scene.hands[0].tracking;
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  const auto& tracking = read->scene.hands[0].tracking;
   ASSERT_TRUE(tracking);
   EXPECT_EQ(tracking->tracker_hz, 90);
   EXPECT_EQ(tracking->jitter_mm, 1.5);
   EXPECT_EQ(tracking->dropped_run_s, 0.1);
-  EXPECT_FALSE(Read(kProbe).value->scene.hands[0].tracking);
+  EXPECT_FALSE(Read(kProbe)->scene.hands[0].tracking);
 }
 
 TEST(TrackingOfAHandTest, IsSetFromTheCommandLine) {
   const auto read = ReadScenarioText("probe.yaml", kProbe,
                                      {"actors.right_hand.tracking.latency_s=0.1"}, ProbeLibrary());
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  EXPECT_EQ(read.value->scene.hands[0].tracking->latency_s, 0.1);
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  EXPECT_EQ(read->scene.hands[0].tracking->latency_s, 0.1);
 }
 
 TEST(TrackingOfAHandTest, Refuses) {

@@ -36,7 +36,7 @@ std::string With(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-ReadResult<Scenario> Read(const std::string& text) {
+Result<Scenario> Read(const std::string& text) {
   return ReadScenarioText("probe.yaml", text, {}, ProjectLibrary(PREHEND_SOURCE_DIR));
 }
 
@@ -44,13 +44,13 @@ TEST(CheckPlanarTest, AGoodOneIsReadForBothEngines) {
   for (const char* world :
        {"{engine: box2d}", "{engine: box2d, planar: true}", "{engine: bullet, planar: true}"}) {
     const auto read = Read(With("{engine: box2d}", world));
-    ASSERT_TRUE(read.value) << grammar::Format(read.diagnostics);
-    EXPECT_TRUE(read.value->scene.world.planar);
+    ASSERT_TRUE(read) << grammar::Format(ErrorsOf(read));
+    EXPECT_TRUE(read->scene.world.planar);
   }
   const auto spatial = Read(With("{engine: box2d}", "{engine: bullet}"));
-  ASSERT_TRUE(spatial.value) << grammar::Format(spatial.diagnostics);
-  EXPECT_FALSE(spatial.value->scene.world.planar) << "the default";
-  EXPECT_EQ(spatial.value->scene.world.engine, physics::Engine::kBullet);
+  ASSERT_TRUE(spatial) << grammar::Format(ErrorsOf(spatial));
+  EXPECT_FALSE(spatial->scene.world.planar) << "the default";
+  EXPECT_EQ(spatial->scene.world.engine, physics::Engine::kBullet);
 }
 
 TEST(CheckPlanarTest, WhatDoesNotFitIsRefused) {
@@ -96,14 +96,14 @@ TEST(CheckPlanarTest, WhatDoesNotFitIsRefused) {
   for (const Probe& probe : probes) {
     const auto read = Read(With(probe.from, probe.to));
     const std::string wanted = std::string(probe.complaint) + "\n";
-    EXPECT_EQ(Brief(read.diagnostics).substr(0, wanted.size()), wanted) << probe.to;
+    EXPECT_EQ(Brief(ErrorsOf(read)).substr(0, wanted.size()), wanted) << probe.to;
   }
 }
 
 TEST(CheckPlanarTest, APlaneOfBulletRefusesTheSame) {
   std::string text = With("{engine: box2d}", "{engine: bullet, planar: true}");
   text.replace(text.find("at_m: [0.2, 0]"), 14, "at_m: [0.2, 0.1]");
-  EXPECT_EQ(Brief(Read(text).diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(Read(text))),
             "6:75: 'box' does not fit a planar world: its centre is off the plane y = 0 | y must "
             "be 0 in a planar world\n");
 }

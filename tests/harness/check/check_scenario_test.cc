@@ -57,7 +57,7 @@ TEST_F(CheckScenarioTest, WithoutGoldenItIsPendingAndItsProposalWaits) {
   EXPECT_EQ(verdict.reason, "no golden yet");
   EXPECT_EQ(verdict.command, "prehend review rest/carton_stands");
   EXPECT_FALSE(verdict.has_golden);
-  ASSERT_TRUE(files_.ReadPendingOf(kId).value);
+  ASSERT_TRUE(files_.ReadPendingOf(kId).value().has_value());
   EXPECT_FALSE(LeftTrace());
   Accept();
   EXPECT_EQ(CheckScenario(Check()).verdict, Verdict::kPassed);
@@ -68,7 +68,7 @@ TEST_F(CheckScenarioTest, ADifferenceFailsWithItsCauseAndLeavesAProposal) {
   Accept();
   CheckScenario(Check());
   ASSERT_EQ(CheckRecords(root_).Write({.program = "p", .verdict = CheckScenario(Check())}), "");
-  Golden golden = *files_.ReadGoldenOf(kId).value;
+  Golden golden = *files_.ReadGoldenOf(kId).value();
   golden.events.pop_back();
   ASSERT_EQ(files_.WriteGoldenFile(golden), "");
   CheckRequest request = Check();
@@ -91,7 +91,7 @@ TEST_F(CheckScenarioTest, ATrialLeavesNothingBehind) {
   Accept();
   EXPECT_EQ(CheckScenario(request).verdict, Verdict::kPassed);
   EXPECT_FALSE(fs::exists(root_ / "build"));
-  ASSERT_EQ(files_.WritePending(*files_.ReadGoldenOf(kId).value), "");
+  ASSERT_EQ(files_.WritePending(*files_.ReadGoldenOf(kId).value()), "");
   EXPECT_EQ(CheckScenario(request).verdict, Verdict::kPassed);
   EXPECT_TRUE(fs::exists(files_.PendingPath(kId))) << "nor does it take anything away";
 }

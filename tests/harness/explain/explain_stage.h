@@ -25,10 +25,10 @@ inline grammar::ReplayMonitor& Played(const std::string& name,
   Watched& watched = played[key];
   if (!watched.past) {
     const std::string root = PREHEND_SOURCE_DIR;
-    const ReadResult<EpisodeSource> source =
+    const Result<EpisodeSource> source =
         OpenScenario(root + "/scenarios/" + name + ".yaml", "", settings, root);
-    if (!source.value) throw std::runtime_error(Format(source.diagnostics));
-    watched = Watch(*source.value);
+    if (!source) throw std::runtime_error(Format(source.error()));
+    watched = Watch(*source);
     EXPECT_EQ(watched.problem + watched.failure, "");
   }
   return *watched.past;
@@ -66,9 +66,9 @@ class Stage {
 };
 
 inline Ask Asked(grammar::ReplayMonitor& past, const std::string& text) {
-  const ReadResult<Ask> ask = ParseAsk("--event", text, past.program(), past.entity_table());
-  EXPECT_TRUE(ask.value) << Format(ask.diagnostics);
-  return ask.value.value_or(Ask{.rule = 0});
+  const Result<Ask> ask = ParseAsk("--event", text, past.program(), past.entity_table());
+  EXPECT_TRUE(ask) << Format(ErrorsOf(ask));
+  return ask.value_or(Ask{.rule = 0});
 }
 
 /// The only event that answers.

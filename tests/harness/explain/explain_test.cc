@@ -444,20 +444,20 @@ TEST(ExplainMissing, AConditionThatAlmostHeldNamesItsBestMoment) {
 TEST(Explain, RememberingChangesNothing) {
   const std::string root = PREHEND_SOURCE_DIR;
   for (const std::string grammar : {"", "original_2020"}) {
-    const ReadResult<EpisodeSource> source =
+    const Result<EpisodeSource> source =
         OpenScenario(root + "/scenarios/" + kSlide + ".yaml", grammar, {}, root);
-    ASSERT_TRUE(source.value);
-    grammar::Monitor monitor(source.value->program, source.value->entity_table);
-    grammar::ReplayMonitor past(source.value->program, source.value->entity_table);
+    ASSERT_TRUE(source);
+    grammar::Monitor monitor(source->program, source->entity_table);
+    grammar::ReplayMonitor past(source->program, source->entity_table);
     std::vector<grammar::Event> events;
-    const auto played = source.value->play([&](const grammar::Frame& frame) {
+    const auto played = source->play([&](const grammar::Frame& frame) {
       monitor.Advance(frame, events);
       past.Advance(frame);
     });
     monitor.Finish(played.end, events);
     past.Finish(played.end);
     const auto named = [&](const std::vector<grammar::Event>& all) {
-      return grammar::NameEvents(*source.value->program, source.value->entity_table, all).events;
+      return grammar::NameEvents(*source->program, source->entity_table, all).events;
     };
     const auto expected = named(events), remembered = named(past.events());
     ASSERT_EQ(remembered.size(), expected.size());
@@ -549,9 +549,9 @@ TEST(Ask, BadOnesNamePlaceAndRemedy) {
   stage.Show();
   grammar::ReplayMonitor& past = stage.Finish();
   for (const BadAsk& bad : asks) {
-    const ReadResult<Ask> ask = ParseAsk("--event", bad.text, past.program(), past.entity_table());
-    EXPECT_FALSE(ask.value);
-    EXPECT_EQ(Format(ask.diagnostics), bad.complaint);
+    const Result<Ask> ask = ParseAsk("--event", bad.text, past.program(), past.entity_table());
+    EXPECT_FALSE(ask);
+    EXPECT_EQ(Format(ErrorsOf(ask)), bad.complaint);
   }
 }
 

@@ -24,12 +24,12 @@ std::string With(const std::string& entity, const std::string& more = "") {
          entity + "}\n" + more;
 }
 
-ReadResult<Scenario> Read(const std::string& text) {
+Result<Scenario> Read(const std::string& text) {
   return ReadScenarioText("probe.yaml", text, {}, ProbeLibrary());
 }
 
 std::string Complaint(const std::string& entity, const std::string& more = "") {
-  return Brief(Read(With(entity, more)).diagnostics);
+  return Brief(ErrorsOf(Read(With(entity, more))));
 }
 
 TEST(AbstractEntities, StandWhereTheyAreAndAreNoThings) {
@@ -54,19 +54,19 @@ TEST(AbstractEntities, StandWhereTheyAreAndAreNoThings) {
   };
   for (const auto& row : table) {
     const auto read = Read(With(row.entity));
-    ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-    const physics::Body& body = read.value->scene.bodies[2];
+    ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+    const physics::Body& body = read->scene.bodies[2];
     EXPECT_EQ(body.abstract, row.abstract);
     EXPECT_FALSE(physics::IsThing(body));
-    EXPECT_EQ(MakeEntityTable(*read.value).entities[2].classes, row.classes);
+    EXPECT_EQ(MakeEntityTable(*read).entities[2].classes, row.classes);
   }
 }
 
 TEST(AbstractEntities, ARoundRegionHasNoCorners) {
   const auto read = Read(With("region: {radius_m: 0.5}, at_m: [1, 0, 0.8]"));
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  const physics::Body& ball = read.value->scene.bodies[2];
-  EXPECT_TRUE(MakeEntityTable(*read.value).entities[2].round);
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  const physics::Body& ball = read->scene.bodies[2];
+  EXPECT_TRUE(MakeEntityTable(*read).entities[2].round);
   EXPECT_TRUE(physics::IsInside(ball, ball.X_WB, {1.49, 0, 0.8}));
   EXPECT_FALSE(physics::IsInside(ball, ball.X_WB, {1.4, 0.4, 0.8}));
 }
@@ -75,8 +75,8 @@ TEST(AbstractEntities, ACameraLooksTowards) {
   for (const char* toward : {"[0, 0, 0.8]", "[1, 0, 0]", "[1, 5, 3]"}) {
     const auto read =
         Read(With("camera: {toward_m: " + std::string(toward) + "}, at_m: [1, 0, 0.8]"));
-    ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-    const Eigen::Matrix3d R = read.value->scene.bodies[2].X_WB.q.toRotationMatrix();
+    ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+    const Eigen::Matrix3d R = read->scene.bodies[2].X_WB.q.toRotationMatrix();
     EXPECT_NEAR(R.determinant(), 1, 1e-9);
     EXPECT_GE(R(2, 2), -1e-9) << "up is not below";
   }
@@ -114,8 +114,8 @@ TEST(AbstractEntities, AHullIsReadWithThePlaceOfEachMistake) {
   const auto read =
       Read(With("hull: {points_m: [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]}, mass_kg: "
                 "0.1, on: table, at_m: [0.3, 0.3]"));
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  EXPECT_NEAR(read.value->scene.bodies[2].X_WB.p_m.z(), 0.75, 1e-12);
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  EXPECT_NEAR(read->scene.bodies[2].X_WB.p_m.z(), 0.75, 1e-12);
   const std::string end = "}, mass_kg: 0.1, at_m: [0.3, 0.3, 1]";
   EXPECT_EQ(Complaint("hull: {points_m: [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]]" + end),
             "6:25: points_m: expected at least 4, found 3\n");

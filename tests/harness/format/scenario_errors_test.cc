@@ -224,7 +224,7 @@ class ScenarioError : public testing::TestWithParam<Case> {};
 
 TEST_P(ScenarioError, IsExplainedInFull) {
   const std::string text = ProbeWith(GetParam().from, GetParam().to);
-  EXPECT_EQ(Brief(ReadScenarioText("probe.yaml", text, {}, ProbeLibrary()).diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(ReadScenarioText("probe.yaml", text, {}, ProbeLibrary()))),
             GetParam().errors);
 }
 
@@ -249,7 +249,7 @@ TEST(ScenarioErrors, AreShownWithLineAndCaret) {
   const auto read =
       ReadScenarioText("probe.yaml", ProbeWith("mass_kg: 0.4", "mass_g: 400"), {}, ProbeLibrary());
   EXPECT_EQ(
-      grammar::Format(read.diagnostics),
+      grammar::Format(ErrorsOf(read)),
       "probe.yaml:7:45: error: unknown key 'mass_g' in entity 'milk'\n"
       "    milk: {box: {size_m: [0.07, 0.07, 0.20]}, mass_g: 400, on: table, at_m: [0.2, 0.1]}\n"
       "                                              ^\n"
@@ -260,7 +260,7 @@ TEST(ScenarioErrors, ARenamedKeyIsShownWithItsNewName) {
   const auto read = ReadScenarioText(
       "probe.yaml", ProbeWith("close_to: 1.0", "move_limb: right_elbow, most_n: 40"), {},
       ProbeLibrary());
-  EXPECT_EQ(grammar::Format(read.diagnostics),
+  EXPECT_EQ(grammar::Format(ErrorsOf(read)),
             "probe.yaml:12:42: error: unknown key 'most_n' in a move_limb step\n"
             "    - right_hand: {move_limb: right_elbow, most_n: 40}\n"
             "                                           ^\n"
@@ -272,10 +272,10 @@ TEST(ScenarioErrors, AllOfAFileAreCollected) {
   text.replace(text.find("over_s: 0.8"), 11, "overs: 0.8");
   text.replace(text.find("seed: 1"), 7, "seed: x");
   const auto read = ReadScenarioText("probe.yaml", text, {}, ProbeLibrary());
-  ASSERT_EQ(read.diagnostics.size(), 3u);
-  EXPECT_EQ(read.diagnostics[0].place.line, 4);
-  EXPECT_EQ(read.diagnostics[1].place.line, 7);
-  EXPECT_EQ(read.diagnostics[2].place.line, 11);
+  ASSERT_EQ(ErrorsOf(read).size(), 3u);
+  EXPECT_EQ(ErrorsOf(read)[0].place.line, 4);
+  EXPECT_EQ(ErrorsOf(read)[1].place.line, 7);
+  EXPECT_EQ(ErrorsOf(read)[2].place.line, 11);
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ const std::string kRoot = PREHEND_SOURCE_DIR;
 
 std::string TextOf(const std::string& path) {
   auto text = ReadTextFile(path);
-  EXPECT_TRUE(text.value) << grammar::Format(text.diagnostics);
-  return text.value.value_or("");
+  EXPECT_TRUE(text) << grammar::Format(ErrorsOf(text));
+  return text.value_or("");
 }
 
 TEST(ScenarioSchema, TheCommittedFileIsTheGeneratedOne) {
@@ -33,7 +33,7 @@ TEST(ScenarioSchema, EveryScenarioIsReadAndValid) {
   ASSERT_GE(scenarios.size(), 6u);
   for (const ScenarioFile& scenario : scenarios) {
     const auto read = ReadScenario(scenario.path, {}, ProjectLibrary(kRoot));
-    EXPECT_TRUE(read.value) << grammar::Format(read.diagnostics);
+    EXPECT_TRUE(read) << grammar::Format(ErrorsOf(read));
     const std::string text = TextOf(scenario.path);
     EXPECT_TRUE(text.starts_with("# yaml-language-server: $schema=../scenario.schema.json\n"))
         << scenario.path;
@@ -79,7 +79,7 @@ TEST(ScenarioFormatDocument, ItsExamplesAreReadAndValid) {
     // The files that examples name are there.
     const std::string file = kRoot + "/scenarios/recorded/" + name + ".yaml";
     const auto read = ReadScenarioText(file, text, {}, ProjectLibrary(kRoot));
-    EXPECT_TRUE(read.value) << grammar::Format(read.diagnostics) << text;
+    EXPECT_TRUE(read) << grammar::Format(ErrorsOf(read)) << text;
     validator.Add("example" + std::to_string(scenarios++), text);
   }
   EXPECT_GE(scenarios, 7);

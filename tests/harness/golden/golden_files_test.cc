@@ -28,8 +28,8 @@ class GoldenFilesTest : public testing::Test {
 
 TEST_F(GoldenFilesTest, NoneYetIsNotAnError) {
   const auto result = files_.ReadGoldenOf("slide/x");
-  EXPECT_FALSE(result.value);
-  EXPECT_TRUE(result.diagnostics.empty());
+  ASSERT_TRUE(result) << grammar::Format(ErrorsOf(result));
+  EXPECT_EQ(*result, std::nullopt);
   EXPECT_TRUE(files_.List().empty());
 }
 
@@ -39,7 +39,7 @@ TEST_F(GoldenFilesTest, AcceptingRemovesWhatWasPending) {
   EXPECT_FALSE(fs::exists(root_ / "golden"));
   EXPECT_EQ(files_.WriteAccepted(golden_), "");
   EXPECT_FALSE(fs::exists(root_ / "build/pending/slide/x.timeline"));
-  EXPECT_EQ(files_.ReadGoldenOf("slide/x").value, golden_);
+  EXPECT_EQ(files_.ReadGoldenOf("slide/x").value(), golden_);
   EXPECT_EQ(files_.List(), std::vector<std::string>{"slide/x"});
 }
 
@@ -47,8 +47,8 @@ TEST_F(GoldenFilesTest, AGoldenOfAnotherScenarioIsRefused) {
   ASSERT_EQ(files_.WriteAccepted(golden_), "");
   fs::copy(root_ / "golden/slide/x.timeline", root_ / "golden/slide/y.timeline");
   const auto result = files_.ReadGoldenOf("slide/y");
-  ASSERT_EQ(result.diagnostics.size(), 1u);
-  EXPECT_EQ(result.diagnostics[0].message, "this golden says it is of 'slide/x', not of 'slide/y'");
+  ASSERT_EQ(result.error().size(), 1u);
+  EXPECT_EQ(result.error()[0].message, "this golden says it is of 'slide/x', not of 'slide/y'");
 }
 
 TEST_F(GoldenFilesTest, PicturesBelongToAScenarioAndAPictureOfIt) {

@@ -32,8 +32,8 @@ contact       2.0000   5.0000  a=milk           b=table                    open_
 
 Golden Read(const std::string& text) {
   auto result = ReadGolden("x.timeline", text);
-  EXPECT_EQ(Format(result.diagnostics), "");
-  return result.value.value_or(Golden{});
+  EXPECT_EQ(Format(ErrorsOf(result)), "");
+  return result.value_or(Golden{});
 }
 
 TEST(Golden, IsReadAsWritten) {
@@ -98,9 +98,9 @@ TEST_P(GoldenMistake, IsFoundWhereItIs) {
   const std::string text = std::string("# scenario: s/x\n# grammar: g\n# ticks_per_second: 480\n") +
                            GetParam().line + "\n";
   const auto result = ReadGolden("x.timeline", text);
-  EXPECT_FALSE(result.value);
-  ASSERT_EQ(result.diagnostics.size(), 1u) << Format(result.diagnostics);
-  const auto& diagnostic = result.diagnostics[0];
+  ASSERT_FALSE(result);
+  ASSERT_EQ(result.error().size(), 1u) << Format(result.error());
+  const auto& diagnostic = result.error()[0];
   const std::string hint = diagnostic.hint.empty() ? "" : " | " + diagnostic.hint;
   EXPECT_EQ(std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column) +
                 ": " + diagnostic.message + hint,
@@ -170,26 +170,29 @@ TEST(Golden, AnEventListedTwiceIsAMistake) {
   const auto result = ReadGolden(
       "x",
       "# scenario: s/x\n# grammar: g\n# ticks_per_second: 480\ncontact 1 2 a=b\ncontact 1 2 a=b\n");
-  ASSERT_EQ(result.diagnostics.size(), 1u);
-  EXPECT_EQ(result.diagnostics[0].place.line, 5);
-  EXPECT_EQ(result.diagnostics[0].message, "this event is listed twice");
+  ASSERT_FALSE(result);
+  ASSERT_EQ(result.error().size(), 1u);
+  EXPECT_EQ(result.error()[0].place.line, 5);
+  EXPECT_EQ(result.error()[0].message, "this event is listed twice");
 }
 
 TEST(Golden, HeaderLinesThatAreNeeded) {
   const auto result = ReadGolden("x", "# a comment\n");
-  ASSERT_EQ(result.diagnostics.size(), 3u);
-  EXPECT_EQ(result.diagnostics[0].message, "the line '# scenario: skill/name' is missing");
-  EXPECT_EQ(result.diagnostics[1].message, "the line '# grammar: name' is missing");
-  EXPECT_EQ(result.diagnostics[2].message, "the line '# ticks_per_second: N' is missing");
+  ASSERT_FALSE(result);
+  ASSERT_EQ(result.error().size(), 3u);
+  EXPECT_EQ(result.error()[0].message, "the line '# scenario: skill/name' is missing");
+  EXPECT_EQ(result.error()[1].message, "the line '# grammar: name' is missing");
+  EXPECT_EQ(result.error()[2].message, "the line '# ticks_per_second: N' is missing");
 
   const auto early = ReadGolden("x", "contact 1 2 a=b\ncontact 2 3 a=b\n");
-  ASSERT_EQ(early.diagnostics.size(), 1u);
-  EXPECT_EQ(early.diagnostics[0].message, "an event before the line '# ticks_per_second: N'");
+  ASSERT_FALSE(early);
+  ASSERT_EQ(early.error().size(), 1u);
+  EXPECT_EQ(early.error()[0].message, "an event before the line '# ticks_per_second: N'");
 }
 
 TEST(Golden, BinaryAndEmptyFilesAreRefused) {
-  EXPECT_FALSE(ReadGolden("x", "").diagnostics.empty());
-  EXPECT_FALSE(ReadGolden("x", std::string("\0\1\2", 3)).diagnostics.empty());
+  EXPECT_FALSE(ReadGolden("x", ""));
+  EXPECT_FALSE(ReadGolden("x", std::string("\0\1\2", 3)));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ grasping   1.5000   3.0000  hand=hand  object=cup
 
 using Lines = std::vector<std::string>;
 
-Golden Old() { return ReadGolden("old", kOld).value.value(); }
+Golden Old() { return ReadGolden("old", kOld).value(); }
 
 grammar::Timeline Recognised(std::vector<grammar::NamedEvent> events) {
   for (auto& event : events) {
@@ -80,7 +80,7 @@ TEST(ProposeGolden, LinesThatAgreeStayByteForByte) {
                           .derived = {},
                           .acceptance = Acceptance{"2026-02-01", "a longer grasp"},
                           .tolerance = 4};
-  const Golden golden = ProposeGolden(ReadGolden("old", text).value, recognised, proposal);
+  const Golden golden = ProposeGolden(ReadGolden("old", text).value(), recognised, proposal);
   const std::string grasp = "grasping   1.5000   3.0000  hand=hand  object=cup\n";
   text.replace(text.find(grasp), grasp.size(),
                "grasping  1.5000   3.1250  hand=hand  object=cup  accepted=2\n");
@@ -90,7 +90,7 @@ TEST(ProposeGolden, LinesThatAgreeStayByteForByte) {
   EXPECT_EQ(WriteGolden(golden), text);
   Proposal exact = proposal;
   exact.tolerance = 3;
-  EXPECT_EQ(ProposeGolden(ReadGolden("old", text).value, recognised, exact).events[1].accepted, 3)
+  EXPECT_EQ(ProposeGolden(ReadGolden("old", text).value(), recognised, exact).events[1].accepted, 3)
       << "a tick beyond the tolerance";
 }
 
@@ -108,7 +108,7 @@ TEST(ProposeGolden, AnotherTickRateWritesEveryLineAnew) {
   EXPECT_EQ(golden.ticks_per_second, 240);
   EXPECT_EQ(golden.events[2].event.interval, (grammar::Interval{360, 720}));
   EXPECT_EQ(golden.events[2].accepted, 1) << "it is when it was";
-  EXPECT_EQ(ReadGolden("x", WriteGolden(golden)).value, golden);
+  EXPECT_EQ(ReadGolden("x", WriteGolden(golden)).value(), golden);
 }
 
 TEST(ProposeGolden, StartsFromNothing) {
@@ -118,7 +118,7 @@ TEST(ProposeGolden, StartsFromNothing) {
   EXPECT_EQ(golden.derived, std::vector<std::string>{"by eye"});
   EXPECT_TRUE(golden.accepted.empty());
   EXPECT_EQ(golden.events.size(), 2u);
-  EXPECT_EQ(ReadGolden("x", WriteGolden(golden)).value, golden);
+  EXPECT_EQ(ReadGolden("x", WriteGolden(golden)).value(), golden);
 }
 
 TEST(PendingGolden, RenewsTheOracleLineWhenItsCountIsNotTrueAnyMore) {
@@ -142,7 +142,7 @@ TEST(Fingerprint, TellsEveryTickAndEveryOldGoldenApart) {
   const OracleComparison agrees;
   const Golden pending = PendingGolden(Old(), kShiftedWithoutFixation, "slide/x", "g", agrees);
   EXPECT_EQ(Fingerprint(pending).size(), 16u);
-  EXPECT_EQ(Fingerprint(pending), Fingerprint(ReadGolden("x", WriteGolden(pending)).value.value()));
+  EXPECT_EQ(Fingerprint(pending), Fingerprint(ReadGolden("x", WriteGolden(pending)).value()));
   auto a_tick_later = kShiftedWithoutFixation;
   a_tick_later.events[0].interval.begin += 1;
   EXPECT_NE(Fingerprint(PendingGolden(Old(), a_tick_later, "slide/x", "g", agrees)),

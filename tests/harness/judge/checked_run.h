@@ -47,9 +47,9 @@ class CheckedScenario : public testing::Test {
 
   CheckedRun Played() const {
     auto loaded = LoadRun(Request(), root_.string());
-    EXPECT_TRUE(loaded.value) << Format(loaded.diagnostics);
+    EXPECT_TRUE(loaded) << Format(loaded.error());
     CheckedRun checked{.id = "rest/carton_stands",
-                       .loaded = std::move(*loaded.value),
+                       .loaded = std::move(*loaded),
                        .result = {},
                        .explain = "prehend explain rest/carton_stands"};
     checked.result = RunScenario(checked.loaded.scenario, checked.loaded.program, {.record = true});

@@ -31,11 +31,11 @@ std::string WithoutBlanksAndQuotes(const std::string& cell) {
 
 /// The rows whose second cell is the name of a scenario.
 std::vector<Row> Rows() {
-  const ReadResult<std::string> page =
+  const Result<std::string> page =
       ReadTextFile(std::string(PREHEND_SOURCE_DIR) + "/docs/claims.md");
-  EXPECT_TRUE(page.value);
+  EXPECT_TRUE(page);
   std::vector<Row> rows;
-  std::istringstream lines(page.value.value_or(""));
+  std::istringstream lines(page.value_or(""));
   for (std::string line; std::getline(lines, line);) {
     std::vector<std::string> cells;
     std::istringstream parts(line);

@@ -12,8 +12,8 @@ namespace {
 LoadedRun Prepare(const std::string& scenario) {
   const std::string root = PREHEND_SOURCE_DIR;
   auto loaded = LoadRun({.scenario_file = root + "/scenarios/" + scenario + ".yaml"}, root);
-  EXPECT_TRUE(loaded.value) << grammar::Format(loaded.diagnostics);
-  return *loaded.value;
+  EXPECT_TRUE(loaded) << grammar::Format(loaded.error());
+  return *loaded;
 }
 
 TEST(CrossEngineTest, TheGripperDoesTheSameInBothEngines) {

@@ -18,8 +18,8 @@ class DerivationTest : public testing::Test {
     const RunRequest request{.scenario_file = PREHEND_SOURCE_DIR
                              "/scenarios/pick_and_place/milk_carton_wrap.yaml"};
     auto read = LoadRun(request, PREHEND_SOURCE_DIR);
-    ASSERT_TRUE(read.value) << grammar::Format(read.diagnostics);
-    loaded = std::move(*read.value);
+    ASSERT_TRUE(read) << grammar::Format(ErrorsOf(read));
+    loaded = std::move(*read);
     run = RunScenario(loaded.scenario, loaded.program, {.record = true});
   }
   grammar::NamedEvent& Find(const std::string& event) {

@@ -139,18 +139,18 @@ const char* const kScenarios[] = {
 std::shared_ptr<const grammar::Program> Mutate(const Mutant& mutant) {
   const auto read = [&mutant](std::string_view name) -> std::optional<grammar::GrammarText> {
     const std::string file = GrammarPath(PREHEND_SOURCE_DIR, std::string(name));
-    ReadResult<std::string> text = ReadTextFile(file);
-    if (!text.value) return std::nullopt;
+    Result<std::string> text = ReadTextFile(file);
+    if (!text) return std::nullopt;
     if (name == mutant.file) {
-      const std::size_t at = text.value->find(mutant.from);
+      const std::size_t at = text->find(mutant.from);
       EXPECT_NE(at, std::string::npos)
           << mutant.name << ": '" << mutant.from << "' is not in " << mutant.file;
       if (at == std::string::npos) return std::nullopt;
-      EXPECT_EQ(text.value->find(mutant.from, at + 1), std::string::npos)
+      EXPECT_EQ(text->find(mutant.from, at + 1), std::string::npos)
           << mutant.name << ": occurs twice";
-      text.value->replace(at, mutant.from.size(), mutant.to);
+      text->replace(at, mutant.from.size(), mutant.to);
     }
-    return grammar::GrammarText{file, *text.value};
+    return grammar::GrammarText{file, *text};
   };
   const auto main = read("pick_and_place");
   if (!main) return nullptr;
@@ -175,9 +175,10 @@ struct Witness {
 std::vector<Witness> Witnesses() {
   std::vector<Witness> witnesses;
   for (const char* id : kScenarios) {
-    const ReadResult<Golden> golden = GoldenFiles(PREHEND_SOURCE_DIR).ReadGoldenOf(id);
-    EXPECT_TRUE(golden.value) << id << " has no golden";
-    if (golden.value) witnesses.push_back({id, Play(id), *golden.value});
+    const auto golden = GoldenFiles(PREHEND_SOURCE_DIR).ReadGoldenOf(id);
+    const bool is_there = golden && *golden;
+    EXPECT_TRUE(is_there) << id << " has no golden";
+    if (is_there) witnesses.push_back({id, Play(id), **golden});
   }
   return witnesses;
 }

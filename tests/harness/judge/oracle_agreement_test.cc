@@ -36,12 +36,12 @@ bool SpeaksOfIt(const grammar::Program& program) {
 
 /// Of a scenario whose two frames are at most kTolerance, for which `check` does the rest.
 void ExpectAllToFollow(const ScenarioFile& file, const grammar::Program& program) {
-  const ReadResult<Golden> golden = GoldenFiles(PREHEND_SOURCE_DIR).ReadGoldenOf(IdOf(file));
-  ASSERT_TRUE(golden.value) << "no golden, or one that cannot be read\n"
-                            << Format(golden.diagnostics);
-  const std::vector<GoldenEvent>& lines = golden.value->events;
+  const auto golden = GoldenFiles(PREHEND_SOURCE_DIR).ReadGoldenOf(IdOf(file));
+  ASSERT_TRUE(golden && *golden) << "no golden, or one that cannot be read\n"
+                                 << grammar::Format(ErrorsOf(golden));
+  const std::vector<GoldenEvent>& lines = (*golden)->events;
   EXPECT_FALSE(lines.empty());
-  const std::vector<std::string>& derived = golden.value->derived;
+  const std::vector<std::string>& derived = (*golden)->derived;
   EXPECT_TRUE(std::ranges::any_of(
       derived, [](const std::string& line) { return line.starts_with(kOracleLine); }));
   EXPECT_EQ(AcceptedDiffering(derived), 0);
@@ -60,15 +60,15 @@ void ExpectAgreement(const Scenario& scenario,
 
 TEST_P(OracleAgreement, WithinTwoFrames) {
   const RunRequest request{.scenario_file = GetParam().path};
-  const ReadResult<LoadedRun> loaded = LoadRun(request, PREHEND_SOURCE_DIR);
-  ASSERT_TRUE(loaded.value) << grammar::Format(loaded.diagnostics);
-  const Scenario& scenario = loaded.value->scenario;
+  const Result<LoadedRun> loaded = LoadRun(request, PREHEND_SOURCE_DIR);
+  ASSERT_TRUE(loaded) << grammar::Format(loaded.error());
+  const Scenario& scenario = loaded->scenario;
   const bool check_is_as_strict =
       DefaultTolerance(scenario.scene.world.rate_hz, scenario.sensing.sensing_hz) <= kTolerance;
   if (check_is_as_strict)
-    ExpectAllToFollow(GetParam(), *loaded.value->program);
+    ExpectAllToFollow(GetParam(), *loaded->program);
   else
-    ExpectAgreement(scenario, loaded.value->program);
+    ExpectAgreement(scenario, loaded->program);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, OracleAgreement,

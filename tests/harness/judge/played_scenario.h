@@ -23,14 +23,13 @@ struct PlayedScenario {
 
 /// `id` is skill/name. A scenario that cannot be played is a failure of the test.
 inline PlayedScenario Play(const std::string& id) {
-  const ReadResult<LoadedRun> loaded =
+  const Result<LoadedRun> loaded =
       LoadRun({.scenario_file = std::string(PREHEND_SOURCE_DIR) + "/scenarios/" + id + ".yaml"},
               PREHEND_SOURCE_DIR);
-  EXPECT_TRUE(loaded.value) << grammar::Format(loaded.diagnostics);
-  if (!loaded.value) return {};
-  PlayedScenario played{
-      loaded.value->scenario,
-      RunScenario(loaded.value->scenario, loaded.value->program, {.record = true})};
+  EXPECT_TRUE(loaded) << grammar::Format(loaded.error());
+  if (!loaded) return {};
+  PlayedScenario played{loaded->scenario,
+                        RunScenario(loaded->scenario, loaded->program, {.record = true})};
   EXPECT_EQ(played.run.status.kind, physics::RunStatus::Kind::kCompleted)
       << id << ": " << played.run.status.reason;
   return played;

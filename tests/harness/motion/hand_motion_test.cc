@@ -27,7 +27,7 @@ std::string Write(const std::string& name, const std::string& text) {
 }
 
 /// What is said about a file, its folder left out.
-std::string DiagnosticList(const grammar::Diagnostics& diagnostics) {
+std::string Shown(const grammar::Diagnostics& diagnostics) {
   std::string text = Brief(diagnostics);
   for (std::size_t at; (at = text.find(Folder())) != std::string::npos;)
     text.erase(at, Folder().size());
@@ -35,7 +35,7 @@ std::string DiagnosticList(const grammar::Diagnostics& diagnostics) {
 }
 
 std::string CsvErrors(const std::string& text) {
-  return DiagnosticList(ReadMotionCsv(Write("m.csv", text)).diagnostics);
+  return Shown(ErrorsOf(ReadMotionCsv(Write("m.csv", text))));
 }
 
 TEST(MotionCsvTest, ReadsUnitsOfTheHeader) {
@@ -46,9 +46,9 @@ TEST(MotionCsvTest, ReadsUnitsOfTheHeader) {
                           "100, 500, 20, 1.5, 0, 0, 1.5707963267948966, 0\n"
                           "\n"
                           "350, 600, 20, 1.5, 0, 0, 0, 1\n"));
-  ASSERT_TRUE(track.value) << DiagnosticList(track.diagnostics);
-  ASSERT_EQ(track.value->samples.size(), 2u);
-  const TrackSample &a = track.value->samples[0], &b = track.value->samples[1];
+  ASSERT_TRUE(track) << Shown(ErrorsOf(track));
+  ASSERT_EQ(track->samples.size(), 2u);
+  const TrackSample &a = track->samples[0], &b = track->samples[1];
   EXPECT_DOUBLE_EQ(a.t_s, 0);
   EXPECT_NEAR(b.t_s, 0.25, 1e-12);
   EXPECT_LT((a.X_RD.p_m - Eigen::Vector3d(0.5, 0.2, 1.5)).norm(), 1e-12);
@@ -60,9 +60,9 @@ TEST(MotionCsvTest, ReadsUnitsOfTheHeader) {
 
 TEST(MotionCsvTest, QuaternionAndTriggerAreOptional) {
   const auto track = ReadMotionCsv(Write("m.csv", "t_s,x_m,y_m,z_m\n0,0,0,1\n1,0,0,1\n"));
-  ASSERT_TRUE(track.value);
-  EXPECT_FALSE(track.value->samples[0].trigger);
-  EXPECT_DOUBLE_EQ(track.value->samples[0].X_RD.q.w(), 1);
+  ASSERT_TRUE(track);
+  EXPECT_FALSE(track->samples[0].trigger);
+  EXPECT_DOUBLE_EQ(track->samples[0].X_RD.q.w(), 1);
 }
 
 struct BadCsv {
@@ -100,8 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
 // clang-format on
 
 TEST(MotionCsvTest, AMissingFileIsNamed) {
-  EXPECT_EQ(DiagnosticList(ReadMotionCsv(Folder() + "none.csv").diagnostics),
-            "none.csv:0:0: no such file\n");
+  EXPECT_EQ(Shown(ErrorsOf(ReadMotionCsv(Folder() + "none.csv"))), "none.csv:0:0: no such file\n");
 }
 
 constexpr const char* kCapture = R"({"right": {"poses": [
@@ -117,8 +116,8 @@ constexpr const char* kCapture = R"({"right": {"poses": [
 
 TEST(MotionCaptureTest, TurnsIntoOurAxes) {
   const auto track = ReadMotionCapture(Write("m.json", kCapture), {.name = "right"});
-  ASSERT_TRUE(track.value) << DiagnosticList(track.diagnostics);
-  const physics::Pose& turned = track.value->samples[0].X_RD;
+  ASSERT_TRUE(track) << Shown(ErrorsOf(track));
+  const physics::Pose& turned = track->samples[0].X_RD;
   EXPECT_LT((turned.p_m - Eigen::Vector3d(0.3, -0.1, 1.2)).norm(), 1e-12);
   // Turned to the left by a right angle: what was ahead is now left.
   EXPECT_LT((turned.q * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-9);
@@ -128,9 +127,9 @@ TEST(MotionCaptureTest, TurnsIntoOurAxes) {
 TEST(MotionCaptureTest, APressWithoutAValueRisesWithinItsTime) {
   const auto track =
       ReadMotionCapture(Write("m.json", kCapture), {.name = "right", .button = 1, .press_s = 0.1});
-  ASSERT_TRUE(track.value);
+  ASSERT_TRUE(track);
   std::vector<double> triggers;
-  for (const TrackSample& sample : track.value->samples) triggers.push_back(*sample.trigger);
+  for (const TrackSample& sample : track->samples) triggers.push_back(*sample.trigger);
   ASSERT_EQ(triggers.size(), 4u);
   EXPECT_DOUBLE_EQ(triggers[0], 0);
   EXPECT_NEAR(triggers[1], 0.5, 1e-9);
@@ -142,14 +141,14 @@ TEST(MotionCaptureTest, ValuesGoBeforePresses) {
   std::string text = kCapture;
   text.replace(text.find("\"state\": {}"), 11, "\"state\": {\"value\": 0.25}");
   const auto track = ReadMotionCapture(Write("m.json", text), {.name = "right"});
-  ASSERT_TRUE(track.value);
-  EXPECT_DOUBLE_EQ(*track.value->samples[1].trigger, 0.25);
-  EXPECT_DOUBLE_EQ(*track.value->samples[3].trigger, 0.25);
+  ASSERT_TRUE(track);
+  EXPECT_DOUBLE_EQ(*track->samples[1].trigger, 0.25);
+  EXPECT_DOUBLE_EQ(*track->samples[3].trigger, 0.25);
 }
 
 TEST(MotionCaptureTest, Refuses) {
   const auto errors = [](const std::string& text, const std::string& device) {
-    return DiagnosticList(ReadMotionCapture(Write("m.json", text), {.name = device}).diagnostics);
+    return Shown(ErrorsOf(ReadMotionCapture(Write("m.json", text), {.name = device})));
   };
   EXPECT_EQ(errors(kCapture, "rigth"),
             "m.json:1:1: no device is called 'rigth' | did you mean 'right'?\n");
@@ -189,13 +188,13 @@ TEST(CheckTrackTest, GapsAndJumpsAreToldAndLimited) {
     csv += std::to_string(i * 0.01) + "," + (i >= 40 ? "0.09" : "0.0") + ",0,1\n";
   }
   const auto track = ReadMotionCsv(Write("m.csv", csv));
-  ASSERT_TRUE(track.value);
-  EXPECT_EQ(DiagnosticList(CheckTrack(*track.value, {})),
+  ASSERT_TRUE(track);
+  EXPECT_EQ(Shown(CheckTrack(*track, {})),
             "m.csv:22:1: gap: no sample for 0.160 s before this one, at 0.350 s; it is bridged\n"
             "m.csv:27:1: jump: 0.090 m within 0.010 s, at 0.400 s\n");
-  for (const auto& diagnostic : CheckTrack(*track.value, {})) EXPECT_TRUE(diagnostic.is_warning);
-  const auto strict = CheckTrack(*track.value, {.gap_s = 0.1, .jump_m = 0.05});
-  EXPECT_EQ(DiagnosticList(strict),
+  for (const auto& diagnostic : CheckTrack(*track, {})) EXPECT_TRUE(diagnostic.is_warning);
+  const auto strict = CheckTrack(*track, {.gap_s = 0.1, .jump_m = 0.05});
+  EXPECT_EQ(Shown(strict),
             "m.csv:22:1: gap: no sample for 0.160 s before this one, at 0.350 s; at most 0.1 s are "
             "bridged | cut the "
             "recording with from_s and to_s, or raise max_gap_s\n"

@@ -33,13 +33,13 @@ class RecordedInputTest : public testing::Test {
   }
 
   /// The probe, with this step for its reach.
-  ReadResult<Scenario> Read(const std::string& step) {
+  Result<Scenario> Read(const std::string& step) {
     return ReadScenarioText((folder_ / "probe.yaml").string(),
                             ProbeWith("{reach: milk, style: wrap, over_s: 0.8}", "{" + step + "}"),
                             {}, ProbeLibrary());
   }
   std::string ErrorsAbout(const std::string& step) {
-    std::string text = Brief(Read(step).diagnostics);
+    std::string text = Brief(ErrorsOf(Read(step)));
     const std::string folder = folder_.string() + "/";
     for (std::size_t at; (at = text.find(folder)) != std::string::npos;)
       text.erase(at, folder.size());
@@ -47,10 +47,9 @@ class RecordedInputTest : public testing::Test {
   }
   std::vector<physics::TimedPose> Poses(const std::string& step) {
     const auto read = Read(step);
-    EXPECT_TRUE(read.value) << Brief(read.diagnostics);
-    return read.value
-               ? std::get<physics::PosesStep>(read.value->script.stages[0].steps[0].action).poses
-               : std::vector<physics::TimedPose>{};
+    EXPECT_TRUE(read) << Brief(ErrorsOf(read));
+    return read ? std::get<physics::PosesStep>(read->script.stages[0].steps[0].action).poses
+                : std::vector<physics::TimedPose>{};
   }
 
   std::filesystem::path folder_;
@@ -83,9 +82,8 @@ TEST_F(RecordedInputTest, FollowsTheRecordingWithoutDriftAtAnyRate) {
         (folder_ / "probe.yaml").string(),
         ProbeWith("{reach: milk, style: wrap, over_s: 0.8}", "{recording: line.csv, join_s: 0.5}"),
         {"world.rate_hz=" + std::to_string(rate_hz)}, ProbeLibrary());
-    ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-    const auto& poses =
-        std::get<physics::PosesStep>(read.value->script.stages[0].steps[0].action).poses;
+    ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+    const auto& poses = std::get<physics::PosesStep>(read->script.stages[0].steps[0].action).poses;
     const physics::Trajectory motion = physics::WaypointTrajectory({}, poses);
     // In its last interval the motion comes to rest.
     for (int tick = rate_hz; tick < static_cast<int>(2.48 * rate_hz); ++tick) {
@@ -121,18 +119,18 @@ TEST_F(RecordedInputTest, OddRecordingsAreUsedWithAWarning) {
   csv << "t_s,x_m,y_m,z_m\n0,0,0,1\n0.01,0,0,1\n0.02,0,0,1\n0.22,0,0,1\n";
   csv.close();
   const auto read = Read("recording: gap.csv");
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  ASSERT_EQ(read.value->warnings.size(), 1u);
-  EXPECT_EQ(read.value->warnings[0].message,
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  ASSERT_EQ(read->warnings.size(), 1u);
+  EXPECT_EQ(read->warnings[0].message,
             "gap: no sample for 0.200 s before this one, at 0.220 s; it is bridged");
-  EXPECT_TRUE(read.value->warnings[0].is_warning);
+  EXPECT_TRUE(read->warnings[0].is_warning);
   EXPECT_EQ(ErrorsAbout("recording: gap.csv, max_gap_s: 0.1"),
             "probe.yaml:11:29: recording: 'gap.csv' cannot be used, see below\n"
             "gap.csv:5:1: gap: no sample for 0.200 s before this one, at 0.220 s; at most 0.1 s "
             "are bridged | cut the "
             "recording with from_s and to_s, or raise max_gap_s\n");
   // What is cut off does not matter.
-  EXPECT_TRUE(Read("recording: gap.csv, max_gap_s: 0.1, to_s: 0.02").value);
+  EXPECT_TRUE(Read("recording: gap.csv, max_gap_s: 0.1, to_s: 0.02"));
 }
 
 TEST_F(RecordedInputTest, TheTriggerHasToBeAButtonThatIsPressed) {
@@ -151,14 +149,14 @@ TEST_F(RecordedInputTest, TheTriggerHasToBeAButtonThatIsPressed) {
             "are 2\n");
   EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 2"), "");
   const auto odd = Read("recording: pad.json, device: right");
-  ASSERT_TRUE(odd.value && odd.value->warnings.size() == 1) << Brief(odd.diagnostics);
-  EXPECT_EQ(odd.value->warnings[0].message,
+  ASSERT_TRUE(odd && odd->warnings.size() == 1) << Brief(ErrorsOf(odd));
+  EXPECT_EQ(odd->warnings[0].message,
             "button 1 of 'right' is never pressed, so the grip stays open");
   write("");
   EXPECT_EQ(ErrorsAbout("recording: pad.json, device: right, button: 2"),
             "probe.yaml:11:62: button: button 2 of 'right' is never pressed | no button is ever "
             "pressed\n");
-  EXPECT_TRUE(Read("recording: pad.json, device: right").value->warnings.empty());
+  EXPECT_TRUE(Read("recording: pad.json, device: right")->warnings.empty());
 }
 
 /// A person of sticks whose hips go up by 10 and ahead by 100 from the first frame to the third.
@@ -182,14 +180,14 @@ class RecordedBodyTest : public RecordedInputTest {
     RecordedInputTest::SetUp();
     std::ofstream(folder_ / "sticks.bvh") << kSticks;
   }
-  ReadResult<Scenario> ReadBody(const std::string& step, const std::string& actor = "anna") {
+  Result<Scenario> ReadBody(const std::string& step, const std::string& actor = "anna") {
     const std::string text = ProbeWith(
         "script:\n", "  anna: {person: body, at_m: [-0.9, 0, 0.1], height_m: 2}\nscript:\n  - " +
                          actor + ": {" + step + "}\n");
     return ReadScenarioText((folder_ / "probe.yaml").string(), text, {}, ProbeLibrary());
   }
   std::string Refused(const std::string& step, const std::string& actor = "anna") {
-    std::string text = Brief(ReadBody(step, actor).diagnostics);
+    std::string text = Brief(ErrorsOf(ReadBody(step, actor)));
     const std::string folder = folder_.string() + "/";
     for (std::size_t at; (at = text.find(folder)) != std::string::npos;)
       text.erase(at, folder.size());
@@ -197,10 +195,9 @@ class RecordedBodyTest : public RecordedInputTest {
   }
   std::vector<physics::TimedPosture> Postures(const std::string& step) {
     const auto read = ReadBody(step);
-    EXPECT_TRUE(read.value) << Brief(read.diagnostics);
-    if (!read.value) return {};
-    return std::get<physics::BodyPosesStep>(read.value->script.stages[0].person_steps[0].action)
-        .postures;
+    EXPECT_TRUE(read) << Brief(ErrorsOf(read));
+    if (!read) return {};
+    return std::get<physics::BodyPosesStep>(read->script.stages[0].person_steps[0].action).postures;
   }
 };
 

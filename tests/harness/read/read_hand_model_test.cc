@@ -53,8 +53,8 @@ class HandFolder {
 };
 
 /// The shipped hand with one text replaced, in its own file or in that of its grasps.
-ReadResult<physics::HandModel> ReadChanged(const std::string& what, const std::string& by,
-                                           const std::string& hand = "human_right") {
+Result<physics::HandModel> ReadChanged(const std::string& what, const std::string& by,
+                                       const std::string& hand = "human_right") {
   const HandFolder folder;
   folder.Change({hand + ".hand.yaml", "human.grasps.yaml"}, what, by);
   return ReadHandModel(folder.Path(hand + ".hand.yaml"));
@@ -63,13 +63,13 @@ ReadResult<physics::HandModel> ReadChanged(const std::string& what, const std::s
 TEST(ReadHandModelTest, TheLibrarysHandsAreWhole) {
   for (const char* name : {"human_right", "human_left"}) {
     const auto hand = ReadHandModel(kLibrary + name + ".hand.yaml");
-    ASSERT_TRUE(hand.value.has_value()) << Format(hand.diagnostics.front());
-    EXPECT_EQ(hand.value->name, name);
-    EXPECT_EQ(hand.value->links.size(), 16u);
+    ASSERT_TRUE(hand.has_value()) << Format(ErrorsOf(hand).front());
+    EXPECT_EQ(hand->name, name);
+    EXPECT_EQ(hand->links.size(), 16u);
     for (const char* style : {"wrap", "medium_wrap", "pinch", "tripod", "lateral", "hook"})
-      EXPECT_GE(physics::FindStyle(*hand.value, style), 0) << style;
-    EXPECT_EQ(physics::CheckGains(*hand.value, 480), "");
-    for (const auto& style : hand.value->styles) EXPECT_EQ(style.effort.size(), 16u);
+      EXPECT_GE(physics::FindStyle(*hand, style), 0) << style;
+    EXPECT_EQ(physics::CheckGains(*hand, 480), "");
+    for (const auto& style : hand->styles) EXPECT_EQ(style.effort.size(), 16u);
   }
 }
 
@@ -98,21 +98,21 @@ TEST(ReadHandModelTest, MistakesAreNamedAtTheirPlace) {
   };
   for (const Mistake& mistake : mistakes) {
     const auto result = ReadChanged(mistake.what, mistake.by);
-    ASSERT_FALSE(result.value.has_value()) << mistake.by;
-    const std::string text = Format(result.diagnostics.front());
+    ASSERT_FALSE(result.has_value()) << mistake.by;
+    const std::string text = Format(result.error().front());
     EXPECT_NE(text.find(mistake.message), std::string::npos) << text;
-    EXPECT_GT(result.diagnostics.front().place.line, 0) << text;
+    EXPECT_GT(result.error().front().place.line, 0) << text;
   }
 }
 
 TEST(ReadHandModelTest, JawsSlideAndAreCheckedAlike) {
   const auto hand = ReadHandModel(kLibrary + "planar_gripper.hand.yaml");
-  ASSERT_TRUE(hand.value.has_value()) << Format(hand.diagnostics.front());
-  EXPECT_EQ(physics::CheckGains(*hand.value, 240), "");
-  ASSERT_EQ(hand.value->links.size(), 2u);
-  EXPECT_TRUE(hand.value->links[1].slides);
-  EXPECT_EQ(hand.value->links[1].strength, 15);
-  EXPECT_EQ(hand.value->styles[0].frames[1][0], 0.012) << "metres";
+  ASSERT_TRUE(hand.has_value()) << Format(ErrorsOf(hand).front());
+  EXPECT_EQ(physics::CheckGains(*hand, 240), "");
+  ASSERT_EQ(hand->links.size(), 2u);
+  EXPECT_TRUE(hand->links[1].slides);
+  EXPECT_EQ(hand->links[1].strength, 15);
+  EXPECT_EQ(hand->styles[0].frames[1][0], 0.012) << "metres";
   const Mistake mistakes[] = {
       {"- {post: [0], jaw: [0]}", "- {post: [0]}", "digit 'jaw' is missing"},
       {"range_m: [0, 0.045]", "range_m: [0.045, 0]",
@@ -123,9 +123,9 @@ TEST(ReadHandModelTest, JawsSlideAndAreCheckedAlike) {
   };
   for (const Mistake& mistake : mistakes) {
     const auto result = ReadChanged(mistake.what, mistake.by, "planar_gripper");
-    ASSERT_FALSE(result.value.has_value()) << mistake.by;
-    EXPECT_NE(Format(result.diagnostics).find(mistake.message), std::string::npos)
-        << Format(result.diagnostics);
+    ASSERT_FALSE(result.has_value()) << mistake.by;
+    EXPECT_NE(Format(ErrorsOf(result)).find(mistake.message), std::string::npos)
+        << Format(ErrorsOf(result));
   }
 }
 
@@ -154,16 +154,14 @@ TEST(ReadHandModelTest, AGraspFileAddsStylesAndReplacesThem) {
   std::vector<std::string> files;
   const auto hand = ReadHandModel(folder.Path("human_right.hand.yaml"),
                                   {folder.Path("mine.grasps.yaml")}, &files);
-  ASSERT_TRUE(hand.value.has_value()) << Format(hand.diagnostics);
-  ASSERT_EQ(hand.value->styles.size(), before.value->styles.size() + 1);
-  const int firm = physics::FindStyle(*hand.value, "firm"),
-            wrap = physics::FindStyle(*hand.value, "wrap");
+  ASSERT_TRUE(hand.has_value()) << Format(ErrorsOf(hand));
+  ASSERT_EQ(hand->styles.size(), before->styles.size() + 1);
+  const int firm = physics::FindStyle(*hand, "firm"), wrap = physics::FindStyle(*hand, "wrap");
   ASSERT_GE(firm, 0);
-  EXPECT_EQ(wrap, physics::FindStyle(*before.value, "wrap")) << "it takes the other's place";
-  EXPECT_FALSE(hand.value->styles[static_cast<std::size_t>(wrap)].above)
+  EXPECT_EQ(wrap, physics::FindStyle(*before, "wrap")) << "it takes the other's place";
+  EXPECT_FALSE(hand->styles[static_cast<std::size_t>(wrap)].above)
       << "nothing of the other is left";
-  EXPECT_NEAR(hand.value->styles[static_cast<std::size_t>(firm)].frames[1][0], 0.0698, 1e-4)
-      << "radians";
+  EXPECT_NEAR(hand->styles[static_cast<std::size_t>(firm)].frames[1][0], 0.0698, 1e-4) << "radians";
   EXPECT_EQ(files, (std::vector<std::string>{folder.Path("human_right.hand.yaml"),
                                              folder.Path("human.grasps.yaml"),
                                              folder.Path("mine.grasps.yaml")}));
@@ -175,9 +173,8 @@ TEST(ReadHandModelTest, TheGraspsOfAMirroredHandAreMirrored) {
   std::vector<std::string> files;
   const auto hand =
       ReadHandModel(folder.Path("human_left.hand.yaml"), {folder.Path("mine.grasps.yaml")}, &files);
-  ASSERT_TRUE(hand.value.has_value()) << Format(hand.diagnostics);
-  EXPECT_NEAR(hand.value->styles[static_cast<std::size_t>(physics::FindStyle(*hand.value, "wrap"))]
-                  .post_m.y(),
+  ASSERT_TRUE(hand.has_value()) << Format(ErrorsOf(hand));
+  EXPECT_NEAR(hand->styles[static_cast<std::size_t>(physics::FindStyle(*hand, "wrap"))].post_m.y(),
               -0.02, 1e-12);
   EXPECT_EQ(files.size(), 4u)
       << "of the original and of its grasps, too: when they change, so does this hand";
@@ -189,15 +186,15 @@ TEST(ReadHandModelTest, MistakesInAGraspFileAreNamedThere) {
   folder.Change({"mine.grasps.yaml"}, "little: [4, 5, 6]", "litle: [4, 5, 6]");
   const auto hand =
       ReadHandModel(folder.Path("human_left.hand.yaml"), {folder.Path("mine.grasps.yaml")});
-  ASSERT_FALSE(hand.value.has_value());
-  const std::string text = Format(hand.diagnostics);
+  ASSERT_FALSE(hand.has_value());
+  const std::string text = Format(ErrorsOf(hand));
   EXPECT_NE(text.find("mine.grasps.yaml:9:"), std::string::npos) << text;
   EXPECT_NE(text.find("the hand has no digit 'litle'"), std::string::npos) << text;
   EXPECT_NE(text.find("did you mean 'little'?"), std::string::npos) << text;
 }
 
 TEST(ReadHandModelTest, AMissingFileIsADiagnostic) {
-  EXPECT_FALSE(ReadHandModel(kLibrary + "tentacle.hand.yaml").value.has_value());
+  EXPECT_FALSE(ReadHandModel(kLibrary + "tentacle.hand.yaml").has_value());
 }
 
 }  // namespace

@@ -18,12 +18,12 @@ namespace {
 Scenario Read(const std::string& text, const std::vector<std::string>& overrides = {},
               const std::string& file = "probe.yaml") {
   auto read = ReadScenarioText(file, text, overrides, ProbeLibrary());
-  EXPECT_TRUE(read.value) << grammar::Format(read.diagnostics);
-  return read.value.value_or(Scenario{});
+  EXPECT_TRUE(read) << grammar::Format(ErrorsOf(read));
+  return read.value_or(Scenario{});
 }
 
 std::string ErrorsAbout(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return Brief(ReadScenarioText("probe.yaml", text, overrides, ProbeLibrary()).diagnostics);
+  return Brief(ErrorsOf(ReadScenarioText("probe.yaml", text, overrides, ProbeLibrary())));
 }
 
 TEST(ReadScenario, TheProbe) {

@@ -11,16 +11,16 @@
 namespace prehend::harness {
 namespace {
 
-ReadResult<Scenario> Read(const std::string& vary) {
+Result<Scenario> Read(const std::string& vary) {
   return ReadScenarioText("probe.yaml", kProbe + vary, {}, ProbeLibrary());
 }
 
 std::vector<std::string> Draw(const std::string& vary, std::uint64_t seed, int trial) {
   const auto read = Read(vary);
-  EXPECT_TRUE(read.value) << Brief(read.diagnostics);
-  if (!read.value) return {};
+  EXPECT_TRUE(read) << Brief(ErrorsOf(read));
+  if (!read) return {};
   const auto document = ParseYaml("probe.yaml", kProbe + vary);
-  return SampleTrial(*document.value, read.value->variations, seed, trial);
+  return SampleTrial(*document, read->variations, seed, trial);
 }
 
 double NumberIn(const std::string& setting) {
@@ -36,7 +36,7 @@ TEST(Vary, ChoosesAmongNumbersAndFlagsToo) {
       << drawn;
   EXPECT_EQ(Draw("vary:\n  - {fields: [world.planar], choose: [false]}\n", 1, 1)[0],
             "world.planar=false");
-  EXPECT_FALSE(Read("vary:\n  - {fields: [world.planar], choose: [no]}\n").value);
+  EXPECT_FALSE(Read("vary:\n  - {fields: [world.planar], choose: [no]}\n"));
 }
 
 TEST(Vary, TheSameTrialIsTheSameDraw) {
@@ -74,7 +74,7 @@ TEST(Vary, RelativeDrawsStartFromWhatIsWritten) {
     EXPECT_NEAR(NumberIn(settings[0]), 0.2, 0.008);
     EXPECT_NEAR(NumberIn(settings[1]) - NumberIn(settings[0]), -0.4, 2e-6);  // one draw for both
     EXPECT_NEAR(NumberIn(settings[2]), 0.2, 0.0201);
-    EXPECT_TRUE(ReadScenarioText("probe.yaml", kProbe, settings, ProbeLibrary()).value);
+    EXPECT_TRUE(ReadScenarioText("probe.yaml", kProbe, settings, ProbeLibrary()));
   }
 }
 

@@ -13,9 +13,8 @@ namespace {
 
 std::string ErrorsAbout(const std::string& variations,
                         const std::vector<std::string>& settings = {}) {
-  return Brief(
-      ReadScenarioText("probe.yaml", kProbe + ("vary:\n" + variations), settings, ProbeLibrary())
-          .diagnostics);
+  return Brief(ErrorsOf(
+      ReadScenarioText("probe.yaml", kProbe + ("vary:\n" + variations), settings, ProbeLibrary())));
 }
 
 TEST(CheckDraws, FieldsHaveToBeThere) {

@@ -68,7 +68,7 @@ TEST_F(LibraryPaths, TheLibraryListsGrammarsAndHands) {
   const ScenarioLibrary library = ProjectLibrary(root_);
   EXPECT_EQ(library.grammars, (std::vector<std::string>{"a", "b"}));
   EXPECT_EQ(library.hands, (std::vector<std::string>{"human_right"}));
-  EXPECT_FALSE(library.read_hand("human_right", {}).value);
+  EXPECT_FALSE(library.read_hand("human_right", {}));
 }
 
 TEST_F(LibraryPaths, TheRootIsThatOfTheEnvironmentOrAboveTheExecutable) {

@@ -11,8 +11,8 @@ namespace {
 
 class PrepareRunTest : public CheckedScenario {
  protected:
-  ReadResult<LoadedRun> Prepared(const std::vector<std::string>& settings,
-                                 const std::string& grammar = {}) {
+  Result<LoadedRun> Prepared(const std::vector<std::string>& settings,
+                             const std::string& grammar = {}) {
     RunRequest request = Request();
     request.settings = settings;
     request.grammar = grammar;
@@ -21,7 +21,7 @@ class PrepareRunTest : public CheckedScenario {
   }
   std::string Problems(const std::vector<std::string>& settings, const std::string& grammar = {}) {
     std::string text;
-    for (const grammar::Diagnostic& problem : Prepared(settings, grammar).diagnostics)
+    for (const grammar::Diagnostic& problem : ErrorsOf(Prepared(settings, grammar)))
       text += problem.message + (problem.hint.empty() ? "" : " | " + problem.hint) + "\n";
     return text;
   }
@@ -31,10 +31,10 @@ class PrepareRunTest : public CheckedScenario {
 
 TEST_F(PrepareRunTest, SettingsGoToTheScenarioOrToItsGrammar) {
   const auto loaded = Prepared({"settle_s=0.25", "entities.carton.mass_kg=2", "lift_rise=10cm"});
-  ASSERT_TRUE(loaded.value) << Format(loaded.diagnostics);
-  EXPECT_EQ(loaded.value->scenario.scene.bodies[1].mass_kg, 2);
-  EXPECT_EQ(loaded.value->scenario.grammar, "pick_and_place");
-  const auto& params = loaded.value->program->params;
+  ASSERT_TRUE(loaded) << Format(ErrorsOf(loaded));
+  EXPECT_EQ(loaded->scenario.scene.bodies[1].mass_kg, 2);
+  EXPECT_EQ(loaded->scenario.grammar, "pick_and_place");
+  const auto& params = loaded->program->params;
   const auto rise = std::ranges::find(params, "lift_rise", &grammar::ProgramParam::name);
   ASSERT_NE(rise, params.end());
   EXPECT_TRUE(rise->overridden);
@@ -44,7 +44,7 @@ TEST_F(PrepareRunTest, SettingsGoToTheScenarioOrToItsGrammar) {
 }
 
 TEST_F(PrepareRunTest, EveryFileThatWasUsedIsNamed) {
-  ASSERT_TRUE(Prepared({}).value);
+  ASSERT_TRUE(Prepared({}));
   EXPECT_EQ(files_.front(), Request().scenario_file);
   const std::string grammar = (root_ / "grammar/library/pick_and_place.grammar").string();
   EXPECT_EQ(std::ranges::count(files_, grammar), 1);
@@ -60,9 +60,9 @@ TEST_F(PrepareRunTest, SettingsThatAreNoneAreRefused) {
 TEST_F(PrepareRunTest, ProblemsOfScenarioAndGrammarAreReportedTogether) {
   Write("rules.grammar", "grammar rules\nevent touching_it(a: Entity)\n  while");
   const auto loaded = Prepared({"settle_s=soon"}, (root_ / "rules.grammar").string());
-  ASSERT_FALSE(loaded.value);
+  ASSERT_FALSE(loaded);
   std::vector<std::string> files;
-  for (const grammar::Diagnostic& problem : loaded.diagnostics) files.push_back(problem.file);
+  for (const grammar::Diagnostic& problem : loaded.error()) files.push_back(problem.file);
   EXPECT_EQ(files, (std::vector<std::string>{"--set", (root_ / "rules.grammar").string()}));
 }
 
@@ -70,10 +70,10 @@ TEST_F(PrepareRunTest, APictureOfAnEventThatTheGrammarLacksIsRefused) {
   Write("scenarios/rest/carton_stands.yaml",
         std::string(kCartonStands) + "pictures: [{at: graspin.begin}]\n");
   const auto loaded = Prepared({});
-  ASSERT_FALSE(loaded.value);
-  ASSERT_EQ(loaded.diagnostics.size(), 1u);
-  EXPECT_EQ(loaded.diagnostics[0].place.line, 7);
-  EXPECT_TRUE(loaded.diagnostics[0].message.starts_with("at: ")) << loaded.diagnostics[0].message;
+  ASSERT_FALSE(loaded);
+  ASSERT_EQ(loaded.error().size(), 1u);
+  EXPECT_EQ(loaded.error()[0].place.line, 7);
+  EXPECT_TRUE(loaded.error()[0].message.starts_with("at: ")) << loaded.error()[0].message;
 }
 
 }  // namespace

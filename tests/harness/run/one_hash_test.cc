@@ -27,10 +27,10 @@ TEST(OneHash, WhateverRanBefore) {
                         .grammar = {},
                         .settings = {"settle_s=0", "script.0.right_hand.over_s=0.1"}},
                        root);
-    ASSERT_TRUE(one.value) << Format(one.diagnostics);
+    ASSERT_TRUE(one) << Format(one.error());
     // Only the first stage: short enough to be run a thousand times, long enough to move a hand.
-    one.value->scenario.script.stages.resize(1);
-    loaded.push_back(std::move(*one.value));
+    one->scenario.script.stages.resize(1);
+    loaded.push_back(std::move(*one));
   }
   std::mt19937 random(1);
   std::map<std::string, std::set<std::uint64_t>> hashes;

@@ -11,16 +11,16 @@
 namespace prehend::harness {
 namespace {
 
-ReadResult<Scenario> Read(const std::string& outcomes) {
+Result<Scenario> Read(const std::string& outcomes) {
   return ReadScenarioText("probe.yaml", kProbe + ("outcomes:\n" + outcomes), {}, ProbeLibrary());
 }
 
 /// Judges a run of one tick a snapshot in which the milk is at these places.
 std::string Judge(const std::string& outcomes, const std::vector<physics::Pose>& milk) {
   const auto read = Read(outcomes);
-  EXPECT_TRUE(read.value) << Brief(read.diagnostics);
-  if (!read.value) return "";
-  OutcomeWatch watch(read.value->scene, read.value->outcomes);
+  EXPECT_TRUE(read) << Brief(ErrorsOf(read));
+  if (!read) return "";
+  OutcomeWatch watch(read->scene, read->outcomes);
   physics::Snapshot snapshot;
   snapshot.bodies.resize(2);
   for (const physics::Pose& pose : milk) {
@@ -48,10 +48,10 @@ TEST(Outcome, TheFirstThatHoldsIsTheOne) {
 }
 
 TEST(Outcome, AMomentAfterTheEndIsRefused) {
-  EXPECT_EQ(Brief(Read("  held: [{entity: milk, at_s: 2.5, above_m: 1}]\n").diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(Read("  held: [{entity: milk, at_s: 2.5, above_m: 1}]\n"))),
             "16:10: at_s: 2.5 s is after the end of the run at 1.900 s | without at_s the "
             "condition is checked at the end\n");
-  EXPECT_TRUE(Read("  held: [{entity: milk, at_s: 1.9, above_m: 1}]\n").value);
+  EXPECT_TRUE(Read("  held: [{entity: milk, at_s: 1.9, above_m: 1}]\n"));
 }
 
 TEST(Outcome, WhatAlwaysOrNeverHoldsIsRefused) {
@@ -71,10 +71,9 @@ TEST(Outcome, WhatAlwaysOrNeverHoldsIsRefused) {
   };
   for (const auto& [outcome, complaint] : refused) {
     const auto read = Read("  " + std::string(outcome) + "\n");
-    EXPECT_FALSE(read.value) << outcome;
-    EXPECT_NE(Brief(read.diagnostics).find(complaint), std::string::npos)
-        << outcome << "\n"
-        << Brief(read.diagnostics);
+    EXPECT_FALSE(read) << outcome;
+    EXPECT_NE(Brief(ErrorsOf(read)).find(complaint), std::string::npos) << outcome << "\n"
+                                                                        << Brief(ErrorsOf(read));
   }
 }
 
@@ -117,11 +116,11 @@ TEST(Outcome, OfGrainsAShareIsInside) {
 }
 
 TEST(Outcome, RefusesWhatIsNotThere) {
-  EXPECT_EQ(Brief(Read("  held: [{entity: mlik, above_m: 1}]\n").diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(Read("  held: [{entity: mlik, above_m: 1}]\n"))),
             "16:10: entity: no entity is called 'mlik' | did you mean 'milk'?\n");
-  EXPECT_EQ(Brief(Read("  open: [{entity: milk, joint_above: 0.5}]\n").diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(Read("  open: [{entity: milk, joint_above: 0.5}]\n"))),
             "16:10: entity: 'milk' has no joint\n");
-  EXPECT_EQ(Brief(Read("  kept: [{entity: milk, inside: tabel}]\n").diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(Read("  kept: [{entity: milk, inside: tabel}]\n"))),
             "16:33: inside: no entity is called 'tabel' | did you mean 'table'?\n");
 }
 

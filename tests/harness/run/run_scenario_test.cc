@@ -16,8 +16,8 @@ class RunScenarioTest : public CheckedScenario {
  protected:
   void SetUp() override {
     auto loaded = LoadRun(Request(), root_.string());
-    ASSERT_TRUE(loaded.value) << Format(loaded.diagnostics);
-    loaded_ = std::move(*loaded.value);
+    ASSERT_TRUE(loaded) << Format(loaded.error());
+    loaded_ = std::move(*loaded);
   }
 
   LoadedRun loaded_;

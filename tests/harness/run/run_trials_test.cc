@@ -36,17 +36,17 @@ const char* const kOutcomes =
 TEST(RunTrials, CountsOutcomesAndRepeats) {
   const RunRequest request{.scenario_file = BallFile(kOutcomes)};
   const auto first = RunTrials(request, kRoot, {.count = 12, .jobs = 2});
-  ASSERT_TRUE(first.value) << grammar::Format(first.diagnostics);
+  ASSERT_TRUE(first) << grammar::Format(first.error());
   const auto again = RunTrials(request, kRoot, {.count = 12, .jobs = 1});
   int stays = 0;
   for (std::size_t i = 0; i < 12; ++i) {
-    const TrialResult& result = first.value->results[i];
+    const TrialResult& result = first->results[i];
     EXPECT_EQ(result.trial, static_cast<int>(i) + 1);
-    EXPECT_EQ(result.outcome, again.value->results[i].outcome);
+    EXPECT_EQ(result.outcome, again->results[i].outcome);
     stays += result.outcome == "stays";
     // What the trial is made of says how it ends.
     const auto varied = RequestOfTrial(request, kRoot, result.trial);
-    const std::string setting = varied.value->settings.back();
+    const std::string setting = varied->settings.back();
     const double x = std::stod(setting.substr(setting.find('=') + 1));
     if (std::abs(x - 0.5) > 0.01) {
       EXPECT_EQ(result.outcome, x < 0.5 ? "stays" : "falls") << setting;
@@ -76,8 +76,8 @@ TEST(RunTrials, TheTableNamesTheWorstAndHowToRepeatThem) {
 
 TEST(RunTrials, NeedsOutcomes) {
   const auto trials = RunTrials({.scenario_file = BallFile("")}, kRoot, {.count = 1});
-  ASSERT_FALSE(trials.value);
-  EXPECT_EQ(trials.diagnostics[0].message,
+  ASSERT_FALSE(trials);
+  EXPECT_EQ(trials.error()[0].message,
             "the scenario has no outcomes, so its trials cannot be classified");
 }
 

@@ -63,11 +63,10 @@ TEST_P(Watching, ChangesNothing) {
   ASSERT_GE(all.size(), static_cast<std::size_t>(kParts));
   for (std::size_t i = static_cast<std::size_t>(GetParam()); i < all.size(); i += kParts) {
     SCOPED_TRACE(IdOf(all[i]));
-    const ReadResult<LoadedRun> loaded =
-        LoadRun({.scenario_file = all[i].path}, PREHEND_SOURCE_DIR);
-    ASSERT_TRUE(loaded.value) << Format(loaded.diagnostics);
-    const RunResult watched = PlayWatched(*loaded.value);
-    const RunResult plain = RunScenario(loaded.value->scenario, loaded.value->program);
+    const Result<LoadedRun> loaded = LoadRun({.scenario_file = all[i].path}, PREHEND_SOURCE_DIR);
+    ASSERT_TRUE(loaded) << Format(loaded.error());
+    const RunResult watched = PlayWatched(*loaded);
+    const RunResult plain = RunScenario(loaded->scenario, loaded->program);
     EXPECT_EQ(watched.status.kind, plain.status.kind);
     EXPECT_EQ(watched.ticks, plain.ticks);
     EXPECT_EQ(watched.state_hash, plain.state_hash) << "it moves differently when it is watched";

@@ -20,7 +20,7 @@ constexpr const char* kHeader =
     R"("hand": {"hand": true, "size_m": [0.1, 0.1, 0.03]}}})"
     "\n";
 
-ReadResult<Episode> ReadText(const std::string& text) {
+Result<Episode> ReadText(const std::string& text) {
   const auto file = std::filesystem::temp_directory_path() /
                     ("prehend_episode_" + std::to_string(getpid()) + ".jsonl");
   std::ofstream(file, std::ios::binary) << text;
@@ -29,7 +29,7 @@ ReadResult<Episode> ReadText(const std::string& text) {
 
 /// Without the file's name.
 std::string Complaint(const std::string& frames) {
-  std::string all = Brief(ReadText(kHeader + frames).diagnostics);
+  std::string all = Brief(ErrorsOf(ReadText(kHeader + frames)));
   return all.substr(std::min(all.find(".jsonl:"), all.size() - 7) + 7);
 }
 
@@ -40,8 +40,8 @@ TEST(EpisodeFile, WhatIsLeftOutHasADefault) {
       "\n"
       R"({"tick": 10, "looks": {"cup": {"at_m": [0, 0, 1.2]}}, )"
       R"("touches": [{"a": "hand", "b": "cup", "up_on_a": 0.5, "sensor_sets": ["thumb"]}]})");
-  ASSERT_TRUE(episode.value) << Brief(episode.diagnostics);
-  const EpisodeFrame& last = episode.value->frames[1];
+  ASSERT_TRUE(episode) << Brief(ErrorsOf(episode));
+  const EpisodeFrame& last = episode->frames[1];
   EXPECT_DOUBLE_EQ(last.entities[1].v_WB_m_per_s.z(), 2);
   EXPECT_EQ(last.entities[2].p_WB_m.z(), 2) << "what is not mentioned stays where it was";
   EXPECT_EQ(last.touches[0].a, 1) << "the pair is in the order of the entities";
@@ -49,8 +49,8 @@ TEST(EpisodeFile, WhatIsLeftOutHasADefault) {
   EXPECT_EQ(last.touches[0].up_on_a, -0.5);
   EXPECT_EQ(last.touches[0].sensor_sets, 2u);
   EXPECT_EQ(last.collision_spheres[0].size(), 1u);
-  EXPECT_EQ(episode.value->end_tick, 11);
-  EXPECT_EQ(episode.value->header.grammar, "pick_and_place");
+  EXPECT_EQ(episode->end_tick, 11);
+  EXPECT_EQ(episode->header.grammar, "pick_and_place");
 }
 
 TEST(EpisodeFile, IsReadAsItWasWritten) {
@@ -60,16 +60,16 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
       R"("hands": {"hand": {"trigger": 0.4, "style": "pinch", "ahead": [0, 0, -1], "feelers_m": [[1, 2, 3, 0.01]]}}, )"
       R"("touches": [{"a": "table", "b": "cup", "up_on_b": 1, "force_n": 2}]})"
       "\n{\"end_tick\": 9}\n");
-  ASSERT_TRUE(read.value) << Brief(read.diagnostics);
-  Episode episode = *read.value;
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  Episode episode = *read;
   std::ostringstream written;
   EpisodeWriter writer(written, episode.header);
   for (EpisodeFrame& frame : episode.frames) writer.Write(frame.View());
   writer.Finish(episode.end_tick);
   const auto again = ReadText(written.str());
-  ASSERT_TRUE(again.value) << Brief(again.diagnostics);
-  EXPECT_EQ(again.value->end_tick, 9);
-  const EpisodeFrame &a = episode.frames[0], &b = again.value->frames[0];
+  ASSERT_TRUE(again) << Brief(ErrorsOf(again));
+  EXPECT_EQ(again->end_tick, 9);
+  const EpisodeFrame &a = episode.frames[0], &b = again->frames[0];
   EXPECT_EQ(b.entities[1].p_WB_m, a.entities[1].p_WB_m);
   EXPECT_TRUE(b.entities[1].q_WB.isApprox(a.entities[1].q_WB));
   EXPECT_TRUE(b.entities[1].asleep);
@@ -104,7 +104,7 @@ TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
                 .find(" at_m[2]: expected a number"),
             std::string::npos);
   EXPECT_NE(Complaint("{\"tick\": 1").find("2:"), std::string::npos);
-  EXPECT_NE(Brief(ReadText("").diagnostics).find("1:1: the file is empty"), std::string::npos);
+  EXPECT_NE(Brief(ErrorsOf(ReadText(""))).find("1:1: the file is empty"), std::string::npos);
 }
 
 }  // namespace

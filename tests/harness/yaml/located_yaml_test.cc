@@ -14,12 +14,12 @@ using Kind = YamlNode::Kind;
 
 YamlDocument Parse(const std::string& text) {
   auto document = ParseYaml("probe.yaml", text);
-  EXPECT_TRUE(document.value) << grammar::Format(document.diagnostics);
-  return document.value.value_or(YamlDocument{});
+  EXPECT_TRUE(document) << grammar::Format(ErrorsOf(document));
+  return document.value_or(YamlDocument{});
 }
 
 std::string DiagnosticList(const std::string& text) {
-  return Brief(ParseYaml("probe.yaml", text).diagnostics);
+  return Brief(ErrorsOf(ParseYaml("probe.yaml", text)));
 }
 
 void ExpectPlace(const Where& where, int line, int column) {

@@ -47,14 +47,14 @@ ValueFormat<Wheel> WheelFormat() {
       .format();
 }
 
-ReadResult<Wheel> ReadWheel(const std::string& text) {
+Result<Wheel> ReadWheel(const std::string& text) {
   auto document = ParseYaml("probe.yaml", text);
-  EXPECT_TRUE(document.value) << grammar::Format(document.diagnostics);
-  DiagnosticList errors(*document.value);
+  EXPECT_TRUE(document) << grammar::Format(ErrorsOf(document));
+  DiagnosticList errors(*document);
   Wheel wheel;
-  WheelFormat().Read(document.value->root, errors, wheel);
-  if (!errors.empty()) return {std::nullopt, errors.Sorted()};
-  return {std::move(wheel), {}};
+  WheelFormat().Read(document->root, errors, wheel);
+  if (!errors.empty()) return tl::unexpected(errors.Sorted());
+  return wheel;
 }
 
 TEST(FieldTable, ReadsEveryKindOfField) {
@@ -62,8 +62,8 @@ TEST(FieldTable, ReadsEveryKindOfField) {
       "radius_m: 0.5\nmaterial: steel\nspins: false\nlabel: 'front'\naxis: [0, 0, 1]\nhub: "
       "{radius_m: 0.1}\n"
       "loads_kg: {b: 1, a: 2}\n");
-  ASSERT_TRUE(read.value) << grammar::Format(read.diagnostics);
-  const Wheel& wheel = *read.value;
+  ASSERT_TRUE(read) << grammar::Format(ErrorsOf(read));
+  const Wheel& wheel = *read;
   EXPECT_EQ(wheel.radius_m, 0.5);
   EXPECT_EQ(wheel.spokes, 12) << "the default of the struct";
   EXPECT_EQ(wheel.material, Material::kSteel);
@@ -79,8 +79,8 @@ TEST(FieldTable, ReadsEveryKindOfField) {
 
 TEST(FieldTable, CollectsAllComplaintsSortedByPlace) {
   EXPECT_EQ(
-      Brief(ReadWheel("material: stel\nspokes: 1.5\naxis: [0, 2]\nweight: 3\nloads_kg: {A: 10}\n")
-                .diagnostics),
+      Brief(ErrorsOf(
+          ReadWheel("material: stel\nspokes: 1.5\naxis: [0, 2]\nweight: 3\nloads_kg: {A: 10}\n"))),
       "1:1: a wheel needs the key 'radius_m'\n"
       "1:11: material: expected one of wood, steel, found 'stel' | did you mean 'steel'?\n"
       "2:9: spokes: expected a whole number from 0 to 100, found '1.5'\n"
@@ -92,24 +92,24 @@ TEST(FieldTable, CollectsAllComplaintsSortedByPlace) {
 }
 
 TEST(FieldTable, AMisspeltRequiredKeyIsOneComplaint) {
-  EXPECT_EQ(Brief(ReadWheel("radius_mm: 5\n").diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(ReadWheel("radius_mm: 5\n"))),
             "1:1: unknown key 'radius_mm' in a wheel | did you mean 'radius_m'?\n");
 }
 
 TEST(FieldTable, ControlCharactersFromEscapesAreRefused) {
-  EXPECT_EQ(Brief(ReadWheel("radius_m: 1\nlabel: \"a\\x1b[31m\"\n").diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(ReadWheel("radius_m: 1\nlabel: \"a\\x1b[31m\"\n"))),
             "2:8: label: expected text of 1 to 500 bytes, found control characters\n");
-  EXPECT_EQ(Brief(ReadWheel("radius_m: 1\nloads_kg: {\"a\\0\": 1}\n").diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(ReadWheel("radius_m: 1\nloads_kg: {\"a\\0\": 1}\n"))),
             "2:12: expected a name like 'milk_carton', found control characters\n");
 }
 
 TEST(FieldTable, ExclusiveKeys) {
-  EXPECT_EQ(Brief(ReadWheel("radius_m: 1\nspokes: 3\nlabel: x\n").diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(ReadWheel("radius_m: 1\nspokes: 3\nlabel: x\n"))),
             "3:1: a wheel cannot have both 'spokes' and 'label'\n");
 }
 
 TEST(FieldTable, TheDocumentMustBeAMapping) {
-  EXPECT_EQ(Brief(ReadWheel("- 1\n").diagnostics),
+  EXPECT_EQ(Brief(ErrorsOf(ReadWheel("- 1\n"))),
             "1:1: expected a mapping with the fields of a wheel, found a list\n");
 }
 
