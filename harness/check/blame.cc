@@ -14,7 +14,7 @@ namespace {
 
 /// "scenarios/slide/NAME.yaml" and the like, "the program", and the options of the command line. A
 /// grammar that the command line chose did not change, nor did the one that it replaces.
-std::vector<std::string> WhatChanged(const CheckRecord& last_pass, const DifferingRun& now,
+std::vector<std::string> WhatChanged(const LastPass& last_pass, const DifferingRun& now,
                                      const std::string& root) {
   std::vector<std::string> changed;
   const auto add = [&](const std::string& path) {
@@ -65,7 +65,7 @@ std::string FirstCause(const PhysicsTrace& before, const DifferingRun& now) {
 
 }  // namespace
 
-std::string CauseText(const std::optional<CheckRecord>& last_pass,
+std::string CauseText(const std::optional<LastPass>& last_pass,
                       const std::optional<PhysicsTrace>& its_trace, const DifferingRun& now,
                       const std::string& root) {
   if (!last_pass || !its_trace) return "cause: unknown. This scenario has not passed here yet.\n";

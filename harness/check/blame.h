@@ -25,7 +25,7 @@ struct DifferingRun {
 /// One line with its line feed: "cause: physics. `cup` moves differently from the last passing run,
 /// first at 0.0042 s (tick 2). Changed since: ..". Paths are relative to `root`. The cause is
 /// unknown without a run that passed, or was accepted.
-std::string CauseText(const std::optional<CheckRecord>& last_pass,
+std::string CauseText(const std::optional<LastPass>& last_pass,
                       const std::optional<PhysicsTrace>& its_trace, const DifferingRun& now,
                       const std::string& root);
 

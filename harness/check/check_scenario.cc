@@ -88,7 +88,7 @@ Findings Draw(const CheckRequest& request, const CheckedRun& checked,
 /// What is attributed to physics, sensing or grammar: the run against the last one that passed.
 std::string CauseOf(const CheckRequest& request, const CheckedRun& checked,
                     const FileHashes& inputs) {
-  const CheckRecords records(request.root);
+  const LastPasses records(request.root);
   const RunResult& run = checked.result;
   return CauseText(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
                    {.program = request.program,
@@ -164,7 +164,7 @@ void Store(const CheckRequest& request, const CheckedRun& checked, const Judgeme
   (void)files.WriteEngineDifference(request.id, judgement.engine_difference);
   StorePictures(request.id, judgement.pictures, request.root);
   if (passed)
-    (void)WriteTrace(CheckRecords(request.root).TracePath(request.id),
+    (void)WriteTrace(LastPasses(request.root).TracePath(request.id),
                      TraceOf(checked.loaded.scenario.scene, checked.result.recording));
 }
 

@@ -22,7 +22,7 @@ RecordJson ReadJson(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::vector<std::string> ChangedInputs(const CheckRecord& record) {
+std::vector<std::string> ChangedInputs(const LastPass& record) {
   std::vector<std::string> changed;
   for (const auto& [path, hash] : record.verdict.inputs) {
     if (FileHash(path) != hash) changed.push_back(path);
@@ -30,14 +30,14 @@ std::vector<std::string> ChangedInputs(const CheckRecord& record) {
   return changed;
 }
 
-std::optional<CheckRecord> CheckRecords::Read(const std::string& scenario) const {
+std::optional<LastPass> LastPasses::Read(const std::string& scenario) const {
   const RecordJson json = ReadJson(folder_ / (scenario + ".json"));
   if (json.is_discarded()) return std::nullopt;
   try {
-    CheckRecord record{.program = json.at("program"),
-                       .passed = json.at("passed"),
-                       .pictures = json.at("pictures"),
-                       .verdict = UnpackedVerdict(json.at("verdict"))};
+    LastPass record{.program = json.at("program"),
+                    .passed = json.at("passed"),
+                    .pictures = json.at("pictures"),
+                    .verdict = UnpackedVerdict(json.at("verdict"))};
     if (record.verdict.scenario != scenario || record.verdict.inputs.empty()) return std::nullopt;
     return record;
   } catch (const RecordJson::exception&) {
@@ -45,7 +45,7 @@ std::optional<CheckRecord> CheckRecords::Read(const std::string& scenario) const
   }
 }
 
-std::string CheckRecords::Write(const CheckRecord& record) const {
+std::string LastPasses::Write(const LastPass& record) const {
   const RecordJson json = {{"program", record.program},
                            {"passed", record.passed},
                            {"pictures", record.pictures},
@@ -53,7 +53,7 @@ std::string CheckRecords::Write(const CheckRecord& record) const {
   return WriteTextFile(folder_ / (record.verdict.scenario + ".json"), json.dump(1) + "\n");
 }
 
-CheckRecords::Costs CheckRecords::ReadCosts() const {
+LastPasses::Costs LastPasses::ReadCosts() const {
   const RecordJson json = ReadJson(folder_ / "costs.json");
   Costs costs;
   if (!json.is_object()) return costs;
@@ -63,7 +63,7 @@ CheckRecords::Costs CheckRecords::ReadCosts() const {
   return costs;
 }
 
-std::string CheckRecords::WriteCosts(const Costs& costs) const {
+std::string LastPasses::WriteCosts(const Costs& costs) const {
   return WriteTextFile(folder_ / "costs.json", RecordJson(costs).dump(1) + "\n");
 }
 

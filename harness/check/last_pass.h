@@ -14,7 +14,7 @@
 namespace prehend::harness {
 
 /// The last time that a scenario agreed with its golden: it passed, or its timeline was accepted.
-struct CheckRecord {
+struct LastPass {
   std::string program;      ///< ProgramHash() of then
   bool passed = true;       ///< false: accepted, but not checked since
   bool pictures = false;    ///< its pictures were drawn, too
@@ -22,18 +22,18 @@ struct CheckRecord {
 };
 
 /// Paths of inputs that have changed since, sorted.
-std::vector<std::string> ChangedInputs(const CheckRecord& record);
+std::vector<std::string> ChangedInputs(const LastPass& record);
 
-class CheckRecords {
+class LastPasses {
  public:
-  explicit CheckRecords(const std::filesystem::path& project_root)
+  explicit LastPasses(const std::filesystem::path& project_root)
       : folder_(project_root / "build" / "check") {}
 
   /// `scenario` is its id, here and below. Nothing without a readable record.
-  std::optional<CheckRecord> Read(const std::string& scenario) const;
+  std::optional<LastPass> Read(const std::string& scenario) const;
 
   /// Returns "" or what went wrong.
-  std::string Write(const CheckRecord& record) const;
+  std::string Write(const LastPass& record) const;
 
   /// Where the physics trace of that run is kept.
   std::filesystem::path TracePath(const std::string& scenario) const {

@@ -179,9 +179,9 @@ class Suite {
 
   const SuiteRequest& request_;
   const std::vector<ScenarioFile>& scenarios_;
-  const CheckRecords records_;
+  const LastPasses records_;
   const std::string program_;
-  CheckRecords::Costs costs_;
+  LastPasses::Costs costs_;
   std::vector<std::vector<ScenarioVerdict>> runs_;  ///< per scenario, in the order they ended
 };
 

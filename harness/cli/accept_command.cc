@@ -77,8 +77,8 @@ void ShowDifference(const Played& played, const OracleComparison& truth,
 
 /// The next difference is traced back to the run that is accepted now.
 void LeaveBaseline(const CommandContext& context, const Played& played) {
-  const CheckRecords records(context.root);
-  CheckRecord record{.program = ProgramHash(), .passed = false, .pictures = false, .verdict = {}};
+  const LastPasses records(context.root);
+  LastPass record{.program = ProgramHash(), .passed = false, .pictures = false, .verdict = {}};
   record.verdict.scenario = played.id;
   record.verdict.inputs = HashFiles(played.files);
   // Without it, only the cause of the next difference stays unknown.

@@ -9,7 +9,7 @@ namespace prehend::harness {
 namespace {
 
 struct Runs {
-  CheckRecord last_pass{.program = "p", .pictures = false, .verdict = {.scenario = "slide/x"}};
+  LastPass last_pass{.program = "p", .pictures = false, .verdict = {.scenario = "slide/x"}};
   PhysicsTrace trace{.entities = {"cup"}, .ticks = {0, 2}, .hashes = {1, 2}};
   DifferingRun now{.program = "p", .inputs = {}, .trace = trace, .ticks_per_second = 480};
   Runs() {

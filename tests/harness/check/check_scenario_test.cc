@@ -27,7 +27,7 @@ class CheckScenarioTest : public CheckedScenario {
   void Accept() const {
     ASSERT_EQ(files_.WriteGoldenFile(CompareWithGolden(std::nullopt, Played()).pending), "");
   }
-  bool LeftTrace() const { return fs::exists(CheckRecords(root_).TracePath(kId)); }
+  bool LeftTrace() const { return fs::exists(LastPasses(root_).TracePath(kId)); }
 
   const GoldenFiles files_{root_};
 };
@@ -67,7 +67,7 @@ TEST_F(CheckScenarioTest, WithoutGoldenItIsPendingAndItsProposalWaits) {
 TEST_F(CheckScenarioTest, ADifferenceFailsWithItsCauseAndLeavesAProposal) {
   Accept();
   CheckScenario(Check());
-  ASSERT_EQ(CheckRecords(root_).Write({.program = "p", .verdict = CheckScenario(Check())}), "");
+  ASSERT_EQ(LastPasses(root_).Write({.program = "p", .verdict = CheckScenario(Check())}), "");
   Golden golden = *files_.ReadGoldenOf(kId).value();
   golden.events.pop_back();
   ASSERT_EQ(files_.WriteGoldenFile(golden), "");

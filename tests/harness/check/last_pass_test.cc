@@ -12,9 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class CheckRecordsTest : public testing::Test {
+class LastPassesTest : public testing::Test {
  protected:
-  ~CheckRecordsTest() override { fs::remove_all(root_); }
+  ~LastPassesTest() override { fs::remove_all(root_); }
 
   std::string File(const std::string& name, const std::string& text) const {
     EXPECT_EQ(WriteTextFile(root_ / name, text), "");
@@ -23,12 +23,12 @@ class CheckRecordsTest : public testing::Test {
 
   const fs::path root_ =
       fs::temp_directory_path() / ("prehend-check-records-" + std::to_string(getpid()));
-  const CheckRecords records_{root_};
+  const LastPasses records_{root_};
 };
 
-TEST_F(CheckRecordsTest, ARecordComesBackAndNoticesChanges) {
+TEST_F(LastPassesTest, ARecordComesBackAndNoticesChanges) {
   const std::string a = File("a", "one"), b = File("b", "two"), later = (root_ / "later").string();
-  CheckRecord record{.program = "p", .pictures = true, .verdict = {.scenario = "slide/x"}};
+  LastPass record{.program = "p", .pictures = true, .verdict = {.scenario = "slide/x"}};
   record.verdict.verdict = Verdict::kPassed;
   record.verdict.inputs = HashFiles({a, b, later});
   ASSERT_EQ(records_.Write(record), "");
@@ -50,7 +50,7 @@ TEST_F(CheckRecordsTest, ARecordComesBackAndNoticesChanges) {
   EXPECT_EQ(ChangedInputs(*read), (std::vector<std::string>{a, b, later}));
 }
 
-TEST_F(CheckRecordsTest, DamagedOnesAreNone) {
+TEST_F(LastPassesTest, DamagedOnesAreNone) {
   EXPECT_FALSE(records_.Read("slide/x"));
   for (const char* text : {"", "{", "[]", "{\"program\": 1}", "null"}) {
     File("build/check/slide/x.json", text);
@@ -60,9 +60,9 @@ TEST_F(CheckRecordsTest, DamagedOnesAreNone) {
   }
 }
 
-TEST_F(CheckRecordsTest, CostsComeBack) {
+TEST_F(LastPassesTest, CostsComeBack) {
   EXPECT_TRUE(records_.ReadCosts().empty());
-  const CheckRecords::Costs costs = {{"a/b", 1.5}, {"c", 0.25}};
+  const LastPasses::Costs costs = {{"a/b", 1.5}, {"c", 0.25}};
   ASSERT_EQ(records_.WriteCosts(costs), "");
   EXPECT_EQ(records_.ReadCosts(), costs);
 }
