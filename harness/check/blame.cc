@@ -52,7 +52,7 @@ std::string PhysicsText(const Divergence& divergence, const DifferingRun& now) {
 }
 
 /// What differs between the two runs, without a full stop.
-std::string FirstCause(const PhysicsTrace& before, const DifferingRun& now) {
+std::string FirstCause(const StateTrace& before, const DifferingRun& now) {
   if (before.entities != now.trace.entities)
     return "physics. The entities are not those of the last passing run";
   if (const auto divergence = FirstDivergence(before, now.trace))
@@ -66,7 +66,7 @@ std::string FirstCause(const PhysicsTrace& before, const DifferingRun& now) {
 }  // namespace
 
 std::string CauseText(const std::optional<LastPass>& last_pass,
-                      const std::optional<PhysicsTrace>& its_trace, const DifferingRun& now,
+                      const std::optional<StateTrace>& its_trace, const DifferingRun& now,
                       const std::string& root) {
   if (!last_pass || !its_trace) return "cause: unknown. This scenario has not passed here yet.\n";
   const std::vector<std::string> changed = WhatChanged(*last_pass, now, root);

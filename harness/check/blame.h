@@ -18,7 +18,7 @@ struct DifferingRun {
   FileHashes inputs;
   std::vector<std::string> options;  ///< of its command line: "--grammar original_2020"
   bool other_grammar = false;        ///< the command line chose the grammar
-  PhysicsTrace trace;
+  StateTrace trace;
   double ticks_per_second = 480;
 };
 
@@ -26,7 +26,7 @@ struct DifferingRun {
 /// first at 0.0042 s (tick 2). Changed since: ..". Paths are relative to `root`. The cause is
 /// unknown without a run that passed, or was accepted.
 std::string CauseText(const std::optional<LastPass>& last_pass,
-                      const std::optional<PhysicsTrace>& its_trace, const DifferingRun& now,
+                      const std::optional<StateTrace>& its_trace, const DifferingRun& now,
                       const std::string& root);
 
 }  // namespace prehend::harness

@@ -31,7 +31,7 @@ void AddHashes(const physics::Snapshot& snapshot, std::vector<std::uint32_t>& ha
   for (const physics::HandState& hand : snapshot.hands) hashes.push_back(HashOf(hand));
 }
 
-std::int64_t WidestGap(const PhysicsTrace& trace) {
+std::int64_t WidestGap(const StateTrace& trace) {
   std::int64_t widest = 0;
   for (std::size_t i = 1; i < trace.ticks.size(); ++i)
     widest = std::max(widest, trace.ticks[i] - trace.ticks[i - 1]);
@@ -40,11 +40,9 @@ std::int64_t WidestGap(const PhysicsTrace& trace) {
 
 /// Nothing when both are equally long. If they have states of different ticks, that is known to the
 /// widest gap only.
-std::optional<Divergence> FirstTickOfTheLonger(const PhysicsTrace& a, const PhysicsTrace& b) {
-  const auto last = [](const PhysicsTrace& run) {
-    return run.ticks.empty() ? -1 : run.ticks.back();
-  };
-  const PhysicsTrace& longer = last(a) > last(b) ? a : b;
+std::optional<Divergence> FirstTickOfTheLonger(const StateTrace& a, const StateTrace& b) {
+  const auto last = [](const StateTrace& run) { return run.ticks.empty() ? -1 : run.ticks.back(); };
+  const StateTrace& longer = last(a) > last(b) ? a : b;
   const std::int64_t end = std::min(last(a), last(b));
   const std::int64_t unseen = SameTicks(a, b) ? 1 : std::max(WidestGap(a), WidestGap(b));
   if (last(longer) - end < unseen) return std::nullopt;
@@ -54,8 +52,8 @@ std::optional<Divergence> FirstTickOfTheLonger(const PhysicsTrace& a, const Phys
 
 }  // namespace
 
-PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording) {
-  PhysicsTrace trace;
+StateTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording) {
+  StateTrace trace;
   for (const physics::Body& body : scene.bodies) trace.entities.push_back(body.name);
   for (const physics::Hand& hand : scene.hands) trace.entities.push_back(hand.name);
   const std::size_t step = recording.size() / kMaxTracedTicks + 1;
@@ -66,12 +64,12 @@ PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snaps
   return trace;
 }
 
-bool SameTicks(const PhysicsTrace& a, const PhysicsTrace& b) {
+bool SameTicks(const StateTrace& a, const StateTrace& b) {
   const auto both = static_cast<std::ptrdiff_t>(std::min(a.ticks.size(), b.ticks.size()));
   return std::equal(a.ticks.begin(), a.ticks.begin() + both, b.ticks.begin());
 }
 
-std::optional<Divergence> FirstDivergence(const PhysicsTrace& a, const PhysicsTrace& b) {
+std::optional<Divergence> FirstDivergence(const StateTrace& a, const StateTrace& b) {
   const std::size_t entities = a.entities.size();
   if (a.entities != b.entities) return Divergence{};
   std::size_t i = 0, j = 0;
@@ -89,7 +87,7 @@ std::optional<Divergence> FirstDivergence(const PhysicsTrace& a, const PhysicsTr
   return FirstTickOfTheLonger(a, b);
 }
 
-std::string WriteTrace(const std::filesystem::path& path, const PhysicsTrace& trace) {
+std::string WriteTrace(const std::filesystem::path& path, const StateTrace& trace) {
   std::string text = fmt::format("trace 1\n{}\n", trace.entities.size());
   for (const std::string& entity : trace.entities) text += entity + "\n";
   std::size_t next = 0;
@@ -102,7 +100,7 @@ std::string WriteTrace(const std::filesystem::path& path, const PhysicsTrace& tr
   return WriteTextFile(path, text);
 }
 
-std::optional<PhysicsTrace> ReadTrace(const std::filesystem::path& path) {
+std::optional<StateTrace> ReadTrace(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::string word;
   int version = 0;
@@ -110,7 +108,7 @@ std::optional<PhysicsTrace> ReadTrace(const std::filesystem::path& path) {
   if (!(file >> word >> version >> entities) || word != "trace" || version != 1)
     return std::nullopt;
   if (entities > kMaxTracedEntities) return std::nullopt;
-  PhysicsTrace trace;
+  StateTrace trace;
   for (std::size_t k = 0; k < entities && file >> word; ++k) trace.entities.push_back(word);
   std::int64_t tick = 0;
   while (file >> std::dec >> tick) {

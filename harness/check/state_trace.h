@@ -16,15 +16,15 @@
 
 namespace prehend::harness {
 
-struct PhysicsTrace {
+struct StateTrace {
   std::vector<std::string> entities;  ///< bodies, then hands
   std::vector<std::int64_t> ticks;
   std::vector<std::uint32_t> hashes;  ///< for each tick one per entity
-  friend bool operator==(const PhysicsTrace&, const PhysicsTrace&) = default;
+  friend bool operator==(const StateTrace&, const StateTrace&) = default;
 };
 
 /// Of at most 20,000 snapshots; of a longer recording every n-th.
-PhysicsTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording);
+StateTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording);
 
 struct Divergence {
   std::int64_t tick = 0;
@@ -32,14 +32,14 @@ struct Divergence {
 };
 
 /// Whether both have states of the same ticks, as long as both last.
-bool SameTicks(const PhysicsTrace& a, const PhysicsTrace& b);
+bool SameTicks(const StateTrace& a, const StateTrace& b);
 
 /// Nothing when the two move the same at all ticks that both have, and are equally long.
-std::optional<Divergence> FirstDivergence(const PhysicsTrace& a, const PhysicsTrace& b);
+std::optional<Divergence> FirstDivergence(const StateTrace& a, const StateTrace& b);
 
 /// A text file; "" or what went wrong.
-std::string WriteTrace(const std::filesystem::path& path, const PhysicsTrace& trace);
+std::string WriteTrace(const std::filesystem::path& path, const StateTrace& trace);
 /// Nothing when there is none or it is damaged.
-std::optional<PhysicsTrace> ReadTrace(const std::filesystem::path& path);
+std::optional<StateTrace> ReadTrace(const std::filesystem::path& path);
 
 }  // namespace prehend::harness

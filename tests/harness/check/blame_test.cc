@@ -10,7 +10,7 @@ namespace {
 
 struct Runs {
   LastPass last_pass{.program = "p", .pictures = false, .verdict = {.scenario = "slide/x"}};
-  PhysicsTrace trace{.entities = {"cup"}, .ticks = {0, 2}, .hashes = {1, 2}};
+  StateTrace trace{.entities = {"cup"}, .ticks = {0, 2}, .hashes = {1, 2}};
   DifferingRun now{.program = "p", .inputs = {}, .trace = trace, .ticks_per_second = 480};
   Runs() {
     last_pass.verdict.inputs = {{"/root/a.grammar", "1"}, {"/root/x.yaml", "2"}};

@@ -28,9 +28,9 @@ std::vector<physics::Snapshot> Recording(int count) {
   return recording;
 }
 
-TEST(PhysicsTrace, FindsWhereTwoRunsPart) {
+TEST(StateTrace, FindsWhereTwoRunsPart) {
   const physics::Scene scene = TwoBodies();
-  const PhysicsTrace trace = TraceOf(scene, Recording(10));
+  const StateTrace trace = TraceOf(scene, Recording(10));
   EXPECT_FALSE(FirstDivergence(trace, trace));
 
   auto other = Recording(10);
@@ -46,18 +46,18 @@ TEST(PhysicsTrace, FindsWhereTwoRunsPart) {
   EXPECT_EQ(shorter->entity, "");
 }
 
-TEST(PhysicsTrace, LongRecordingsAreThinned) {
-  const PhysicsTrace trace = TraceOf(TwoBodies(), Recording(50'001));
+TEST(StateTrace, LongRecordingsAreThinned) {
+  const StateTrace trace = TraceOf(TwoBodies(), Recording(50'001));
   EXPECT_LE(trace.ticks.size(), 20'000u);
   EXPECT_GE(trace.ticks.size(), 10'000u);
   EXPECT_EQ(trace.hashes.size(), 2 * trace.ticks.size());
 }
 
-TEST(PhysicsTrace, ComesBackFromItsFile) {
+TEST(StateTrace, ComesBackFromItsFile) {
   const auto path =
       std::filesystem::temp_directory_path() / ("prehend-trace-" + std::to_string(getpid()));
   EXPECT_FALSE(ReadTrace(path));
-  const PhysicsTrace trace = TraceOf(TwoBodies(), Recording(10));
+  const StateTrace trace = TraceOf(TwoBodies(), Recording(10));
   ASSERT_EQ(WriteTrace(path, trace), "");
   EXPECT_EQ(ReadTrace(path), trace);
   for (const char* damaged : {"", "trace 2\n0\n", "trace 1\n2\ncup\n", "trace 1\n1\ncup\n0 zz\n",
