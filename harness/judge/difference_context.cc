@@ -102,8 +102,9 @@ std::string StateText(const grammar::Frame& frame, const std::set<int>& particip
 
 }  // namespace
 
-std::string FactsAround(const Scenario& scenario, std::span<const physics::Snapshot> recording,
-                        const Pairing& difference) {
+std::string DifferenceContext(const Scenario& scenario,
+                              std::span<const physics::Snapshot> recording,
+                              const Pairing& difference) {
   if (recording.empty()) return "";
   const Tick tick = difference.DivergenceTick();
   const grammar::EntityTable entity_table = MakeEntityTable(scenario);

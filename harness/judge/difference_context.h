@@ -15,7 +15,8 @@ namespace prehend::harness {
 
 /// Lines indented by two blanks; "" without a recording. Contacts are as sensed: no gap is
 /// tolerated.
-std::string FactsAround(const Scenario& scenario, std::span<const physics::Snapshot> recording,
-                        const Pairing& difference);
+std::string DifferenceContext(const Scenario& scenario,
+                              std::span<const physics::Snapshot> recording,
+                              const Pairing& difference);
 
 }  // namespace prehend::harness

@@ -14,8 +14,8 @@ namespace {
 
 Finding DifferenceFinding(const Comparison& comparison, const CheckedRun& checked,
                           const std::string& cause) {
-  const std::string context =
-      FactsAround(checked.loaded.scenario, checked.result.recording, *comparison.FirstDivergence());
+  const std::string context = DifferenceContext(checked.loaded.scenario, checked.result.recording,
+                                                *comparison.FirstDivergence());
   const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
     return pairing.agreement != LineVerdict::kMatched;
   });

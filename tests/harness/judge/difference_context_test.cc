@@ -43,12 +43,12 @@ struct Stage {
   }
 };
 
-TEST(FactsAround, TellsStateAndTouchesOfTheParticipants) {
+TEST(DifferenceContext, TellsStateAndTouchesOfTheParticipants) {
   const Stage stage;
   const grammar::NamedEvent event{.event = "supported_by",
                                   .roles = {{"object", "cup"}, {"support", "table"}},
                                   .interval = {10, 20}};
-  EXPECT_EQ(FactsAround(stage.scenario, stage.recording, {.expected = event, .actual = {}}),
+  EXPECT_EQ(DifferenceContext(stage.scenario, stage.recording, {.expected = event, .actual = {}}),
             "  facts at 0.0208 s (tick 10):\n"
             "    table at (0.000, 0.000, 0.000) m, 0.000 m/s, rising 0.000 m/s\n"
             "    cup at (0.100, 0.200, 0.300) m, 0.250 m/s, rising 0.250 m/s\n"
@@ -56,23 +56,23 @@ TEST(FactsAround, TellsStateAndTouchesOfTheParticipants) {
             "    table touches cup 0.0417..0.0625 s\n");
 }
 
-TEST(FactsAround, WhoWasRecognisedInsteadIsToldOf) {
+TEST(DifferenceContext, WhoWasRecognisedInsteadIsToldOf) {
   const Stage stage;
   const grammar::NamedEvent cup{
       .event = "seen", .roles = {{"object", "cup"}}, .interval = {10, 20}};
   const grammar::NamedEvent mug{
       .event = "seen", .roles = {{"object", "mug"}}, .interval = {10, 20}};
-  const std::string facts = FactsAround(stage.scenario, stage.recording,
-                                        {.agreement = LineVerdict::kChanged,
-                                         .expected = cup,
-                                         .actual = mug,
-                                         .changes = {"object: cup -> mug"}});
+  const std::string facts = DifferenceContext(stage.scenario, stage.recording,
+                                              {.agreement = LineVerdict::kChanged,
+                                               .expected = cup,
+                                               .actual = mug,
+                                               .changes = {"object: cup -> mug"}});
   EXPECT_NE(facts.find("    cup at "), std::string::npos) << facts;
   EXPECT_NE(facts.find("    mug at "), std::string::npos) << facts;
 }
 
-TEST(FactsAround, ThereAreNoneWithoutARecording) {
-  EXPECT_EQ(FactsAround(Stage().scenario, {}, {.expected = {}, .actual = {}}), "");
+TEST(DifferenceContext, ThereAreNoneWithoutARecording) {
+  EXPECT_EQ(DifferenceContext(Stage().scenario, {}, {.expected = {}, .actual = {}}), "");
 }
 
 }  // namespace
