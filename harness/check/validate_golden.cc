@@ -23,9 +23,9 @@ namespace fs = std::filesystem;
 
 using Names = std::vector<std::string>;
 
-class GoldenChecker {
+class GoldenValidator {
  public:
-  GoldenChecker(std::string_view file, std::string_view text, const LoadedRun& loaded)
+  GoldenValidator(std::string_view file, std::string_view text, const LoadedRun& loaded)
       : file_(file),
         text_(text),
         signatures_(EventSignatures(*loaded.program)),
@@ -133,22 +133,22 @@ std::string ScenarioOfGoldenAt(const std::string& path, const std::string& root)
 
 }  // namespace
 
-grammar::Diagnostics CheckGoldenFile(const std::string& path, const std::string& id,
-                                     const LoadedRun& loaded) {
+grammar::Diagnostics ValidateGolden(const std::string& path, const std::string& id,
+                                    const LoadedRun& loaded) {
   Result<std::string> text = ReadTextFile(path);
   if (!text) return std::move(text.error());
   Result<Golden> golden = ReadGolden(path, *text);
   if (!golden) return std::move(golden.error());
   grammar::Diagnostics other = OfAnotherScenario(path, *text, *golden, id);
   if (!other.empty()) return other;
-  GoldenChecker checker(path, *text, loaded);
+  GoldenValidator checker(path, *text, loaded);
   checker.CheckGrammar(golden->grammar, loaded.scenario.grammar);
   for (const GoldenEvent& line : golden->events) checker.CheckLine(line);
   return checker.Take();
 }
 
-grammar::Diagnostics CheckGoldenAlone(const std::string& path, const std::string& root,
-                                      std::vector<std::string>& inputs) {
+grammar::Diagnostics ValidateGoldenFile(const std::string& path, const std::string& root,
+                                        std::vector<std::string>& inputs) {
   inputs.push_back(path);
   Result<std::string> text = ReadTextFile(path);
   if (!text) return std::move(text.error());
@@ -163,7 +163,7 @@ grammar::Diagnostics CheckGoldenAlone(const std::string& path, const std::string
                                   "there is no scenario '" + id + "'", HintForScenario(all, id))};
   }
   const Result<LoadedRun> loaded = LoadRun({.scenario_file = scenario->path}, root, &inputs);
-  return loaded ? CheckGoldenFile(path, id, *loaded) : loaded.error();
+  return loaded ? ValidateGolden(path, id, *loaded) : loaded.error();
 }
 
 }  // namespace prehend::harness

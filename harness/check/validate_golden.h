@@ -12,12 +12,12 @@
 namespace prehend::harness {
 
 /// The golden of the scenario `id`, loaded without changes.
-grammar::Diagnostics CheckGoldenFile(const std::string& path, const std::string& id,
-                                     const LoadedRun& loaded);
+grammar::Diagnostics ValidateGolden(const std::string& path, const std::string& id,
+                                    const LoadedRun& loaded);
 
 /// A golden anywhere: below golden/ its place says of which scenario it is, elsewhere its header.
 /// `inputs` gets every path that was read or looked for.
-grammar::Diagnostics CheckGoldenAlone(const std::string& path, const std::string& root,
-                                      std::vector<std::string>& inputs);
+grammar::Diagnostics ValidateGoldenFile(const std::string& path, const std::string& root,
+                                        std::vector<std::string>& inputs);
 
 }  // namespace prehend::harness

@@ -56,7 +56,7 @@ void AddGolden(const ScenarioFile& file, const ParsedOptions& options,
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
   const bool as_it_is = !options.Has("--grammar") && !options.Has("--set");
-  std::ranges::move(loaded && as_it_is ? CheckGoldenFile(path, IdOf(file), *loaded)
+  std::ranges::move(loaded && as_it_is ? ValidateGolden(path, IdOf(file), *loaded)
                                        : ErrorsOf(goldens.ReadGoldenOf(IdOf(file))),
                     std::back_inserter(validated.diagnostics));
   if (!loaded || !as_it_is) return;
@@ -88,7 +88,7 @@ tl::expected<Validated, ExitCode> Validate(const std::string& typed, const Parse
   if (typed.ends_with(".grammar")) return ValidateGrammar(typed, options, context.root);
   if (typed.ends_with(".timeline")) {
     Validated validated{.file = typed, .diagnostics = {}};
-    validated.diagnostics = CheckGoldenAlone(typed, context.root, validated.inputs);
+    validated.diagnostics = ValidateGoldenFile(typed, context.root, validated.inputs);
     return validated;
   }
   const auto file = FindScenarioOrComplain(typed, context);
