@@ -162,13 +162,13 @@ class Suite {
       }
     }
     (void)records_.WriteCosts(costs_);
-    for (const Orphan& orphan : request_.selection.orphans) {
+    for (const UnreferencedGolden& orphan : request_.selection.orphans) {
       verdicts.push_back(OrphanVerdict(orphan));
     }
     return verdicts;
   }
 
-  static ScenarioVerdict OrphanVerdict(const Orphan& orphan) {
+  static ScenarioVerdict OrphanVerdict(const UnreferencedGolden& orphan) {
     ScenarioVerdict verdict{.scenario = orphan.scenario, .shows = {}, .verdict = Verdict::kFailed};
     verdict.exit_code = ExitCode::kDiffers;
     verdict.reason = "a golden without scenario";

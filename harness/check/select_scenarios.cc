@@ -111,7 +111,7 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
                            return PassesFilter(file, filter, library);
                          });
                        });
-  if (patterns.empty() && filters.empty()) selection.orphans = OrphansAmong(all, root);
+  if (patterns.empty() && filters.empty()) selection.orphans = FindUnreferencedGoldens(all, root);
   if (!selection.scenarios.empty() || !selection.orphans.empty()) return selection;
   problem = "no scenario is selected";
   for (const std::string& filter : filters) {

@@ -14,7 +14,8 @@ namespace prehend::harness {
 
 struct ScenarioSelection {
   std::vector<ScenarioFile> scenarios;
-  std::vector<Orphan> orphans;  ///< only when neither patterns nor filters narrow the selection
+  std::vector<UnreferencedGolden>
+      orphans;  ///< only when neither patterns nor filters narrow the selection
 };
 
 /// `patterns` are globs over names and skill/name, or files; none means all. A scenario must pass

@@ -26,7 +26,7 @@ bool IsThePictureShown(const GoldenFiles& files, const std::string& id, const fs
 /// Removes the golden pictures that the scenario no longer defines; returns how many.
 int RemoveUnasked(const CommandContext& context, const std::string& id, const Scenario& scenario) {
   int removed = 0;
-  for (const fs::path& picture : UnaskedPictures(id, scenario.pictures.size(), context.root)) {
+  for (const fs::path& picture : UnrequestedPictures(id, scenario.pictures.size(), context.root)) {
     std::error_code error;
     if (!fs::remove(picture, error)) continue;
     context.out << "removed: " << picture.string() << "\n";

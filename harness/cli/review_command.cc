@@ -114,9 +114,9 @@ void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pendi
   const Result<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
   if (!scenario) return;
   const std::size_t asked = scenario->pictures.size();
-  for (const fs::path& picture : UnaskedPictures(IdOf(file), asked, root))
+  for (const fs::path& picture : UnrequestedPictures(IdOf(file), asked, root))
     reviews.push_back(
-        {IdOf(file), "orphan", UnaskedText(picture, asked) + "\n", "", {picture.string()}});
+        {IdOf(file), "orphan", UnrequestedText(picture, asked) + "\n", "", {picture.string()}});
 }
 
 /// Nothing when the selection is wrong, which has been reported then.
@@ -143,7 +143,8 @@ std::optional<std::vector<Review>> Reviews(const ParsedOptions& options,
                        "",
                        {file}});
   }
-  for (const Orphan& orphan : selection ? selection->orphans : std::vector<Orphan>()) {
+  for (const UnreferencedGolden& orphan :
+       selection ? selection->orphans : std::vector<UnreferencedGolden>()) {
     Review review{orphan.scenario, "orphan", Text(orphan)};
     for (const fs::path& file : orphan.files) review.files.push_back(file.string());
     reviews.push_back(std::move(review));

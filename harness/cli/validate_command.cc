@@ -61,16 +61,16 @@ void AddGolden(const ScenarioFile& file, const ParsedOptions& options,
                     std::back_inserter(validated.diagnostics));
   if (!loaded || !as_it_is) return;
   const std::size_t asked = loaded->scenario.pictures.size();
-  for (const fs::path& picture : UnaskedPictures(IdOf(file), asked, root))
+  for (const fs::path& picture : UnrequestedPictures(IdOf(file), asked, root))
     validated.diagnostics.push_back(grammar::Diagnostic{.file = file.path,
                                                         .place = {},
-                                                        .message = UnaskedText(picture, asked),
+                                                        .message = UnrequestedText(picture, asked),
                                                         .source_line = {},
                                                         .hint = {}});
 }
 
 /// A golden whose scenario no longer exists.
-Validated ValidateOrphan(const Orphan& orphan) {
+Validated ValidateOrphan(const UnreferencedGolden& orphan) {
   Validated validated{.file = orphan.files.front().string(), .diagnostics = {}};
   for (const fs::path& file : orphan.files)
     validated.diagnostics.push_back(grammar::Diagnostic{
@@ -165,8 +165,9 @@ ExitCode RunValidate(const ParsedOptions& options, const CommandContext& context
     all.push_back(std::move(*validated));
   }
   const bool everything = options.All("files").empty() && !options.Has("--grammar");
-  for (const Orphan& orphan :
-       everything ? OrphansAmong(ListScenarios(context.root), context.root) : std::vector<Orphan>())
+  for (const UnreferencedGolden& orphan :
+       everything ? FindUnreferencedGoldens(ListScenarios(context.root), context.root)
+                  : std::vector<UnreferencedGolden>())
     all.push_back(ValidateOrphan(orphan));
 
   nlohmann::ordered_json json = nlohmann::ordered_json::array();

@@ -49,11 +49,11 @@ std::string PictureDifferencesText(const std::vector<PictureComparison>& compare
 Findings JudgeUnrequestedPictures(const std::string& id, std::size_t requested,
                                   const std::string& root, const std::string& accept) {
   Findings findings;
-  for (const fs::path& picture : UnaskedPictures(id, requested, root)) {
+  for (const fs::path& picture : UnrequestedPictures(id, requested, root)) {
     findings.push_back(
         {.exit_code = ExitCode::kDiffers,
          .reason = "a golden picture that the scenario does not ask for",
-         .details = UnaskedText(picture, requested) + "\n  remove it, or: " + accept + "\n"});
+         .details = UnrequestedText(picture, requested) + "\n  remove it, or: " + accept + "\n"});
   }
   return findings;
 }

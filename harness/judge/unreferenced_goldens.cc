@@ -13,7 +13,8 @@ namespace prehend::harness {
 
 namespace fs = std::filesystem;
 
-std::vector<Orphan> OrphansAmong(const std::vector<ScenarioFile>& all, const std::string& root) {
+std::vector<UnreferencedGolden> FindUnreferencedGoldens(const std::vector<ScenarioFile>& all,
+                                                        const std::string& root) {
   std::set<std::string> known;
   for (const ScenarioFile& file : all) known.insert(IdOf(file));
   const GoldenFiles goldens(root);
@@ -24,12 +25,12 @@ std::vector<Orphan> OrphansAmong(const std::vector<ScenarioFile>& all, const std
   for (const KeptPicture& picture : goldens.Pictures()) {
     if (!known.contains(picture.scenario)) files[picture.scenario].push_back(picture.path);
   }
-  std::vector<Orphan> orphans;
+  std::vector<UnreferencedGolden> orphans;
   for (auto& [id, paths] : files) orphans.push_back({id, std::move(paths)});
   return orphans;
 }
 
-std::string Text(const Orphan& orphan) {
+std::string Text(const UnreferencedGolden& orphan) {
   std::string text;
   for (const fs::path& file : orphan.files) {
     text += fmt::format("{} belongs to no scenario: remove it, or bring scenarios/{}.yaml back\n",
@@ -38,8 +39,8 @@ std::string Text(const Orphan& orphan) {
   return text;
 }
 
-std::vector<fs::path> UnaskedPictures(const std::string& scenario, std::size_t asked,
-                                      const std::string& root) {
+std::vector<fs::path> UnrequestedPictures(const std::string& scenario, std::size_t asked,
+                                          const std::string& root) {
   std::vector<fs::path> unasked;
   for (const KeptPicture& picture : GoldenFiles(root).PicturesOf(scenario)) {
     if (static_cast<std::size_t>(picture.number) > asked) unasked.push_back(picture.path);
@@ -47,7 +48,7 @@ std::vector<fs::path> UnaskedPictures(const std::string& scenario, std::size_t a
   return unasked;
 }
 
-std::string UnaskedText(const fs::path& picture, std::size_t asked) {
+std::string UnrequestedText(const fs::path& picture, std::size_t asked) {
   return fmt::format("{} belongs to no picture: the scenario asks for {}", picture.string(),
                      asked == 0 ? std::string("none") : std::to_string(asked));
 }

@@ -12,22 +12,23 @@
 
 namespace prehend::harness {
 
-struct Orphan {
+struct UnreferencedGolden {
   std::string scenario;  ///< skill/name of the one that does not exist
   std::vector<std::filesystem::path> files;
 };
 
 /// Sorted by scenario; `all` is every scenario of the project.
-std::vector<Orphan> OrphansAmong(const std::vector<ScenarioFile>& all, const std::string& root);
+std::vector<UnreferencedGolden> FindUnreferencedGoldens(const std::vector<ScenarioFile>& all,
+                                                        const std::string& root);
 
 /// One line per file: "FILE belongs to no scenario: remove it, or bring scenarios/ID.yaml back".
-std::string Text(const Orphan& orphan);
+std::string Text(const UnreferencedGolden& orphan);
 
 /// The golden pictures of a scenario beyond the first `asked`.
-std::vector<std::filesystem::path> UnaskedPictures(const std::string& scenario, std::size_t asked,
-                                                   const std::string& root);
+std::vector<std::filesystem::path> UnrequestedPictures(const std::string& scenario,
+                                                       std::size_t asked, const std::string& root);
 
 /// "FILE belongs to no picture: the scenario asks for 1".
-std::string UnaskedText(const std::filesystem::path& picture, std::size_t asked);
+std::string UnrequestedText(const std::filesystem::path& picture, std::size_t asked);
 
 }  // namespace prehend::harness

@@ -61,9 +61,9 @@ TEST_F(GoldenFilesTest, PicturesBelongToAScenarioAndAPictureOfIt) {
   ASSERT_EQ(files_.PicturesOf("slide/x").size(), 2u);
   EXPECT_EQ(files_.PicturesOf("slide/x")[1].number, 3);
   EXPECT_EQ(files_.PendingPictures().size(), 1u) << "what differs is no picture of the scenario";
-  EXPECT_EQ(UnaskedPictures("slide/x", 2, root_),
+  EXPECT_EQ(UnrequestedPictures("slide/x", 2, root_),
             std::vector<fs::path>{root_ / "golden/slide/x-3.png"});
-  const std::vector<Orphan> orphans = OrphansAmong(all, root_);
+  const std::vector<UnreferencedGolden> orphans = FindUnreferencedGoldens(all, root_);
   ASSERT_EQ(orphans.size(), 2u);
   EXPECT_EQ(orphans[0].scenario, "slide/x_on");
   EXPECT_EQ(Text(orphans[1]),
