@@ -67,9 +67,7 @@ void ShowDifference(const Played& played, const OracleComparison& truth,
     context.out << "new golden:\n" << RunTable(played.run);
   } else {
     context.out << DifferenceText(
-        Compare(*played.old, played.run.timeline,
-                DefaultTolerance(played.loaded.scenario.scene.world.rate_hz,
-                                 played.loaded.scenario.sensing.sensing_hz)),
+        Compare(*played.old, played.run.timeline, DefaultTolerance(played.loaded.scenario)),
         ExplainCommand(played.id, {}));
   }
   context.out << GroundTruthText(truth);
@@ -116,10 +114,8 @@ ExitCode Refuse(const CommandContext& context, const Played& played, const Golde
 ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
   GoldenFiles(context.root).RemovePending(played.id);
   LeaveBaseline(context, played);
-  const std::string margin =
-      MarginText(Compare(*played.old, played.run.timeline,
-                         DefaultTolerance(played.loaded.scenario.scene.world.rate_hz,
-                                          played.loaded.scenario.sensing.sensing_hz)));
+  const std::string margin = MarginText(
+      Compare(*played.old, played.run.timeline, DefaultTolerance(played.loaded.scenario)));
   context.out << "nothing to accept: the scenario agrees with "
               << GoldenFiles(context.root).GoldenPath(played.id).string()
               << (margin.empty() ? "" : "; " + margin) << "\n";

@@ -74,8 +74,7 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
     return review;
   }
   const Comparison comparison =
-      Compare(**golden, ToTimeline(proposed),
-              DefaultTolerance(scenario->scene.world.rate_hz, scenario->sensing.sensing_hz));
+      Compare(**golden, ToTimeline(proposed), DefaultTolerance(*scenario));
   const std::string derivation = DerivationLines(proposed, (*golden)->derived);
   review.kind = comparison.Agrees() && derivation.empty() ? "same" : "changed";
   review.text = DifferenceText(comparison, ExplainCommand(review.id, {})) + derivation;

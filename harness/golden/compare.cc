@@ -308,9 +308,4 @@ Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
   return Pairer(expected, actual, default_tolerance).Pair();
 }
 
-Tick DefaultTolerance(int rate_hz, int sensing_hz) {
-  const Tick ticks_per_frame = (rate_hz + sensing_hz - 1) / sensing_hz;
-  return 2 * ticks_per_frame;
-}
-
 }  // namespace prehend::harness

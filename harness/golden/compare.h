@@ -92,10 +92,6 @@ std::vector<RelationChange> ChangedRelations(const std::vector<Pairing>& pairing
 Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
                    grammar::Tick default_tolerance);
 
-/// Two frames of sensing, in ticks: a boundary can't be known better than to the frame that shows
-/// it.
-grammar::Tick DefaultTolerance(int rate_hz, int sensing_hz);
-
 /// Two numbers of an event agree within 5 % of the expected one, or 0.001 of its unit.
 bool ValuesAgree(double expected, double actual);
 

@@ -63,8 +63,7 @@ int OracleComparison::Differing() const { return judged - Following() + agreemen
 OracleComparison CompareWithOracle(const Scenario& scenario, const grammar::Program& program,
                                    const RunResult& run) {
   const Judged judged = JudgedByOracle(scenario, program, run);
-  const grammar::Tick tolerance =
-      DefaultTolerance(scenario.scene.world.rate_hz, scenario.sensing.sensing_hz);
+  const grammar::Tick tolerance = DefaultTolerance(scenario);
   const std::size_t others = run.timeline.events.size() - judged.found.events.size();
   return {.agreement = Agree(judged.truth, judged.found, tolerance),
           .tolerance = tolerance,

@@ -42,9 +42,7 @@ GoldenComparison CompareWithGolden(const std::optional<Golden>& golden, const Ch
   const Golden none{.ticks_per_second = timeline.ticks_per_second};
   GoldenComparison compared{
       .has_golden = golden.has_value(),
-      .comparison =
-          Compare(golden.value_or(none), timeline,
-                  DefaultTolerance(scenario.scene.world.rate_hz, scenario.sensing.sensing_hz)),
+      .comparison = Compare(golden.value_or(none), timeline, DefaultTolerance(scenario)),
       .truth = CompareWithOracle(scenario, *checked.loaded.program, checked.result),
       .accepted_differing = golden ? AcceptedDiffering(golden->derived) : 0,
       .pending = {}};

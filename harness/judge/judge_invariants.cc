@@ -30,8 +30,7 @@ Findings JudgeInvariants(const CheckedRun& checked) {
   const RunResult& run = checked.result;
   const Scenario& scenario = checked.loaded.scenario;
   EpisodeFacts facts{.end = run.ticks + 1};
-  facts.ticks_per_frame =
-      DefaultTolerance(scenario.scene.world.rate_hz, scenario.sensing.sensing_hz) / 2;
+  facts.ticks_per_frame = DefaultTolerance(scenario) / 2;
   facts.latency = LatencyByEvent(*checked.loaded.program);
   std::string details;
   for (const Violation& violation : CheckInvariants(run.timeline, facts))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/read/read_scenario_test.cc
+// Tested by tests/harness/scenario/scenario_test.cc and tests/harness/read/read_scenario_test.cc
 #include "harness/scenario/scenario.h"
 
 #include <fmt/format.h>
@@ -7,6 +7,13 @@
 #include <algorithm>
 
 namespace prehend::harness {
+
+grammar::Tick DefaultTolerance(const Scenario& scenario) {
+  const int rate_hz = scenario.scene.world.rate_hz;
+  const int sensing_hz = scenario.sensing.sensing_hz;
+  const grammar::Tick ticks_per_frame = (rate_hz + sensing_hz - 1) / sensing_hz;
+  return 2 * ticks_per_frame;
+}
 
 const std::vector<std::string>& CameraWords() {
   static const std::vector<std::string> words = {"front", "left", "right", "top", "three_quarter"};

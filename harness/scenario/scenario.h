@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scenario that is read, checked and resolved: names are indices, entities are bodies, actors are
 // hands and persons. What the file says is ScenarioYaml (harness/format/scenario_yaml.h);
-// harness/read/read_scenario.h turns one into the other.
+// harness/read/read_scenario.h turns one into the other. Tested by
+// tests/harness/scenario/scenario_test.cc
 #pragma once
 
 #include <map>
@@ -59,6 +60,10 @@ struct Scenario {
   std::vector<PictureYaml> pictures;
   grammar::Diagnostics warnings;  ///< about valid but suspicious input
 };
+
+/// Two frames of sensing, in ticks: a boundary is not known better than to the frame that shows it.
+/// Boundaries may differ by this much where a golden line has no tolerance of its own.
+grammar::Tick DefaultTolerance(const Scenario& scenario);
 
 /// The names that `camera:` accepts: CameraWords() and the entities that are cameras.
 std::vector<std::string> CamerasOf(const Scenario& scenario);

@@ -278,11 +278,5 @@ TEST(Compare, ValuesMayDifferALittle) {
       << "a golden that says nothing of a value demands none";
 }
 
-TEST(Compare, DefaultToleranceIsTwoFrames) {
-  EXPECT_EQ(DefaultTolerance(480, 240), 4);
-  EXPECT_EQ(DefaultTolerance(480, 480), 2);
-  EXPECT_EQ(DefaultTolerance(480, 90), 12);
-}
-
 }  // namespace
 }  // namespace prehend::harness

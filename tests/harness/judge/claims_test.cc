@@ -78,8 +78,7 @@ TEST(Claims, AreWhatComesOutOfTheScenarios) {
     SCOPED_TRACE(row.claim + ", " + row.scenario + ", " + row.event);
     if (!played.contains(row.scenario)) played.emplace(row.scenario, Play(row.scenario));
     const PlayedScenario& play = played.at(row.scenario);
-    const grammar::Tick tolerance =
-        DefaultTolerance(play.scenario.scene.world.rate_hz, play.scenario.sensing.sensing_hz);
+    const grammar::Tick tolerance = DefaultTolerance(play.scenario);
     const grammar::Timeline truth =
         Only(TrueTimeline(play.scenario.scene, play.run.recording, play.end()), row.event);
     const grammar::Timeline ours = Only(play.run.timeline, row.event);

@@ -165,10 +165,7 @@ struct Witness {
   Golden golden;
 
   bool Agrees(const grammar::Timeline& timeline) const {
-    return Compare(golden, timeline,
-                   DefaultTolerance(played.scenario.scene.world.rate_hz,
-                                    played.scenario.sensing.sensing_hz))
-        .Agrees();
+    return Compare(golden, timeline, DefaultTolerance(played.scenario)).Agrees();
   }
 };
 

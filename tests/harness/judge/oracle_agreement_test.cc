@@ -63,8 +63,7 @@ TEST_P(OracleAgreement, WithinTwoFrames) {
   const Result<LoadedRun> loaded = LoadRun(request, PREHEND_SOURCE_DIR);
   ASSERT_TRUE(loaded) << grammar::Format(loaded.error());
   const Scenario& scenario = loaded->scenario;
-  const bool check_is_as_strict =
-      DefaultTolerance(scenario.scene.world.rate_hz, scenario.sensing.sensing_hz) <= kTolerance;
+  const bool check_is_as_strict = DefaultTolerance(scenario) <= kTolerance;
   if (check_is_as_strict)
     ExpectAllToFollow(GetParam(), *loaded->program);
   else
