@@ -24,7 +24,8 @@ bool IsThePictureShown(const GoldenFiles& files, const std::string& id, const fs
 }
 
 /// Removes the golden pictures that the scenario no longer defines; returns how many.
-int RemoveUnasked(const CommandContext& context, const std::string& id, const Scenario& scenario) {
+int RemoveUnrequested(const CommandContext& context, const std::string& id,
+                      const Scenario& scenario) {
   int removed = 0;
   for (const fs::path& picture : UnrequestedPictures(id, scenario.pictures.size(), context.root)) {
     std::error_code error;
@@ -70,7 +71,7 @@ ExitCode AcceptPictures(const CommandContext& context, const std::string& reason
                         picture.file + "; nothing was accepted\n  look at the new one: " +
                         CommandText({"check", id}) + ", then " + CommandText({"review", id}));
   }
-  int changed = RemoveUnasked(context, id, scenario);
+  int changed = RemoveUnrequested(context, id, scenario);
   for (const WrittenPicture& picture : drawn.pictures) {
     const std::optional<bool> kept = Keep(context, id, picture.file);
     if (!kept)

@@ -41,11 +41,11 @@ std::string Text(const UnreferencedGolden& orphan) {
 
 std::vector<fs::path> UnrequestedPictures(const std::string& scenario, std::size_t asked,
                                           const std::string& root) {
-  std::vector<fs::path> unasked;
+  std::vector<fs::path> unrequested;
   for (const KeptPicture& picture : GoldenFiles(root).PicturesOf(scenario)) {
-    if (static_cast<std::size_t>(picture.number) > asked) unasked.push_back(picture.path);
+    if (static_cast<std::size_t>(picture.number) > asked) unrequested.push_back(picture.path);
   }
-  return unasked;
+  return unrequested;
 }
 
 std::string UnrequestedText(const fs::path& picture, std::size_t asked) {

@@ -188,12 +188,12 @@ TEST_F(GoldenWorkflow, PicturesThatBelongToNothingAreTold) {
   EXPECT_EQ(Do("check --no-pictures").exit_code, 0);
   WriteFile(root_ / "golden/rest/carton_rests.png", "");
   EXPECT_EQ(Do("check --changed --no-pictures").exit_code, 1) << "what appears is a change";
-  const std::string unasked =
+  const std::string unrequested =
       "golden/rest/carton_rests.png belongs to no picture: the scenario asks for none\n";
   for (const char* command :
        {"check carton_rests --no-pictures", "review carton_rests", "validate carton_rests"}) {
     const Said said = Do(command);
-    EXPECT_NE((said.out + said.err).find(unasked), std::string::npos)
+    EXPECT_NE((said.out + said.err).find(unrequested), std::string::npos)
         << command << ": " << said.out << said.err;
   }
   EXPECT_EQ(Do("check carton_rests --no-pictures").exit_code, 1);
