@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers in the definitions of docs/events.md. Tested by tests/harness/oracle/oracle_test.cc
+// One choice of the numbers in the definitions. The page of definitions, docs/events.md, gives each
+// a band (harness/oracle/bands.h). Tested by tests/harness/oracle/oracle_test.cc
 #pragma once
 
 namespace prehend::harness {
 
-/// The numbers in the definitions. A cylinder is a region around an anchor: so far sideways, so far
-/// up and down.
+/// A cylinder is a region around an anchor: so far sideways, so far up and down.
 struct OracleSettings {
   double contact_bridge_s = 0.100;  ///< a gap in contact or support that is bridged
   double grasp_bridge_s = 0.060;    ///< a loss of grip on the object that is bridged
 
-  double support_up = 0.5;              ///< upward component of the contact normal on the object
+  double support_up = 0.5;              ///< upward component of the direction of the bearing force
+  double support_share = 0.02;          ///< of the object's weight that is borne, at least
   double support_speed_m_per_s = 0.02;  ///< vertical, of the object's middle or of its load
   double support_minimum_s = 0.02;      ///< a blow is over sooner
   double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
@@ -25,7 +26,7 @@ struct OracleSettings {
   double reach_idle_s = 0.5;         ///< standing still for longer ends a reach
   double reach_minimum_s = 0.1;
 
-  double slide_speed_m_per_s = 0.01;  ///< horizontal, relative to the support
+  double slide_speed_m_per_s = 0.01;  ///< along the support, where the two touch
   double slide_window_s = 0.1;        ///< it has to be faster than that on average over this, too
   double slide_moment_s = 0.05;       ///< it has to move for that long; a dip is no longer
   double slide_pause_s = 0.150;       ///< a pause in the motion that is bridged
