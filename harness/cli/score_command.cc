@@ -40,7 +40,8 @@ std::string Judged(const ScoreRequest& request) {
     sent.push_back({{"ticks", episode.ticks},
                     {"truth", TimelineJson(episode.truth)},
                     {"found", TimelineJson(episode.found)},
-                    {"not_judged", episode.not_judged}});
+                    {"not_judged", episode.not_judged},
+                    {"by_definitions", score::TestimonyJson(episode.by_definitions)}});
   }
   return Json{{"episodes", std::move(sent)}}.dump();
 }
@@ -74,7 +75,8 @@ std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selec
     for (std::size_t g = 0; g < grammars.size(); ++g) {
       const Json& episode = sent["episodes"][g];
       by_grammar[g].push_back({ids[i], episode["ticks"], TimelineFromJson(episode["truth"]),
-                               TimelineFromJson(episode["found"]), episode["not_judged"]});
+                               TimelineFromJson(episode["found"]), episode["not_judged"],
+                               score::TestimonyFromJson(episode["by_definitions"])});
     }
   }
   return by_grammar;
@@ -118,6 +120,34 @@ std::vector<std::string> NotCovered(const grammar::Program& program,
   return silent;
 }
 
+std::vector<score::Witness> WitnessesOf(
+    const std::vector<std::vector<EpisodeToScore>>& by_grammar) {
+  score::Witness definitions{.name = "definitions",
+                             .proves = "events lie within the bands of docs/events.md",
+                             .of_grammars = {}};
+  for (const std::vector<EpisodeToScore>& episodes : by_grammar) {
+    score::Testimony& all = definitions.of_grammars.emplace_back();
+    for (const EpisodeToScore& episode : episodes) all += episode.by_definitions;
+  }
+  return {definitions};
+}
+
+/// What differs, by grammar; of many differences the first ones.
+void PrintDifferences(const std::vector<std::string>& grammars,
+                      const std::vector<score::Witness>& witnesses, bool all, std::ostream& out) {
+  constexpr std::size_t kMaxShown = 10;
+  for (const score::Witness& witness : witnesses) {
+    for (std::size_t g = 0; g < grammars.size(); ++g) {
+      const std::vector<std::string>& lines = witness.of_grammars[g].differences;
+      const std::size_t shown = all ? lines.size() : std::min(lines.size(), kMaxShown);
+      if (shown > 0) out << fmt::format("{}, outside the {}:\n", grammars[g], witness.name);
+      for (std::size_t i = 0; i < shown; ++i) out << "  " << lines[i] << "\n";
+      if (shown < lines.size())
+        out << fmt::format("  and {} more; --differences lists all\n", lines.size() - shown);
+    }
+  }
+}
+
 void Print(const std::vector<score::Score>& scores, double collar_s, std::ostream& out) {
   for (const score::Score& one : scores) out << ScoreTable(one, collar_s) << "\n";
   if (scores.size() > 1) out << SideBySide(scores, collar_s) << "\n";
@@ -158,10 +188,16 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
     scores.push_back(ScoreOf(grammars[g], by_grammar[g], collar_s));
     scores.back().not_covered = not_covered[g];
   }
-  if (options.Has("--json"))
-    context.out << ScoresJson(scores, collar_s).dump(2) << "\n";
-  else
+  const std::vector<score::Witness> witnesses = WitnessesOf(by_grammar);
+  if (options.Has("--json")) {
+    nlohmann::ordered_json json = ScoresJson(scores, collar_s);
+    json["witnesses"] = score::WitnessesJson(grammars, witnesses);
+    context.out << json.dump(2) << "\n";
+  } else {
     Print(scores, collar_s, context.out);
+    context.out << "\n" << WitnessTable(grammars, witnesses) << "\n";
+    PrintDifferences(grammars, witnesses, options.Has("--differences"), context.out);
+  }
   return worst;
 }
 
@@ -195,6 +231,8 @@ Command ScoreCommand() {
                                            kDefaultCollar_ms),
                        .placeholder = "MS",
                        .rule = NumbersFrom(0, 10000)},
+                      {.name = "--differences",
+                       .help = "list every event that differs from what a witness says"},
                       {.name = "--json", .help = "print one JSON object instead of tables"}},
           .run = RunScore};
 }
