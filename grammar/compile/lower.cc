@@ -341,9 +341,9 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
                "for example: supported_by(object, any)");
   }
   const bool is_call = FindBuiltin(expr.text) != nullptr || symbols_.rules.contains(expr.text);
-  return Bad(
-      expr.place, "unknown name " + Quoted(expr.text),
-      is_call ? "say of whom: " + expr.text + "(object)" : Suggest(expr.text, KnownNames(false)));
+  return Bad(expr.place, "unknown name " + Quoted(expr.text),
+             is_call ? "name the entity: " + expr.text + "(object)"
+                     : Suggest(expr.text, KnownNames(false)));
 }
 
 Lowering::Typed Lowering::LowerUnary(const Expr& expr) {

@@ -175,7 +175,7 @@ std::optional<Diagnostic> Lowering::Contradiction(const Expr& chain,
       return told(arg, " together with what stands before it: " + Dump(arg), arg);
   }
   if (bounds.SomeAlternativeFits()) return std::nullopt;
-  return told(chain.args[0], ", whichever of its alternatives one takes: " + Dump(chain), chain);
+  return told(chain.args[0], ", for every choice of its alternatives: " + Dump(chain), chain);
 }
 
 // One part decides a chain, or all of them do.

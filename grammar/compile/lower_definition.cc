@@ -346,8 +346,8 @@ class DefinitionLowering {
     if (most_s <= 0 || rule.lasting_s <= most_s) return;
     lowering_.ComplainOrWarn(
         lasting.place,
-        "no interval lasts so long: this one looks at most " + QuantityText({most_s, kSeconds}) +
-            (looks_back ? " back" : " ahead"),
+        "no interval can last that long: this form reaches at most " +
+            QuantityText({most_s, kSeconds}) + (looks_back ? " back" : " ahead"),
         looks_back ? "look further back, or ask for less" : "wait longer, or ask for less");
   }
 
