@@ -24,7 +24,7 @@ grammar::Timeline Scored(const grammar::Timeline& timeline,
 }
 
 /// How often each kind of event was recognised that the oracle does not define.
-std::map<std::string, int> NotJudged(const grammar::Timeline& found) {
+std::map<std::string, int> Ignored(const grammar::Timeline& found) {
   std::map<std::string, int> counts;
   for (const grammar::NamedEvent& event : found.events) {
     if (!OracleDefines(event.event)) ++counts[event.event];
@@ -60,7 +60,7 @@ tl::expected<std::vector<score::EpisodeToScore>, ScoreFailure> EpisodesToScore(
                .ticks = end,
                .truth = possible.front(),
                .found = Scored(found, request.events),
-               .not_judged = NotJudged(found),
+               .ignored = Ignored(found),
                .by_definitions = {}};
     episode.by_definitions =
         score::ByDefinitions(request.id, possible, episode.found, DefaultTolerance(scenario));
