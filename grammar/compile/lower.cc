@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names, literals and arithmetic. Calls are in grammar/compile/lower_calls.cc, conditions in
-// grammar/compile/lower_conditions.cc.
+// grammar/compile/lower_conditions.cc. Errors: unknown names, one type where another is needed,
+// units that do not agree, '@begin' and '@end' at wrong places, division by zero.
 #include "grammar/compile/lower.h"
 
 #include <algorithm>

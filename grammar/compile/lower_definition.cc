@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The form of a definition first, then its modifiers; each is checked as soon as it is lowered.
+// Errors: forms of which no interval ever begins or counts, modifiers that a form does not take,
+// parts and relations of compositions, how an event is drawn, attributes.
 #include "grammar/compile/lower_definition.h"
 
 #include <algorithm>
