@@ -212,7 +212,7 @@ GrammarDescription Describe(const Program& program) {
 std::string Text(const GrammarDescription& description) {
   std::string text = "grammar " + description.name + "\n\n";
   for (const RuleDescription& rule : description.rules) {
-    text += rule.head + "\n    decided: " + Text(rule.latency) + "; watched: " + rule.watched +
+    text += rule.head + "\n    decided: " + Text(rule.latency) + "; evaluated: " + rule.watched +
             "\n    memory: at most " + std::to_string(rule.bytes_per_binding) +
             " bytes per binding";
     if (rule.bytes_per_interval > 0)

@@ -26,7 +26,7 @@ class ReplayMonitor {
   ReplayMonitor(const ReplayMonitor&) = delete;
   ReplayMonitor& operator=(const ReplayMonitor&) = delete;
 
-  /// Empty, or why this program can't watch this entity table or these frames.
+  /// Empty, or why this program cannot be evaluated on this entity table or these frames.
   const std::string& error() const;
   void Advance(const Frame& frame);
   /// As Monitor::Finish(). Before, nothing below may be asked for, and after, nothing be added.

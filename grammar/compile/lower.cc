@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names, literals and arithmetic. Calls are in grammar/compile/lower_calls.cc, conditions in
-// grammar/compile/lower_conditions.cc.
+// grammar/compile/lower_conditions.cc. Errors: unknown names, one type where another is needed,
+// units that do not agree, '@begin' and '@end' at wrong places, division by zero.
 #include "grammar/compile/lower.h"
 
 #include <algorithm>
@@ -341,9 +342,9 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
                "for example: supported_by(object, any)");
   }
   const bool is_call = FindBuiltin(expr.text) != nullptr || symbols_.rules.contains(expr.text);
-  return Bad(
-      expr.place, "unknown name " + Quoted(expr.text),
-      is_call ? "say of whom: " + expr.text + "(object)" : Suggest(expr.text, KnownNames(false)));
+  return Bad(expr.place, "unknown name " + Quoted(expr.text),
+             is_call ? "name the entity: " + expr.text + "(object)"
+                     : Suggest(expr.text, KnownNames(false)));
 }
 
 Lowering::Typed Lowering::LowerUnary(const Expr& expr) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls in expressions: of events and conditions, of definitions, of built-in signals and tests.
+// Errors: unknown callees, the number and kind of arguments, classes that do not fit a role, one
+// entity in two roles, definitions that refer to themselves.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Conditions that are never or always true: comparisons that their ranges decide, chains of which
-// the parts exclude each other, and what follows for the whole clause.
+// the parts exclude each other, and what follows for the whole clause. Errors and warnings: "this
+// is never true", "this is always true".
 // Tested by tests/grammar/compile/compile_test.cc
 #include <algorithm>
 #include <utility>
@@ -175,7 +176,7 @@ std::optional<Diagnostic> Lowering::Contradiction(const Expr& chain,
       return told(arg, " together with what stands before it: " + Dump(arg), arg);
   }
   if (bounds.SomeAlternativeFits()) return std::nullopt;
-  return told(chain.args[0], ", whichever of its alternatives one takes: " + Dump(chain), chain);
+  return told(chain.args[0], ", for every choice of its alternatives: " + Dump(chain), chain);
 }
 
 // One part decides a chain, or all of them do.

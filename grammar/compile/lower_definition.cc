@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The form of a definition first, then its modifiers; each is checked as soon as it is lowered.
+// Errors: forms of which no interval ever begins or counts, modifiers that a form does not take,
+// parts and relations of compositions, how an event is drawn, attributes.
 #include "grammar/compile/lower_definition.h"
 
 #include <algorithm>
@@ -346,8 +348,8 @@ class DefinitionLowering {
     if (most_s <= 0 || rule.lasting_s <= most_s) return;
     lowering_.ComplainOrWarn(
         lasting.place,
-        "no interval lasts so long: this one looks at most " + QuantityText({most_s, kSeconds}) +
-            (looks_back ? " back" : " ahead"),
+        "no interval can last that long: this form reaches at most " +
+            QuantityText({most_s, kSeconds}) + (looks_back ? " back" : " ahead"),
         looks_back ? "look further back, or ask for less" : "wait longer, or ask for less");
   }
 

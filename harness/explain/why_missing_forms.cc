@@ -213,8 +213,8 @@ MissingReasons::Blame MissingReasons::OfFromTo(InstanceId instance, const Window
     const std::string text = ClauseText(past_, instance, opens);
     Blame blame = OfMoment(opens, instance, window, depth);
     reason.how = "nothing began it";
-    reason.because = {Failed(text.empty() ? "what begins it" : "from " + text,
-                             "did not happen up to " + clauses_.Time(until),
+    reason.because = {Failed(text.empty() ? "its begin condition" : "from " + text,
+                             "did not become true by " + clauses_.Time(until),
                              std::move(blame.reasons))};
     return {{std::move(reason)}, 0.5 * blame.closeness};
   }
@@ -277,7 +277,7 @@ std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(InstanceId insta
     } else {
       const std::string back = QuantityText(back_s, grammar::kSeconds);
       reason.how = "the next end is at " + clauses_.Time(outcome.span.end.frame) +
-                   ", and it looks at most " + back + " back";
+                   ", and the rule reaches at most " + back + " back";
     }
     return Blame{{std::move(reason)}, 0.9};
   }
@@ -296,14 +296,15 @@ MissingReasons::Blame MissingReasons::OfUntil(InstanceId instance, const Window&
   Blame blame = OfMoment(part.until, instance, rest, depth);
   const bool whole = rest.first == 0 && rest.last >= past_.frames() - 1;
   const std::string text = ClauseText(past_, instance, part.until);
-  const std::string when = whole       ? "never happened"
-                           : window.at ? "did not happen at or after " + clauses_.Time(rest.first)
-                                       : "did not happen from " + clauses_.Time(rest.first) +
-                                             " to " + clauses_.Time(rest.last);
+  const std::string when = whole ? "never became true"
+                           : window.at
+                               ? "did not become true at or after " + clauses_.Time(rest.first)
+                               : "did not become true from " + clauses_.Time(rest.first) + " to " +
+                                     clauses_.Time(rest.last);
   Reason reason = Failed(Label(past_, instance), "nothing ended it");
   reason.where = Source(rule.file, rule.place);
   reason.because = {
-      Failed(text.empty() ? "what ends it" : "until " + text, when, std::move(blame.reasons))};
+      Failed(text.empty() ? "its end condition" : "until " + text, when, std::move(blame.reasons))};
   if (part.approach) reason.because.push_back(ClosestApproach(instance, window));
   return {{std::move(reason)}, 0.5 * blame.closeness};
 }
