@@ -88,7 +88,7 @@ Tick ReplayMonitor::AtMostTicks(double seconds) const {
   return state_->engine.history().AtMostTicks(seconds);
 }
 
-InstanceId ReplayMonitor::InstanceOf(int rule, const Binding& entities) {
+InstanceId ReplayMonitor::InstanceOf(RuleId rule, const Binding& entities) {
   return state_->engine.instances().Ensure(rule, entities);
 }
 
@@ -97,7 +97,7 @@ InstanceId ReplayMonitor::Referred(InstanceId instance, int slot) {
   return instances.Resolve(instances[instance], slot);
 }
 
-std::vector<InstanceId> ReplayMonitor::InstancesOf(int rule) const {
+std::vector<InstanceId> ReplayMonitor::InstancesOf(RuleId rule) const {
   std::vector<InstanceId> instances;
   const InstanceId end = state_->engine.instances().end_id();
   for (InstanceId instance(0); instance < end; ++instance) {

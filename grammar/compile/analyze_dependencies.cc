@@ -285,7 +285,7 @@ void WatchEntities(const Program& program, Rule& rule, int index) {
 }
 
 // A composition gets finished intervals; every other rule asks for the truth at a frame.
-void MarkReferenced(Program& program, int index) {
+void MarkReferenced(Program& program, RuleId index) {
   const Rule& rule = program.rules[index];
   const auto* composition = rule.If<ComposeRule>();
   if (composition == nullptr) {
@@ -294,7 +294,7 @@ void MarkReferenced(Program& program, int index) {
     return;
   }
   for (std::size_t part = 0; part < composition->parts.size(); ++part) {
-    const int target = rule.references[composition->parts[part]].rule;
+    const RuleId target = rule.references[composition->parts[part]].rule;
     program.rules[target].part_of.push_back({index, static_cast<int>(part)});
   }
 }
@@ -330,8 +330,7 @@ void WatchEntities(const Program& program, Rule& rule) {
 
 void ChooseGuards(Program& program) {
   for (Node& node : program.nodes) FindThreshold(program, node);
-  for (std::size_t i = 0; i < program.rules.size(); ++i)
-    MarkReferenced(program, static_cast<int>(i));
+  for (const RuleId rule : IdsOf(program.rules)) MarkReferenced(program, rule);
   for (Rule& rule : program.rules) {
     rule.guard = ChooseGuard(program, rule);
     rule.guarded_begin = GuardsBegin(program, rule);

@@ -69,7 +69,8 @@ bool Symbols::IsParamIn(std::string_view file, std::string_view name) const {
   return files.find(program.params[param->second].file)->second <= files.find(file)->second;
 }
 
-Lowering::Lowering(Symbols& symbols, int rule, const GrammarText& source, Diagnostics& diagnostics)
+Lowering::Lowering(Symbols& symbols, RuleId rule, const GrammarText& source,
+                   Diagnostics& diagnostics)
     : symbols_(symbols),
       rule_(rule),
       source_(&source),

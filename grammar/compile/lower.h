@@ -29,13 +29,13 @@ struct DefineSource {
 /// What all rules share while a grammar is compiled.
 struct Symbols {
   Program& program;
-  std::map<std::string, int, std::less<>> rules;   ///< name -> index in Program::rules
-  std::map<std::string, int, std::less<>> params;  ///< name -> index in Program::params
+  std::map<std::string, RuleId, std::less<>> rules;  ///< by name
+  std::map<std::string, int, std::less<>> params;    ///< name -> index in Program::params
   std::map<std::string, int, std::less<>>
       files;  ///< name -> place in the order in which they were read, what is used first
   std::map<std::string, DefineSource, std::less<>> defines;
-  std::map<std::pair<int, std::vector<int>>, int> any_rules;  ///< (rule, kept roles) -> rule
-  std::map<std::pair<int, std::vector<std::string>>, int>
+  std::map<std::pair<RuleId, std::vector<int>>, RuleId> any_rules;  ///< (rule, kept roles) -> rule
+  std::map<std::pair<RuleId, std::vector<std::string>>, RuleId>
       narrowed_rules;  ///< (rule, classes of its roles) -> rule
   std::set<int> used_params;
   std::set<std::string, std::less<>> used_defines;
@@ -70,7 +70,7 @@ std::string AllenNames();
 class Lowering {
  public:
   /// Writes into symbols.program.rules[rule], whose roles are filled in already.
-  Lowering(Symbols& symbols, int rule, const GrammarText& source, Diagnostics& diagnostics);
+  Lowering(Symbols& symbols, RuleId rule, const GrammarText& source, Diagnostics& diagnostics);
 
   /// Where values of the interval's own boundaries can be asked for.
   struct Anchors {
@@ -165,7 +165,7 @@ class Lowering {
   Typed LowerEdge(const ast::Expr& expr);
   Typed LowerAnchor(const ast::Expr& expr);
   Typed LowerCall(const ast::Expr& expr);
-  Typed LowerRuleCall(int rule, const ast::Expr& expr);
+  Typed LowerRuleCall(RuleId rule, const ast::Expr& expr);
   Typed LowerDefine(const DefineSource& source, const ast::Expr& expr);
   Typed LowerBody(const DefineSource& source, const Scope& scope);
   Typed LowerValue(const Scope::Value& value);
@@ -195,12 +195,12 @@ class Lowering {
   int FindParam(std::string_view name) const;
   std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class,
                                   std::string_view callee);
-  int MakeAnyRule(int rule, const std::vector<int>& kept);
-  int MakeNarrowedRule(int rule, const std::vector<std::string>& classes);
+  RuleId MakeAnyRule(RuleId rule, const std::vector<int>& kept);
+  RuleId MakeNarrowedRule(RuleId rule, const std::vector<std::string>& classes);
   std::vector<std::string> KnownNames(bool calls) const;
 
   Symbols& symbols_;
-  int rule_;
+  RuleId rule_;
   const GrammarText* source_;
   Diagnostics& diagnostics_;
   Anchors anchors_;

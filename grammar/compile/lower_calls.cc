@@ -77,7 +77,7 @@ Lowering::Typed Lowering::LowerCall(const Expr& expr) {
              Suggest(expr.text, KnownNames(true)));
 }
 
-Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
+Lowering::Typed Lowering::LowerRuleCall(RuleId rule, const Expr& expr) {
   const std::vector<RuleRole> wanted = symbols_.program.rules[rule].roles;
   if (wanted.size() != expr.args.size()) {
     return Bad(expr.place, Quoted(expr.text) + " takes " + std::to_string(wanted.size()) +
@@ -131,8 +131,8 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
 }
 
 // The hidden rule "`rule`, but only for these classes".
-int Lowering::MakeNarrowedRule(int rule, const std::vector<std::string>& classes) {
-  const int next = static_cast<int>(symbols_.program.rules.size());
+RuleId Lowering::MakeNarrowedRule(RuleId rule, const std::vector<std::string>& classes) {
+  const RuleId next = symbols_.program.rules.end_id();
   const auto [entry, is_new] = symbols_.narrowed_rules.try_emplace({rule, classes}, next);
   if (!is_new) return entry->second;
   const Rule& source = symbols_.program.rules[rule];
@@ -153,9 +153,9 @@ int Lowering::MakeNarrowedRule(int rule, const std::vector<std::string>& classes
 }
 
 // The hidden rule "some binding of `rule` with these roles holds".
-int Lowering::MakeAnyRule(int rule, const std::vector<int>& kept) {
+RuleId Lowering::MakeAnyRule(RuleId rule, const std::vector<int>& kept) {
   const auto [entry, is_new] =
-      symbols_.any_rules.try_emplace({rule, kept}, static_cast<int>(symbols_.program.rules.size()));
+      symbols_.any_rules.try_emplace({rule, kept}, symbols_.program.rules.end_id());
   if (is_new) {
     const Rule& source = symbols_.program.rules[rule];
     Rule any{.name = source.name,

@@ -18,7 +18,8 @@ constexpr double kPausePerOnset = 10;
 
 class DefinitionLowering {
  public:
-  DefinitionLowering(Program& program, int index, const Definition& definition, Lowering& lowering)
+  DefinitionLowering(Program& program, RuleId index, const Definition& definition,
+                     Lowering& lowering)
       : program_(program), index_(index), d_(definition), lowering_(lowering) {}
 
   void Run() {
@@ -373,14 +374,14 @@ class DefinitionLowering {
   }
 
   Program& program_;
-  int index_;
+  RuleId index_;
   const Definition& d_;
   Lowering& lowering_;
 };
 
 }  // namespace
 
-void LowerDefinitionInto(Program& program, int index, const ast::Definition& definition,
+void LowerDefinitionInto(Program& program, RuleId index, const ast::Definition& definition,
                          Lowering& lowering) {
   DefinitionLowering(program, index, definition, lowering).Run();
 }

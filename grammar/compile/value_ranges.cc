@@ -136,7 +136,7 @@ std::string Signature(const Program& program, const Rule& rule, int index) {
   if (node.op == Op::kHolds) {
     const Reference& reference = rule.references[node.slot];
     roles.assign(reference.roles.begin(), reference.roles.end());
-    text += "e" + std::to_string(reference.rule);
+    text += "e" + std::to_string(reference.rule.number());
     either_way = program.rules[reference.rule].symmetric;
   }
   if (node.op == Op::kIsA) text += program.class_names[node.slot];

@@ -136,7 +136,7 @@ inline constexpr Binding kUnbound = {kNone, kNone, kNone, kNone};
 
 /// Another rule, bound to roles of this one: its role i is roles[i].
 struct Reference {
-  int rule = kNone;
+  RuleId rule;
   Binding roles = kUnbound;
 };
 
@@ -230,7 +230,7 @@ struct RuleAttribute {
 
 /// A rule is part `part` of the composition `rule`.
 struct PartOf {
-  int rule = kNone;
+  RuleId rule;
   int part = 0;
 };
 
@@ -322,8 +322,8 @@ struct ProgramParam {
 /// output.
 struct Program {
   std::string name;
-  std::vector<Rule> rules;
-  std::vector<int> schedule;  ///< rules so that each comes after those it refers to
+  IdVector<RuleId, Rule> rules;
+  std::vector<RuleId> schedule;  ///< rules so that each comes after those it refers to
   std::vector<Node> nodes;
   std::vector<NodeNote> notes;              ///< of the first so many nodes
   std::vector<std::string> class_names;     ///< for kIsA
@@ -339,6 +339,6 @@ struct Program {
   bool recalls_touches = false;  ///< for thresholds that it had crossed in earlier frames
 };
 
-inline constexpr int kTouchingRule = 0;
+inline constexpr RuleId kTouchingRule(0);
 
 }  // namespace prehend::grammar

@@ -24,6 +24,7 @@ using grammar::Op;
 using grammar::Program;
 using grammar::ReplayMonitor;
 using grammar::Rule;
+using grammar::RuleId;
 
 /// A number of one rule that can be plotted: a side of a comparison, or how far something is from a
 /// region's centre.
@@ -80,12 +81,12 @@ class Collector {
   }
 
   Tracks Collect() {
-    const std::vector<Rule>& rules = past_.program().rules;
-    for (std::size_t rule = 0; rule < rules.size(); ++rule) {
-      if (!rules[rule].hidden && Wanted(rules[rule].name)) AddIntervals(static_cast<int>(rule));
+    const auto& rules = past_.program().rules;
+    for (const RuleId rule : grammar::IdsOf(rules)) {
+      if (!rules[rule].hidden && Wanted(rules[rule].name)) AddIntervals(rule);
     }
-    for (std::size_t rule = 0; rule < rules.size(); ++rule) {
-      if (!rules[rule].hidden) AddSignals(static_cast<int>(rule));
+    for (const RuleId rule : grammar::IdsOf(rules)) {
+      if (!rules[rule].hidden) AddSignals(rule);
     }
     return std::move(tracks_);
   }
@@ -107,7 +108,7 @@ class Collector {
     return &tracks_.tracks.back().values;
   }
 
-  void AddIntervals(int rule) {
+  void AddIntervals(RuleId rule) {
     const Track::Kind kind =
         past_.program().rules[rule].printed ? Track::Kind::kEvent : Track::Kind::kCondition;
     for (const InstanceId instance : past_.InstancesOf(rule)) {
@@ -123,7 +124,7 @@ class Collector {
     }
   }
 
-  void AddSignals(int rule) {
+  void AddSignals(RuleId rule) {
     const Rule& asked = past_.program().rules[rule];
     for (const Signal& signal : SignalsOf(past_.program(), asked)) {
       if (!Wanted(NameOf(past_.program(), signal)) && !Wanted(asked.name)) continue;
