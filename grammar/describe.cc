@@ -24,7 +24,7 @@ struct Edge {
   friend bool operator==(const Edge&, const Edge&) = default;
 };
 
-std::optional<Edge> EdgeOf(const Program& program, const Rule& rule, int index) {
+std::optional<Edge> EdgeOf(const Program& program, const Rule& rule, NodeId index) {
   const Node& node = program.nodes[index];
   if (node.op != Op::kBegins && node.op != Op::kEnds) return std::nullopt;
   const Node& arg = program.nodes[node.args[0]];

@@ -152,15 +152,15 @@ Evaluator::View ReplayMonitor::State::View(const Moment& at) {
   return view;
 }
 
-bool ReplayMonitor::Truth(int node, const Moment& at) {
+bool ReplayMonitor::Truth(NodeId node, const Moment& at) {
   return state_->engine.evaluator().Truth(node, state_->View(at)) == Kleene::kTrue;
 }
 
-std::optional<double> ReplayMonitor::Number(int node, const Moment& at) {
+std::optional<double> ReplayMonitor::Number(NodeId node, const Moment& at) {
   return state_->engine.evaluator().Number(node, state_->View(at));
 }
 
-std::optional<Reach> ReplayMonitor::ReachOf(int node, const Moment& at) {
+std::optional<Reach> ReplayMonitor::ReachOf(NodeId node, const Moment& at) {
   return state_->engine.evaluator().ReachOf(program().nodes[node], state_->View(at));
 }
 

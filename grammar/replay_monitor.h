@@ -72,9 +72,9 @@ class ReplayMonitor {
     std::optional<FrameNumber> begin = std::nullopt;
     std::optional<FrameNumber> end = std::nullopt;
   };
-  bool Truth(int node, const Moment& at);
-  std::optional<double> Number(int node, const Moment& at);
-  std::optional<Reach> ReachOf(int node, const Moment& at);
+  bool Truth(NodeId node, const Moment& at);
+  std::optional<double> Number(NodeId node, const Moment& at);
+  std::optional<Reach> ReachOf(NodeId node, const Moment& at);
 
  private:
   struct State;

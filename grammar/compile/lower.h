@@ -79,18 +79,18 @@ class Lowering {
   };
 
   /// A truth value; kNone after an error, here and below.
-  int Truth(const ast::Expr& expr, Anchors anchors);
+  NodeId Truth(const ast::Expr& expr, Anchors anchors);
   /// A truth value that holds at single frames only: made of `begins` and `ends`.
-  int Instant(const ast::Expr& expr, Anchors anchors);
+  NodeId Instant(const ast::Expr& expr, Anchors anchors);
   /// A call of an event or condition, as a reference of the rule.
   int RuleCall(const ast::Expr& expr);
   /// Likewise, of a part of a composition: that may be a composition, too.
   int PartCall(const ast::Expr& expr);
   /// A number; its dimension is written to `dimension`.
-  int Signal(const ast::Expr& expr, Anchors anchors, Dimension& dimension);
+  NodeId Signal(const ast::Expr& expr, Anchors anchors, Dimension& dimension);
   /// A number to be asked for where the interval ends: signals as they were at its begin, `x@end`
   /// as they are.
-  int Attribute(const ast::Expr& expr, Dimension& dimension);
+  NodeId Attribute(const ast::Expr& expr, Dimension& dimension);
   /// A number that only depends on parameters, zero or more.
   double Constant(const ast::Expr& expr, const Dimension& dimension, std::string_view what);
   /// A constant time of more than 0 s.
@@ -109,7 +109,7 @@ class Lowering {
 
  private:
   struct Typed {
-    int node = kNone;
+    NodeId node;
     Type type = Type::kTruth;
     Dimension dimension;
     bool instant = false;
@@ -160,7 +160,7 @@ class Lowering {
                                           const std::vector<Typed>& parts) const;
   Typed Decided(Verdict verdict, std::vector<int> because);
   void Doubt(Place place, std::string message, std::string hint, bool is_handed_in);
-  int Settled(const Typed& clause);
+  NodeId Settled(const Typed& clause);
   void Warn(Diagnostic warning);
   Typed LowerEdge(const ast::Expr& expr);
   Typed LowerAnchor(const ast::Expr& expr);
@@ -187,10 +187,10 @@ class Lowering {
   Typed Position(const ast::Expr& expr);
   Typed TruthValue(const ast::Expr& expr);
   Typed NumberNode(double value, const Dimension& dimension, Place place);
-  int Add(Node node);
-  int AddSignal(Node node);
+  NodeId Add(Node node);
+  NodeId AddSignal(Node node);
   int AddReference(const Reference& reference);
-  int AnchorAtBegin(int node);
+  NodeId AnchorAtBegin(NodeId node);
   int FindRole(std::string_view name) const;
   int FindParam(std::string_view name) const;
   std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class,

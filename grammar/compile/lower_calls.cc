@@ -253,7 +253,7 @@ void Lowering::Check(const DefineSource& source) {
       const Typed stand_in = NumberNode(1, source.define->dimensions[i], parameter.place);
       scope.values[parameter.name] = {.stand_in = stand_in};
     } else if (parameter.class_name == "position") {
-      const int node = Add({.op = Op::kPosition, .roles = {0, kNone}});
+      const NodeId node = Add({.op = Op::kPosition, .roles = {0, kNone}});
       scope.values[parameter.name] = {
           .stand_in = {.node = node, .type = Type::kPosition, .dimension = kMetres}};
     } else {
@@ -334,8 +334,8 @@ Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
     now.args[0] = Add({.op = Op::kPosition, .roles = {now.roles[0], kNone}});
     now.roles[0] = kNone;
   }
-  const int here = Add(now);
-  const int there = AnchorAtBegin(here);
+  const NodeId here = Add(now);
+  const NodeId there = AnchorAtBegin(here);
   const Op op = is_along ? Op::kDistanceAlong : is_displacement ? Op::kDistance : Op::kSubtract;
   const bool falls = expr.text == "drop";
   return {.node = Add({.op = op,

@@ -30,14 +30,14 @@ using grammar::RuleId;
 /// region's centre.
 struct Signal {
   enum class What { kNumber, kDistance, kHeight };
-  int node = kNone;
+  grammar::NodeId node;
   What what = What::kNumber;
 };
 
-void CollectSignals(const Program& program, int node, std::vector<Signal>& signals) {
+void CollectSignals(const Program& program, grammar::NodeId node, std::vector<Signal>& signals) {
   if (node == kNone) return;
   const Node& n = program.nodes[node];
-  const auto varies = [&](int arg) { return program.nodes[arg].op != Op::kNumber; };
+  const auto varies = [&](grammar::NodeId arg) { return program.nodes[arg].op != Op::kNumber; };
   if (IsComparison(n.op)) {
     if (varies(n.args[0])) signals.push_back({n.args[0]});
     if (varies(n.args[1])) signals.push_back({n.args[1]});
@@ -53,7 +53,7 @@ void CollectSignals(const Program& program, int node, std::vector<Signal>& signa
 
 std::vector<Signal> SignalsOf(const Program& program, const Rule& rule) {
   std::vector<Signal> signals;
-  for (const int node : ConditionsOf(rule)) CollectSignals(program, node, signals);
+  for (const grammar::NodeId node : ConditionsOf(rule)) CollectSignals(program, node, signals);
   CollectSignals(program, rule.requirement, signals);
   if (const grammar::Approach* approach = ApproachOf(rule)) {
     signals.push_back({approach->signal});
