@@ -58,7 +58,7 @@ Lowering::Typed Lowering::LowerComparison(Op op, const Typed& left, const Typed&
 
 // What is so whatever happens.
 Lowering::Typed Lowering::Decided(Verdict verdict, std::vector<int> because) {
-  const int zero = Add({.op = Op::kNumber});
+  const NodeId zero = Add({.op = Op::kNumber});
   const Op op = verdict == Verdict::kAlways ? Op::kEqual : Op::kNotEqual;
   return {.node = Add({.op = op, .args = {zero, zero, kNone, kNone}}),
           .type = Type::kTruth,
@@ -84,7 +84,7 @@ void Lowering::Doubt(Place place, std::string message, std::string hint, bool is
 }
 
 // A whole clause that is decided is an error, unless its numbers were set from outside.
-int Lowering::Settled(const Typed& clause) {
+NodeId Lowering::Settled(const Typed& clause) {
   bool sound = !clause.bad;
   for (std::size_t i = 0; !clause.bad && i < doubts_.size(); ++i) {
     const bool decides = clause.verdict != Verdict::kPossible &&
@@ -201,7 +201,7 @@ Lowering::Typed Lowering::JudgeChain(const Expr& chain, const std::vector<Typed>
 Lowering::Typed Lowering::LowerChain(const Expr& expr) {
   const bool is_and = expr.text == "and";
   std::vector<Typed> parts;
-  std::vector<int> nodes;
+  std::vector<NodeId> nodes;
   bool bad = false;
   std::size_t instants = 0;
   const bool set_before = std::exchange(from_outside_, false);
@@ -223,7 +223,7 @@ Lowering::Typed Lowering::LowerChain(const Expr& expr) {
     judged.verdict = is_and ? Verdict::kNever : Verdict::kAlways;
   }
   while (nodes.size() > 1) {
-    std::vector<int> halved;
+    std::vector<NodeId> halved;
     for (std::size_t i = 0; i + 1 < nodes.size(); i += 2) {
       halved.push_back(
           Add({.op = is_and ? Op::kAnd : Op::kOr, .args = {nodes[i], nodes[i + 1], kNone, kNone}}));

@@ -62,7 +62,7 @@ Clauses::Follow EventReasons::FollowFrom(int depth) {
   };
 }
 
-Reasons EventReasons::Change(int node, const Moment& at, bool truth, int depth) {
+Reasons EventReasons::Change(grammar::NodeId node, const Moment& at, bool truth, int depth) {
   return node == kNone ? Reasons{} : clauses_.Change(node, at, truth, FollowFrom(depth), brief_);
 }
 

@@ -86,7 +86,7 @@ MissingReasons::Blame MissingReasons::OfFact(InstanceId instance, const Window& 
   return {{std::move(reason)}, 0};
 }
 
-FrameNumber MissingReasons::Closest(int node, Moment at, const Window& window) {
+FrameNumber MissingReasons::Closest(grammar::NodeId node, Moment at, const Window& window) {
   FrameNumber first = window.first;
   FrameNumber last = window.last;
   if (window.at) {
@@ -117,8 +117,8 @@ FrameNumber MissingReasons::Closest(int node, Moment at, const Window& window) {
   return closest;
 }
 
-MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Window& window,
-                                                int depth) {
+MissingReasons::Blame MissingReasons::OfClauses(grammar::NodeId node, Moment at,
+                                                const Window& window, int depth) {
   at.frame = Closest(node, at, window);
   Blame blame{.reasons = {}, .closeness = clauses_.Nearness(node, at, true)};
   bool followed = false;
@@ -154,7 +154,7 @@ void MissingReasons::Follow(Reason& reason, InstanceId target, FrameNumber frame
 MissingReasons::Blame MissingReasons::OfWhile(InstanceId instance, const Window& window,
                                               int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  const int condition = rule.As<grammar::WhileRule>().condition;
+  const grammar::NodeId condition = rule.As<grammar::WhileRule>().condition;
   Blame inner = OfClauses(condition, {.instance = instance}, window, depth);
   const FrameNumber closest = Closest(condition, {.instance = instance}, window);
   Reason reason = Failed(Label(past_, instance), "came closest at " + clauses_.Time(closest),
@@ -164,8 +164,8 @@ MissingReasons::Blame MissingReasons::OfWhile(InstanceId instance, const Window&
   return {{std::move(reason)}, inner.closeness};
 }
 
-MissingReasons::Blame MissingReasons::OfMoment(int node, InstanceId instance, const Window& window,
-                                               int depth) {
+MissingReasons::Blame MissingReasons::OfMoment(grammar::NodeId node, InstanceId instance,
+                                               const Window& window, int depth) {
   // Some of it happened, but not all at once.
   const Moment at{.instance = instance, .frame = Closest(node, {.instance = instance}, window)};
   if (past_.program().nodes[node].op == Op::kAnd && clauses_.Nearness(node, at, true) >= 0.5) {
@@ -242,7 +242,7 @@ MissingReasons::Blame MissingReasons::OfFromTo(InstanceId instance, const Window
 }
 
 Reason MissingReasons::ClosestApproach(InstanceId instance, const Window& window) {
-  const int signal = past_.RuleOf(instance).As<UntilSinceRule>().approach->signal;
+  const grammar::NodeId signal = past_.RuleOf(instance).As<UntilSinceRule>().approach->signal;
   Reason reason{.mark = Mark::kNote, .what = ClauseText(past_, instance, signal)};
   double smallest = 0;
   for (FrameNumber frame = window.first; frame <= window.last; ++frame) {

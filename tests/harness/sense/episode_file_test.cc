@@ -88,7 +88,7 @@ TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
   EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"tick\": 1}\n"),
             "3:10: the ticks must increase: 1 comes after 1\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"samples\": {\"cip\": {\"at_m\": [0, 0, 0]}}}\n"),
-            "2:23: no entity is called 'cip' | did you mean 'cup'?\n");
+            "2:25: no entity is called 'cip' | did you mean 'cup'?\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"hands\": {\"cup\": {}}}\n"),
             "2:23: 'cup' is not a hand | its entity has no 'hand: true'\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"touches\": [{\"a\": \"cup\", \"b\": \"cup\"}]}\n"),
