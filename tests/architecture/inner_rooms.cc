@@ -49,6 +49,10 @@ const Arrows& ProjectArrows() {
       {"harness/read",
        {"harness/base", "harness/build", "harness/format", "harness/motion", "harness/scenario",
         "harness/yaml", "physics/person", "physics/scene"}},
+      // The third witness: it knows neither grammar nor oracle, which it judges.
+      {"harness/closed_form",
+       {"grammar/base", "harness/base", "harness/build", "harness/format", "harness/scenario",
+        "harness/timeline", "physics/scene"}},
       {"harness/run",
        {"grammar", "grammar/base", "grammar/compile", "harness/base", "harness/format",
         "harness/process", "harness/read", "harness/scenario", "harness/sense", "harness/timeline",
