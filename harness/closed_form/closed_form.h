@@ -22,8 +22,8 @@ struct KnownEvent {
 
 /// A story in one sampling.
 struct ClosedFormRecording {
-  std::string name;   ///< "straight_at_a_box, 240 Hz"
-  Scenario scenario;  ///< the scene, without a script
+  std::string sampling;  ///< "240 Hz", or "120 Hz, frames lost"
+  Scenario scenario;     ///< the scene, without a script
   std::vector<physics::Snapshot> frames;
   grammar::Tick end = 0;  ///< the first tick after the episode
 };

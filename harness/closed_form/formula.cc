@@ -29,24 +29,31 @@ std::size_t Assignment(const std::string& text) {
   return std::string::npos;
 }
 
+/// muParser's tokens may end with blanks.
+std::string TokenOf(const mu::ParserError& error) {
+  const std::string& token = error.GetToken();
+  return token.substr(0, token.find_last_not_of(' ') + 1);
+}
+
 FormulaError ErrorOf(const mu::ParserError& error, const std::string& text) {
+  const std::string token = TokenOf(error);
   const int offset = std::clamp(error.GetPos(), 0, static_cast<int>(text.size()));
   switch (error.GetCode()) {
     case mu::ecUNASSIGNABLE_TOKEN:
     case mu::ecINVALID_NAME:
-      return {"unknown name '" + error.GetToken() + "'", offset, error.GetToken()};
+      return {"unknown name '" + token + "'", offset, token};
     case mu::ecUNEXPECTED_EOF:
     case mu::ecEMPTY_EXPRESSION:
       return {"the formula ends too early", static_cast<int>(text.size()), {}};
     case mu::ecMISSING_PARENS:
       return {"a ')' is missing", static_cast<int>(text.size()), {}};
     case mu::ecTOO_MANY_PARAMS:
-      return {"too many arguments of '" + error.GetToken() + "'", offset, {}};
+      return {"too many arguments of '" + token + "'", offset, {}};
     case mu::ecTOO_FEW_PARAMS:
-      return {"too few arguments of '" + error.GetToken() + "'", offset, {}};
+      return {"too few arguments of '" + token + "'", offset, {}};
     default:
-      if (error.GetToken().empty()) return {"not a formula", offset, {}};
-      return {"unexpected '" + error.GetToken() + "'", offset, {}};
+      if (token.empty()) return {"not a formula", offset, {}};
+      return {"unexpected '" + token + "'", offset, {}};
   }
 }
 

@@ -248,9 +248,9 @@ class Reader {
 
   ClosedFormRecording Play(Kinematics& kinematics, FormulaScope scope,
                            const SamplingYaml& sampling) {
-    ClosedFormRecording recording{.name = fmt::format("{}, {} Hz{}", entry_.name.value, sampling.hz,
-                                                      sampling.lost ? ", frames lost" : ""),
-                                  .scenario = scenario_};
+    ClosedFormRecording recording{
+        .sampling = fmt::format("{} Hz{}", sampling.hz, sampling.lost ? ", frames lost" : ""),
+        .scenario = scenario_};
     recording.scenario.sensing.sensing_hz = sampling.hz;
     double& t_s = scope.AddVariable("t");
     double& n = scope.AddVariable("n");
