@@ -11,9 +11,11 @@
 #include "harness/base/project_paths.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/cli/command.h"
+#include "harness/closed_form/closed_form.h"
 #include "harness/oracle/oracle.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"
+#include "harness/score/closed_form_score.h"
 #include "harness/score/score_json.h"
 #include "harness/score/score_scenario.h"
 #include "harness/timeline/timeline_json.h"
@@ -159,6 +161,26 @@ void Print(const std::vector<score::Score>& scores, double collar_s, std::ostrea
          "events.\n";
 }
 
+/// `score --closed-form`: the grammars and the oracle on recordings whose events are known.
+ExitCode RunClosedForms(const std::vector<ClosedFormWitness>& recognisers,
+                        const ParsedOptions& options, const CommandContext& context) {
+  for (const char* other : {"names", "--filter", "--events", "--collar-ms"}) {
+    if (options.Has(other))
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("--closed-form scores all closed forms: {} does not apply",
+                                  std::string_view(other) == "names" ? "a name" : other));
+  }
+  const std::vector<std::string> files = ClosedFormFiles(context.root);
+  if (files.empty())
+    return Complain(context, ExitCode::kNothing,
+                    "there is nothing in " + context.root + "/closed_form");
+  const auto scores = ScoreOnClosedForms(files, recognisers);
+  if (!scores) return Complain(context, scores.error());
+  context.out << (options.Has("--json") ? ClosedFormJson(*scores).dump(2) + "\n"
+                                        : ClosedFormText(*scores));
+  return ExitCode::kAgrees;
+}
+
 ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   std::vector<std::string> grammars = options.All("--grammar");
   if (grammars.empty()) grammars = {kDefaultGrammar, "original_2020"};
@@ -166,11 +188,15 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   if (const std::string unknown = UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);
   std::vector<std::vector<std::string>> not_covered;
+  std::vector<ClosedFormWitness> recognisers;
   for (const std::string& name : grammars) {
     const grammar::CompileResult compiled = LoadGrammar(context.root, name);
     if (!compiled.program) return Complain(context, compiled.diagnostics);
     not_covered.push_back(NotCovered(*compiled.program, events));
+    recognisers.push_back(GrammarWitness(name, compiled.program));
   }
+  recognisers.push_back(OracleWitness());
+  if (options.Has("--closed-form")) return RunClosedForms(recognisers, options, context);
   for (const std::string& name : options.All("names")) {
     if (const auto refused = RefuseRecording(name, context)) return *refused;
   }
@@ -208,7 +234,7 @@ Command ScoreCommand() {
           .summary = "Score grammars against what physically happened",
           .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
                        "score --grammar my/rules.grammar --events grasping,sliding",
-                       "score 'slide/*' --collar-ms 20 --json"},
+                       "score 'slide/*' --collar-ms 20 --json", "score --closed-form"},
           .options = {{.name = "names",
                        .help = "names, skill/name, globs or files; default: all scenarios",
                        .repeatable = true},
@@ -233,6 +259,9 @@ Command ScoreCommand() {
                        .rule = NumbersFrom(0, 10000)},
                       {.name = "--differences",
                        .help = "list every event that differs from what a witness says"},
+                      {.name = "--closed-form",
+                       .help = "score on recordings whose events are known on paper, instead of\n"
+                               "scenarios; the oracle is scored, too (docs/closed-form.md)"},
                       {.name = "--json", .help = "print one JSON object instead of tables"}},
           .run = RunScore};
 }
