@@ -21,6 +21,11 @@ struct DistanceAt {
 int ApproachBegin(std::span<const DistanceAt> path, double dead_band_m,
                   const OracleSettings& settings);
 
+/// Where the last approach to a landing begins: an index. Distances are medians over a window, so
+/// that single errors are no retreat. After a retreat it begins with the movement that leaves the
+/// turning point; a pause there does not belong to it.
+int LandingApproachBegin(std::span<const DistanceAt> path, const OracleSettings& settings);
+
 /// The frame, in [earliest, touch], at which the hand's reach for the body began that ended with
 /// touching it.
 int ReachBegin(const Evidence& evidence, const OracleSettings& settings, int hand, int body,

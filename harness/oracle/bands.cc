@@ -18,8 +18,10 @@ std::span<const Band> DefinitionBands() {
       Band{"reach region", &S::reach_radius_m, 0.25, 0.35},
       Band{"reach dead-band", &S::reach_dead_band_m, 0.020, 0.030},
       Band{"reach idle speed", &S::idle_speed_m_per_s, 0.007, 0.015},
+      Band{"reach idle way", &S::idle_excursion_m, 0.002, 0.0035},
+      Band{"reach idle window", &S::idle_window_s, 0.4, 0.6},
       Band{"reach idle time", &S::reach_idle_s, 0.4, 0.6},
-      Band{"reach onset", &S::onset_speed_m_per_s, 0.0005, 0.003},
+      Band{"onset", &S::onset_speed_m_per_s, 0.0005, 0.003},
       Band{"turn pause", &S::turn_pause_s, 0.05, 0.2},
       Band{"reach minimum", &S::reach_minimum_s, 0.08, 0.12},
       Band{"slide speed", &S::slide_speed_m_per_s, 0.007, 0.015},
@@ -35,6 +37,7 @@ std::span<const Band> DefinitionBands() {
       Band{"put height", &S::put_down_height_m, 0.07, 0.09},
       Band{"put look-back", &S::put_down_look_back_s, 3.0, 4.0},
       Band{"put dead-band", &S::put_down_dead_band_m, 0.004, 0.006},
+      Band{"put window", &S::put_down_window_s, 0.08, 0.12},
   };
   return kBands;
 }

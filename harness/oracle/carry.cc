@@ -159,7 +159,7 @@ class Carrier {
     std::vector<DistanceAt> path;
     for (int frame = near; frame < landing; ++frame)
       path.push_back({recording_.Seconds(near, frame), (place(frame) - region.anchor).norm()});
-    const int begin = near + ApproachBegin(path, settings_.put_down_dead_band_m, settings_);
+    const int begin = near + LandingApproachBegin(path, settings_);
     // How high it was before it last moved away does not make this approach one from above.
     if (Highest({begin, landing}) - region.anchor.z() < settings_.put_down_drop_m)
       return std::nullopt;

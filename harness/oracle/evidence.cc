@@ -161,6 +161,14 @@ class EvidenceReader {
   std::map<Pair, std::vector<Push>> pushes_;
 };
 
+/// The farthest that palm or a finger is in one state from where it is in the other.
+double Farthest_m(const physics::HandState& a, const physics::HandState& b) {
+  double farthest_m = (a.palm.X_WB.p_m - b.palm.X_WB.p_m).norm();
+  for (std::size_t i = 0; i < a.X_WL.size(); ++i)
+    farthest_m = std::max(farthest_m, (a.X_WL[i].p_m - b.X_WL[i].p_m).norm());
+  return farthest_m;
+}
+
 constexpr double kUnknown = -1;
 
 /// The value of a frame, computed when it is first asked for.
@@ -186,12 +194,24 @@ double Evidence::Distance_m(int hand, int body, int frame) const {
 
 double Evidence::Motion_m_per_s(int hand, int frame) const {
   return Cached(motions_[hand], recording.size(), frame, [&] {
-    const physics::HandState &now = recording.hand(hand, frame),
-                             &before = recording.hand(hand, frame - 1);
-    double farthest = (now.palm.X_WB.p_m - before.palm.X_WB.p_m).norm();
-    for (std::size_t i = 0; i < now.X_WL.size(); ++i)
-      farthest = std::max(farthest, (now.X_WL[i].p_m - before.X_WL[i].p_m).norm());
-    return farthest / recording.Seconds(frame - 1, frame);
+    return Farthest_m(recording.hand(hand, frame), recording.hand(hand, frame - 1)) /
+           recording.Seconds(frame - 1, frame);
+  });
+}
+
+double Evidence::Apart_m(int hand, int frame, int other) const {
+  return Farthest_m(recording.hand(hand, frame), recording.hand(hand, other));
+}
+
+double Evidence::Excursion_m(int hand, int frame, double window_s, int end) const {
+  return Cached(excursions_[{hand, window_s, end}], recording.size(), frame, [&] {
+    const physics::HandState& here = recording.hand(hand, frame);
+    double farthest_m = 0;
+    for (int i = frame - 1; i >= 0 && recording.Seconds(i, frame) <= window_s / 2; --i)
+      farthest_m = std::max(farthest_m, Farthest_m(here, recording.hand(hand, i)));
+    for (int i = frame + 1; i < end && recording.Seconds(frame, i) <= window_s / 2; ++i)
+      farthest_m = std::max(farthest_m, Farthest_m(here, recording.hand(hand, i)));
+    return farthest_m;
   });
 }
 

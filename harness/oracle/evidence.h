@@ -4,6 +4,7 @@
 // serves every choice of numbers. Tested by tests/harness/oracle/oracle_test.cc
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -45,10 +46,22 @@ class Evidence {
   double Distance_m(int hand, int body, int frame) const;
   /// How fast palm and fingers moved since the frame before: the fastest of them, m/s.
   double Motion_m_per_s(int hand, int frame) const;
+  /// How far palm or a finger is in one frame from where it is in another: the farthest, metres.
+  double Apart_m(int hand, int frame, int other) const;
+  /// How far palm or a finger gets from where it is, within `window_s` / 2 before or after, in
+  /// frames before `end`: the farthest of them, metres.
+  double Excursion_m(int hand, int frame, double window_s, int end) const;
 
  private:
+  struct Stretch {
+    int hand = 0;
+    double window_s = 0;
+    int end = 0;
+    friend auto operator<=>(const Stretch&, const Stretch&) = default;
+  };
   mutable std::map<Pair, std::vector<double>> distances_;
   mutable std::map<int, std::vector<double>> motions_;
+  mutable std::map<Stretch, std::vector<double>> excursions_;
 };
 
 /// Whether the body's true shape reaches into the hand's region of interest: the sphere ahead of

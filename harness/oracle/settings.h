@@ -17,7 +17,9 @@ struct OracleSettings {
   double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
   int grasp_sensor_sets = 2;            ///< of one hand on the object
 
-  double idle_speed_m_per_s = 0.01;    ///< slower is standing still
+  double idle_speed_m_per_s = 0.01;    ///< slower is standing still,
+  double idle_excursion_m = 0.0025;    ///< and so is getting no farther than this
+  double idle_window_s = 0.5;          ///< within half of this before or after
   double onset_speed_m_per_s = 0.001;  ///< a movement begins slowly; slower is not moving yet
   double turn_pause_s = 0.1;           ///< standing still for longer before returning is a pause
 
@@ -39,6 +41,7 @@ struct OracleSettings {
   double put_down_radius_m = 0.09, put_down_height_m = 0.08;
   double put_down_look_back_s = 3.3;
   double put_down_dead_band_m = 0.005;  ///< moving away by less is not moving away
+  double put_down_window_s = 0.1;       ///< distances are medians over it
 };
 
 }  // namespace prehend::harness
