@@ -14,7 +14,7 @@ namespace prehend::harness {
 /// What became of one claim.
 struct ClaimVerdict {
   std::string claim;  ///< as written
-  std::string place;  ///< "scenarios/slide/x.yaml:31"
+  std::string place;  ///< "slide/x.yaml:31"
   std::string says;   ///< kHolds, kContradicted or kNotJudged
   std::string found;  ///< "found 11", or why the claim is not judged
   std::string times;  ///< a line for each event that the claim is about
@@ -28,7 +28,7 @@ std::vector<ClaimVerdict> JudgeClaims(const std::vector<Claim>& claims, const st
                                       const ClaimableEvents& known,
                                       const grammar::Timeline& timeline);
 
-/// "expects: '12 pick_and_place(right_hand, any)' (scenarios/long/x.yaml:31): found 11"
+/// "expects: '12 pick_and_place(right_hand, any)' (long/x.yaml:31): found 11"
 std::string Text(const ClaimVerdict& verdict);
 
 bool IsContradicted(const ClaimVerdict& verdict);

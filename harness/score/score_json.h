@@ -14,7 +14,7 @@ namespace prehend::harness::score {
 /// each is.
 nlohmann::ordered_json ScoresJson(const std::vector<Score>& scores, double collar_s);
 
-/// {"by_event": {"sliding": {"of", "confirmed"}}, "differences": ["..", ..]}
+/// {"by_event": {EVENT: {"of", "confirmed"}}, "differences": ["..", ..]}
 nlohmann::ordered_json TestimonyJson(const Testimony& testimony);
 Testimony TestimonyFromJson(const nlohmann::ordered_json& json);
 
