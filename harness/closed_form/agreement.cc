@@ -19,7 +19,7 @@ using grammar::Tick;
 constexpr double kSameMoment_ticks = 1e-6;
 
 /// A label without the names of its roles; they have none on paper.
-NamedEvent Named(const KnownEvent& known, double rate_hz) {
+NamedEvent AsEvent(const KnownEvent& known, double rate_hz) {
   const std::size_t open = known.label.find('('), comma = known.label.find(", ", open);
   return {.event = known.label.substr(0, open),
           .roles = {{"", known.label.substr(open + 1, comma - open - 1)},
@@ -80,7 +80,7 @@ std::vector<JudgedEvent> ClosedFormAgreement(const std::vector<KnownEvent>& trut
   std::vector<KnownEvent> known = truth;
   std::ranges::stable_sort(known, {}, &KnownEvent::begin_s);
   std::vector<NamedEvent> expected;
-  for (const KnownEvent& event : known) expected.push_back(Named(event, rate_hz));
+  for (const KnownEvent& event : known) expected.push_back(AsEvent(event, rate_hz));
   const Tick frame = std::lround(std::ceil(rate_hz / recording.scenario.sensing.sensing_hz));
   const Judge judge(recording);
   std::vector<JudgedEvent> judged;
