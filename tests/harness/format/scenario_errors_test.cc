@@ -33,7 +33,7 @@ const Case kCases[] = {
        "2:1: unknown key 'show' in the scenario | did you mean 'shows'?\n"},
       {"unknown_key_far", "shows:", "explanation:", kRefuses,
        "1:1: the scenario needs the key 'shows'\n"
-       "2:1: unknown key 'explanation' in the scenario | known: scenario, shows, grammar, tags, world, entities, classes, actors, script, settle_s, vary, outcomes, pictures\n"},
+       "2:1: unknown key 'explanation' in the scenario | known: scenario, shows, expects, grammar, tags, world, entities, classes, actors, script, settle_s, vary, outcomes, pictures\n"},
       {"wrong_unit", "mass_kg: 0.4", "mass_g: 400", kRefuses,
        "7:45: unknown key 'mass_g' in entity 'milk' | did you mean 'mass_kg'?\n"},
       {"wrong_unit_far", "size_m: [0.07", "size_inch: [0.07", kRefuses,

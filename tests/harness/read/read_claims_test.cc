@@ -40,7 +40,7 @@ TEST(ReadClaims, ErrorsPointAtTheLetter) {
             "3:35: expects: expected 'then', 'while', 'lies inside' or one of Allen's relations, "
             "found 'meet' | did you mean 'meets'?\n");
   EXPECT_EQ(Brief(ErrorsOf(ReadWith("", {"expects=[no sliding, one]"}))),
-            "--set:1:26: expects: expected an event, found the end\n");
+            "--set:1:25: expects: expected an event, found the end\n");
 }
 
 TEST(ReadClaims, HaveLimits) {
