@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A closed form as written (docs/closed-form.md): a recording without physics, and the events in it
 // that are known on paper. harness/format/closed_form_fields.cc says how each field is called;
-// harness/closed_form/read_closed_form.h computes the recording. Tested by
+// harness/closed_form/closed_form.h computes the recording. Tested by
 // tests/harness/closed_form/read_closed_form_test.cc
 #pragma once
 

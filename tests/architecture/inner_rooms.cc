@@ -78,9 +78,9 @@ const Arrows& ProjectArrows() {
       {"harness/report", {"harness/base", "harness/check", "harness/golden", "harness/timeline"}},
       {"harness/cli",
        {"grammar", "grammar/base", "harness/base", "harness/check", "harness/closed_form",
-        "harness/explain", "harness/format", "harness/golden", "harness/judge", "harness/oracle", "harness/pictures",
-        "harness/process", "harness/read", "harness/report", "harness/run", "harness/score",
-        "harness/sense", "harness/speed", "harness/timeline"}},
+        "harness/explain", "harness/format", "harness/golden", "harness/judge", "harness/oracle",
+        "harness/pictures", "harness/process", "harness/read", "harness/report", "harness/run",
+        "harness/score", "harness/sense", "harness/speed", "harness/timeline"}},
   };
   return arrows;
 }
