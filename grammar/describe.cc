@@ -19,12 +19,12 @@ void Include(Wait& wait, const Wait& other) {
 // The begin or the end of another rule's interval, in the roles of the one that asks.
 struct Edge {
   Op op = Op::kBegins;
-  int rule = kNone;
+  RuleId rule;
   Binding roles = kUnbound;
   friend bool operator==(const Edge&, const Edge&) = default;
 };
 
-std::optional<Edge> EdgeOf(const Program& program, const Rule& rule, int index) {
+std::optional<Edge> EdgeOf(const Program& program, const Rule& rule, NodeId index) {
   const Node& node = program.nodes[index];
   if (node.op != Op::kBegins && node.op != Op::kEnds) return std::nullopt;
   const Node& arg = program.nodes[node.args[0]];
@@ -40,12 +40,12 @@ class Waits {
         end_(program.rules.size()),
         truth_(program.rules.size()),
         settled_(program.rules.size()) {
-    for (const int rule : program.schedule) Work(rule);
+    for (const RuleId rule : program.schedule) Work(rule);
   }
-  const Wait& OfEnd(int rule) const { return end_[rule]; }
+  const Wait& OfEnd(RuleId rule) const { return end_[rule]; }
 
  private:
-  void Work(int index) {
+  void Work(RuleId index) {
     const Rule& rule = program_.rules[index];
     Wait& end = end_[index];
     const std::optional<Edge> settling = SettlesWhereItEnds(rule);
@@ -83,7 +83,7 @@ class Waits {
 
   // Null if that is no such rule, or if its roles are not those of the rule that asks.
   const Settled* SettledBy(const Reference& reference) const {
-    const std::optional<Settled>& settled = settled_[static_cast<std::size_t>(reference.rule)];
+    const std::optional<Settled>& settled = settled_[reference.rule];
     for (std::size_t i = 0; i < program_.rules[reference.rule].roles.size(); ++i) {
       if (reference.roles[i] != static_cast<int>(i)) return nullptr;
     }
@@ -119,9 +119,9 @@ class Waits {
   }
 
   const Program& program_;
-  std::vector<Wait> end_;
-  std::vector<Wait> truth_;
-  std::vector<std::optional<Settled>> settled_;  // those that are
+  IdVector<RuleId, Wait> end_;
+  IdVector<RuleId, Wait> truth_;
+  IdVector<RuleId, std::optional<Settled>> settled_;  // those that are
 };
 
 std::string Watched(const Program& program, const Rule& rule) {
@@ -190,8 +190,8 @@ GrammarDescription Describe(const Program& program) {
                                  .bytes_per_pose = sizeof(FrameNumber) + sizeof(EntitySample),
                                  .bytes_per_feeler = sizeof(CollisionSphere)};
   const Waits waits(program);
-  for (std::size_t i = 0; i < program.rules.size(); ++i) {
-    const Rule& rule = program.rules[i];
+  for (const RuleId id : IdsOf(program.rules)) {
+    const Rule& rule = program.rules[id];
     const auto* looks_back = rule.If<UntilSinceRule>();
     description.history_s =
         std::max(description.history_s,
@@ -200,7 +200,7 @@ GrammarDescription Describe(const Program& program) {
     description.rules.push_back({.name = rule.name,
                                  .head = Head(rule),
                                  .printed = rule.printed,
-                                 .latency = waits.OfEnd(static_cast<int>(i)),
+                                 .latency = waits.OfEnd(id),
                                  .watched = Watched(program, rule),
                                  .bytes_per_binding = BytesPerBinding(rule),
                                  .bytes_per_interval = rule.referenced ? sizeof(Span) : 0});
@@ -212,7 +212,7 @@ GrammarDescription Describe(const Program& program) {
 std::string Text(const GrammarDescription& description) {
   std::string text = "grammar " + description.name + "\n\n";
   for (const RuleDescription& rule : description.rules) {
-    text += rule.head + "\n    decided: " + Text(rule.latency) + "; watched: " + rule.watched +
+    text += rule.head + "\n    decided: " + Text(rule.latency) + "; evaluated: " + rule.watched +
             "\n    memory: at most " + std::to_string(rule.bytes_per_binding) +
             " bytes per binding";
     if (rule.bytes_per_interval > 0)

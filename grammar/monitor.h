@@ -13,7 +13,7 @@
 
 namespace prehend::grammar {
 
-/// Watches one episode. Allocates nothing per frame after warm-up.
+/// Evaluates a program on one episode. Allocates nothing per frame after warm-up.
 class Monitor {
  public:
   /// Errors (e.g. more bindings than the limit) are reported by error().
@@ -22,7 +22,7 @@ class Monitor {
   Monitor(Monitor&&) noexcept;
   Monitor& operator=(Monitor&&) noexcept;
 
-  /// Empty, or why this program can't watch this entity_table.
+  /// Empty, or why this program cannot be evaluated on this entity table.
   const std::string& error() const;
 
   /// Looks at one frame and appends the events that became certain, ordered by (decided, begin,

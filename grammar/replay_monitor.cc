@@ -88,7 +88,7 @@ Tick ReplayMonitor::AtMostTicks(double seconds) const {
   return state_->engine.history().AtMostTicks(seconds);
 }
 
-InstanceId ReplayMonitor::InstanceOf(int rule, const Binding& entities) {
+InstanceId ReplayMonitor::InstanceOf(RuleId rule, const Binding& entities) {
   return state_->engine.instances().Ensure(rule, entities);
 }
 
@@ -97,7 +97,7 @@ InstanceId ReplayMonitor::Referred(InstanceId instance, int slot) {
   return instances.Resolve(instances[instance], slot);
 }
 
-std::vector<InstanceId> ReplayMonitor::InstancesOf(int rule) const {
+std::vector<InstanceId> ReplayMonitor::InstancesOf(RuleId rule) const {
   std::vector<InstanceId> instances;
   const InstanceId end = state_->engine.instances().end_id();
   for (InstanceId instance(0); instance < end; ++instance) {
@@ -152,15 +152,15 @@ Evaluator::View ReplayMonitor::State::View(const Moment& at) {
   return view;
 }
 
-bool ReplayMonitor::Truth(int node, const Moment& at) {
+bool ReplayMonitor::Truth(NodeId node, const Moment& at) {
   return state_->engine.evaluator().Truth(node, state_->View(at)) == Kleene::kTrue;
 }
 
-std::optional<double> ReplayMonitor::Number(int node, const Moment& at) {
+std::optional<double> ReplayMonitor::Number(NodeId node, const Moment& at) {
   return state_->engine.evaluator().Number(node, state_->View(at));
 }
 
-std::optional<Reach> ReplayMonitor::ReachOf(int node, const Moment& at) {
+std::optional<Reach> ReplayMonitor::ReachOf(NodeId node, const Moment& at) {
   return state_->engine.evaluator().ReachOf(program().nodes[node], state_->View(at));
 }
 

@@ -26,7 +26,7 @@ class ReplayMonitor {
   ReplayMonitor(const ReplayMonitor&) = delete;
   ReplayMonitor& operator=(const ReplayMonitor&) = delete;
 
-  /// Empty, or why this program can't watch this entity table or these frames.
+  /// Empty, or why this program cannot be evaluated on this entity table or these frames.
   const std::string& error() const;
   void Advance(const Frame& frame);
   /// As Monitor::Finish(). Before, nothing below may be asked for, and after, nothing be added.
@@ -46,11 +46,11 @@ class ReplayMonitor {
 
   /// The binding of a rule, whether or not anything ever happened to it; kNone if an entity's class
   /// does not fit.
-  InstanceId InstanceOf(int rule, const Binding& entities);
+  InstanceId InstanceOf(RuleId rule, const Binding& entities);
   /// The binding that a reference of this one means, likewise.
   InstanceId Referred(InstanceId instance, int slot);
   /// All bindings of a rule that were ever looked at, by entities.
-  std::vector<InstanceId> InstancesOf(int rule) const;
+  std::vector<InstanceId> InstancesOf(RuleId rule) const;
   const Rule& RuleOf(InstanceId instance) const;
   /// By role.
   const Binding& EntitiesOf(InstanceId instance) const;
@@ -72,9 +72,9 @@ class ReplayMonitor {
     std::optional<FrameNumber> begin = std::nullopt;
     std::optional<FrameNumber> end = std::nullopt;
   };
-  bool Truth(int node, const Moment& at);
-  std::optional<double> Number(int node, const Moment& at);
-  std::optional<Reach> ReachOf(int node, const Moment& at);
+  bool Truth(NodeId node, const Moment& at);
+  std::optional<double> Number(NodeId node, const Moment& at);
+  std::optional<Reach> ReachOf(NodeId node, const Moment& at);
 
  private:
   struct State;

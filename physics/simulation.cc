@@ -19,8 +19,14 @@ namespace {
 constexpr double kMaxRun_s = 1800;
 
 std::unique_ptr<World> MakeWorld(const Scene& scene, const std::vector<int>& styles) {
-  return scene.world.engine == Engine::kBox2d ? MakeBox2dWorld(scene, styles)
-                                              : MakeBulletWorld(scene, styles);
+  switch (scene.world.engine) {
+    case Engine::kBox2d:
+      return MakeBox2dWorld(scene, styles);
+    case Engine::kBullet:
+    case Engine::kBulletStock:
+      break;
+  }
+  return MakeBulletWorld(scene, styles);
 }
 
 }  // namespace

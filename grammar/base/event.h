@@ -6,6 +6,7 @@
 #include <array>
 
 #include "grammar/base/frame.h"
+#include "grammar/base/ids.h"
 
 namespace prehend::grammar {
 
@@ -14,7 +15,7 @@ inline constexpr int kMaxAttributes = 4;
 
 /// One recognised event. Names are in Program::rules[rule].
 struct Event {
-  int rule = 0;
+  RuleId rule;
   std::array<int, kMaxRoles> roles = {kNoEntity, kNoEntity, kNoEntity, kNoEntity};  ///< entity ids
   Interval interval;
   Tick decided = 0;       ///< the tick of the frame at which it became certain

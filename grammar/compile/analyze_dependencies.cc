@@ -28,7 +28,7 @@ bool ImpliesTouch(const Program& program, const Node& node) {
 
 // References that must be true whenever the node is; at a moment they may have been so up to there,
 // if `at_moments`.
-void CollectNecessary(const Program& program, int index, std::vector<int>& references,
+void CollectNecessary(const Program& program, NodeId index, std::vector<int>& references,
                       bool at_moments = true) {
   if (index == kNone) return;
   const Node& node = program.nodes[index];
@@ -119,7 +119,7 @@ bool GuardsBegin(const Program& program, const Rule& rule) {
 }
 
 // A moment that must be there when something begins, if it is the begin or the end of an event.
-void FindOpening(const Program& program, Rule& rule, int index) {
+void FindOpening(const Program& program, Rule& rule, NodeId index) {
   const Node& node = program.nodes[index];
   if (node.op == Op::kAnd) {
     FindOpening(program, rule, node.args[0]);
@@ -137,38 +137,38 @@ bool IsLook(Op op) {
   return asks != Asks::kNothing && asks != Asks::kTouching;
 }
 
-bool UsesLooks(const Program& program, int index) {
+bool UsesLooks(const Program& program, NodeId index) {
   if (index == kNone) return false;
   const Node& node = program.nodes[index];
   return IsLook(node.op) || std::any_of(node.args.begin(), node.args.end(),
-                                        [&](int arg) { return UsesLooks(program, arg); });
+                                        [&](NodeId arg) { return UsesLooks(program, arg); });
 }
 
 // For values of a touch, not only for thresholds that it has crossed.
-bool AsksTouches(const Program& program, int index) {
+bool AsksTouches(const Program& program, NodeId index) {
   if (index == kNone) return false;
   const Node& node = program.nodes[index];
   if (node.by_threshold.value != kNone) return false;
   return AskedBy(node.op) == Asks::kTouchValues ||
          std::any_of(node.args.begin(), node.args.end(),
-                     [&](int arg) { return AsksTouches(program, arg); });
+                     [&](NodeId arg) { return AsksTouches(program, arg); });
 }
 
 // Whether it compares what a touch measures with thresholds.
-bool ComparesTouches(const Program& program, int index) {
+bool ComparesTouches(const Program& program, NodeId index) {
   if (index == kNone) return false;
   const Node& node = program.nodes[index];
   if (node.by_threshold.value != kNone)
     return program.nodes[node.by_threshold.value].op != Op::kTrigger;
   return std::any_of(node.args.begin(), node.args.end(),
-                     [&](int arg) { return ComparesTouches(program, arg); });
+                     [&](NodeId arg) { return ComparesTouches(program, arg); });
 }
 
-double LooksAround(const Program& program, int index) {
+double LooksAround(const Program& program, NodeId index) {
   if (index == kNone) return 0;
   const Node& node = program.nodes[index];
   double seconds = 0;
-  for (const int arg : node.args) seconds = std::max(seconds, LooksAround(program, arg));
+  for (const NodeId arg : node.args) seconds = std::max(seconds, LooksAround(program, arg));
   return HasWindow(node.op) ? seconds + node.number / 2 : seconds;
 }
 
@@ -194,7 +194,7 @@ void FindThreshold(Program& program, Node& node) {
   if (node.op < Op::kLess || node.op > Op::kGreaterEqual) return;
   const bool mirrored = program.nodes[node.args[0]].op == Op::kNumber;
   const Op op = mirrored ? Mirrored(node.op) : node.op;
-  const int value = node.args[mirrored ? 1 : 0];
+  const NodeId value = node.args[mirrored ? 1 : 0];
   const Node& number = program.nodes[node.args[mirrored ? 0 : 1]];
   const Builtin* const signal = FindBuiltin(program.nodes[value].op);
   if (number.op != Op::kNumber || signal == nullptr || !signal->measured_as) return;
@@ -238,7 +238,7 @@ bool AddMeasured(const Program& program, MeasuredPart& part, const ByThreshold& 
   return true;
 }
 
-void FindMeasured(const Program& program, const Rule& rule, MeasuredPart& part, int index) {
+void FindMeasured(const Program& program, const Rule& rule, MeasuredPart& part, NodeId index) {
   const Node& node = program.nodes[index];
   const bool touching = node.op == Op::kHolds && rule.references[node.slot].rule == kTouchingRule;
   if (node.op == Op::kAnd) {
@@ -269,7 +269,7 @@ bool IsInstant(const Rule& rule) {
 }
 
 // A value where the interval begins or ends is not asked for at every frame.
-void WatchEntities(const Program& program, Rule& rule, int index) {
+void WatchEntities(const Program& program, Rule& rule, NodeId index) {
   if (index == kNone) return;
   const Node& node = program.nodes[index];
   if (node.by_threshold.value != kNone) return WatchThresholds(program, rule, node.by_threshold);
@@ -281,11 +281,11 @@ void WatchEntities(const Program& program, Rule& rule, int index) {
     if (role != kNone && asks == Asks::kGrip) rule.watches_grip[role] = true;
     if (role != kNone && asks == Asks::kPoses) rule.watches_pose[role] = true;
   }
-  for (const int arg : node.args) WatchEntities(program, rule, arg);
+  for (const NodeId arg : node.args) WatchEntities(program, rule, arg);
 }
 
 // A composition gets finished intervals; every other rule asks for the truth at a frame.
-void MarkReferenced(Program& program, int index) {
+void MarkReferenced(Program& program, RuleId index) {
   const Rule& rule = program.rules[index];
   const auto* composition = rule.If<ComposeRule>();
   if (composition == nullptr) {
@@ -294,7 +294,7 @@ void MarkReferenced(Program& program, int index) {
     return;
   }
   for (std::size_t part = 0; part < composition->parts.size(); ++part) {
-    const int target = rule.references[composition->parts[part]].rule;
+    const RuleId target = rule.references[composition->parts[part]].rule;
     program.rules[target].part_of.push_back({index, static_cast<int>(part)});
   }
 }
@@ -320,7 +320,7 @@ void FindMeasured(const Program& program, Rule& rule) {
 // others must know at all times.
 void WatchEntities(const Program& program, Rule& rule) {
   const auto* looks_back = rule.If<UntilSinceRule>();
-  for (const int node : ConditionsOf(rule)) {
+  for (const NodeId node : ConditionsOf(rule)) {
     const bool later = looks_back != nullptr && node == looks_back->since && !rule.referenced;
     if (!later) WatchEntities(program, rule, node);
   }
@@ -330,8 +330,7 @@ void WatchEntities(const Program& program, Rule& rule) {
 
 void ChooseGuards(Program& program) {
   for (Node& node : program.nodes) FindThreshold(program, node);
-  for (std::size_t i = 0; i < program.rules.size(); ++i)
-    MarkReferenced(program, static_cast<int>(i));
+  for (const RuleId rule : IdsOf(program.rules)) MarkReferenced(program, rule);
   for (Rule& rule : program.rules) {
     rule.guard = ChooseGuard(program, rule);
     rule.guarded_begin = GuardsBegin(program, rule);
@@ -340,16 +339,16 @@ void ChooseGuards(Program& program) {
     FindMeasured(program, rule);
 
     const Approach* const approach = ApproachOf(rule);
-    std::vector<int> nodes = ConditionsOf(rule);
+    std::vector<NodeId> nodes = ConditionsOf(rule);
     nodes.push_back(rule.requirement);
     rule.uses_looks =
         rule.style_role != kNone || approach != nullptr || !rule.anchors.empty() ||
         !rule.attributes.empty() ||
-        std::ranges::any_of(nodes, [&](int node) { return UsesLooks(program, node); });
+        std::ranges::any_of(nodes, [&](NodeId node) { return UsesLooks(program, node); });
     nodes.insert(nodes.end(), rule.anchors.begin(), rule.anchors.end());
     for (const RuleAttribute& attribute : rule.attributes) nodes.push_back(attribute.node);
     if (approach != nullptr) nodes.insert(nodes.end(), {approach->signal, approach->motion});
-    for (const int node : nodes) {
+    for (const NodeId node : nodes) {
       rule.looks_around_s = std::max(rule.looks_around_s, LooksAround(program, node));
       program.asks_touches = program.asks_touches || AsksTouches(program, node);
       program.recalls_touches =

@@ -179,7 +179,7 @@ class Compiler {
   }
 
   void CollectHead(const Source& source, const Definition& definition) {
-    const int index = static_cast<int>(program_.rules.size());
+    const RuleId index = program_.rules.end_id();
     if (program_.rules.size() > kMaxRules) {
       if (program_.rules.size() == kMaxRules + 1)
         Complain(source, definition.place, "the grammar has more than 1000 rules");
@@ -233,7 +233,7 @@ class Compiler {
         const auto rule = symbols_.rules.find(define.name);
         if (rule != symbols_.rules.end() &&
             IsLater(program_.rules[rule->second].file, source.text.file)) {
-          const Located& located = definitions_[rule->second - 1];
+          const Located& located = definitions_[rule->second.index() - 1];
           Complain(*located.source, located.definition->place,
                    "'" + define.name + "' is defined twice",
                    FirstAt(source.text.file, define.place));
@@ -308,15 +308,15 @@ class Compiler {
           {}};
       scratch.rules.resize(program_.rules.size());
       scratch.nodes.clear();
-      Rule& rule = scratch.rules.emplace_back();
+      const RuleId body = scratch.rules.push_back({});
+      Rule& rule = scratch.rules[body];
       rule.place = source.define->place;
       for (const ast::Role& parameter : source.define->parameters) {
         if (parameter.class_name != "number" && parameter.class_name != "position") {
           rule.roles.push_back({parameter.name, parameter.class_name});
         }
       }
-      Lowering(symbols, static_cast<int>(scratch.rules.size()) - 1, *source.text, diagnostics_)
-          .Check(source);
+      Lowering(symbols, body, *source.text, diagnostics_).Check(source);
       symbols_.used_params.merge(symbols.used_params);
       if (!diagnostics_.empty()) return;
     }
@@ -363,8 +363,7 @@ class Compiler {
 
   void LowerAll() {
     for (std::size_t i = 0; i < definitions_.size(); ++i) {
-      LowerDefinition(*definitions_[i].source, *definitions_[i].definition,
-                      static_cast<int>(i) + 1);
+      LowerDefinition(*definitions_[i].source, *definitions_[i].definition, RuleId(i + 1));
     }
     for (const Source& source : sources_) {
       for (const ast::Law& written : source.file.laws) {
@@ -374,7 +373,7 @@ class Compiler {
     }
   }
 
-  void LowerDefinition(const Source& source, const Definition& definition, int index) {
+  void LowerDefinition(const Source& source, const Definition& definition, RuleId index) {
     Lowering lowering(symbols_, index, source.text, diagnostics_);
     const std::size_t before = diagnostics_.size();
     LowerDefinitionInto(program_, index, definition, lowering);
@@ -391,14 +390,14 @@ class Compiler {
   // Depth first; a rule that is met again while its own references are followed refers to itself.
   void Order() {
     enum class Mark { kNew, kOpen, kDone };
-    std::vector<Mark> marks(program_.rules.size(), Mark::kNew);
+    IdVector<RuleId, Mark> marks(program_.rules.size(), Mark::kNew);
     struct Step {
-      int rule;
+      RuleId rule;
       std::size_t next = 0;
     };
-    for (std::size_t root = 0; root < program_.rules.size(); ++root) {
+    for (const RuleId root : IdsOf(program_.rules)) {
       std::vector<Step> path;
-      if (marks[root] == Mark::kNew) path.push_back({static_cast<int>(root)});
+      if (marks[root] == Mark::kNew) path.push_back({root});
       while (!path.empty()) {
         Step& step = path.back();
         const Rule& rule = program_.rules[step.rule];
@@ -409,9 +408,9 @@ class Compiler {
           path.pop_back();
           continue;
         }
-        const int target = rule.references[step.next++].rule;
+        const RuleId target = rule.references[step.next++].rule;
         if (marks[target] == Mark::kOpen) {
-          std::vector<int> circle;
+          std::vector<RuleId> circle;
           for (auto link = path.rbegin(); circle.empty() || circle.back() != target; ++link)
             circle.push_back(link->rule);
           return ComplainCycle({circle.rbegin(), circle.rend()});
@@ -423,15 +422,15 @@ class Compiler {
 
   // Rules that each use the next one, and the last one the first; those that the compiler made
   // are left out.
-  void ComplainCycle(std::vector<int> circle) {
-    std::erase_if(circle, [&](int rule) { return program_.rules[rule].hidden; });
+  void ComplainCycle(std::vector<RuleId> circle) {
+    std::erase_if(circle, [&](RuleId rule) { return program_.rules[rule].hidden; });
     const Rule& first = program_.rules[circle.front()];
     std::string hint;
     for (std::size_t i = 0; circle.size() > 1 && i < circle.size(); ++i) {
       hint += (i == 0 ? "" : ", ") + program_.rules[circle[i]].name + " uses " +
               program_.rules[circle[(i + 1) % circle.size()]].name;
     }
-    Complain(*definitions_[circle.front() - 1].source, first.place,
+    Complain(*definitions_[circle.front().index() - 1].source, first.place,
              "'" + first.name + "' refers to itself",
              hint.empty() ? "a rule may only use rules that do not use it" : hint);
   }
@@ -455,7 +454,7 @@ class Compiler {
       warn(define.place, "the definition '" + define.name + "' is not used",
            "use it, or leave it out");
     }
-    std::vector<bool> reached(program_.rules.size());
+    IdVector<RuleId, char> reached(program_.rules.size());
     for (auto rule = program_.schedule.rbegin(); rule != program_.schedule.rend(); ++rule) {
       if (!reached[*rule] && !program_.rules[*rule].printed) continue;
       reached[*rule] = true;

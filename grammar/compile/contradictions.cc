@@ -45,7 +45,7 @@ Op Negated(Op op) {
 
 }  // namespace
 
-bool Bounds::Add(int index, bool negated) {
+bool Bounds::Add(NodeId index, bool negated) {
   const Node& node = program_.nodes[index];
   switch (node.op) {
     case Op::kNot:
@@ -79,7 +79,7 @@ bool Bounds::Add(int index, bool negated) {
 }
 
 // Of `or` nothing is known.
-bool Bounds::AddBefore(int moment) {
+bool Bounds::AddBefore(NodeId moment) {
   const Node& node = program_.nodes[moment];
   if (node.op == Op::kAnd) return AddBefore(node.args[0]) && AddBefore(node.args[1]);
   if (node.op == Op::kEnds) return Add(node.args[0]);
@@ -87,7 +87,7 @@ bool Bounds::AddBefore(int moment) {
 }
 
 // Whether an interval may begin where the one before it ends: of a truth value, none does.
-bool Bounds::MayFollowAtOnce(int index) const {
+bool Bounds::MayFollowAtOnce(NodeId index) const {
   const Node& node = program_.nodes[index];
   if (node.op != Op::kHolds) return false;
   const Form form = program_.rules[rule_.references[node.slot].rule].form();
@@ -110,14 +110,14 @@ bool Bounds::AddClass(const Node& is, bool negated) {
   return true;
 }
 
-bool Bounds::AddAtom(int index, bool negated) {
+bool Bounds::AddAtom(NodeId index, bool negated) {
   return Narrow(Signature(program_, rule_, index), {.low = 0, .high = 1}, Op::kEqual,
                 negated ? 0 : 1);
 }
 
 bool Bounds::AddComparison(Op op, const Node& comparison) {
-  const int left = comparison.args[0];
-  const int right = comparison.args[1];
+  const NodeId left = comparison.args[0];
+  const NodeId right = comparison.args[1];
   const Range of_left = RangeOf(program_, rule_, left);
   const Range of_right = RangeOf(program_, rule_, right);
   if (Judge(op, of_left, of_right) == Verdict::kNever) return false;
@@ -165,7 +165,8 @@ bool Bounds::SomeAlternativeFits() const {
 bool Bounds::SomeFits(std::size_t next, int& budget) const {
   if (next == alternatives_.size() || --budget < 0) return true;
   const Alternative& chosen = alternatives_[next];
-  for (const int arg : {program_.nodes[chosen.node].args[0], program_.nodes[chosen.node].args[1]}) {
+  for (const NodeId arg :
+       {program_.nodes[chosen.node].args[0], program_.nodes[chosen.node].args[1]}) {
     Bounds so_far = *this;
     if (so_far.Add(arg, chosen.negated) && so_far.SomeFits(next + 1, budget)) return true;
   }

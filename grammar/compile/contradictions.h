@@ -22,9 +22,9 @@ class Bounds {
 
   /// Adds what must be so for this truth value to be true. False: it contradicts what was added
   /// before.
-  bool Add(int node, bool negated = false);
+  bool Add(NodeId node, bool negated = false);
   /// Adds what must have been so one frame before a moment: false what begins, true what ends.
-  bool AddBefore(int moment);
+  bool AddBefore(NodeId moment);
   /// False: whichever of the alternatives (of an `or`) one takes, it contradicts the rest. Gives up
   /// where there are very many.
   bool SomeAlternativeFits() const;
@@ -36,12 +36,12 @@ class Bounds {
     bool high_open = false;
   };
   struct Alternative {
-    int node = kNone;
+    NodeId node;
     bool negated = false;
   };
-  bool AddAtom(int node, bool negated);
+  bool AddAtom(NodeId node, bool negated);
   bool AddClass(const Node& is, bool negated);
-  bool MayFollowAtOnce(int node) const;
+  bool MayFollowAtOnce(NodeId node) const;
   bool AddComparison(Op op, const Node& comparison);
   bool Narrow(const std::string& value, const Range& range, Op op, double number);
   bool SomeFits(std::size_t next, int& budget) const;

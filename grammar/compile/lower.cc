@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names, literals and arithmetic. Calls are in grammar/compile/lower_calls.cc, conditions in
-// grammar/compile/lower_conditions.cc.
+// grammar/compile/lower_conditions.cc. Errors: unknown names, one type where another is needed,
+// units that do not agree, '@begin' and '@end' at wrong places, division by zero.
 #include "grammar/compile/lower.h"
 
 #include <algorithm>
@@ -69,7 +70,8 @@ bool Symbols::IsParamIn(std::string_view file, std::string_view name) const {
   return files.find(program.params[param->second].file)->second <= files.find(file)->second;
 }
 
-Lowering::Lowering(Symbols& symbols, int rule, const GrammarText& source, Diagnostics& diagnostics)
+Lowering::Lowering(Symbols& symbols, RuleId rule, const GrammarText& source,
+                   Diagnostics& diagnostics)
     : symbols_(symbols),
       rule_(rule),
       source_(&source),
@@ -86,15 +88,15 @@ Lowering::Typed Lowering::Bad(Place place, std::string message, std::string hint
   return {.bad = true};
 }
 
-int Lowering::Truth(const Expr& expr, Anchors anchors) {
+NodeId Lowering::Truth(const Expr& expr, Anchors anchors) {
   anchors_ = anchors;
   return Settled(TruthValue(expr));
 }
 
-int Lowering::Instant(const Expr& expr, Anchors anchors) {
+NodeId Lowering::Instant(const Expr& expr, Anchors anchors) {
   anchors_ = anchors;
   const Typed typed = TruthValue(expr);
-  const int node = Settled(typed);
+  const NodeId node = Settled(typed);
   if (node == kNone || typed.instant) return node;
   Complain(expr.place, "this holds for a while, but a moment is needed here",
            "add 'begins' or 'ends': X begins");
@@ -123,16 +125,16 @@ int Lowering::PartCall(const Expr& expr) {
   return reference;
 }
 
-int Lowering::Signal(const Expr& expr, Anchors anchors, Dimension& dimension) {
+NodeId Lowering::Signal(const Expr& expr, Anchors anchors, Dimension& dimension) {
   anchors_ = anchors;
   const Typed typed = Number(expr);
   dimension = typed.dimension;
   return typed.bad ? kNone : typed.node;
 }
 
-int Lowering::Attribute(const Expr& expr, Dimension& dimension) {
+NodeId Lowering::Attribute(const Expr& expr, Dimension& dimension) {
   attribute_ = true;
-  const int node = Signal(expr, {.begin = true, .end = true}, dimension);
+  const NodeId node = Signal(expr, {.begin = true, .end = true}, dimension);
   attribute_ = false;
   return node;
 }
@@ -173,21 +175,20 @@ int Lowering::HandRole(const Expr& expr) {
   return RoleArgument(expr, "Hand", "style").value_or(kNone);
 }
 
-int Lowering::Add(Node node) {
-  std::vector<Node>& nodes = symbols_.program.nodes;
-  if (nodes.size() < kMaxNodes) {
-    nodes.push_back(node);
-  } else if (!full_) {
+NodeId Lowering::Add(Node node) {
+  IdVector<NodeId, Node>& nodes = symbols_.program.nodes;
+  if (nodes.size() < kMaxNodes) return nodes.push_back(node);
+  if (!full_) {
     full_ = true;
     Complain(rule().place,
              "the grammar has more than " + std::to_string(kMaxNodes) + " expressions");
   }
-  return static_cast<int>(nodes.size()) - 1;
+  return NodeId(nodes.size() - 1);
 }
 
 // A value observed of an entity; an attribute takes it where the interval begins.
-int Lowering::AddSignal(Node node) {
-  const int here = Add(node);
+NodeId Lowering::AddSignal(Node node) {
+  const NodeId here = Add(node);
   const bool observes = node.roles[0] != kNone || node.op == Op::kRate;
   return attribute_ && observes ? AnchorAtBegin(here) : here;
 }
@@ -210,7 +211,7 @@ int Lowering::AddReference(const Reference& reference) {
   return static_cast<int>(all.size()) - 1;
 }
 
-int Lowering::AnchorAtBegin(int node) {
+NodeId Lowering::AnchorAtBegin(NodeId node) {
   rule().anchors.push_back(node);
   return Add({.op = Op::kAtBegin, .slot = static_cast<int>(rule().anchors.size()) - 1});
 }
@@ -341,9 +342,9 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
                "for example: supported_by(object, any)");
   }
   const bool is_call = FindBuiltin(expr.text) != nullptr || symbols_.rules.contains(expr.text);
-  return Bad(
-      expr.place, "unknown name " + Quoted(expr.text),
-      is_call ? "say of whom: " + expr.text + "(object)" : Suggest(expr.text, KnownNames(false)));
+  return Bad(expr.place, "unknown name " + Quoted(expr.text),
+             is_call ? "name the entity: " + expr.text + "(object)"
+                     : Suggest(expr.text, KnownNames(false)));
 }
 
 Lowering::Typed Lowering::LowerUnary(const Expr& expr) {

@@ -29,13 +29,13 @@ struct DefineSource {
 /// What all rules share while a grammar is compiled.
 struct Symbols {
   Program& program;
-  std::map<std::string, int, std::less<>> rules;   ///< name -> index in Program::rules
-  std::map<std::string, int, std::less<>> params;  ///< name -> index in Program::params
+  std::map<std::string, RuleId, std::less<>> rules;  ///< by name
+  std::map<std::string, int, std::less<>> params;    ///< name -> index in Program::params
   std::map<std::string, int, std::less<>>
       files;  ///< name -> place in the order in which they were read, what is used first
   std::map<std::string, DefineSource, std::less<>> defines;
-  std::map<std::pair<int, std::vector<int>>, int> any_rules;  ///< (rule, kept roles) -> rule
-  std::map<std::pair<int, std::vector<std::string>>, int>
+  std::map<std::pair<RuleId, std::vector<int>>, RuleId> any_rules;  ///< (rule, kept roles) -> rule
+  std::map<std::pair<RuleId, std::vector<std::string>>, RuleId>
       narrowed_rules;  ///< (rule, classes of its roles) -> rule
   std::set<int> used_params;
   std::set<std::string, std::less<>> used_defines;
@@ -70,7 +70,7 @@ std::string AllenNames();
 class Lowering {
  public:
   /// Writes into symbols.program.rules[rule], whose roles are filled in already.
-  Lowering(Symbols& symbols, int rule, const GrammarText& source, Diagnostics& diagnostics);
+  Lowering(Symbols& symbols, RuleId rule, const GrammarText& source, Diagnostics& diagnostics);
 
   /// Where values of the interval's own boundaries can be asked for.
   struct Anchors {
@@ -79,18 +79,18 @@ class Lowering {
   };
 
   /// A truth value; kNone after an error, here and below.
-  int Truth(const ast::Expr& expr, Anchors anchors);
+  NodeId Truth(const ast::Expr& expr, Anchors anchors);
   /// A truth value that holds at single frames only: made of `begins` and `ends`.
-  int Instant(const ast::Expr& expr, Anchors anchors);
+  NodeId Instant(const ast::Expr& expr, Anchors anchors);
   /// A call of an event or condition, as a reference of the rule.
   int RuleCall(const ast::Expr& expr);
   /// Likewise, of a part of a composition: that may be a composition, too.
   int PartCall(const ast::Expr& expr);
   /// A number; its dimension is written to `dimension`.
-  int Signal(const ast::Expr& expr, Anchors anchors, Dimension& dimension);
+  NodeId Signal(const ast::Expr& expr, Anchors anchors, Dimension& dimension);
   /// A number to be asked for where the interval ends: signals as they were at its begin, `x@end`
   /// as they are.
-  int Attribute(const ast::Expr& expr, Dimension& dimension);
+  NodeId Attribute(const ast::Expr& expr, Dimension& dimension);
   /// A number that only depends on parameters, zero or more.
   double Constant(const ast::Expr& expr, const Dimension& dimension, std::string_view what);
   /// A constant time of more than 0 s.
@@ -109,7 +109,7 @@ class Lowering {
 
  private:
   struct Typed {
-    int node = kNone;
+    NodeId node;
     Type type = Type::kTruth;
     Dimension dimension;
     bool instant = false;
@@ -160,12 +160,12 @@ class Lowering {
                                           const std::vector<Typed>& parts) const;
   Typed Decided(Verdict verdict, std::vector<int> because);
   void Doubt(Place place, std::string message, std::string hint, bool is_handed_in);
-  int Settled(const Typed& clause);
+  NodeId Settled(const Typed& clause);
   void Warn(Diagnostic warning);
   Typed LowerEdge(const ast::Expr& expr);
   Typed LowerAnchor(const ast::Expr& expr);
   Typed LowerCall(const ast::Expr& expr);
-  Typed LowerRuleCall(int rule, const ast::Expr& expr);
+  Typed LowerRuleCall(RuleId rule, const ast::Expr& expr);
   Typed LowerDefine(const DefineSource& source, const ast::Expr& expr);
   Typed LowerBody(const DefineSource& source, const Scope& scope);
   Typed LowerValue(const Scope::Value& value);
@@ -187,20 +187,20 @@ class Lowering {
   Typed Position(const ast::Expr& expr);
   Typed TruthValue(const ast::Expr& expr);
   Typed NumberNode(double value, const Dimension& dimension, Place place);
-  int Add(Node node);
-  int AddSignal(Node node);
+  NodeId Add(Node node);
+  NodeId AddSignal(Node node);
   int AddReference(const Reference& reference);
-  int AnchorAtBegin(int node);
+  NodeId AnchorAtBegin(NodeId node);
   int FindRole(std::string_view name) const;
   int FindParam(std::string_view name) const;
   std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class,
                                   std::string_view callee);
-  int MakeAnyRule(int rule, const std::vector<int>& kept);
-  int MakeNarrowedRule(int rule, const std::vector<std::string>& classes);
+  RuleId MakeAnyRule(RuleId rule, const std::vector<int>& kept);
+  RuleId MakeNarrowedRule(RuleId rule, const std::vector<std::string>& classes);
   std::vector<std::string> KnownNames(bool calls) const;
 
   Symbols& symbols_;
-  int rule_;
+  RuleId rule_;
   const GrammarText* source_;
   Diagnostics& diagnostics_;
   Anchors anchors_;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls in expressions: of events and conditions, of definitions, of built-in signals and tests.
+// Errors: unknown callees, the number and kind of arguments, classes that do not fit a role, one
+// entity in two roles, definitions that refer to themselves.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -77,7 +79,7 @@ Lowering::Typed Lowering::LowerCall(const Expr& expr) {
              Suggest(expr.text, KnownNames(true)));
 }
 
-Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
+Lowering::Typed Lowering::LowerRuleCall(RuleId rule, const Expr& expr) {
   const std::vector<RuleRole> wanted = symbols_.program.rules[rule].roles;
   if (wanted.size() != expr.args.size()) {
     return Bad(expr.place, Quoted(expr.text) + " takes " + std::to_string(wanted.size()) +
@@ -131,8 +133,8 @@ Lowering::Typed Lowering::LowerRuleCall(int rule, const Expr& expr) {
 }
 
 // The hidden rule "`rule`, but only for these classes".
-int Lowering::MakeNarrowedRule(int rule, const std::vector<std::string>& classes) {
-  const int next = static_cast<int>(symbols_.program.rules.size());
+RuleId Lowering::MakeNarrowedRule(RuleId rule, const std::vector<std::string>& classes) {
+  const RuleId next = symbols_.program.rules.end_id();
   const auto [entry, is_new] = symbols_.narrowed_rules.try_emplace({rule, classes}, next);
   if (!is_new) return entry->second;
   const Rule& source = symbols_.program.rules[rule];
@@ -153,9 +155,9 @@ int Lowering::MakeNarrowedRule(int rule, const std::vector<std::string>& classes
 }
 
 // The hidden rule "some binding of `rule` with these roles holds".
-int Lowering::MakeAnyRule(int rule, const std::vector<int>& kept) {
+RuleId Lowering::MakeAnyRule(RuleId rule, const std::vector<int>& kept) {
   const auto [entry, is_new] =
-      symbols_.any_rules.try_emplace({rule, kept}, static_cast<int>(symbols_.program.rules.size()));
+      symbols_.any_rules.try_emplace({rule, kept}, symbols_.program.rules.end_id());
   if (is_new) {
     const Rule& source = symbols_.program.rules[rule];
     Rule any{.name = source.name,
@@ -253,7 +255,7 @@ void Lowering::Check(const DefineSource& source) {
       const Typed stand_in = NumberNode(1, source.define->dimensions[i], parameter.place);
       scope.values[parameter.name] = {.stand_in = stand_in};
     } else if (parameter.class_name == "position") {
-      const int node = Add({.op = Op::kPosition, .roles = {0, kNone}});
+      const NodeId node = Add({.op = Op::kPosition, .roles = {0, kNone}});
       scope.values[parameter.name] = {
           .stand_in = {.node = node, .type = Type::kPosition, .dimension = kMetres}};
     } else {
@@ -334,8 +336,8 @@ Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
     now.args[0] = Add({.op = Op::kPosition, .roles = {now.roles[0], kNone}});
     now.roles[0] = kNone;
   }
-  const int here = Add(now);
-  const int there = AnchorAtBegin(here);
+  const NodeId here = Add(now);
+  const NodeId there = AnchorAtBegin(here);
   const Op op = is_along ? Op::kDistanceAlong : is_displacement ? Op::kDistance : Op::kSubtract;
   const bool falls = expr.text == "drop";
   return {.node = Add({.op = op,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Conditions that are never or always true: comparisons that their ranges decide, chains of which
-// the parts exclude each other, and what follows for the whole clause.
+// the parts exclude each other, and what follows for the whole clause. Errors and warnings: "this
+// is never true", "this is always true".
 // Tested by tests/grammar/compile/compile_test.cc
 #include <algorithm>
 #include <utility>
@@ -57,7 +58,7 @@ Lowering::Typed Lowering::LowerComparison(Op op, const Typed& left, const Typed&
 
 // What is so whatever happens.
 Lowering::Typed Lowering::Decided(Verdict verdict, std::vector<int> because) {
-  const int zero = Add({.op = Op::kNumber});
+  const NodeId zero = Add({.op = Op::kNumber});
   const Op op = verdict == Verdict::kAlways ? Op::kEqual : Op::kNotEqual;
   return {.node = Add({.op = op, .args = {zero, zero, kNone, kNone}}),
           .type = Type::kTruth,
@@ -83,7 +84,7 @@ void Lowering::Doubt(Place place, std::string message, std::string hint, bool is
 }
 
 // A whole clause that is decided is an error, unless its numbers were set from outside.
-int Lowering::Settled(const Typed& clause) {
+NodeId Lowering::Settled(const Typed& clause) {
   bool sound = !clause.bad;
   for (std::size_t i = 0; !clause.bad && i < doubts_.size(); ++i) {
     const bool decides = clause.verdict != Verdict::kPossible &&
@@ -175,7 +176,7 @@ std::optional<Diagnostic> Lowering::Contradiction(const Expr& chain,
       return told(arg, " together with what stands before it: " + Dump(arg), arg);
   }
   if (bounds.SomeAlternativeFits()) return std::nullopt;
-  return told(chain.args[0], ", whichever of its alternatives one takes: " + Dump(chain), chain);
+  return told(chain.args[0], ", for every choice of its alternatives: " + Dump(chain), chain);
 }
 
 // One part decides a chain, or all of them do.
@@ -200,7 +201,7 @@ Lowering::Typed Lowering::JudgeChain(const Expr& chain, const std::vector<Typed>
 Lowering::Typed Lowering::LowerChain(const Expr& expr) {
   const bool is_and = expr.text == "and";
   std::vector<Typed> parts;
-  std::vector<int> nodes;
+  std::vector<NodeId> nodes;
   bool bad = false;
   std::size_t instants = 0;
   const bool set_before = std::exchange(from_outside_, false);
@@ -222,7 +223,7 @@ Lowering::Typed Lowering::LowerChain(const Expr& expr) {
     judged.verdict = is_and ? Verdict::kNever : Verdict::kAlways;
   }
   while (nodes.size() > 1) {
-    std::vector<int> halved;
+    std::vector<NodeId> halved;
     for (std::size_t i = 0; i + 1 < nodes.size(); i += 2) {
       halved.push_back(
           Add({.op = is_and ? Op::kAnd : Op::kOr, .args = {nodes[i], nodes[i + 1], kNone, kNone}}));

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The form of a definition first, then its modifiers; each is checked as soon as it is lowered.
+// Errors: forms of which no interval ever begins or counts, modifiers that a form does not take,
+// parts and relations of compositions, how an event is drawn, attributes.
 #include "grammar/compile/lower_definition.h"
 
 #include <algorithm>
@@ -18,7 +20,8 @@ constexpr double kPausePerOnset = 10;
 
 class DefinitionLowering {
  public:
-  DefinitionLowering(Program& program, int index, const Definition& definition, Lowering& lowering)
+  DefinitionLowering(Program& program, RuleId index, const Definition& definition,
+                     Lowering& lowering)
       : program_(program), index_(index), d_(definition), lowering_(lowering) {}
 
   void Run() {
@@ -38,8 +41,8 @@ class DefinitionLowering {
     using Form_ = Definition::Form;
     switch (d_.form) {
       case Form_::kWhile: {
-        const int condition = lowering_.Truth(d_.first, {});
-        const int until = d_.until ? lowering_.Truth(*d_.until, {}) : kNone;
+        const NodeId condition = lowering_.Truth(d_.first, {});
+        const NodeId until = d_.until ? lowering_.Truth(*d_.until, {}) : kNone;
         As<WhileRule>() = {.condition = condition, .until = until};
         CheckUntil();
         break;
@@ -64,9 +67,9 @@ class DefinitionLowering {
   }
 
   void LowerFromTo() {
-    const int from = lowering_.Instant(d_.first, {});
-    const int to = lowering_.Instant(d_.second, {.begin = true});
-    const int during = d_.during ? lowering_.Truth(*d_.during, {.begin = true}) : kNone;
+    const NodeId from = lowering_.Instant(d_.first, {});
+    const NodeId to = lowering_.Instant(d_.second, {.begin = true});
+    const NodeId during = d_.during ? lowering_.Truth(*d_.during, {.begin = true}) : kNone;
     As<FromToRule>() = {.from = from,
                         .to = to,
                         .during = during,
@@ -78,7 +81,7 @@ class DefinitionLowering {
 
   // What is true and what is false at one frame, as far as it is known.
   struct Claim {
-    int node = kNone;
+    NodeId node;
     bool negated = false;
   };
   bool CanBe(std::initializer_list<Claim> claims) {
@@ -128,7 +131,7 @@ class DefinitionLowering {
   // Where something always ends with a moment, this is asked at that very moment.
   void CheckRequirement() {
     const Rule& rule = Here();
-    int moment = kNone;
+    NodeId moment;
     if (const UntilSinceRule* looks_back = rule.If<UntilSinceRule>()) moment = looks_back->until;
     if (const FromToRule* from_to = rule.If<FromToRule>();
         from_to != nullptr && from_to->or_drop && !from_to->absence)
@@ -170,8 +173,8 @@ class DefinitionLowering {
   }
 
   void LowerUntilSince() {
-    const int until = lowering_.Instant(d_.first, {});
-    const int since = lowering_.Truth(d_.second, {.end = true});
+    const NodeId until = lowering_.Instant(d_.first, {});
+    const NodeId since = lowering_.Truth(d_.second, {.end = true});
     As<UntilSinceRule>().until = until;
     As<UntilSinceRule>().since = since;
     CheckSince();
@@ -182,10 +185,10 @@ class DefinitionLowering {
 
   void LowerApproach(const ast::Approach& approach) {
     Dimension dimension;
-    const int signal = lowering_.Signal(approach.signal, {.end = true}, dimension);
+    const NodeId signal = lowering_.Signal(approach.signal, {.end = true}, dimension);
     if (signal == kNone) return;
     const double slack = lowering_.Constant(approach.slack, dimension, "'receding at most'");
-    int motion = kNone;
+    NodeId motion;
     Dimension motion_dimension = Quotient(dimension, kSeconds);
     double speed = 0;
     double idle_s = -1;
@@ -300,7 +303,7 @@ class DefinitionLowering {
           "put it into one of the parts");
     }
     if (d_.requirement) {
-      const int requirement = lowering_.Truth(*d_.requirement, {.begin = true, .end = true});
+      const NodeId requirement = lowering_.Truth(*d_.requirement, {.begin = true, .end = true});
       Here().requirement = requirement;
       CheckRequirement();
     }
@@ -346,8 +349,8 @@ class DefinitionLowering {
     if (most_s <= 0 || rule.lasting_s <= most_s) return;
     lowering_.ComplainOrWarn(
         lasting.place,
-        "no interval lasts so long: this one looks at most " + QuantityText({most_s, kSeconds}) +
-            (looks_back ? " back" : " ahead"),
+        "no interval can last that long: this form reaches at most " +
+            QuantityText({most_s, kSeconds}) + (looks_back ? " back" : " ahead"),
         looks_back ? "look further back, or ask for less" : "wait longer, or ask for less");
   }
 
@@ -367,20 +370,20 @@ class DefinitionLowering {
                            "choose another name");
       }
       Dimension dimension;
-      const int node = lowering_.Attribute(attribute.value, dimension);
+      const NodeId node = lowering_.Attribute(attribute.value, dimension);
       Here().attributes.push_back({.name = attribute.name, .node = node, .dimension = dimension});
     }
   }
 
   Program& program_;
-  int index_;
+  RuleId index_;
   const Definition& d_;
   Lowering& lowering_;
 };
 
 }  // namespace
 
-void LowerDefinitionInto(Program& program, int index, const ast::Definition& definition,
+void LowerDefinitionInto(Program& program, RuleId index, const ast::Definition& definition,
                          Lowering& lowering) {
   DefinitionLowering(program, index, definition, lowering).Run();
 }

@@ -9,7 +9,7 @@ namespace prehend::grammar {
 
 /// Fills in program.rules[index], whose head is there already. Mistakes go to the diagnostics of
 /// `lowering`.
-void LowerDefinitionInto(Program& program, int index, const ast::Definition& definition,
+void LowerDefinitionInto(Program& program, RuleId index, const ast::Definition& definition,
                          Lowering& lowering);
 
 }  // namespace prehend::grammar

@@ -20,7 +20,7 @@ void Lowering::Note(const Expr& expr, const Typed& typed) {
   const bool is_chain =
       expr.kind == Expr::Kind::kChain || (expr.kind == Expr::Kind::kUnary && expr.text == "not");
   if (is_chain || checking_ || typed.node == kNone) return;
-  std::vector<NodeNote>& notes = symbols_.program.notes;
+  IdVector<NodeId, NodeNote>& notes = symbols_.program.notes;
   notes.resize(symbols_.program.nodes.size());
   NodeNote& note = notes[typed.node];
   if (!note.text.empty()) return;

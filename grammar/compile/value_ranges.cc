@@ -49,7 +49,7 @@ Verdict Opposite(Verdict verdict) {
   return verdict == Verdict::kNever ? Verdict::kAlways : Verdict::kNever;
 }
 
-Range RangeOf(const Program& program, const Rule& rule, int index) {
+Range RangeOf(const Program& program, const Rule& rule, NodeId index) {
   const Node& node = program.nodes[index];
   const auto arg = [&](std::size_t i) { return RangeOf(program, rule, node.args[i]); };
   switch (node.op) {
@@ -120,12 +120,12 @@ std::string RangeText(const Range& range, const Dimension& dimension) {
   return from_above ? "is never above " + text(range.high) : "can be any number";
 }
 
-std::string Signature(const Program& program, const Rule& rule, int index) {
+std::string Signature(const Program& program, const Rule& rule, NodeId index) {
   const Node& node = program.nodes[index];
   if (node.op == Op::kAtBegin)
     return "@begin(" + Signature(program, rule, rule.anchors[node.slot]) + ")";
   std::vector<std::string> args;
-  for (const int arg : node.args) {
+  for (const NodeId arg : node.args) {
     if (arg != kNone) args.push_back(Signature(program, rule, arg));
   }
   std::vector<int> roles(node.roles.begin(), node.roles.end());
@@ -136,7 +136,7 @@ std::string Signature(const Program& program, const Rule& rule, int index) {
   if (node.op == Op::kHolds) {
     const Reference& reference = rule.references[node.slot];
     roles.assign(reference.roles.begin(), reference.roles.end());
-    text += "e" + std::to_string(reference.rule);
+    text += "e" + std::to_string(reference.rule.number());
     either_way = program.rules[reference.rule].symmetric;
   }
   if (node.op == Op::kIsA) text += program.class_names[node.slot];

@@ -13,7 +13,7 @@
 namespace prehend::grammar {
 
 /// Of a number of one of the rule's expressions.
-Range RangeOf(const Program& program, const Rule& rule, int node);
+Range RangeOf(const Program& program, const Rule& rule, NodeId node);
 
 enum class Verdict : std::uint8_t { kPossible, kNever, kAlways };
 
@@ -27,6 +27,6 @@ Verdict Judge(Op op, const Range& left, const Range& right);
 std::string RangeText(const Range& range, const Dimension& dimension);
 
 /// The same for the same expression, and for `distance(p, q)` and `distance(q, p)`.
-std::string Signature(const Program& program, const Rule& rule, int node);
+std::string Signature(const Program& program, const Rule& rule, NodeId node);
 
 }  // namespace prehend::grammar

@@ -97,7 +97,7 @@ class BackwardWalk {
 
   // From this frame to the next one, over which the signal falls by `way`.
   std::optional<double> Speed(FrameNumber frame, double way) const {
-    const int motion = rule_.approach->motion;
+    const NodeId motion = rule_.approach->motion;
     if (motion != kNone) return evaluator_.Number(motion, {instance_, frame + 1, end_});
     return way / history_.Seconds(TicksFrom(frame, frame + 1));
   }

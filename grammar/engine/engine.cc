@@ -181,7 +181,7 @@ void Engine::Rest(RuleInstance& instance) {
   if (!instance.open) idle_.Queue(instance);
 }
 
-void Engine::StepRule(int rule) {
+void Engine::StepRule(RuleId rule) {
   std::erase_if(awake_[rule], [&](InstanceId index) {
     RuleInstance& instance = instances_[index];
     if (LooksTheSame(instance)) {

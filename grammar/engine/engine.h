@@ -106,7 +106,7 @@ class Engine {
     instance.resting_since = history_.now();
     idle_.Queue(instance);
   }
-  void StepRule(int rule);
+  void StepRule(RuleId rule);
 
   // The forms; each looks at one frame and says whether it could decide it.
   void StepInstance(RuleInstance& instance);
@@ -168,13 +168,13 @@ class Engine {
   History history_;
   RuleInstances instances_;
   Evaluator evaluator_;
-  std::vector<RuleTicks> rule_ticks_;
+  IdVector<RuleId, RuleTicks> rule_ticks_;
   Thresholds thresholds_;
-  bool recalls_touches_ = false;                // which thresholds they had crossed
-  bool keeps_touches_ = false;                  // and all that they measured
-  std::vector<ThresholdSet> grips_;             // by entity: what its grip has crossed
-  std::vector<std::vector<InstanceId>> awake_;  // by rule
-  std::vector<InstanceId> touching_;            // the pairs that touch now
+  bool recalls_touches_ = false;     // which thresholds they had crossed
+  bool keeps_touches_ = false;       // and all that they measured
+  std::vector<ThresholdSet> grips_;  // by entity: what its grip has crossed
+  IdVector<RuleId, std::vector<InstanceId>> awake_;
+  std::vector<InstanceId> touching_;  // the pairs that touch now
   std::vector<InstanceId> contacts_;  // the instances of the touches of this frame, kNone: none yet
   Alarms alarms_;
   IdleQueue idle_;

@@ -91,7 +91,7 @@ bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
 }
 
 void Engine::EndFrame() {
-  for (const int rule : program_->schedule) {
+  for (const RuleId rule : program_->schedule) {
     if (!awake_[rule].empty()) StepRule(rule);
   }
   if (log_ == nullptr) {
@@ -130,7 +130,7 @@ void Engine::Finish(Tick end, std::vector<Event>& out) {
     Wake(i);
     instance.next = history_.now() + 1;
   }
-  for (const int rule : program_->schedule) {
+  for (const RuleId rule : program_->schedule) {
     for (const InstanceId instance : awake_[rule]) FinishInstance(instances_[instance], last);
     awake_[rule].clear();
   }

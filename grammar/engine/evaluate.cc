@@ -21,7 +21,7 @@ double DistanceToBox(const Vector3d& p_W, const EntityInfo& member, const Entity
   return outside.norm();
 }
 
-bool IsPosition(const Program& program, int node) {
+bool IsPosition(const Program& program, NodeId node) {
   switch (program.nodes[node].op) {
     case Op::kPosition:
     case Op::kPositionOn:
@@ -45,7 +45,7 @@ bool IsPartOf(const EntityTable& entity_table, int part, int whole) {
 
 }  // namespace
 
-Kleene Evaluator::Truth(int index, const View& view) const {
+Kleene Evaluator::Truth(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
   switch (node.op) {
     case Op::kAnd: {
@@ -199,7 +199,7 @@ std::optional<Reach> Evaluator::ReachOf(const Node& node, const View& view) cons
                .most_height_m = *height};
 }
 
-bool Evaluator::TooFarApart(int index, RuleInstance& instance, FrameNumber early,
+bool Evaluator::TooFarApart(NodeId index, RuleInstance& instance, FrameNumber early,
                             FrameNumber late) const {
   const Node& node = program_.nodes[index];
   if (node.op == Op::kAnd) {
@@ -220,7 +220,7 @@ bool Evaluator::TooFarApart(int index, RuleInstance& instance, FrameNumber early
   return height && (offset.head<2>().norm() > 2 * *radius || std::abs(offset.z()) > 2 * *height);
 }
 
-std::optional<double> Evaluator::Number(int index, const View& view) const {
+std::optional<double> Evaluator::Number(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
   switch (node.op) {
     case Op::kNumber:
@@ -492,7 +492,7 @@ const TouchSample* Evaluator::Touch(const Node& node, const View& view, bool& sw
                              : &SampleAt(touching->As<TouchingState>().touches, view.frame);
 }
 
-std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
+std::optional<Vector3d> Evaluator::Position(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
   switch (node.op) {
     case Op::kAtBegin:
@@ -517,7 +517,7 @@ std::optional<Vector3d> Evaluator::Position(int index, const View& view) const {
 }
 
 bool Evaluator::CaptureAnchors(RuleInstance& instance, FrameNumber frame) const {
-  const std::vector<int>& anchors = program_.rules[instance.rule].anchors;
+  const std::vector<NodeId>& anchors = program_.rules[instance.rule].anchors;
   const View view{.instance = instance, .frame = frame};
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     if (IsPosition(program_, anchors[i])) {

@@ -29,10 +29,10 @@ class Evaluator {
 
   /// kUnknown while it depends on truths that are not final, on an end that is not known, or on
   /// frames to come.
-  Kleene Truth(int node, const View& view) const;
+  Kleene Truth(NodeId node, const View& view) const;
   /// nullopt only for values at an end that is not known, or that depend on frames to come.
-  std::optional<double> Number(int node, const View& view) const;
-  std::optional<Eigen::Vector3d> Position(int node, const View& view) const;
+  std::optional<double> Number(NodeId node, const View& view) const;
+  std::optional<Eigen::Vector3d> Position(NodeId node, const View& view) const;
 
   /// Of a node that tests for a region; nullopt like Number().
   std::optional<Reach> ReachOf(const Node& node, const View& view) const;
@@ -44,7 +44,7 @@ class Evaluator {
   /// True if no interval can hold at both frames, wherever it will end: both would have to lie in
   /// one region anchored at the end, and they are too far apart for that. False if this cannot be
   /// told.
-  bool TooFarApart(int node, RuleInstance& instance, FrameNumber early, FrameNumber late) const;
+  bool TooFarApart(NodeId node, RuleInstance& instance, FrameNumber early, FrameNumber late) const;
 
   /// Whether a value asked for since ResetTimeDependence() may change with time alone, though
   /// nothing that it is made of changes: an instant that is over one frame later, a speed from

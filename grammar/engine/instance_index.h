@@ -16,7 +16,7 @@ namespace prehend::grammar {
 
 /// Any instance: a rule and whom it is bound to.
 struct InstanceKey {
-  int rule = kNone;
+  RuleId rule;
   Binding entities = kUnbound;
   // Number by number: what was just written so is not ready to be read as one block.
   friend bool operator==(const InstanceKey& a, const InstanceKey& b) {
@@ -29,7 +29,7 @@ struct InstanceKey {
              static_cast<std::uint32_t>(entities[i + 1]);
     };
     std::uint64_t hash =
-        (pair(0) ^ (static_cast<std::uint64_t>(rule) << 20)) * 0x9E3779B97F4A7C15ULL;
+        (pair(0) ^ (static_cast<std::uint64_t>(rule.number()) << 20)) * 0x9E3779B97F4A7C15ULL;
     hash = (hash ^ (hash >> 32) ^ pair(2)) * 0xD6E8FEB86659FD93ULL;
     return static_cast<std::uint32_t>(hash >> 32);
   }

@@ -44,7 +44,7 @@ RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_t
       pose_watchers_(entity_table.entities.size()),
       grip_watchers_(entity_table.entities.size()),
       name_rank_(entity_table.entities.size()) {
-  for (const int index : program.schedule) {
+  for (const RuleId index : program.schedule) {
     const Rule& rule = program.rules[index];
     // Compositions are made when a part has an interval for them.
     if (rule.guard != kNone && rule.form() != Form::kCompose)
@@ -52,7 +52,7 @@ RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_t
   }
   for (const Rule& rule : program.rules) {
     symmetric_.push_back(rule.symmetric ? 1 : 0);
-    std::vector<std::vector<bool>>& roles = fits_.emplace_back();
+    std::vector<std::vector<bool>>& roles = fits_[fits_.push_back({})];
     for (const RuleRole& role : rule.roles) {
       std::vector<bool>& entities = roles.emplace_back();
       for (std::size_t e = 0; e < entity_table.entities.size(); ++e) {
@@ -74,7 +74,7 @@ bool RuleInstances::IsA(int entity, const std::string& class_name) const {
 }
 
 void RuleInstances::BindUnguarded() {
-  for (const int rule : program_.schedule) {
+  for (const RuleId rule : program_.schedule) {
     if (program_.rules[rule].form() == Form::kTouching || program_.rules[rule].guard != kNone)
       continue;
     double bindings = 1;
@@ -105,12 +105,12 @@ std::string RuleInstances::WhyTooMany() const {
          "(" + roles + ")': there are " + counts + "; give the roles narrower classes";
 }
 
-void RuleInstances::EnsureAll(int rule, Binding entities, std::vector<InstanceId>& made) {
+void RuleInstances::EnsureAll(RuleId rule, Binding entities, std::vector<InstanceId>& made) {
   BindRest(rule, entities, 0, kNone, &made);
 }
 
 // Fills in the roles from `role` on that are still free, in all ways that fit.
-void RuleInstances::BindRest(int rule, Binding& entities, std::size_t role, InstanceId guard,
+void RuleInstances::BindRest(RuleId rule, Binding& entities, std::size_t role, InstanceId guard,
                              std::vector<InstanceId>* made) {
   if (TooMany()) return;
   if (role == program_.rules[rule].roles.size()) {
@@ -136,7 +136,7 @@ void RuleInstances::BindRest(int rule, Binding& entities, std::size_t role, Inst
   }
 }
 
-bool RuleInstances::Fits(int rule, const Binding& entities) const {
+bool RuleInstances::Fits(RuleId rule, const Binding& entities) const {
   for (std::size_t i = 0; i < program_.rules[rule].roles.size(); ++i) {
     if (!fits_[rule][i][entities[i]]) return false;
     for (std::size_t j = 0; j < i; ++j) {
@@ -189,9 +189,9 @@ InstanceId RuleInstances::Make(const InstanceKey& key) {
 // For every rule guarded by this instance's rule: its roles that the guard names are settled, the
 // rest are free.
 void RuleInstances::MakeDependents(InstanceId instance, std::vector<InstanceId>& made) {
-  const int guard_rule = instances_[instance].rule;
+  const RuleId guard_rule = instances_[instance].rule;
   const bool both_orders = program_.rules[guard_rule].symmetric;
-  for (const int rule : guarded_[guard_rule]) {
+  for (const RuleId rule : guarded_[guard_rule]) {
     const Rule& r = program_.rules[rule];
     const Binding& mapping = r.references[r.guard].roles;
     for (int order = 0; order < (both_orders ? 2 : 1); ++order) {

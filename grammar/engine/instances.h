@@ -180,13 +180,13 @@ class RuleInstances {
   void BindUnguarded();
   /// Makes the instance, at rest, if it is not there. kNone if an entity's class does not fit, or
   /// there are TooMany().
-  InstanceId Ensure(int rule, const Binding& entities) {
+  InstanceId Ensure(RuleId rule, const Binding& entities) {
     const InstanceKey key = Canonical(rule, entities);
     const InstanceId found = Find(key);
     return found != kNone ? found : Make(key);
   }
   /// Likewise, for all entities that can play the free roles; appends the instances to `made`.
-  void EnsureAll(int rule, Binding entities, std::vector<InstanceId>& made);
+  void EnsureAll(RuleId rule, Binding entities, std::vector<InstanceId>& made);
   /// Makes the instances that this one guards and appends them to `made`, those that were there
   /// already, too.
   void MakeDependents(InstanceId instance, std::vector<InstanceId>& made);
@@ -210,7 +210,7 @@ class RuleInstances {
   InstanceId Find(const RuleInstance& instance, int slot) const {
     return Find(Referred(instance, slot));
   }
-  InstanceId Find(int rule, const Binding& entities) const {
+  InstanceId Find(RuleId rule, const Binding& entities) const {
     return Find(Canonical(rule, entities));
   }
   InstanceId FindTouch(int a, int b) const { return touches_.Find(PairKey(a, b)); }
@@ -252,7 +252,7 @@ class RuleInstances {
   bool IsA(int entity, const std::string& class_name) const;
 
  private:
-  InstanceKey Canonical(int rule, const Binding& entities) const {
+  InstanceKey Canonical(RuleId rule, const Binding& entities) const {
     const bool swap = symmetric_[rule] != 0 && name_rank_[entities[1]] < name_rank_[entities[0]];
     return {rule, swap ? Binding{entities[1], entities[0], entities[2], entities[3]} : entities};
   }
@@ -264,8 +264,8 @@ class RuleInstances {
   }
   void Refer(RuleInstance& instance, int slot, InstanceId target);
   InstanceKey Referred(const RuleInstance& instance, int slot) const;
-  bool Fits(int rule, const Binding& entities) const;
-  void BindRest(int rule, Binding& entities, std::size_t role, InstanceId guard,
+  bool Fits(RuleId rule, const Binding& entities) const;
+  void BindRest(RuleId rule, Binding& entities, std::size_t role, InstanceId guard,
                 std::vector<InstanceId>* made);
   void LinkToGuard(InstanceId instance, InstanceId guard);
   void WatchEntities(RuleInstance& instance);
@@ -285,14 +285,14 @@ class RuleInstances {
   std::array<std::vector<InstanceId>, std::variant_size_v<FormState>> free_;  // by kind of state
   int free_count_ = 0;
   InstanceIndex<InstanceKey> index_;
-  InstanceIndex<PairKey> touches_;                    // the instances of kTouchingRule
-  std::vector<std::vector<int>> guarded_;             // by rule: the rules it guards
-  std::vector<std::vector<std::vector<bool>>> fits_;  // by rule, role, entity
-  std::vector<std::vector<Watch>> pose_watchers_;     // by entity
+  InstanceIndex<PairKey> touches_;                         // the instances of kTouchingRule
+  IdVector<RuleId, std::vector<RuleId>> guarded_;          // the rules that a rule guards
+  IdVector<RuleId, std::vector<std::vector<bool>>> fits_;  // by role and entity
+  std::vector<std::vector<Watch>> pose_watchers_;          // by entity
   std::vector<std::vector<Watch>> grip_watchers_;
-  std::vector<int> name_rank_;   // alphabetical order of entities
-  std::vector<char> symmetric_;  // by rule
-  int too_many_ = kNone;         // the rule that would have had more than can be
+  std::vector<int> name_rank_;  // alphabetical order of entities
+  IdVector<RuleId, char> symmetric_;
+  RuleId too_many_;  // the rule that would have had more than can be
 };
 
 }  // namespace prehend::grammar

@@ -23,8 +23,8 @@ Law LawParser::ParseLaw() {
   Law law;
   law.place = Peek().place;
   law.name = ExpectName("the name of a law");
-  law.roles = ParseRoles(
-      "a law names who it is about: law slides_are_supported(hand: Hand, object: Movable)");
+  law.roles =
+      ParseRoles("a law lists its roles: law slides_are_supported(hand: Hand, object: Movable)");
   if (Accept("rest")) {
     ParseCovered(law);
     return law;

@@ -127,7 +127,7 @@ class Parser : public LawParser {
     definition.place = Peek().place;
     definition.name = ExpectName("the name of an event or condition");
     definition.roles =
-        ParseRoles("an event names who takes part: event grasping(hand: Hand, object: Thing)");
+        ParseRoles("an event lists its roles: event grasping(hand: Hand, object: Thing)");
     ParseForm(definition);
     while (ParseModifier(definition)) {
     }

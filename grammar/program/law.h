@@ -8,6 +8,7 @@
 
 #include "grammar/base/allen.h"
 #include "grammar/base/diagnostic.h"
+#include "grammar/base/ids.h"
 
 namespace prehend::grammar {
 
@@ -18,7 +19,7 @@ struct LawCall {
     std::string class_name;  ///< that it must be of
     std::string any_text;    ///< "any", "any Table"; empty for a role
   };
-  int rule = -1;  ///< an event
+  RuleId rule;  ///< an event
   std::vector<Player> players;
   bool has_any = false;  ///< of those who play a role of it, some may be any entity
 };

@@ -4,8 +4,8 @@
 
 namespace prehend::grammar {
 
-std::vector<int> ConditionsOf(const Rule& rule) {
-  std::vector<int> nodes;
+std::vector<NodeId> ConditionsOf(const Rule& rule) {
+  std::vector<NodeId> nodes;
   if (const auto* holds = rule.If<WhileRule>()) nodes = {holds->condition, holds->until};
   if (const auto* from_to = rule.If<FromToRule>())
     nodes = {from_to->from, from_to->to, from_to->during};

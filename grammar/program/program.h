@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A compiled grammar: flat, immutable tables that any number of monitors share.
-// Expressions are trees of nodes in one array; a node names its arguments by index.
+// Expressions are trees of nodes in one array; a node names its arguments by NodeId.
 #pragma once
 
 #include <array>
@@ -88,7 +88,7 @@ enum class Op : std::uint8_t {
 
 /// A comparison that is answered by thresholds, when its value is measured.
 struct ByThreshold {
-  int value = kNone;  ///< node that is compared; kNone: it is not that simple
+  NodeId value;  ///< that is compared; kNone: it is not that simple
   std::array<int, 2> thresholds = {
       kNone,
       kNone};  ///< of a touch between its first and second role, and of one named the other way
@@ -97,10 +97,10 @@ struct ByThreshold {
 
 struct Node {
   Op op = Op::kNumber;
-  std::array<int, 4> args = {kNone, kNone, kNone, kNone};  ///< nodes
-  std::array<int, 2> roles = {kNone, kNone};               ///< roles of the rule
-  int slot = kNone;                                        ///< reference, anchor or class name
-  int name = kNone;   ///< kSensorSet: index into Program::sensor_sets
+  std::array<NodeId, 4> args = {};
+  std::array<int, 2> roles = {kNone, kNone};  ///< roles of the rule
+  int slot = kNone;                           ///< reference, anchor or class name
+  int name = kNone;                           ///< kSensorSet: index into Program::sensor_sets
   double number = 0;  ///< kNumber, kSensorSet, and the windows of kDriftAlong, kTurnRate, kRate
   ByThreshold by_threshold = {};
 };
@@ -136,7 +136,7 @@ inline constexpr Binding kUnbound = {kNone, kNone, kNone, kNone};
 
 /// Another rule, bound to roles of this one: its role i is roles[i].
 struct Reference {
-  int rule = kNone;
+  RuleId rule;
   Binding roles = kUnbound;
 };
 
@@ -164,16 +164,16 @@ struct AnyRule {};
 
 /// `while condition until until`
 struct WhileRule {
-  int condition = kNone;  ///< node
-  int until = kNone;      ///< node; kNone: until `condition` is false
+  NodeId condition;
+  NodeId until;           ///< kNone: until `condition` is false
   double bridging_s = 0;  ///< gaps up to this length do not end an interval
 };
 
 /// `from from to to during during`, or `without` in place of `to`.
 struct FromToRule {
-  int from = kNone;      ///< node
-  int to = kNone;        ///< node
-  int during = kNone;    ///< node; kNone: nothing has to hold
+  NodeId from;
+  NodeId to;
+  NodeId during;         ///< kNone: nothing has to hold
   bool or_drop = false;  ///< an interval that does not reach `to` is dropped
   bool absence = false;  ///< `without`: an interval that reaches `to` is dropped
   double within_s = -1;  ///< how long to wait for `to`; negative: forever
@@ -181,9 +181,9 @@ struct FromToRule {
 
 /// `approaching`: a signal that must not recede on the way to the end of the interval.
 struct Approach {
-  int signal = kNone;  ///< node
+  NodeId signal;
   double slack = 0;    ///< how far it may recede, in the signal's unit
-  int motion = kNone;  ///< node: the speed of the movement; kNone: as fast as the signal falls
+  NodeId motion;       ///< the speed of the movement; kNone: as fast as the signal falls
   double speed = 0;    ///< slower is a pause; in the unit of the motion
   double onset = 0;    ///< likewise: from this speed on a movement begins
   double idle_s = -1;  ///< a longer pause ends the way back; negative: pauses may last
@@ -191,8 +191,8 @@ struct Approach {
 
 /// `until until since since`: looks back from where `until` becomes true.
 struct UntilSinceRule {
-  int until = kNone;  ///< node
-  int since = kNone;  ///< node
+  NodeId until;
+  NodeId since;
   std::optional<Approach> approach;
   double back_s = 0;  ///< how far it looks back
 };
@@ -224,13 +224,13 @@ using RuleForm = std::variant<TouchingRule, AnyRule, WhileRule, FromToRule, Unti
 /// `with name = value`: a number that the event carries.
 struct RuleAttribute {
   std::string name;
-  int node = kNone;  ///< asked for where the interval ends
+  NodeId node;  ///< asked for where the interval ends
   Dimension dimension;
 };
 
 /// A rule is part `part` of the composition `rule`.
 struct PartOf {
-  int rule = kNone;
+  RuleId rule;
   int part = 0;
 };
 
@@ -263,7 +263,7 @@ struct Rule {
   }
 
   double lasting_s = 0;
-  int requirement = kNone;       ///< node
+  NodeId requirement;
   int confirmed_by = kNone;      ///< reference
   int confirmed_within = kNone;  ///< reference
   int style_role = kNone;
@@ -271,7 +271,7 @@ struct Rule {
   Drawing drawing;
 
   std::vector<Reference> references;
-  std::vector<int> anchors;  ///< nodes whose values are kept from where an interval begins
+  std::vector<NodeId> anchors;  ///< whose values are kept from where an interval begins
 
   /// While this reference is false and known, nothing of this rule begins. kNone: watch every
   /// binding.
@@ -297,7 +297,7 @@ struct Rule {
 
 /// The nodes of the conditions that make its form: `while`, `from`, `to`, `during`, `until`,
 /// `since`. None for the forms that are made of other rules.
-std::vector<int> ConditionsOf(const Rule& rule);
+std::vector<NodeId> ConditionsOf(const Rule& rule);
 /// Null if nothing is approached.
 const Approach* ApproachOf(const Rule& rule);
 
@@ -322,10 +322,10 @@ struct ProgramParam {
 /// output.
 struct Program {
   std::string name;
-  std::vector<Rule> rules;
-  std::vector<int> schedule;  ///< rules so that each comes after those it refers to
-  std::vector<Node> nodes;
-  std::vector<NodeNote> notes;              ///< of the first so many nodes
+  IdVector<RuleId, Rule> rules;
+  std::vector<RuleId> schedule;  ///< rules so that each comes after those it refers to
+  IdVector<NodeId, Node> nodes;
+  IdVector<NodeId, NodeNote> notes;         ///< of the first so many nodes
   std::vector<std::string> class_names;     ///< for kIsA
   std::vector<NameInSource> sensor_sets;    ///< for kSensorSet
   std::vector<NameInSource> numbered_sets;  ///< "3": sensor sets that are asked for by number
@@ -339,6 +339,6 @@ struct Program {
   bool recalls_touches = false;  ///< for thresholds that it had crossed in earlier frames
 };
 
-inline constexpr int kTouchingRule = 0;
+inline constexpr RuleId kTouchingRule(0);
 
 }  // namespace prehend::grammar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which grammar watches where none is named: a file of grammar/library/.
+// Which grammar segments the episode where none is named: a file of grammar/library/.
 // Tested by tests/harness/read/read_scenario_test.cc
 #pragma once
 

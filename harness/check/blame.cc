@@ -72,7 +72,7 @@ std::string CauseText(const std::optional<LastPass>& last_pass,
   const std::vector<std::string> changed = WhatChanged(*last_pass, now, root);
   return fmt::format(
       "cause: {}. Changed since: {}\n", FirstCause(*its_trace, now),
-      changed.empty() ? "nothing that is known" : fmt::format("{}", fmt::join(changed, ", ")));
+      changed.empty() ? "no known file" : fmt::format("{}", fmt::join(changed, ", ")));
 }
 
 }  // namespace prehend::harness

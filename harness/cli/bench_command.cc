@@ -28,11 +28,11 @@ std::vector<std::string> Cells(const SpeedFigure& f) {
           fmt::format("{:.3g} ns", f.seconds / f.operations * 1e9),
           f.unit,
           Large(f.operations / f.seconds),
-          OrDash(f.by_hand_s > 0, fmt::format("{:.2f}", f.by_hand_s / f.seconds)),
+          OrDash(f.baseline_s > 0, fmt::format("{:.2f}", f.baseline_s / f.seconds)),
           OrDash(f.events > 0, Large(f.events / f.seconds)),
           OrDash(f.simulated_s > 0, Large(f.simulated_s / f.seconds)),
           OrDash(f.physics_s > 0, fmt::format("{:.2f} %", 100 * f.seconds / f.physics_s)),
-          OrDash(f.by_hand_s > 0, f.agrees ? HashText(f.hash) : "DIFFERS")};
+          OrDash(f.baseline_s > 0, f.agrees ? HashText(f.hash) : "DIFFERS")};
 }
 
 OrderedJson FigureJson(const SpeedFigure& f) {
@@ -42,15 +42,15 @@ OrderedJson FigureJson(const SpeedFigure& f) {
                       {"seconds", f.seconds},
                       {"ns_per_operation", f.seconds / f.operations * 1e9},
                       {"operations_per_s", f.operations / f.seconds}};
-  if (f.by_hand_s > 0) {
-    json["by_hand_s"] = f.by_hand_s;
-    json["times_by_hand"] = f.by_hand_s / f.seconds;
-    json["agrees_with_by_hand"] = f.agrees;
+  if (f.baseline_s > 0) {
+    json["baseline_s"] = f.baseline_s;
+    json["times_baseline"] = f.baseline_s / f.seconds;
+    json["agrees_with_baseline"] = f.agrees;
   }
   if (f.events > 0) json["events_per_s"] = f.events / f.seconds;
   if (f.simulated_s > 0) json["times_real_time"] = f.simulated_s / f.seconds;
   if (f.physics_s > 0) json["share_of_physics"] = f.seconds / f.physics_s;
-  if (f.by_hand_s > 0) json["hash"] = HashText(f.hash);
+  if (f.baseline_s > 0) json["hash"] = HashText(f.hash);
   return json;
 }
 

@@ -87,7 +87,7 @@ ExitCode Answer(const ParsedOptions& options, const CommandContext& context,
     const std::vector<WhyEvent> events = explain::ExplainAll(past);
     json["events"] = ToJson(events, per_second);
     if (!as_json && events.empty())
-      context.out << "no event was recognised; --expected EVENT tells why\n";
+      context.out << "no event was recognised; --expected EVENT explains why\n";
     if (!as_json && !events.empty()) context.out << explain::Table(events, per_second);
   }
   if (as_json) context.out << json.dump(2) << "\n";

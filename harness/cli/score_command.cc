@@ -30,7 +30,7 @@ constexpr double kDefaultCollar_ms = 50;
 constexpr double kTimeLimit_s = 300;
 
 /// What a worker sends: {"problem", "bad_input"} or {"episodes": [{"ticks", "truth", "found",
-/// "not_judged"}, ..]}, one per grammar.
+/// "ignored"}, ..]}, one per grammar.
 std::string Judged(const ScoreRequest& request) {
   const auto episodes = EpisodesToScore(request);
   if (!episodes)
@@ -42,7 +42,7 @@ std::string Judged(const ScoreRequest& request) {
     sent.push_back({{"ticks", episode.ticks},
                     {"truth", TimelineJson(episode.truth)},
                     {"found", TimelineJson(episode.found)},
-                    {"not_judged", episode.not_judged}});
+                    {"ignored", episode.ignored}});
   }
   return Json{{"episodes", std::move(sent)}}.dump();
 }
@@ -76,7 +76,7 @@ std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selec
     for (std::size_t g = 0; g < grammars.size(); ++g) {
       const Json& episode = sent["episodes"][g];
       by_grammar[g].push_back({ids[i], episode["ticks"], TimelineFromJson(episode["truth"]),
-                               TimelineFromJson(episode["found"]), episode["not_judged"]});
+                               TimelineFromJson(episode["found"]), episode["ignored"]});
     }
   }
   return by_grammar;

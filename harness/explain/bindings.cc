@@ -11,9 +11,10 @@ using grammar::Binding;
 using grammar::InstanceId;
 using grammar::kNone;
 using grammar::ReplayMonitor;
+using grammar::RuleId;
 
 // Fills the open roles from `role` on with everybody whose class fits.
-void Fill(ReplayMonitor& past, int rule, Binding& entities, std::size_t role,
+void Fill(ReplayMonitor& past, RuleId rule, Binding& entities, std::size_t role,
           std::vector<InstanceId>& instances) {
   const std::size_t roles = past.program().rules[rule].roles.size();
   if (instances.size() >= kMaxBindings) return;
@@ -35,7 +36,7 @@ void Fill(ReplayMonitor& past, int rule, Binding& entities, std::size_t role,
 
 }  // namespace
 
-std::vector<InstanceId> BindingsThatFit(ReplayMonitor& past, int rule, const Binding& wanted) {
+std::vector<InstanceId> BindingsThatFit(ReplayMonitor& past, RuleId rule, const Binding& wanted) {
   const grammar::Rule& asked = past.program().rules[rule];
   std::vector<InstanceId> instances;
   for (const InstanceId instance : past.InstancesOf(rule)) {

@@ -13,7 +13,7 @@ inline constexpr std::size_t kMaxBindings = 64;
 
 /// Those that were looked at while the episode went on; if there is none, those that could have
 /// been. At most kMaxBindings. `wanted`: kNone for whoever.
-std::vector<grammar::InstanceId> BindingsThatFit(grammar::ReplayMonitor& past, int rule,
+std::vector<grammar::InstanceId> BindingsThatFit(grammar::ReplayMonitor& past, grammar::RuleId rule,
                                                  const grammar::Binding& wanted);
 
 }  // namespace prehend::harness::explain

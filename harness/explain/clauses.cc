@@ -24,30 +24,30 @@ std::string Clauses::Time(FrameNumber frame) {
   return At(past_.TickOf(frame), past_.entity_table().ticks_per_second);
 }
 
-bool Clauses::IsChoice(int node, bool truth) const {
+bool Clauses::IsChoice(grammar::NodeId node, bool truth) const {
   const Op op = NodeAt(node).op;
   if (op == Op::kNot) return IsChoice(NodeAt(node).args[0], !truth);
   return truth ? op == Op::kOr : op == Op::kAnd;
 }
 
 // Of a choice that is fulfilled, nothing is missing: what fulfils it is all there is to say.
-void Clauses::Split(int node, const Moment& at, bool truth, std::vector<Clause>& out) {
+void Clauses::Split(grammar::NodeId node, const Moment& at, bool truth, std::vector<Clause>& out) {
   const Node& n = NodeAt(node);
   if (n.op == Op::kNot) return Split(n.args[0], at, !truth, out);
   if (n.op != Op::kAnd && n.op != Op::kOr) return out.push_back({node, truth});
   const bool is_fulfilled_choice = IsChoice(node, truth) && past_.Truth(node, at) == truth;
-  for (const int arg : {n.args[0], n.args[1]}) {
+  for (const grammar::NodeId arg : {n.args[0], n.args[1]}) {
     if (!is_fulfilled_choice || past_.Truth(arg, at) == truth) Split(arg, at, truth, out);
   }
 }
 
-std::vector<Clauses::Clause> Clauses::Split(int node, const Moment& at, bool truth) {
+std::vector<Clauses::Clause> Clauses::Split(grammar::NodeId node, const Moment& at, bool truth) {
   std::vector<Clause> clauses;
   Split(node, at, truth, clauses);
   return clauses;
 }
 
-std::optional<Clauses::Measured> Clauses::Measure(int node, const Moment& at) {
+std::optional<Clauses::Measured> Clauses::Measure(grammar::NodeId node, const Moment& at) {
   const Node& n = NodeAt(node);
   if (IsComparison(n.op)) {
     const auto value = past_.Number(n.args[0], at);
@@ -98,7 +98,7 @@ Reason Clauses::Measurement(const Clause& clause, const Moment& at,
   return reason;
 }
 
-std::string Clauses::Since(int node, const Moment& at, bool truth) {
+std::string Clauses::Since(grammar::NodeId node, const Moment& at, bool truth) {
   const FrameNumber floor =
       AsksFor(past_.program(), node, Op::kAtBegin) && at.begin ? *at.begin : 0;
   FrameNumber first = at.frame;
@@ -110,7 +110,7 @@ std::string Clauses::Since(int node, const Moment& at, bool truth) {
   return first == 0 ? "from the first frame on" : "since " + Time(first);
 }
 
-Reason Clauses::Leaf(int node, const Moment& at, bool truth, bool brief) {
+Reason Clauses::Leaf(grammar::NodeId node, const Moment& at, bool truth, bool brief) {
   Moment earlier = at;
   --earlier.frame;
   const bool turned = at.frame > 0 && past_.Truth(node, earlier) != truth;
@@ -191,8 +191,8 @@ Reason Clauses::Reference(InstanceId instance, int slot, FrameNumber frame, bool
 }
 
 // Of a reference, a boundary of its interval; of any other condition, its clauses.
-void Clauses::Edge(int node, const Moment& at, bool truth, const Follow& follow, bool brief,
-                   Reasons& out) {
+void Clauses::Edge(grammar::NodeId node, const Moment& at, bool truth, const Follow& follow,
+                   bool brief, Reasons& out) {
   const Node& n = NodeAt(node);
   const bool end = n.op == Op::kEnds;
   const Node& arg = NodeAt(n.args[0]);
@@ -213,15 +213,15 @@ void Clauses::Edge(int node, const Moment& at, bool truth, const Follow& follow,
 }
 
 // A conjunction is true because all its parts are, and false because of those that are not.
-void Clauses::Collect(int node, const Moment& at, bool truth, const Follow& follow, bool brief,
-                      Reasons& out) {
+void Clauses::Collect(grammar::NodeId node, const Moment& at, bool truth, const Follow& follow,
+                      bool brief, Reasons& out) {
   const Node& n = NodeAt(node);
   switch (n.op) {
     case Op::kNot:
       return Collect(n.args[0], at, !truth, follow, brief, out);
     case Op::kAnd:
     case Op::kOr:
-      for (const int arg : {n.args[0], n.args[1]}) {
+      for (const grammar::NodeId arg : {n.args[0], n.args[1]}) {
         if (past_.Truth(arg, at) == truth) Collect(arg, at, truth, follow, brief, out);
       }
       return;
@@ -235,7 +235,8 @@ void Clauses::Collect(int node, const Moment& at, bool truth, const Follow& foll
   }
 }
 
-Reasons Clauses::Change(int node, const Moment& at, bool truth, const Follow& follow, bool brief) {
+Reasons Clauses::Change(grammar::NodeId node, const Moment& at, bool truth, const Follow& follow,
+                        bool brief) {
   Reasons reasons;
   Collect(node, at, truth, follow, brief, reasons);
   if (brief)
@@ -275,7 +276,7 @@ Reason Clauses::Told(const Clause& clause, const Moment& at) {
   return reason;
 }
 
-Reasons Clauses::State(int node, const Moment& at, bool truth) {
+Reasons Clauses::State(grammar::NodeId node, const Moment& at, bool truth) {
   Reasons reasons;
   for (const Clause& clause : Split(node, at, truth)) reasons.push_back(Told(clause, at));
   return reasons;
@@ -292,7 +293,7 @@ double Clauses::NearestMember(InstanceId any_instance, FrameNumber frame, int de
   return nearest;
 }
 
-double Clauses::Nearness(int node, const Moment& at, bool truth, int depth) {
+double Clauses::Nearness(grammar::NodeId node, const Moment& at, bool truth, int depth) {
   constexpr int kMaxDepth = 6;
   const Node& n = NodeAt(node);
   if (past_.Truth(node, at) == truth) return 1;

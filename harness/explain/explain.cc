@@ -17,6 +17,7 @@ namespace {
 using grammar::CandidateOutcome;
 using grammar::InstanceId;
 using grammar::ReplayMonitor;
+using grammar::RuleId;
 using grammar::Tick;
 
 std::vector<const CandidateOutcome*> IntervalsOf(ReplayMonitor& past, const Ask& ask) {
@@ -48,9 +49,9 @@ bool Contains(const CandidateOutcome& outcome, Tick tick) {
 std::vector<WhyEvent> ExplainAll(ReplayMonitor& past) {
   std::vector<WhyEvent> events;
   EventReasons reasons(past);
-  for (std::size_t rule = 0; rule < past.program().rules.size(); ++rule) {
+  for (const RuleId rule : grammar::IdsOf(past.program().rules)) {
     if (!past.program().rules[rule].printed) continue;
-    for (const InstanceId instance : past.InstancesOf(static_cast<int>(rule))) {
+    for (const InstanceId instance : past.InstancesOf(rule)) {
       for (const CandidateOutcome& outcome : past.OutcomesOf(instance)) {
         if (outcome.kind == CandidateOutcome::Kind::kInterval)
           events.push_back(reasons.Explain(instance, outcome, true));

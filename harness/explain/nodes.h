@@ -19,18 +19,18 @@ inline bool IsRegion(grammar::Op op) {
 }
 
 /// What stood in the grammar for a node; nothing for those that the compiler added.
-inline const grammar::NodeNote& NoteOf(const grammar::Program& program, int node) {
+inline const grammar::NodeNote& NoteOf(const grammar::Program& program, grammar::NodeId node) {
   static const grammar::NodeNote kNothing;
-  return node >= 0 && node < static_cast<int>(program.notes.size()) ? program.notes[node]
-                                                                    : kNothing;
+  return node >= grammar::NodeId(0) && node < program.notes.end_id() ? program.notes[node]
+                                                                     : kNothing;
 }
 
 /// Whether a value at the interval's begin or end (kAtBegin, kAtEnd) is part of it.
-inline bool AsksFor(const grammar::Program& program, int node, grammar::Op op) {
+inline bool AsksFor(const grammar::Program& program, grammar::NodeId node, grammar::Op op) {
   if (node == grammar::kNone) return false;
   const grammar::Node& n = program.nodes[node];
   return n.op == op || std::any_of(n.args.begin(), n.args.end(),
-                                   [&](int arg) { return AsksFor(program, arg, op); });
+                                   [&](grammar::NodeId arg) { return AsksFor(program, arg, op); });
 }
 
 }  // namespace prehend::harness::explain

@@ -86,7 +86,7 @@ std::string Source(const std::string& file, const Place& place) {
                      place.line);
 }
 
-std::string ClauseText(ReplayMonitor& past, InstanceId instance, int node) {
+std::string ClauseText(ReplayMonitor& past, InstanceId instance, grammar::NodeId node) {
   const std::string& written = NoteOf(past.program(), node).text;
   std::string text;
   for (std::size_t i = 0; i < written.size(); ++i) {

@@ -33,6 +33,7 @@ const std::string& RuleName(grammar::ReplayMonitor& past, grammar::InstanceId in
 std::string Source(const std::string& file, const grammar::Place& place);
 
 /// What stood in the grammar for a node, with the entities' names for the roles.
-std::string ClauseText(grammar::ReplayMonitor& past, grammar::InstanceId instance, int node);
+std::string ClauseText(grammar::ReplayMonitor& past, grammar::InstanceId instance,
+                       grammar::NodeId node);
 
 }  // namespace prehend::harness::explain

@@ -73,10 +73,10 @@ class AskReader {
 
   bool FindRule(const Word& word) {
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < program_.rules.size(); ++i) {
-      const Rule& rule = program_.rules[i];
+    for (const grammar::RuleId id : grammar::IdsOf(program_.rules)) {
+      const Rule& rule = program_.rules[id];
       if (rule.hidden) continue;
-      if (rule.name == word.text) ask_.rule = static_cast<int>(i);
+      if (rule.name == word.text) ask_.rule = id;
       names.push_back(rule.name);
     }
     if (ask_.rule != kNone) return true;

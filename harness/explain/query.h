@@ -13,7 +13,7 @@
 namespace prehend::harness::explain {
 
 struct Ask {
-  int rule = grammar::kNone;
+  grammar::RuleId rule;
   grammar::Binding entities = grammar::kUnbound;  ///< kNone: whoever
   std::optional<double> time_s;
 };

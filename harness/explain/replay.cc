@@ -18,7 +18,7 @@ Watched Watch(const EpisodeSource& source) {
   past.Finish(played.end);
   watched.failure = played.failure;
   if (!past.error().empty()) {
-    watched.problem = "the grammar cannot watch this episode: " + past.error();
+    watched.problem = "the grammar cannot be evaluated on this episode: " + past.error();
   } else if (too_long) {
     watched.problem = fmt::format(
         "the episode has more than {} frames, and all of them would have to be remembered",

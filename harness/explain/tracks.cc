@@ -24,19 +24,20 @@ using grammar::Op;
 using grammar::Program;
 using grammar::ReplayMonitor;
 using grammar::Rule;
+using grammar::RuleId;
 
 /// A number of one rule that can be plotted: a side of a comparison, or how far something is from a
 /// region's centre.
 struct Signal {
   enum class What { kNumber, kDistance, kHeight };
-  int node = kNone;
+  grammar::NodeId node;
   What what = What::kNumber;
 };
 
-void CollectSignals(const Program& program, int node, std::vector<Signal>& signals) {
+void CollectSignals(const Program& program, grammar::NodeId node, std::vector<Signal>& signals) {
   if (node == kNone) return;
   const Node& n = program.nodes[node];
-  const auto varies = [&](int arg) { return program.nodes[arg].op != Op::kNumber; };
+  const auto varies = [&](grammar::NodeId arg) { return program.nodes[arg].op != Op::kNumber; };
   if (IsComparison(n.op)) {
     if (varies(n.args[0])) signals.push_back({n.args[0]});
     if (varies(n.args[1])) signals.push_back({n.args[1]});
@@ -52,7 +53,7 @@ void CollectSignals(const Program& program, int node, std::vector<Signal>& signa
 
 std::vector<Signal> SignalsOf(const Program& program, const Rule& rule) {
   std::vector<Signal> signals;
-  for (const int node : ConditionsOf(rule)) CollectSignals(program, node, signals);
+  for (const grammar::NodeId node : ConditionsOf(rule)) CollectSignals(program, node, signals);
   CollectSignals(program, rule.requirement, signals);
   if (const grammar::Approach* approach = ApproachOf(rule)) {
     signals.push_back({approach->signal});
@@ -80,12 +81,12 @@ class Collector {
   }
 
   Tracks Collect() {
-    const std::vector<Rule>& rules = past_.program().rules;
-    for (std::size_t rule = 0; rule < rules.size(); ++rule) {
-      if (!rules[rule].hidden && Wanted(rules[rule].name)) AddIntervals(static_cast<int>(rule));
+    const auto& rules = past_.program().rules;
+    for (const RuleId rule : grammar::IdsOf(rules)) {
+      if (!rules[rule].hidden && Wanted(rules[rule].name)) AddIntervals(rule);
     }
-    for (std::size_t rule = 0; rule < rules.size(); ++rule) {
-      if (!rules[rule].hidden) AddSignals(static_cast<int>(rule));
+    for (const RuleId rule : grammar::IdsOf(rules)) {
+      if (!rules[rule].hidden) AddSignals(rule);
     }
     return std::move(tracks_);
   }
@@ -107,7 +108,7 @@ class Collector {
     return &tracks_.tracks.back().values;
   }
 
-  void AddIntervals(int rule) {
+  void AddIntervals(RuleId rule) {
     const Track::Kind kind =
         past_.program().rules[rule].printed ? Track::Kind::kEvent : Track::Kind::kCondition;
     for (const InstanceId instance : past_.InstancesOf(rule)) {
@@ -123,7 +124,7 @@ class Collector {
     }
   }
 
-  void AddSignals(int rule) {
+  void AddSignals(RuleId rule) {
     const Rule& asked = past_.program().rules[rule];
     for (const Signal& signal : SignalsOf(past_.program(), asked)) {
       if (!Wanted(NameOf(past_.program(), signal)) && !Wanted(asked.name)) continue;

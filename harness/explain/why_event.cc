@@ -62,7 +62,7 @@ Clauses::Follow EventReasons::FollowFrom(int depth) {
   };
 }
 
-Reasons EventReasons::Change(int node, const Moment& at, bool truth, int depth) {
+Reasons EventReasons::Change(grammar::NodeId node, const Moment& at, bool truth, int depth) {
   return node == kNone ? Reasons{} : clauses_.Change(node, at, truth, FollowFrom(depth), brief_);
 }
 
@@ -161,7 +161,7 @@ Reasons EventReasons::BeginOfWalk(InstanceId instance, const CandidateOutcome& o
       reasons = {Remark("the one before ended here")};
       break;
     case WalkBack::Stop::kTooFarBack:
-      reasons = {Remark("it looks at most " + Seconds(rule.back_s) + " back")};
+      reasons = {Remark("the rule reaches at most " + Seconds(rule.back_s) + " back")};
       break;
     case WalkBack::Stop::kSince:
       reasons =
@@ -368,10 +368,10 @@ Reasons EventReasons::WaitedFor(InstanceId instance, const CandidateOutcome& out
   for (const InstanceId target : targets) {
     const double back_s = LooksBack_s(target);
     if (!reasons.empty() || back_s <= 0) continue;
-    reasons.push_back(Remark(
-        Label(past_, target),
-        "might still have turned out to hold: it is known from its end on, and looks back up to " +
-            Seconds(back_s)));
+    reasons.push_back(
+        Remark(Label(past_, target),
+               "could still become true: it is known only at its end, and reaches back up to " +
+                   Seconds(back_s)));
   }
   return reasons;
 }

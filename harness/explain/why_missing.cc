@@ -184,7 +184,7 @@ std::string MissingReasons::HowLate(const CandidateOutcome& outcome) {
 // What is required, as it was at the end; of alternatives, the one that came closest at any time of
 // the run stands first.
 Reasons MissingReasons::Requirement(const CandidateOutcome& outcome, int depth) {
-  const int node = past_.RuleOf(outcome.instance).requirement;
+  const grammar::NodeId node = past_.RuleOf(outcome.instance).requirement;
   const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
   const Moment at{
       .instance = outcome.instance, .frame = last, .begin = outcome.span.begin.frame, .end = last};
@@ -245,7 +245,7 @@ MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int
   const auto fail = [&](std::string what, std::string how) {
     run.because.push_back({.mark = Mark::kFailed, .what = std::move(what), .how = std::move(how)});
   };
-  const auto clauses = [&](const char* word, int node, const Moment& at) {
+  const auto clauses = [&](const char* word, grammar::NodeId node, const Moment& at) {
     for (Reason& reason : clauses_.State(node, at, true)) {
       reason.what = word + reason.what;
       run.because.push_back(std::move(reason));

@@ -57,13 +57,14 @@ class MissingReasons {
   Blame OfFact(grammar::InstanceId instance, const Window& window);
 
   /// The clauses of a condition where they came closest to holding, the first failed one followed.
-  Blame OfClauses(int node, Moment at, const Window& window, int depth);
+  Blame OfClauses(grammar::NodeId node, Moment at, const Window& window, int depth);
   void Follow(Reason& reason, grammar::InstanceId target, grammar::FrameNumber frame,
               const Window& window, int depth);
   Reason ClosestApproach(grammar::InstanceId instance, const Window& window);
-  grammar::FrameNumber Closest(int node, Moment at, const Window& window);
+  grammar::FrameNumber Closest(grammar::NodeId node, Moment at, const Window& window);
   /// The moment never came.
-  Blame OfMoment(int node, grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfMoment(grammar::NodeId node, grammar::InstanceId instance, const Window& window,
+                 int depth);
   Reason Intervals(grammar::InstanceId instance, std::string how);
 
   grammar::ReplayMonitor& past_;

@@ -86,7 +86,7 @@ MissingReasons::Blame MissingReasons::OfFact(InstanceId instance, const Window& 
   return {{std::move(reason)}, 0};
 }
 
-FrameNumber MissingReasons::Closest(int node, Moment at, const Window& window) {
+FrameNumber MissingReasons::Closest(grammar::NodeId node, Moment at, const Window& window) {
   FrameNumber first = window.first;
   FrameNumber last = window.last;
   if (window.at) {
@@ -117,8 +117,8 @@ FrameNumber MissingReasons::Closest(int node, Moment at, const Window& window) {
   return closest;
 }
 
-MissingReasons::Blame MissingReasons::OfClauses(int node, Moment at, const Window& window,
-                                                int depth) {
+MissingReasons::Blame MissingReasons::OfClauses(grammar::NodeId node, Moment at,
+                                                const Window& window, int depth) {
   at.frame = Closest(node, at, window);
   Blame blame{.reasons = {}, .closeness = clauses_.Nearness(node, at, true)};
   bool followed = false;
@@ -154,7 +154,7 @@ void MissingReasons::Follow(Reason& reason, InstanceId target, FrameNumber frame
 MissingReasons::Blame MissingReasons::OfWhile(InstanceId instance, const Window& window,
                                               int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  const int condition = rule.As<grammar::WhileRule>().condition;
+  const grammar::NodeId condition = rule.As<grammar::WhileRule>().condition;
   Blame inner = OfClauses(condition, {.instance = instance}, window, depth);
   const FrameNumber closest = Closest(condition, {.instance = instance}, window);
   Reason reason = Failed(Label(past_, instance), "came closest at " + clauses_.Time(closest),
@@ -164,8 +164,8 @@ MissingReasons::Blame MissingReasons::OfWhile(InstanceId instance, const Window&
   return {{std::move(reason)}, inner.closeness};
 }
 
-MissingReasons::Blame MissingReasons::OfMoment(int node, InstanceId instance, const Window& window,
-                                               int depth) {
+MissingReasons::Blame MissingReasons::OfMoment(grammar::NodeId node, InstanceId instance,
+                                               const Window& window, int depth) {
   // Some of it happened, but not all at once.
   const Moment at{.instance = instance, .frame = Closest(node, {.instance = instance}, window)};
   if (past_.program().nodes[node].op == Op::kAnd && clauses_.Nearness(node, at, true) >= 0.5) {
@@ -213,8 +213,8 @@ MissingReasons::Blame MissingReasons::OfFromTo(InstanceId instance, const Window
     const std::string text = ClauseText(past_, instance, opens);
     Blame blame = OfMoment(opens, instance, window, depth);
     reason.how = "nothing began it";
-    reason.because = {Failed(text.empty() ? "what begins it" : "from " + text,
-                             "did not happen up to " + clauses_.Time(until),
+    reason.because = {Failed(text.empty() ? "its begin condition" : "from " + text,
+                             "did not become true by " + clauses_.Time(until),
                              std::move(blame.reasons))};
     return {{std::move(reason)}, 0.5 * blame.closeness};
   }
@@ -242,7 +242,7 @@ MissingReasons::Blame MissingReasons::OfFromTo(InstanceId instance, const Window
 }
 
 Reason MissingReasons::ClosestApproach(InstanceId instance, const Window& window) {
-  const int signal = past_.RuleOf(instance).As<UntilSinceRule>().approach->signal;
+  const grammar::NodeId signal = past_.RuleOf(instance).As<UntilSinceRule>().approach->signal;
   Reason reason{.mark = Mark::kNote, .what = ClauseText(past_, instance, signal)};
   double smallest = 0;
   for (FrameNumber frame = window.first; frame <= window.last; ++frame) {
@@ -277,7 +277,7 @@ std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(InstanceId insta
     } else {
       const std::string back = QuantityText(back_s, grammar::kSeconds);
       reason.how = "the next end is at " + clauses_.Time(outcome.span.end.frame) +
-                   ", and it looks at most " + back + " back";
+                   ", and the rule reaches at most " + back + " back";
     }
     return Blame{{std::move(reason)}, 0.9};
   }
@@ -296,14 +296,15 @@ MissingReasons::Blame MissingReasons::OfUntil(InstanceId instance, const Window&
   Blame blame = OfMoment(part.until, instance, rest, depth);
   const bool whole = rest.first == 0 && rest.last >= past_.frames() - 1;
   const std::string text = ClauseText(past_, instance, part.until);
-  const std::string when = whole       ? "never happened"
-                           : window.at ? "did not happen at or after " + clauses_.Time(rest.first)
-                                       : "did not happen from " + clauses_.Time(rest.first) +
-                                             " to " + clauses_.Time(rest.last);
+  const std::string when = whole ? "never became true"
+                           : window.at
+                               ? "did not become true at or after " + clauses_.Time(rest.first)
+                               : "did not become true from " + clauses_.Time(rest.first) + " to " +
+                                     clauses_.Time(rest.last);
   Reason reason = Failed(Label(past_, instance), "nothing ended it");
   reason.where = Source(rule.file, rule.place);
   reason.because = {
-      Failed(text.empty() ? "what ends it" : "until " + text, when, std::move(blame.reasons))};
+      Failed(text.empty() ? "its end condition" : "until " + text, when, std::move(blame.reasons))};
   if (part.approach) reason.because.push_back(ClosestApproach(instance, window));
   return {{std::move(reason)}, 0.5 * blame.closeness};
 }

@@ -108,7 +108,7 @@ void CheckClass(const EntityYaml& entity, DiagnosticList& errors) {
   if (!IsScenarioBuiltinClass(entity.class_name.value)) return;
   errors.Add(
       entity.class_name.where,
-      "class: '" + entity.class_name.value + "' is a built-in class that entities get anyway",
+      "class: '" + entity.class_name.value + "' is a built-in class; entities get it automatically",
       "name what the entity is, for example Cup");
 }
 

@@ -23,7 +23,8 @@ ValueFormat<WorldYaml> WorldFormat() {
       .Optional(
           "planar", &W::planar, Flag(),
           "Everything stays in the plane y = 0; always true with box2d, default false otherwise.")
-      .Optional("rate_hz", &W::rate_hz, Integer<int>(60, 4800), "Physics steps per second.")
+      .Optional("rate_hz", &W::rate_hz, Integer<int>(60, 4800),
+                "Ticks (updates of the physics) per second.")
       .Optional("sensing_hz", &W::sensing_hz, Integer<int>(1, 4800),
                 "Frames per second that the grammar sees, at most rate_hz.")
       .Optional("bearing_share", &W::bearing_share, Number(0, 0.5),
@@ -90,11 +91,11 @@ ValueFormat<ScenarioYaml> BuildScenarioFormat() {
       .Required("scenario", &S::name, Identifier(), "Its name: that of the file without '.yaml'.")
       .Required("shows", &S::shows, Text(), "One sentence: what happens and what it proves.")
       .Optional("grammar", &S::grammar, Identifier(),
-                "The grammar that watches, from grammar/library.")
+                "The grammar that segments the episode, from grammar/library.")
       .Optional("tags", &S::tags, ListOf(Identifier(), 0, 32), "Words to select scenarios by.")
       .Optional("world", &S::world, WorldFormat(), "Engine, rates and seed.")
       .Required("entities", &S::entities, MapOf(Identifier(), EntityFormat(), 1, kMaxEntities),
-                "The things in the world, by name.")
+                "The entities, by name.")
       .Optional("classes", &S::classes, MapOf(ClassName(), WithPlace(ClassName()), 0, kMaxClasses),
                 "Classes and their base classes: {Cup: Container}.")
       .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors),

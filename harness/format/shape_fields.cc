@@ -66,7 +66,7 @@ ValueFormat<physics::Hull> HullFormat() {
           .Required("points_m", &Points::points_m,
                     ListOf(Vector<3>(-kMaxPartOffset_m, kMaxPartOffset_m), physics::kMinHullPoints,
                            physics::kMaxHullPoints),
-                    "Its corners [x, y, z] in its own frame, in any order.")
+                    "Its corners [x, y, z] in its own coordinate frame, in any order.")
           .format();
   return ValueFormat<physics::Hull>(
       written.schema(),
@@ -166,8 +166,9 @@ ValueFormat<PartYaml> PartFormat() {
       .Optional("cylinder", &P::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")
       .Optional("capsule", &P::capsule, CapsuleFormat(), "Its shape: a capsule, axis along z.")
       .Optional("hull", &P::hull, HullFormat(), "Its shape: a solid of flat faces, by its corners.")
-      .Optional("at_m", &P::at_m, Vector<3>(-kMaxPartOffset_m, kMaxPartOffset_m),
-                "Its centre in the entity's own frame, whose origin is at the entity's at_m.")
+      .Optional(
+          "at_m", &P::at_m, Vector<3>(-kMaxPartOffset_m, kMaxPartOffset_m),
+          "Its centre in the entity's own coordinate frame, whose origin is at the entity's at_m.")
       .Optional("rpy_deg", &P::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw in degrees: turns about the entity's x, then y, then z axis.")
       .ExactlyOneOf({"box", "sphere", "cylinder", "capsule", "hull"})

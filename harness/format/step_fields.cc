@@ -46,8 +46,9 @@ ValueFormat<StepYaml> ReachFormat() {
                     "Where the hand comes from; auto chooses by style and shape.")
           .Optional("offset_m", &R::offset_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
                     "Added to where the hand goes, world axes: reach beside or above the entity.")
-          .Optional("point_m", &R::point_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                    "The point to grasp, in the entity's own frame; default: its centre.")
+          .Optional(
+              "point_m", &R::point_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+              "The point to grasp, in the entity's own coordinate frame; default: its centre.")
           .Optional("over_s", &R::over_s, Duration(), kOverDoc)
           .format());
 }

@@ -90,12 +90,12 @@ ValueFormat<VariationYaml> VariationFormat() {
           "fields", &V::fields,
           ListOf(Word("[a-z0-9_]+(\\.[a-z0-9_]+)*", "a field like 'entities.milk.mass_kg'", 255), 1,
                  64),
-          "The fields that get the same sample, written as for --set.")
+          "The fields that get the same draw, written as for --set.")
       .Optional("uniform", &V::uniform, range, "Uniform in [min, max].")
       .Optional("normal", &V::normal, range, "Normal with [mean, standard deviation].")
-      .Optional("plus", &V::plus, range, "The written value plus a uniform sample in [min, max].")
+      .Optional("plus", &V::plus, range, "The written value plus a uniform draw from [min, max].")
       .Optional("times", &V::times, range,
-                "The written value times a uniform sample in [min, max].")
+                "The written value times a uniform draw from [min, max].")
       .Optional("choose", &V::choose, ListOf(Value(), 1, 64), "One of these values.")
       .ExactlyOneOf({"uniform", "normal", "plus", "times", "choose"})
       .Check([](const YamlNode& node, const V& variation, DiagnosticList& errors) {

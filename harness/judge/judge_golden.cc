@@ -28,7 +28,7 @@ Finding DifferenceFinding(const Comparison& comparison, const CheckedRun& checke
 Finding TruthFinding(const GoldenComparison& compared) {
   std::string reason = DifferingText(compared.truth.Differing());
   if (compared.accepted_differing > 0)
-    reason += fmt::format(", the golden says {}", compared.accepted_differing);
+    reason += fmt::format(", the golden records {}", compared.accepted_differing);
   return {.exit_code = ExitCode::kDiffers,
           .reason = std::move(reason),
           .details = GroundTruthText(compared.truth)};

@@ -5,18 +5,18 @@
 namespace prehend::harness {
 
 namespace {
-PictureResult NoRenderRoom() { return {{}, "this build has no render room (PREHEND_RENDER=OFF)"}; }
+PictureResult CannotDraw() { return {{}, "this build cannot draw pictures (PREHEND_RENDER=OFF)"}; }
 }  // namespace
 
 bool CanDrawPictures() { return false; }
 
 PictureResult DrawPictures(const Scenario&, const RunResult&, const std::string&) {
-  return NoRenderRoom();
+  return CannotDraw();
 }
 
 PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureYaml&,
                           const std::string&) {
-  return NoRenderRoom();
+  return CannotDraw();
 }
 
 PictureDifference ComparePicture(const std::string&, const std::string&) { return {}; }

@@ -59,17 +59,52 @@ void AddSummary(pugi::xml_node body, const Tally& tally) {
   }
 }
 
-void AddTableRow(pugi::xml_node table, const ScenarioVerdict& verdict) {
+/// One column of the table of all scenarios.
+struct Column {
+  const char* title;
+  bool is_number;
+  void (*fill)(pugi::xml_node cell, const ScenarioVerdict& verdict);
+};
+
+void FillVerdict(pugi::xml_node cell, const ScenarioVerdict& verdict) {
   const std::string name(Name(verdict.verdict));
-  const pugi::xml_node row = AddElement(table, "tr");
-  AddElement(row, "td", {{"class", "verdict " + name}}, name);
-  const pugi::xml_node scenario = AddElement(row, "td");
-  AddElement(scenario, "a", {{"href", "#" + verdict.scenario}}, verdict.scenario);
-  AddElement(scenario, "br");
-  AddElement(scenario, "span", {{"class", "soft"}}, verdict.shows);
-  AddElement(row, "td", {}, verdict.reason.empty() ? MarginText(verdict) : verdict.reason);
-  AddElement(row, "td", {{"class", "number"}}, fmt::format("{:.2f} s", verdict.seconds));
+  AddElement(cell, "span", {{"class", "verdict " + name}}, name);
+}
+
+void FillScenario(pugi::xml_node cell, const ScenarioVerdict& verdict) {
+  AddElement(cell, "a", {{"href", "#" + verdict.scenario}}, verdict.scenario);
+  AddElement(cell, "br");
+  AddElement(cell, "span", {{"class", "soft"}}, verdict.shows);
+}
+
+void FillReason(pugi::xml_node cell, const ScenarioVerdict& verdict) {
+  AddText(cell, verdict.reason.empty() ? MarginText(verdict) : verdict.reason);
+}
+
+void FillTime(pugi::xml_node cell, const ScenarioVerdict& verdict) {
+  AddText(cell, fmt::format("{:.2f} s", verdict.seconds));
+}
+
+/// From left to right.
+constexpr Column kColumns[] = {{"verdict", false, FillVerdict},
+                               {"scenario", false, FillScenario},
+                               {"", false, FillReason},
+                               {"time", true, FillTime}};
+
+pugi::xml_node AddCell(pugi::xml_node row, const char* kind, const Column& column) {
+  return column.is_number ? AddElement(row, kind, {{"class", "number"}}) : AddElement(row, kind);
+}
+
+void AddTable(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
+  const pugi::xml_node table = AddElement(body, "table");
+  const pugi::xml_node head = AddElement(table, "tr");
+  for (const Column& column : kColumns) AddText(AddCell(head, "th", column), column.title);
   AddText(table, kNewLine);
+  for (const ScenarioVerdict& verdict : verdicts) {
+    const pugi::xml_node row = AddElement(table, "tr");
+    for (const Column& column : kColumns) column.fill(AddCell(row, "td", column), verdict);
+    AddText(table, kNewLine);
+  }
 }
 
 void AddPicture(pugi::xml_node section, const ReportedPicture& picture) {
@@ -117,12 +152,7 @@ std::string ReportHtml(const std::vector<ScenarioVerdict>& verdicts) {
   AddSummary(body, Count(verdicts));
   AddElement(body, "p", {{"class", "soft"}},
              "In every row, the golden is above (pale) and the recognised event below.");
-  const pugi::xml_node table = AddElement(body, "table");
-  const pugi::xml_node head = AddElement(table, "tr");
-  for (const char* title : {"verdict", "scenario", ""}) AddElement(head, "th", {}, title);
-  AddElement(head, "th", {{"class", "number"}}, "time");
-  AddText(table, kNewLine);
-  for (const ScenarioVerdict& verdict : verdicts) AddTableRow(table, verdict);
+  AddTable(body, verdicts);
   AddText(body, kNewLine);
   for (const ScenarioVerdict& verdict : verdicts) AddSection(body, verdict);
   return ToText(document, Layout::kAsItIs) + "\n";

@@ -88,7 +88,7 @@ RunResult ScenarioRun::Finish() {
   RunResult& result = run.result;
   if (!run.monitor.error().empty()) {
     result.status = {physics::RunStatus::Kind::kFailed, 0, "",
-                     "the grammar can't watch this scene: " + run.monitor.error(),
+                     "the grammar cannot be evaluated on this scene: " + run.monitor.error(),
                      "use fewer entities or rules with narrower role classes"};
     return std::move(result);
   }

@@ -115,9 +115,9 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& epi
               .total = ScoreKind(episodes, "", collar_s),
               .episodes = static_cast<int>(episodes.size()),
               .not_covered = {},
-              .not_judged = {}};
+              .ignored = {}};
   for (const EpisodeToScore& episode : episodes) {
-    for (const auto& [event, times] : episode.not_judged) score.not_judged[event] += times;
+    for (const auto& [event, times] : episode.ignored) score.ignored[event] += times;
   }
   for (const std::string& kind : kinds) score.events.push_back(ScoreKind(episodes, kind, collar_s));
   return score;

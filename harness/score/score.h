@@ -21,7 +21,7 @@ struct EpisodeToScore {
   grammar::Timeline truth;
   grammar::Timeline found;
   std::map<std::string, int>
-      not_judged;  ///< count of recognised events for which there is no ground truth
+      ignored;  ///< count of recognised events for which there is no ground truth
 };
 
 /// Signed offsets (found - true) of the boundaries of matched events, in seconds.
@@ -56,7 +56,7 @@ struct Score {
   int episodes = 0;
   std::vector<std::string>
       not_covered;  ///< events that are scored, but that no rule of the grammar prints
-  std::map<std::string, int> not_judged;  ///< of all episodes
+  std::map<std::string, int> ignored;  ///< of all episodes
 };
 
 /// Labels are events with their roles. `collar_s` is for the collar-based scores.
@@ -64,7 +64,8 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& epi
               double collar_s);
 
 /// A table for people: Ward's event errors, boundary errors, F1@{10,25,50}, edit, frames, F at the
-/// collar, latency. Below it, the events that the grammar does not cover, and those not judged.
+/// collar, latency. Below it, the events that the grammar does not cover, and those that are
+/// ignored.
 std::string ScoreTable(const Score& score, double collar_s);
 
 /// The totals of several grammars beside each other, as a Markdown table.

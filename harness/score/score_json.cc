@@ -70,8 +70,8 @@ Json ScoresJson(const std::vector<Score>& scores, double collar_s) {
     for (const EventScore& event : s.events) events.push_back(EventScoreJson(event));
     grammars.push_back({{"grammar", s.grammar},
                         {"episodes", s.episodes},
-                        {"not_spoken_of", s.not_covered},
-                        {"not_judged", s.not_judged},
+                        {"not_covered", s.not_covered},
+                        {"ignored", s.ignored},
                         {"total", EventScoreJson(s.total)},
                         {"events", std::move(events)}});
   }

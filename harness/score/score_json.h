@@ -9,7 +9,7 @@
 
 namespace prehend::harness::score {
 
-/// {"collar_s", "grammars": [{"grammar", "episodes", "not_spoken_of", "not_judged", "total": {..},
+/// {"collar_s", "grammars": [{"grammar", "episodes", "not_covered", "ignored", "total": {..},
 /// "events": [{..}]}]}; shares from 0 to 1, times in seconds; docs/regression-suite.md says what
 /// each is.
 nlohmann::ordered_json ScoresJson(const std::vector<Score>& scores, double collar_s);

@@ -19,7 +19,7 @@ void KeepScored(const std::vector<std::string>& wanted, score::EpisodeToScore& e
            (!wanted.empty() && std::ranges::find(wanted, event.event) == wanted.end());
   };
   for (const grammar::NamedEvent& event : episode.found.events) {
-    if (!OracleDefines(event.event)) ++episode.not_judged[event.event];
+    if (!OracleDefines(event.event)) ++episode.ignored[event.event];
   }
   std::erase_if(episode.truth.events, is_left_out);
   std::erase_if(episode.found.events, is_left_out);
@@ -50,7 +50,7 @@ tl::expected<std::vector<score::EpisodeToScore>, ScoreFailure> EpisodesToScore(
                .ticks = end,
                .truth = truth,
                .found = Resegment(scenario, run.recording, compiled.program, end),
-               .not_judged = {}};
+               .ignored = {}};
     KeepScored(request.events, episode);
   }
   return episodes;

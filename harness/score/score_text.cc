@@ -100,7 +100,7 @@ int TruthsOf(const Score& score, const std::string& event) {
   return row == score.events.end() ? 0 : row->truths;
 }
 
-std::string NotSpokenOfText(const Score& score) {
+std::string NotCoveredText(const Score& score) {
   if (score.not_covered.empty()) return "";
   std::vector<std::string> kinds;
   for (const std::string& event : score.not_covered)
@@ -110,13 +110,12 @@ std::string NotSpokenOfText(const Score& score) {
       fmt::join(kinds, ", "));
 }
 
-std::string NotJudgedText(const Score& score) {
-  if (score.not_judged.empty()) return "";
+std::string IgnoredText(const Score& score) {
+  if (score.ignored.empty()) return "";
   std::vector<std::string> kinds;
-  for (const auto& [event, times] : score.not_judged)
+  for (const auto& [event, times] : score.ignored)
     kinds.push_back(fmt::format("{} ({} found)", event, times));
-  return fmt::format("not judged: {}; docs/events.md does not define them\n",
-                     fmt::join(kinds, ", "));
+  return fmt::format("ignored: {}; docs/events.md does not define them\n", fmt::join(kinds, ", "));
 }
 
 }  // namespace
@@ -126,7 +125,7 @@ std::string ScoreTable(const Score& score, double collar_s) {
   for (const EventScore& event : score.events) rows.push_back(RowOf(event));
   rows.push_back(RowOf(score.total));
   return fmt::format("{}, {} episodes\n{}{}{}", score.grammar, score.episodes, Aligned(rows),
-                     NotSpokenOfText(score), NotJudgedText(score));
+                     NotCoveredText(score), IgnoredText(score));
 }
 
 std::string SideBySide(const std::vector<Score>& scores, double collar_s) {

@@ -9,7 +9,7 @@ constexpr double kMaxPosition_m = 1e4;
 constexpr double kMaxVelocity = 1e4;
 constexpr std::int64_t kLatestTick = 1'000'000'000'000;
 constexpr std::size_t kMaxMembers = 10'000;
-constexpr std::size_t kMaxFeelers = 1000;
+constexpr std::size_t kMaxCollisionSpheres = 1000;
 constexpr std::size_t kMaxSets = 32;
 constexpr std::size_t kMaxClasses = 100;
 
@@ -59,8 +59,8 @@ ValueFormat<HeaderEntry> HeaderFormat() {
 
 ValueFormat<LineEntry> LineFormat() {
   using L = SampleEntry;
-  const ValueFormat<L> look =
-      StructFormat<L>("look")
+  const ValueFormat<L> sample =
+      StructFormat<L>("sample")
           .NamedByKey()
           .Required("at_m", &L::at_m, Position(), "")
           .Optional("quat_wxyz", &L::quat_wxyz, UnitQuaternion(), "")
@@ -77,8 +77,9 @@ ValueFormat<LineEntry> LineFormat() {
           .NamedByKey()
           .Optional("trigger", &H::trigger, Number(0, 1), "")
           .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
-          .Optional("feelers_m", &H::feelers_m,
-                    ListOf(Vector<4>(-kMaxPosition_m, kMaxPosition_m), 1, kMaxFeelers), "")
+          .Optional("collision_spheres_m", &H::collision_spheres_m,
+                    ListOf(Vector<4>(-kMaxPosition_m, kMaxPosition_m), 1, kMaxCollisionSpheres), "")
+          .Renamed("feelers_m", "collision_spheres_m")
           .Optional("style", &H::style, Name(), "")
           .format();
   using T = TouchEntry;
@@ -99,7 +100,8 @@ ValueFormat<LineEntry> LineFormat() {
       {{"tick", AsAlternative<LineEntry>(
                     StructFormat<F>("a frame")
                         .Required("tick", &F::tick, tick, "")
-                        .Optional("looks", &F::looks, MapOf(Name(), look, 0, kMaxMembers), "")
+                        .Optional("samples", &F::samples, MapOf(Name(), sample, 0, kMaxMembers), "")
+                        .Renamed("looks", "samples")
                         .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
                         .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
                         .format())},

@@ -58,7 +58,7 @@ struct SampleEntry {
 struct HandEntry {
   double trigger = 0;
   std::optional<Eigen::Vector3d> ahead;
-  std::vector<Eigen::Vector4d> feelers_m;
+  std::vector<Eigen::Vector4d> collision_spheres_m;
   std::optional<Located<std::string>> style;
 };
 
@@ -75,7 +75,7 @@ struct TouchEntry {
 /// A frame: a line.
 struct FrameEntry {
   Located<std::int64_t> tick;
-  std::vector<Named<SampleEntry>> looks;
+  std::vector<Named<SampleEntry>> samples;
   std::vector<Named<HandEntry>> hands;
   std::vector<TouchEntry> touches;
 };

@@ -159,11 +159,11 @@ class EpisodeReader {
     now_.tick = tick;
     for (grammar::EntitySample& look : now_.entities)
       look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
-    for (const Named<SampleEntry>& look : entry.looks) {
-      const int index = IndexOf(look.name, look.name_where, errors);
+    for (const Named<SampleEntry>& sample : entry.samples) {
+      const int index = IndexOf(sample.name, sample.name_where, errors);
       if (index == grammar::kNoEntity) continue;
-      TakeSample(look.value, first ? 0 : dt_s, now_.entities[index]);
-      if (const auto& gazes_at = look.value.gazes_at) {
+      TakeSample(sample.value, first ? 0 : dt_s, now_.entities[index]);
+      if (const auto& gazes_at = sample.value.gazes_at) {
         now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, errors);
       }
     }
@@ -224,7 +224,7 @@ class EpisodeReader {
     }
     std::vector<grammar::CollisionSphere>& collision_spheres = now_.collision_spheres[slot];
     collision_spheres.clear();
-    for (const Eigen::Vector4d& f : entry.feelers_m)
+    for (const Eigen::Vector4d& f : entry.collision_spheres_m)
       collision_spheres.push_back({f.head<3>(), std::max(f[3], 0.0)});
     if (collision_spheres.empty()) collision_spheres.push_back({look.p_WB_m, 0});
   }

@@ -67,7 +67,7 @@ Json HandJson(const grammar::HandSample& hand, const grammar::EntityTable& entit
   }
   Json json = {{"trigger", hand.trigger},
                {"ahead", ToJson(hand.ahead_W)},
-               {"feelers_m", std::move(collision_spheres)}};
+               {"collision_spheres_m", std::move(collision_spheres)}};
   if (hand.style >= 0 && hand.style < static_cast<int>(entity_table.styles.size()))
     json["style"] = entity_table.styles[hand.style];
   return json;
@@ -108,12 +108,12 @@ EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
 }
 
 void EpisodeWriter::Write(const grammar::Frame& frame) {
-  Json looks = Json::object();
+  Json samples = Json::object();
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
-    Json look = SampleJson(frame.entities[i], entity_table_);
-    std::string text = look.dump();
+    Json sample = SampleJson(frame.entities[i], entity_table_);
+    std::string text = sample.dump();
     if (text == shown_[i]) continue;
-    looks[entity_table_.entities[i].name] = std::move(look);
+    samples[entity_table_.entities[i].name] = std::move(sample);
     shown_[i] = std::move(text);
   }
   Json hands = Json::object(), touches = Json::array();
@@ -122,7 +122,7 @@ void EpisodeWriter::Write(const grammar::Frame& frame) {
   for (const grammar::Touch& touch : frame.touches)
     touches.push_back(TouchJson(touch, entity_table_));
   out_ << Json{{"tick", frame.tick},
-               {"looks", std::move(looks)},
+               {"samples", std::move(samples)},
                {"hands", std::move(hands)},
                {"touches", std::move(touches)}}
               .dump()

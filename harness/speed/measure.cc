@@ -39,13 +39,13 @@ class Measuring {
     const double frames = static_cast<double>(log.size()) - warm_up;
     SpeedFigure figure{
         .what = std::move(what), .unit = std::move(unit), .operations = operations * frames};
-    figure.seconds = figure.by_hand_s = std::numeric_limits<double>::infinity();
+    figure.seconds = figure.baseline_s = std::numeric_limits<double>::infinity();
     for (int run = 0; run < (quick_ ? 1 : kRuns); ++run) {
       grammar::Monitor monitor(program_, log.entity_table);
       const Watched by_grammar = WatchByGrammar(log, monitor, static_cast<std::size_t>(warm_up));
       const Watched by_hand = WatchByHand(log, static_cast<std::size_t>(warm_up));
       figure.seconds = std::min(figure.seconds, by_grammar.seconds);
-      figure.by_hand_s = std::min(figure.by_hand_s, by_hand.seconds);
+      figure.baseline_s = std::min(figure.baseline_s, by_hand.seconds);
       figure.agrees = figure.agrees && by_grammar.recognised == by_hand.recognised;
       figure.hash = by_grammar.recognised.hash;
       figure.events = static_cast<double>(by_grammar.events);

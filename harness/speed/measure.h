@@ -17,7 +17,7 @@ struct SpeedFigure {
   std::string unit;        ///< of one operation
   double operations = 0;   ///< in one run
   double seconds = 0;      ///< of one run
-  double by_hand_s = 0;    ///< of the hand-written automata, same run; 0: there are none
+  double baseline_s = 0;   ///< of the hand-written automata, same run; 0: there are none
   double events = 0;       ///< in one run
   double simulated_s = 0;  ///< of one run; 0: the workload has no real time
   double physics_s = 0;    ///< of the world in one run; 0: there is no world

@@ -65,7 +65,7 @@ Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::siz
     for (const grammar::Event& event : events) {
       // Rules are numbered in the order of the text, after `touching`; supported(object, support)
       // has no hand.
-      const int rule = event.rule - 1;
+      const int rule = event.rule.number() - 1;
       const bool has_hand = rule != FourRules::kSupported;
       recognised.Add(rule, has_hand ? event.roles[0] : grammar::kNoEntity,
                      event.roles[has_hand ? 1 : 0], event.interval);

@@ -65,7 +65,7 @@ TEST(Describe, TextListsParametersWithTheirPlaces) {
       std::string::npos)
       << text;
   EXPECT_NE(text.find("event grasping(hand: Hand, object: Thing)\n    decided: at most 0.06 s "
-                      "after it has ended; watched"),
+                      "after it has ended; evaluated"),
             std::string::npos)
       << text;
 }

@@ -136,21 +136,22 @@ TEST(Monitor, RefusesFramesThatCannotBe) {
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = 10; }),
             "the frames are not in order of time");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.entities = f.entities.first(2); }),
-            "a frame shows another number of entities than the entity table");
+            "a frame has another number of entities than the entity table");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.entities = {}; }),
-            "a frame shows another number of entities than the entity table");
+            "a frame has another number of entities than the entity table");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::max(); }),
             "a frame's tick is too large");
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.tick = std::numeric_limits<Tick>::min(); }),
             "a frame's tick is too large");
   static const std::vector<HandSample> kTwice(2, HandSample{.entity = Scene::kHand});
   EXPECT_EQ(error_after([](Scene&, Frame& f) { f.hands = kTwice; }),
-            "a frame shows a hand twice, or its hands are not in the order of the entity table");
-  EXPECT_EQ(error_after([](Scene& s, Frame& f) {
-              s.touches = {{.a = 1, .b = 7}};
-              f.touches = s.touches;
-            }),
-            "a frame shows a touch of somebody not in the entity table");
+            "a frame has a hand twice, or its hands are not in the order of the entity table");
+  EXPECT_EQ(
+      error_after([](Scene& s, Frame& f) {
+        s.touches = {{.a = 1, .b = 7}};
+        f.touches = s.touches;
+      }),
+      "a frame has a touch of entities that are not in the entity table, or not in its order");
 }
 
 // Whatever a frame says of the hand, the monitor goes on: nothing of it is needed to be there.

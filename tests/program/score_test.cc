@@ -38,15 +38,15 @@ TEST_F(ScoreCommand, EveryGrammarIsScoredOnTheSameTruth) {
   EXPECT_EQ(grammars[1]["total"]["true"], 2) << "also when the grammar speaks of neither";
   EXPECT_EQ(grammars[1]["total"]["ward"]["deleted"], 2);
   EXPECT_EQ(grammars[1]["total"]["f1_50"], 0.0);
-  EXPECT_EQ(grammars[1]["not_spoken_of"][0], "contact");
-  EXPECT_EQ(grammars[1]["not_judged"]["touching_it"], 1);
+  EXPECT_EQ(grammars[1]["not_covered"][0], "contact");
+  EXPECT_EQ(grammars[1]["ignored"]["touching_it"], 1);
 }
 
 TEST_F(ScoreCommand, WhatIsMisspeltIsListedByName) {
   const Said said = Do("score" + GrammarOption("misspelt"));
   ASSERT_EQ(said.exit_code, 0) << said.err;
   EXPECT_NE(
-      said.out.find("\nnot judged: suported_by (1 found); docs/events.md does not define them\n"),
+      said.out.find("\nignored: suported_by (1 found); docs/events.md does not define them\n"),
       std::string::npos)
       << said.out;
   const Said other = Do("score" + GrammarOption("silent"));
@@ -63,7 +63,7 @@ TEST_F(ScoreCommand, EventsCanBeChosen) {
   ASSERT_EQ(said.exit_code, 0) << said.err;
   const Json score = Json::parse(said.out)["grammars"][0];
   EXPECT_EQ(score["total"]["true"], 1);
-  EXPECT_EQ(score["not_spoken_of"], Json::array({"supported_by"}));
+  EXPECT_EQ(score["not_covered"], Json::array({"supported_by"}));
   const Said wrong = Do("score --events contact,suported_by");
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_EQ(wrong.out, "");

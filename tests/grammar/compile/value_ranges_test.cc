@@ -51,21 +51,18 @@ TEST(Ranges, CountsAreWhole) {
 // infinite.
 TEST(Ranges, FollowArithmetic) {
   Program program;
-  const auto add = [&](Node node) {
-    program.nodes.push_back(node);
-    return static_cast<int>(program.nodes.size()) - 1;
-  };
-  const auto both = [&](Op op, int a, int b) {
+  const auto add = [&](Node node) { return program.nodes.push_back(node); };
+  const auto both = [&](Op op, NodeId a, NodeId b) {
     return add({.op = op, .args = {a, b, kNone, kNone}});
   };
-  const int grip = add({.op = Op::kTrigger});
-  const int up = add({.op = Op::kUp});
-  const int force = add({.op = Op::kForceBetween});
-  const int two = add({.op = Op::kNumber, .number = 2});
-  const auto expect = [&](int node, double low, double high) {
+  const NodeId grip = add({.op = Op::kTrigger});
+  const NodeId up = add({.op = Op::kUp});
+  const NodeId force = add({.op = Op::kForceBetween});
+  const NodeId two = add({.op = Op::kNumber, .number = 2});
+  const auto expect = [&](NodeId node, double low, double high) {
     const Range range = RangeOf(program, {}, node);
-    EXPECT_DOUBLE_EQ(range.low, low) << node;
-    EXPECT_DOUBLE_EQ(range.high, high) << node;
+    EXPECT_DOUBLE_EQ(range.low, low) << node.number();
+    EXPECT_DOUBLE_EQ(range.high, high) << node.number();
   };
   expect(both(Op::kAdd, grip, two), 2, 3);
   expect(both(Op::kSubtract, grip, up), -1, 2);

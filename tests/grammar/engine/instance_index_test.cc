@@ -29,7 +29,7 @@ void BehavesAsAMap(const std::vector<Key>& keys) {
 
 TEST(InstanceIndex, BehavesAsAMapOfBindings) {
   std::vector<InstanceKey> keys(3000);
-  for (int i = 0; i < 3000; ++i) keys[i] = {i % 3, {i / 60, i % 60, kNone, kNone}};
+  for (int i = 0; i < 3000; ++i) keys[i] = {RuleId(i % 3), {i / 60, i % 60, kNone, kNone}};
   BehavesAsAMap(keys);
 }
 

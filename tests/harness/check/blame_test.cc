@@ -49,7 +49,7 @@ TEST(Cause, WithoutAnyChangedFileNothingIsKnown) {
   runs.now.trace.hashes.pop_back();
   EXPECT_EQ(runs.Text(),
             "cause: physics. Only one of this run and the last passing run reaches 0.0042 s (tick "
-            "2). Changed since: nothing that is known\n");
+            "2). Changed since: no known file\n");
 }
 
 TEST(Cause, IsSensingWhenFramesAreAtOtherTicksOfTheSameMotion) {

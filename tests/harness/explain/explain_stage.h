@@ -68,7 +68,7 @@ class Stage {
 inline Ask Asked(grammar::ReplayMonitor& past, const std::string& text) {
   const Result<Ask> ask = ParseAsk("--event", text, past.program(), past.entity_table());
   EXPECT_TRUE(ask) << Format(ErrorsOf(ask));
-  return ask.value_or(Ask{.rule = 0});
+  return ask.value_or(Ask{.rule = grammar::RuleId(0)});
 }
 
 /// The only event that answers.

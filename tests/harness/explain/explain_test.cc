@@ -382,8 +382,9 @@ TEST(ExplainMissing, AnEndThatDoesNotReachBackIsNoReason) {
   stage.Touch(true);
   stage.Show(2);
   grammar::ReplayMonitor& past = stage.Finish();
-  EXPECT_EQ(WhyNot(past, "toward@0.3s").because,
-            "toward(hand, cup): the next end is at 1.0000 s, and it looks at most 100 ms back");
+  EXPECT_EQ(
+      WhyNot(past, "toward@0.3s").because,
+      "toward(hand, cup): the next end is at 1.0000 s, and the rule reaches at most 100 ms back");
   EXPECT_EQ(WhyNot(past, "toward@0.95s").because,
             "since speed(cup) > 1 m/s: is 0 mm/s, 1 m/s below 1 m/s, at 0.9900 s");
 }

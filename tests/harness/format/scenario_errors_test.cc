@@ -77,7 +77,7 @@ const Case kCases[] = {
       {"class_lower", "class: Table", "class: table", kRefuses,
        "6:18: class: expected a class name like 'MilkCarton', found 'table'\n"},
       {"class_builtin", "class: Table", "class: Thing", kAccepts,
-       "6:18: class: 'Thing' is a built-in class that entities get anyway | name what the entity is, for example Cup\n"},
+       "6:18: class: 'Thing' is a built-in class; entities get it automatically | name what the entity is, for example Cup\n"},
       {"fixed_word", "fixed: true", "fixed: yes", kRefuses,
        "6:32: fixed: expected true or false, found 'yes' (true or false to some YAML readers) | write a number, true or false, or text in quotes\n"},
       {"fixed_with_mass", "fixed: true", "fixed: true, mass_kg: 3", kAccepts,

@@ -78,7 +78,7 @@ TEST_F(JudgeGoldenTest, AnotherNumberThanAcceptedDiffersFromTheGroundTruth) {
   golden.derived = {"oracle: 2 of 4 events follow"};
   findings = Judged(golden);
   ASSERT_EQ(findings.size(), 1u);
-  EXPECT_EQ(findings[0].reason, "1 event differs from the ground truth, the golden says 2");
+  EXPECT_EQ(findings[0].reason, "1 event differs from the ground truth, the golden records 2");
 }
 
 }  // namespace

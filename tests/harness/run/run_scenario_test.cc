@@ -90,11 +90,12 @@ TEST_F(RunScenarioTest, AGrammarThatCannotWatchTheSceneIsAFailedRun) {
   const RunResult run = RunScenario(scenario, compiled.program);
   EXPECT_EQ(run.status.kind, physics::RunStatus::Kind::kFailed);
   const std::string n = std::to_string(MakeEntityTable(scenario).entities.size());
-  EXPECT_EQ(run.status.reason,
-            "the grammar can't watch this scene: more than 1000000 bindings with those of "
-            "'far(a: Entity, b: Entity, c: Entity, d: Entity)': there are " +
-                n + " for a, " + n + " for b, " + n + " for c, " + n +
-                " for d; give the roles narrower classes");
+  EXPECT_EQ(
+      run.status.reason,
+      "the grammar cannot be evaluated on this scene: more than 1000000 bindings with those of "
+      "'far(a: Entity, b: Entity, c: Entity, d: Entity)': there are " +
+          n + " for a, " + n + " for b, " + n + " for c, " + n +
+          " for d; give the roles narrower classes");
   EXPECT_EQ(run.status.advice, "use fewer entities or rules with narrower role classes");
   EXPECT_EQ(run.ticks, 0);
 }

@@ -35,7 +35,7 @@ TEST(ScoreOf, BoundaryErrorsAreSignedAndLatencyIsFromTheEnd) {
 TEST(ScoreOf, WhatIsNotSaidIsMissed) {
   std::vector<EpisodeToScore> episodes = {Episode(
       {Event("slide", 100, 300, 0), Event("hold", 50, 400, 0)}, {Event("hold", 50, 400, 400)})};
-  episodes[0].not_judged["slidding"] = 3;
+  episodes[0].ignored["slidding"] = 3;
   Score score = ScoreOf("g", episodes, 0.05);
   score.not_covered = {"slide"};
   EXPECT_EQ(score.total.truths, 2);
@@ -44,7 +44,7 @@ TEST(ScoreOf, WhatIsNotSaidIsMissed) {
   const std::string table = ScoreTable(score, 0.05);
   EXPECT_TRUE(table.ends_with(
       "\nnot covered: slide (1 true); no rule of the grammar prints them, so they count as missed\n"
-      "not judged: slidding (3 found); docs/events.md does not define them\n"))
+      "ignored: slidding (3 found); docs/events.md does not define them\n"))
       << table;
 }
 

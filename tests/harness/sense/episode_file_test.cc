@@ -36,9 +36,9 @@ std::string Complaint(const std::string& frames) {
 TEST(EpisodeFile, WhatIsLeftOutHasADefault) {
   const auto episode = ReadText(
       std::string(kHeader) +
-      R"({"tick": 0, "looks": {"cup": {"at_m": [0, 0, 1]}, "hand": {"at_m": [0, 0, 2]}}, "hands": {"hand": {}}})"
+      R"({"tick": 0, "samples": {"cup": {"at_m": [0, 0, 1]}, "hand": {"at_m": [0, 0, 2]}}, "hands": {"hand": {}}})"
       "\n"
-      R"({"tick": 10, "looks": {"cup": {"at_m": [0, 0, 1.2]}}, )"
+      R"({"tick": 10, "samples": {"cup": {"at_m": [0, 0, 1.2]}}, )"
       R"("touches": [{"a": "hand", "b": "cup", "up_on_a": 0.5, "sensor_sets": ["thumb"]}]})");
   ASSERT_TRUE(episode) << Brief(ErrorsOf(episode));
   const EpisodeFrame& last = episode->frames[1];
@@ -56,8 +56,8 @@ TEST(EpisodeFile, WhatIsLeftOutHasADefault) {
 TEST(EpisodeFile, IsReadAsItWasWritten) {
   const auto read = ReadText(
       std::string(kHeader) +
-      R"({"tick": 3, "looks": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.6, 0.8, 0, 0], "asleep": true, "joint_fraction": 0.25}}, )"
-      R"("hands": {"hand": {"trigger": 0.4, "style": "pinch", "ahead": [0, 0, -1], "feelers_m": [[1, 2, 3, 0.01]]}}, )"
+      R"({"tick": 3, "samples": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.6, 0.8, 0, 0], "asleep": true, "joint_fraction": 0.25}}, )"
+      R"("hands": {"hand": {"trigger": 0.4, "style": "pinch", "ahead": [0, 0, -1], "collision_spheres_m": [[1, 2, 3, 0.01]]}}, )"
       R"("touches": [{"a": "table", "b": "cup", "up_on_b": 1, "force_n": 2}]})"
       "\n{\"end_tick\": 9}\n");
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
@@ -87,8 +87,8 @@ TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
       "1:1: the recording has no frames | each line after the first is one: {\"tick\": 0, ...}\n");
   EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"tick\": 1}\n"),
             "3:10: the ticks must increase: 1 comes after 1\n");
-  EXPECT_EQ(Complaint("{\"tick\": 1, \"looks\": {\"cip\": {\"at_m\": [0, 0, 0]}}}\n"),
-            "2:23: no entity is called 'cip' | did you mean 'cup'?\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1, \"samples\": {\"cip\": {\"at_m\": [0, 0, 0]}}}\n"),
+            "2:25: no entity is called 'cip' | did you mean 'cup'?\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"hands\": {\"cup\": {}}}\n"),
             "2:23: 'cup' is not a hand | its entity has no 'hand: true'\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"touches\": [{\"a\": \"cup\", \"b\": \"cup\"}]}\n"),
@@ -98,9 +98,14 @@ TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
             "2:59: the touch of 'table' and 'cup' is given twice\n");
   EXPECT_EQ(Complaint("{\"tick\": 1, \"toches\": []}\n"),
             "2:13: unknown key 'toches' in a frame | did you mean 'touches'?\n");
+  EXPECT_EQ(Complaint("{\"tick\": 1, \"looks\": {}}\n"),
+            "2:13: unknown key 'looks' in a frame | it is called 'samples' now\n");
+  EXPECT_EQ(
+      Complaint("{\"tick\": 1, \"hands\": {\"hand\": {\"feelers_m\": [[0, 0, 0, 1]]}}}\n"),
+      "2:32: unknown key 'feelers_m' in hand 'hand' | it is called 'collision_spheres_m' now\n");
   EXPECT_EQ(Complaint("{\"tick\": 1}\n{\"end_tick\": 1}\n"),
             "3:14: end_tick: expected more than 1, the tick of the last frame, found 1\n");
-  EXPECT_NE(Complaint("{\"tick\": 1, \"looks\": {\"cup\": {\"at_m\": [0, 0, 1e99]}}}\n")
+  EXPECT_NE(Complaint("{\"tick\": 1, \"samples\": {\"cup\": {\"at_m\": [0, 0, 1e99]}}}\n")
                 .find(" at_m[2]: expected a number"),
             std::string::npos);
   EXPECT_NE(Complaint("{\"tick\": 1").find("2:"), std::string::npos);
