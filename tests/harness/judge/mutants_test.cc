@@ -107,6 +107,7 @@ const std::vector<Mutant> kMutants = {
 
 // In the order in which they kill most.
 const char* const kScenarios[] = {
+    "grasp/regrasp_after_a_lost_touch_is_a_second_reach",
     "put_down/moving_away_cuts_the_put_down_short",
     "reach/idling_beside_the_object_is_no_reach",
     "slide/four_centimetres_are_a_slide",
