@@ -183,7 +183,7 @@ class Stacking {
     if (at.size() < 2) return;  // already reported
     body.X_WB.p_m = {at[0], at[1], at.size() > 2 ? at[2] : 0};
     const physics::Body* placed = Placed(entity.on);
-    if (!placed) return;  // unknown or cyclic
+    if (!placed || body.shapes.empty()) return;  // unknown, cyclic, or reported already
     const physics::Body& support = *placed;
     const double lowest = physics::WorldBounds(body, {Vector3d::Zero(), body.X_WB.q}).min().z();
     if (!physics::IsAbove(support, support.X_WB, {at[0], at[1]})) {

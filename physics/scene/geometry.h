@@ -25,7 +25,8 @@ Eigen::AlignedBox3d WorldBounds(const Shape& shape, const Pose& X_WS);
 /// Bounding box, aligned with the world's axes, of a whole body, metres.
 Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB);
 
-/// A point of the shape that lies farthest in a direction (of any length), both in the shape's frame.
+/// A point of the shape that lies farthest in a direction (of any length), both in the shape's
+/// frame.
 Eigen::Vector3d FarthestAlong(const Shape& shape, const Eigen::Vector3d& n_S);
 
 /// Distance of a point (in the shape's frame) from the surface, metres; negative inside.

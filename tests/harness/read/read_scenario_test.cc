@@ -75,7 +75,7 @@ TEST(ReadScenario, EveryStep) {
   EXPECT_EQ(std::get<physics::MoveStep>(step(5).action).by_m, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(std::get<physics::CarryStep>(step(6).action).to_m, Eigen::Vector2d(0.1, 0.2));
   EXPECT_EQ(std::get<physics::PlaceStep>(step(7).action).support, "table");
-  EXPECT_TRUE(step(7).written_at.ends_with(".yaml:18:5")) << step(7).written_at;
+  EXPECT_TRUE(step(7).written_at.ends_with(".yaml:19:5")) << step(7).written_at;
   EXPECT_EQ(std::get<physics::RetreatStep>(step(8).action).by_m, 0.2);
   EXPECT_TRUE(std::holds_alternative<physics::WaitStep>(step(9).action));
   const auto poses = std::get<physics::PosesStep>(step(10).action).poses;
