@@ -30,6 +30,7 @@ std::vector<EventSignature> EventSignatures(const Program& program) {
     EventSignature& event = events.emplace_back();
     event.name = rule.name;
     event.has_style = rule.style_role != kNone;
+    event.symmetric = rule.symmetric;
     event.drawing = rule.drawing;
     for (const RuleRole& role : rule.roles) {
       event.roles.push_back(role.name);

@@ -104,8 +104,7 @@ bool Simulation::State::Step() {
   const std::vector<HandCommand>* commands = player.Advance(snapshot);
   if (!player.problem().empty()) {
     const auto hand = static_cast<std::size_t>(player.problem_hand());
-    Fail(scene.hands[hand].name, player.problem(),
-         "name an entity of the scenario and a style of the hand file");
+    Fail(scene.hands[hand].name, player.problem(), "");
     return false;
   }
   if (!commands) {

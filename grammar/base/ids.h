@@ -63,6 +63,7 @@ class IdVector {
 
   std::size_t size() const { return items_.size(); }
   bool empty() const { return items_.empty(); }
+  bool has(Key key) const { return key >= Key(0) && key < end_id(); }
   /// The number of the next element to be added; all others are below it.
   Key end_id() const { return Key(items_.size()); }
   /// Returns the number of the new element.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Grammar files -> Program: reads includes, collects parameters and heads, lowers every definition,
-// orders the rules so that each follows those it refers to, and picks each rule's guard. Tested by
-// tests/grammar/compile/compile_test.cc
+// orders the rules so that each follows those it refers to, picks each rule's guard, and checks all
+// ids. Tested by tests/grammar/compile/compile_test.cc
 #include "grammar/compile/compile.h"
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include "grammar/compile/lower_definition.h"
 #include "grammar/compile/lower_law.h"
 #include "grammar/language/parser.h"
+#include "grammar/program/check_ids.h"
 
 namespace prehend::grammar {
 namespace {
@@ -50,6 +51,7 @@ class Compiler {
     warnings_ = std::move(symbols_.warnings);
     WarnOfUnused();
     program_.warnings = warnings_;
+    CheckIds(program_);
     return {.program = std::make_shared<const Program>(std::move(program_)),
             .diagnostics = {},
             .warnings = std::move(warnings_)};

@@ -10,6 +10,7 @@
 #include "harness/build/build_abstract.h"
 #include "physics/scene/fill_vessel.h"
 #include "physics/scene/geometry.h"
+#include "physics/scene/landing.h"
 #include "physics/scene/random.h"
 
 namespace prehend::harness {
@@ -73,28 +74,6 @@ physics::Body MakeBody(const Named<EntityYaml>& named) {
 /// Cosine of the tilt: 1 upright, -1 upside down.
 double Uprightness(const physics::Body& body) { return (body.X_WB.q * Vector3d::UnitZ()).z(); }
 constexpr double kUpright = 0.999;
-
-/// Whether the point is above the body: for an upright body in its own axes, for a tilted one by
-/// its box in the world.
-bool StandsAbove(const physics::Body& support, const Eigen::Vector2d& p_W) {
-  const Vector3d top_W(p_W.x(), p_W.y(), support.X_WB.p_m.z());
-  if (std::abs(Uprightness(support)) < kUpright) {
-    const Eigen::AlignedBox3d bounds = physics::WorldBounds(support, support.X_WB);
-    return bounds.contains(Vector3d(top_W.x(), top_W.y(), bounds.center().z()));
-  }
-  const Vector3d p_B = support.X_WB.inverse() * top_W;
-  const physics::LocalBox box = physics::BoundingBox(support);
-  const Eigen::Vector2d offset = (p_B - box.p_BC_m).head<2>();
-  if (physics::IsRoundAboutVertical(support, support.X_WB))
-    return offset.norm() <= box.half_size_m.x();
-  return std::abs(offset.x()) <= box.half_size_m.x() && std::abs(offset.y()) <= box.half_size_m.y();
-}
-
-/// The same point, higher than any body.
-physics::Pose Above(physics::Pose X_WB) {
-  X_WB.p_m.z() = 1e6;
-  return X_WB;
-}
 
 /// Places every body after the one it stands on.
 class Stacking {
@@ -204,17 +183,26 @@ class Stacking {
     if (at.size() < 2) return;  // already reported
     body.X_WB.p_m = {at[0], at[1], at.size() > 2 ? at[2] : 0};
     const physics::Body* placed = Placed(entity.on);
-    if (!placed) return;  // unknown or cyclic
+    if (!placed || body.shapes.empty()) return;  // unknown, cyclic, or reported already
     const physics::Body& support = *placed;
     const double lowest = physics::WorldBounds(body, {Vector3d::Zero(), body.X_WB.q}).min().z();
-    body.X_WB.p_m.z() =
-        physics::HighestBelow(support, support.X_WB, body, Above(body.X_WB)) - lowest;
-    if (!StandsAbove(support, {at[0], at[1]})) {
-      errors_.Add(
+    if (!physics::IsAbove(support, support.X_WB, {at[0], at[1]})) {
+      return errors_.Add(
           entity.at_m.where,
           fmt::format("at_m: the centre of '{}' is not above '{}'", body.name, support.name),
           "at_m is in world coordinates, also with 'on'");
     }
+    // It is let down from higher than the whole support.
+    body.X_WB.p_m.z() = physics::WorldBounds(support, support.X_WB).max().z() - lowest;
+    const std::optional<double> landing_m =
+        physics::LandingHeight(support, support.X_WB, body, body.X_WB);
+    if (!landing_m) {
+      return errors_.Add(
+          entity.at_m.where,
+          fmt::format("at_m: no part of '{}' is below '{}'", support.name, body.name),
+          "'on' lets it straight down until it touches; here it would fall through");
+    }
+    body.X_WB.p_m.z() = *landing_m - lowest;
   }
 
   const ScenarioYaml& entry_;

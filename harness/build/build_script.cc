@@ -286,6 +286,7 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
       physics::Step step =
           std::visit(StepMaker{entities, scene, model, named, errors}, named.value);
       step.hand = hand;
+      step.written_at = errors.PlaceText(named.name_where);
       stage.steps.push_back(std::move(step));
     }
   }

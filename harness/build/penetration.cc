@@ -7,40 +7,28 @@
 #include <limits>
 #include <vector>
 
+#include "physics/scene/geometry.h"
+
 namespace prehend::harness {
 namespace {
 
 using Eigen::Vector3d;
 
-/// How far the shape reaches along a unit direction, both given in its own frame.
-struct ReachOf {
-  Vector3d n_S;
-  double operator()(const physics::Box& box) const { return n_S.cwiseAbs().dot(box.size_m) / 2; }
-  double operator()(const physics::Sphere& sphere) const { return sphere.radius_m; }
-  double operator()(const physics::Hull& hull) const {
-    double farthest = -std::numeric_limits<double>::infinity();
-    for (const Vector3d& corner : hull.corners_m) farthest = std::max(farthest, n_S.dot(corner));
-    return farthest;
-  }
-  double operator()(const physics::Cylinder& cylinder) const {
-    return std::abs(n_S.z()) * cylinder.length_m / 2 + n_S.head<2>().norm() * cylinder.radius_m;
-  }
-  double operator()(const physics::Capsule& capsule) const {
-    return std::abs(n_S.z()) * capsule.length_m / 2 + capsule.radius_m;
-  }
-};
+double ReachOf(const physics::Shape& shape, const Vector3d& n_S) {
+  return n_S.dot(physics::FarthestAlong(shape, n_S));
+}
 
-/// From the solid's own origin.
+/// How far it reaches along a unit direction, from its own origin.
 double ReachAlong(const PlacedSolid& solid, const Vector3d& n_W) {
-  return std::visit(ReachOf{solid.X_WS.q.conjugate() * n_W}, solid.shape);
+  return ReachOf(solid.shape, solid.X_WS.q.conjugate() * n_W);
 }
 
 /// The point of the solid's bounding box nearest to `p_W`, for axes that meet a box's corner.
 Vector3d NearestInBox(const PlacedSolid& solid, const Vector3d& p_W) {
   Vector3d p_S = solid.X_WS.inverse() * p_W;
   for (int i = 0; i < 3; ++i) {
-    const double least = -std::visit(ReachOf{-Vector3d::Unit(i)}, solid.shape);
-    p_S[i] = std::clamp(p_S[i], least, std::visit(ReachOf{Vector3d::Unit(i)}, solid.shape));
+    const double least = -ReachOf(solid.shape, -Vector3d::Unit(i));
+    p_S[i] = std::clamp(p_S[i], least, ReachOf(solid.shape, Vector3d::Unit(i)));
   }
   return solid.X_WS * p_S;
 }

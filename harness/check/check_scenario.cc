@@ -13,6 +13,7 @@
 #include "harness/golden/golden_files.h"
 #include "harness/judge/accept_golden.h"
 #include "harness/judge/compare_engines.h"
+#include "harness/judge/judge_claims.h"
 #include "harness/judge/judge_golden.h"
 #include "harness/judge/judge_invariants.h"
 #include "harness/judge/judge_pictures.h"
@@ -218,11 +219,14 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
 
   Append(judgement.findings, JudgeInvariants(checked));
   Append(judgement.findings, JudgeLaws(checked));
+  verdict.claims = JudgeClaims(checked.loaded, checked.result.timeline);
+  Append(judgement.findings, ClaimFindings(verdict.claims));
   JudgeAgainstGolden(request, checked, verdict.inputs, judgement);
   Append(judgement.findings, JudgeOtherEngine(checked, judgement.engine_difference));
   JudgePictures(request, checked, verdict.pictures, judgement);
 
   Conclude(judgement.findings, verdict);
+  verdict.details += TextOfUndecided(verdict.claims);
   Store(request, checked, judgement, verdict.verdict == Verdict::kPassed);
   if (judgement.golden) {
     verdict.comparison = std::move(judgement.golden->comparison);

@@ -11,6 +11,7 @@
 
 #include "harness/base/content_hash.h"
 #include "harness/base/exit_code.h"
+#include "harness/claims/judge_claims.h"
 #include "harness/golden/compare.h"
 #include "harness/timeline/event_drawings.h"
 
@@ -39,6 +40,7 @@ struct ScenarioVerdict {
   ExitCode exit_code = ExitCode::kAgrees;  ///< what a check of this scenario alone ends with
   std::string reason;                      ///< one line; empty when passed
   std::string details;  ///< differences, violations, diagnostics; several lines or empty
+  std::vector<ClaimVerdict> claims;      ///< of a run that completed
   std::optional<Comparison> comparison;  ///< with the golden; without one every event is extra
   bool has_golden = false;               ///< there is one, and it could be read
   EventDrawings drawings;                ///< how the grammar wants the comparison drawn

@@ -47,10 +47,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RelationChange, first, second, expected, actu
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Margin, label, at_end, offset, tolerance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, ticks_per_second, pairings, relations, margins)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, claim, place, says, found, times)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
-                                   details, comparison, has_golden, drawings, explain, cause,
-                                   command, state_hash, ticks, seconds, peak_memory_kib, inputs,
-                                   pictures, picture_differences)
+                                   details, claims, comparison, has_golden, drawings, explain,
+                                   cause, command, state_hash, ticks, seconds, peak_memory_kib,
+                                   inputs, pictures, picture_differences)
 
 namespace {
 
@@ -67,6 +68,16 @@ Json BoundariesJson(const Comparison& comparison) {
   return boundaries;
 }
 
+Json ClaimsJson(const std::vector<ClaimVerdict>& verdicts) {
+  Json claims = Json::array();
+  for (const ClaimVerdict& verdict : verdicts)
+    claims.push_back({{"claim", verdict.claim},
+                      {"place", verdict.place},
+                      {"verdict", verdict.says},
+                      {"found", verdict.found}});
+  return claims;
+}
+
 }  // namespace
 
 Json VerdictJson(const ScenarioVerdict& verdict) {
@@ -81,6 +92,7 @@ Json VerdictJson(const ScenarioVerdict& verdict) {
           {"exit_code", static_cast<int>(verdict.exit_code)},
           {"reason", verdict.reason},
           {"details", verdict.details},
+          {"claims", ClaimsJson(verdict.claims)},
           {"differences", DifferencesJson(compared, verdict.explain)},
           {"relations", RelationsJson(compared)},
           {"blame", verdict.cause},

@@ -16,6 +16,7 @@
 #include "harness/judge/accept_golden.h"
 #include "harness/judge/compare_engines.h"
 #include "harness/judge/compare_with_oracle.h"
+#include "harness/judge/judge_claims.h"
 #include "harness/run/run_text.h"
 
 namespace prehend::harness {
@@ -122,6 +123,18 @@ ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
   return ExitCode::kAgrees;
 }
 
+/// What a scenario shows is decided before its events are.
+std::optional<ExitCode> RefuseUnlessClaimsHold(const CommandContext& context,
+                                               const Played& played) {
+  const std::string text = TextOfContradicted(JudgeClaims(played.loaded, played.run.timeline));
+  if (text.empty()) return std::nullopt;
+  context.out << text;
+  return Complain(context, ExitCode::kDiffers,
+                  std::string("the events contradict what the scenario expects (printed above); "
+                              "nothing was accepted\n  ") +
+                      kUntilClaimsHold);
+}
+
 /// A planar scenario must have the same events in both engines: `check` would fail whatever were
 /// accepted.
 std::optional<ExitCode> RefuseUnlessEnginesAgree(const CommandContext& context,
@@ -205,6 +218,7 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
                     "a run that did not complete cannot be accepted: " + StatusText(played.run));
   }
   if (!options.Has("--pictures")) {
+    if (const auto refused = RefuseUnlessClaimsHold(context, played)) return *refused;
     if (const auto refused = RefuseUnlessEnginesAgree(context, played)) return *refused;
     return AcceptEvents(options, context, played);
   }

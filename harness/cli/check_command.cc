@@ -169,8 +169,8 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
     const std::string note = verdict.reason.empty() ? MarginText(verdict) : verdict.reason;
     context.out << fmt::format("{}  {}{}{}\n", Colored(verdict.verdict, context.colored),
                                verdict.scenario, note.empty() ? "" : "  ", note);
+    context.out << Indented(verdict.details);  // of what passed: claims that were not judged
     if (verdict.exit_code == ExitCode::kAgrees) continue;
-    context.out << Indented(verdict.details);
     context.out << "    " << CommandLabel(verdict) << ": " << verdict.command << "\n";
   }
   const Tally tally = Count(verdicts);

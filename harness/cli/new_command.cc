@@ -23,6 +23,13 @@ shows: a carton is picked up with a wrap grasp and put down further to the right
 grammar: pick_and_place            # a file of grammar/library/, without ".grammar"
 tags: []
 
+# What must be recognised if the sentence is true. Write it before the first run: afterwards it is easy to expect
+# whatever came out. `any` fits everybody. `check` fails on what contradicts a line, and `accept` refuses it.
+expects:
+  - one pick_and_place(right_hand, carton)
+  - reaching(right_hand, carton) then grasping(right_hand, carton, style=wrap)
+  - no sliding
+
 # Things. `on` puts one onto another; then at_m gives x and y only.
 entities:
   table: {class: Table, fixed: true, box: {size_m: [1.2, 0.8, 0.04]}, at_m: [0, 0, 0.74]}
@@ -129,7 +136,9 @@ ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
   const std::string problem = WriteTextFile(path, *text);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   const std::string id = ScenarioId(skill, name);
-  context.out << path.string() << "\nnext: edit it, then\n";
+  context.out << path.string()
+              << "\nnext: edit it; write what it shows into 'shows' and 'expects' before its "
+                 "first run; then\n";
   for (const char* command : {"validate", "run", "render", "check", "review"})
     context.out << "  " << CommandText({command, id}) << "\n";
   context.out << "  " << CommandText({"accept", id}) << " --reason \"...\"\n";

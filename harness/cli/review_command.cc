@@ -16,6 +16,7 @@
 #include "harness/golden/golden_files.h"
 #include "harness/judge/accept_golden.h"
 #include "harness/judge/compare_engines.h"
+#include "harness/judge/judge_claims.h"
 #include "harness/judge/unreferenced_goldens.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
@@ -34,6 +35,7 @@ struct Review {
   std::string fingerprint = {};  ///< of the pending golden; lets `accept` take nothing else
   std::vector<std::string> files =
       {};  ///< of a picture: golden, new, difference; of an orphan: what to remove
+  std::string contradicts = {};  ///< the claims that the pending golden contradicts, or empty
 };
 
 std::string EventLines(const Golden& golden) {
@@ -63,21 +65,23 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
   Review review{.id = ScenarioId(file.skill, file.name), .kind = "unreadable", .text = {}};
   const auto pending = files.ReadPendingOf(review.id);
   const auto golden = files.ReadGoldenOf(review.id);
-  const Result<Scenario> scenario = ReadScenario(file.path, {}, ProjectLibrary(root));
-  review.text = Format(ErrorsOf(pending)) + Format(ErrorsOf(golden)) + Format(ErrorsOf(scenario));
-  if (!pending || !*pending || !scenario || !golden) return review;
+  const Result<LoadedRun> loaded = LoadRun({.scenario_file = file.path}, root);
+  review.text = Format(ErrorsOf(pending)) + Format(ErrorsOf(golden)) + Format(ErrorsOf(loaded));
+  if (!pending || !*pending || !loaded || !golden) return review;
   const Golden& proposed = **pending;
   review.fingerprint = Fingerprint(proposed);
+  review.contradicts = TextOfContradicted(JudgeClaims(*loaded, ToTimeline(proposed)));
   if (!*golden) {
     review.kind = "new";
-    review.text = EventLines(proposed) + DerivationLines(proposed, {});
+    review.text = EventLines(proposed) + DerivationLines(proposed, {}) + review.contradicts;
     return review;
   }
   const Comparison comparison =
-      Compare(**golden, ToTimeline(proposed), DefaultTolerance(*scenario));
+      Compare(**golden, ToTimeline(proposed), DefaultTolerance(loaded->scenario));
   const std::string derivation = DerivationLines(proposed, (*golden)->derived);
   review.kind = comparison.Agrees() && derivation.empty() ? "same" : "changed";
-  review.text = DifferenceText(comparison, ExplainCommand(review.id, {})) + derivation;
+  review.text =
+      DifferenceText(comparison, ExplainCommand(review.id, {})) + derivation + review.contradicts;
   return review;
 }
 
@@ -155,6 +159,7 @@ std::optional<std::vector<Review>> Reviews(const ParsedOptions& options,
 std::string NextStep(const Review& review, bool engines_differ) {
   if (review.kind == "engines" || (engines_differ && !review.fingerprint.empty()))
     return kUntilEnginesAgree;
+  if (!review.contradicts.empty()) return kUntilClaimsHold;
   if (review.kind == "picture") return "if right: " + AcceptPicturesCommand(review.id);
   if (review.kind != "new" && review.kind != "changed") return "";
   return "if right: " + AcceptCommandLine(review.id, review.fingerprint);

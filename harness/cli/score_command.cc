@@ -11,9 +11,11 @@
 #include "harness/base/project_paths.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/cli/command.h"
+#include "harness/closed_form/closed_form.h"
 #include "harness/oracle/oracle.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"
+#include "harness/score/closed_form_score.h"
 #include "harness/score/score_json.h"
 #include "harness/score/score_scenario.h"
 #include "harness/timeline/timeline_json.h"
@@ -40,7 +42,8 @@ std::string Judged(const ScoreRequest& request) {
     sent.push_back({{"ticks", episode.ticks},
                     {"truth", TimelineJson(episode.truth)},
                     {"found", TimelineJson(episode.found)},
-                    {"ignored", episode.ignored}});
+                    {"ignored", episode.ignored},
+                    {"by_definitions", score::TestimonyJson(episode.by_definitions)}});
   }
   return Json{{"episodes", std::move(sent)}}.dump();
 }
@@ -74,7 +77,8 @@ std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selec
     for (std::size_t g = 0; g < grammars.size(); ++g) {
       const Json& episode = sent["episodes"][g];
       by_grammar[g].push_back({ids[i], episode["ticks"], TimelineFromJson(episode["truth"]),
-                               TimelineFromJson(episode["found"]), episode["ignored"]});
+                               TimelineFromJson(episode["found"]), episode["ignored"],
+                               score::TestimonyFromJson(episode["by_definitions"])});
     }
   }
   return by_grammar;
@@ -118,6 +122,34 @@ std::vector<std::string> NotCovered(const grammar::Program& program,
   return silent;
 }
 
+std::vector<score::Witness> WitnessesOf(
+    const std::vector<std::vector<EpisodeToScore>>& by_grammar) {
+  score::Witness definitions{.name = "definitions",
+                             .proves = "events lie within the bands of docs/events.md",
+                             .of_grammars = {}};
+  for (const std::vector<EpisodeToScore>& episodes : by_grammar) {
+    score::Testimony& all = definitions.of_grammars.emplace_back();
+    for (const EpisodeToScore& episode : episodes) all += episode.by_definitions;
+  }
+  return {definitions};
+}
+
+/// What differs, by grammar; of many differences the first ones.
+void PrintDifferences(const std::vector<std::string>& grammars,
+                      const std::vector<score::Witness>& witnesses, bool all, std::ostream& out) {
+  constexpr std::size_t kMaxShown = 10;
+  for (const score::Witness& witness : witnesses) {
+    for (std::size_t g = 0; g < grammars.size(); ++g) {
+      const std::vector<std::string>& lines = witness.of_grammars[g].differences;
+      const std::size_t shown = all ? lines.size() : std::min(lines.size(), kMaxShown);
+      if (shown > 0) out << fmt::format("{}, outside the {}:\n", grammars[g], witness.name);
+      for (std::size_t i = 0; i < shown; ++i) out << "  " << lines[i] << "\n";
+      if (shown < lines.size())
+        out << fmt::format("  and {} more; --differences lists all\n", lines.size() - shown);
+    }
+  }
+}
+
 void Print(const std::vector<score::Score>& scores, double collar_s, std::ostream& out) {
   for (const score::Score& one : scores) out << ScoreTable(one, collar_s) << "\n";
   if (scores.size() > 1) out << SideBySide(scores, collar_s) << "\n";
@@ -129,6 +161,26 @@ void Print(const std::vector<score::Score>& scores, double collar_s, std::ostrea
          "events.\n";
 }
 
+/// `score --closed-form`: the grammars and the oracle on recordings whose events are known.
+ExitCode RunClosedForms(const std::vector<ClosedFormWitness>& recognisers,
+                        const ParsedOptions& options, const CommandContext& context) {
+  for (const char* other : {"names", "--filter", "--events", "--collar-ms"}) {
+    if (options.Has(other))
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("--closed-form scores all closed forms: {} does not apply",
+                                  std::string_view(other) == "names" ? "a name" : other));
+  }
+  const std::vector<std::string> files = ClosedFormFiles(context.root);
+  if (files.empty())
+    return Complain(context, ExitCode::kNothing,
+                    "there is nothing in " + context.root + "/closed_form");
+  const auto scores = ScoreOnClosedForms(files, recognisers);
+  if (!scores) return Complain(context, scores.error());
+  context.out << (options.Has("--json") ? ClosedFormJson(*scores).dump(2) + "\n"
+                                        : ClosedFormText(*scores));
+  return ExitCode::kAgrees;
+}
+
 ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   std::vector<std::string> grammars = options.All("--grammar");
   if (grammars.empty()) grammars = {kDefaultGrammar, "original_2020"};
@@ -136,11 +188,15 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   if (const std::string unknown = UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);
   std::vector<std::vector<std::string>> not_covered;
+  std::vector<ClosedFormWitness> recognisers;
   for (const std::string& name : grammars) {
     const grammar::CompileResult compiled = LoadGrammar(context.root, name);
     if (!compiled.program) return Complain(context, compiled.diagnostics);
     not_covered.push_back(NotCovered(*compiled.program, events));
+    recognisers.push_back(GrammarWitness(name, compiled.program));
   }
+  recognisers.push_back(OracleWitness());
+  if (options.Has("--closed-form")) return RunClosedForms(recognisers, options, context);
   for (const std::string& name : options.All("names")) {
     if (const auto refused = RefuseRecording(name, context)) return *refused;
   }
@@ -158,10 +214,16 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
     scores.push_back(ScoreOf(grammars[g], by_grammar[g], collar_s));
     scores.back().not_covered = not_covered[g];
   }
-  if (options.Has("--json"))
-    context.out << ScoresJson(scores, collar_s).dump(2) << "\n";
-  else
+  const std::vector<score::Witness> witnesses = WitnessesOf(by_grammar);
+  if (options.Has("--json")) {
+    nlohmann::ordered_json json = ScoresJson(scores, collar_s);
+    json["witnesses"] = score::WitnessesJson(grammars, witnesses);
+    context.out << json.dump(2) << "\n";
+  } else {
     Print(scores, collar_s, context.out);
+    context.out << "\n" << WitnessTable(grammars, witnesses) << "\n";
+    PrintDifferences(grammars, witnesses, options.Has("--differences"), context.out);
+  }
   return worst;
 }
 
@@ -172,7 +234,7 @@ Command ScoreCommand() {
           .summary = "Score grammars against what physically happened",
           .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
                        "score --grammar my/rules.grammar --events grasping,sliding",
-                       "score 'slide/*' --collar-ms 20 --json"},
+                       "score 'slide/*' --collar-ms 20 --json", "score --closed-form"},
           .options = {{.name = "names",
                        .help = "names, skill/name, globs or files; default: all scenarios",
                        .repeatable = true},
@@ -195,6 +257,11 @@ Command ScoreCommand() {
                                            kDefaultCollar_ms),
                        .placeholder = "MS",
                        .rule = NumbersFrom(0, 10000)},
+                      {.name = "--differences",
+                       .help = "list every event that differs from what a witness says"},
+                      {.name = "--closed-form",
+                       .help = "score on recordings whose events are known on paper, instead of\n"
+                               "scenarios; the oracle is scored, too (docs/closed-form.md)"},
                       {.name = "--json", .help = "print one JSON object instead of tables"}},
           .run = RunScore};
 }

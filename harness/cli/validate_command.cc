@@ -16,6 +16,7 @@
 #include "harness/golden/golden_files.h"
 #include "harness/judge/unreferenced_goldens.h"
 #include "harness/run/load_grammar.h"
+#include "harness/run/validate_claims.h"
 
 namespace prehend::harness {
 namespace {
@@ -98,7 +99,10 @@ tl::expected<Validated, ExitCode> Validate(const std::string& typed, const Parse
       LoadRun(RequestOf(options, file->path), context.root, &validated.inputs);
   validated.diagnostics = ErrorsOf(loaded);
   if (file->in_project) AddGolden(*file, options, loaded, context.root, validated);
-  if (loaded) validated.warnings = std::move(loaded->warnings);
+  if (!loaded) return validated;
+  validated.warnings = std::move(loaded->warnings);
+  std::ranges::move(UndecidedClaims(loaded->scenario, *loaded->program),
+                    std::back_inserter(validated.warnings));
   return validated;
 }
 

@@ -29,8 +29,6 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr int kMaxDepth = 8;  // rules behind rules
-
 Reason Remark(std::string what, std::string how = {}) {
   return {.mark = Mark::kNote,
           .what = std::move(what),

@@ -8,6 +8,8 @@
 
 namespace prehend::harness::explain {
 
+inline constexpr int kMaxDepth = 8;  ///< rules behind rules
+
 class EventReasons {
  public:
   explicit EventReasons(grammar::ReplayMonitor& past) : past_(past), clauses_(past) {}

@@ -26,7 +26,6 @@ using Mark = Reason::Mark;
 
 namespace {
 
-constexpr int kMaxDepth = 8;        // rules behind rules
 constexpr double kAround_s = 0.25;  // a person's or a golden's idea of a moment is not exact
 
 // The innermost clause that failed first.

@@ -11,16 +11,17 @@ namespace {
 
 using physics::Abstract;
 
-constexpr double kMinSize_m = 0.001, kMaxSize_m = 100;
+constexpr double kMinRegionSize_m = 0.001, kMaxRegionSize_m = 100;
 
 }  // namespace
 
 ValueFormat<RegionYaml> RegionFormat() {
   using R = RegionYaml;
   return StructFormat<R>("a region")
-      .Optional("size_m", &R::size_m, Vector<3>(kMinSize_m, kMaxSize_m),
+      .Optional("size_m", &R::size_m, Vector<3>(kMinRegionSize_m, kMaxRegionSize_m),
                 "Full edge lengths [x, y, z] of a box.")
-      .Optional("radius_m", &R::radius_m, Number(kMinSize_m, kMaxSize_m), "Radius of a ball.")
+      .Optional("radius_m", &R::radius_m, Number(kMinRegionSize_m, kMaxRegionSize_m),
+                "Radius of a ball.")
       .ExactlyOneOf({"size_m", "radius_m"})
       .format();
 }
@@ -28,7 +29,7 @@ ValueFormat<RegionYaml> RegionFormat() {
 ValueFormat<GazeTargetYaml> GazeTargetFormat() {
   using G = GazeTargetYaml;
   return StructFormat<G>("a gaze target")
-      .Optional("radius_m", &G::radius_m, Number(kMinSize_m, 10),
+      .Optional("radius_m", &G::radius_m, Number(kMinRegionSize_m, 10),
                 "Radius of the ball that is looked at.")
       .format();
 }
@@ -65,7 +66,7 @@ void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticLis
     errors.Add(node.key_where, "'" + node.key + "' is a built-in camera", "choose another name");
   if (entity.camera && entity.at_m.value.size() == 3) {
     const Eigen::Vector3d at_m(entity.at_m.value[0], entity.at_m.value[1], entity.at_m.value[2]);
-    if ((entity.camera->toward_m.value - at_m).norm() < kMinSize_m)
+    if ((entity.camera->toward_m.value - at_m).norm() < kMinRegionSize_m)
       errors.Add(entity.camera->toward_m.where, "toward_m: this is the camera's own position",
                  "give the point that it looks at");
   }

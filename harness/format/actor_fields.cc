@@ -22,7 +22,7 @@ ValueFormat<PidOverride> PidFormat(const std::string& noun, const std::string (&
       .format();
 }
 
-ValueFormat<GainsOverride> GainsFormat() {
+ValueFormat<GainsOverride> GainsOverrideFormat() {
   return StructFormat<GainsOverride>("the gains")
       .Optional("translation", &GainsOverride::translation,
                 PidFormat("the translation gains", {"proportional_n_per_m", "derivative_n_s_per_m",
@@ -88,7 +88,7 @@ ValueFormat<HandActorYaml> HandActorFormat() {
       .Optional("rpy_deg", &A::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis. "
                 "At 0 the fingers point along x and the palm faces down.")
-      .Optional("gains", &A::gains, GainsFormat(),
+      .Optional("gains", &A::gains, GainsOverrideFormat(),
                 "Replaces gains of the hand file; gains not given here stay.")
       .Optional("tracking", &A::tracking, TrackingFormat(),
                 "An imperfect tracker between the wanted pose and the tracked target.")

@@ -90,6 +90,8 @@ ValueFormat<ScenarioYaml> BuildScenarioFormat() {
   return StructFormat<S>("the scenario")
       .Required("scenario", &S::name, Identifier(), "Its name: that of the file without '.yaml'.")
       .Required("shows", &S::shows, Text(), "One sentence: what happens and what it proves.")
+      .Optional("expects", &S::expects, ListOf(WithPlace(Text(kMaxClaimLength)), 0, kMaxClaims),
+                "What must be recognised, as claims: 'no sliding', 'one grasping(hand, milk)'.")
       .Optional("grammar", &S::grammar, Identifier(),
                 "The grammar that segments the episode, from grammar/library.")
       .Optional("tags", &S::tags, ListOf(Identifier(), 0, 32), "Words to select scenarios by.")

@@ -298,6 +298,7 @@ struct ScenarioYaml {
   Where where;
   Located<std::string> name;
   std::string shows;
+  std::vector<Located<std::string>> expects;
   Located<std::string> grammar{kDefaultGrammar, {}};
   std::vector<std::string> tags;
   WorldYaml world;

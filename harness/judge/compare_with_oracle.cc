@@ -13,6 +13,7 @@
 #include "grammar/contents.h"
 #include "harness/golden/compare.h"
 #include "harness/oracle/oracle.h"
+#include "harness/timeline/agree_within.h"
 #include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
@@ -41,12 +42,12 @@ std::string OffsetText(const Match& match, grammar::Tick ticks_per_second) {
 
 Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
                       const RunResult& run) {
-  Judged judged{.truth = TrueTimeline(scenario.scene, run.recording, run.ticks + 1),
+  Judged judged{.possible = PossibleTimelines(scenario.scene, run.recording, run.ticks + 1),
                 .found = run.timeline};
   std::erase_if(judged.found.events, [](const auto& event) { return !OracleDefines(event.event); });
   // A grammar is not judged by events that it has no rules for.
-  std::erase_if(judged.truth.events,
-                [&](const auto& event) { return !HasEvent(program, event.event); });
+  for (grammar::Timeline& truth : judged.possible)
+    std::erase_if(truth.events, [&](const auto& event) { return !HasEvent(program, event.event); });
   return judged;
 }
 
@@ -65,7 +66,7 @@ OracleComparison CompareWithOracle(const Scenario& scenario, const grammar::Prog
   const Judged judged = JudgedByOracle(scenario, program, run);
   const grammar::Tick tolerance = DefaultTolerance(scenario);
   const std::size_t others = run.timeline.events.size() - judged.found.events.size();
-  return {.agreement = Agree(judged.truth, judged.found, tolerance),
+  return {.agreement = AgreeWithin(judged.possible, judged.found, tolerance),
           .tolerance = tolerance,
           .judged = static_cast<int>(judged.found.events.size()),
           .not_judged = static_cast<int>(others)};
@@ -77,7 +78,7 @@ std::string OracleLine(const OracleComparison& compared) {
   const double off_ms = MillisecondsOf(agreement.largest_offset(), agreement.ticks_per_second);
   const std::string boundaries =
       elsewhere == 0
-          ? fmt::format(", boundaries at most {:.1f} ms off", off_ms)
+          ? ""
           : fmt::format("; {} more begin{} or end{} up to {:.1f} ms elsewhere", elsewhere,
                         elsewhere == 1 ? "s" : "", elsewhere == 1 ? "s" : "", off_ms);
   const std::string not_recognised =

@@ -18,7 +18,8 @@ inline constexpr const char* kOracleLine = "oracle: ";
 
 /// What both the definitions and a grammar have events for.
 struct Judged {
-  grammar::Timeline truth, found;
+  std::vector<grammar::Timeline> possible;  ///< of harness/oracle/oracle.h
+  grammar::Timeline found;
 };
 /// The run must have been recorded.
 Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
@@ -27,7 +28,7 @@ Judged JudgedByOracle(const Scenario& scenario, const grammar::Program& program,
 /// How far a run agrees with the ground truth.
 struct OracleComparison {
   Agreement agreement;
-  grammar::Tick tolerance = 0;  ///< two sensing frames; a boundary further off differs
+  grammar::Tick tolerance = 0;  ///< two sensing frames; a boundary further outside its band differs
   int judged = 0;               ///< recognised events of kinds that the definitions have
   int not_judged = 0;           ///< recognised events of other kinds
 
@@ -41,8 +42,7 @@ struct OracleComparison {
 OracleComparison CompareWithOracle(const Scenario& scenario, const grammar::Program& program,
                                    const RunResult& run);
 
-/// "oracle: 12 of 12 events follow from the definitions of docs/events.md, boundaries at most 0.0
-/// ms off"
+/// "oracle: 12 of 12 events follow from the definitions of docs/events.md"
 std::string OracleLine(const OracleComparison& compared);
 
 /// One line per event that differs:

@@ -55,6 +55,7 @@ std::vector<Touching> TouchesIn(Interval window, const std::set<int>& participan
       touches.push_back(touching);
   };
   for (const physics::Snapshot& snapshot : recording) {
+    if (!sensing.Due(snapshot.tick)) continue;
     const grammar::Frame frame = sensing.Sense(snapshot);
     std::map<std::pair<int, int>, Touching> now;
     for (const grammar::Touch& touch : frame.touches) {

@@ -19,7 +19,7 @@ namespace {
 using grammar::Diagnostics;
 using grammar::Place;
 
-constexpr std::size_t kMaxReported = 20;
+constexpr std::size_t kMaxReportedRows = 20;
 constexpr double kMaxFrame_s = 1;
 
 struct Word {
@@ -63,7 +63,7 @@ class BvhReader {
     if (!frame_time) return;
     if (*frame_time <= 0) return Complain(at_, "Frame Time: expected a number above 0, found 0");
     bvh.frame_time_s = *frame_time;
-    while (diagnostics.size() < kMaxReported && NextLine()) TakeRow();
+    while (diagnostics.size() < kMaxReportedRows && NextLine()) TakeRow();
     if (diagnostics.empty() && static_cast<double>(bvh.rows.size()) != *frames)
       Complain(counted,
                fmt::format("Frames: {} are announced, {} follow", *frames, bvh.rows.size()));

@@ -21,7 +21,7 @@ namespace {
 using grammar::Diagnostics;
 using grammar::Place;
 
-constexpr std::size_t kMaxReported = 20;
+constexpr std::size_t kMaxReportedLines = 20;
 constexpr double kUnitTolerance = 0.01;  // two written digits
 
 /// A column of the header: which quantity it holds, and what to multiply with to get SI units.
@@ -97,7 +97,7 @@ class CsvReader {
 
   void Read() {
     const std::string_view text = track.text;
-    for (std::size_t begin = 0; begin < text.size() && diagnostics.size() < kMaxReported;) {
+    for (std::size_t begin = 0; begin < text.size() && diagnostics.size() < kMaxReportedLines;) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
       ++line_;
       TakeLine(text.substr(begin, end - begin));

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a hand came to an object: its distance, its region of interest, and the moment since which it
-// was coming. Tested by tests/harness/oracle/oracle_test.cc
+// How something came to a place: the moment since which it was coming. Tested by
+// tests/harness/oracle/oracle_test.cc
 #pragma once
 
 #include <span>
 
-#include "harness/oracle/recording.h"
+#include "harness/oracle/evidence.h"
+#include "harness/oracle/settings.h"
 
 namespace prehend::harness::oracle {
 
@@ -16,22 +17,18 @@ struct DistanceAt {
 
 /// Where the last uninterrupted approach to the end of `path` begins: an index. Going away by up to
 /// `dead_band_m` does not interrupt. After a longer retreat the approach begins at the turning
-/// point; if the hand pauses there, when it returns.
+/// point; if it pauses there, when it returns.
 int ApproachBegin(std::span<const DistanceAt> path, double dead_band_m,
                   const OracleSettings& settings);
 
-/// Between the surfaces of the hand (palm and links) and of the body, metres; 0 when they touch or
-/// overlap.
-double SurfaceDistance(const physics::HandModel& model, const physics::HandState& hand,
-                       const physics::Body& body, const physics::BodyState& state);
-
-/// Whether the body's oriented bounding box intersects the hand's region of interest.
-bool InReachRegion(const physics::HandModel& model, const physics::HandState& hand,
-                   const physics::Body& body, const physics::BodyState& state, double radius_m);
+/// Where the last approach to a landing begins: an index. Distances are medians over a window, so
+/// that single errors are no retreat. After a retreat it begins with the movement that leaves the
+/// turning point; a pause there does not belong to it.
+int LandingApproachBegin(std::span<const DistanceAt> path, const OracleSettings& settings);
 
 /// The frame, in [earliest, touch], at which the hand's reach for the body began that ended with
 /// touching it.
-int ReachBegin(const Recording& recording, const OracleSettings& settings, int hand, int body,
+int ReachBegin(const Evidence& evidence, const OracleSettings& settings, int hand, int body,
                int earliest, int touch);
 
 }  // namespace prehend::harness::oracle

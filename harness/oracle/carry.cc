@@ -25,9 +25,13 @@ struct Region {
 
 class Carrier {
  public:
-  Carrier(const Recording& recording, const OracleSettings& settings, const Grasp& grasp,
+  Carrier(const Evidence& evidence, const OracleSettings& settings, const Grasp& grasp,
           const std::map<int, Spans>& supports)
-      : recording_(recording), settings_(settings), grasp_(grasp), supports_(supports) {}
+      : evidence_(evidence),
+        recording_(evidence.recording),
+        settings_(settings),
+        grasp_(grasp),
+        supports_(supports) {}
 
   Carrying Find() {
     Spans supported;
@@ -41,9 +45,9 @@ class Carrier {
  private:
   const Vector3d& place(int frame) const { return recording_.place(grasp_.body, frame); }
 
-  /// Where the object is, as seen from one of its supports.
-  Vector3d Seen(int support, int frame) const {
-    return recording_.body(support, frame).X_WB.inverse() * place(frame);
+  /// How the object bears on one of its supports, by frame.
+  const std::vector<Bearing>& On(int support) const {
+    return evidence_.bearings.at({grasp_.body, support});
   }
 
   /// Whether the object moves along something that supports it. Its velocity must say so and it
@@ -57,22 +61,17 @@ class Carrier {
       ++after;
     for (const auto& [support, spans] : supports_) {
       if (!Covers(spans, frame)) continue;
-      const Vector3d velocity =
-          RelativeVelocity(recording_.body(grasp_.body, frame), recording_.body(support, frame));
-      if (velocity.head<2>().norm() > settings_.slide_speed_m_per_s &&
-          WayAlong(support, before, after, frame) >
+      if (On(support)[frame].along_m_per_s > settings_.slide_speed_m_per_s &&
+          WayAlong(support, before, after) >
               settings_.slide_speed_m_per_s * recording_.Seconds(before, after))
         return true;
     }
     return false;
   }
 
-  /// The level part of the object's way along a support between two frames, as the support lies at
-  /// frame `at`.
-  double WayAlong(int support, int from, int to, int at) const {
-    const Vector3d way_m =
-        recording_.body(support, at).X_WB.q * (Seen(support, to) - Seen(support, from));
-    return way_m.head<2>().norm();
+  /// How far the object got along a support between two frames, where the two touch.
+  double WayAlong(int support, int from, int to) const {
+    return (On(support)[to].along_m - On(support)[from].along_m).norm();
   }
 
   /// How far the object got along what supported it at the span's begin, from where it was then.
@@ -81,7 +80,7 @@ class Carrier {
     for (const auto& [support, spans] : supports_) {
       if (!Covers(spans, span.begin)) continue;
       for (int frame = span.begin; frame < span.end; ++frame)
-        farthest = std::max(farthest, WayAlong(support, span.begin, frame, frame));
+        farthest = std::max(farthest, WayAlong(support, span.begin, frame));
     }
     return farthest;
   }
@@ -160,7 +159,7 @@ class Carrier {
     std::vector<DistanceAt> path;
     for (int frame = near; frame < landing; ++frame)
       path.push_back({recording_.Seconds(near, frame), (place(frame) - region.anchor).norm()});
-    const int begin = near + ApproachBegin(path, settings_.put_down_dead_band_m, settings_);
+    const int begin = near + LandingApproachBegin(path, settings_);
     // How high it was before it last moved away does not make this approach one from above.
     if (Highest({begin, landing}) - region.anchor.z() < settings_.put_down_drop_m)
       return std::nullopt;
@@ -184,6 +183,7 @@ class Carrier {
     if (!transport.empty()) found_.transports.push_back(transport);
   }
 
+  const Evidence& evidence_;
   const Recording& recording_;
   const OracleSettings& settings_;
   const Grasp& grasp_;
@@ -193,10 +193,10 @@ class Carrier {
 
 }  // namespace
 
-Carrying FindCarrying(const Recording& recording, const OracleSettings& settings,
-                      const Grasp& grasp, const std::map<int, Spans>& supports) {
-  if (!physics::MovesFreely(recording.scene, grasp.body)) return {};
-  return Carrier(recording, settings, grasp, supports).Find();
+Carrying FindCarrying(const Evidence& evidence, const OracleSettings& settings, const Grasp& grasp,
+                      const std::map<int, Spans>& supports) {
+  if (!physics::MovesFreely(evidence.recording.scene, grasp.body)) return {};
+  return Carrier(evidence, settings, grasp, supports).Find();
 }
 
 }  // namespace prehend::harness::oracle

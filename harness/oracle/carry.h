@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "harness/oracle/recording.h"
+#include "harness/oracle/touches.h"
 
 namespace prehend::harness::oracle {
 
@@ -15,7 +15,7 @@ struct Carrying {
 
 /// `supports`: when the grasped object was supported, by support. Only for movable objects: a wall
 /// that is grasped is not carried, however little supports it.
-Carrying FindCarrying(const Recording& recording, const OracleSettings& settings,
-                      const Grasp& grasp, const std::map<int, Spans>& supports);
+Carrying FindCarrying(const Evidence& evidence, const OracleSettings& settings, const Grasp& grasp,
+                      const std::map<int, Spans>& supports);
 
 }  // namespace prehend::harness::oracle

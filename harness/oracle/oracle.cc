@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "harness/oracle/approach.h"
+#include "harness/oracle/bands.h"
 #include "harness/oracle/carry.h"
 #include "harness/oracle/recording.h"
+#include "harness/oracle/touches.h"
 
 namespace prehend::harness {
 
@@ -16,12 +18,13 @@ namespace {
 
 class TimelineBuilder {
  public:
-  TimelineBuilder(const Recording& recording, const OracleSettings& settings, grammar::Tick end)
-      : recording_(recording),
+  TimelineBuilder(const Evidence& evidence, const OracleSettings& settings, grammar::Tick end)
+      : evidence_(evidence),
+        recording_(evidence.recording),
         settings_(settings),
         end_(end),
-        touches_(FindTouches(recording, settings)) {
-    timeline_.ticks_per_second = recording.scene.world.rate_hz;
+        touches_(FindTouches(evidence, settings)) {
+    timeline_.ticks_per_second = recording_.scene.world.rate_hz;
   }
 
   grammar::Timeline Build() {
@@ -95,7 +98,7 @@ class TimelineBuilder {
     }
     Add("fixation", RolesOf(grasp), {contact.begin, grasp.span.begin});
     const int begin =
-        ReachBegin(recording_, settings_, grasp.hand, grasp.body, earliest, contact.begin);
+        ReachBegin(evidence_, settings_, grasp.hand, grasp.body, earliest, contact.begin);
     if (recording_.Seconds(begin, contact.begin) < settings_.reach_minimum_s) return {};
     Add("reaching", RolesOf(grasp), {begin, contact.begin});
     return {begin, contact.begin};
@@ -105,7 +108,7 @@ class TimelineBuilder {
     std::map<int, Spans> supports;
     for (const auto& [pair, spans] : touches_.supports)
       if (pair.first == grasp.body) supports[pair.second] = spans;
-    Carrying carrying = FindCarrying(recording_, settings_, grasp, supports);
+    Carrying carrying = FindCarrying(evidence_, settings_, grasp, supports);
     for (const Span& span : carrying.slides) Add("sliding", RolesOf(grasp), span);
     for (const Span& span : carrying.pick_ups) Add("picking_up", RolesOf(grasp), span);
     for (const Span& span : carrying.transports) Add("transporting", RolesOf(grasp), span);
@@ -113,6 +116,7 @@ class TimelineBuilder {
     return carrying;
   }
 
+  const Evidence& evidence_;
   const Recording& recording_;
   const OracleSettings& settings_;
   grammar::Tick end_;
@@ -137,7 +141,19 @@ bool OracleDefines(std::string_view event) {
 grammar::Timeline TrueTimeline(const physics::Scene& scene,
                                std::span<const physics::Snapshot> recording, grammar::Tick end,
                                const OracleSettings& settings) {
-  return oracle::TimelineBuilder(oracle::MakeRecording(scene, recording), settings, end).Build();
+  const oracle::Recording frames = oracle::MakeRecording(scene, recording);
+  return oracle::TimelineBuilder(oracle::Evidence(frames), settings, end).Build();
+}
+
+std::vector<grammar::Timeline> PossibleTimelines(const physics::Scene& scene,
+                                                 std::span<const physics::Snapshot> recording,
+                                                 grammar::Tick end) {
+  const oracle::Recording frames = oracle::MakeRecording(scene, recording);
+  const oracle::Evidence evidence(frames);
+  std::vector<grammar::Timeline> timelines;
+  for (const OracleSettings& choice : DefinitionChoices())
+    timelines.push_back(oracle::TimelineBuilder(evidence, choice, end).Build());
+  return timelines;
 }
 
 }  // namespace prehend::harness

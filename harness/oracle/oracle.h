@@ -7,6 +7,7 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "grammar/base/frame.h"
 #include "grammar/base/timeline.h"
@@ -21,11 +22,16 @@ std::span<const std::string_view> OracleEvents();
 /// Whether this is one of them, so that the oracle can judge it.
 bool OracleDefines(std::string_view event);
 
-/// The true events of a run, sorted. `recording` has the sensed snapshots in the order of their
-/// ticks; events begin and end at ticks of snapshots, those that never end, at `end`. `decided` of
-/// each is where it ends.
+/// The true events of a run, sorted, with one choice of the definitions' numbers. `recording` has
+/// the snapshots in the order of their ticks, best of every tick of physics; events begin and end
+/// at ticks of snapshots, those that never end, at `end`. `decided` of each is where it ends.
 grammar::Timeline TrueTimeline(const physics::Scene& scene,
                                std::span<const physics::Snapshot> recording, grammar::Tick end,
                                const OracleSettings& settings = {});
+
+/// The timelines that the definitions allow: one per DefinitionChoices(), in their order.
+std::vector<grammar::Timeline> PossibleTimelines(const physics::Scene& scene,
+                                                 std::span<const physics::Snapshot> recording,
+                                                 grammar::Tick end);
 
 }  // namespace prehend::harness

@@ -20,6 +20,7 @@
 #include "harness/format/scenario_fields.h"
 #include "harness/format/scenario_formats.h"
 #include "harness/read/place_recordings.h"
+#include "harness/read/read_claims.h"
 #include "harness/read/validate_variations.h"
 
 namespace prehend::harness {
@@ -156,6 +157,7 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
   AddPersons(entry, scene, errors);
   scenario.script = BuildScript(entry, scene, errors);
   scenario.outcomes = BuildOutcomes(entry.outcomes, scene, scenario.script, errors);
+  scenario.expects = ReadClaims(entry.expects, document, errors);
   ValidateClasses(entry, errors);
   ValidateVariations(document, entry.vary, errors);
   if (scene.world.planar) ValidatePlanar(entry, scene, errors);

@@ -32,7 +32,8 @@ const char* Element(const ScenarioVerdict& verdict) {
 std::string Message(const ScenarioVerdict& verdict) {
   if (!verdict.DiffersFromGolden()) {
     const std::string first = verdict.details.substr(0, verdict.details.find('\n'));
-    return first.empty() ? verdict.reason : verdict.reason + "; first: " + first;
+    const bool says_more = !first.empty() && first != verdict.reason;  // a claim's is its reason
+    return says_more ? verdict.reason + "; first: " + first : verdict.reason;
   }
   const grammar::Tick ticks_per_second = verdict.comparison->ticks_per_second;
   const Pairing& difference = *verdict.comparison->FirstDivergence();

@@ -15,6 +15,7 @@
 #include "harness/run/find_scenario.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/project_library.h"
+#include "harness/run/validate_claims.h"
 #include "harness/sense/entity_table.h"
 
 namespace prehend::harness {
@@ -102,10 +103,11 @@ Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
     std::ranges::move(compiled.diagnostics, std::back_inserter(diagnostics));
     return tl::unexpected(std::move(diagnostics));
   }
-  if (request.grammar.empty()) {
-    grammar::Diagnostics pictures = CheckPictures(*scenario, *compiled.program);
-    if (!pictures.empty()) return tl::unexpected(std::move(pictures));
-  }
+  const bool is_own_grammar = request.grammar.empty();
+  grammar::Diagnostics misnamed = ValidateClaims(*scenario, *compiled.program, is_own_grammar);
+  if (is_own_grammar)
+    std::ranges::move(CheckPictures(*scenario, *compiled.program), std::back_inserter(misnamed));
+  if (!misnamed.empty()) return tl::unexpected(std::move(misnamed));
   scenario->grammar = GrammarName(*compiled.program);
   grammar::Diagnostics warnings = scenario->warnings;
   std::ranges::move(Warnings(*compiled.program, MakeEntityTable(*scenario)),

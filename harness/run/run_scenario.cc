@@ -73,13 +73,13 @@ bool ScenarioRun::Step() {
   if (!run.monitor.error().empty() || !run.simulation.Step()) return false;
   run.clock.Lap(seconds.physics);
   const physics::Snapshot& snapshot = run.simulation.snapshot();
+  if (run.record) run.result.recording.push_back(snapshot);
   if (!run.sensing.Due(snapshot.tick)) return true;
   const grammar::FrameChanges changes = run.sensing.SenseChanges(snapshot);
   run.clock.Lap(seconds.sensing);
   run.monitor.AdvanceBy(changes, run.events);
   run.clock.Lap(seconds.grammar);
   run.sensed = true;
-  if (run.record) run.result.recording.push_back(snapshot);
   return true;
 }
 
@@ -119,8 +119,9 @@ grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::S
   const grammar::EntityTable entity_table = MakeEntityTable(scenario);
   grammar::Monitor monitor(program, entity_table);
   std::vector<grammar::Event> events;
-  for (const physics::Snapshot& snapshot : recording)
-    monitor.AdvanceBy(sensing.SenseChanges(snapshot), events);
+  for (const physics::Snapshot& snapshot : recording) {
+    if (sensing.Due(snapshot.tick)) monitor.AdvanceBy(sensing.SenseChanges(snapshot), events);
+  }
   monitor.Finish(end, events);
   return grammar::NameEvents(*program, entity_table, events);
 }

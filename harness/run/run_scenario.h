@@ -18,7 +18,7 @@
 namespace prehend::harness {
 
 struct RunOptions {
-  bool record = false;   ///< keep a snapshot per sensed frame (pictures, oracle)
+  bool record = false;   ///< keep a snapshot per tick of physics (pictures, oracle)
   bool measure = false;  ///< time physics, sensing and grammar separately
 };
 
@@ -74,7 +74,7 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
                       const RunOptions& options = {});
 
 /// What another grammar recognises in the same episode, without simulating it again. `recording`
-/// has the sensed snapshots.
+/// has a snapshot per tick, of which those are sensed that are due.
 grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
                             std::shared_ptr<const grammar::Program> program, grammar::Tick end);
 

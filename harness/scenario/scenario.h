@@ -13,6 +13,7 @@
 #include "grammar/base/frame.h"
 #include "harness/base/default_grammar.h"
 #include "harness/base/located.h"
+#include "harness/claims/claim.h"
 #include "harness/scenario/variations.h"
 #include "physics/motion/script.h"
 #include "physics/scene/scene.h"
@@ -47,6 +48,7 @@ struct Scenario {
   std::string file;   ///< where it was read from
   std::string skill;  ///< the folder below scenarios/, or ""
   std::string shows;
+  std::vector<Claim> expects;
   std::string grammar = kDefaultGrammar;
   std::vector<std::string> tags;
   physics::Scene scene;  ///< its world has the engine, the rate and the seed

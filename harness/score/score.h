@@ -11,6 +11,7 @@
 #include "harness/score/further_scores.h"
 #include "harness/score/overlap_metrics.h"
 #include "harness/score/ward.h"
+#include "harness/score/witnesses.h"
 
 namespace prehend::harness::score {
 
@@ -22,6 +23,7 @@ struct EpisodeToScore {
   grammar::Timeline found;
   std::map<std::string, int>
       ignored;  ///< count of recognised events for which there is no ground truth
+  Testimony by_definitions;
 };
 
 /// Signed offsets (found - true) of the boundaries of matched events, in seconds.

@@ -78,4 +78,35 @@ Json ScoresJson(const std::vector<Score>& scores, double collar_s) {
   return {{"collar_s", collar_s}, {"grammars", std::move(grammars)}};
 }
 
+Json TestimonyJson(const Testimony& testimony) {
+  Json by_event = Json::object();
+  for (const auto& [event, count] : testimony.by_event)
+    by_event[event] = {{"of", count.of}, {"confirmed", count.confirmed}};
+  return {{"by_event", std::move(by_event)}, {"differences", testimony.differences}};
+}
+
+Testimony TestimonyFromJson(const Json& json) {
+  Testimony testimony{.by_event = {}, .differences = json["differences"]};
+  for (const auto& [event, count] : json["by_event"].items())
+    testimony.by_event[event] = {.of = count["of"], .confirmed = count["confirmed"]};
+  return testimony;
+}
+
+Json WitnessesJson(const std::vector<std::string>& grammars,
+                   const std::vector<Witness>& witnesses) {
+  Json rows = Json::array();
+  for (const Witness& witness : witnesses) {
+    Json columns = Json::array();
+    for (std::size_t g = 0; g < grammars.size(); ++g) {
+      const Confirmed total = witness.of_grammars[g].Total();
+      Json column = {{"grammar", grammars[g]}, {"of", total.of}, {"confirmed", total.confirmed}};
+      column.update(TestimonyJson(witness.of_grammars[g]));
+      columns.push_back(std::move(column));
+    }
+    rows.push_back(
+        {{"witness", witness.name}, {"proves", witness.proves}, {"grammars", std::move(columns)}});
+  }
+  return rows;
+}
+
 }  // namespace prehend::harness::score

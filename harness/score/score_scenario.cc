@@ -12,17 +12,24 @@
 namespace prehend::harness {
 namespace {
 
-/// Removes events that are not scored, and counts those that the oracle does not define.
-void KeepScored(const std::vector<std::string>& wanted, score::EpisodeToScore& episode) {
-  const auto is_left_out = [&](const grammar::NamedEvent& event) {
+/// Without events that are not scored.
+grammar::Timeline Scored(const grammar::Timeline& timeline,
+                         const std::vector<std::string>& wanted) {
+  grammar::Timeline scored = timeline;
+  std::erase_if(scored.events, [&](const grammar::NamedEvent& event) {
     return !OracleDefines(event.event) ||
            (!wanted.empty() && std::ranges::find(wanted, event.event) == wanted.end());
-  };
-  for (const grammar::NamedEvent& event : episode.found.events) {
-    if (!OracleDefines(event.event)) ++episode.ignored[event.event];
+  });
+  return scored;
+}
+
+/// How often each kind of event was recognised that the oracle does not define.
+std::map<std::string, int> Ignored(const grammar::Timeline& found) {
+  std::map<std::string, int> counts;
+  for (const grammar::NamedEvent& event : found.events) {
+    if (!OracleDefines(event.event)) ++counts[event.event];
   }
-  std::erase_if(episode.truth.events, is_left_out);
-  std::erase_if(episode.found.events, is_left_out);
+  return counts;
 }
 
 }  // namespace
@@ -40,18 +47,23 @@ tl::expected<std::vector<score::EpisodeToScore>, ScoreFailure> EpisodesToScore(
     return tl::unexpected(ScoreFailure{.diagnostics = {failed}, .is_bad_input = false});
   }
   const grammar::Tick end = run.ticks + 1;
-  const grammar::Timeline truth = TrueTimeline(scenario.scene, run.recording, end);
+  std::vector<grammar::Timeline> possible;
+  for (const grammar::Timeline& truth : PossibleTimelines(scenario.scene, run.recording, end))
+    possible.push_back(Scored(truth, request.events));
   std::vector<score::EpisodeToScore> episodes;
   for (const std::string& name : request.grammars) {
     const grammar::CompileResult compiled = LoadGrammar(request.root, name);
     if (!compiled.program) return tl::unexpected(ScoreFailure{compiled.diagnostics});
+    const grammar::Timeline found = Resegment(scenario, run.recording, compiled.program, end);
     score::EpisodeToScore& episode = episodes.emplace_back();
     episode = {.scenario = request.id,
                .ticks = end,
-               .truth = truth,
-               .found = Resegment(scenario, run.recording, compiled.program, end),
-               .ignored = {}};
-    KeepScored(request.events, episode);
+               .truth = possible.front(),
+               .found = Scored(found, request.events),
+               .ignored = Ignored(found),
+               .by_definitions = {}};
+    episode.by_definitions =
+        score::ByDefinitions(request.id, possible, episode.found, DefaultTolerance(scenario));
   }
   return episodes;
 }

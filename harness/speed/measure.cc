@@ -136,8 +136,9 @@ double TimeWatching(const Scenario& scenario, std::shared_ptr<const grammar::Pro
   grammar::Monitor monitor(std::move(program), MakeEntityTable(scenario));
   std::vector<grammar::Event> events;
   const Stopwatch watch;
-  for (const physics::Snapshot& snapshot : recording)
-    monitor.AdvanceBy(sensing.SenseChanges(snapshot), events);
+  for (const physics::Snapshot& snapshot : recording) {
+    if (sensing.Due(snapshot.tick)) monitor.AdvanceBy(sensing.SenseChanges(snapshot), events);
+  }
   return watch.seconds();
 }
 

@@ -29,6 +29,11 @@ void DiagnosticList::AddUnknownName(Where where, std::string message, const std:
   Add(where, std::move(message), std::move(hint));
 }
 
+std::string DiagnosticList::PlaceText(Where where) const {
+  const YamlSource& source = document_.sources[static_cast<std::size_t>(where.source)];
+  return fmt::format("{}:{}:{}", source.name, where.place.line, where.place.column);
+}
+
 grammar::Diagnostics DiagnosticList::Sorted() const {
   auto sorted = found_;
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {

@@ -21,6 +21,9 @@ class DiagnosticList {
   void AddUnknownName(Where where, std::string message, const std::string& name,
                       const std::vector<std::string>& candidates);
 
+  /// "FILE:LINE:COLUMN", for what is found out only when the scenario runs.
+  std::string PlaceText(Where where) const;
+
   bool empty() const { return found_.empty(); }
   /// Sorted by place; errors at the same place in the order they were added.
   grammar::Diagnostics Sorted() const;

@@ -10,6 +10,7 @@
 #include "physics/hand/reach_planner.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"
+#include "physics/scene/landing.h"
 
 namespace prehend::physics {
 namespace {
@@ -197,9 +198,15 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
     problem_ = "place_on: the hand holds nothing and has not reached for anything";
   } else {
     const auto h = static_cast<std::size_t>(held), s = static_cast<std::size_t>(support);
+    const std::optional<double> landing_m =
+        LandingHeight(scene_.bodies[s], now_.bodies[s].X_WB, scene_.bodies[h], now_.bodies[h].X_WB);
+    if (!landing_m) {
+      problem_ = "place_on: no part of '" + place.support + "' is below '" + scene_.bodies[h].name +
+                 "': carry it there first";
+      return;
+    }
     const Eigen::AlignedBox3d object = WorldBounds(scene_.bodies[h], now_.bodies[h].X_WB);
-    const double drop = object.min().z() - HighestBelow(scene_.bodies[s], now_.bodies[s].X_WB,
-                                                        scene_.bodies[h], now_.bodies[h].X_WB);
+    const double drop = object.min().z() - *landing_m;
     const double stiffness =
         scene_.hands[static_cast<std::size_t>(step_.hand)].model.translation.proportional;
     const double weight_n =
@@ -291,7 +298,10 @@ void ScriptPlayer::StartStage(const Snapshot& now) {
     problem_ = resolver.Resolve();
     if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
     problem_hand_ = step.hand;
-    if (!problem_.empty()) return;
+    if (!problem_.empty()) {
+      if (!step.written_at.empty()) problem_ = step.written_at + ": " + problem_;
+      return;
+    }
   }
 }
 

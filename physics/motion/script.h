@@ -36,7 +36,7 @@ struct MoveStep {  ///< lift_by_m (z only), move_by_m: relative, world axes
 struct CarryStep {  ///< carry_to_m: the held object's centre goes to x, y at its height
   Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
 };
-struct PlaceStep {  ///< place_on: lower the held object to the support's top
+struct PlaceStep {  ///< place_on: lower the held object to the support's surface below it
   std::string support;
 };
 struct RetreatStep {  ///< retreat_by_m: back along the last direction of arrival
@@ -58,6 +58,7 @@ struct Step {
   int hand = 0;  ///< index into Scene::hands
   StepAction action;
   double over_s = 0.5;
+  std::string written_at = {};  ///< "FILE:LINE:COLUMN", for what is said about it; may be empty
 };
 
 struct LookAtStep {

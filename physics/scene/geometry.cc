@@ -13,9 +13,6 @@ namespace {
 /// degrees.
 constexpr double kUprightCosine = 0.996;
 
-/// Largest error of the vertical component of an upright support's z axis.
-constexpr double kUprightError = 1e-9;
-
 /// Half extents, along the axes of a frame, of a shape whose rotation in that frame is R.
 struct HalfExtentsIn {
   const Eigen::Matrix3d& R;
@@ -48,6 +45,28 @@ struct BoundsAt {
   Eigen::AlignedBox3d operator()(const Symmetric& s) const {
     const Eigen::Vector3d half = HalfExtentsIn{X_WS.q.toRotationMatrix()}(s);
     return {Eigen::Vector3d(X_WS.p_m - half), Eigen::Vector3d(X_WS.p_m + half)};
+  }
+};
+
+struct FarthestPoint {
+  const Eigen::Vector3d& n;
+
+  Eigen::Vector3d operator()(const Box& s) const {
+    return (n.array() < 0).select(-s.size_m / 2, s.size_m / 2);
+  }
+  Eigen::Vector3d operator()(const Sphere& s) const { return s.radius_m * n.normalized(); }
+  Eigen::Vector3d operator()(const Cylinder& s) const {
+    Eigen::Vector3d p_S(0, 0, std::copysign(s.length_m / 2, n.z()));
+    p_S.head<2>() = s.radius_m * n.head<2>().normalized();
+    return p_S;
+  }
+  Eigen::Vector3d operator()(const Capsule& s) const {
+    return s.radius_m * n.normalized() +
+           std::copysign(s.length_m / 2, n.z()) * Eigen::Vector3d::UnitZ();
+  }
+  Eigen::Vector3d operator()(const Hull& s) const {
+    return *std::ranges::max_element(s.corners_m, {},
+                                     [&](const Eigen::Vector3d& corner) { return n.dot(corner); });
   }
 };
 
@@ -111,23 +130,8 @@ Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB) {
   return bounds;
 }
 
-double HighestBelow(const Body& support, const Pose& X_WS, const Body& object, const Pose& X_WO) {
-  // A part that overlaps the object by this much still counts as below it.
-  constexpr double kOverlap_m = 0.005;
-  const bool upright = std::abs((X_WS.q * Eigen::Vector3d::UnitZ()).z() - 1) < kUprightError;
-  // Footprints are compared in the support's own axes if it stands upright: in the world's axes the
-  // walls of a rotated tray would seem thick.
-  const Pose X_WA = upright ? Pose{Eigen::Vector3d::Zero(), X_WS.q} : Pose{};
-  const Eigen::AlignedBox3d bounds = WorldBounds(object, X_WA.inverse() * X_WO);
-  double top = -HUGE_VAL;
-  for (const PlacedShape& placed : support.shapes) {
-    const Eigen::AlignedBox3d part = WorldBounds(placed.shape, X_WA.inverse() * X_WS * placed.X_BS);
-    const Eigen::AlignedBox3d shared = part.intersection(bounds);
-    const bool beneath = shared.min().x() < shared.max().x() && shared.min().y() < shared.max().y();
-    if (beneath && part.max().z() <= bounds.min().z() + kOverlap_m)
-      top = std::max(top, part.max().z());
-  }
-  return std::isfinite(top) ? top : WorldBounds(support, X_WS).max().z();
+Eigen::Vector3d FarthestAlong(const Shape& shape, const Eigen::Vector3d& n_S) {
+  return std::visit(FarthestPoint{n_S}, shape);
 }
 
 double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S) {

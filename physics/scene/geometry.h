@@ -25,9 +25,9 @@ Eigen::AlignedBox3d WorldBounds(const Shape& shape, const Pose& X_WS);
 /// Bounding box, aligned with the world's axes, of a whole body, metres.
 Eigen::AlignedBox3d WorldBounds(const Body& body, const Pose& X_WB);
 
-/// Height of the surface that carries an object at X_WO, metres: the top of the highest part of
-/// `support` below it, or the top of the whole support if no part is below it.
-double HighestBelow(const Body& support, const Pose& X_WS, const Body& object, const Pose& X_WO);
+/// A point of the shape that lies farthest in a direction (of any length), both in the shape's
+/// frame.
+Eigen::Vector3d FarthestAlong(const Shape& shape, const Eigen::Vector3d& n_S);
 
 /// Distance of a point (in the shape's frame) from the surface, metres; negative inside.
 double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S);

@@ -40,6 +40,9 @@ TEST(IdVector, GivesNumbersToItsElements) {
   std::string all;
   for (const CupId cup : IdsOf(cups)) all += std::to_string(cup.number()) + cups[cup] + " ";
   EXPECT_EQ(all, "0green 1blue ");
+  EXPECT_TRUE(cups.has(CupId(1)));
+  EXPECT_FALSE(cups.has(CupId(2)));
+  EXPECT_FALSE(cups.has(kNone));
 }
 
 TEST(IdVector, ChecksItsIndicesInDebugBuilds) {

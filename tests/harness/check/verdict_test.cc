@@ -28,6 +28,11 @@ TEST(Verdict, TravelsWithAllItsFields) {
                                 .exit_code = ExitCode::kPending,
                                 .reason = "no golden yet",
                                 .details = "a\nb\n",
+                                .claims = {{.claim = "no sliding",
+                                            .place = "x.yaml:4",
+                                            .says = kContradicted,
+                                            .found = "found 1",
+                                            .times = "  sliding\n"}},
                                 .comparison = ComparedWith(50),
                                 .has_golden = true,
                                 .explain = "prehend explain slide/x",
@@ -57,15 +62,26 @@ TEST(Verdict, IsPrintedWithTheDocumentedKeys) {
   const auto json = VerdictJson(verdict);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_EQ(keys, (std::vector<std::string>{"scenario", "verdict", "exit_code", "reason", "details",
-                                            "differences", "relations", "blame", "headroom",
-                                            "boundaries", "command", "shows", "state_hash", "ticks",
-                                            "seconds", "peak_memory_kib", "inputs", "pictures"}));
+  EXPECT_EQ(keys,
+            (std::vector<std::string>{"scenario", "verdict", "exit_code", "reason", "details",
+                                      "claims", "differences", "relations", "blame", "headroom",
+                                      "boundaries", "command", "shows", "state_hash", "ticks",
+                                      "seconds", "peak_memory_kib", "inputs", "pictures"}));
   EXPECT_EQ(json["verdict"], "passed");
   EXPECT_EQ(json["headroom"], "margin: 6.0 of 10.0 ms left at end of sliding(hand, cup)");
   const nlohmann::ordered_json end_of_slide = {
       {"boundary", "end of sliding(hand, cup)"}, {"offset_ms", 4.0}, {"tolerance_ms", 10.0}};
   EXPECT_EQ(json["boundaries"][1], end_of_slide);
+  verdict.claims = {{.claim = "no sliding",
+                     .place = "x.yaml:4",
+                     .says = kContradicted,
+                     .found = "found 1",
+                     .times = {}}};
+  const nlohmann::ordered_json claim = {{"claim", "no sliding"},
+                                        {"place", "x.yaml:4"},
+                                        {"verdict", "contradicted"},
+                                        {"found", "found 1"}};
+  EXPECT_EQ(VerdictJson(verdict)["claims"], nlohmann::ordered_json::array({claim}));
   verdict.comparison = ComparedWith(20);
   verdict.verdict = Verdict::kFailed;
   EXPECT_EQ(VerdictJson(verdict)["differences"].size(), 1u);

@@ -34,6 +34,7 @@ TEST(ScenarioSchema, EveryScenarioIsReadAndValid) {
   for (const ScenarioFile& scenario : scenarios) {
     const auto read = ReadScenario(scenario.path, {}, ProjectLibrary(kRoot));
     EXPECT_TRUE(read) << grammar::Format(ErrorsOf(read));
+    EXPECT_TRUE(read && !read->expects.empty()) << scenario.path << " expects nothing";
     const std::string text = TextOf(scenario.path);
     EXPECT_TRUE(text.starts_with("# yaml-language-server: $schema=../scenario.schema.json\n"))
         << scenario.path;

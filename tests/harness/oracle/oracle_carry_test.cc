@@ -108,19 +108,32 @@ TEST_F(OracleCarry, ASlideNeedsTwoCentimetresAndPausesAreBridged) {
   ExpectNear(Events("sliding"), {{begin, pause}, {again, end}});
 }
 
-TEST_F(OracleCarry, RisingIsNoWayAlongTheSupport) {
-  for (const double along_m_per_s : {0.05, 0.08}) {
+TEST_F(OracleCarry, AWayIsMeasuredWhereTheTwoTouch) {
+  for (const double edge_m_per_s : {0.0, 0.05, 0.08}) {
     stage_ = Stage();
     SetUp();
-    // It is tipped over an edge: its centre rises by 3 cm, and gets 1.5 or 2.4 cm farther.
+    // It is tipped over an edge: its centre moves by 3 cm up and aside; the edge gets 0, 1.5 or
+    // 2.4 cm farther.
     stage_.cup_on_table = false;
     stage_.contacts = {{.a = Stage::BodySide(stage_.cup),
                         .b = Stage::BodySide(stage_.table),
                         .from_a_m = {0.03, 0, -0.03}}};
     stage_.body(stage_.cup).w_WB_rad_per_s = {0, 0.1 / 0.03, 0};
-    stage_.Carry(0.3, {along_m_per_s, 0, 0.1});
-    EXPECT_EQ(Events("sliding").size(), along_m_per_s > 0.07 ? 1u : 0u);
+    stage_.Carry(0.3, {0.1 + edge_m_per_s, 0, 0.1});
+    EXPECT_EQ(Events("sliding").size(), edge_m_per_s > 0.07 ? 1u : 0u) << edge_m_per_s;
   }
+}
+
+TEST_F(OracleCarry, AWayOnASlopeIsMeasuredInItsPlane) {
+  // A board of 45 degrees: 2.4 cm along it are 1.7 cm on the level.
+  stage_.cup_on_table = false;
+  stage_.contacts = {{.a = Stage::BodySide(stage_.cup),
+                      .b = Stage::BodySide(stage_.table),
+                      .nhat_BA_W = Eigen::Vector3d(1, 0, 1).normalized(),
+                      .impulse_n_s = 0.004}};
+  stage_.Play(0.2);
+  stage_.Carry(0.3, 0.08 * Eigen::Vector3d(1, 0, -1).normalized());
+  EXPECT_EQ(Events("sliding").size(), 1u);
 }
 
 TEST_F(OracleCarry, TremblingIsNotSliding) {

@@ -2,7 +2,7 @@
 // The oracle on hand-made recordings: reaching and fixation.
 #include <gtest/gtest.h>
 
-#include "harness/oracle/approach.h"
+#include "harness/oracle/distance.h"
 #include "tests/harness/oracle/oracle_stage.h"
 
 namespace prehend::harness {

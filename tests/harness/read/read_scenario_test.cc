@@ -75,6 +75,7 @@ TEST(ReadScenario, EveryStep) {
   EXPECT_EQ(std::get<physics::MoveStep>(step(5).action).by_m, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(std::get<physics::CarryStep>(step(6).action).to_m, Eigen::Vector2d(0.1, 0.2));
   EXPECT_EQ(std::get<physics::PlaceStep>(step(7).action).support, "table");
+  EXPECT_TRUE(step(7).written_at.ends_with(".yaml:19:5")) << step(7).written_at;
   EXPECT_EQ(std::get<physics::RetreatStep>(step(8).action).by_m, 0.2);
   EXPECT_TRUE(std::holds_alternative<physics::WaitStep>(step(9).action));
   const auto poses = std::get<physics::PosesStep>(step(10).action).poses;
@@ -113,6 +114,18 @@ TEST(ReadScenario, ShapesStandOnTheirLowestPoint) {
               1e-12);
   EXPECT_NEAR(height("box: {size_m: [0.1, 0.1, 0.1]}, rpy_deg: [45, 0, 0]"),
               0.05 * std::numbers::sqrt2, 1e-12);
+}
+
+TEST(ReadScenario, WhatStandsOnASlopeOrInAHollowTouchesTheSurfaceBelowIt) {
+  const auto height = [](const std::string& table) {
+    const std::string level = "box: {size_m: [1.2, 0.8, 0.04]}, at_m: [0, 0, 0.74]";
+    return Read(ProbeWith(level, table)).scene.bodies[1].X_WB.p_m.z() - 0.1;
+  };
+  // The milk is 70 mm wide, at (0.2, 0.1).
+  const double slope = std::tan(15 * std::numbers::pi / 180);
+  EXPECT_NEAR(height("box: {size_m: [1.2, 0.8, 0.04]}, at_m: [0, 0, 0.74], rpy_deg: [15, 0, 0]"),
+              0.74 + 0.02 * std::sqrt(1 + slope * slope) + (0.1 + 0.035) * slope, 1e-6);
+  EXPECT_NEAR(height("bowl: {radius_m: 0.3, height_m: 0.2}, at_m: [0.2, 0.1, 0.8]"), 0.706, 1e-6);
 }
 
 TEST(ReadScenario, StacksInAnyOrder) {

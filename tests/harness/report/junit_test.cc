@@ -81,5 +81,14 @@ TEST(Junit, TheMessageTellsTheFirstDivergence) {
       << JunitXml({verdict});
 }
 
+TEST(Junit, TheMessageOfAContradictedClaimIsSaidOnce) {
+  ScenarioVerdict verdict{.scenario = "slide/bad", .shows = {}, .verdict = Verdict::kFailed};
+  verdict.reason = "expects: 'no sliding' (x.yaml:4): found 1";
+  verdict.details = verdict.reason + "\n  sliding(hand, cup) 0.1000..0.2000 s\n";
+  EXPECT_NE(JunitXml({verdict}).find("message=\"expects: 'no sliding' (x.yaml:4): found 1\""),
+            std::string::npos)
+      << JunitXml({verdict});
+}
+
 }  // namespace
 }  // namespace prehend::harness

@@ -120,5 +120,20 @@ TEST(ScriptPlayerTest, SayWhatIsUnknown) {
   }
 }
 
+TEST(ScriptPlayerTest, PlacingOnWhatIsNotBelowNamesTheStep) {
+  Scene scene = MakeScene({});
+  Body post{.name = "post", .shapes = {{Box{{0.1, 0.1, 0.3}}, {}}}, .fixed = true};
+  post.X_WB.p_m = {0.9, 0, 0.9};
+  scene.bodies.push_back(post);
+  Simulation still(scene, {});
+  ScriptStage place = One(PlaceStep{"post"}, 0.5);
+  place.steps[0].written_at = "milk.yaml:12:5";
+  ScriptPlayer player(scene, {.stages = {One(ReachStep{"object"}, 0.01), place}});
+  while (player.Advance(still.snapshot())) {
+  }
+  EXPECT_EQ(player.problem(),
+            "milk.yaml:12:5: place_on: no part of 'post' is below 'object': carry it there first");
+}
+
 }  // namespace
 }  // namespace prehend::physics

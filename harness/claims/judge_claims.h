@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Claims against what was recognised. Tested by tests/harness/claims/judge_claims_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grammar/base/timeline.h"
+#include "harness/claims/claim.h"
+#include "harness/claims/fit_claim.h"
+
+namespace prehend::harness {
+
+/// What became of one claim.
+struct ClaimVerdict {
+  std::string claim;  ///< as written
+  std::string place;  ///< "slide/x.yaml:31"
+  std::string says;   ///< kHolds, kContradicted or kNotJudged
+  std::string found;  ///< "found 11", or why the claim is not judged
+  std::string times;  ///< a line for each event that the claim is about
+};
+inline constexpr const char* kHolds = "holds";
+inline constexpr const char* kContradicted = "contradicted";
+inline constexpr const char* kNotJudged = "not judged";
+
+/// One per claim, in their order. `file` is where they were written.
+std::vector<ClaimVerdict> JudgeClaims(const std::vector<Claim>& claims, const std::string& file,
+                                      const ClaimableEvents& known,
+                                      const grammar::Timeline& timeline);
+
+/// "expects: '12 pick_and_place(right_hand, any)' (long/x.yaml:31): found 11"
+std::string Text(const ClaimVerdict& verdict);
+
+bool IsContradicted(const ClaimVerdict& verdict);
+
+/// Text() and times of those that are contradicted; several lines or empty.
+std::string TextOfContradicted(const std::vector<ClaimVerdict>& verdicts);
+/// Text() of those that are not judged; several lines or empty.
+std::string TextOfUndecided(const std::vector<ClaimVerdict>& verdicts);
+
+}  // namespace prehend::harness

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/read/read_claims.h. Tested by tests/harness/read/read_claims_test.cc
+#include "harness/read/read_claims.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "harness/claims/parse_claim.h"
+
+namespace prehend::harness {
+namespace {
+
+/// What the source has at this place, up to the end of the line.
+std::string_view LineFrom(const Where& where, const YamlDocument& document) {
+  std::string_view rest = document.sources[static_cast<std::size_t>(where.source)].text;
+  for (int line = 1; line < where.place.line; ++line)
+    rest.remove_prefix(std::min(rest.find('\n'), rest.size() - 1) + 1);
+  rest = rest.substr(0, rest.find('\n'));
+  rest.remove_prefix(std::min(static_cast<std::size_t>(where.place.column - 1), rest.size()));
+  return rest;
+}
+
+/// Finds out where the letters of a claim stand in the file.
+void Locate(Claim& claim, const YamlDocument& document) {
+  const std::string_view line = LineFrom(claim.where, document);
+  const bool quoted = line.starts_with('"') || line.starts_with('\'');
+  if (quoted) ++claim.where.place.column;
+  claim.on_one_line = line.substr(quoted ? 1 : 0).starts_with(claim.text);
+}
+
+}  // namespace
+
+std::vector<Claim> ReadClaims(const std::vector<Located<std::string>>& written,
+                              const YamlDocument& document, DiagnosticList& errors) {
+  std::vector<Claim> claims;
+  for (const Located<std::string>& text : written) {
+    auto parsed = ParseClaim(text.value);
+    Claim claim = parsed ? std::move(*parsed) : Claim{.text = text.value};
+    claim.where = text.where;
+    Locate(claim, document);
+    if (parsed) {
+      claims.push_back(std::move(claim));
+    } else {
+      errors.Add(PlaceIn(claim, parsed.error().offset), "expects: " + parsed.error().message,
+                 parsed.error().hint);
+    }
+  }
+  return claims;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/run/validate_claims.h. Tested by tests/harness/run/validate_claims_test.cc
+#include "harness/run/validate_claims.h"
+
+#include <utility>
+
+#include "harness/base/text_file.h"
+#include "harness/sense/entity_table.h"
+
+namespace prehend::harness {
+namespace {
+
+class ClaimDiagnostics {
+ public:
+  explicit ClaimDiagnostics(const Scenario& scenario)
+      : scenario_(scenario), text_(ReadTextFile(scenario.file).value_or("")) {}
+
+  void Add(const Claim& claim, const std::vector<ClaimProblem>& problems) {
+    for (const ClaimProblem& problem : problems) {
+      const Where where = PlaceIn(claim, problem.offset);
+      const bool in_file = where.source == 0;
+      diagnostics_.push_back(grammar::DiagnosticAt(in_file ? scenario_.file : "--set",
+                                                   in_file ? text_ : "", where.place,
+                                                   "expects: " + problem.message, problem.hint));
+    }
+  }
+
+  grammar::Diagnostics Take() { return std::move(diagnostics_); }
+
+ private:
+  const Scenario& scenario_;
+  const std::string text_;
+  grammar::Diagnostics diagnostics_;
+};
+
+}  // namespace
+
+ClaimableEvents ClaimableIn(const Scenario& scenario, const grammar::Program& program) {
+  return {.grammar = GrammarName(program),
+          .events = EventSignatures(program),
+          .entity_table = MakeEntityTable(scenario)};
+}
+
+grammar::Diagnostics ValidateClaims(const Scenario& scenario, const grammar::Program& program,
+                                    bool is_own_grammar) {
+  if (scenario.expects.empty()) return {};
+  const ClaimableEvents known = ClaimableIn(scenario, program);
+  ClaimDiagnostics diagnostics(scenario);
+  for (const Claim& claim : scenario.expects) {
+    diagnostics.Add(claim, UnknownNames(claim, known));
+    if (is_own_grammar) diagnostics.Add(claim, Misfits(claim, known));
+  }
+  return diagnostics.Take();
+}
+
+grammar::Diagnostics UndecidedClaims(const Scenario& scenario, const grammar::Program& program) {
+  const ClaimableEvents known = ClaimableIn(scenario, program);
+  ClaimDiagnostics diagnostics(scenario);
+  for (const Claim& claim : scenario.expects) {
+    std::vector<ClaimProblem> misfits = Misfits(claim, known);
+    if (misfits.empty()) continue;
+    misfits.resize(1);
+    misfits.front().message = "not judged: " + misfits.front().message;
+    diagnostics.Add(claim, misfits);
+  }
+  grammar::Diagnostics warnings = diagnostics.Take();
+  for (grammar::Diagnostic& warning : warnings) warning.is_warning = true;
+  return warnings;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grammars and the physical oracle, judged by the closed forms (docs/closed-form.md). Tested by
+// tests/harness/closed_form/closed_forms_test.cc
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "grammar/base/timeline.h"
+#include "grammar/monitor.h"
+#include "harness/base/result.h"
+#include "harness/closed_form/agreement.h"
+#include "harness/closed_form/closed_form.h"
+#include "harness/oracle/settings.h"
+
+namespace prehend::harness {
+
+/// Who finds events in a recording.
+struct ClosedFormWitness {
+  std::string name;
+  std::function<grammar::Timeline(const ClosedFormRecording&)> recognise;
+};
+/// Only events that docs/events.md defines count.
+ClosedFormWitness GrammarWitness(const std::string& name,
+                                 std::shared_ptr<const grammar::Program> program);
+ClosedFormWitness OracleWitness(const OracleSettings& settings = {});
+
+/// The events of one story, in one sampling.
+struct ClosedFormRow {
+  std::string form, sampling;
+  std::vector<JudgedEvent> events;
+};
+
+struct ClosedFormScore {
+  std::string witness;
+  std::vector<ClosedFormRow> rows;
+
+  /// Of all events, or of those of one name.
+  int Boundaries(const std::string& event = "") const;
+  int Right(const std::string& event = "") const;
+};
+
+/// One score per witness. Every file is read once.
+Result<std::vector<ClosedFormScore>> ScoreOnClosedForms(
+    const std::vector<std::string>& files, const std::vector<ClosedFormWitness>& witnesses);
+
+/// A table of the scores, and of each witness what it has wrong: one line per story and event.
+std::string ClosedFormText(const std::vector<ClosedFormScore>& scores);
+nlohmann::ordered_json ClosedFormJson(const std::vector<ClosedFormScore>& scores);
+
+}  // namespace prehend::harness
