@@ -43,7 +43,8 @@ std::string Judged(const ScoreRequest& request) {
                     {"truth", TimelineJson(episode.truth)},
                     {"found", TimelineJson(episode.found)},
                     {"ignored", episode.ignored},
-                    {"by_definitions", score::TestimonyJson(episode.by_definitions)}});
+                    {"by_definitions", score::TestimonyJson(episode.by_definitions)},
+                    {"by_claims", score::TestimonyJson(episode.by_claims)}});
   }
   return Json{{"episodes", std::move(sent)}}.dump();
 }
@@ -78,7 +79,8 @@ std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selec
       const Json& episode = sent["episodes"][g];
       by_grammar[g].push_back({ids[i], episode["ticks"], TimelineFromJson(episode["truth"]),
                                TimelineFromJson(episode["found"]), episode["ignored"],
-                               score::TestimonyFromJson(episode["by_definitions"])});
+                               score::TestimonyFromJson(episode["by_definitions"]),
+                               score::TestimonyFromJson(episode["by_claims"])});
     }
   }
   return by_grammar;
@@ -122,16 +124,30 @@ std::vector<std::string> NotCovered(const grammar::Program& program,
   return silent;
 }
 
-std::vector<score::Witness> WitnessesOf(
-    const std::vector<std::vector<EpisodeToScore>>& by_grammar) {
-  score::Witness definitions{.name = "definitions",
-                             .proves = "events lie within the bands of docs/events.md",
-                             .of_grammars = {}};
+/// Of the episodes the definitions and the claims; of the whole library also the closed forms.
+Result<std::vector<score::Witness>> WitnessesOf(
+    const std::vector<std::vector<EpisodeToScore>>& by_grammar,
+    const std::vector<std::string>& closed_forms,
+    const std::vector<ClosedFormWitness>& recognisers) {
+  score::Witness definitions{"definitions", "events lie within the bands of docs/events.md", {}};
+  score::Witness claims{"claims", "a run shows what its author said before it was played", {}};
   for (const std::vector<EpisodeToScore>& episodes : by_grammar) {
-    score::Testimony& all = definitions.of_grammars.emplace_back();
-    for (const EpisodeToScore& episode : episodes) all += episode.by_definitions;
+    score::Testimony &defined = definitions.of_grammars.emplace_back(),
+                     &claimed = claims.of_grammars.emplace_back();
+    for (const EpisodeToScore& episode : episodes) {
+      defined += episode.by_definitions;
+      claimed += episode.by_claims;
+    }
   }
-  return {definitions};
+  std::vector<score::Witness> witnesses = {std::move(definitions), std::move(claims)};
+  if (closed_forms.empty()) return witnesses;
+  const auto scores = ScoreOnClosedForms(closed_forms, recognisers);
+  if (!scores) return tl::unexpected(scores.error());
+  score::Witness& paper = witnesses.emplace_back(
+      score::Witness{"closed forms", "boundaries known on paper are found to the frame", {}});
+  for (const ClosedFormScore& score : *scores)
+    paper.of_grammars.push_back(score::ByClosedForms(score));
+  return witnesses;
 }
 
 /// What differs, by grammar; of many differences the first ones.
@@ -195,8 +211,10 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
     not_covered.push_back(NotCovered(*compiled.program, events));
     recognisers.push_back(GrammarWitness(name, compiled.program));
   }
-  recognisers.push_back(OracleWitness());
-  if (options.Has("--closed-form")) return RunClosedForms(recognisers, options, context);
+  if (options.Has("--closed-form")) {
+    recognisers.push_back(OracleWitness());
+    return RunClosedForms(recognisers, options, context);
+  }
   for (const std::string& name : options.All("names")) {
     if (const auto refused = RefuseRecording(name, context)) return *refused;
   }
@@ -214,7 +232,13 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
     scores.push_back(ScoreOf(grammars[g], by_grammar[g], collar_s));
     scores.back().not_covered = not_covered[g];
   }
-  const std::vector<score::Witness> witnesses = WitnessesOf(by_grammar);
+  const bool is_whole = options.All("names").empty() && options.All("--filter").empty() &&
+                        options.All("--events").empty();
+  const auto testified =
+      WitnessesOf(by_grammar, is_whole ? ClosedFormFiles(context.root) : std::vector<std::string>{},
+                  recognisers);
+  if (!testified) return Complain(context, testified.error());
+  const std::vector<score::Witness>& witnesses = *testified;
   if (options.Has("--json")) {
     nlohmann::ordered_json json = ScoresJson(scores, collar_s);
     json["witnesses"] = score::WitnessesJson(grammars, witnesses);

@@ -23,7 +23,7 @@ struct EpisodeToScore {
   grammar::Timeline found;
   std::map<std::string, int>
       ignored;  ///< count of recognised events for which there is no ground truth
-  Testimony by_definitions;
+  Testimony by_definitions, by_claims;
 };
 
 /// Signed offsets (found - true) of the boundaries of matched events, in seconds.

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 
+#include "harness/claims/judge_claims.h"
 #include "harness/oracle/oracle.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/load_run.h"
 #include "harness/run/run_text.h"
+#include "harness/run/validate_claims.h"
 
 namespace prehend::harness {
 namespace {
@@ -61,7 +63,10 @@ tl::expected<std::vector<score::EpisodeToScore>, ScoreFailure> EpisodesToScore(
                .truth = possible.front(),
                .found = Scored(found, request.events),
                .ignored = Ignored(found),
-               .by_definitions = {}};
+               .by_definitions = {},
+               .by_claims = score::ByClaims(
+                   request.id, JudgeClaims(scenario.expects, scenario.file,
+                                           ClaimableIn(scenario, *compiled.program), found))};
     episode.by_definitions =
         score::ByDefinitions(request.id, possible, episode.found, DefaultTolerance(scenario));
   }

@@ -60,6 +60,31 @@ Testimony ByDefinitions(const std::string& scenario, std::span<const grammar::Ti
   return testimony;
 }
 
+Testimony ByClaims(const std::string& scenario, std::span<const ClaimVerdict> verdicts) {
+  Testimony testimony;
+  for (const ClaimVerdict& verdict : verdicts) {
+    if (verdict.says == kNotJudged) continue;
+    Confirmed& count = testimony.by_event["claims"];
+    ++count.of;
+    if (verdict.says == kHolds)
+      ++count.confirmed;
+    else
+      testimony.differences.push_back(scenario + "  " + Text(verdict));
+  }
+  return testimony;
+}
+
+Testimony ByClosedForms(const ClosedFormScore& score) {
+  Testimony testimony;
+  for (const ClosedFormRow& row : score.rows) {
+    for (const JudgedEvent& event : row.events) {
+      testimony.by_event[event.label.substr(0, event.label.find('('))] +=
+          {.of = 2, .confirmed = event.begin.right + event.end.right};
+    }
+  }
+  return testimony;
+}
+
 std::string WitnessTable(const std::vector<std::string>& grammars,
                          const std::vector<Witness>& witnesses) {
   std::string text = "| witness |", rule = "|---|";

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "grammar/base/timeline.h"
+#include "harness/claims/judge_claims.h"
+#include "harness/score/closed_form_score.h"
 
 namespace prehend::harness::score {
 
@@ -31,6 +33,12 @@ struct Testimony {
 /// in the differences.
 Testimony ByDefinitions(const std::string& scenario, std::span<const grammar::Timeline> possible,
                         const grammar::Timeline& found, grammar::Tick tolerance);
+
+/// Claims that hold, of those that the grammar's events can decide.
+Testimony ByClaims(const std::string& scenario, std::span<const ClaimVerdict> verdicts);
+
+/// Boundaries that are right, of those that are known on paper or were recognised.
+Testimony ByClosedForms(const ClosedFormScore& score);
 
 /// One witness and what it says of each grammar.
 struct Witness {

@@ -34,6 +34,28 @@ TEST(ByDefinitions, CountsWhatLiesInTheBandsAndNamesTheRest) {
                 "slide/x  waving(h)  recognised 3.0000..4.0000 s, not by the definitions"}));
 }
 
+TEST(ByClaims, LeavesOutWhatAGrammarCannotDecide) {
+  const std::vector<ClaimVerdict> verdicts = {
+      {.claim = "no sliding", .place = "x.yaml:4", .says = kHolds},
+      {.claim = "one waving", .place = "x.yaml:5", .says = kNotJudged},
+      {.claim = "2 grasping", .place = "x.yaml:6", .says = kContradicted, .found = "found 3"}};
+  const Testimony testimony = ByClaims("slide/x", verdicts);
+  EXPECT_EQ(testimony.Total().of, 2);
+  EXPECT_EQ(testimony.Total().confirmed, 1);
+  EXPECT_EQ(testimony.differences,
+            (std::vector<std::string>{"slide/x  expects: '2 grasping' (x.yaml:6): found 3"}));
+}
+
+TEST(ByClosedForms, CountsBoundaries) {
+  ClosedFormScore score{.witness = "mine", .rows = {}};
+  JudgedEvent event{.label = "reaching(hand, cup)"};
+  event.begin.right = true;
+  score.rows.push_back({"story", "240 Hz", {event}});
+  const Testimony testimony = ByClosedForms(score);
+  EXPECT_EQ(testimony.by_event.at("reaching").of, 2);
+  EXPECT_EQ(testimony.by_event.at("reaching").confirmed, 1);
+}
+
 TEST(WitnessTable, HasARowPerWitness) {
   Testimony most;
   most.by_event["sliding"] = {.of = 8, .confirmed = 7};
