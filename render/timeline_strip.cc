@@ -21,7 +21,7 @@ constexpr float kLanePitch = 23;
 constexpr float kNameHeight = 15;  // room for names above the bars of a lane
 constexpr float kAxisHeight = 20;
 constexpr float kRowText = 15, kBarText = 14, kSmallText = 12;
-constexpr float kMinText_px = 9;
+constexpr float kMinStripText_px = 9;
 constexpr float kMaxHeightShare = 0.42f;
 constexpr std::size_t kMaxLanes = 4;
 
@@ -66,8 +66,8 @@ void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& ax
                float* above_taken, StripBar* bar) {
   if (segment.label.empty()) return;
   bar->name = segment.label;
-  const float small = std::max(kMinText_px, kSmallText * scale);
-  for (const float size : {std::max(kMinText_px, kBarText * scale), small}) {
+  const float small = std::max(kMinStripText_px, kSmallText * scale);
+  for (const float size : {std::max(kMinStripText_px, kBarText * scale), small}) {
     const float width = font.Width(segment.label, size);
     if (width > bar->rect.width - 6 * scale) continue;
     bar->name_place = NamePlace::kInside;
@@ -190,7 +190,7 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
       !(std::abs(strip.begin_s) < kMaxSpan_s)) {
     return layout;
   }
-  const float text_size = std::max(kMinText_px, kRowText * scale);
+  const float text_size = std::max(kMinStripText_px, kRowText * scale);
   const auto width = static_cast<float>(width_px), height = static_cast<float>(height_px);
   const float label_width = std::min(WidestLabel(strip, font, text_size), 0.2f * width);
   layout.label_left = (kMargin + kPadding + 2) * scale;
@@ -229,7 +229,7 @@ namespace {
 void DrawLane(const StripLayout& layout, const StripLane& lane, Canvas* canvas) {
   const float s = layout.scale;
   canvas->FillRounded(lane.track, 3 * s, Hex(0xDCE1E7), 0.85f);
-  const float text_size = std::max(kMinText_px, kRowText * s);
+  const float text_size = std::max(kMinStripText_px, kRowText * s);
   const float label_top =
       lane.track.y + (lane.track.height - 1.32f * canvas->font().Ascent(text_size)) / 2;
   canvas->DrawText(layout.label_left, label_top, lane.label, text_size, Hex(0x1B1F24));
@@ -242,7 +242,7 @@ void DrawLane(const StripLayout& layout, const StripLane& lane, Canvas* canvas) 
 }
 
 void DrawAxis(const StripLayout& layout, const Rect& playhead_label, Canvas* canvas) {
-  const float s = layout.scale, size = std::max(kMinText_px, kSmallText * s);
+  const float s = layout.scale, size = std::max(kMinStripText_px, kSmallText * s);
   const Color ink = Hex(0x59636E);
   for (const StripTick& tick : layout.ticks) {
     const float length = (tick.label.empty() ? 3.5f : 7.0f) * s;
@@ -261,7 +261,7 @@ void DrawAxis(const StripLayout& layout, const Rect& playhead_label, Canvas* can
 
 void DrawStrip(const StripLayout& layout, Canvas* canvas) {
   if (!(layout.panel.height > 0)) return;
-  const float s = layout.scale, size = std::max(kMinText_px, kSmallText * s);
+  const float s = layout.scale, size = std::max(kMinStripText_px, kSmallText * s);
   canvas->FillRounded(layout.panel, 8 * s, Hex(0xFFFFFF), 0.86f);
   for (const StripLane& lane : layout.lanes) DrawLane(layout, lane, canvas);
 

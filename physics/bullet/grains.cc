@@ -13,7 +13,7 @@ namespace {
 /// A grain farther from the origin than this has left the scene.
 constexpr double kLost_m = 10;
 /// Sleeping speed of a grain, and of a point of its surface.
-constexpr double kSleepSpeed_m_per_s = 0.05;
+constexpr double kGrainSleepSpeed_m_per_s = 0.05;
 
 }  // namespace
 
@@ -27,8 +27,8 @@ BulletGrains::BulletGrains(const Body& body) : shape_(body.grains->radius_m) {
   btRigidBody::btRigidBodyConstructionInfo info = RigidInfo(grain, &shape_, inertia);
   // Grains in a heap tremble, and they rotate fast for their size: with the thresholds of other
   // bodies no heap would ever sleep.
-  info.m_linearSleepingThreshold = kSleepSpeed_m_per_s;
-  info.m_angularSleepingThreshold = kSleepSpeed_m_per_s / body.grains->radius_m;
+  info.m_linearSleepingThreshold = kGrainSleepSpeed_m_per_s;
+  info.m_angularSleepingThreshold = kGrainSleepSpeed_m_per_s / body.grains->radius_m;
   for (const Eigen::Vector3d& p_WG_m : body.grains->p_WG_m) {
     info.m_startWorldTransform.setOrigin(ToBullet(p_WG_m));
     rigids_.push_back(std::make_unique<btRigidBody>(info));

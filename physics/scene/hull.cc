@@ -74,7 +74,7 @@ std::vector<Hull::Face> FacesOf(const Points& points) {
 }
 
 /// Keeps the corners of the face's outline, counter-clockwise (Andrew's monotone chain).
-void Outline(const Points& points, Hull::Face& face) {
+void FindOutline(const Points& points, Hull::Face& face) {
   const Vector3d u = face.nhat_S.unitOrthogonal(), v = face.nhat_S.cross(u);
   const auto flat = [&](int i) { return Eigen::Vector2d(u.dot(points[i]), v.dot(points[i])); };
   std::sort(face.corners.begin(), face.corners.end(), [&](int l, int r) {
@@ -198,7 +198,7 @@ MadeHull MakeHull(const Points& points_m) {
   }
   std::vector<bool> is_corner(points_m.size());
   for (Hull::Face& face : hull.faces) {
-    Outline(points_m, face);
+    FindOutline(points_m, face);
     for (const int corner : face.corners) is_corner[static_cast<std::size_t>(corner)] = true;
   }
   const auto inner = std::find(is_corner.begin(), is_corner.end(), false);
