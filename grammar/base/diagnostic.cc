@@ -30,16 +30,8 @@ bool IsContinuationByte(char c) { return (static_cast<unsigned char>(c) & 0xc0) 
 // tab width.
 std::string CaretBlock(std::string_view line, int column) {
   const std::size_t caret = std::min<std::size_t>(column > 0 ? column - 1 : 0, line.size());
-  std::size_t first = 0;
-  if (line.size() > kMaxShownBytes && caret > kShownBeforeCaret) first = caret - kShownBeforeCaret;
-  while (first > 0 && first < line.size() && IsContinuationByte(line[first])) --first;
-  const bool cut_end = line.size() - first > kMaxShownBytes;
-  const std::string lead = first > 0 ? "..." : "";
-
-  std::string block =
-      "  " + lead + Printable(line.substr(first, kMaxShownBytes)) + (cut_end ? "..." : "") + "\n";
-  block += "  " + std::string(lead.size(), ' ');
-  for (const char c : line.substr(first, caret - first)) {
+  std::string block = "  " + Printable(line) + "\n  ";
+  for (const char c : line.substr(0, caret)) {
     if (!IsContinuationByte(c)) block += c == '\t' ? '\t' : ' ';
   }
   return block + "^\n";
@@ -86,7 +78,7 @@ std::string Format(const Diagnostic& diagnostic) {
   }
   text += (diagnostic.is_warning ? ": warning: " : ": error: ") + diagnostic.message + "\n";
   if (!diagnostic.source_line.empty())
-    text += CaretBlock(diagnostic.source_line, diagnostic.place.column);
+    text += CaretBlock(diagnostic.source_line, diagnostic.caret_column);
   if (!diagnostic.hint.empty()) text += "  hint: " + diagnostic.hint + "\n";
   return text;
 }
@@ -97,13 +89,28 @@ std::string Format(const Diagnostics& diagnostics) {
   return text;
 }
 
+void ShowLine(Diagnostic& diagnostic, std::string_view line, int column) {
+  const std::size_t caret = std::min<std::size_t>(column > 0 ? column - 1 : 0, line.size());
+  std::size_t first = 0;
+  if (line.size() > kMaxShownBytes && caret > kShownBeforeCaret) first = caret - kShownBeforeCaret;
+  while (first > 0 && IsContinuationByte(line[first])) --first;
+  std::size_t end = std::min(line.size(), first + kMaxShownBytes);
+  while (end < line.size() && IsContinuationByte(line[end])) --end;
+  const std::string lead = first > 0 ? "..." : "";
+  diagnostic.source_line =
+      lead + std::string(line.substr(first, end - first)) + (end < line.size() ? "..." : "");
+  diagnostic.caret_column = static_cast<int>(lead.size() + caret - first) + 1;
+}
+
 Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place place,
                         std::string message, std::string hint) {
-  return {.file = std::string(file),
-          .place = place,
-          .message = std::move(message),
-          .source_line = place.line > 0 ? std::string(LineOf(text, place.line)) : std::string(),
-          .hint = std::move(hint)};
+  Diagnostic diagnostic{.file = std::string(file),
+                        .place = place,
+                        .message = std::move(message),
+                        .source_line = {},
+                        .hint = std::move(hint)};
+  if (place.line > 0) ShowLine(diagnostic, LineOf(text, place.line), place.column);
+  return diagnostic;
 }
 
 std::string NearestName(std::string_view name, const std::vector<std::string>& candidates) {

@@ -4,6 +4,7 @@
 // Tested by tests/grammar/base/diagnostic_test.cc
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,24 +21,34 @@ struct Place {
 struct Diagnostic {
   std::string file;
   Place place;
-  std::string message;      ///< what was found, what was wanted
-  std::string source_line;  ///< the line at `place`, without newline; may be empty
-  std::string hint;         ///< the remedy or the nearest known name; may be empty
+  std::string message;  ///< what was found, what was wanted
+  std::string
+      source_line;  ///< the line at `place`, or what stands around it in a long line; may be empty
+  int caret_column = 0;  ///< of `source_line`, counts from 1, in bytes
+  std::string hint;      ///< the remedy or the nearest known name; may be empty
   bool is_warning = false;
 };
 
 using Diagnostics = std::vector<Diagnostic>;
 
+/// What reads a file stops collecting at so many, so that time and memory are bounded by the size
+/// of the file.
+inline constexpr std::size_t kMostDiagnostics = 1000;
+
 /// `file:line:column: error: message` (or `warning:`), then the source line and a caret below it
-/// (tabs kept, very long lines cut around the caret), then the hint. Ends with a newline.
+/// (tabs kept), then the hint. Ends with a newline.
 std::string Format(const Diagnostic& diagnostic);
 
 /// All of them, one after another.
 std::string Format(const Diagnostics& diagnostics);
 
-/// Builds a diagnostic at a place of `text`, filling in the source line.
+/// Builds a diagnostic at a place of `text`, filling in the source line. A long line is cut around
+/// the place, so that a diagnostic is small.
 Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place place,
                         std::string message, std::string hint = {});
+
+/// Sets `source_line` and `caret_column`: the line, cut around the column if it is long.
+void ShowLine(Diagnostic& diagnostic, std::string_view line, int column);
 
 /// The candidate with the smallest edit distance to `name`, or "" when none is near enough to be
 /// worth suggesting (distance above a third of the longer name's length).

@@ -59,6 +59,7 @@ class Compiler {
 
  private:
   void Complain(const Source& source, Place place, std::string message, std::string hint = {}) {
+    if (diagnostics_.size() >= kMostDiagnostics) return;
     diagnostics_.push_back(DiagnosticAt(source.text.file, source.text.text, place,
                                         std::move(message), std::move(hint)));
   }

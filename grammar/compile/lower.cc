@@ -79,6 +79,7 @@ Lowering::Lowering(Symbols& symbols, RuleId rule, const GrammarText& source,
       role_used_(symbols.program.rules[rule].roles.size()) {}
 
 void Lowering::Complain(Place place, std::string message, std::string hint) {
+  if (diagnostics_.size() >= kMostDiagnostics) return;
   diagnostics_.push_back(
       DiagnosticAt(source_->file, source_->text, place, std::move(message), std::move(hint)));
 }

@@ -150,6 +150,7 @@ class Lexer {
   }
 
   void Complain(std::string message, std::string hint = {}) {
+    if (diagnostics_.size() >= kMostDiagnostics) return;
     diagnostics_.push_back(
         DiagnosticAt(grammar_.file, text(), Here(), std::move(message), std::move(hint)));
   }

@@ -105,7 +105,8 @@ ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& dia
   const std::size_t printed = std::min(diagnostics.size(), kMaxPrinted);
   for (std::size_t i = 0; i < printed; ++i) context.err << Format(diagnostics[i]);
   if (printed < diagnostics.size())
-    context.err << "and " << diagnostics.size() - printed << " more\n";
+    context.err << "and " << (diagnostics.size() < grammar::kMostDiagnostics ? "" : "at least ")
+                << diagnostics.size() - printed << " more\n";
   const bool can_be_fixed = std::ranges::any_of(diagnostics, [](const auto& diagnostic) {
     std::error_code error;
     return std::filesystem::exists(diagnostic.file, error);

@@ -345,9 +345,11 @@ class GoldenReader {
     grammar::Diagnostic diagnostic{.file = std::string(file_),
                                    .place = {},
                                    .message = std::move(message),
-                                   .source_line = std::string(line_),
+                                   .source_line = {},
                                    .hint = std::move(hint)};
-    if (line_number_ > 0) diagnostic.place = {line_number_, static_cast<int>(column_) + 1};
+    const int column = static_cast<int>(column_) + 1;
+    grammar::ShowLine(diagnostic, line_, column);
+    if (line_number_ > 0) diagnostic.place = {line_number_, column};
     diagnostics_.push_back(std::move(diagnostic));
   }
 

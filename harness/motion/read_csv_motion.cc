@@ -114,6 +114,7 @@ class CsvReader {
 
  private:
   void Complain(Place place, std::string message, std::string hint = {}) {
+    if (diagnostics.size() >= grammar::kMostDiagnostics) return;
     diagnostics.push_back(
         grammar::DiagnosticAt(track.file, track.text, place, std::move(message), std::move(hint)));
   }

@@ -11,6 +11,7 @@
 namespace prehend::harness {
 
 void DiagnosticList::Add(Where where, std::string message, std::string hint) {
+  if (found_.size() >= grammar::kMostDiagnostics) return;
   const YamlSource& source = document_.sources[static_cast<std::size_t>(where.source)];
   found_.emplace_back(where, grammar::DiagnosticAt(source.name, source.text, where.place,
                                                    std::move(message), std::move(hint)));
@@ -18,6 +19,7 @@ void DiagnosticList::Add(Where where, std::string message, std::string hint) {
 
 void DiagnosticList::AddUnknownName(Where where, std::string message, const std::string& name,
                                     const std::vector<std::string>& candidates) {
+  if (found_.size() >= grammar::kMostDiagnostics) return;
   constexpr std::size_t kMaxListed = 20;
   const std::string near = grammar::NearestName(name, candidates);
   std::string hint;

@@ -11,6 +11,7 @@
 
 namespace prehend::harness {
 
+/// Keeps the first grammar::kMostDiagnostics that are added.
 class DiagnosticList {
  public:
   /// The document outlives this object.

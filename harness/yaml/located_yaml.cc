@@ -83,6 +83,7 @@ class TreeBuilder : public YAML::EventHandler {
   Diagnostics diagnostics;
 
   void Complain(Place place, std::string message, std::string hint) {
+    if (diagnostics.size() >= grammar::kMostDiagnostics) return;
     diagnostics.push_back(DiagnosticAt(file_, text_, place, std::move(message), std::move(hint)));
   }
 
