@@ -40,9 +40,36 @@ std::size_t Utf8Length(std::string_view text) {
   return 0;
 }
 
-bool IsControl(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F;
+char32_t CodePoint(std::string_view sequence) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(sequence[i]); };
+  if (sequence.size() == 1) return byte(0);
+  char32_t code = byte(0) & (0xFFu >> (sequence.size() + 1));
+  for (std::size_t i = 1; i < sequence.size(); ++i) code = code << 6 | (byte(i) & 0x3Fu);
+  return code;
+}
+
+bool IsBetween(char32_t code, char32_t first, char32_t last) {
+  return code >= first && code <= last;
+}
+
+bool IsControl(char32_t code) {
+  return (code < 0x20 && code != '\n' && code != '\t') || IsBetween(code, 0x7F, 0x9F);
+}
+
+/// What a text file that a person wrote does not hold: "" or its name.
+std::string_view NameOfStrange(char32_t code) {
+  if (IsControl(code)) return "control character";
+  if (IsBetween(code, 0x202A, 0x202E) || IsBetween(code, 0x2066, 0x2069))
+    return "character that turns the direction of writing";
+  if (IsBetween(code, 0x2028, 0x2029)) return "line end that only Unicode knows";
+  if ((code & 0xFFFE) == 0xFFFE || IsBetween(code, 0xFDD0, 0xFDEF))
+    return "code point that is no character";
+  return {};
+}
+
+/// The sequence that starts `text` is fit for a text file.
+bool IsFit(std::string_view text, std::size_t length) {
+  return length > 0 && NameOfStrange(CodePoint(text.substr(0, length))).empty();
 }
 
 /// Without the line itself: printing it could garble a terminal.
@@ -94,8 +121,8 @@ std::string ReadableText(std::string_view bytes) {
   std::string text;
   text.reserve(bytes.size());
   while (!bytes.empty()) {
-    const std::size_t length = IsControl(bytes[0]) ? 0 : Utf8Length(bytes);
-    text += length > 0 ? bytes.substr(0, length) : std::string_view("\uFFFD");
+    const std::size_t length = Utf8Length(bytes);
+    text += IsFit(bytes, length) ? bytes.substr(0, length) : std::string_view("\uFFFD");
     bytes.remove_prefix(std::max<std::size_t>(1, length));
   }
   return text;
@@ -111,16 +138,19 @@ Diagnostics CheckText(const std::string& file, std::string_view text) {
       alone.hint = "lines end with a line feed, or with both";
       return {std::move(alone)};
     }
-    if (IsControl(text[i])) {
-      return {NotText(file, text, i,
-                      fmt::format("control character 0x{:02x}; this looks like a binary file",
-                                  static_cast<unsigned char>(text[i])))};
-    }
     const std::size_t length = Utf8Length(text.substr(i));
     if (length == 0) {
       return {
           NotText(file, text, i,
                   fmt::format("byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[i])))};
+    }
+    const char32_t code = CodePoint(text.substr(i, length));
+    if (const auto name = NameOfStrange(code); !name.empty()) {
+      const auto number = static_cast<unsigned>(code);
+      return {NotText(file, text, i,
+                      length == 1
+                          ? fmt::format("{} 0x{:02x}; this looks like a binary file", name, number)
+                          : fmt::format("{} U+{:04X}", name, number))};
     }
     i += length;
   }

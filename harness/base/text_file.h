@@ -19,7 +19,10 @@ inline constexpr std::uintmax_t kMaxTextFileBytes = 4u << 20;
 /// what CheckText() reports.
 Result<std::string> ReadTextFile(const std::string& path);
 
-/// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file).
+/// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file): those
+/// of ASCII and U+0080 to U+009F, which terminals obey; what turns the direction of writing (U+202A
+/// to U+202E, U+2066 to U+2069); line ends of Unicode's own (U+2028, U+2029); and code points that
+/// are no characters, which XML cannot carry (U+FFFE, U+FFFF and their like).
 grammar::Diagnostics CheckText(const std::string& file, std::string_view text);
 
 /// Bytes from elsewhere (the output of a process) as text: each byte that CheckText() would report

@@ -13,6 +13,7 @@
 
 #include "harness/base/project_paths.h"
 #include "harness/base/shell_quote.h"
+#include "harness/base/text_file.h"
 #include "harness/cli/parse_arguments.h"
 
 namespace prehend::harness {
@@ -81,11 +82,28 @@ ExitCode Run(const ChosenCommand& chosen, const std::vector<std::string>& words)
   return chosen.command->run(chosen.options, context);
 }
 
+/// Words reach goldens, reports and messages, which hold text only. Returns why one is no text, or
+/// "".
+std::string WhyNotText(const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i].empty()) continue;
+    const grammar::Diagnostics found = CheckText("", words[i]);
+    if (!found.empty())
+      return fmt::format("argument {} ('{}') is no text: {}", i + 1, ReadableText(words[i]),
+                         found.front().message);
+  }
+  return "";
+}
+
 }  // namespace
 
 ExitCode RunCommandLine(int argc, const char* const* argv) {
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   try {
+    if (const std::string why = WhyNotText(words); !why.empty()) {
+      std::cerr << "prehend: " << why << "\n";
+      return ExitCode::kBadInput;
+    }
     const std::vector<Command> commands = Commands();
     const ParsedArguments parsed = ParseArguments(Description(), commands, words);
     if (const auto* error = std::get_if<UsageError>(&parsed)) return Report(*error);

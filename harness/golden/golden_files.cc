@@ -125,7 +125,13 @@ std::string GoldenFiles::WritePending(const Golden& golden) const {
 }
 
 std::string GoldenFiles::WriteGoldenFile(const Golden& golden) const {
-  return WriteTextFile(GoldenPath(golden.scenario), WriteGolden(golden));
+  const std::string path = GoldenPath(golden.scenario), text = WriteGolden(golden);
+  // A golden that does not read back would lose every reason that the old one held.
+  grammar::Diagnostics wrong = CheckText(path, text);
+  if (wrong.empty()) wrong = ErrorsOf(ReadGolden(path, text));
+  if (!wrong.empty())
+    return "the golden would not be readable, and was not written:\n" + Format(wrong);
+  return WriteTextFile(path, text);
 }
 
 std::string GoldenFiles::WriteAccepted(const Golden& golden) const {

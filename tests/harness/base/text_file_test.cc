@@ -58,6 +58,15 @@ TEST_F(TextFile, RefusesWhatIsNoTextFile) {
             "control character 0x7f; this looks like a binary file");
 }
 
+TEST_F(TextFile, RefusesWhatTerminalsObeyAndXmlCannotCarry) {
+  EXPECT_EQ(Complaint(Write("c1", "a\u009b31m")), "control character U+009B");
+  EXPECT_EQ(Complaint(Write("turned", "a\u202eb")),
+            "character that turns the direction of writing U+202E");
+  EXPECT_EQ(Complaint(Write("line", "a\u2028b")), "line end that only Unicode knows U+2028");
+  EXPECT_EQ(Complaint(Write("none", "a\uFFFEb")), "code point that is no character U+FFFE");
+  EXPECT_EQ(Complaint(Write("far", "a\U0010FFFFb")), "code point that is no character U+10FFFF");
+}
+
 TEST_F(TextFile, RefusesBrokenUtf8) {
   for (const char* bytes : {"\x80", "\xC0\x80", "\xC3", "\xE0\x80\x80", "\xED\xA0\x80",
                             "\xF0\x80\x80\x80", "\xF4\x90\x80\x80", "\xFF"}) {
@@ -91,6 +100,7 @@ TEST_F(TextFile, RefusesAnUnreadableFile) {
 TEST(ReadableText, KeepsTextAndReplacesWhatIsNone) {
   EXPECT_EQ(ReadableText("tab\tand\nline, \u00e9 \U0001F590"), "tab\tand\nline, \u00e9 \U0001F590");
   EXPECT_EQ(ReadableText(""), "");
+  EXPECT_EQ(ReadableText("\u009b1m \u2028 \uFFFE"), "\uFFFD1m \uFFFD \uFFFD");
   EXPECT_EQ(ReadableText("\x1b[31m\r\n"), "\uFFFD[31m\uFFFD\n");
   EXPECT_EQ(ReadableText(std::string_view("a\0b", 3)), "a\uFFFDb");
   EXPECT_EQ(ReadableText("\xa9 tail of a cut \u00e9, head of one: \xc3"),
