@@ -10,15 +10,14 @@
 // kRememberedSpans of a part are kept.
 // Tested by tests/grammar/engine/compose_test.cc
 #include <algorithm>
-#include <tuple>
+#include <optional>
 
 #include "grammar/base/allen.h"
+#include "grammar/engine/combinations.h"
 #include "grammar/engine/engine.h"
 
 namespace prehend::grammar {
 namespace {
-
-Interval TicksOf(const Span& span) { return {span.begin.tick, span.end.tick}; }
 
 constexpr AllenSet Bits(std::initializer_list<Allen> relations) {
   AllenSet bits = 0;
@@ -56,59 +55,6 @@ bool IsHopeless(const Program& program, const Rule& rule, const ComposeState& st
         });
       });
 }
-
-// Tries all ways to complete `chosen` and keeps the best one.
-class Combinations {
- public:
-  Combinations(const ComposeRule& composition, const ComposeState& state, FrameNumber settled)
-      : composition_(composition), state_(state), settled_(settled) {
-    Choose(0);
-  }
-  const Span* best() const { return found_ ? &best_ : nullptr; }
-
- private:
-  void Choose(std::size_t part) {
-    if (part == state_.parts.size()) return Judge();
-    for (const Span& span : state_.parts[part]) {
-      if (span.Complete().frame > settled_) continue;
-      chosen_[part] = &span;
-      if (RelationsHoldUpTo(static_cast<int>(part))) Choose(part + 1);
-    }
-  }
-
-  bool RelationsHoldUpTo(int part) const {
-    return std::all_of(
-        composition_.clauses.begin(), composition_.clauses.end(),
-        [&](const ComposeRule::Clause& clause) {
-          if (std::max(clause.left, clause.right) != part) return true;
-          return (Bit(Relate(TicksOf(*chosen_[clause.left]), TicksOf(*chosen_[clause.right]))) &
-                  clause.relations) != 0;
-        });
-  }
-
-  void Judge() {
-    const Span& last = *chosen_[state_.parts.size() - 1];
-    Span whole{chosen_[0]->begin, last.end, last.open_end, last.Complete()};
-    for (std::size_t part = 0; part < state_.parts.size(); ++part) {
-      const Moment complete = chosen_[part]->Complete();
-      if (complete.tick > whole.completed.tick) whole.completed = complete;
-    }
-    if (whole.begin.frame >= whole.end.frame || whole.begin.frame < state_.last_end) return;
-    const auto order = [](const Span& span) {
-      return std::tuple(span.completed.tick, span.end.tick, -span.begin.tick);
-    };
-    if (found_ && order(whole) >= order(best_)) return;
-    best_ = whole;
-    found_ = true;
-  }
-
-  const ComposeRule& composition_;
-  const ComposeState& state_;
-  FrameNumber settled_;
-  std::array<const Span*, kMaxParts> chosen_ = {};
-  Span best_;
-  bool found_ = false;
-};
 
 }  // namespace
 
@@ -162,17 +108,16 @@ void Engine::StepCompose(RuleInstance& instance) {
   auto& state = instance.As<ComposeState>();
   const FrameNumber settled = PartsSettled(instance);
   for (;;) {
-    const Combinations combinations(rule.As<ComposeRule>(), state, settled);
-    if (combinations.best() == nullptr) break;
-    const Span whole = *combinations.best();
-    state.last_end = whole.end.frame;
+    const std::optional<Span> whole = Combinations(rule.As<ComposeRule>(), state, settled).Best();
+    if (!whole) break;
+    state.last_end = whole->end.frame;
     // The next one begins with a first part that begins, and ends with a last part that ends, later
     // than this ends.
     std::erase_if(state.parts.front(),
                   [&](const Span& span) { return span.begin.frame < state.last_end; });
     std::erase_if(state.parts.back(),
                   [&](const Span& span) { return span.end.frame <= state.last_end; });
-    Conclude(instance, whole);
+    Conclude(instance, *whole);
   }
   for (bool again = true; again;) {
     again = false;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compositions on drawn facts: which combinations are taken and when they are certain.
+#include <algorithm>
+
 #include "tests/grammar/scene.h"
 
 namespace prehend::grammar {
@@ -64,6 +66,34 @@ TEST(Compose, TakesTheLatestBeginAndNeverOverlaps) {
 // not.
 TEST(Compose, WaitsUntilNoBetterPartCanCome) {
   EXPECT_EQ(Served("#....####.......", ".........#......"), "[5,10)@11 ");
+}
+
+// Seven parts with 64 intervals each have 4e12 combinations; choosing part by part finds the first
+// at once, and knows that there is no other.
+TEST(Compose, OfManyPartsIsFoundWithoutTryingAllCombinations) {
+  const auto program = testing::CompileText(R"(
+grammar t
+event shown(hand: Hand, cup: Cup, tray: Movable) while touching(hand, cup) and distance(hand, tray) < 10 m
+event placed(hand: Hand, cup: Cup, tray: Movable) while touching(cup, tray) and distance(hand, tray) < 10 m
+event all(hand: Hand, cup: Cup, tray: Movable)
+  compose p0: shown(hand, cup, tray), p1: shown(hand, cup, tray), p2: shown(hand, cup, tray),
+    p3: shown(hand, cup, tray), p4: shown(hand, cup, tray), p5: shown(hand, cup, tray), p6: placed(hand, cup, tray)
+  where p0 before p6, p1 before p6, p2 before p6, p3 before p6, p4 meets|overlaps p6, p5 equals p6
+)");
+  Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  for (Tick t = 0; t < 2000; ++t) {
+    scene.touches.clear();
+    const bool both = t >= 1990;
+    if (both || t % 20 < 8) scene.touches.push_back({.a = 0, .b = 1});
+    if (both || t % 20 >= 10) scene.touches.push_back({.a = 1, .b = 2});
+    monitor.Advance(scene.At(t), events);
+  }
+  monitor.Finish(2000, events);
+  EXPECT_EQ(std::ranges::count_if(
+                events, [&](const Event& e) { return program->rules[e.rule].name == "all"; }),
+            0);
 }
 
 TEST(Compose, ClosesAtTheEndOfTheEpisode) { EXPECT_EQ(Served("##......", "....####"), "[0,8)@8 "); }
