@@ -17,6 +17,7 @@
 #include "harness/judge/judge_golden.h"
 #include "harness/judge/judge_invariants.h"
 #include "harness/judge/judge_pictures.h"
+#include "harness/judge/judge_transforms.h"
 #include "harness/pictures/pictures.h"
 #include "harness/run/run_text.h"
 
@@ -224,6 +225,9 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   JudgeAgainstGolden(request, checked, verdict.inputs, judgement);
   Append(judgement.findings, JudgeOtherEngine(checked, judgement.engine_difference));
   JudgePictures(request, checked, verdict.pictures, judgement);
+  if (judgement.golden)
+    Append(judgement.findings,
+           JudgeTransforms(checked, judgement.golden->pending, request.transforms));
 
   Conclude(judgement.findings, verdict);
   verdict.details += TextOfUndecided(verdict.claims);

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "harness/check/verdict.h"
 #include "harness/process/progress_counters.h"
 #include "harness/run/load_run.h"
+#include "harness/transform/transform.h"
 
 namespace prehend::harness {
 
@@ -19,6 +21,7 @@ struct CheckRequest {
   bool pictures = true;
   bool leave_nothing_behind = false;  ///< no pending golden, no trace; only the verdict
   bool in_project = true;             ///< below scenarios/, so that it may have a golden
+  std::vector<Transform> transforms;  ///< after which its events must be the same
   std::string program;                ///< ProgramHash(), to find the cause of differences
   ProgressCounters::Tick* last_tick =
       nullptr;  ///< gets the tick that the run has reached; may be null

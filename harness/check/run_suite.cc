@@ -109,6 +109,7 @@ class Suite {
         .pictures = request_.pictures && turn.repetition == 0,
         .leave_nothing_behind = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
         .in_project = InProject(turn.scenario),
+        .transforms = request_.transforms,
         .program = program_,
         .last_tick = &last_tick};
     // CBOR, since JSON has no infinite numbers and refuses bytes that are no UTF-8.

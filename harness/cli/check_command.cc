@@ -2,6 +2,7 @@
 // prehend check: the regression suite. Tested by tests/program/command_line_test.cc and
 // tests/program/runner_test.cc
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "harness/cli/command.h"
 #include "harness/report/junit.h"
 #include "harness/report/report.h"
+#include "harness/transform/transform.h"
 
 namespace prehend::harness {
 namespace {
@@ -35,6 +37,34 @@ std::string FilterProblem(const std::string& filter) {
 std::string ShardProblem(const std::string& shard) {
   return ParseShard(shard) ? ""
                            : "found '" + shard + "', wanted I/N, like 2/3 for the second of three";
+}
+
+std::string TransformProblem(const std::string& name) {
+  const auto known = std::ranges::find(TransformNames(), name, &TransformName::name);
+  if (known != TransformNames().end()) return "";
+  std::vector<std::string_view> names;
+  for (const TransformName& each : TransformNames()) names.push_back(each.name);
+  return fmt::format("found '{}', wanted one of {}", name, fmt::join(names, ", "));
+}
+
+std::string TransformHelp() {
+  std::string help =
+      "play each scenario once more after this change; its events must be the\nsame; may be "
+      "repeated";
+  for (const TransformName& each : TransformNames())
+    help += fmt::format("\n{}: {}", each.name, each.help);
+  return help;
+}
+
+std::vector<Transform> TransformsOf(const ParsedOptions& options) {
+  std::vector<Transform> transforms;
+  if (options.Has("--ensemble"))
+    transforms = {Transform::kNudge, Transform::kShift, Transform::kFar, Transform::kReorder,
+                  Transform::kBystander};
+  for (const std::string& name : options.All("--transform"))
+    transforms.push_back(
+        std::ranges::find(TransformNames(), name, &TransformName::name)->transform);
+  return transforms;
 }
 
 /// Its limits are too large to be worth a place in the help.
@@ -92,6 +122,14 @@ std::vector<Option> RunningOptions() {
                    "differ is flaky and fails",
            .placeholder = "N",
            .rule = IntegersFrom(1, kMaxRepeats)},
+          {.name = "--transform",
+           .help = TransformHelp(),
+           .placeholder = "NAME",
+           .rule = {.problem = TransformProblem},
+           .repeatable = true},
+          {.name = "--ensemble",
+           .help = "the same as --transform nudge, shift, far, reorder and bystander: what the\n"
+                   "verdict rests on must not depend on rounding"},
           {.name = "--shuffle",
            .help = "run in a random order with this seed; default: the slowest first",
            .placeholder = "SEED",
@@ -134,6 +172,7 @@ SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& con
                        .pictures = !options.Has("--no-pictures"),
                        .only_changed = options.Has("--changed"),
                        .repeat = options.IntOr("--repeat", 1),
+                       .transforms = TransformsOf(options),
                        .shuffle_seed = {},
                        .limits = {}};
   if (options.Has("--shuffle")) request.shuffle_seed = options.UnsignedOr("--shuffle", 0);
@@ -207,6 +246,11 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--changed") && (options.Has("--grammar") || options.Has("--set"))) {
     return Complain(context, ExitCode::kBadInput,
                     "--changed compares files; it cannot be combined with --grammar or --set");
+  }
+  if (options.Has("--changed") && !TransformsOf(options).empty()) {
+    return Complain(
+        context, ExitCode::kBadInput,
+        "--changed compares files; it cannot be combined with --transform or --ensemble");
   }
   for (const std::string& name : options.All("names")) {
     if (const auto refused = RefuseRecording(name, context)) return *refused;

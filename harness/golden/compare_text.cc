@@ -43,8 +43,10 @@ std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::stri
   if (pairing.expected && pairing.actual && pairing.pieces.empty())
     text += fmt::format("  {}\n", OffsetText(pairing, ticks_per_second));
   if (!pairing.changes.empty()) text += fmt::format("  {}\n", fmt::join(pairing.changes, ", "));
-  return text +
-         fmt::format("{}  why: {} {}\n", facts, command, QuestionAbout(pairing, ticks_per_second));
+  text += facts;
+  if (!command.empty())
+    text += fmt::format("  why: {} {}\n", command, QuestionAbout(pairing, ticks_per_second));
+  return text;
 }
 
 }  // namespace
