@@ -55,6 +55,7 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"pugixml", std::regex("pugixml\\.hpp"), std::regex("(harness|tests)/.*")},
       {"muParser", std::regex("muParser.*"), std::regex("harness/closed_form/formula\\.cc")},
       {"tl::expected", std::regex("tl/.*"), std::regex("harness/.*")},
+      {"SLEEF", std::regex("sleef\\.h"), std::regex("physics/portable_math\\.cc")},
       {"xxHash", std::regex("xxhash\\.h"), std::regex("harness/(.*/)?content_hash\\.cc")},
       {"OpenGL and OSMesa", std::regex("(GL/.*|GLES.*|EGL/.*)"), std::regex("render/.*")},
       {"libpng", std::regex("png\\.h"), std::regex("(render|tests/render)/.*")},
