@@ -17,6 +17,14 @@
 #include "render/shaders.h"
 
 namespace prehend::render {
+
+// The sphere in which shadows and ground are drawn: all objects, or the surroundings of the
+// camera's target if these are much smaller.
+struct Focus {
+  Eigen::Vector3f center_m;
+  float radius_m;
+};
+
 namespace {
 
 using Eigen::Vector3f;
@@ -30,13 +38,6 @@ constexpr float kGroundDrop_m =
     0.002f;  // keeps a floor body at z = 0 from flickering with the ground
 
 const Color kGroundColor = {0.90f, 0.91f, 0.925f};
-
-// The sphere in which shadows and ground are drawn: all objects, or the surroundings of the
-// camera's target if these are much smaller.
-struct Focus {
-  Vector3f center_m;
-  float radius_m;
-};
 
 Focus FocusOf(const DrawList& list, const View& view) {
   const Vector3f forward = -view.world_to_view.block<1, 3>(2, 0).transpose();
