@@ -387,16 +387,31 @@ double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
 double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
   depends_on_time_ = true;
   if (frame <= history_.first()) return 0;
-  const HandAtFrame* now = history_.Hand(hand, frame);
-  const HandAtFrame* before = history_.Hand(hand, frame - 1);
-  if (now == nullptr || before == nullptr) return 0;
-  double farthest = 0;
+  return Apart_m(hand, frame, frame - 1) / SecondsBetween(frame - 1, frame);
+}
+
+double Evaluator::Apart_m(int hand, FrameNumber frame, FrameNumber other) const {
+  const HandAtFrame* here = history_.Hand(hand, frame);
+  const HandAtFrame* there = history_.Hand(hand, other);
+  if (here == nullptr || there == nullptr) return 0;
+  double farthest_m = 0;
   for (std::size_t i = 0;
-       i < std::min(now->collision_spheres.size(), before->collision_spheres.size()); ++i) {
-    farthest = std::max(
-        farthest, (now->collision_spheres[i].p_W_m - before->collision_spheres[i].p_W_m).norm());
+       i < std::min(here->collision_spheres.size(), there->collision_spheres.size()); ++i) {
+    farthest_m = std::max(
+        farthest_m, (here->collision_spheres[i].p_W_m - there->collision_spheres[i].p_W_m).norm());
   }
-  return farthest / history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
+  return farthest_m;
+}
+
+// The most distant frames first: a hand that moves is farthest away there.
+bool Evaluator::StaysWithin(double still_m, Tick ticks, int hand, FrameNumber frame,
+                            FrameNumber last) const {
+  const Tick now = history_.At(frame).tick;
+  for (FrameNumber early = history_.FirstNotBefore(now - ticks); early < frame; ++early)
+    if (Apart_m(hand, frame, early) > still_m) return false;
+  for (FrameNumber late = std::min(history_.LastNotAfter(now + ticks), last); late > frame; --late)
+    if (Apart_m(hand, frame, late) > still_m) return false;
+  return true;
 }
 
 // From the last frame that is half the window earlier to the first one that is half the window

@@ -41,6 +41,13 @@ class Evaluator {
   Kleene Holds(int slot, const View& view) const;
   Kleene Begins(int slot, const View& view) const;
 
+  /// How far the hand's surface is at one frame from where it is at another: the farthest piece of
+  /// it.
+  double Apart_m(int hand, FrameNumber frame, FrameNumber other) const;
+  /// Whether no piece of it gets farther than `still_m` from where it is at `frame`, in frames at
+  /// most so many ticks before or after, up to `last`.
+  bool StaysWithin(double still_m, Tick ticks, int hand, FrameNumber frame, FrameNumber last) const;
+
   /// True if no interval can hold at both frames, wherever it will end: both would have to lie in
   /// one region anchored at the end, and they are too far apart for that. False if this cannot be
   /// told.

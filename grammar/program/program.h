@@ -183,10 +183,16 @@ struct FromToRule {
 struct Approach {
   NodeId signal;
   double slack = 0;    ///< how far it may recede, in the signal's unit
+  double over_s = 0;   ///< its median over so long must not recede; 0: nor must single values
   NodeId motion;       ///< the speed of the movement; kNone: as fast as the signal falls
   double speed = 0;    ///< slower is a pause; in the unit of the motion
-  double onset = 0;    ///< likewise: from this speed on a movement begins
+  double onset = 0;    ///< likewise: from this speed on a movement begins; 0: at the turning point
   double idle_s = -1;  ///< a longer pause ends the way back; negative: pauses may last
+  int hand = kNone;    ///< role: staying within `still_m` is a pause, too
+  double still_m = 0;  ///< of each piece of the hand's surface, from where it is
+  double still_s = 0;  ///< within half of this before and after
+  /// How far before a frame it looks; after a frame it does not look beyond the interval's end.
+  double looks_around_s() const { return (over_s > still_s ? over_s : still_s) / 2; }
 };
 
 /// `until until since since`: looks back from where `until` becomes true.
