@@ -89,7 +89,16 @@ class Evaluator {
   std::optional<double> DriftAlong(const Node& node, const View& view) const;
   std::optional<double> TurnRate(const Node& node, const View& view) const;
   Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;
-  Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;
+  Eigen::Vector3d RelativeVelocity(int a, int b, const Eigen::Vector3d& p_W_m,
+                                   FrameNumber frame) const;
+  struct TouchPlace {
+    Eigen::Vector3d p_W_m;
+    Eigen::Vector3d nhat_W;
+  };
+  TouchPlace TouchPlaceOf(const Node& node, const View& view) const;
+  double SpeedAlong(const Node& node, const View& view) const;
+  std::optional<double> DistanceAlong(const Node& node, const View& view) const;
+  Eigen::Vector3d OfTouch(const Node& node, const View& view) const;
   const RuleInstance* Touching(const Node& node, const View& view, bool& swapped) const;
   const TouchSample* Touch(const Node& node, const View& view, bool& swapped) const;
   int Entity(const Node& node, const View& view, int i) const {

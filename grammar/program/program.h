@@ -58,7 +58,8 @@ enum class Op : std::uint8_t {
   kUp,
   kForceBetween,
   kTouchSpeed,
-  kDistanceAlong,  ///< horizontal, between the positions args[0] and args[1] as seen from roles[0]
+  kDistanceAlong,  ///< along roles[1], of the piece of roles[0] that was at args[0] in it and at
+                   ///< args[1] in roles[1], where args[2] is the normal
   kGap,
   kClosingSpeed,
   kSurfaceSpeed,
@@ -81,6 +82,8 @@ enum class Op : std::uint8_t {
   kPosition,
   kPositionOn,
   kAhead,
+  kTouchIn,   ///< where roles[0] touches roles[1], as seen from the first or second: `number`
+  kNormalIn,  ///< the contact normal there, likewise
   // Numbers or positions.
   kAtBegin,  ///< the value that anchor `slot` had where the interval begins
   kAtEnd,    ///< args[0] where the interval ends
@@ -101,7 +104,8 @@ struct Node {
   std::array<int, 2> roles = {kNone, kNone};  ///< roles of the rule
   int slot = kNone;                           ///< reference, anchor or class name
   int name = kNone;                           ///< kSensorSet: index into Program::sensor_sets
-  double number = 0;  ///< kNumber, kSensorSet, and the windows of kDriftAlong, kTurnRate, kRate
+  double number = 0;  ///< kNumber, kSensorSet, kTouchIn, kNormalIn, and the windows of kDriftAlong,
+                      ///< kTurnRate, kRate
   ByThreshold by_threshold = {};
 };
 
