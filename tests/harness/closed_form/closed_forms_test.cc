@@ -51,9 +51,6 @@ const std::set<std::string> kWrongInGrammar = {
     "reach_retreat_from_the_handle_of_a_cup: reaching(hand, cup)",
     "reach_short_retreat_above_a_wide_foot: reaching(hand, column)",
     "reach_turning_to_a_ball: reaching(hand, ball)",
-    "slide_at_12_mm_per_s_down_a_slope: sliding(hand, box)",
-    "slide_not_when_tipped_over_an_edge: sliding(hand, chest)",
-    "slide_of_23_mm_down_a_slope: sliding(hand, box)",
 };
 
 std::string Joined(const std::set<std::string>& lines) {
