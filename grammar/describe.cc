@@ -193,9 +193,11 @@ GrammarDescription Describe(const Program& program) {
   for (const RuleId id : IdsOf(program.rules)) {
     const Rule& rule = program.rules[id];
     const auto* looks_back = rule.If<UntilSinceRule>();
+    const Approach* approach = ApproachOf(rule);
     description.history_s =
-        std::max(description.history_s,
-                 (looks_back != nullptr ? looks_back->back_s : 0) + rule.looks_around_s);
+        std::max(description.history_s, (looks_back != nullptr ? looks_back->back_s : 0) +
+                                            (approach != nullptr ? approach->looks_around_s() : 0) +
+                                            rule.looks_around_s);
     if (rule.form() == Form::kTouching || rule.hidden) continue;
     description.rules.push_back({.name = rule.name,
                                  .head = Head(rule),

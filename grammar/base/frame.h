@@ -107,6 +107,10 @@ struct Touch {
   /// How fast, up or down, the two surfaces move against each other where the touch bears load:
   /// about 0 while one stands, tips or rolls on the other, more while they bounce off.
   double vertical_speed_m_per_s = 0;
+  /// Where the touch bears load, and the contact normal on a there (out of b into a). Without a
+  /// normal (zero) neither is known.
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d nhat_BA_W = Eigen::Vector3d::Zero();
   std::uint32_t sensor_sets = 0;  ///< when one of the two is a hand: which of its sensor sets touch
 };
 

@@ -149,7 +149,7 @@ bool AsksTouches(const Program& program, NodeId index) {
   if (index == kNone) return false;
   const Node& node = program.nodes[index];
   if (node.by_threshold.value != kNone) return false;
-  return AskedBy(node.op) == Asks::kTouchValues ||
+  return AsksTouchValues(node.op) ||
          std::any_of(node.args.begin(), node.args.end(),
                      [&](NodeId arg) { return AsksTouches(program, arg); });
 }
@@ -275,11 +275,11 @@ void WatchEntities(const Program& program, Rule& rule, NodeId index) {
   if (node.by_threshold.value != kNone) return WatchThresholds(program, rule, node.by_threshold);
   if (node.op == Op::kAtEnd) return;
   const Asks asks = AskedBy(node.op);
-  if (asks == Asks::kTouchValues) rule.watches_press |= kAnyChange;
+  if (AsksTouchValues(node.op)) rule.watches_press |= kAnyChange;
   if (asks == Asks::kGrip) rule.watches_grips |= kAnyChange;
   for (const int role : node.roles) {
     if (role != kNone && asks == Asks::kGrip) rule.watches_grip[role] = true;
-    if (role != kNone && asks == Asks::kPoses) rule.watches_pose[role] = true;
+    if (role != kNone && AsksPoses(node.op)) rule.watches_pose[role] = true;
   }
   for (const NodeId arg : node.args) WatchEntities(program, rule, arg);
 }

@@ -89,12 +89,12 @@ std::span<const Builtin> Builtins() {
        "upwards, of the first against the point of the second where the first is",
        S::kPoses, kAnyNumber},
       {"speed_along",             Op::kSpeedAlong,            T::kNumber,   kMetresPerSecond,  {A::kEntity, A::kEntity},
-       "horizontal speed of the first against the point of the second where the first is",
-       S::kPoses, kNotNegative},
+       "how fast the first moves along the second, in the plane in which they touch",
+       S::kPosesAndTouchValues, kNotNegative},
       {"drift_along",             Op::kDriftAlong,            T::kNumber,   kMetresPerSecond,  {A::kEntity, A::kEntity, A::kWindow},
-       "(a, b, window): how far a gets horizontally, as seen from b, from half the window before"
-       " to half of it after, per time",
-       S::kPoses, kNotNegative},
+       "(a, b, window): how far a gets along b, in the plane in which they touch, from half the "
+       "window before to half of it after, per time",
+       S::kPosesAndTouchValues, kNotNegative},
       {"turn_rate",               Op::kTurnRate,              T::kNumber,   kRadiansPerSecond, {A::kEntity, A::kEntity, A::kWindow, A::kLength},
        "(a, b, window [, shortest]): how fast the direction in which a moves horizontally, as "
        "seen from b, turns to the left; 0 where a way is shorter than 1 mm, or than `shortest`",
@@ -153,8 +153,19 @@ const Builtin* FindBuiltin(Op op) {
 
 Asks AskedBy(Op op) {
   if (op == Op::kSolidInSphere || op == Op::kDistanceAlong) return Asks::kPoses;
+  if (op == Op::kTouchIn || op == Op::kNormalIn) return Asks::kPosesAndTouchValues;
   const Builtin* const signal = FindBuiltin(op);
   return signal == nullptr ? Asks::kNothing : signal->asks;
+}
+
+bool AsksTouchValues(Op op) {
+  const Asks asks = AskedBy(op);
+  return asks == Asks::kTouchValues || asks == Asks::kPosesAndTouchValues;
+}
+
+bool AsksPoses(Op op) {
+  const Asks asks = AskedBy(op);
+  return asks == Asks::kPoses || asks == Asks::kPosesAndTouchValues;
 }
 
 bool HasWindow(Op op) {

@@ -48,6 +48,7 @@ enum class Asks : std::uint8_t {
   kTouchValues,  ///< what is measured where they touch
   kGrip,         ///< how far a hand is closed
   kPoses,        ///< poses, joints and gazes
+  kPosesAndTouchValues,
 };
 
 /// What a touch or a grip measures of it: as the signal names the two entities, and with them
@@ -78,6 +79,9 @@ const Builtin* FindBuiltin(Op op);
 
 /// What a node asks a frame for, besides what its arguments do.
 Asks AskedBy(Op op);
+/// Whether that is what is measured of a touch; of poses. It may be both.
+bool AsksTouchValues(Op op);
+bool AsksPoses(Op op);
 /// Whether its value at a frame is made of a window of time around it: Node::number.
 bool HasWindow(Op op);
 

@@ -191,6 +191,8 @@ class Lowering {
   NodeId AddSignal(Node node);
   int AddReference(const Reference& reference);
   NodeId AnchorAtBegin(NodeId node);
+  int TouchOf(const Node& node);
+  NodeId DistanceAlong(std::array<int, 2> roles);
   int FindRole(std::string_view name) const;
   int FindParam(std::string_view name) const;
   std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class,

@@ -311,6 +311,27 @@ bool Lowering::LiesOnItself(const Node& node) {
   return compares && signature(0) == signature(1);
 }
 
+// The reference to the touch of the node's two roles.
+int Lowering::TouchOf(const Node& node) {
+  return AddReference(
+      {.rule = kTouchingRule, .roles = {node.roles[0], node.roles[1], kNone, kNone}});
+}
+
+// The piece that touches where the interval begins, and how far it has got along the plane in which
+// it touched there.
+NodeId Lowering::DistanceAlong(std::array<int, 2> roles) {
+  Node touch{.op = Op::kTouchIn, .roles = roles};
+  touch.slot = TouchOf(touch);
+  Node normal = touch;
+  normal.op = Op::kNormalIn;
+  Node on_second = touch;
+  on_second.number = normal.number = 1;
+  return Add({.op = Op::kDistanceAlong,
+              .args = {AnchorAtBegin(Add(touch)), AnchorAtBegin(Add(on_second)),
+                       AnchorAtBegin(Add(normal)), kNone},
+              .roles = roles});
+}
+
 // displacement, displacement_along, rise and drop compare this frame with the interval's begin.
 Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
   if (!anchors_.begin) {
@@ -332,17 +353,17 @@ Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
     if (i == 1 && now.roles[0] == *role) return TwiceTheSame(expr.args[i], expr.text);
     now.roles[i] = *role;
   }
+  if (is_along)
+    return {.node = DistanceAlong(now.roles), .type = Type::kNumber, .dimension = kMetres};
   if (!is_displacement) {
     now.args[0] = Add({.op = Op::kPosition, .roles = {now.roles[0], kNone}});
     now.roles[0] = kNone;
   }
   const NodeId here = Add(now);
   const NodeId there = AnchorAtBegin(here);
-  const Op op = is_along ? Op::kDistanceAlong : is_displacement ? Op::kDistance : Op::kSubtract;
   const bool falls = expr.text == "drop";
-  return {.node = Add({.op = op,
-                       .args = {falls ? there : here, falls ? here : there, kNone, kNone},
-                       .roles = {is_along ? now.roles[1] : kNone, kNone}}),
+  return {.node = Add({.op = is_displacement ? Op::kDistance : Op::kSubtract,
+                       .args = {falls ? there : here, falls ? here : there, kNone, kNone}}),
           .type = Type::kNumber,
           .dimension = kMetres};
 }
@@ -379,10 +400,7 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
                Quoted(builtin.name) + " needs two different positions, and both are the same",
                "name another one");
   }
-  if (builtin.asks == Asks::kTouching || builtin.asks == Asks::kTouchValues) {
-    node.slot = AddReference(
-        {.rule = kTouchingRule, .roles = {node.roles[0], node.roles[1], kNone, kNone}});
-  }
+  if (builtin.asks == Asks::kTouching || AsksTouchValues(builtin.op)) node.slot = TouchOf(node);
   result.node = AddSignal(node);
   return result;
 }

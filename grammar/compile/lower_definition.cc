@@ -188,6 +188,8 @@ class DefinitionLowering {
     const NodeId signal = lowering_.Signal(approach.signal, {.end = true}, dimension);
     if (signal == kNone) return;
     const double slack = lowering_.Constant(approach.slack, dimension, "'receding at most'");
+    const double over_s =
+        approach.over ? lowering_.Span(*approach.over, "'receding at most .. over'") : 0;
     NodeId motion;
     Dimension motion_dimension = Quotient(dimension, kSeconds);
     double speed = 0;
@@ -198,15 +200,37 @@ class DefinitionLowering {
       speed = lowering_.Constant(*approach.speed, motion_dimension, "'slower than'");
       idle_s = lowering_.Constant(*approach.idle, kSeconds, "'slower than .. at most'");
     }
+    int hand = kNone;
+    double still_m = 0, still_s = 0;
+    if (approach.still) {
+      hand = HandOf(approach, motion);
+      still_m = lowering_.Constant(*approach.still, kMetres, "'or within'");
+      still_s = lowering_.Span(*approach.still_over, "'or within .. over'");
+    }
     const double onset = approach.onset
                              ? lowering_.Constant(*approach.onset, motion_dimension, "'onset'")
                              : speed / kPausePerOnset;
     As<UntilSinceRule>().approach = Approach{.signal = signal,
                                              .slack = slack,
+                                             .over_s = over_s,
                                              .motion = motion,
                                              .speed = speed,
                                              .onset = onset,
-                                             .idle_s = idle_s};
+                                             .idle_s = idle_s,
+                                             .hand = hand,
+                                             .still_m = still_m,
+                                             .still_s = still_s};
+  }
+
+  // Of what is said to stay within a length: the hand whose speed is the motion.
+  int HandOf(const ast::Approach& approach, NodeId motion) {
+    if (motion != kNone && program_.nodes[motion].op == Op::kSurfaceSpeed)
+      return program_.nodes[motion].roles[0];
+    if (!approach.motion || motion != kNone)
+      lowering_.Complain(approach.still->place, "only a hand can be 'within' a length",
+                         "for example: with surface_speed(hand) slower than 1 cm/s or within 2.5 "
+                         "mm over 0.5 s at most 0.5 s");
+    return kNone;
   }
 
   void LowerCompose() {

@@ -23,6 +23,7 @@
 #include "grammar/base/candidate_log.h"
 #include "grammar/base/event.h"
 #include "grammar/engine/alarms.h"
+#include "grammar/engine/backward_walk.h"
 #include "grammar/engine/evaluate.h"
 #include "grammar/engine/history.h"
 #include "grammar/engine/idle_queue.h"
@@ -120,7 +121,7 @@ class Engine {
   bool MeetDeadline(RuleInstance& instance, Moment now);
   bool StepUntil(RuleInstance& instance, FrameNumber frame);
 
-  WalkBack BeginOfWalk(RuleInstance& instance, FrameNumber end) const;
+  WalkBack BeginOfWalk(RuleInstance& instance, FrameNumber end);
 
   // From a run to an event.
   [[nodiscard]] bool Open(RuleInstance& instance, FrameNumber frame);
@@ -168,6 +169,7 @@ class Engine {
   History history_;
   RuleInstances instances_;
   Evaluator evaluator_;
+  WalkMemory walk_memory_;
   IdVector<RuleId, RuleTicks> rule_ticks_;
   Thresholds thresholds_;
   bool recalls_touches_ = false;     // which thresholds they had crossed

@@ -3,7 +3,6 @@
 // docs/grammar-language.md.
 #include <algorithm>
 
-#include "grammar/engine/backward_walk.h"
 #include "grammar/engine/engine.h"
 
 namespace prehend::grammar {
@@ -222,7 +221,7 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
 }
 
 // Where the interval that ends here begins.
-WalkBack Engine::BeginOfWalk(RuleInstance& instance, FrameNumber end) const {
+WalkBack Engine::BeginOfWalk(RuleInstance& instance, FrameNumber end) {
   using Stop = WalkBack::Stop;
   const FrameNumber last_end = instance.As<UntilSinceState>().last_end;
   const FrameNumber back = history_.FirstNotBefore(history_.At(end).tick - TicksOf(instance).back);
@@ -231,9 +230,11 @@ WalkBack Engine::BeginOfWalk(RuleInstance& instance, FrameNumber end) const {
                           .at_first = first == last_end && first > 0 ? Stop::kPreviousEnd
                                       : first == 0                   ? Stop::kFirstFrame
                                                                      : Stop::kTooFarBack,
-                          .idle = TicksOf(instance).idle};
+                          .idle = TicksOf(instance).idle,
+                          .over = TicksOf(instance).over,
+                          .still = TicksOf(instance).still};
   return WalkBackFrom(end, RuleOf(instance).As<UntilSinceRule>(), instance, limits, evaluator_,
-                      history_);
+                      history_, walk_memory_);
 }
 
 }  // namespace prehend::grammar

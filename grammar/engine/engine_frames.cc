@@ -29,6 +29,7 @@ bool SamePose(const HandSample& a, const HandAtFrame& b) {
 bool Same(const Touch& a, bool swapped, const TouchSample& b) {
   return a.up_on_a == b.up[swapped ? 1 : 0] && a.up_on_b == b.up[swapped ? 0 : 1] &&
          a.normal_force_n == b.force_n && a.vertical_speed_m_per_s == b.vertical_speed_m_per_s &&
+         a.p_W_m == b.p_W_m && a.nhat_BA_W == (swapped ? -b.nhat_W : b.nhat_W) &&
          a.sensor_sets == b.sensor_sets;
 }
 
@@ -202,6 +203,8 @@ void Engine::Keep(TouchingState& touching, const Touch& touch, bool swapped) {
       swapped ? std::array{touch.up_on_b, touch.up_on_a} : std::array{touch.up_on_a, touch.up_on_b};
   sample.force_n = touch.normal_force_n;
   sample.vertical_speed_m_per_s = touch.vertical_speed_m_per_s;
+  sample.p_W_m = touch.p_W_m;
+  sample.nhat_W = swapped ? -touch.nhat_BA_W : touch.nhat_BA_W;
   sample.sensor_sets = touch.sensor_sets;
 }
 

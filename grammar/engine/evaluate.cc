@@ -9,7 +9,6 @@
 namespace prehend::grammar {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
@@ -28,6 +27,8 @@ bool IsPosition(const Program& program, NodeId node) {
     case Op::kPosition:
     case Op::kPositionOn:
     case Op::kAhead:
+    case Op::kTouchIn:
+    case Op::kNormalIn:
       return true;
     case Op::kAtEnd:
       return IsPosition(program, program.nodes[node].args[0]);
@@ -238,12 +239,8 @@ std::optional<double> Evaluator::Number(NodeId index, const View& view) const {
       if (!a || !b) return std::nullopt;
       return (*a - *b).norm();
     }
-    case Op::kDistanceAlong: {
-      const std::optional<Vector3d> a = Position(node.args[0], view);
-      const std::optional<Vector3d> b = Position(node.args[1], view);
-      if (!a || !b) return std::nullopt;
-      return (history_.Look(Entity(node, view, 0), view.frame).q_WB * (*a - *b)).head<2>().norm();
-    }
+    case Op::kDistanceAlong:
+      return DistanceAlong(node, view);
     case Op::kHeight: {
       const std::optional<Vector3d> position = Position(node.args[0], view);
       if (!position) return std::nullopt;
@@ -323,9 +320,9 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
     case Op::kVerticalSpeed:
       return history_.Look(a, frame).v_WB_m_per_s.z();
     case Op::kRelativeVerticalSpeed:
-      return RelativeVelocity(a, b, frame).z();
+      return RelativeVelocity(a, b, history_.Look(a, frame).p_WB_m, frame).z();
     case Op::kSpeedAlong:
-      return RelativeVelocity(a, b, frame).head<2>().norm();
+      return SpeedAlong(node, view);
     case Op::kTilt: {
       const double up = (history_.Look(a, frame).q_WB * Vector3d::UnitZ()).z();
       return std::acos(std::clamp(up, -1.0, 1.0));
@@ -389,93 +386,31 @@ double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
 double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
   depends_on_time_ = true;
   if (frame <= history_.first()) return 0;
-  const HandAtFrame* now = history_.Hand(hand, frame);
-  const HandAtFrame* before = history_.Hand(hand, frame - 1);
-  if (now == nullptr || before == nullptr) return 0;
-  double farthest = 0;
+  return Apart_m(hand, frame, frame - 1) / SecondsBetween(frame - 1, frame);
+}
+
+double Evaluator::Apart_m(int hand, FrameNumber frame, FrameNumber other) const {
+  const HandAtFrame* here = history_.Hand(hand, frame);
+  const HandAtFrame* there = history_.Hand(hand, other);
+  if (here == nullptr || there == nullptr) return 0;
+  double farthest_m = 0;
   for (std::size_t i = 0;
-       i < std::min(now->collision_spheres.size(), before->collision_spheres.size()); ++i) {
-    farthest = std::max(
-        farthest, (now->collision_spheres[i].p_W_m - before->collision_spheres[i].p_W_m).norm());
+       i < std::min(here->collision_spheres.size(), there->collision_spheres.size()); ++i) {
+    farthest_m = std::max(
+        farthest_m, (here->collision_spheres[i].p_W_m - there->collision_spheres[i].p_W_m).norm());
   }
-  return farthest / history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
+  return farthest_m;
 }
 
-// From the last frame that is half the window earlier to the first one that is half the window
-// later; at the episode's begin and end it is cut off. Nothing while the later frame is still to
-// come.
-std::optional<Evaluator::Window> Evaluator::WindowAround(FrameNumber frame, double seconds) const {
-  depends_on_time_ = true;
+// The most distant frames first: a hand that moves is farthest away there.
+bool Evaluator::StaysWithin(double still_m, Tick ticks, int hand, FrameNumber frame,
+                            FrameNumber last) const {
   const Tick now = history_.At(frame).tick;
-  const Tick half = history_.AtLeastTicks(seconds / 2);
-  const Window window{history_.LastNotAfter(now - half),
-                      std::min(history_.FirstNotBefore(now + half), history_.now())};
-  if (history_.At(window.late).tick < now + half && !history_.complete()) return std::nullopt;
-  return window;
-}
-
-double Evaluator::SecondsBetween(FrameNumber early, FrameNumber late) const {
-  return history_.Seconds(history_.At(late).tick - history_.At(early).tick);
-}
-
-std::optional<double> Evaluator::Rate(const Node& node, const View& view) const {
-  const std::optional<Window> window = WindowAround(view.frame, node.number);
-  if (!window) return std::nullopt;
-  if (window->early == window->late) return 0;
-  const std::optional<double> before =
-      Number(node.args[0], {.instance = view.instance, .frame = window->early, .end = view.end});
-  const std::optional<double> after =
-      Number(node.args[0], {.instance = view.instance, .frame = window->late, .end = view.end});
-  if (!before || !after) return std::nullopt;
-  return (*after - *before) / SecondsBetween(window->early, window->late);
-}
-
-// The way of a as seen from b between two frames, turned to where b is now, without its upright
-// part.
-Vector2d Evaluator::WayOn(const Node& node, const View& view, FrameNumber early,
-                          FrameNumber late) const {
-  const int a = Entity(node, view, 0);
-  const int b = Entity(node, view, 1);
-  const Vector3d way_W =
-      history_.Look(b, view.frame).q_WB * (PositionOn(a, b, late) - PositionOn(a, b, early));
-  return way_W.head<2>();
-}
-
-std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) const {
-  const std::optional<Window> window = WindowAround(view.frame, node.number);
-  if (!window) return std::nullopt;
-  if (window->early == window->late) return 0;
-  return WayOn(node, view, window->early, window->late).norm() /
-         SecondsBetween(window->early, window->late);
-}
-
-// The angle between the way in the first and the way in the second half of the window, per time
-// between their middles.
-std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) const {
-  const std::optional<Window> window = WindowAround(view.frame, node.number);
-  if (!window) return std::nullopt;
-  const Vector2d before = WayOn(node, view, window->early, view.frame);
-  const Vector2d after = WayOn(node, view, view.frame, window->late);
-  const std::optional<double> shortest_m = Number(node.args[0], view);
-  if (!shortest_m) return std::nullopt;
-  if (before.norm() < *shortest_m || after.norm() < *shortest_m) return 0;  // it has no direction
-  const double left_rad =
-      std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
-  return left_rad / (SecondsBetween(window->early, window->late) / 2);
-}
-
-Vector3d Evaluator::PositionOn(int a, int b, FrameNumber frame) const {
-  const EntitySample& on = history_.Look(b, frame);
-  return on.q_WB.conjugate() * (history_.Look(a, frame).p_WB_m - on.p_WB_m);
-}
-
-// Of a's origin, against the point of b that is there: turning counts, so a tray may turn under a
-// cup.
-Vector3d Evaluator::RelativeVelocity(int a, int b, FrameNumber frame) const {
-  const EntitySample& look_a = history_.Look(a, frame);
-  const EntitySample& look_b = history_.Look(b, frame);
-  const Vector3d arm = look_a.p_WB_m - look_b.p_WB_m;
-  return look_a.v_WB_m_per_s - (look_b.v_WB_m_per_s + look_b.w_WB_rad_per_s.cross(arm));
+  for (FrameNumber early = history_.FirstNotBefore(now - ticks); early < frame; ++early)
+    if (Apart_m(hand, frame, early) > still_m) return false;
+  for (FrameNumber late = std::min(history_.LastNotAfter(now + ticks), last); late > frame; --late)
+    if (Apart_m(hand, frame, late) > still_m) return false;
+  return true;
 }
 
 // Null where the two do not touch.
@@ -505,6 +440,9 @@ std::optional<Vector3d> Evaluator::Position(NodeId index, const View& view) cons
                       {.instance = view.instance, .frame = *view.end, .end = view.end});
     case Op::kPositionOn:
       return PositionOn(Entity(node, view, 0), Entity(node, view, 1), view.frame);
+    case Op::kTouchIn:
+    case Op::kNormalIn:
+      return OfTouch(node, view);
     case Op::kAhead: {
       const int entity = Entity(node, view, 0);
       const HandAtFrame* hand = history_.Hand(entity, view.frame);

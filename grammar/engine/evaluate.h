@@ -41,6 +41,13 @@ class Evaluator {
   Kleene Holds(int slot, const View& view) const;
   Kleene Begins(int slot, const View& view) const;
 
+  /// How far the hand's surface is at one frame from where it is at another: the farthest piece of
+  /// it.
+  double Apart_m(int hand, FrameNumber frame, FrameNumber other) const;
+  /// Whether no piece of it gets farther than `still_m` from where it is at `frame`, in frames at
+  /// most so many ticks before or after, up to `last`.
+  bool StaysWithin(double still_m, Tick ticks, int hand, FrameNumber frame, FrameNumber last) const;
+
   /// True if no interval can hold at both frames, wherever it will end: both would have to lie in
   /// one region anchored at the end, and they are too far apart for that. False if this cannot be
   /// told.
@@ -82,7 +89,16 @@ class Evaluator {
   std::optional<double> DriftAlong(const Node& node, const View& view) const;
   std::optional<double> TurnRate(const Node& node, const View& view) const;
   Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;
-  Eigen::Vector3d RelativeVelocity(int a, int b, FrameNumber frame) const;
+  Eigen::Vector3d RelativeVelocity(int a, int b, const Eigen::Vector3d& p_W_m,
+                                   FrameNumber frame) const;
+  struct TouchPlace {
+    Eigen::Vector3d p_W_m;
+    Eigen::Vector3d nhat_W;
+  };
+  TouchPlace TouchPlaceOf(const Node& node, const View& view) const;
+  double SpeedAlong(const Node& node, const View& view) const;
+  std::optional<double> DistanceAlong(const Node& node, const View& view) const;
+  Eigen::Vector3d OfTouch(const Node& node, const View& view) const;
   const RuleInstance* Touching(const Node& node, const View& view, bool& swapped) const;
   const TouchSample* Touch(const Node& node, const View& view, bool& swapped) const;
   int Entity(const Node& node, const View& view, int i) const {

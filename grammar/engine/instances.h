@@ -29,12 +29,15 @@ namespace prehend::grammar {
 /// Of each part of a composition only the last ones are kept.
 inline constexpr std::size_t kRememberedSpans = 64;
 
-/// What one frame says about two entities that touch; `up` in the order of the instance's roles.
+/// What one frame says about two entities that touch; `up` in the order of the instance's roles,
+/// the normal on the first of them.
 struct TouchSample {
   FrameNumber frame = 0;
   std::array<double, 2> up = {-1, -1};
   double force_n = 0;
   double vertical_speed_m_per_s = 0;
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d nhat_W = Eigen::Vector3d::Zero();
   std::uint32_t sensor_sets = 0;
 };
 

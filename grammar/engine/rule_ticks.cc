@@ -14,14 +14,21 @@ RuleTicks TicksOf(const Rule& rule, const History& history) {
   }
   if (const auto* looks_back = rule.If<UntilSinceRule>()) {
     ticks.back = history.AtMostTicks(looks_back->back_s);
-    if (looks_back->approach) ticks.idle = history.AtMostTicks(looks_back->approach->idle_s);
+    if (const auto& approach = looks_back->approach) {
+      ticks.idle = history.AtMostTicks(approach->idle_s);
+      ticks.over = history.AtMostTicks(approach->over_s / 2);
+      ticks.still = history.AtMostTicks(approach->still_s / 2);
+    }
   }
   return ticks;
 }
 
 double LooksBack_s(const Rule& rule) {
   double back_s = rule.looks_around_s;
-  if (const auto* looks_back = rule.If<UntilSinceRule>()) back_s += looks_back->back_s;
+  if (const auto* looks_back = rule.If<UntilSinceRule>()) {
+    back_s += looks_back->back_s;
+    if (looks_back->approach) back_s += looks_back->approach->looks_around_s();
+  }
   // A requirement or an attribute is asked for where the run ended, when its gap is too long.
   if (const auto* holds = rule.If<WhileRule>();
       holds != nullptr && (rule.requirement != kNone || !rule.attributes.empty()))

@@ -11,6 +11,8 @@ struct RuleTicks {
   Tick bridging = 0;
   Tick lasting = 0;
   Tick idle = 0;
+  Tick over = 0;   ///< half of Approach::over_s
+  Tick still = 0;  ///< half of Approach::still_s
   Tick back = 0;
   Tick within = -1;  ///< the deadline; negative: there is none
   Tick in_time = 0;  ///< what comes at most so late is still in time

@@ -16,15 +16,16 @@ std::string Joined(const std::vector<Expr>& args, const std::string& separator) 
 std::string DumpUntil(const Definition& d) {
   std::string text = "until " + Dump(d.first) + " since " + Dump(d.second);
   if (d.approach) {
-    text +=
-        " approaching " + Dump(d.approach->signal) + " receding at most " + Dump(d.approach->slack);
-    if (d.approach->speed) {
-      const std::string motion =
-          d.approach->motion ? "with " + Dump(*d.approach->motion) + " " : "";
-      text += ", " + motion + "slower than " + Dump(*d.approach->speed) + " at most " +
-              Dump(*d.approach->idle);
-      if (d.approach->onset) text += ", onset " + Dump(*d.approach->onset);
+    const Approach& a = *d.approach;
+    text += " approaching " + Dump(a.signal) + " receding at most " + Dump(a.slack);
+    if (a.over) text += " over " + Dump(*a.over);
+    if (a.speed) {
+      const std::string motion = a.motion ? "with " + Dump(*a.motion) + " " : "";
+      text += ", " + motion + "slower than " + Dump(*a.speed);
+      if (a.still) text += " or within " + Dump(*a.still) + " over " + Dump(*a.still_over);
+      text += " at most " + Dump(*a.idle);
     }
+    if (a.onset) text += ", onset " + Dump(*a.onset);
   }
   return text + " at most " + Dump(d.at_most_back) + " back";
 }

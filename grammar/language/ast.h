@@ -39,13 +39,16 @@ struct Role {
   Place place;
 };
 
-/// `approaching signal receding at most slack [, [with motion] slower than speed at most idle
-/// [, onset speed]]`
+/// `approaching signal receding at most slack [over over] [, [with motion] slower than speed
+/// [or within still over still_over] at most idle] [, onset speed]`
 struct Approach {
   Expr signal;
   Expr slack;
+  std::optional<Expr> over;
   std::optional<Expr> motion;
   std::optional<Expr> speed;
+  std::optional<Expr> still;
+  std::optional<Expr> still_over;
   std::optional<Expr> idle;
   std::optional<Expr> onset;
 };

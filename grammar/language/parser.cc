@@ -200,23 +200,34 @@ class Parser : public LawParser {
     Expect("receding");
     ExpectAtMost();
     approach.slack = ParseSum();
-    Accept(",");
-    if (Accept("with")) {
-      approach.motion = ParseSum();
-      if (!At("slower"))
-        Fail("expected 'slower', found " + Found(), "with surface_speed(hand) slower than 1 cm/s");
-    }
-    if (!Accept("slower")) return approach;
-    Expect("than");
-    approach.speed = ParseSum();
-    ExpectAtMost();
-    approach.idle = ParseSum();
+    if (Accept("over")) approach.over = ParseSum();
+    if (!At(",") || !At("onset", 1)) ParsePause(approach);
     if (At(",") && At("onset", 1)) {
       SkipOne();
       SkipOne();
       approach.onset = ParseSum();
     }
     return approach;
+  }
+
+  void ParsePause(ast::Approach& approach) {
+    Accept(",");
+    if (Accept("with")) {
+      approach.motion = ParseSum();
+      if (!At("slower"))
+        Fail("expected 'slower', found " + Found(), "with surface_speed(hand) slower than 1 cm/s");
+    }
+    if (!Accept("slower")) return;
+    Expect("than");
+    approach.speed = ParseSum();
+    if (Accept("or")) {
+      Expect("within", "or within 2.5 mm over 0.5 s");
+      approach.still = ParseSum();
+      Expect("over", "or within 2.5 mm over 0.5 s");
+      approach.still_over = ParseSum();
+    }
+    ExpectAtMost();
+    approach.idle = ParseSum();
   }
 
   void ParseCompose(Definition& definition) {

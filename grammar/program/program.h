@@ -58,7 +58,8 @@ enum class Op : std::uint8_t {
   kUp,
   kForceBetween,
   kTouchSpeed,
-  kDistanceAlong,  ///< horizontal, between the positions args[0] and args[1] as seen from roles[0]
+  kDistanceAlong,  ///< along roles[1], of the piece of roles[0] that was at args[0] in it and at
+                   ///< args[1] in roles[1], where args[2] is the normal
   kGap,
   kClosingSpeed,
   kSurfaceSpeed,
@@ -81,6 +82,8 @@ enum class Op : std::uint8_t {
   kPosition,
   kPositionOn,
   kAhead,
+  kTouchIn,   ///< where roles[0] touches roles[1], as seen from the first or second: `number`
+  kNormalIn,  ///< the contact normal there, likewise
   // Numbers or positions.
   kAtBegin,  ///< the value that anchor `slot` had where the interval begins
   kAtEnd,    ///< args[0] where the interval ends
@@ -101,7 +104,8 @@ struct Node {
   std::array<int, 2> roles = {kNone, kNone};  ///< roles of the rule
   int slot = kNone;                           ///< reference, anchor or class name
   int name = kNone;                           ///< kSensorSet: index into Program::sensor_sets
-  double number = 0;  ///< kNumber, kSensorSet, and the windows of kDriftAlong, kTurnRate, kRate
+  double number = 0;  ///< kNumber, kSensorSet, kTouchIn, kNormalIn, and the windows of kDriftAlong,
+                      ///< kTurnRate, kRate
   ByThreshold by_threshold = {};
 };
 
@@ -183,10 +187,16 @@ struct FromToRule {
 struct Approach {
   NodeId signal;
   double slack = 0;    ///< how far it may recede, in the signal's unit
+  double over_s = 0;   ///< its median over so long must not recede; 0: nor must single values
   NodeId motion;       ///< the speed of the movement; kNone: as fast as the signal falls
   double speed = 0;    ///< slower is a pause; in the unit of the motion
-  double onset = 0;    ///< likewise: from this speed on a movement begins
+  double onset = 0;    ///< likewise: from this speed on a movement begins; 0: at the turning point
   double idle_s = -1;  ///< a longer pause ends the way back; negative: pauses may last
+  int hand = kNone;    ///< role: staying within `still_m` is a pause, too
+  double still_m = 0;  ///< of each piece of the hand's surface, from where it is
+  double still_s = 0;  ///< within half of this before and after
+  /// How far before a frame it looks; after a frame it does not look beyond the interval's end.
+  double looks_around_s() const { return (over_s > still_s ? over_s : still_s) / 2; }
 };
 
 /// `until until since since`: looks back from where `until` becomes true.

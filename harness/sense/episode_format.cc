@@ -142,6 +142,8 @@ ValueFormat<LineEntry> LineFormat() {
           .Optional("up_on_b", &T::up_on_b, Number(-1, 1), "")
           .Optional("force_n", &T::force_n, Number(0, 1e9), "")
           .Optional("vertical_speed_m_per_s", &T::vertical_speed_m_per_s, Number(0, 1e9), "")
+          .Optional("at_m", &T::at_m, Position(), "")
+          .Optional("normal", &T::normal, Vector<3>(-1, 1), "")
           .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
           .format();
   using F = FrameEntry;

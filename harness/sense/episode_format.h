@@ -81,6 +81,7 @@ struct TouchEntry {
   std::optional<double> up_on_b;
   double force_n = 0;
   std::optional<double> vertical_speed_m_per_s;
+  std::optional<Eigen::Vector3d> at_m, normal;
   std::vector<Located<std::string>> sensor_sets;
 };
 

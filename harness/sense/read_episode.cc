@@ -259,11 +259,16 @@ class EpisodeReader {
                          .up_on_b = entry.up_on_b.value_or(-entry.up_on_a),
                          .normal_force_n = entry.force_n};
     touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(SpeedAtTheUpper(touch));
+    if (entry.at_m && entry.normal) {
+      touch.p_W_m = *entry.at_m;
+      touch.nhat_BA_W = entry.normal->normalized();
+    }
     for (const Located<std::string>& set : entry.sensor_sets)
       touch.sensor_sets |= SetBit(set, a, b, errors);
     if (a > b) {
       std::swap(touch.a, touch.b);
       std::swap(touch.up_on_a, touch.up_on_b);
+      touch.nhat_BA_W = -touch.nhat_BA_W;
     }
     const bool twice =
         std::any_of(now_.touches.begin(), now_.touches.end(),
@@ -274,7 +279,7 @@ class EpisodeReader {
     now_.touches.push_back(touch);
   }
 
-  /// The contact point is not recorded. The position of the upper entity is close to it.
+  /// Where no contact point is recorded, the position of the upper entity is close to it.
   double SpeedAtTheUpper(const grammar::Touch& touch) const {
     const grammar::EntitySample &a = now_.entities[static_cast<std::size_t>(touch.a)],
                                 &b = now_.entities[static_cast<std::size_t>(touch.b)];

@@ -73,7 +73,8 @@ std::pair<int, int> PairOf(const grammar::Touch& touch) { return {touch.a, touch
 
 bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
   return a.up_on_a == b.up_on_a && a.up_on_b == b.up_on_b && a.normal_force_n == b.normal_force_n &&
-         a.vertical_speed_m_per_s == b.vertical_speed_m_per_s && a.sensor_sets == b.sensor_sets;
+         a.vertical_speed_m_per_s == b.vertical_speed_m_per_s && a.p_W_m == b.p_W_m &&
+         a.nhat_BA_W == b.nhat_BA_W && a.sensor_sets == b.sensor_sets;
 }
 
 }  // namespace
@@ -205,9 +206,9 @@ void Sensing::ReadTouches(Points points, Touches& touches) {
   for (const physics::ContactPoint& contact : points) {
     const int a = EntityOf(contact.a), b = EntityOf(contact.b);
     if (a == b) continue;
-    const double up = contact.nhat_BA_W.z();
-    points_.push_back({std::minmax(a, b), a < b ? up : -up, contact.normal_impulse_n_s,
-                       contact.p_W_m, SensorSetOf(contact.a) | SensorSetOf(contact.b)});
+    points_.push_back({std::minmax(a, b), a < b ? contact.nhat_BA_W : -contact.nhat_BA_W,
+                       contact.normal_impulse_n_s, contact.p_W_m,
+                       SensorSetOf(contact.a) | SensorSetOf(contact.b)});
   }
   std::ranges::stable_sort(points_, {}, &PairPoint::pair);
 
@@ -222,28 +223,31 @@ void Sensing::ReadTouches(Points points, Touches& touches) {
     }
     for (std::size_t i = first; i < last; ++i) {
       if (points_[i].impulse_n_s < bearing_share_ * load) continue;
-      touch.up_on_a = std::max(touch.up_on_a, points_[i].up_on_a);
-      touch.up_on_b = std::max(touch.up_on_b, -points_[i].up_on_a);
+      touch.up_on_a = std::max(touch.up_on_a, points_[i].nhat_W.z());
+      touch.up_on_b = std::max(touch.up_on_b, -points_[i].nhat_W.z());
     }
     touch.normal_force_n = load * static_cast<double>(rate_hz_);
-    touch.vertical_speed_m_per_s = VerticalSpeed(std::span(points_).subspan(first, last - first));
+    LookAtBearing(std::span(points_).subspan(first, last - first), touch);
     touches.push_back(touch);
     first = last;
   }
 }
 
-double Sensing::VerticalSpeed(std::span<const PairPoint> points) const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+void Sensing::LookAtBearing(std::span<const PairPoint> points, grammar::Touch& touch) const {
+  Eigen::Vector3d centre_W_m = Eigen::Vector3d::Zero(), push_W = Eigen::Vector3d::Zero();
   double load = 0;
   for (const PairPoint& point : points) {
-    const double bears = (point.impulse_n_s + kJustPushed_n_s) * std::abs(point.up_on_a);
-    sum += bears * point.p_W_m;
+    const double bears = (point.impulse_n_s + kJustPushed_n_s) * std::abs(point.nhat_W.z());
+    centre_W_m += bears * point.p_W_m;
+    push_W += bears * point.nhat_W;
     load += bears;
   }
-  if (load <= 0) return 0;
-  const auto& [a, b] = points.front().pair;
-  return grammar::VerticalSpeedBetween(entities_[static_cast<std::size_t>(a)],
-                                       entities_[static_cast<std::size_t>(b)], sum / load);
+  if (load <= 0) return;
+  touch.p_W_m = centre_W_m / load;
+  touch.nhat_BA_W = push_W.normalized();  // zero where equal loads push both ways
+  touch.vertical_speed_m_per_s =
+      grammar::VerticalSpeedBetween(entities_[static_cast<std::size_t>(touch.a)],
+                                    entities_[static_cast<std::size_t>(touch.b)], touch.p_W_m);
 }
 
 int Sensing::EntityOf(const physics::ContactSide& side) const {

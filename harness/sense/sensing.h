@@ -67,15 +67,15 @@ class Sensing {
   /// One contact point seen from the pair (a, b) with a < b.
   struct PairPoint {
     std::pair<int, int> pair;
-    double up_on_a = 0;
+    Eigen::Vector3d nhat_W = Eigen::Vector3d::Zero();  ///< on a
     double impulse_n_s = 0;
     Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
     std::uint32_t sensor_sets = 0;
   };
 
-  /// The relative vertical speed of the two bodies' material at the centre of their vertical load;
-  /// 0 if they touch side by side.
-  double VerticalSpeed(std::span<const PairPoint> points) const;
+  /// The centre of the vertical load of two bodies, the normal there, and how fast their material
+  /// moves up or down against each other. Nothing of it is known if they touch side by side.
+  void LookAtBearing(std::span<const PairPoint> points, grammar::Touch& touch) const;
 
   std::int64_t rate_hz_ = 480;
   std::int64_t sensing_hz_ = 240;

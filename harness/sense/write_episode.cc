@@ -116,6 +116,10 @@ Json TouchJson(const grammar::Touch& touch, const grammar::EntityTable& entity_t
                {"up_on_b", touch.up_on_b},
                {"force_n", touch.normal_force_n},
                {"vertical_speed_m_per_s", touch.vertical_speed_m_per_s}};
+  if (!touch.nhat_BA_W.isZero()) {
+    json["at_m"] = ToJson(touch.p_W_m);
+    json["normal"] = ToJson(touch.nhat_BA_W);
+  }
   for (const int one : {touch.a, touch.b}) {
     const std::vector<std::string>& sets = entity_table.entities[one].sensor_sets;
     for (std::size_t i = 0; i < sets.size(); ++i) {

@@ -43,6 +43,8 @@ class Differ {
       const bool is_new = old == before_.end() || old->second.up_on_a != touch.up_on_a ||
                           old->second.normal_force_n != touch.normal_force_n ||
                           old->second.vertical_speed_m_per_s != touch.vertical_speed_m_per_s ||
+                          old->second.p_W_m != touch.p_W_m ||
+                          old->second.nhat_BA_W != touch.nhat_BA_W ||
                           old->second.sensor_sets != touch.sensor_sets;
       if (is_new || repeat_) touches_.push_back(touch);
     }

@@ -152,6 +152,56 @@ TEST(Signals, DriftIsTheWayOverAWindow) {
   EXPECT_EQ(Drifting(jump, 10, 10), (Intervals{}));
 }
 
+// A cup that touches the tray below its origin, with this normal on it, or `beside_m` from there,
+// while it moves and turns like that for a second.
+std::vector<Event> MovedAlong(const Eigen::Vector3d& nhat_W, const Eigen::Vector3d& way_m,
+                              const Eigen::Vector3d& turn_rad = Eigen::Vector3d::Zero(),
+                              const Eigen::Vector3d& beside_m = Eigen::Vector3d::Zero()) {
+  const auto program = testing::CompileText(
+      "grammar t\n"
+      "event fast(cup: Cup, tray: Movable) while speed_along(cup, tray) > 9 mm/s\n"
+      "event drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 9 mm/s\n"
+      "event far(cup: Cup, tray: Movable) from touching(cup, tray) begins\n"
+      "  to displacement_along(cup, tray) > 9 mm begins during touching(cup, tray) or drop");
+  Scene scene;
+  scene.looks[Scene::kTray].q_WB = Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ());
+  scene.touches = {{.a = Scene::kCup,
+                    .b = Scene::kTray,
+                    .up_on_a = nhat_W.z(),
+                    .up_on_b = -nhat_W.z(),
+                    .nhat_BA_W = nhat_W}};
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  const Eigen::Vector3d middle_m(0, 0, 0.1);  // of the cup, above the touch
+  EntitySample& cup = scene.looks[Scene::kCup];
+  for (Tick t = 0; t <= 1000; t += 10) {
+    const double part = static_cast<double>(t) / 1000;
+    const Eigen::AngleAxisd turned(turn_rad.norm() * part, turn_rad.normalized());
+    scene.touches[0].p_W_m = way_m * part + beside_m;
+    cup.q_WB = turned;
+    cup.p_WB_m = way_m * part + turned * middle_m;
+    cup.w_WB_rad_per_s = turn_rad;
+    cup.v_WB_m_per_s = way_m + cup.w_WB_rad_per_s.cross(turned * middle_m);
+    monitor.Advance(scene.At(t), events);
+  }
+  monitor.Finish(1010, events);
+  return events;
+}
+
+TEST(Signals, AlongIsInThePlaneInWhichTheTwoTouch) {
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), slope(-0.8, 0, 0.6), still(0, 0, 0);
+  const Eigen::Vector3d tip = Eigen::Vector3d::UnitY(), twist = Eigen::Vector3d::UnitZ();
+  EXPECT_EQ(MovedAlong(up, {0.01, 0, 0}).size(), 3u);
+  EXPECT_EQ(MovedAlong(up, {0.007, 0, 0}).size(), 0u);
+  EXPECT_EQ(MovedAlong(up, {0, 0, 0.1}).size(), 0u) << "a rise leads nowhere";
+  EXPECT_EQ(MovedAlong(slope, {0.006, 0, 0.008}).size(), 3u) << "on a slope, along the slope";
+  EXPECT_EQ(MovedAlong(slope, {-0.1, 0, 0.075}).size(), 0u) << "away from the slope";
+  EXPECT_EQ(MovedAlong(up, still, tip).size(), 0u) << "tipped over an edge that stays";
+  EXPECT_EQ(MovedAlong(up, {0.01, 0, 0}, tip).size(), 3u) << "over one that moves";
+  EXPECT_EQ(MovedAlong(up, still, twist, {0.05, 0, 0}).size(), 0u) << "turned on the spot";
+  EXPECT_EQ(MovedAlong(still, still, tip).size(), 3u) << "at its middle, if nobody knows";
+}
+
 TEST(Signals, DriftIsKnownWhenItsWindowIsComplete) {
   const auto program = testing::CompileText(
       "grammar t\nevent drifting(cup: Cup, tray: Movable) while drift_along(cup, tray, 100 ms) > 1 "

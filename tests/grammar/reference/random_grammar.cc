@@ -29,7 +29,7 @@ unsigned RolesOf(const Term& term) {
 }
 
 std::string Head(int rule, unsigned roles, unsigned named, bool classes) {
-  std::string text = "rule" + std::to_string(rule) + (classes ? "(x: X" : "(x");
+  std::string text = "rule" + std::to_string(rule) + (classes ? "(x: Hand" : "(x");
   for (int i = 0; i < kRoles; ++i) {
     if (!(roles >> i & 1)) continue;
     text += std::string(", ") + (named >> i & 1 ? kNames[i] : "any") +
@@ -83,6 +83,8 @@ class Maker {
       rule.speed_m_per_s = rule.idles ? 370 : 0;
       rule.idle = static_cast<Tick>(Below(5));
       rule.onset_m_per_s = rule.idle % 2 == 1 ? 120 : rule.speed_m_per_s / 10;
+      if (rule.approaches && Sometimes()) rule.over = 1 + static_cast<Tick>(Below(9));
+      if (rule.idles && Sometimes()) rule.still_over = 1 + static_cast<Tick>(Below(9));
       return;
     }
     rule.second = Moment("begin");
@@ -278,11 +280,17 @@ class Writer {
 
   static std::string ApproachText(const RandomRule& rule) {
     if (!rule.approaches) return {};
-    const std::string text =
+    std::string text =
         " approaching height(x) receding at most " + std::to_string(rule.slack_m) + ".5 m";
-    if (!rule.idles) return text;
-    return text + ", slower than 370 m/s at most " + std::to_string(rule.idle) + " ms" +
-           (rule.onset_m_per_s == 120 ? ", onset 120 m/s" : "");
+    if (rule.over > 0) text += " over " + std::to_string(rule.over) + " ms";
+    if (rule.idles) {
+      const std::string still = std::to_string(rule.still_over) + " ms";
+      text += rule.still_over > 0
+                  ? ", with surface_speed(x) slower than 370 m/s or within 1.5 m over " + still
+                  : ", slower than 370 m/s";
+      text += " at most " + std::to_string(rule.idle) + " ms";
+    }
+    return text + (rule.onset_m_per_s == 120 ? ", onset 120 m/s" : "");
   }
 
   std::string ComposeText(const RandomRule& rule) const {
@@ -392,6 +400,9 @@ class Meaning {
       case Form::kUntil: {
         reference::Approach approach{.signal = {e_.height_m.begin(), e_.height_m.end()},
                                      .slack = rule.slack_m + 0.5,
+                                     .over = static_cast<double>(rule.over),
+                                     .still = rule.still_over > 0 ? 1.5 : -1,
+                                     .still_over = static_cast<double>(rule.still_over),
                                      .speed = rule.speed_m_per_s,
                                      .onset = rule.onset_m_per_s,
                                      .idle = rule.idles ? rule.idle : -1};
@@ -487,6 +498,7 @@ EntityTable RandomEntityTable() {
       {"x", "X"}, {"p1", "P"}, {"p2", "P"}, {"q", "Q"}, {"r", "R"}};
   for (const auto& [name, class_name] : all)
     entity_table.entities.push_back({.name = name, .classes = {class_name, "Thing", "Entity"}});
+  entity_table.entities.front().classes = {"Hand", "Entity"};
   return entity_table;
 }
 
@@ -503,13 +515,17 @@ void EpisodeFeed::Step(bool as_changes, std::vector<Event>& events) {
   }
   looks_[0].p_WB_m.z() = episode_.height_m[frame];
   const EntityChange change{.entity = 0, .look = looks_[0]};
+  const CollisionSphere surface{.p_W_m = looks_[0].p_WB_m};
+  const HandSample hand{.entity = 0, .collision_spheres = {&surface, 1}};
   if (!as_changes)
-    return monitor_.Advance(
-        {.tick = episode_.ticks[frame], .entities = looks_, .hands = {}, .touches = touches_},
-        events);
+    return monitor_.Advance({.tick = episode_.ticks[frame],
+                             .entities = looks_,
+                             .hands = {&hand, 1},
+                             .touches = touches_},
+                            events);
   monitor_.AdvanceBy({.tick = episode_.ticks[frame],
                       .entities = {&change, 1},
-                      .hands = {},
+                      .hands = {&hand, 1},
                       .touches = touches_,
                       .contact_ends = contact_ends},
                      events);

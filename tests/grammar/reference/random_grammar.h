@@ -73,6 +73,8 @@ struct RandomRule {
   Term first, second, during;
   bool has_second = false, has_during = false, or_drop = false, approaches = false, idles = false;
   int slack_m = 0;
+  Tick over = 0;        ///< of the median that must not recede; 0: no median
+  Tick still_over = 0;  ///< for how long x stays within 1.5 m; 0: that does not count
   double speed_m_per_s = 0;
   double onset_m_per_s = 0;  ///< 120 where the text says it, a tenth of the speed where it does not
   Tick bridging = 0, lasting = 0, within = -1, back = 0, idle = 0;

@@ -110,32 +110,80 @@ std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, cons
 
 namespace {
 
+// Frames at most half of `over` ticks before or after frame `i`, up to `last`.
+std::vector<int> Around(int i, double over, const Ticks& ticks, int last) {
+  std::vector<int> around;
+  for (int k = 0; k <= last; ++k)
+    if (std::abs(static_cast<double>(ticks[k] - ticks[i])) <= over / 2) around.push_back(k);
+  return around;
+}
+
+// What must not recede: the signal, or its median.
+std::vector<double> Levels(const Approach& a, const Ticks& ticks, int end) {
+  std::vector<double> levels;
+  for (int i = 0; i <= end; ++i) {
+    std::vector<double> values;
+    for (const int k : Around(i, a.over, ticks, end)) values.push_back(a.signal[k]);
+    std::sort(values.begin(), values.end());
+    levels.push_back(a.over > 0 ? values[values.size() / 2] : a.signal[i]);
+  }
+  return levels;
+}
+
 // Where an approach that reaches `end` begins; `earliest` is as far back as anything else allows.
 int ApproachBegin(const Approach& a, const Ticks& ticks, int earliest, int end) {
+  const std::vector<double> levels = Levels(a, ticks, end);
+  const bool by_hand = a.still >= 0;
   const auto speed = [&](int i) {
-    return (a.signal[i] - a.signal[i + 1]) / (static_cast<double>(ticks[i + 1] - ticks[i]) / 1000);
+    const double way = a.signal[i] - a.signal[i + 1];
+    return (by_hand ? std::abs(way) : way) / (static_cast<double>(ticks[i + 1] - ticks[i]) / 1000);
   };
+  const auto stays = [&](int i) {
+    const std::vector<int> around = Around(i, a.still_over, ticks, end);
+    return by_hand && std::all_of(around.begin(), around.end(), [&](int k) {
+             return std::abs(a.signal[k] - a.signal[i]) <= a.still;
+           });
+  };
+  const auto fast = [&](int i) { return speed(i) >= a.speed && !stays(i + 1); };
   const auto largest_after = [&](int i) {
-    return *std::max_element(a.signal.begin() + i + 1, a.signal.begin() + end + 1);
+    return *std::max_element(levels.begin() + i + 1, levels.begin() + end + 1);
   };
   // How far back it goes before it recedes or pauses.
   int limit = end;
-  bool receded = false;
+  bool receded = false, paused = false;
   for (Tick moved = ticks[end]; limit > earliest; --limit) {
     const int i = limit - 1;
-    receded = a.signal[i] < largest_after(i) - a.slack;
+    receded = levels[i] < largest_after(i) - a.slack;
     if (receded) break;
-    if (speed(i) >= a.speed) moved = ticks[i];
-    if (a.idle >= 0 && moved - ticks[i] > a.idle) break;
+    if (fast(i)) moved = ticks[i];
+    paused = a.idle >= 0 && moved - ticks[i] > a.idle;
+    if (paused) break;
+  }
+  int turn = end;  // the farthest, the last of equals
+  for (int i = end; i >= limit; --i)
+    if (levels[i] > levels[turn]) turn = i;
+  if (receded && a.over > 0) {
+    int begin = end;
+    while (begin > turn && levels[begin] < levels[turn] - a.slack) --begin;
+    while (begin > limit && speed(begin - 1) > a.onset) --begin;
+    return begin;
   }
   if (a.idle < 0 && !receded) return limit;
   // Movement, or the slow start of one; after receding only where the signal is larger than ever
   // after.
   int begin = end;
   for (int i = end - 1; i >= limit; --i) {
-    const bool moves = speed(i) >= a.speed || (begin == i + 1 && speed(i) > a.onset);
-    if (moves && (!receded || a.signal[i] > largest_after(i))) begin = i;
+    const bool moves = fast(i) || (!by_hand && begin == i + 1 && speed(i) > a.onset);
+    if (moves && (!receded || levels[i] > largest_after(i))) begin = i;
   }
+  // A hand that can pause while it trembles: where it leaves its place, and while it speeds up.
+  const int pause = paused ? limit - 1 : receded ? turn : limit;
+  if (!by_hand || begin == pause) return begin;
+  const int noticed = begin;
+  while (begin + 1 < end && std::abs(a.signal[begin + 1] - a.signal[noticed]) <= a.still) ++begin;
+  while (begin > pause && speed(begin - 1) > a.onset &&
+         (begin == end || speed(begin - 1) <= 1.1 * speed(begin)))
+    --begin;
   return begin;
 }
 

@@ -69,11 +69,14 @@ Runs RunsOf(const std::vector<Timed>& timed);
 std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during,
                                const Ticks& ticks, double within);
 
-/// `approaching signal receding at most slack [, slower than speed at most idle]`, one tick being 1
-/// ms.
+/// `approaching signal receding at most slack [over over] [, slower than speed [or within still
+/// over still_over] at most idle]`, one tick being 1 ms. The signal is the place of the hand.
 struct Approach {
   std::vector<double> signal;
   double slack = 0;
+  double over = 0;
+  double still = -1;  ///< negative: nothing is said of it
+  double still_over = 0;
   double speed = 0;
   double onset = 0;
   Tick idle = -1;

@@ -44,9 +44,6 @@ const std::set<std::string> kWrongInOracle = {
 const std::set<std::string> kWrongInGrammar = {
     "idle_with_tremor_and_jitter: reaching(hand, box)",
     "reach_beside_the_corner_of_a_palm: reaching(hand, bead)",
-    "slide_at_12_mm_per_s_down_a_slope: sliding(hand, box)",
-    "slide_not_when_tipped_over_an_edge: sliding(hand, chest)",
-    "slide_of_23_mm_down_a_slope: sliding(hand, box)",
 };
 
 std::string Joined(const std::set<std::string>& lines) {

@@ -58,7 +58,7 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
       std::string(kHeader) +
       R"({"tick": 3, "samples": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.6, 0.8, 0, 0], "asleep": true, "joint_fraction": 0.25}}, )"
       R"("hands": {"hand": {"trigger": 0.4, "style": "pinch", "ahead": [0, 0, -1], "collision_spheres_m": [[1, 2, 3, 0.01]]}}, )"
-      R"("touches": [{"a": "table", "b": "cup", "up_on_b": 1, "force_n": 2}]})"
+      R"("touches": [{"a": "cup", "b": "table", "up_on_a": 1, "force_n": 2, "at_m": [0.1, 0.2, 0.25], "normal": [0, 0, 2]}]})"
       "\n{\"end_tick\": 9}\n");
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   Episode episode = *read;
@@ -78,6 +78,8 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
   EXPECT_EQ(b.hands[0].trigger, 0.4);
   EXPECT_EQ(b.collision_spheres[0][0].radius_m, 0.01);
   EXPECT_EQ(b.touches[0].up_on_b, 1);
+  EXPECT_EQ(b.touches[0].p_W_m, Eigen::Vector3d(0.1, 0.2, 0.25));
+  EXPECT_EQ(b.touches[0].nhat_BA_W, Eigen::Vector3d(0, 0, -1)) << "on the first of the two";
   EXPECT_EQ(b.touches[0].normal_force_n, 2);
 }
 

@@ -107,6 +107,21 @@ TEST(Sensing, AStrayPointWithoutLoadDoesNotHold) {
   EXPECT_NEAR(to_the_last_point.Sense(snapshot).touches[0].up_on_b, 1, 1e-12);
 }
 
+TEST(Sensing, ATouchIsWhereItBearsLoad) {
+  const physics::Scene scene = TwoBodiesAndAHand();
+  Sensing sensing(scene, {.sensing_hz = 240});
+  physics::Snapshot snapshot = StillSnapshot(2);
+  snapshot.contacts = {Point(kTable, kBox, -1, 0.03), Point(kTable, kBox, -1, 0.01)};
+  snapshot.contacts[0].p_W_m = {0.1, 0, 0};
+  snapshot.contacts[1].p_W_m = {0.5, 0, 0};
+  const grammar::Touch touch = sensing.Sense(snapshot).touches[0];
+  EXPECT_TRUE(touch.p_W_m.isApprox(Eigen::Vector3d(0.2, 0, 0), 1e-9));
+  EXPECT_TRUE(touch.nhat_BA_W.isApprox(-Eigen::Vector3d::UnitZ(), 1e-9)) << "on the table";
+  snapshot.tick = 4;
+  snapshot.contacts = {Point(kTable, kBox, 0, 0.03)};
+  EXPECT_TRUE(sensing.Sense(snapshot).touches[0].nhat_BA_W.isZero()) << "side by side";
+}
+
 TEST(Sensing, LinksBecomeSensorSetsOfTheHandEntity) {
   const physics::Scene scene = TwoBodiesAndAHand();
   Sensing sensing(scene, {.sensing_hz = 240});
