@@ -10,8 +10,6 @@
 
 namespace prehend::harness {
 
-namespace {
-
 /// Adds the time since the last lap to one of the counters; costs nothing when not measuring.
 class LapClock {
  public:
@@ -31,8 +29,6 @@ class LapClock {
   bool on_;
   std::chrono::steady_clock::time_point last_;
 };
-
-}  // namespace
 
 struct ScenarioRun::State {
   physics::Simulation simulation;
