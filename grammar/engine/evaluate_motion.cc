@@ -85,7 +85,8 @@ double Evaluator::SpeedAlong(const Node& node, const View& view) const {
 }
 
 // The plane in which the first touches the second, and the place in it below the first's origin:
-// what turns on the spot stays there. If the plane is not known, it is the level through the origin.
+// what turns on the spot stays there. If the plane is not known, it is the level through the
+// origin.
 Evaluator::TouchPlace Evaluator::TouchPlaceOf(const Node& node, const View& view) const {
   const Vector3d& origin_W_m = history_.Look(Entity(node, view, 0), view.frame).p_WB_m;
   bool swapped = false;

@@ -21,7 +21,7 @@ const RuleDescription& Find(const GrammarDescription& description, const std::st
 
 TEST(Describe, BoundsDecisionsAndHistory) {
   const GrammarDescription d = Describe(*testing::CompileLibrary("pick_and_place"));
-  EXPECT_EQ(d.history_s, 10);
+  EXPECT_EQ(d.history_s, 10.25);  // reach_back, and half of reach_window
   EXPECT_DOUBLE_EQ(Find(d, "grasping").latency.seconds, 0.06);
   EXPECT_TRUE(Find(d, "grasping").latency.until_end_of.empty());
   EXPECT_EQ(Find(d, "reaching").latency.until_end_of, std::set<std::string>{"contact"});

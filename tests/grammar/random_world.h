@@ -96,7 +96,7 @@ class RandomWorld {
             .up_on_b = -up,
             .normal_force_n = force_n,
             .vertical_speed_m_per_s = force_n > 1 ? 0.1 : 0,
-            .p_W_m = {Choose({0, 0.1}), 0, 0},
+            .p_W_m = {up > 0 ? 0.1 : 0, 0, 0},
             .nhat_BA_W = {0, 0, force_n > 1 ? 1.0 : 0},
             .sensor_sets = a < kHands ? static_cast<std::uint32_t>(random_() % 8) : 0};
   }

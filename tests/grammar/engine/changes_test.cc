@@ -199,8 +199,10 @@ TEST(Changes, WhatIsDecidedAtOnceNeedsNoPast) {
 // A hand feels its way along many things; what it has left behind is forgotten, and found again.
 TEST(Changes, WhatRestsForLongIsFreed) {
   constexpr int kThings = 500;
-  const auto program =
-      testing::CompileLibrary("pick_and_place", {{"reach_back", "1 s"}, {"put_back", "1 s"}});
+  const auto program = testing::CompileLibrary("pick_and_place", {{"reach_back", "1 s"},
+                                                                  {"reach_window", "2 ms"},
+                                                                  {"put_back", "1 s"},
+                                                                  {"put_window", "2 ms"}});
   EntityTable entity_table{.ticks_per_second = 1000,
                            .entities = {{.name = "hand", .classes = {"Hand", "Entity"}}}};
   for (int i = 0; i < kThings; ++i) {

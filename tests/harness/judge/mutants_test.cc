@@ -61,7 +61,10 @@ const std::vector<Mutant> kMutants = {
      "  confirmed by grasping(hand, object) within contact(hand, object)\n", "", ""},
     {"trembling is sliding", "pick_and_place",
      "\n    and drift_along(object, support, slide_window) >= slide_speed", "", ""},
-    {"a jerk is a slide", "pick_and_place", "\n  lasting slide_jerk", "", ""},
+    {"a jerk is a slide", "pick_and_place", "\n  lasting slide_jerk", "",
+     "what moves for less than 50 ms in a scenario slides on within 150 ms, or gets less than 2 cm "
+     "far; the closed form slide_not_a_jerk kills it "
+     "(tests/harness/closed_form/closed_forms_test.cc)"},
     {"short slides are none", "pick_and_place", "slide_distance = 2 cm", "slide_distance = 6 cm",
      ""},
     {"there and back is no slide", "pick_and_place", "requires got_far(hand, object, support)",

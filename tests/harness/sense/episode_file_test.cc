@@ -58,7 +58,7 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
       std::string(kHeader) +
       R"({"tick": 3, "samples": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.6, 0.8, 0, 0], "asleep": true, "joint_fraction": 0.25}}, )"
       R"("hands": {"hand": {"trigger": 0.4, "style": "pinch", "ahead": [0, 0, -1], "collision_spheres_m": [[1, 2, 3, 0.01]]}}, )"
-      R"("touches": [{"a": "cup", "b": "table", "up_on_a": 1, "force_n": 2, "at_m": [0.1, 0.2, 0.25], "normal": [0, 0, 2]}]})"
+      R"("touches": [{"a": "cup", "b": "table", "up_on_a": 1, "force_n": 2, "at_m": [0.1, 0.2, 0.25], "normal": [0, 0, 1]}]})"
       "\n{\"end_tick\": 9}\n");
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   Episode episode = *read;
