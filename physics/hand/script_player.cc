@@ -25,7 +25,7 @@ constexpr double kMaxSpring_m = 0.01;
 /// Share of a put-down's time after which the motion ends; the object settles in the rest.
 constexpr double kLoweringShare = 0.85;
 /// A thing stands when others than hands bear this share of its weight, on average over kBearing_s.
-constexpr double kBorneShare = 0.5;
+constexpr double kBorneShare = 0.1;
 constexpr double kBearing_s = 0.02;
 /// If it does not stand when the stage should be over, the target goes on down at this speed,
 constexpr double kSeek_m_per_s = 0.02;
@@ -69,11 +69,13 @@ int HandsOn(int body, const Snapshot& now) {
 /// Upward force on a body from others than hands, newtons.
 double BorneBy(int body, const Snapshot& now, double rate_hz) {
   double impulse_n_s = 0;
-  for (const ContactPoint& contact : now.contacts) {
-    if (contact.a.hand >= 0 || contact.b.hand >= 0) continue;
-    const double up = contact.nhat_BA_W.z() * contact.normal_impulse_n_s;
-    if (contact.a.body == body) impulse_n_s += std::max(up, 0.0);
-    if (contact.b.body == body) impulse_n_s += std::max(-up, 0.0);
+  for (const auto& points : now.AllContacts()) {
+    for (const ContactPoint& contact : points) {
+      if (contact.a.hand >= 0 || contact.b.hand >= 0) continue;
+      const double up = contact.nhat_BA_W.z() * contact.normal_impulse_n_s;
+      if (contact.a.body == body) impulse_n_s += std::max(up, 0.0);
+      if (contact.b.body == body) impulse_n_s += std::max(-up, 0.0);
+    }
   }
   return impulse_n_s * rate_hz;
 }
@@ -338,7 +340,7 @@ void ScriptPlayer::StartStage(const Snapshot& now) {
   }
 }
 
-bool ScriptPlayer::Placing::Stands() const { return borne_n >= kBorneShare * weight_n; }
+bool ScriptPlayer::Placing::Stands() const { return touches && borne_n >= kBorneShare * weight_n; }
 
 /// Looks whether what is put down stands, and lowers it if not.
 void ScriptPlayer::Watch(const Snapshot& now) {
@@ -350,6 +352,7 @@ void ScriptPlayer::Watch(const Snapshot& now) {
     // A blow counts as no more than standing.
     const double borne_n = std::min(BorneBy(placing.body, now, rate_hz), placing.weight_n);
     placing.borne_n += share * (borne_n - placing.borne_n);
+    placing.touches = borne_n > 0;
     if (tick_in_stage_ >= planned_ticks_ && !placing.Stands())
       placing.lowered_m += kSeek_m_per_s / rate_hz;
   }

@@ -55,6 +55,7 @@ class ScriptPlayer {
     int support = 0;       ///< likewise
     double weight_n = 0;   ///< that its support must bear: its weight, per hand that holds it
     double borne_n = 0;    ///< what others than hands bear of it: a mean over some 20 ms
+    bool touches = false;  ///< it is borne at this moment
     double lowered_m = 0;  ///< how far the target has gone beyond its motion
     bool Stands() const;
   };
