@@ -25,7 +25,7 @@ constexpr double kMaxSpring_m = 0.01;
 /// Share of a put-down's time after which the motion ends; the object settles in the rest.
 constexpr double kLoweringShare = 0.85;
 /// A thing stands when others than hands bear this share of its weight, on average over kBearing_s.
-constexpr double kBorneShare = 0.1;
+constexpr double kBorneShare = 0.5;
 constexpr double kBearing_s = 0.02;
 /// If it does not stand when the stage should be over, the target goes on down at this speed,
 constexpr double kSeek_m_per_s = 0.02;
