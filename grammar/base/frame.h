@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/solid.h"
+
 namespace prehend::grammar {
 
 /// One physics step. Seconds exist only in text.
@@ -37,6 +39,8 @@ struct EntityInfo {
   /// Centre and half sizes of the oriented bounding box, in the entity's own frame, metres.
   Eigen::Vector3d p_BC_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+  /// Its true shape, for distances from its surface. Empty: it fills its bounding box.
+  Solid solid;
   bool round = false;  ///< it is the ball in that box: a region may be one
   /// Hands only: names of the sensor sets; bit i of Touch::sensor_sets is set i. At most 32.
   std::vector<std::string> sensor_sets;

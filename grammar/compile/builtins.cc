@@ -29,7 +29,7 @@ std::span<const Builtin> Builtins() {
        "their surfaces touch",
        S::kTouching, kAnyNumber},
       {"in_sphere",               Op::kInSphere,              T::kTruth,    kPlain,            {A::kPosition, A::kPosition, A::kLength},
-       "(what, centre, radius): a position, or any part of an entity's box, is in the sphere",
+       "(what, centre, radius): a position, or any point of an entity, is in the sphere",
        S::kPoses, kAnyNumber},
       {"in_cylinder",             Op::kInCylinder,            T::kTruth,    kPlain,            {A::kPosition, A::kPosition, A::kLength, A::kLength},
        "(position, centre, radius, height): in the upright cylinder, at most height above or "
@@ -65,7 +65,7 @@ std::span<const Builtin> Builtins() {
        "how fast, up or down, their surfaces move against each other where they touch",
        S::kTouchValues, kNotNegative, Measured{V::kVerticalSpeed, V::kVerticalSpeed}},
       {"gap",                     Op::kGap,                   T::kNumber,   kMetres,           {A::kHand, A::kThing},
-       "smallest distance from the hand to the object's box",
+       "smallest distance from the hand's surface to the object's",
        S::kPoses, kNotNegative},
       {"closing_speed",           Op::kClosingSpeed,          T::kNumber,   kMetresPerSecond,  {A::kHand, A::kThing},
        "how fast the gap shrinks, from one frame to the next",
@@ -152,7 +152,7 @@ const Builtin* FindBuiltin(Op op) {
 }
 
 Asks AskedBy(Op op) {
-  if (op == Op::kBoxInSphere || op == Op::kDistanceAlong) return Asks::kPoses;
+  if (op == Op::kSolidInSphere || op == Op::kDistanceAlong) return Asks::kPoses;
   const Builtin* const signal = FindBuiltin(op);
   return signal == nullptr ? Asks::kNothing : signal->asks;
 }

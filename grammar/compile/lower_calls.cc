@@ -302,7 +302,7 @@ Lowering::Typed Lowering::TwiceTheSame(const Expr& role, std::string_view callee
 bool Lowering::LiesOnItself(const Node& node) {
   const Program& program = symbols_.program;
   const auto signature = [&](int arg) { return Signature(program, rule(), node.args[arg]); };
-  if (node.op == Op::kBoxInSphere) {
+  if (node.op == Op::kSolidInSphere) {
     const Node& centre = program.nodes[node.args[0]];
     return centre.op == Op::kPosition && centre.roles[0] == node.roles[0];
   }
@@ -417,7 +417,7 @@ bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Builtin& bu
     case Argument::kPosition: {
       if (node.op == Op::kInSphere && next_node == 0 && arg.kind == Expr::Kind::kName &&
           FindRole(arg.text) != kNone) {
-        node.op = Op::kBoxInSphere;
+        node.op = Op::kSolidInSphere;
         node.roles[next_role++] = FindRole(arg.text);
         role_used_[node.roles[0]] = true;
         return true;

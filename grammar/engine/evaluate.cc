@@ -14,9 +14,11 @@ using Eigen::Vector3d;
 
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
 
-// From a point in the world to the oriented bounding box of an entity; 0 inside.
-double DistanceToBox(const Vector3d& p_W, const EntityInfo& member, const EntitySample& look) {
+// From a point in the world to the surface of an entity, at most `most_m`; 0 inside.
+double DistanceToSurface(const Vector3d& p_W, const EntityInfo& member, const EntitySample& look,
+                         double most_m = kBoundless) {
   const Vector3d p_B = look.q_WB.conjugate() * (p_W - look.p_WB_m);
+  if (!member.solid.IsEmpty()) return member.solid.DistanceTo(p_B, most_m);
   const Vector3d outside = ((p_B - member.p_BC_m).cwiseAbs() - member.half_size_m).cwiseMax(0);
   return outside.norm();
 }
@@ -64,7 +66,7 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
     case Op::kEnds:
       return Edge(node, view);
     case Op::kInSphere:
-    case Op::kBoxInSphere:
+    case Op::kSolidInSphere:
     case Op::kInCylinder: {
       const std::optional<Reach> reach = ReachOf(node, view);
       return reach ? Known(reach->IsInside()) : Kleene::kUnknown;
@@ -177,14 +179,14 @@ Kleene Evaluator::Compare(const Node& node, const View& view) const {
 }
 
 std::optional<Reach> Evaluator::ReachOf(const Node& node, const View& view) const {
-  const bool box = node.op == Op::kBoxInSphere;
-  const std::optional<Vector3d> centre = Position(node.args[box ? 0 : 1], view);
-  const std::optional<double> radius = Number(node.args[box ? 1 : 2], view);
+  const bool solid = node.op == Op::kSolidInSphere;
+  const std::optional<Vector3d> centre = Position(node.args[solid ? 0 : 1], view);
+  const std::optional<double> radius = Number(node.args[solid ? 1 : 2], view);
   if (!centre || !radius) return std::nullopt;
-  if (box) {
+  if (solid) {
     const int entity = Entity(node, view, 0);
-    const double distance =
-        DistanceToBox(*centre, entity_table_.entities[entity], history_.Look(entity, view.frame));
+    const double distance = DistanceToSurface(*centre, entity_table_.entities[entity],
+                                              history_.Look(entity, view.frame));
     return Reach{.distance_m = distance, .radius_m = *radius};
   }
   const std::optional<Vector3d> point = Position(node.args[0], view);
@@ -368,11 +370,11 @@ double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
   const HandAtFrame* sample = history_.Hand(hand, frame);
   if (sample == nullptr) return 0;
   const EntitySample& look = history_.Look(object, frame);
-  double gap = std::numeric_limits<double>::infinity();
-  for (const CollisionSphere& collision_sphere : sample->collision_spheres) {
-    gap =
-        std::min(gap, DistanceToBox(collision_sphere.p_W_m, entity_table_.entities[object], look) -
-                          collision_sphere.radius_m);
+  double gap = kBoundless;
+  for (const CollisionSphere& sphere : sample->collision_spheres) {
+    const double distance = DistanceToSurface(sphere.p_W_m, entity_table_.entities[object], look,
+                                              gap + sphere.radius_m);
+    gap = std::min(gap, distance - sphere.radius_m);
   }
   return std::max(gap, 0.0);
 }

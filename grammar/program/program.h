@@ -38,7 +38,7 @@ enum class Op : std::uint8_t {
   kBegins,  ///< args[0] becomes true at this frame; of a reference: one of its intervals begins
   kEnds,    ///< likewise
   kInSphere,
-  kBoxInSphere,
+  kSolidInSphere,
   kInCylinder,
   kInside,
   kPartOf,

@@ -14,7 +14,7 @@ inline bool IsComparison(grammar::Op op) {
 }
 
 inline bool IsRegion(grammar::Op op) {
-  return op == grammar::Op::kInSphere || op == grammar::Op::kBoxInSphere ||
+  return op == grammar::Op::kInSphere || op == grammar::Op::kSolidInSphere ||
          op == grammar::Op::kInCylinder;
 }
 

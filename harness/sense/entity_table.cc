@@ -30,6 +30,38 @@ std::vector<std::string> StyleNames(const physics::Scene& scene) {
   return names;
 }
 
+namespace {
+
+struct ShapeSeen {
+  grammar::Shape operator()(const physics::Box& box) const { return grammar::Box{box.size_m / 2}; }
+  grammar::Shape operator()(const physics::Sphere& sphere) const {
+    return grammar::Ball{sphere.radius_m};
+  }
+  grammar::Shape operator()(const physics::Cylinder& cylinder) const {
+    return grammar::Cylinder{cylinder.radius_m, cylinder.length_m / 2};
+  }
+  grammar::Shape operator()(const physics::Capsule& capsule) const {
+    return grammar::Capsule{capsule.radius_m, capsule.length_m / 2};
+  }
+  grammar::Shape operator()(const physics::Hull& hull) const {
+    return grammar::Hull{hull.corners_m};
+  }
+};
+
+/// Empty if it fills its bounding box.
+grammar::Solid SolidOf(const physics::Body& body) {
+  const bool is_box = body.shapes.size() == 1 &&
+                      std::holds_alternative<physics::Box>(body.shapes.front().shape) &&
+                      body.shapes.front().X_BS.q.isApprox(Eigen::Quaterniond::Identity());
+  if (is_box) return {};
+  std::vector<grammar::SolidPart> parts;
+  for (const physics::PlacedShape& part : body.shapes)
+    parts.push_back({std::visit(ShapeSeen{}, part.shape), part.X_BS.p_m, part.X_BS.q});
+  return grammar::Solid(std::move(parts));
+}
+
+}  // namespace
+
 grammar::EntityTable MakeEntityTable(const Scenario& scenario) {
   grammar::EntityTable entity_table;
   entity_table.ticks_per_second = scenario.scene.world.rate_hz;
@@ -42,6 +74,7 @@ grammar::EntityTable MakeEntityTable(const Scenario& scenario) {
     member.part_of = scenario.body_part_of[i];
     member.p_BC_m = box.p_BC_m;
     member.half_size_m = box.half_size_m;
+    member.solid = SolidOf(body);
     member.round = body.abstract == physics::Abstract::kRegion &&
                    std::holds_alternative<physics::Sphere>(body.shapes.front().shape);
     member.mass_kg = body.fixed ? 0 : body.mass_kg;

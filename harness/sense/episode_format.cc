@@ -12,6 +12,9 @@ constexpr std::size_t kMaxMembers = 10'000;
 constexpr std::size_t kMaxCollisionSpheres = 1000;
 constexpr std::size_t kMaxSets = 32;
 constexpr std::size_t kMaxClasses = 100;
+constexpr std::size_t kMaxParts = 256;
+constexpr std::size_t kMinHullPoints = 4;
+constexpr std::size_t kMaxHullPoints = 64;
 
 ValueFormat<std::string> Name() {
   return Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'");
@@ -20,7 +23,54 @@ ValueFormat<std::string> ClassName() {
   return Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'");
 }
 ValueFormat<Eigen::Vector3d> Position() { return Vector<3>(-kMaxPosition_m, kMaxPosition_m); }
+ValueFormat<double> Length() { return Number(0, kMaxPosition_m); }
 ValueFormat<Eigen::Vector3d> Velocity() { return Vector<3>(-kMaxVelocity, kMaxVelocity); }
+
+/// A value that is kept halved: an edge length as half of it.
+template <class T>
+ValueFormat<T> Halved(const ValueFormat<T>& whole) {
+  return ValueFormat<T>(whole.schema(),
+                        [whole](const YamlNode& node, DiagnosticList& errors, T& half) {
+                          T read{};
+                          if (!whole.Read(node, errors, read)) return false;
+                          half = read / 2;
+                          return true;
+                        });
+}
+
+template <class Round>
+ValueFormat<Round> RoundFormat(const std::string& noun) {
+  return StructFormat<Round>(noun)
+      .Required("radius_m", &Round::radius_m, Length(), "")
+      .Required("length_m", &Round::half_length_m, Halved(Length()), "")
+      .format();
+}
+
+ValueFormat<PartEntry> PartFormat() {
+  using grammar::Ball, grammar::Box, grammar::Hull;
+  const ValueFormat<Box> box =
+      StructFormat<Box>("a box")
+          .Required("size_m", &Box::half_size_m, Halved(Vector<3>(0, kMaxPosition_m)), "")
+          .format();
+  const ValueFormat<Ball> sphere =
+      StructFormat<Ball>("a sphere").Required("radius_m", &Ball::radius_m, Length(), "").format();
+  const ValueFormat<Hull> hull =
+      StructFormat<Hull>("a hull")
+          .Required("points_m", &Hull::points_m, ListOf(Position(), kMinHullPoints, kMaxHullPoints),
+                    "")
+          .format();
+  using P = PartEntry;
+  return StructFormat<P>("a part")
+      .Optional("box", &P::box, box, "")
+      .Optional("sphere", &P::sphere, sphere, "")
+      .Optional("cylinder", &P::cylinder, RoundFormat<grammar::Cylinder>("a cylinder"), "")
+      .Optional("capsule", &P::capsule, RoundFormat<grammar::Capsule>("a capsule"), "")
+      .Optional("hull", &P::hull, hull, "")
+      .Optional("at_m", &P::at_m, Position(), "")
+      .Optional("quat_wxyz", &P::quat_wxyz, UnitQuaternion(), "")
+      .ExactlyOneOf({"box", "sphere", "cylinder", "capsule", "hull"})
+      .format();
+}
 
 }  // namespace
 
@@ -42,6 +92,7 @@ ValueFormat<HeaderEntry> HeaderFormat() {
           .Optional("hand", &M::hand, Flag(), "")
           .Optional("centre_m", &M::centre_m, Position(), "")
           .Required("size_m", &M::size_m, Vector<3>(0, kMaxPosition_m), "")
+          .Optional("parts", &M::parts, ListOf(PartFormat(), 1, kMaxParts), "")
           .Optional("mass_kg", &M::mass_kg, Number(0, 1e6), "")
           .Optional("strength_n", &M::strength_n, Number(0, 1e6), "")
           .Optional("part_of", &M::part_of, Name(), "")

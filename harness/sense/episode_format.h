@@ -16,6 +16,17 @@
 
 namespace prehend::harness::episode {
 
+/// A convex piece of an entity, in the first line.
+struct PartEntry {
+  std::optional<grammar::Box> box;
+  std::optional<grammar::Ball> sphere;
+  std::optional<grammar::Cylinder> cylinder;
+  std::optional<grammar::Capsule> capsule;
+  std::optional<grammar::Hull> hull;
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+  Eigen::Vector4d quat_wxyz = {1, 0, 0, 0};
+};
+
 /// One entity, in the first line.
 struct MemberEntry {
   std::string class_name = "Object";
@@ -30,6 +41,7 @@ struct MemberEntry {
   std::vector<std::string> kinds;  ///< the base classes of its class
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  std::vector<PartEntry> parts;
   double mass_kg = 0, strength_n = 0;
   std::optional<Located<std::string>> part_of;
   std::vector<std::string> sensor_sets = {"fingers", "thumb", "palm"};

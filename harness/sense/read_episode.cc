@@ -25,6 +25,7 @@ using episode::HandEntry;
 using episode::HeaderEntry;
 using episode::LineEntry;
 using episode::MemberEntry;
+using episode::PartEntry;
 using episode::SampleEntry;
 using episode::TouchEntry;
 
@@ -92,6 +93,7 @@ class EpisodeReader {
       member.name = entry.name;
       member.p_BC_m = m.centre_m;
       member.half_size_m = m.size_m / 2;
+      member.solid = SolidOf(m.parts);
       member.round = m.round;
       member.mass_kg = m.mass_kg;
       member.strength_n = m.strength_n;
@@ -107,6 +109,22 @@ class EpisodeReader {
     now_.entities.resize(names_.size());
     for (const int hand : hands_) now_.hands.push_back({.entity = hand, .collision_spheres = {}});
     now_.collision_spheres.resize(hands_.size());
+  }
+
+  static grammar::Solid SolidOf(const std::vector<PartEntry>& entries) {
+    std::vector<grammar::SolidPart> parts;
+    for (const PartEntry& entry : entries) {
+      grammar::SolidPart& part = parts.emplace_back();
+      if (entry.box) part.shape = *entry.box;
+      if (entry.sphere) part.shape = *entry.sphere;
+      if (entry.cylinder) part.shape = *entry.cylinder;
+      if (entry.capsule) part.shape = *entry.capsule;
+      if (entry.hull) part.shape = *entry.hull;
+      part.p_BS_m = entry.at_m;
+      const Eigen::Vector4d& q = entry.quat_wxyz;
+      part.q_BS = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+    }
+    return grammar::Solid(std::move(parts));
   }
 
   /// Classes of an entity that is not a hand.

@@ -31,8 +31,44 @@ void AddClasses(const std::vector<std::string>& classes, Json& json) {
   if (given + 1 != classes.end() && *(given + 1) == "Abstract") json["abstract"] = *given;
 }
 
+/// A shape as [its key, what it says].
+struct ShapeJson {
+  std::pair<const char*, Json> operator()(const grammar::Box& box) const {
+    return {"box", {{"size_m", ToJson(2 * box.half_size_m)}}};
+  }
+  std::pair<const char*, Json> operator()(const grammar::Ball& ball) const {
+    return {"sphere", {{"radius_m", ball.radius_m}}};
+  }
+  std::pair<const char*, Json> operator()(const grammar::Cylinder& cylinder) const {
+    return {"cylinder", Round(cylinder.radius_m, cylinder.half_length_m)};
+  }
+  std::pair<const char*, Json> operator()(const grammar::Capsule& capsule) const {
+    return {"capsule", Round(capsule.radius_m, capsule.half_length_m)};
+  }
+  std::pair<const char*, Json> operator()(const grammar::Hull& hull) const {
+    Json points = Json::array();
+    for (const Eigen::Vector3d& point : hull.points_m) points.push_back(ToJson(point));
+    return {"hull", {{"points_m", std::move(points)}}};
+  }
+
+ private:
+  static Json Round(double radius_m, double half_length_m) {
+    return {{"radius_m", radius_m}, {"length_m", 2 * half_length_m}};
+  }
+};
+
+Json PartJson(const grammar::SolidPart& part) {
+  auto [key, shape] = std::visit(ShapeJson{}, part.shape);
+  Json json = {{key, std::move(shape)}};
+  if (!part.p_BS_m.isZero(0)) json["at_m"] = ToJson(part.p_BS_m);
+  if (part.q_BS.vec() != Eigen::Vector3d::Zero()) json["quat_wxyz"] = ToJson(part.q_BS);
+  return json;
+}
+
 Json MemberJson(const grammar::EntityInfo& member, const grammar::EntityTable& entity_table) {
   Json json = {{"centre_m", ToJson(member.p_BC_m)}, {"size_m", ToJson(2 * member.half_size_m)}};
+  for (const grammar::SolidPart& part : member.solid.parts())
+    json["parts"].push_back(PartJson(part));
   if (member.part_of != grammar::kNoEntity)
     json["part_of"] = entity_table.entities[member.part_of].name;
   if (member.mass_kg > 0) json["mass_kg"] = member.mass_kg;

@@ -183,7 +183,7 @@ TEST(Signals, TestsHoldAsDocumented) {
       {"part_of(tray, cup)", false},
       {"in_sphere(position(cup), tray, 0.45 m)", true},
       {"in_sphere(position(cup), tray, 0.44 m)", false},
-      {"in_sphere(cup, tray, 0.40 m)", true},  // its box reaches nearer than its origin
+      {"in_sphere(cup, tray, 0.40 m)", true},  // it reaches nearer than its origin
       {"in_cylinder(cup, tray, 0.41 m, 0.21 m)", true},
       {"in_cylinder(cup, tray, 0.39 m, 0.21 m)", false},
       {"in_cylinder(cup, tray, 0.41 m, 0.19 m)", false},
@@ -191,6 +191,39 @@ TEST(Signals, TestsHoldAsDocumented) {
   };
   for (const auto& [condition, holds] : cases)
     EXPECT_EQ(HoldsInScene(condition), holds) << condition;
+}
+
+TEST(Signals, DistancesFromSurfacesAreThoseOfTheTrueShape) {
+  // A foot of 40 cm with a column of 4 cm on it, lying on its side: up is to +y. The hand is 18 cm
+  // beside the column and 10 cm above the foot, in the bounding box of the two.
+  Scene scene;
+  EntityInfo& column = scene.entity_table.entities[Scene::kCup];
+  column.half_size_m = {0.2, 0.2, 0.2};
+  column.p_BC_m = {0, 0, 0.2};
+  scene.looks[Scene::kCup].p_WB_m = {1, 0, 0};
+  scene.looks[Scene::kCup].q_WB =
+      Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitX());
+  scene.collision_sphere = {.p_W_m = {1.2, 0.12, 0}, .radius_m = 0.01};
+  scene.looks[Scene::kHand].p_WB_m = {1.2, 0.12, 0};
+  const auto holds = [&](const std::string& condition) {
+    const auto program = testing::CompileText(
+        "grammar t\nevent e(hand: Hand, cup: Cup) while distance(hand, cup) < 1 m and " +
+        condition);
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    monitor.Advance(scene.At(0), events);
+    monitor.Finish(10, events);
+    return !events.empty();
+  };
+  EXPECT_TRUE(holds("gap(hand, cup) <= 0 m")) << "without parts it is its bounding box";
+  EXPECT_TRUE(holds("in_sphere(cup, position(hand), 1 mm)"));
+  column.solid =
+      Solid({{Box{{0.2, 0.2, 0.01}}, {0, 0, 0.01}}, {Box{{0.02, 0.02, 0.2}}, {0, 0, 0.2}}});
+  EXPECT_TRUE(holds("gap(hand, cup) > 89.99 mm and gap(hand, cup) < 90.01 mm"));
+  EXPECT_TRUE(holds("in_sphere(cup, position(hand), 100.01 mm)"));
+  EXPECT_FALSE(holds("in_sphere(cup, position(hand), 99.99 mm)"));
+  column.solid = Solid({{Capsule{0.02, 0.18}, {0, 0, 0.2}}});
+  EXPECT_TRUE(holds("gap(hand, cup) > 169.99 mm and gap(hand, cup) < 170.01 mm"));
 }
 
 TEST(Signals, APartOfAPartIsAPartOfTheWhole) {

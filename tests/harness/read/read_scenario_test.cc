@@ -200,5 +200,27 @@ TEST(MakeEntityTable, BodiesFirstThenHands) {
   EXPECT_EQ(entity_table.styles, (std::vector<std::string>{"wrap", "pinch"}));
 }
 
+TEST(MakeEntityTable, HasTrueShapes) {
+  const grammar::EntityTable entity_table = MakeEntityTable(Read(
+      ProbeWith("actors:\n",
+                "  can: {fixed: true, cylinder: {radius_m: 0.03, length_m: 0.1}, at_m: [0, 0, 3]}\n"
+                "  wedge: {fixed: true, hull: {points_m: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, "
+                "1]]}, at_m: [0, 0, 5]}\n"
+                "  pair: {fixed: true, at_m: [3, 0, 3], parts: [{box: {size_m: [0.1, 0.1, 0.1]}, "
+                "at_m: [0, 0, 0], rpy_deg: [0, 0, 45]},\n"
+                "    {capsule: {radius_m: 0.01, length_m: 0.1}, at_m: [0.5, 0, 0]}, {sphere: "
+                "{radius_m: 0.1}, at_m: [0, 1, 0]}]}\n"
+                "actors:\n")));
+  const auto solid = [&](std::size_t i) -> const grammar::Solid& {
+    return entity_table.entities[i].solid;
+  };
+  EXPECT_TRUE(solid(1).IsEmpty()) << "the box of the probe is its bounding box";
+  EXPECT_NEAR(solid(2).DistanceTo({0.06, 0.08, 0.05}), 0.07, 1e-9);
+  EXPECT_NEAR(solid(3).DistanceTo({1, 1, 1}), 2 / std::sqrt(3.0), 1e-9);
+  EXPECT_NEAR(solid(4).DistanceTo({0.15, 0, 0}), 0.15 - 0.05 * std::sqrt(2.0), 1e-9);
+  EXPECT_NEAR(solid(4).DistanceTo({0.5, 0, 0.1}), 0.04, 1e-9);
+  EXPECT_NEAR(solid(4).DistanceTo({0, 1.2, 0}), 0.1, 1e-9);
+}
+
 }  // namespace
 }  // namespace prehend::harness

@@ -81,6 +81,66 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
   EXPECT_EQ(b.touches[0].normal_force_n, 2);
 }
 
+/// A recording of a cup with these parts, and one frame.
+std::string CupOf(const std::string& parts) {
+  return R"({"recording": 1, "episode": "cup", "ticks_per_second": 100, "entities": {"cup": {"size_m": [1, 1, 1], "parts": )" +
+         parts + "}}}\n{\"tick\": 0}\n";
+}
+
+TEST(EpisodeFile, PartsAreReadAsTheyWereWritten) {
+  const auto read = ReadText(CupOf(
+      R"([{"box": {"size_m": [0.2, 0.2, 0.02]}, "at_m": [0, 0, 0.01]}, )"
+      R"({"cylinder": {"radius_m": 0.1, "length_m": 0.4}, "at_m": [1, 0, 0], "quat_wxyz": [0, 0.6, 0, 0.8]}, )"
+      R"({"capsule": {"radius_m": 0.01, "length_m": 0.3}}, {"sphere": {"radius_m": 0.05}, "at_m": [0, 2, 0]}, )"
+      R"({"hull": {"points_m": [[0, 0, 3], [0.1, 0, 3], [0, 0.1, 3], [0, 0, 3.1]]}}])"));
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  std::ostringstream written;
+  EpisodeWriter writer(written, read->header);
+  Episode episode = *read;
+  writer.Write(episode.frames[0].View());
+  const auto again = ReadText(written.str());
+  ASSERT_TRUE(again) << Brief(ErrorsOf(again)) << written.str();
+  for (const auto& one : {read, again}) {
+    const grammar::Solid& solid = one->header.entity_table.entities[0].solid;
+    ASSERT_EQ(solid.parts().size(), 5u);
+    EXPECT_NEAR(solid.DistanceTo({0.1, 0.1, 0.05}), 0.03, 1e-9) << "the box";
+    EXPECT_NEAR(solid.DistanceTo({1 - 0.96 * 0.3, 0, -0.28 * 0.3}), 0.1, 1e-9) << "the cylinder";
+    EXPECT_NEAR(solid.DistanceTo({0, 0, 0.2}), 0.04, 1e-9) << "the capsule";
+    EXPECT_NEAR(solid.DistanceTo({0, 2.25, 0}), 0.2, 1e-9) << "the sphere";
+    EXPECT_NEAR(solid.DistanceTo({0, 0, 3.3}), 0.2, 1e-9) << "the hull";
+  }
+}
+
+TEST(EpisodeFile, WithoutPartsAnEntityIsItsBoundingBox) {
+  const auto read = ReadText(std::string(kHeader) + "{\"tick\": 0}\n");
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  EXPECT_TRUE(read->header.entity_table.entities[1].solid.IsEmpty());
+}
+
+TEST(EpisodeFile, BadPartsHaveTheirPlace) {
+  const auto complaint = [](const std::string& parts) {
+    const std::string all = Brief(ErrorsOf(ReadText(CupOf(parts))));
+    return all.substr(std::min(all.find(".jsonl:"), all.size() - 7) + 7);
+  };
+  EXPECT_EQ(complaint("[]"), "1:112: parts: expected at least 1, found 0\n");
+  EXPECT_EQ(complaint(R"([{"sphere": {"radius_m": -1}}])"),
+            "1:137: radius_m: expected a number from 0 to 10000, found '-1'\n");
+  EXPECT_EQ(complaint("[{}]"),
+            "1:113: a part needs one of the keys box, sphere, cylinder, capsule, hull\n");
+  EXPECT_EQ(complaint(R"([{"sphere": {"radius_m": 1}, "box": {"size_m": [1, 1, 1]}}])"),
+            "1:141: a part cannot have both 'sphere' and 'box'\n");
+  EXPECT_EQ(complaint(R"([{"cylinder": {"radius_m": 1}}])"),
+            "1:114: a cylinder needs the key 'length_m'\n");
+  EXPECT_EQ(complaint(R"([{"hull": {"points_m": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}}])"),
+            "1:135: points_m: expected at least 4, found 3\n");
+  EXPECT_EQ(
+      complaint(R"([{"sphere": {"radius_m": 1}, "quat_wxyz": [1, 1, 0, 0]}])"),
+      "1:154: quat_wxyz: expected a unit quaternion [w, x, y, z], found one of length 1.414\n");
+  std::string many = R"({"sphere": {"radius_m": 1}})";
+  for (int i = 0; i < 256; ++i) many += R"(, {"sphere": {"radius_m": 1}})";
+  EXPECT_EQ(complaint("[" + many + "]"), "1:112: parts: expected at most 256, found 257\n");
+}
+
 TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
   EXPECT_EQ(
       Complaint(""),
