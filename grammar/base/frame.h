@@ -31,8 +31,8 @@ inline constexpr int kNoEntity = -1;
 struct EntityInfo {
   std::string name;
   /// Most specific first, e.g. {"MilkCarton", "Movable", "Thing", "Entity"} or {"Hand", "Entity"}.
-  /// The built-in roots are Entity; Hand and Thing (everything that is not a hand); Movable, Fixed
-  /// and Jointed (Things; what hangs on a joint, as a drawer does, is only Jointed); Abstract (no
+  /// The built-in roots are Entity; Hand; Thing, and of these Movable, Fixed, Jointed (on a slider
+  /// or a hinge, as a drawer is) and Attached (glued to a Thing, or on a ball joint); Abstract (no
   /// matter: a Region, say) and Grains, which are no Things.
   std::vector<std::string> classes;
   int part_of = kNoEntity;

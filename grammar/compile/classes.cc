@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The six classes and the few facts about them.
+// The seven classes and the few facts about them.
 #include "grammar/compile/classes.h"
 
 #include <algorithm>
@@ -8,14 +8,14 @@ namespace prehend::grammar {
 namespace {
 
 bool SaysHowItMoves(std::string_view name) {
-  return name == "Movable" || name == "Fixed" || name == "Jointed";
+  return name == "Movable" || name == "Fixed" || name == "Jointed" || name == "Attached";
 }
 
 }  // namespace
 
 const std::vector<std::string>& BuiltinClasses() {
-  static const std::vector<std::string> kClasses = {"Entity",  "Hand",  "Thing",
-                                                    "Movable", "Fixed", "Jointed"};
+  static const std::vector<std::string> kClasses = {"Entity", "Hand",    "Thing",   "Movable",
+                                                    "Fixed",  "Jointed", "Attached"};
   return kClasses;
 }
 

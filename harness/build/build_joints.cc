@@ -39,6 +39,14 @@ class Relation {
     return false;
   }
 
+  /// The same, where mistakes are reported elsewhere: they change nothing.
+  void AddQuietly(std::size_t i, const std::string& name) {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    if (found == names_.end()) return;
+    target_[i] = static_cast<int>(found - names_.begin());
+    if (LeadsBackTo(i)) target_[i] = grammar::kNoEntity;
+  }
+
   int target(std::size_t i) const { return target_[i]; }
   std::vector<int> targets() const { return target_; }
 
@@ -122,7 +130,12 @@ std::vector<physics::Joint> BuildJoints(const ScenarioYaml& entry, DiagnosticLis
 std::vector<int> PartsOf(const ScenarioYaml& entry, DiagnosticList& errors) {
   Relation part_of(entry, "is part of itself", errors);
   for (std::size_t i = 0; i < entry.entities.size(); ++i) {
-    if (const auto& whole = entry.entities[i].value.part_of) part_of.Add(i, "part_of", *whole);
+    const EntityYaml& entity = entry.entities[i].value;
+    if (entity.part_of) part_of.Add(i, "part_of", *entity.part_of);
+  }
+  for (std::size_t i = 0; i < entry.entities.size(); ++i) {
+    const EntityYaml& entity = entry.entities[i].value;
+    if (!entity.part_of && entity.fixed_to) part_of.AddQuietly(i, entity.fixed_to->value);
   }
   return part_of.targets();
 }

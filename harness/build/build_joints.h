@@ -13,8 +13,9 @@ namespace prehend::harness {
 /// to themselves, or that are fixed to something that cannot move.
 std::vector<physics::Joint> BuildJoints(const ScenarioYaml& entry, DiagnosticList& errors);
 
-/// For every entity the index of the one that it is part of, or grammar::kNoEntity. Reports unknown
-/// names and entities that are, directly or not, parts of themselves.
+/// For every entity the index of the one that it is part of, or grammar::kNoEntity: what is glued
+/// to another entity is a part of it unless it says otherwise. Reports unknown names and entities
+/// that are, directly or not, parts of themselves.
 std::vector<int> PartsOf(const ScenarioYaml& entry, DiagnosticList& errors);
 
 }  // namespace prehend::harness

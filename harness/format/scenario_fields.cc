@@ -53,6 +53,22 @@ ValueFormat<WorldYaml> WorldFormat() {
       .format();
 }
 
+ValueFormat<SensorSettings> SensorsFormat() {
+  using S = SensorSettings;
+  return StructFormat<S>("the sensors")
+      .Optional("position_noise_m", &S::position_noise_m, Number(0, 0.1),
+                "Standard deviation of each coordinate of a sensed pose.")
+      .Optional("rotation_noise_deg", &S::rotation_noise_deg, Number(0, 45),
+                "Standard deviation of each component of a sensed pose's rotation vector.")
+      .Optional("contact_dropout_share", &S::contact_dropout_share, Number(0, 0.95),
+                "Share of the touches in each frame that are not sensed.")
+      .Optional("lost_frames_share", &S::lost_frames_share, Number(0, 0.95),
+                "Share of the frames that are lost.")
+      .Optional("seed", &S::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
+                "Seed of the sensors' randomness.")
+      .format();
+}
+
 constexpr std::size_t kMaxClasses = 100;
 
 ValueFormat<std::string> ClassName() {
@@ -96,6 +112,8 @@ ValueFormat<ScenarioYaml> BuildScenarioFormat() {
                 "The grammar that segments the episode, from grammar/library.")
       .Optional("tags", &S::tags, ListOf(Identifier(), 0, 32), "Words to select scenarios by.")
       .Optional("world", &S::world, WorldFormat(), "Engine, rates and seed.")
+      .Optional("sensors", &S::sensors, SensorsFormat(),
+                "Errors of what the grammar sees; the physics has none.")
       .Required("entities", &S::entities, MapOf(Identifier(), EntityFormat(), 1, kMaxEntities),
                 "The entities, by name.")
       .Optional("classes", &S::classes, MapOf(ClassName(), WithPlace(ClassName()), 0, kMaxClasses),

@@ -302,6 +302,7 @@ struct ScenarioYaml {
   Located<std::string> grammar{kDefaultGrammar, {}};
   std::vector<std::string> tags;
   WorldYaml world;
+  SensorSettings sensors;
   std::vector<Named<EntityYaml>> entities;
   std::vector<Named<Located<std::string>>> classes;  ///< each with its base class
   std::vector<Named<ActorYaml>> actors;

@@ -172,7 +172,8 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
   scenario.grammar = entry.grammar.value;
   scenario.tags = std::move(entry.tags);
   scenario.sensing = {.sensing_hz = entry.world.sensing_hz,
-                      .bearing_share = entry.world.bearing_share};
+                      .bearing_share = entry.world.bearing_share,
+                      .sensors = entry.sensors};
   for (const auto& entity : entry.entities)
     scenario.body_classes.push_back(entity.value.class_name.value);
   AddPersonClasses(scenario);

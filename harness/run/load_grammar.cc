@@ -15,6 +15,7 @@
 #include "harness/base/text_file.h"
 #include "harness/run/find_scenario.h"
 #include "harness/run/project_library.h"
+#include "harness/scenario/classes.h"
 
 namespace prehend::harness {
 
@@ -64,12 +65,13 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
 
 namespace {
 
-// Warns of names in the grammar that nothing in the episode has.
+// Warns of names in the grammar that nothing in the episode has. A class that every scenario knows
+// is no typing error.
 void WarnOfUnknownNames(const std::vector<grammar::NameInSource>& names,
                         const std::set<std::string>& known, std::string_view message,
                         const std::string& remedy, grammar::Diagnostics& warnings) {
   for (const grammar::NameInSource& named : names) {
-    if (known.contains(named.name)) continue;
+    if (known.contains(named.name) || IsScenarioBuiltinClass(named.name)) continue;
     const bool is_number = named.name.find_first_not_of("0123456789") == std::string::npos;
     const std::string near =
         is_number ? "" : grammar::NearestName(named.name, {known.begin(), known.end()});

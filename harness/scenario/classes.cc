@@ -8,10 +8,15 @@
 namespace prehend::harness {
 namespace {
 
-/// A body on a joint is neither fixed nor free to be picked up.
+/// A body on a joint is neither fixed nor free to be picked up; only a slider or a hinge opens and
+/// closes.
 const char* MobilityOf(const physics::Scene& scene, int body) {
   if (scene.bodies[static_cast<std::size_t>(body)].fixed) return "Fixed";
-  return physics::MovesFreely(scene, body) ? "Movable" : "Jointed";
+  const auto joint = std::ranges::find(scene.joints, body, &physics::Joint::body);
+  if (joint == scene.joints.end()) return "Movable";
+  const bool opens =
+      joint->kind == physics::JointKind::kSlider || joint->kind == physics::JointKind::kHinge;
+  return opens ? "Jointed" : "Attached";
 }
 
 std::vector<std::string> BuiltInClassesOf(const physics::Scene& scene, std::size_t body) {
@@ -38,8 +43,8 @@ std::vector<std::string> BuiltInClassesOf(const physics::Scene& scene, std::size
 
 bool IsScenarioBuiltinClass(const std::string& name) {
   static const std::set<std::string> names = {
-      "Entity",   "Thing",  "Movable",  "Fixed",  "Jointed",    "Hand",   "Person",
-      "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera", "Light"};
+      "Entity",   "Thing",  "Movable",  "Fixed",  "Jointed",    "Attached", "Hand", "Person",
+      "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera",   "Light"};
   return names.contains(name);
 }
 

@@ -5,6 +5,7 @@
 // tests/harness/scenario/scenario_test.cc
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -20,10 +21,26 @@
 
 namespace prehend::harness {
 
+/// How imperfect sensors see the scene. They change what grammars see, and nothing else. The
+/// default is without errors.
+struct SensorSettings {
+  double position_noise_m = 0;       ///< standard deviation of each coordinate of a pose
+  double rotation_noise_deg = 0;     ///< standard deviation of each component of a rotation vector
+  double contact_dropout_share = 0;  ///< of the touches in each frame that are not seen
+  double lost_frames_share = 0;      ///< of the frames
+  std::uint64_t seed = 1;
+
+  bool IsPerfect() const {
+    return position_noise_m == 0 && rotation_noise_deg == 0 && contact_dropout_share == 0 &&
+           lost_frames_share == 0;
+  }
+};
+
 /// When the grammar sees the scene, and which contacts count as support.
 struct SensingSettings {
   int sensing_hz = 240;         ///< at most the world's rate
   double bearing_share = 0.05;  ///< contact points with less of the load are not support
+  SensorSettings sensors = {};
 };
 
 /// A class and its base class: every Mug is a Cup.

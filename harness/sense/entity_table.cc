@@ -8,6 +8,18 @@
 
 namespace prehend::harness {
 
+namespace {
+
+/// The entity that stands for the person whose hand this is, her head; otherwise kNoEntity.
+int PersonOf(const physics::Scene& scene, int hand) {
+  for (const physics::Person& person : scene.persons) {
+    if (person.right_hand == hand || person.left_hand == hand) return person.head;
+  }
+  return grammar::kNoEntity;
+}
+
+}  // namespace
+
 std::vector<std::string> StyleNames(const physics::Scene& scene) {
   std::vector<std::string> names;
   for (const physics::Hand& hand : scene.hands) {
@@ -67,9 +79,11 @@ grammar::EntityTable MakeEntityTable(const Scenario& scenario) {
                    std::holds_alternative<physics::Sphere>(body.shapes.front().shape);
     member.mass_kg = body.fixed ? 0 : body.mass_kg;
   }
-  for (const physics::Hand& hand : scenario.scene.hands) {
+  for (std::size_t i = 0; i < scenario.scene.hands.size(); ++i) {
+    const physics::Hand& hand = scenario.scene.hands[i];
     grammar::EntityInfo& member = entity_table.entities.emplace_back();
     member.name = hand.name;
+    member.part_of = PersonOf(scenario.scene, static_cast<int>(i));
     member.classes = {"Hand", "Entity"};
     member.half_size_m = hand.model.palm_size_m / 2;
     member.sensor_sets = hand.model.sensor_sets;

@@ -82,6 +82,7 @@ ValueFormat<HeaderEntry> HeaderFormat() {
           .Optional("class", &M::class_name, ClassName(), "")
           .Optional("fixed", &M::fixed, Flag(), "")
           .Optional("jointed", &M::jointed, Flag(), "")
+          .Optional("attached", &M::attached, Flag(), "")
           .Optional("person", &M::person, Flag(), "")
           .Optional("grains", &M::grains, Flag(), "")
           .Optional("abstract", &M::abstract, Choice({"Region", "GazeTarget", "Camera", "Light"}),

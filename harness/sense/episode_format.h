@@ -32,6 +32,7 @@ struct MemberEntry {
   std::string class_name = "Object";
   bool fixed = false;
   bool jointed = false;
+  bool attached = false;
   bool grains = false;
   bool person = false;
   bool hand = false;

@@ -136,9 +136,10 @@ class EpisodeReader {
     } else if (m.grains) {
       classes.emplace_back("Grains");
     } else if (!m.person) {
-      classes.insert(classes.end(), {m.fixed     ? "Fixed"
-                                     : m.jointed ? "Jointed"
-                                                 : "Movable",
+      classes.insert(classes.end(), {m.fixed      ? "Fixed"
+                                     : m.jointed  ? "Jointed"
+                                     : m.attached ? "Attached"
+                                                  : "Movable",
                                      "Thing"});
     }
     classes.emplace_back("Entity");

@@ -69,6 +69,16 @@ bool SameSample(const grammar::EntitySample& a, const grammar::EntitySample& b) 
          a.gazes_at == b.gazes_at;
 }
 
+/// For each entity whether sensors measure its pose: it moves, or could. Where fixed things and
+/// abstract entities are is known.
+std::vector<bool> MeasuredOf(const physics::Scene& scene) {
+  std::vector<bool> measured;
+  for (const physics::Body& body : scene.bodies)
+    measured.push_back(!body.fixed && body.abstract == physics::Abstract::kNot);
+  measured.resize(scene.bodies.size() + scene.hands.size(), true);
+  return measured;
+}
+
 std::pair<int, int> PairOf(const grammar::Touch& touch) { return {touch.a, touch.b}; }
 
 bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
@@ -94,6 +104,7 @@ Sensing::Sensing(const physics::Scene& scene, const SensingSettings& settings)
   for (const physics::Joint& joint : scene.joints) jointed_.push_back(joint.body);
   entities_.resize(scene.bodies.size() + scene.hands.size());
   hands_.resize(scene.hands.size());
+  if (!settings.sensors.IsPerfect()) noise_.emplace(settings.sensors, MeasuredOf(scene));
 }
 
 grammar::FrameChanges Sensing::SenseChanges(const physics::Snapshot& snapshot) {
@@ -103,6 +114,7 @@ grammar::FrameChanges Sensing::SenseChanges(const physics::Snapshot& snapshot) {
   SenseHands(snapshot);
   SenseTouches(snapshot);
   tick_ = snapshot.tick;
+  if (noise_) return noise_->Show(WithoutNoise());
 
   std::ranges::sort(shown_);
   shown_.erase(std::ranges::unique(shown_).begin(), shown_.end());
@@ -112,7 +124,9 @@ grammar::FrameChanges Sensing::SenseChanges(const physics::Snapshot& snapshot) {
   return {tick_, entity_changes_, hands_, touch_changes_, contact_ends_};
 }
 
-grammar::Frame Sensing::Whole() {
+grammar::Frame Sensing::Whole() { return noise_ ? noise_->Shown() : WithoutNoise(); }
+
+grammar::Frame Sensing::WithoutNoise() {
   touches_ = now_.All();
   return {tick_, entities_, hands_, touches_};
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "grammar/base/frame.h"
 #include "harness/scenario/scenario.h"
+#include "harness/sense/sensor_noise.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 
@@ -28,8 +30,10 @@ class Sensing {
 
   /// Whether the snapshot of this tick is sensed: at each tick that completes another 1/sensing_hz.
   /// Computed on integers, so that any rate works without drift.
+  /// A frame that the sensors lose is not due.
   bool Due(std::int64_t tick) const {
-    return tick * sensing_hz_ / rate_hz_ > (tick - 1) * sensing_hz_ / rate_hz_;
+    return tick * sensing_hz_ / rate_hz_ > (tick - 1) * sensing_hz_ / rate_hz_ &&
+           !(noise_ && noise_->Loses(tick));
   }
 
   /// The changes since the snapshot that was sensed before; the first time, everything. Valid until
@@ -53,6 +57,7 @@ class Sensing {
   void SenseTouches(const physics::Snapshot& snapshot);
   void ReadTouches(Points points, Touches& touches);
   void CompareTouches(const Touches& before, const Touches& now);
+  grammar::Frame WithoutNoise();
   int EntityOf(const physics::ContactSide& side) const;
   std::uint32_t SensorSetOf(const physics::ContactSide& side) const;
 
@@ -80,6 +85,7 @@ class Sensing {
   std::int64_t rate_hz_ = 480;
   std::int64_t sensing_hz_ = 240;
   double bearing_share_ = 0;
+  std::optional<SensorNoise> noise_;  ///< none: perfect sensors
   int body_count_ = 0;
   std::vector<int> heads_;    ///< for each person, the body that is its head
   std::vector<int> jointed_;  ///< for each joint, the body that it moves

@@ -25,6 +25,7 @@ void AddClasses(const std::vector<std::string>& classes, Json& json) {
     json["kinds"] = std::vector<std::string>(classes.begin() + 1, given);
   json["fixed"] = *given == "Fixed";
   if (*given == "Jointed") json["jointed"] = true;
+  if (*given == "Attached") json["attached"] = true;
   if (*given == "Entity") json["person"] = true;
   if (*given == "Grains") json["grains"] = true;
   if (given + 1 != classes.end() && *(given + 1) == "Abstract") json["abstract"] = *given;

@@ -24,6 +24,13 @@ constexpr double kPress_m = 0.002;
 constexpr double kMaxSpring_m = 0.01;
 /// Share of a put-down's time after which the motion ends; the object settles in the rest.
 constexpr double kLoweringShare = 0.85;
+/// A thing stands when others than hands bear this share of its weight, on average over kBearing_s.
+constexpr double kBorneShare = 0.5;
+constexpr double kBearing_s = 0.02;
+/// If it does not stand when the stage should be over, the target goes on down at this speed,
+constexpr double kSeek_m_per_s = 0.02;
+/// and the stage lasts at most so much longer.
+constexpr double kSeek_s = 1;
 /// The open hand is approximated by spheres, which protrude by less than this.
 constexpr double kNotedTouch_m = 0.005;
 /// An excess width below this is ignored, because notes round lengths to millimetres.
@@ -57,6 +64,27 @@ int HandsOn(int body, const Snapshot& now) {
     if (contact.b.body == body && contact.a.hand >= 0) hands.insert(contact.a.hand);
   }
   return std::max(static_cast<int>(hands.size()), 1);
+}
+
+/// Upward force on a body from others than hands, newtons.
+double BorneBy(int body, const Snapshot& now, double rate_hz) {
+  double impulse_n_s = 0;
+  for (const auto& points : now.AllContacts()) {
+    for (const ContactPoint& contact : points) {
+      if (contact.a.hand >= 0 || contact.b.hand >= 0) continue;
+      const double up = contact.nhat_BA_W.z() * contact.normal_impulse_n_s;
+      if (contact.a.body == body) impulse_n_s += std::max(up, 0.0);
+      if (contact.b.body == body) impulse_n_s += std::max(-up, 0.0);
+    }
+  }
+  return impulse_n_s * rate_hz;
+}
+
+bool Touches(int hand, int body, const Snapshot& now) {
+  return std::ranges::any_of(now.contacts, [&](const ContactPoint& contact) {
+    return (contact.a.hand == hand && contact.b.hand < 0 && contact.b.body == body) ||
+           (contact.b.hand == hand && contact.a.hand < 0 && contact.a.body == body);
+  });
 }
 
 std::string Millimetres(double length_m) {
@@ -213,6 +241,7 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
         scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / HandsOn(held, now_);
     const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMaxSpring_m);
     MoveBy({0, 0, -drop - kPress_m - spring}, kLoweringShare * step_.over_s);
+    hand_.placing = Placing{.body = held, .support = support, .weight_n = weight_n};
   }
 }
 
@@ -283,18 +312,24 @@ std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& scr
 
 void ScriptPlayer::StartStage(const Snapshot& now) {
   const double rate_hz = scene_.world.rate_hz;
-  for (HandState& hand : hands_) hand.motion = Trajectory(hand.target);
+  for (HandState& hand : hands_) {
+    if (hand.placing) hand.target.X_WH.p_m.z() -= hand.placing->lowered_m;
+    hand.placing.reset();
+    hand.motion = Trajectory(hand.target);
+  }
   tick_in_stage_ = 0;
   if (stage_ == script_.stages.size()) {
     settling_ = true;
-    stage_ticks_ = std::llround(script_.settle_s * rate_hz);
+    stage_ticks_ = planned_ticks_ = std::llround(script_.settle_s * rate_hz);
     return;
   }
   begun_.push_back(stage_);
   const ScriptStage& stage = script_.stages[stage_++];
-  stage_ticks_ = std::llround(DurationOf(stage) * rate_hz);
+  stage_ticks_ = planned_ticks_ = std::llround(DurationOf(stage) * rate_hz);
   for (const Step& step : stage.steps) {
-    Resolver resolver(scene_, now, step, hands_[static_cast<std::size_t>(step.hand)]);
+    HandState& hand = hands_[static_cast<std::size_t>(step.hand)];
+    hand.written_at = step.written_at;
+    Resolver resolver(scene_, now, step, hand);
     problem_ = resolver.Resolve();
     if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
     problem_hand_ = step.hand;
@@ -305,14 +340,73 @@ void ScriptPlayer::StartStage(const Snapshot& now) {
   }
 }
 
+bool ScriptPlayer::Placing::Stands() const { return touches && borne_n >= kBorneShare * weight_n; }
+
+/// Looks whether what is put down stands, and lowers it if not.
+void ScriptPlayer::Watch(const Snapshot& now) {
+  const double rate_hz = scene_.world.rate_hz;
+  for (HandState& hand : hands_) {
+    if (!hand.placing) continue;
+    Placing& placing = *hand.placing;
+    const double share = std::min(1 / (kBearing_s * rate_hz), 1.0);
+    // A blow counts as no more than standing.
+    const double borne_n = std::min(BorneBy(placing.body, now, rate_hz), placing.weight_n);
+    placing.borne_n += share * (borne_n - placing.borne_n);
+    placing.touches = borne_n > 0;
+    if (tick_in_stage_ >= planned_ticks_ && !placing.Stands())
+      placing.lowered_m += kSeek_m_per_s / rate_hz;
+  }
+}
+
+/// Whether the stage lasts longer because a thing does not stand yet.
+bool ScriptPlayer::Waits() const {
+  const double late_s = static_cast<double>(stage_ticks_ - planned_ticks_) / scene_.world.rate_hz;
+  for (std::size_t h = 0; h < hands_.size(); ++h) {
+    const std::optional<TrackerSettings>& tracking = scene_.hands[h].tracking;
+    const double longest_s = kSeek_s + (tracking ? tracking->latency_s : 0);
+    if (hands_[h].placing && !hands_[h].placing->Stands() && late_s < longest_s) return true;
+  }
+  return false;
+}
+
+/// What the hand has lost is not its problem.
+void ScriptPlayer::CheckThatAllStand(const Snapshot& now) {
+  for (std::size_t h = 0; h < hands_.size() && problem_.empty(); ++h) {
+    const std::optional<Placing>& placing = hands_[h].placing;
+    const int hand = static_cast<int>(h);
+    if (!placing || placing->Stands() || !Touches(hand, placing->body, now)) continue;
+    const auto body = static_cast<std::size_t>(placing->body);
+    const auto support = static_cast<std::size_t>(placing->support);
+    const std::string &held = scene_.bodies[body].name, &below = scene_.bodies[support].name;
+    problem_ = "place_on: '" + held + "' does not stand on '" + below + "'";
+    if (const auto landing_m = LandingHeight(scene_.bodies[support], now.bodies[support].X_WB,
+                                             scene_.bodies[body], now.bodies[body].X_WB)) {
+      const double low_m = WorldBounds(scene_.bodies[body], now.bodies[body].X_WB).min().z();
+      problem_ += ", but is held " + Millimetres(low_m - *landing_m) + " above it";
+    }
+    if (!hands_[h].written_at.empty()) problem_ = hands_[h].written_at + ": " + problem_;
+    problem_hand_ = hand;
+  }
+}
+
 const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   commands_.clear();
   begun_.clear();
+  Watch(now);
+  if (tick_in_stage_ == stage_ticks_) {
+    if (Waits())
+      ++stage_ticks_;
+    else
+      CheckThatAllStand(now);
+  }
   while (tick_in_stage_ == stage_ticks_ && !settling_ && problem_.empty()) StartStage(now);
   if (!problem_.empty() || tick_in_stage_ == stage_ticks_) return nullptr;
   ++tick_in_stage_;
   const double t_s = static_cast<double>(tick_in_stage_) / scene_.world.rate_hz;
-  for (const HandState& hand : hands_) commands_.push_back({hand.motion.At(t_s), hand.style});
+  for (const HandState& hand : hands_) {
+    HandCommand& command = commands_.emplace_back(HandCommand{hand.motion.At(t_s), hand.style});
+    if (hand.placing) command.target.X_WH.p_m.z() -= hand.placing->lowered_m;
+  }
   return &commands_;
 }
 

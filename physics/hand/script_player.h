@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plays a script for the hands. When a stage starts, each of its steps is resolved into a motion of
 // a hand's tracked target, from the state of the world at that time. Hands without a step keep
-// their target. Tested by tests/physics/hand/script_player_test.cc
+// their target. A step that puts a thing down looks at the world until the thing stands: the target
+// goes on down, and the stage lasts longer, if it does not. Tested by
+// tests/physics/hand/script_player_test.cc
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +49,16 @@ class ScriptPlayer {
   const std::vector<ScriptNote>& notes() const { return notes_; }
 
  private:
+  /// A thing that is put down.
+  struct Placing {
+    int body = 0;          ///< index into Scene::bodies
+    int support = 0;       ///< likewise
+    double weight_n = 0;   ///< that its support must bear: its weight, per hand that holds it
+    double borne_n = 0;    ///< what others than hands bear of it: a mean over some 20 ms
+    bool touches = false;  ///< it is borne at this moment
+    double lowered_m = 0;  ///< how far the target has gone beyond its motion
+    bool Stands() const;
+  };
   struct HandState {
     TargetState target;  ///< present target, or the one at the end of the motion
     Trajectory motion{TargetState{}};
@@ -53,10 +66,15 @@ class ScriptPlayer {
     int object = -1;  ///< the body last reached for, or -1
     Eigen::Vector3d came_along_W =
         Eigen::Vector3d::Zero();  ///< direction of the last arrival; zero before the first reach
+    std::optional<Placing> placing = std::nullopt;
+    std::string written_at = {};  ///< the present step
   };
   class Resolver;
 
   void StartStage(const Snapshot& now);
+  void Watch(const Snapshot& now);
+  bool Waits() const;
+  void CheckThatAllStand(const Snapshot& now);
 
   const Scene& scene_;
   Script script_;
@@ -64,7 +82,8 @@ class ScriptPlayer {
   std::vector<HandCommand> commands_;
   std::size_t stage_ = 0;  ///< the next stage to start
   std::int64_t tick_in_stage_ = 0;
-  std::int64_t stage_ticks_ = 0;
+  std::int64_t stage_ticks_ = 0;    ///< how long it lasts,
+  std::int64_t planned_ticks_ = 0;  ///< and should
   std::vector<std::size_t> begun_;
   bool settling_ = false;
   std::string problem_;
@@ -72,7 +91,8 @@ class ScriptPlayer {
   std::vector<ScriptNote> notes_;
 };
 
-/// Simulated length of a script, seconds: all stages and the settling time.
+/// Simulated length of a script, seconds: all stages and the settling time. A thing that does not
+/// stand when its place step is over prolongs it.
 double DurationOf(const Script& script);
 
 }  // namespace prehend::physics

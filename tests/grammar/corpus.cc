@@ -33,16 +33,24 @@ std::string Trim(const std::string& text) {
 
 EntityInfo Member(const std::string& name, const std::string& class_name) {
   EntityInfo member{.name = name, .classes = {class_name}};
-  if (class_name == "Movable" || class_name == "Fixed" || class_name == "Jointed")
+  if (class_name == "Movable" || class_name == "Fixed" || class_name == "Jointed" ||
+      class_name == "Attached")
     member.classes.emplace_back("Thing");
   if (class_name == "Hand") member.sensor_sets = {"fingers", "thumb", "palm"};
   member.classes.emplace_back("Entity");
   return member;
 }
 
-// "8kg", "50N" or "thumb+index+middle".
-void ApplyDetail(EntityInfo& member, const std::string& detail) {
-  if (detail.ends_with("kg")) {
+// "8kg", "50N", "of=drawer" or "thumb+index+middle". `others` come before it.
+void ApplyDetail(EntityInfo& member, const std::string& detail,
+                 const std::vector<EntityInfo>& others) {
+  if (detail.starts_with("of=")) {
+    const auto whole = std::find_if(others.begin(), others.end(), [&](const EntityInfo& other) {
+      return other.name == detail.substr(3);
+    });
+    if (whole == others.end()) Abort("no entity before " + member.name + ":" + detail);
+    member.part_of = static_cast<int>(whole - others.begin());
+  } else if (detail.ends_with("kg")) {
     member.mass_kg = std::stod(detail);
   } else if (detail.ends_with("N")) {
     member.strength_n = std::stod(detail);
@@ -61,9 +69,10 @@ std::vector<EntityInfo> ParseEntities(const std::string& text) {
     std::string name, class_name;
     if (!std::getline(parts, name, ':') || !std::getline(parts, class_name, ':'))
       Abort("entities wants NAME:CLASS, found " + word);
-    entity_table.push_back(Member(name, class_name));
+    EntityInfo member = Member(name, class_name);
     for (std::string detail; std::getline(parts, detail, ':');)
-      ApplyDetail(entity_table.back(), detail);
+      ApplyDetail(member, detail, entity_table);
+    entity_table.push_back(std::move(member));
   }
   return entity_table;
 }
@@ -148,6 +157,8 @@ class Stage {
       }
     } else if (what == "joint") {
       looks_[Id(who)].joint_fraction = Interpolate(row.cells, tick) / 20;
+    } else if (what == "percent") {
+      looks_[Id(who)].joint_fraction = Interpolate(row.cells, tick) / 100;
     } else if (what == "tilt") {
       const double rad = Interpolate(row.cells, tick) * 5 * std::numbers::pi / 180;
       looks_[Id(who)].q_WB = Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitX());

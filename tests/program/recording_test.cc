@@ -29,6 +29,18 @@ TEST(Recording, ResegmentingGivesTheSameTimelineAndOtherGrammarsTheirs) {
   EXPECT_EQ(higher.out.find("picking_up"), std::string::npos) << higher.out;
 }
 
+TEST(Recording, WhatBadSensorsSawIsSegmentedAgainAsItWas) {
+  const auto file = (FreshFolder("bad_sensors") / "slide.jsonl").string();
+  const Said played =
+      Prehend({"run", "a_slide_is_seen_through_bad_sensors", "--json", "--record", file});
+  ASSERT_EQ(played.exit_code, 0) << played.err;
+  const Said again = Prehend({"resegment", file, "--json"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
+  EXPECT_EQ(first["events"], second["events"]);
+  EXPECT_FALSE(first["events"].empty());
+}
+
 TEST(Recording, ADashPrintsIt) {
   const auto file = (FreshFolder("printed_recording") / "rests.jsonl").string();
   ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", file}).exit_code, 0);

@@ -55,7 +55,7 @@ TEST(BuildJoints, ADrawerWithAHandle) {
   EXPECT_EQ(entity_table.entities[1].part_of, grammar::kNoEntity);
   EXPECT_EQ(entity_table.entities[0].classes[1], "Fixed");
   EXPECT_EQ(entity_table.entities[1].classes[1], "Jointed");
-  EXPECT_EQ(entity_table.entities[2].classes[1], "Jointed");
+  EXPECT_EQ(entity_table.entities[2].classes[1], "Attached");
 }
 
 TEST(BuildJoints, AHingeIsInDegrees) {

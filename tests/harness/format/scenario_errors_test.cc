@@ -33,7 +33,7 @@ const Case kCases[] = {
        "2:1: unknown key 'show' in the scenario | did you mean 'shows'?\n"},
       {"unknown_key_far", "shows:", "explanation:", kRefuses,
        "1:1: the scenario needs the key 'shows'\n"
-       "2:1: unknown key 'explanation' in the scenario | known: scenario, shows, expects, grammar, tags, world, entities, classes, actors, script, settle_s, vary, outcomes, pictures\n"},
+       "2:1: unknown key 'explanation' in the scenario | known: scenario, shows, expects, grammar, tags, world, sensors, entities, classes, actors, script, settle_s, vary, outcomes, pictures\n"},
       {"wrong_unit", "mass_kg: 0.4", "mass_g: 400", kRefuses,
        "7:45: unknown key 'mass_g' in entity 'milk' | did you mean 'mass_kg'?\n"},
       {"wrong_unit_far", "size_m: [0.07", "size_inch: [0.07", kRefuses,
@@ -60,6 +60,11 @@ const Case kCases[] = {
        "4:51: sensing_hz 960 is above rate_hz 480\n"},
       {"seed_negative", "seed: 1", "seed: -1", kRefuses,
        "4:62: seed: expected a whole number from 0 to 9007199254740992, found '-1'\n"},
+      {"sensors_without_unit", "grammar: pick_and_place", "sensors: {position_noise: 0.003}", kRefuses,
+       "3:11: unknown key 'position_noise' in the sensors | did you mean 'position_noise_m'?\n"},
+      {"sensors_too_noisy", "grammar: pick_and_place", "sensors: {position_noise_m: 3, lost_frames_share: 1}", kRefuses,
+       "3:29: position_noise_m: expected a number from 0 to 0.1, found '3'\n"
+       "3:51: lost_frames_share: expected a number from 0 to 0.95, found '1'\n"},
       {"world_is_scalar", "world: {engine: bullet, rate_hz: 480, sensing_hz: 240, seed: 1}", "world: bullet", kRefuses,
        "4:8: world: expected a mapping with the fields of the world, found 'bullet'\n"},
       {"no_shape", "box: {size_m: [0.07, 0.07, 0.20]}, ", "", kRefuses,

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/physics/tabletop.h"
 
 namespace prehend::physics {
@@ -133,6 +135,51 @@ TEST(ScriptPlayerTest, PlacingOnWhatIsNotBelowNamesTheStep) {
   }
   EXPECT_EQ(player.problem(),
             "milk.yaml:12:5: place_on: no part of 'post' is below 'object': carry it there first");
+}
+
+/// Whether the object touches the table.
+bool Stands(const Snapshot& now) {
+  return std::ranges::any_of(now.contacts, [](const ContactPoint& point) {
+    return point.a.hand < 0 && point.b.hand < 0 &&
+           std::minmax(point.a.body, point.b.body) == std::minmax(kTable, kObject);
+  });
+}
+
+Script HastyPutDown() {
+  return {.stages = {One(ReachStep{"object"}, 0.8), One(TriggerStep{1}, 0.6),
+                     One(MoveStep{{0, 0, 0.25}}, 0.15), One(CarryStep{{0.2, -0.3}}, 0.3),
+                     One(PlaceStep{"table"}, 0.2), One(TriggerStep{0}, 0.3)}};
+}
+
+TEST(ScriptPlayerTest, WhatIsPutDownInHasteStandsBeforeTheHandOpens) {
+  Simulation run(MakeScene({}), HastyPutDown());
+  bool closed = false, opens = false;
+  while (!opens && run.Step()) {
+    const double trigger = run.snapshot().hands[0].trigger;
+    opens = closed && trigger < 1;
+    closed = trigger == 1;
+  }
+  ASSERT_TRUE(opens);
+  EXPECT_TRUE(Stands(run.snapshot()));
+  const double planned_s = 0.8 + 0.6 + 0.15 + 0.3 + 0.2;
+  EXPECT_GT(static_cast<double>(run.snapshot().tick), planned_s * 480 + 1);  // it waited
+}
+
+TEST(ScriptPlayerTest, WhatCannotBePutDownNamesTheStep) {
+  // The world does not move: the hand is stuck with the object.
+  const Scene scene = MakeScene({});
+  Snapshot stuck = Simulation(scene, {}).snapshot();
+  stuck.bodies[kObject].X_WB.p_m.z() += 0.2;
+  stuck.contacts = {{.a = {.body = kObject}, .b = {.hand = 0}}};
+  ScriptStage place = One(PlaceStep{"table"}, 0.5);
+  place.steps[0].written_at = "milk.yaml:12:5";
+  ScriptPlayer player(scene, {.stages = {One(ReachStep{"object"}, 0.01), place}});
+  int ticks = 0;
+  while (player.Advance(stuck)) ++ticks;
+  EXPECT_EQ(player.problem(),
+            "milk.yaml:12:5: place_on: 'object' does not stand on 'table', but is held 200 mm "
+            "above it");
+  EXPECT_EQ(ticks, 5 + 240 + 480);  // it waited for a second
 }
 
 }  // namespace
