@@ -79,8 +79,6 @@ std::vector<bool> MeasuredOf(const physics::Scene& scene) {
   return measured;
 }
 
-std::pair<int, int> PairOf(const grammar::Touch& touch) { return {touch.a, touch.b}; }
-
 bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
   return a.up_on_a == b.up_on_a && a.up_on_b == b.up_on_b && a.normal_force_n == b.normal_force_n &&
          a.vertical_speed_m_per_s == b.vertical_speed_m_per_s && a.p_W_m == b.p_W_m &&

@@ -17,8 +17,6 @@ Eigen::Vector3d NormalVector(physics::Random& random, double deviation) {
   return vector;
 }
 
-std::pair<int, int> PairOf(const grammar::Touch& touch) { return {touch.a, touch.b}; }
-
 }  // namespace
 
 SensorNoise::SensorNoise(const SensorSettings& settings, std::vector<bool> measured)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "grammar/base/frame.h"
@@ -12,6 +13,9 @@
 #include "physics/scene/random.h"
 
 namespace prehend::harness {
+
+/// Who touches whom: the order in which touches are kept.
+inline std::pair<int, int> PairOf(const grammar::Touch& touch) { return {touch.a, touch.b}; }
 
 class SensorNoise {
  public:
