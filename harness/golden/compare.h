@@ -96,8 +96,8 @@ Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
 bool ValuesAgree(double expected, double actual);
 
 /// The differences as text, first divergence first, each with both intervals, signed offsets in
-/// milliseconds, and the question for `command`, "prehend explain ..", unless it is empty. `facts` are shown with the
-/// first difference. Empty when all agree.
+/// milliseconds, and the question for `command`, "prehend explain ..", unless it is empty. `facts`
+/// are shown with the first difference. Empty when all agree.
 std::string DifferenceText(const Comparison& comparison, std::string_view command,
                            std::string_view facts = {});
 

@@ -38,7 +38,7 @@ const Arrows& ProjectArrows() {
       {"harness/claims", {"grammar", "grammar/base", "harness/base", "harness/timeline"}},
       {"harness/scenario",
        {"grammar/base", "harness/base", "harness/claims", "physics/motion", "physics/scene"}},
-      {"harness/transform", {"harness/scenario", "physics/scene"}},
+      {"harness/transform", {"harness/scenario"}},
       {"harness/yaml", {"harness/base"}},
       {"harness/golden", {"grammar/base", "harness/base", "harness/timeline"}},
       {"harness/motion", {"harness/base", "harness/yaml", "physics/motion", "physics/scene"}},

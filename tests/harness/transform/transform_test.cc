@@ -65,7 +65,10 @@ class SameStory : public testing::TestWithParam<TransformName> {};
 TEST_P(SameStory, HasTheSameEvents) {
   const LoadedRun loaded = Load("reach/slow_approach_is_one_reach");
   const RunResult here = RunScenario(loaded.scenario, loaded.program);
-  const RunResult there = RunScenario(After(loaded.scenario, GetParam().transform), loaded.program);
+  RunResult there = RunScenario(After(loaded.scenario, GetParam().transform), loaded.program);
+  std::erase_if(there.timeline.events, [](const grammar::NamedEvent& event) {
+    return event.roles.front().value.starts_with("bystander");
+  });
   Golden expected{.ticks_per_second = here.timeline.ticks_per_second};
   for (const grammar::NamedEvent& event : here.timeline.events)
     expected.events.push_back({.event = event});
