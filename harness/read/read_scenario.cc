@@ -17,6 +17,7 @@
 #include "harness/build/build_script.h"
 #include "harness/build/validate_classes.h"
 #include "harness/build/validate_planar.h"
+#include "harness/build/validate_put_downs.h"
 #include "harness/format/scenario_fields.h"
 #include "harness/format/scenario_formats.h"
 #include "harness/read/place_recordings.h"
@@ -163,6 +164,7 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
   if (scene.world.planar) ValidatePlanar(entry, scene, errors);
   if (errors.empty()) ValidateDistances(entry, scene, errors);
   if (errors.empty()) ValidatePlacement(entry, scene, errors);
+  if (errors.empty()) ValidatePutDowns(entry, scene, errors);
   if (!errors.empty()) return AllOf(errors, in_other_files);
 
   scenario.name = entry.name.value;

@@ -112,6 +112,15 @@ std::optional<double> LandingHeight(const Body& support, const Pose& X_WS, const
   return landing_m;
 }
 
+std::optional<Pose> RestOn(const Body& support, const Pose& X_WS, const Body& object,
+                           const Pose& X_WO) {
+  const std::optional<double> landing_m = LandingHeight(support, X_WS, object, X_WO);
+  if (!landing_m) return std::nullopt;
+  Pose standing = X_WO;
+  standing.p_m.z() += *landing_m - WorldBounds(object, X_WO).min().z();
+  return standing;
+}
+
 bool IsAbove(const Body& support, const Pose& X_WS, const Vector2d& p_W_m) {
   const auto point = [&](const Vector3d&) { return Vector3d(p_W_m.x(), p_W_m.y(), 0); };
   const auto solid = [&](const Vector3d& n_W) {

@@ -16,6 +16,11 @@ namespace prehend::physics {
 std::optional<double> LandingHeight(const Body& support, const Pose& X_WS, const Body& object,
                                     const Pose& X_WO);
 
+/// The pose of an object at X_WO once it has been lowered straight down until it touches `support`,
+/// not turned. None if no part of the support is below it.
+std::optional<Pose> RestOn(const Body& support, const Pose& X_WS, const Body& object,
+                           const Pose& X_WO);
+
 /// Whether the vertical through a point meets a body, its hollows included: the convex solid around
 /// all of its parts.
 bool IsAbove(const Body& support, const Pose& X_WS, const Eigen::Vector2d& p_W_m);

@@ -90,6 +90,18 @@ TEST(LandingTest, BoardsAboveTheObjectAreNotBelowIt) {
   EXPECT_NEAR(*LandingHeight(shelf, {}, cup, At({-0.02, 0, -0.1})), -0.28, kNear_m);
 }
 
+TEST(LandingTest, AThingRestsWithItsLowestPointOnTheSurface) {
+  const Body board = Of(Box{{0.6, 0.3, 0.02}}), box = Of(Box{{0.06, 0.06, 0.1}});
+  const auto level = RestOn(board, At({0, 0, 1}), box, At({-0.1, 0.05, 2}, {0, 0, 30}));
+  ASSERT_TRUE(level);
+  EXPECT_NEAR((level->p_m - Vector3d(-0.1, 0.05, 1.06)).norm(), 0, kNear_m);
+  EXPECT_NEAR(level->q.angularDistance(FromRollPitchYaw({0, 0, 30})), 0, 1e-12);
+  const auto tilted = RestOn(board, At({0, 0, 1}, {0, -15, 0}), box, At({-0.1, 0, 2}));
+  ASSERT_TRUE(tilted);
+  EXPECT_NEAR(tilted->p_m.z(), 1 + 0.01 / kCos15 - 0.07 * kTan15 + 0.05, kNear_m);
+  EXPECT_FALSE(RestOn(board, At({0, 0, 1}), box, At({0.4, 0, 2})));
+}
+
 TEST(LandingTest, AboveIsWithinTheOutlineHollowsIncluded) {
   const Body wedge = Of(*MakeHull({{0, 0, 0}, {0.2, 0, 0}, {0, 0.2, 0}, {0, 0, 0.1}}).hull);
   EXPECT_TRUE(IsAbove(wedge, {}, {0.09, 0.09}));
