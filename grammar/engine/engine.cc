@@ -153,19 +153,17 @@ bool Engine::MayRest(const RuleInstance& instance) {
                         (rule.As<FromToRule>().absence ? 0 : 1),
                     instance.index);
       }
-      return true;
-    case Form::kRestOf:
-      return true;
+      break;
     case Form::kUntilSince:
       return !rule.referenced || instance.As<UntilSinceState>().approach_from > history_.now();
     case Form::kWhile:
     case Form::kAny:
+    case Form::kRestOf:
       break;
     default:
       return !instance.open && instances_.GuardRests(instance);
   }
-  const bool time_makes_certain =
-      rule.referenced && rule.requirement == kNone && rule.confirmed_by == kNone;
+  const bool time_makes_certain = rule.referenced && !MayComeToNothing(rule);
   if (instance.in_gap) {
     alarms_.Set(instance.gap.tick + TicksOf(instance).bridging, instance.index);
   } else if (instance.open && !instance.certain && time_makes_certain) {

@@ -121,6 +121,7 @@ class Engine {
   bool MeetDeadline(RuleInstance& instance, Moment now);
   bool StepUntil(RuleInstance& instance, FrameNumber frame);
 
+  bool LeadsHere(RuleInstance& instance, FrameNumber frame);
   WalkBack BeginOfWalk(RuleInstance& instance, FrameNumber end);
 
   // From a run to an event.
@@ -144,7 +145,8 @@ class Engine {
   Tick DeadlineOf(const Span& span) const;
   void UpdateKnown(RuleInstance& instance);
   bool RunIsCertain(const RuleInstance& instance) const;
-  static bool MayBeDropped(const Rule& rule);
+  static bool MayComeToNothing(const Rule& rule);
+  void NoteUndecidedEnds();
   void FinishInstance(RuleInstance& instance, Moment end);
   void Note(const RuleInstance& instance, CandidateOutcome::Kind kind, const Span& span,
             FrameNumber cause = kNever, const WalkBack& walk = {}) {
@@ -188,6 +190,11 @@ class Engine {
   std::vector<Event>* out_ = nullptr;  // only during Advance and Finish
   std::size_t first_new_ = 0;          // among them, of this call
   CandidateLog* log_ = nullptr;        // null unless they are to be remembered
+  struct UndecidedEnd {
+    InstanceId instance;
+    FrameNumber frame = 0;
+  };
+  std::vector<UndecidedEnd> undecided_ends_;  // only if they are
   std::string error_;
 };
 

@@ -119,15 +119,15 @@ Tick Engine::DeadlineOf(const Span& span) const {
   return just_passed ? span.end.tick : decided_;
 }
 
-// An open run may be given up for what comes or does not come.
-bool Engine::MayBeDropped(const Rule& rule) {
+// An open run that lasts long enough may still be given up for what comes or does not come.
+bool Engine::MayComeToNothing(const Rule& rule) {
   const auto* from_to = rule.If<FromToRule>();
-  return from_to != nullptr && (from_to->or_drop || from_to->within_s >= 0);
+  return rule.requirement != kNone || rule.confirmed_by != kNone ||
+         (from_to != nullptr && (from_to->or_drop || from_to->within_s >= 0));
 }
 
 bool Engine::RunIsCertain(const RuleInstance& instance) const {
-  const Rule& rule = RuleOf(instance);
-  if (rule.requirement != kNone || rule.confirmed_by != kNone || MayBeDropped(rule)) return false;
+  if (MayComeToNothing(RuleOf(instance))) return false;
   const Tick earliest_end =
       instance.in_gap ? instance.gap.tick : history_.At(instance.next - 1).tick + 1;
   return earliest_end - instance.begin.tick >= TicksOf(instance).lasting;

@@ -196,7 +196,12 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
   const auto& [until, since, approach, back_s] = RuleOf(instance).As<UntilSinceRule>();
   auto& state = instance.As<UntilSinceState>();
   const Kleene ends = evaluator_.Truth(until, {instance, frame});
-  if (ends == Kleene::kUnknown) return false;
+  if (ends == Kleene::kUnknown) {
+    if (LeadsHere(instance, frame)) return false;
+    // It does not matter whether an end is here; but at the next frame it may.
+    evaluator_.MarkTimeDependent();
+    if (log_ != nullptr) undecided_ends_.push_back({instance.index, frame});
+  }
   if (ends == Kleene::kTrue) {
     const WalkBack walk = BeginOfWalk(instance, frame);
     const FrameNumber begin = walk.begin;
@@ -218,6 +223,14 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
     ++state.approach_from;
   }
   return true;
+}
+
+// Whether an interval of any end could hold in the frame before this one. If not, none ends here,
+// and none of a later end reaches back beyond this frame.
+bool Engine::LeadsHere(RuleInstance& instance, FrameNumber frame) {
+  const NodeId since = RuleOf(instance).As<UntilSinceRule>().since;
+  if (frame <= history_.first()) return frame > 0;
+  return evaluator_.Truth(since, {instance, frame - 1}) != Kleene::kFalse;
 }
 
 // Where the interval that ends here begins.

@@ -135,7 +135,19 @@ void Engine::Finish(Tick end, std::vector<Event>& out) {
     for (const InstanceId instance : awake_[rule]) FinishInstance(instances_[instance], last);
     awake_[rule].clear();
   }
+  NoteUndecidedEnds();
   SortNewEvents();
+}
+
+// Ends that nothing led to, and that were not known to be any when that was seen.
+void Engine::NoteUndecidedEnds() {
+  for (const UndecidedEnd& end : undecided_ends_) {
+    RuleInstance& instance = instances_[end.instance];
+    const NodeId until = RuleOf(instance).As<UntilSinceRule>().until;
+    if (evaluator_.Truth(until, {instance, end.frame}) != Kleene::kTrue) continue;
+    const Moment at = history_.At(end.frame);
+    Note(instance, CandidateOutcome::Kind::kNothingBack, {at, at}, end.frame);
+  }
 }
 
 void Engine::Look(int entity, const EntitySample& look) {

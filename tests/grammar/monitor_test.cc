@@ -105,6 +105,55 @@ TEST(Monitor, GivesEventsInOrderAndNeverBeforeTheyAreCertain) {
                           [](const Event& e) { return e.open_end && e.interval.end == 2000; }));
 }
 
+// When the only event of the story is decided, in ticks: a hand touches the cup up to `apart`.
+Tick DecidedAt(const std::string& rules, Tick apart) {
+  const auto program = testing::CompileText("grammar soon\n" + rules);
+  Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  for (Tick t = 0; t < 500; t += 10) {
+    scene.touches.clear();
+    if (t >= 10 && t < apart) scene.touches.push_back({.a = 0, .b = 1});
+    monitor.Advance(scene.At(t), events);
+  }
+  monitor.Finish(500, events);
+  EXPECT_EQ(events.size(), 1u);
+  return events.empty() ? -1 : events[0].decided;
+}
+
+// The hand never closes, so it does not matter whether the touch, short as it is, is an end of
+// `came`.
+TEST(Monitor, AnEndThatNothingLeadsToDelaysNothing) {
+  EXPECT_EQ(DecidedAt(R"(
+condition long_touch(hand: Hand, object: Movable) while touching(hand, object) bridging 100 ms lasting 200 ms
+condition came(hand: Hand, object: Movable)
+  until long_touch(hand, object) begins since trigger(hand) > 0.5 at most 100 ms back
+event plain(hand: Hand, object: Movable) while touching(hand, object) and not came(hand, object)
+)",
+                      50),
+            50);
+}
+
+// Nothing changes when an open interval has lasted long enough to be one.
+TEST(Monitor, WhatTimeMakesCertainIsKnownInTime) {
+  const std::string end = R"(
+event touched(hand: Hand, object: Movable) while touching(hand, object) and waiting(hand, object)
+)";
+  EXPECT_EQ(DecidedAt(R"(
+condition waiting(hand: Hand, object: Movable)
+  from touching(hand, object) begins to trigger(hand) > 0.5 begins lasting 100 ms
+)" + end,
+                      50),
+            110);
+  EXPECT_EQ(DecidedAt(R"(
+condition squeezed(hand: Hand) while trigger(hand) > 0.5
+condition waiting(hand: Hand, object: Movable) rest of early(hand, object) outside squeezed(hand) lasting 100 ms
+condition early(hand: Hand, object: Movable) from touching(hand, object) begins to squeezed(hand) begins
+)" + end,
+                      50),
+            110);
+}
+
 TEST(Monitor, TellsTheStyleOfAGrasp) {
   Scene scene;
   const auto program = testing::CompileLibrary("grasp");

@@ -96,10 +96,7 @@ class RandomWorld {
             .up_on_b = -up,
             .normal_force_n = force_n,
             .vertical_speed_m_per_s = force_n > 1 ? 0.1 : 0,
-            // Not drawn: Choose({0, 0.1}) here makes Changes.WhoeverIsNotWokenHasNothingToSay fail
-            // in round 42, where `tilted` is decided at tick 11916, but at 11929 when all are
-            // woken. That fault of the engine is open; draw this again when it is mended.
-            .p_W_m = {up > 0 ? 0.1 : 0, 0, 0},
+            .p_W_m = {Choose({0, 0.1}), 0, 0},
             .nhat_BA_W = {0, 0, force_n > 1 ? 1.0 : 0},
             .sensor_sets = a < kHands ? static_cast<std::uint32_t>(random_() % 8) : 0};
   }

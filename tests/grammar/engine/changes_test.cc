@@ -12,10 +12,12 @@
 #include "grammar/program/program.h"
 #include "tests/grammar/corpus.h"
 #include "tests/grammar/random_world.h"
+#include "tests/grammar/thorough.h"
 
 namespace prehend::grammar {
 namespace {
 
+using testing::Lines;
 using testing::RandomWorld;
 
 // Keeps the last frame and says what is new in the next one.
@@ -62,17 +64,6 @@ class Differ {
   std::vector<ContactEnd> contact_ends_;
 };
 
-std::vector<std::string> Lines(const std::vector<Event>& events, const Program& program) {
-  std::vector<std::string> lines;
-  for (const Event& e : events) {
-    lines.push_back(program.rules[e.rule].name + " " + std::to_string(e.roles[0]) + " " +
-                    std::to_string(e.roles[1]) + " [" + std::to_string(e.interval.begin) + "," +
-                    std::to_string(e.interval.end) + ") at " + std::to_string(e.decided) +
-                    (e.open_end ? " open" : "") + " style " + std::to_string(e.style));
-  }
-  return lines;
-}
-
 TEST(Changes, SayTheSameAsWholeFrames) {
   const CompileResult compiled =
       Compile({"both", std::string("grammar both\n") + testing::kTimeDependentRules},
@@ -103,21 +94,6 @@ TEST(Changes, SayTheSameAsWholeFrames) {
   EXPECT_GT(count, 10000u);
 }
 
-// The same program, but everybody is woken by everything, and nothing is answered by what was
-// measured.
-std::shared_ptr<const Program> Thorough(const Program& program) {
-  const auto thorough = std::make_shared<Program>(program);
-  for (Rule& rule : thorough->rules) {
-    rule.opened_by = kNone;
-    rule.guarded_begin = false;
-    rule.measured = {};
-    rule.watches_press = rule.watches_grips = ~ThresholdSet{0};
-  }
-  for (Node& node : thorough->nodes) node.by_threshold = {};
-  thorough->asks_touches = thorough->recalls_touches = true;
-  return thorough;
-}
-
 struct Compared {
   std::size_t events = 0;
   std::size_t object_frames = 0;
@@ -125,7 +101,7 @@ struct Compared {
 
 // Worlds in which anything may happen, watched by both.
 Compared CompareWithThorough(const std::shared_ptr<const Program>& program, int rounds) {
-  const auto thorough = Thorough(*program);
+  const auto thorough = testing::Thorough(*program);
   Compared compared;
   for (int round = 0; round < rounds; ++round) {
     RandomWorld world(7000 + round);

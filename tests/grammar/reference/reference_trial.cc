@@ -5,6 +5,7 @@
 #include <initializer_list>
 
 #include "grammar/program/program.h"
+#include "tests/grammar/thorough.h"
 
 namespace prehend::grammar::testing {
 namespace {
@@ -74,6 +75,7 @@ class Trial {
         Mismatch("a well-formed grammar is refused:\n" + Format(compiled.diagnostics), nullptr);
       CheckRefusal(compiled.diagnostics);
     }
+    thorough_ = Thorough(*program_);
     ++result_.grammars;
   }
 
@@ -100,8 +102,27 @@ class Trial {
         !text.empty()) {
       Mismatch("shown as changes, " + text, &episode);
     }
+    WatchThoroughly(episode, events_plain, events_mixed);
     if (!Orderly(events_plain))
       Mismatch("an event is decided before its end, or events come in the wrong order", &episode);
+  }
+
+  // Whoever is woken by everything decides the same at the same ticks, however frames are shown.
+  void WatchThoroughly(const RandomEpisode& episode, const std::vector<Event>& plain,
+                       const std::vector<Event>& mixed) {
+    Monitor thorough(thorough_, RandomEntityTable());
+    EpisodeFeed feed(episode, thorough);
+    std::vector<Event> events;
+    while (!feed.done()) feed.Step(false, events);
+    const std::vector<std::string> expected = Lines(events, *program_);
+    for (const std::vector<Event>* found : {&plain, &mixed}) {
+      const std::vector<std::string> lines = Lines(*found, *program_);
+      const auto [one, other] = std::ranges::mismatch(expected, lines);
+      if (one == expected.end() && other == lines.end()) continue;
+      Mismatch("with all awake:    " + (one == expected.end() ? "nothing" : *one) +
+                   "\nas few as may be: " + (other == lines.end() ? "nothing" : *other) + "\n",
+               &episode);
+    }
   }
 
   std::mt19937_64& random() { return random_; }
@@ -153,6 +174,7 @@ class Trial {
   std::mt19937_64 random_;
   std::optional<RandomGrammar> grammar_;
   std::shared_ptr<const Program> program_;
+  std::shared_ptr<const Program> thorough_;
   TrialResult result_;
 };
 
