@@ -172,6 +172,15 @@ double LooksAround(const Program& program, NodeId index) {
   return HasWindow(node.op) ? seconds + node.number / 2 : seconds;
 }
 
+// Windows, one in another; a speed from frame to frame in one of them counts as one, too.
+int Windows(const Program& program, NodeId index) {
+  if (index == kNone) return 0;
+  const Node& node = program.nodes[index];
+  int windows = node.op == Op::kClosingSpeed || node.op == Op::kSurfaceSpeed ? 1 : 0;
+  for (const NodeId arg : node.args) windows = std::max(windows, Windows(program, arg));
+  return HasWindow(node.op) ? windows + 1 : windows;
+}
+
 // The number of a threshold, entered if it is new; kNone if there are too many.
 int Enter(Program& program, const Threshold& threshold) {
   const auto found = std::find(program.thresholds.begin(), program.thresholds.end(), threshold);
@@ -350,6 +359,7 @@ void ChooseGuards(Program& program) {
     if (approach != nullptr) nodes.insert(nodes.end(), {approach->signal, approach->motion});
     for (const NodeId node : nodes) {
       rule.looks_around_s = std::max(rule.looks_around_s, LooksAround(program, node));
+      if (rule.looks_around_s > 0) rule.windows = std::max(rule.windows, Windows(program, node));
       program.asks_touches = program.asks_touches || AsksTouches(program, node);
       program.recalls_touches =
           program.recalls_touches || (!IsKnownAtOnce(rule) && ComparesTouches(program, node));

@@ -22,7 +22,7 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
       idle_(*program_, history_, instances_) {
   for (const Rule& rule : program_->rules) {
     rule_ticks_.push_back(grammar::TicksOf(rule, history_));
-    past_.LookBack(history_.AtLeastTicks(LooksBack_s(rule)));
+    past_.LookBack(rule, history_);
   }
   instances_.BindUnguarded();
   for (InstanceId i(0); i < instances_.end_id(); ++i) Wake(i);

@@ -4,42 +4,68 @@
 #pragma once
 
 #include <algorithm>
+#include <vector>
 
 #include "grammar/engine/history.h"
+#include "grammar/engine/rule_ticks.h"
 
 namespace prehend::grammar {
 
 class RememberedPast {
  public:
-  /// A rule looks back so far.
-  void LookBack(Tick ticks) { longest_look_back_ = std::max(longest_look_back_, ticks); }
+  /// A rule looks back so far: to an earlier frame, at the edge of a condition from there to the
+  /// frame before, and from that one over windows, one in another.
+  void LookBack(const Rule& rule, const History& history) {
+    longest_look_back_ = std::max(longest_look_back_, history.AtLeastTicks(LooksBack_s(rule)));
+    longest_window_ = std::max(longest_window_, history.AtLeastTicks(rule.looks_around_s));
+    const auto windows = static_cast<std::size_t>(rule.windows);
+    if (ticks_.windows.size() < windows) ticks_.windows.resize(windows, 0);
+    if (looks_.windows.size() < windows) looks_.windows.resize(windows, 0);
+  }
 
   /// At a new frame nothing older is needed, until an instance needs it.
-  void BeginFrame(FrameNumber now) { oldest_ = oldest_look_ = now; }
-  void Need(FrameNumber frame) { oldest_ = std::min(oldest_, frame); }
+  void BeginFrame(FrameNumber now) { ticks_.oldest = looks_.oldest = now; }
+  void Need(FrameNumber frame) { ticks_.oldest = std::min(ticks_.oldest, frame); }
   /// Likewise, with the poses, hands and touches of the frame.
-  void NeedLooks(FrameNumber frame) { oldest_look_ = std::min(oldest_look_, frame); }
+  void NeedLooks(FrameNumber frame) { looks_.oldest = std::min(looks_.oldest, frame); }
 
-  /// Drops what is not needed; keeps two frames more, for differences between frames.
+  /// Drops what is not needed.
   void Forget(History& history) {
-    first_ = FirstToKeep(history, oldest_, first_);
-    first_look_ = FirstToKeep(history, oldest_look_, first_look_);
-    history.Forget(first_, first_look_);
+    const FrameNumber ticks = FirstToKeep(history, ticks_);
+    const bool same = looks_.oldest == ticks_.oldest;
+    history.Forget(ticks, same ? ticks : FirstToKeep(history, looks_));
   }
 
  private:
-  FrameNumber FirstToKeep(const History& history, FrameNumber needed, FrameNumber before) const {
-    const Tick earliest = history.At(std::max(needed, history.first())).tick - longest_look_back_;
-    FrameNumber frame = std::max(before, history.first());
-    while (frame + 2 <= history.now() && history.At(frame + 2).tick < earliest) ++frame;
-    return frame;
+  /// What is kept, step by step: none goes back again.
+  struct Past {
+    FrameNumber oldest = 0;            // that an instance needs
+    FrameNumber first = 0;             // that it may ask for, and two more
+    std::vector<FrameNumber> windows;  // where a window around that begins, and so on
+  };
+
+  // Two frames more are kept, for differences between frames: edges and speeds. Time between frames
+  // may be longer than a window, so each window begins at a frame, not at a tick.
+  FrameNumber FirstToKeep(const History& history, Past& past) const {
+    const FrameNumber known = history.first();
+    const Tick earliest = history.At(std::max(past.oldest, known)).tick - longest_look_back_;
+    past.first = std::max(past.first, known);
+    while (past.first + 2 <= history.now() && history.At(past.first + 2).tick < earliest)
+      ++past.first;
+    FrameNumber from = past.first;
+    for (FrameNumber& window : past.windows) {
+      const Tick begin = history.At(from).tick - longest_window_;
+      window = std::max(window, known);
+      while (window + 1 <= from && history.At(window + 1).tick <= begin) ++window;
+      from = window;
+    }
+    return from;
   }
 
   Tick longest_look_back_ = 0;
-  FrameNumber oldest_ = 0;  // that an instance needs
-  FrameNumber oldest_look_ = 0;
-  FrameNumber first_ = 0;  // that is kept
-  FrameNumber first_look_ = 0;
+  Tick longest_window_ = 0;
+  Past ticks_;
+  Past looks_;
 };
 
 }  // namespace prehend::grammar

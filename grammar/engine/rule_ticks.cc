@@ -24,7 +24,7 @@ RuleTicks TicksOf(const Rule& rule, const History& history) {
 }
 
 double LooksBack_s(const Rule& rule) {
-  double back_s = rule.looks_around_s;
+  double back_s = 0;
   if (const auto* looks_back = rule.If<UntilSinceRule>()) {
     back_s += looks_back->back_s;
     if (looks_back->approach) back_s += looks_back->approach->looks_around_s();

@@ -20,7 +20,7 @@ struct RuleTicks {
 
 RuleTicks TicksOf(const Rule& rule, const History& history);
 
-/// How far before the newest frame the rule may ask for values.
+/// How far before the newest frame the rule may ask for values, apart from windows around frames.
 double LooksBack_s(const Rule& rule);
 
 }  // namespace prehend::grammar

@@ -302,7 +302,8 @@ struct Rule {
   ThresholdSet watches_grips = 0;  ///< what matters of how far hands are closed
   MeasuredPart measured;           ///< of what must be true where something begins; may be empty
   double looks_around_s =
-      0;  ///< its signals ask for poses so long before and after the frames it looks at
+      0;            ///< its signals ask for poses so long before and after the frames it looks at
+  int windows = 0;  ///< in so many windows, one in another
 };
 
 /// The nodes of the conditions that make its form: `while`, `from`, `to`, `during`, `until`,

@@ -323,6 +323,23 @@ TEST(Signals, InsideAsksTheCentreOfTheBox) {
   EXPECT_TRUE(holds({0.3, 0.3, 0.1}));
 }
 
+// Where frames are lost, the window around the frame before an edge reaches far back. The cup falls
+// from one frame to the next; 5 ms without a frame later the window no longer shows it.
+TEST(Signals, WindowsReachBackOverLostFrames) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent e(cup: Cup) while rate(height(cup), 4 ms) >= 0 m/s begins");
+  Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  for (const Tick tick : {10, 11, 12, 13, 14, 15, 16, 17, 22, 23, 28, 29, 30}) {
+    scene.looks[Scene::kCup].p_WB_m.z() = tick < 16 ? 2 : 0;
+    monitor.Advance(scene.At(tick), events);
+  }
+  monitor.Finish(31, events);
+  ASSERT_EQ(events.size(), 2u) << "in the first frame, and when it no longer falls";
+  EXPECT_EQ(events[1].interval, (Interval{22, 23}));
+}
+
 // Users look signals up in the reference; it lists each of them.
 TEST(Signals, AreAllDocumented) {
   const std::string docs = testing::ReadFile(PREHEND_SOURCE_DIR "/docs/grammar-language.md");

@@ -140,6 +140,7 @@ class Maker {
   // Instants are allowed wherever conditions are.
   Term Condition(int depth, const std::string& anchor = "") {
     const unsigned choice = Below(depth > 0 ? 10 : 5);
+    if (Below(12) == 0) return Rising(anchor);
     switch (choice) {
       case 0:
       case 1:
@@ -172,6 +173,7 @@ class Maker {
 
   // What can begin and end: it has no moments in it.
   Term State(const std::string& anchor) {
+    if (Below(12) == 0) return Rising(anchor);
     switch (Below(6)) {
       case 0:
         return {.kind = Kind::kHigh, .value = static_cast<int>(Below(3)), .anchor = anchor};
@@ -184,6 +186,14 @@ class Maker {
       default:
         return rules_.empty() ? Touch() : Call();
     }
+  }
+
+  // Known only when the window is over.
+  Term Rising(const std::string& anchor) {
+    return {.kind = Kind::kRising,
+            .value = static_cast<int>(Below(5)) - 2,
+            .anchor = Below(2) == 0 ? anchor : "",
+            .window = 1 + static_cast<Tick>(Below(9))};
   }
 
   Term Touch() { return {.kind = Kind::kTouch, .which = static_cast<int>(Below(kRoles))}; }
@@ -221,6 +231,11 @@ class Writer {
         const std::string value = std::to_string(term.value) + " m";
         return term.anchor.empty() ? "height(x) >= " + value
                                    : "height(x) >= height(x)@" + term.anchor + " + " + value;
+      }
+      case Kind::kRising: {
+        const std::string rate = "rate(height(x), " + std::to_string(term.window) + " ms)";
+        return rate + " >= " + (term.anchor.empty() ? "" : rate + "@" + term.anchor + " + ") +
+               std::to_string(250 * term.value) + " m/s";
       }
       case Kind::kRule:
         return Head(term.which, rules_[term.which].roles, term.named, false);
@@ -351,6 +366,14 @@ class Meaning {
         for (int i = 0; i < n_; ++i) high[i] = e_.height_m[i] >= base + term.value;
         return high;
       }
+      case Kind::kRising: {
+        Stream rising(n_);
+        for (int i = 0; i < n_; ++i) {
+          const double base = term.anchor.empty() ? 0 : Rate(std::min(anchor, n_ - 1), term.window);
+          rising[i] = Rate(i, term.window) >= base + 250 * term.value;
+        }
+        return rising;
+      }
       case Kind::kRule: {
         const bool anybody = (rules_[term.which].roles & kP & ~term.named) != 0;
         const Stream own =
@@ -373,6 +396,17 @@ class Meaning {
       }
     }
     return {};
+  }
+
+  // From the last frame at least half the window earlier to the first one so much later, in m/s.
+  double Rate(int frame, Tick window) const {
+    const Tick half = (window + 1) / 2;
+    int early = frame, late = frame;
+    while (early > 0 && e_.ticks[early] > e_.ticks[frame] - half) --early;
+    while (late + 1 < n_ && e_.ticks[late] < e_.ticks[frame] + half) ++late;
+    if (early == late) return 0;
+    return (e_.height_m[late] - e_.height_m[early]) /
+           (static_cast<double>(e_.ticks[late] - e_.ticks[early]) / 1000);
   }
 
   Anchored AnchoredTruth(const Term& term, int p) const {

@@ -51,12 +51,13 @@ class EpisodeFeed {
 
 /// A truth value made of facts and rules.
 struct Term {
-  enum class Kind { kTouch, kHigh, kRule, kAnd, kOr, kNot, kEdge };
+  enum class Kind { kTouch, kHigh, kRising, kRule, kAnd, kOr, kNot, kEdge };
   Kind kind = Kind::kHigh;
   int which = 0;       ///< kTouch: role; kRule: rule
   unsigned named = 0;  ///< kRule: roles that are named; the others are `any`
   int value = 0;       ///< kHigh: height(x) >= value metres, from `anchor` on if there is one
-  std::string anchor;  ///< kHigh: "begin", "end" or nothing
+  std::string anchor;  ///< kHigh, kRising: "begin", "end" or nothing
+  Tick window = 0;     ///< kRising: rate(height(x), window) >= value * 250 m/s, likewise
   bool begins = true;  ///< kEdge
   std::vector<Term> args;
 };
