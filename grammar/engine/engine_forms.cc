@@ -138,9 +138,6 @@ bool Engine::StepRest(RuleInstance& instance, FrameNumber frame) {
 bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
   const FromToRule& rule = RuleOf(instance).As<FromToRule>();
   const Evaluator::View view{instance, frame};
-  const auto during = [&] {
-    return rule.during == kNone ? Kleene::kTrue : evaluator_.Truth(rule.during, view);
-  };
   if (instance.open && TicksOf(instance).within >= 0 && !MeetDeadline(instance, history_.At(frame)))
     return false;
   if (instance.open) {
@@ -150,7 +147,7 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
       instance.open = false;
     }
     if (closes == Kleene::kTrue) return !instance.open || Close(instance, history_.At(frame));
-    const Kleene holds = during();
+    const Kleene holds = rule.during == kNone ? Kleene::kTrue : evaluator_.Truth(rule.during, view);
     if (holds == Kleene::kFalse && !rule.or_drop) return Close(instance, history_.At(frame));
     if (closes == Kleene::kUnknown || holds == Kleene::kUnknown) return false;
     if (holds == Kleene::kFalse) {
@@ -161,15 +158,14 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
   }
   Kleene opens = evaluator_.Truth(rule.from, view);
   if (opens == Kleene::kFalse) return true;
-  // What `during` and `to` say of @begin refers to this very frame.
-  if (!evaluator_.CaptureAnchors(instance, frame)) return false;
-  opens = And(opens, during());
+  // What `during` and `to` say of @begin refers to this very frame. Without it, too, they may say
+  // that nothing begins: a begin that is an end at once is no interval.
+  const bool anchored = evaluator_.CaptureAnchors(instance, frame);
+  const Evaluator::View begin{.instance = instance, .frame = frame, .begin_known = anchored};
+  if (rule.during != kNone) opens = And(opens, evaluator_.Truth(rule.during, begin));
+  if (opens != Kleene::kFalse) opens = And(opens, Not(evaluator_.Truth(rule.to, begin)));
   if (opens == Kleene::kFalse) return true;
-  if (opens == Kleene::kUnknown) return false;
-  // A begin that is an end at once is no interval.
-  const Kleene closes = evaluator_.Truth(rule.to, view);
-  if (closes == Kleene::kUnknown) return false;
-  return closes == Kleene::kTrue || Open(instance, frame);
+  return opens == Kleene::kTrue && anchored && Open(instance, frame);
 }
 
 // An open run whose deadline has passed: without the end that it waited for it is dropped; of a

@@ -132,9 +132,7 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
       now == Kleene::kUnknown;  // even if there is no change here, the next frame looks back at it
   const bool is_first = view.frame == 0;
   Kleene before = Kleene::kFalse;
-  if (!is_first)
-    before =
-        Truth(node.args[0], {.instance = view.instance, .frame = view.frame - 1, .end = view.end});
+  if (!is_first) before = Truth(node.args[0], view.At(view.frame - 1));
   return AtAnInstant(And(wanted, begins ? Not(before) : before));
 }
 
@@ -229,10 +227,11 @@ std::optional<double> Evaluator::Number(NodeId index, const View& view) const {
     case Op::kNumber:
       return node.number;
     case Op::kAtBegin:
+      if (!view.begin_known) return std::nullopt;
       return view.instance.anchors[3 * node.slot];
     case Op::kAtEnd:
       if (!view.end) return std::nullopt;
-      return Number(node.args[0], {.instance = view.instance, .frame = *view.end, .end = view.end});
+      return Number(node.args[0], view.At(*view.end));
     case Op::kDistance: {
       const std::optional<Vector3d> a = Position(node.args[0], view);
       const std::optional<Vector3d> b = Position(node.args[1], view);
@@ -433,11 +432,11 @@ std::optional<Vector3d> Evaluator::Position(NodeId index, const View& view) cons
   const Node& node = program_.nodes[index];
   switch (node.op) {
     case Op::kAtBegin:
+      if (!view.begin_known) return std::nullopt;
       return Eigen::Map<const Vector3d>(view.instance.anchors.data() + 3 * node.slot);
     case Op::kAtEnd:
       if (!view.end) return std::nullopt;
-      return Position(node.args[0],
-                      {.instance = view.instance, .frame = *view.end, .end = view.end});
+      return Position(node.args[0], view.At(*view.end));
     case Op::kPositionOn:
       return PositionOn(Entity(node, view, 0), Entity(node, view, 1), view.frame);
     case Op::kTouchIn:

@@ -25,12 +25,15 @@ class Evaluator {
     RuleInstance& instance;
     FrameNumber frame = 0;
     std::optional<FrameNumber> end = std::nullopt;
+    bool begin_known = true;  ///< values at the interval's begin, that is
+    View At(FrameNumber other) const { return {instance, other, end, begin_known}; }
   };
 
-  /// kUnknown while it depends on truths that are not final, on an end that is not known, or on
-  /// frames to come.
+  /// kUnknown while it depends on truths that are not final, on a begin or an end that is not
+  /// known, or on frames to come.
   Kleene Truth(NodeId node, const View& view) const;
-  /// nullopt only for values at an end that is not known, or that depend on frames to come.
+  /// nullopt only for values at a begin or an end that is not known, or that depend on frames to
+  /// come.
   std::optional<double> Number(NodeId node, const View& view) const;
   std::optional<Eigen::Vector3d> Position(NodeId node, const View& view) const;
 

@@ -40,10 +40,8 @@ std::optional<double> Evaluator::Rate(const Node& node, const View& view) const 
   const std::optional<Window> window = WindowAround(view.frame, node.number);
   if (!window) return std::nullopt;
   if (window->early == window->late) return 0;
-  const std::optional<double> before =
-      Number(node.args[0], {.instance = view.instance, .frame = window->early, .end = view.end});
-  const std::optional<double> after =
-      Number(node.args[0], {.instance = view.instance, .frame = window->late, .end = view.end});
+  const std::optional<double> before = Number(node.args[0], view.At(window->early));
+  const std::optional<double> after = Number(node.args[0], view.At(window->late));
   if (!before || !after) return std::nullopt;
   return (*after - *before) / SecondsBetween(window->early, window->late);
 }

@@ -134,6 +134,28 @@ event plain(hand: Hand, object: Movable) while touching(hand, object) and not ca
             50);
 }
 
+// The hand never closes, so it does not matter how fast the object rises where the touch begins,
+// which is known only when the window is over. Nor does it where the end comes at once.
+TEST(Monitor, AValueAtABeginThatIsNoneDelaysNothing) {
+  const std::string end = R"(
+event plain(hand: Hand, object: Movable) while touching(hand, object) and not rising(hand, object)
+)";
+  EXPECT_EQ(DecidedAt(R"(
+condition rising(hand: Hand, object: Movable)
+  from touching(hand, object) begins to rate(height(object), 200 ms) >= rate(height(object), 200 ms)@begin + 1 m/s begins
+  during trigger(hand) > 0.5
+)" + end,
+                      50),
+            50);
+  EXPECT_EQ(DecidedAt(R"(
+condition rising(hand: Hand, object: Movable)
+  from (touching(hand, object) begins or trigger(hand) > 0.5 begins) to touching(hand, object) begins
+  during rate(height(object), 200 ms) >= rate(height(object), 200 ms)@begin + 1 m/s
+)" + end,
+                      50),
+            50);
+}
+
 // Nothing changes when an open interval has lasted long enough to be one.
 TEST(Monitor, WhatTimeMakesCertainIsKnownInTime) {
   const std::string end = R"(
