@@ -10,6 +10,7 @@
 #include "harness/check/blame.h"
 #include "harness/check/last_pass.h"
 #include "harness/check/state_trace.h"
+#include "harness/episodes/record_episode.h"
 #include "harness/golden/golden_files.h"
 #include "harness/judge/accept_golden.h"
 #include "harness/judge/compare_engines.h"
@@ -59,13 +60,17 @@ std::vector<std::string> FilesOfGolden(const CheckRequest& request, const Scenar
   return files;
 }
 
-/// Reports how far the run has come while it is going on.
-RunResult Play(const CheckRequest& request, const LoadedRun& loaded) {
+/// Reports how far the run has come while it is going on. `recorder` may be null.
+RunResult Play(const CheckRequest& request, const LoadedRun& loaded,
+               episodes::EpisodeRecorder* recorder) {
   ScenarioRun playing(loaded.scenario, loaded.program, {.record = true});
   while (playing.Step()) {
     if (request.last_tick) request.last_tick->store(playing.snapshot().tick);
+    if (recorder) recorder->Add(playing.snapshot());
   }
-  return playing.Finish();
+  RunResult run = playing.Finish();
+  if (recorder) recorder->Finish(run);
+  return run;
 }
 
 /// Draws into the folder of the report.
@@ -191,6 +196,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.explain = ExplainCommand(request.id, request.run);
   std::vector<std::string> files;
   Result<LoadedRun> loaded = LoadRun(request.run, request.root, &files);
+  const std::vector<std::string> read = files;
   std::ranges::move(FilesOfGolden(request, loaded ? &loaded->scenario : nullptr),
                     std::back_inserter(files));
   verdict.inputs = HashFiles(files);
@@ -205,7 +211,13 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
                      .loaded = std::move(*loaded),
                      .result = {},
                      .explain = verdict.explain};
-  checked.result = Play(request, checked.loaded);
+  std::optional<episodes::EpisodeRecorder> recorder;
+  if (!request.record_file.empty())
+    recorder.emplace(episodes::RecordRequest{request.record_file, request.root, request.run, read,
+                                             request.today, request.program},
+                     checked.loaded.scenario);
+  checked.result = Play(request, checked.loaded, recorder ? &*recorder : nullptr);
+  if (recorder) verdict.not_recorded = recorder->problem();
   verdict.shows = checked.loaded.scenario.shows;
   verdict.state_hash = HashText(checked.result.state_hash);
   verdict.ticks = checked.result.ticks;

@@ -22,6 +22,8 @@ struct CheckRequest {
   bool leave_nothing_behind = false;  ///< no pending golden, no trace; only the verdict
   bool in_project = true;             ///< below scenarios/, so that it may have a golden
   std::vector<Transform> transforms;  ///< after which its events must be the same
+  std::string record_file;            ///< an episode file that gets the run; or empty
+  std::string today;                  ///< YYYY-MM-DD, for that file
   std::string program;                ///< ProgramHash(), to find the cause of differences
   ProgressCounters::Tick* last_tick =
       nullptr;  ///< gets the tick that the run has reached; may be null

@@ -110,6 +110,8 @@ class Suite {
         .leave_nothing_behind = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
         .in_project = InProject(turn.scenario),
         .transforms = request_.transforms,
+        .record_file = turn.repetition == 0 ? request_.record_file : "",
+        .today = request_.today,
         .program = program_,
         .last_tick = &last_tick};
     // CBOR, since JSON has no infinite numbers and refuses bytes that are no UTF-8.

@@ -22,6 +22,8 @@ struct SuiteRequest {
   RunRequest changes;  ///< its grammar and settings hold for every scenario
   std::string root;
   std::string report_folder;
+  std::string record_file;  ///< an episode file that gets the first run of each; or empty
+  std::string today;        ///< YYYY-MM-DD, for that file
   bool pictures = true;
   bool only_changed = false;  ///< skip what passed and depends on nothing that changed since
   int repeat = 1;

@@ -51,7 +51,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, claim, place, says, found, time
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
                                    details, claims, comparison, has_golden, drawings, explain,
                                    cause, command, state_hash, ticks, seconds, peak_memory_kib,
-                                   inputs, pictures, picture_differences)
+                                   inputs, pictures, not_recorded, picture_differences)
 
 namespace {
 

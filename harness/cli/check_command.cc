@@ -12,6 +12,8 @@
 #include "harness/base/shell_quote.h"
 #include "harness/check/run_suite.h"
 #include "harness/cli/command.h"
+#include "harness/episodes/record_episode.h"
+#include "harness/episodes/schema.h"
 #include "harness/report/junit.h"
 #include "harness/report/report.h"
 #include "harness/transform/transform.h"
@@ -139,6 +141,10 @@ std::vector<Option> RunningOptions() {
       });
 }
 
+std::string RecordProblem(const std::string& file) {
+  return episodes::IsEpisodeFile(file) ? "" : "found '" + file + "', wanted a file NAME.episodes";
+}
+
 std::vector<Option> ResultOptions() {
   return InGroup("What is written",
                  {
@@ -148,6 +154,10 @@ std::vector<Option> ResultOptions() {
                      {.name = "--junit",
                       .help = "also write the verdicts as JUnit XML; -: print it instead of text",
                       .placeholder = "FILE"},
+                     {.name = "--record",
+                      .help = "also write each episode to FILE, NAME.episodes (docs/episodes.md)",
+                      .placeholder = "FILE",
+                      .rule = {.range = {}, .problem = RecordProblem}},
                      {.name = "--no-pictures", .help = "draw no pictures"},
                      {.name = "--json", .help = "print one JSON object instead of text"},
                  });
@@ -169,6 +179,8 @@ SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& con
                        .root = context.root,
                        .report_folder = options.TextOr(
                            "--report", (fs::path(context.root) / "build/report").string()),
+                       .record_file = options.Text("--record"),
+                       .today = context.today,
                        .pictures = !options.Has("--no-pictures"),
                        .only_changed = options.Has("--changed"),
                        .repeat = options.IntOr("--repeat", 1),
@@ -242,6 +254,17 @@ nlohmann::ordered_json SummaryJson(const std::vector<ScenarioVerdict>& verdicts,
           {"unchanged", tally.unchanged}, {"report", page},         {"scenarios", scenarios}};
 }
 
+/// "" if every episode that should be recorded was.
+std::string NotRecordedText(const std::vector<ScenarioVerdict>& verdicts) {
+  const auto count = std::ranges::count_if(
+      verdicts, [](const ScenarioVerdict& verdict) { return !verdict.not_recorded.empty(); });
+  if (count == 0) return "";
+  const auto first = std::ranges::find_if(
+      verdicts, [](const ScenarioVerdict& verdict) { return !verdict.not_recorded.empty(); });
+  return fmt::format("--record: {} of {} episodes were not recorded; the first, {}: {}", count,
+                     verdicts.size(), first->scenario, first->not_recorded);
+}
+
 ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--changed") && (options.Has("--grammar") || options.Has("--set"))) {
     return Complain(context, ExitCode::kBadInput,
@@ -277,6 +300,8 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--report: " + problem);
   if (options.Has("--junit")) problem = WhyNotWritable(junit);
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--junit: " + problem);
+  if (options.Has("--record")) problem = episodes::WhyNotRecordable(options.Text("--record"));
+  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--record: " + problem);
   SuiteProgress progress;
   if (context.progress) {
     progress = [&](std::size_t done, std::size_t all, const std::string& id) {
@@ -294,6 +319,7 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   }
   problem = WriteTextFile(page, ReportHtml(verdicts));
   if (problem.empty() && options.Has("--junit")) problem = WriteTextFile(junit, JunitXml(verdicts));
+  if (problem.empty()) problem = NotRecordedText(verdicts);
   return problem.empty() ? WorstOf(verdicts) : Complain(context, ExitCode::kFailure, problem);
 }
 
@@ -304,8 +330,9 @@ Command CheckCommand() {
           .summary = "Run scenarios and compare them with their goldens: the regression suite",
           .examples = {"check", "check milk_carton_wrap 'slide/*' my/scenario.yaml",
                        "check --filter tag:smoke --filter '!reach/*' --no-pictures --jobs 1",
-                       "check --changed", "check --shard 2/3 --junit verdicts.xml",
-                       "check 'slide/*' --repeat 10", "check --grammar my/rules.grammar --json"},
+                       "check --changed", "check --record suite.episodes --no-pictures",
+                       "check --shard 2/3 --junit verdicts.xml", "check 'slide/*' --repeat 10",
+                       "check --grammar my/rules.grammar --json"},
           .options = Joined(SelectionOptions(), Joined(RunningOptions(), ResultOptions())),
           .run = RunCheck};
 }

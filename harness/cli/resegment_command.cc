@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend resegment: a recorded episode under another grammar, without physics.
-// Tested by tests/program/recording_test.cc
+// prehend resegment: recorded episodes under another grammar, without physics.
+// Tested by tests/program/recording_test.cc and tests/program/episodes_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "grammar/contents.h"
 #include "grammar/name_events.h"
 #include "harness/cli/command.h"
+#include "harness/episodes/resegment_many.h"
+#include "harness/episodes/schema.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/run_text.h"
 #include "harness/sense/episode_file.h"
@@ -13,8 +18,9 @@
 namespace prehend::harness {
 namespace {
 
-ExitCode RunResegment(const ParsedOptions& options, const CommandContext& context) {
-  Result<Episode> episode = ReadEpisode(options.Text("recording"));
+ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
+                        const CommandContext& context) {
+  Result<Episode> episode = ReadEpisode(file);
   if (!episode) return Complain(context, episode.error());
   Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
   if (!settings) return Complain(context, settings.error());
@@ -49,18 +55,125 @@ ExitCode RunResegment(const ParsedOptions& options, const CommandContext& contex
   return ExitCode::kAgrees;
 }
 
+/// Results of one episode as `run` prints them, of several one after another; with a comparison
+/// only what differs.
+void Print(const std::vector<episodes::Resegmented>& results, bool compare,
+           const CommandContext& context) {
+  std::size_t differing = 0;
+  for (const episodes::Resegmented& result : results) {
+    if (!result.problem.empty()) continue;
+    const std::string heading = fmt::format("episode {} of {}: {}\n", result.episode.id,
+                                            result.episode.file, result.episode.scenario);
+    if (!compare) {
+      if (results.size() > 1) context.out << (&result == &results.front() ? "" : "\n") << heading;
+      context.out << result.table;
+    } else if (!result.differences.empty()) {
+      ++differing;
+      context.out << heading << result.differences;
+    }
+  }
+  if (compare)
+    context.out << fmt::format("{} episodes, {} with differences\n", results.size(), differing);
+}
+
+void PrintJson(const std::vector<episodes::Resegmented>& results, const CommandContext& context) {
+  OrderedJson all = OrderedJson::array();
+  for (const episodes::Resegmented& result : results) {
+    if (!result.problem.empty()) continue;
+    OrderedJson json = OrderedJson::parse(result.json);
+    json["file"] = result.episode.file;
+    json["episode"] = result.episode.id;
+    all.push_back(std::move(json));
+  }
+  if (results.size() == 1 && all.size() == 1) all = OrderedJson(all.front());
+  context.out << all.dump(2) << "\n";
+}
+
+ExitCode ResegmentEpisodes(const ParsedOptions& options, const CommandContext& context) {
+  const auto selected =
+      episodes::SelectEpisodes(options.All("recording"), options.Text("--episode"));
+  if (!selected) return Complain(context, selected.error());
+  if (selected->empty())
+    return Complain(context, ExitCode::kNothing,
+                    fmt::format("--episode: no episode matches '{}'", options.Text("--episode")));
+  const bool compare = options.Has("--compare");
+  const std::vector<episodes::Resegmented> results = episodes::ResegmentAll(
+      *selected, {.root = context.root,
+                  .choice = {options.Text("--grammar"), options.All("--set")},
+                  .compare = compare,
+                  .jobs = options.IntOr("--jobs", CoreCount())});
+  ExitCode worst = ExitCode::kAgrees;
+  std::string warned;
+  for (const episodes::Resegmented& result : results) {
+    if (result.warnings != warned) context.err << result.warnings;
+    warned = result.warnings;
+    if (!result.problem.empty()) {
+      context.err << result.problem;
+      worst = ExitCode::kBadInput;
+    } else if (!result.completed && worst == ExitCode::kAgrees) {
+      context.err << fmt::format(
+          "prehend: episode {} of {} has no good end: {}", result.episode.id, result.episode.file,
+          result.table.substr(result.table.rfind('\n', result.table.size() - 2) + 1));
+      worst = ExitCode::kFailure;
+    }
+  }
+  if (options.Has("--json"))
+    PrintJson(results, context);
+  else
+    Print(results, compare, context);
+  const bool differs = std::ranges::any_of(
+      results, [](const episodes::Resegmented& result) { return !result.differences.empty(); });
+  return worst == ExitCode::kAgrees && differs ? ExitCode::kDiffers : worst;
+}
+
+ExitCode RunResegment(const ParsedOptions& options, const CommandContext& context) {
+  const std::vector<std::string>& files = options.All("recording");
+  const auto lines = std::ranges::find_if_not(files, episodes::IsEpisodeFile);
+  if (lines == files.end()) return ResegmentEpisodes(options, context);
+  for (const char* of_episodes : {"--episode", "--compare", "--jobs"}) {
+    if (options.Has(of_episodes))
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("{} needs episode files; {} is none", of_episodes, *lines));
+  }
+  if (files.size() > 1)
+    return Complain(context, ExitCode::kBadInput,
+                    *lines + " is no episode file; other recordings are read one at a time");
+  return ResegmentLines(files.front(), options, context);
+}
+
+std::string CompareProblem(const std::string& value) {
+  return value == "recorded" ? "" : "found '" + value + "', wanted recorded";
+}
+
 }  // namespace
 
 Command ResegmentCommand() {
   return {
       .name = "resegment",
-      .summary = "Segment a recorded episode again, with any grammar",
-      .examples = {"run milk_carton_wrap --record milk.jsonl", "resegment milk.jsonl",
-                   "resegment milk.jsonl --grammar my/rules.grammar --json",
-                   "resegment milk.jsonl --set lift_rise=10cm"},
+      .summary = "Segment recorded episodes again, with any grammar",
+      .examples = {"run milk_carton_wrap --record milk.episodes", "resegment milk.episodes",
+                   "resegment milk.episodes --grammar my/rules.grammar --json",
+                   "resegment milk.jsonl --set lift_rise=10cm",
+                   "resegment monday.episodes tuesday.episodes --compare recorded",
+                   "resegment suite.episodes --episode 'slide/*' --set slide_speed=3cm/s"},
       .options = {{.name = "recording",
-                   .help = "a file from 'run --record', or your own (docs/recording-format.md)",
-                   .required = true},
+                   .help = "episode files (docs/episodes.md), or one recording as JSON Lines\n"
+                           "(docs/recording-format.md)",
+                   .required = true,
+                   .repeatable = true},
+                  {.name = "--episode",
+                   .help = "only this one of an episode file: its number, or its scenario\n"
+                           "(a name, skill/name or a glob)",
+                   .placeholder = "WHICH"},
+                  {.name = "--compare",
+                   .help = "print only how the events differ from those that were recognised when\n"
+                           "the episode was recorded",
+                   .placeholder = "recorded",
+                   .rule = {.range = {}, .problem = CompareProblem}},
+                  {.name = "--jobs",
+                   .help = "episodes at a time; default: one per core",
+                   .placeholder = "N",
+                   .rule = IntegersFrom(1, kMaxJobs)},
                   GrammarOption(),
                   {.name = "--set",
                    .help = "set a parameter of the grammar (reach_radius=25cm); may be repeated",

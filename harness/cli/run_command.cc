@@ -5,8 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/atomic_file.h"
+#include "harness/base/content_hash.h"
 #include "harness/base/shell_quote.h"
 #include "harness/cli/command.h"
+#include "harness/episodes/record_episode.h"
+#include "harness/episodes/schema.h"
 #include "harness/run/outcome.h"
 #include "harness/run/run_text.h"
 #include "harness/run/run_trials.h"
@@ -50,15 +53,21 @@ ExitCode CountTrials(const ParsedOptions& options, const RunRequest& request,
   return ExitCode::kAgrees;
 }
 
-/// Plays the scenario, writes what is sensed to `recorder` unless that is null, and judges the
-/// scenario's outcomes.
-RunResult Play(const LoadedRun& loaded, bool measure, EpisodeWriter* recorder) {
+/// Where an episode is written while it is played, if anywhere.
+struct Recorders {
+  EpisodeWriter* lines = nullptr;
+  episodes::EpisodeRecorder* episode = nullptr;
+};
+
+/// Plays the scenario, records it, and judges its outcomes.
+RunResult Play(const LoadedRun& loaded, bool measure, const Recorders& recorders) {
   const Scenario& scenario = loaded.scenario;
   OutcomeWatch outcomes(scenario.scene, scenario.outcomes);
   ScenarioRun playing(scenario, loaded.program, {.measure = measure});
   while (playing.Step()) {
     outcomes.Look(playing.snapshot());
-    if (recorder && playing.sensed()) recorder->Write(playing.frame());
+    if (recorders.lines && playing.sensed()) recorders.lines->Write(playing.frame());
+    if (recorders.episode) recorders.episode->Add(playing.snapshot());
   }
   RunResult run = playing.Finish();
   if (!scenario.outcomes.empty() && run.status.kind == physics::RunStatus::Kind::kCompleted)
@@ -89,14 +98,22 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("--record - contradicts {}: both would be printed", of_output));
   }
-  const Result<LoadedRun> loaded = LoadRun(request, context.root);
+  std::vector<std::string> files;
+  const Result<LoadedRun> loaded = LoadRun(request, context.root, &files);
   if (!loaded) return Complain(context, loaded.error());
   Warn(context, loaded->warnings);
 
   const bool measure = options.Has("--measure");
   std::optional<AtomicFile> record;
   std::optional<EpisodeWriter> recorder;
-  if (options.Has("--record")) {
+  std::optional<episodes::EpisodeRecorder> episode;
+  if (episodes::IsEpisodeFile(options.Text("--record"))) {
+    episode.emplace(episodes::RecordRequest{options.Text("--record"), context.root, request, files,
+                                            context.today, ProgramHash()},
+                    loaded->scenario);
+    if (!episode->problem().empty())
+      return Complain(context, ExitCode::kBadInput, "--record: " + episode->problem());
+  } else if (options.Has("--record")) {
     record.emplace(options.Text("--record"));
     if (!record->problem().empty())
       return Complain(context, ExitCode::kBadInput, "--record: " + record->problem());
@@ -104,12 +121,17 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
     recorder.emplace(record->stream(),
                      EpisodeHeader{scenario.name, scenario.grammar, MakeEntityTable(scenario)});
   }
-  const RunResult run = Play(*loaded, measure, recorder ? &*recorder : nullptr);
+  const RunResult run =
+      Play(*loaded, measure, {recorder ? &*recorder : nullptr, episode ? &*episode : nullptr});
   for (const std::string& note : NoteLines(loaded->scenario, run)) context.err << note << "\n";
   std::string not_recorded;
   if (recorder) {
     recorder->Finish(run.ticks + 1);
     not_recorded = record->Commit();
+  }
+  if (episode) {
+    episode->Finish(run);
+    not_recorded = episode->problem();
   }
   if (options.Has("--json")) {
     OrderedJson json = RunJson(loaded->scenario, run);
@@ -132,7 +154,7 @@ Command RunCommand() {
       .name = "run",
       .summary = "Simulate one scenario and print the events that its grammar recognises",
       .examples = {"run milk_carton_wrap", "run milk_carton_wrap --json",
-                   "run milk_carton_wrap --record milk.jsonl",
+                   "run milk_carton_wrap --record milk.episodes",
                    "run milk_carton_wrap --set entities.milk.mass_kg=8",
                    "run milk_carton_wrap --set lift_rise=10cm --measure",
                    "run furniture/drawer_is_opened_with_hook --trials 50",
@@ -156,7 +178,10 @@ Command RunCommand() {
             .rule = IntegersFrom(1, kMaxJobs)},
            {.name = "--json", .help = "print one JSON object instead of a table"},
            {.name = "--record",
-            .help = "write the episode to FILE, for 'resegment'; -: print it instead of the table",
+            .help =
+                "write the episode to FILE: NAME.episodes holds many episodes and all of each;\n"
+                "any other ending: what the grammar sees, as JSON Lines; -: print these\n"
+                "instead of the table",
             .placeholder = "FILE"},
            {.name = "--measure", .help = "print where the time went, and the peak memory"}},
       .run = RunOne};

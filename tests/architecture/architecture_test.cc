@@ -57,6 +57,8 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"tl::expected", std::regex("tl/.*"), std::regex("harness/.*")},
       {"SLEEF", std::regex("sleef\\.h"), std::regex("physics/portable_math\\.cc")},
       {"xxHash", std::regex("xxhash\\.h"), std::regex("harness/(.*/)?content_hash\\.cc")},
+      {"SQLite", std::regex("sqlite3\\.h"), std::regex("(harness/episodes|bench)/.*")},
+      {"zstd", std::regex("zstd\\.h"), std::regex("harness/episodes/columns\\.cc")},
       {"OpenGL and OSMesa", std::regex("(GL/.*|GLES.*|EGL/.*)"), std::regex("render/.*")},
       {"libpng", std::regex("png\\.h"), std::regex("(render|tests/render)/.*")},
       {"stb", std::regex("stb/.*"), std::regex("render/.*")},

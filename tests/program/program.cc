@@ -20,8 +20,8 @@ std::string Quoted(const std::string& word) {
 
 }  // namespace
 
-Said Prehend(const std::vector<std::string>& arguments,
-             const std::vector<std::string>& environment) {
+Said Prehend(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
+             const std::string& first) {
   const char* other = std::getenv("PREHEND_BINARY");
   const std::string binary = other ? other : PREHEND_BINARY_DIR "/prehend";
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
@@ -31,7 +31,8 @@ Said Prehend(const std::vector<std::string>& arguments,
   std::filesystem::create_directories(folder);
   const auto out = folder / (stem + std::to_string(getpid()) + ".out"),
              err = folder / (stem + std::to_string(getpid()) + ".err");
-  std::string command = "cd " + Quoted(PREHEND_SOURCE_DIR) + " && env NO_COLOR=1";
+  std::string command = "cd " + Quoted(PREHEND_SOURCE_DIR) + " && " +
+                        (first.empty() ? "" : first + " && ") + "env NO_COLOR=1";
   for (const std::string& pair : environment) command += " " + Quoted(pair);
   command += " " + Quoted(binary);
   for (const std::string& argument : arguments) command += " " + Quoted(argument);

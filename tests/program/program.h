@@ -15,9 +15,10 @@ struct Said {
 };
 
 /// `prehend ARGS` in the source tree. The binary is this build's, or the one PREHEND_BINARY names
-/// (sanitizers). `environment` holds NAME=value pairs on top of the present ones.
+/// (sanitizers). `environment` holds NAME=value pairs on top of the present ones; `first` is done
+/// in the same shell before ("ulimit -f 10").
 Said Prehend(const std::vector<std::string>& arguments,
-             const std::vector<std::string>& environment = {});
+             const std::vector<std::string>& environment = {}, const std::string& first = {});
 
 /// A folder of its own for one test, emptied first.
 std::filesystem::path FreshFolder(const std::string& name);

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads an episode file: what episodes it has, what they were made from, their events, and any
+// frame of them. Tested by tests/harness/episodes/episode_file_test.cc
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grammar/base/timeline.h"
+#include "harness/base/result.h"
+#include "harness/episodes/frame_player.h"
+#include "harness/episodes/task_files.h"
+#include "physics/simulation.h"
+
+namespace prehend::harness::episodes {
+
+struct EpisodeRow {
+  std::int64_t id = 0;
+  std::string uuid;
+  std::string scenario;  ///< skill/name
+  std::string status;    ///< recording (not finished), completed, failed
+  std::string grammar;
+  grammar::Tick ticks_per_second = 480;
+  grammar::Tick ticks = 0;  ///< of one that is not finished: those that can be read
+  std::string state_hash;   ///< "0x.."; empty if it is not finished
+  std::string outcome;
+  std::string recorded_on;
+  physics::RunStatus end;  ///< how the run ended; one that is not finished has failed
+};
+
+/// A file that is open for reading. Functions that return a Result report damage with the file.
+class EpisodeFile {
+ public:
+  static Result<EpisodeFile> Open(const std::string& path);
+  ~EpisodeFile();
+  EpisodeFile(EpisodeFile&&) noexcept;
+
+  const std::string& path() const { return path_; }
+  /// In the order in which they were begun.
+  const std::vector<EpisodeRow>& episodes() const { return episodes_; }
+
+  Result<TaskFiles> TaskOf(const EpisodeRow& episode) const;
+  /// What was recognised when it was recorded.
+  Result<grammar::Timeline> TimelineOf(const EpisodeRow& episode) const;
+  Result<std::vector<physics::ScriptNote>> NotesOf(const EpisodeRow& episode) const;
+
+ private:
+  friend class EpisodeFrames;
+  struct State;
+  EpisodeFile(std::string path, std::unique_ptr<State> state);
+
+  std::string path_;
+  std::unique_ptr<State> state_;
+  std::vector<EpisodeRow> episodes_;
+};
+
+/// The frames of one episode. The file outlives it.
+class EpisodeFrames {
+ public:
+  EpisodeFrames(const EpisodeFile& file, const EpisodeRow& episode, FrameLayout layout);
+  ~EpisodeFrames();
+
+  /// Calls `look` with each frame that is `wanted`, in their order. Returns "", or what is damaged.
+  std::string Play(const std::function<void(const physics::Snapshot&)>& look,
+                   const std::function<bool(std::int64_t tick)>& wanted = {}, bool links = true);
+
+  /// The last frame up to this tick; nothing if there is none, or it is damaged. Which bodies may
+  /// have moved is not known of it. Takes time with the logarithm of the number of frames.
+  std::optional<physics::Snapshot> At(std::int64_t tick);
+
+  struct Moment {
+    std::int64_t tick = 0;
+    physics::BodyState body;
+  };
+  /// All frames of one body. Nothing if it is damaged.
+  std::optional<std::vector<Moment>> TrackOf(std::size_t body);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace prehend::harness::episodes

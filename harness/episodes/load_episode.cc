@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/episodes/load_episode.h. Tested by tests/harness/episodes/episode_file_test.cc
+#include "harness/episodes/load_episode.h"
+
+#include <fmt/format.h>
+
+#include "grammar/contents.h"
+#include "grammar/name_events.h"
+#include "harness/run/load_grammar.h"
+#include "harness/run/run_text.h"
+#include "harness/sense/entity_table.h"
+#include "harness/sense/sensing.h"
+#include "physics/scene/state_hash.h"
+
+namespace prehend::harness::episodes {
+namespace {
+
+tl::unexpected<grammar::Diagnostics> Failure(const EpisodeFile& file, const EpisodeRow& episode,
+                                             const std::string& message) {
+  return tl::unexpected(grammar::Diagnostics{
+      {.file = file.path(),
+       .place = {},
+       .message = fmt::format("episode {} ({}): {}", episode.id, episode.scenario, message),
+       .source_line = {},
+       .hint = {}}});
+}
+
+/// Senses frames and segments them.
+class Segmenter {
+ public:
+  explicit Segmenter(const LoadedRun& loaded)
+      : loaded_(loaded),
+        table_(MakeEntityTable(loaded.scenario)),
+        sensing_(loaded.scenario.scene, loaded.scenario.sensing),
+        monitor_(loaded.program, table_) {}
+
+  const std::string& error() const { return monitor_.error(); }
+  bool IsDue(std::int64_t tick) const { return sensing_.Due(tick); }
+  void Look(const physics::Snapshot& snapshot) {
+    monitor_.AdvanceBy(sensing_.SenseChanges(snapshot), events_);
+  }
+  grammar::Timeline Finish(grammar::Tick end) {
+    monitor_.Finish(end, events_);
+    return grammar::NameEvents(*loaded_.program, table_, events_);
+  }
+
+ private:
+  const LoadedRun& loaded_;
+  const grammar::EntityTable table_;
+  Sensing sensing_;
+  grammar::Monitor monitor_;
+  std::vector<grammar::Event> events_;
+};
+
+RunResult BlankResult(const EpisodeRow& episode, const LoadedRun& loaded) {
+  RunResult run;
+  run.status = episode.end;
+  run.ticks = episode.ticks;
+  run.outcome = episode.outcome;
+  run.drawings = EventDrawings(*loaded.program);
+  return run;
+}
+
+std::uint64_t HashOf(const std::string& text) {
+  std::uint64_t hash = 0;
+  for (const char c : text.substr(std::min<std::size_t>(2, text.size()))) {
+    const bool is_digit = c >= '0' && c <= '9';
+    hash = hash << 4 | static_cast<std::uint64_t>(is_digit ? c - '0' : (c - 'a' + 10) & 15);
+  }
+  return hash;
+}
+
+}  // namespace
+
+Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow& episode,
+                                      const GrammarChoice& choice) {
+  const Result<TaskFiles> task = file.TaskOf(episode);
+  if (!task) return tl::unexpected(task.error());
+  if (const std::string problem = tasks_.Unpack(*task); !problem.empty())
+    return Failure(file, episode, problem);
+  Result<LoadedRun> loaded = LoadRun(tasks_.RequestOf(*task), tasks_.root());
+  if (!loaded) {
+    grammar::Diagnostics diagnostics = std::move(loaded.error());
+    for (grammar::Diagnostic& diagnostic : diagnostics)
+      diagnostic.file = file.path() + ": " + tasks_.Original(diagnostic.file);
+    return tl::unexpected(std::move(diagnostics));
+  }
+  loaded->scenario.file = tasks_.Original(loaded->scenario.file);
+  loaded->warnings.clear();  // they were shown when it was recorded
+  if (choice.grammar.empty() && choice.settings.empty()) return loaded;
+
+  Result<grammar::Overrides> overrides = ParameterSettings(choice.settings);
+  if (!overrides) return tl::unexpected(std::move(overrides.error()));
+  const bool is_own = choice.grammar.empty();
+  const std::string name = is_own ? loaded->scenario.grammar : choice.grammar;
+  grammar::CompileResult compiled = LoadGrammar(is_own ? tasks_.root() : root_, name, *overrides);
+  if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
+  loaded->program = std::move(compiled.program);
+  loaded->scenario.grammar = GrammarName(*loaded->program);
+  loaded->warnings = Warnings(*loaded->program, MakeEntityTable(loaded->scenario));
+  for (grammar::Diagnostic& warning : loaded->warnings)
+    warning.file = tasks_.Original(warning.file);
+  return loaded;
+}
+
+Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
+                            const LoadedRun& loaded) {
+  RunResult run = BlankResult(episode, loaded);
+  Segmenter segmenter(loaded);
+  if (segmenter.error().empty()) {
+    EpisodeFrames frames(file, episode, LayoutOf(loaded.scenario.scene));
+    const std::string problem =
+        frames.Play([&](const physics::Snapshot& snapshot) { segmenter.Look(snapshot); },
+                    [&](std::int64_t tick) { return segmenter.IsDue(tick); });
+    if (!problem.empty()) return Failure(file, episode, problem);
+  }
+  run.timeline = segmenter.Finish(run.ticks + 1);
+  if (!segmenter.error().empty())
+    return Failure(file, episode, "the grammar cannot segment it: " + segmenter.error());
+  run.state_hash = HashOf(episode.state_hash);
+  Result<std::vector<physics::ScriptNote>> notes = file.NotesOf(episode);
+  if (!notes) return tl::unexpected(std::move(notes.error()));
+  run.notes = std::move(*notes);
+  return run;
+}
+
+Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
+                         const LoadedRun& loaded) {
+  Result<RunResult> run = Resegment(file, episode, loaded);
+  if (!run) return run;
+  physics::StateHash hash;
+  EpisodeFrames frames(file, episode, LayoutOf(loaded.scenario.scene));
+  const std::string problem = frames.Play([&](const physics::Snapshot& snapshot) {
+    hash.Add(snapshot);
+    run->recording.push_back(snapshot);
+  });
+  if (!problem.empty()) return Failure(file, episode, problem);
+  if (!episode.state_hash.empty() && HashText(hash.value()) != episode.state_hash)
+    return Failure(file, episode,
+                   fmt::format("the file is damaged: its frames have the state hash {}, recorded "
+                               "was {}",
+                               HashText(hash.value()), episode.state_hash));
+  run->state_hash = hash.value();
+  return run;
+}
+
+}  // namespace prehend::harness::episodes

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recorded episode as if it had just been played: its scenario, its grammar, its result. Tested
+// by tests/harness/episodes/episode_file_test.cc
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/episodes/episode_file.h"
+#include "harness/run/run_scenario.h"
+
+namespace prehend::harness::episodes {
+
+/// Which grammar looks at an episode.
+struct GrammarChoice {
+  std::string grammar;                ///< name or path in the project; empty: the episode's own
+  std::vector<std::string> settings;  ///< parameters of the grammar: "reach_radius=25cm"
+};
+
+/// Loads episodes of any files, one after another; what several of them need is read once.
+class EpisodeLoader {
+ public:
+  explicit EpisodeLoader(std::string root) : root_(std::move(root)) {}
+
+  /// Its scenario and the grammar.
+  Result<LoadedRun> Load(const EpisodeFile& file, const EpisodeRow& episode,
+                         const GrammarChoice& choice = {});
+
+ private:
+  std::string root_;
+  UnpackedTasks tasks_;
+};
+
+/// What the grammar recognises in the episode; its frames are not kept. An episode that is not
+/// finished has the status "failed".
+Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
+                            const LoadedRun& loaded);
+
+/// The same, with every frame: as RunScenario() with RunOptions::record returned it.
+Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
+                         const LoadedRun& loaded);
+
+}  // namespace prehend::harness::episodes

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// How an engine moves rigid bodies from tick to tick, in its order of operations: what a recording
+// can guess, it need not keep. A wrong guess costs bytes and nothing else. Tested by
+// tests/harness/episodes/columns_test.cc
+#pragma once
+
+#include <vector>
+
+#include "physics/scene/hand_model.h"
+#include "physics/scene/pose.h"
+
+namespace prehend::harness::episodes {
+
+struct Vector3 {
+  double x = 0, y = 0, z = 0;
+};
+
+/// A quaternion.
+struct Turn {
+  double x = 0, y = 0, z = 0, w = 1;
+};
+
+/// The rotation after one more `dt_s` at this angular velocity (the exponential map).
+Turn Turned(const Turn& before, const Vector3& w_rad_per_s, double dt_s);
+
+/// Where the links of a hand are that has these joints: forward kinematics, link after link.
+class LinkGuess {
+ public:
+  explicit LinkGuess(const physics::HandModel& model);
+  std::size_t size() const { return links_.size(); }
+  /// `joints`: one per link. `X_WL`: as many poses.
+  void Guess(const physics::Pose& X_WPalm, const std::vector<double>& joints,
+             std::vector<physics::Pose>& X_WL);
+
+ private:
+  struct Link {
+    int parent = -1;
+    bool slides = false;
+    Turn turn;     ///< from the parent's frame to this one, the joint at zero
+    Vector3 axis;  ///< of the joint, in this frame
+    Vector3 pivot, centre;
+  };
+  std::vector<Link> links_;
+  std::vector<Turn> turns_;  ///< from the world to the link
+};
+
+}  // namespace prehend::harness::episodes

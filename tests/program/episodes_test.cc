@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Episode files, as a person uses them.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+const std::string kShort = "reach/idling_beside_the_object_is_no_reach";
+
+TEST(Episodes, ARunAndItsEpisodeSayTheSame) {
+  const auto file = (FreshFolder("episodes") / "two.episodes").string();
+  const Said alone = Prehend({"run", "milk_carton_wrap", "--json"});
+  const Said played = Prehend({"run", "milk_carton_wrap", "--json", "--record", file});
+  ASSERT_EQ(played.exit_code, 0) << played.err;
+  EXPECT_EQ(played.out, alone.out) << "recording changes nothing";
+  ASSERT_EQ(Prehend({"run", kShort, "--record", file}).exit_code, 0);
+
+  const Said again = Prehend({"resegment", file, "--episode", "milk_carton_wrap", "--json"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
+  EXPECT_EQ(second["file"], file);
+  EXPECT_EQ(second["episode"], 1);
+  second.erase("file");
+  second.erase("episode");
+  EXPECT_EQ(first, second);
+
+  const Said both = Prehend({"resegment", file, file, "--compare", "recorded"});
+  EXPECT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_EQ(both.out, "4 episodes, 0 with differences\n");
+  const Said differs =
+      Prehend({"resegment", file, "--compare", "recorded", "--set", "lift_rise=10m"});
+  EXPECT_EQ(differs.exit_code, 1) << differs.err;
+  EXPECT_NE(differs.out.find("- picking_up"), std::string::npos) << differs.out;
+  EXPECT_NE(differs.out.find("2 episodes, 2 with differences\n"), std::string::npos);
+  const Said none = Prehend({"resegment", file, "--episode", "slide/*"});
+  EXPECT_EQ(none.exit_code, 4);
+  EXPECT_EQ(none.err, "prehend: --episode: no episode matches 'slide/*'\n");
+}
+
+TEST(Episodes, AGrammarOfOnesOwnIsKeptWithTheEpisode) {
+  const auto folder = FreshFolder("own_grammar");
+  const auto file = (folder / "a.episodes").string(), own = (folder / "own.grammar").string();
+  WriteFile(own, Replaced(ReadFile(PREHEND_SOURCE_DIR "/grammar/library/contact.grammar"),
+                          "grammar contact", "grammar own"));
+  const Said played = Prehend({"run", kShort, "--grammar", own, "--record", file});
+  ASSERT_EQ(played.exit_code, 0) << played.err;
+  std::filesystem::remove(own);
+  const Said again = Prehend({"resegment", file});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(again.out, played.out);
+}
+
+TEST(Episodes, ASuiteIsRecordedByWorkersIntoOneFile) {
+  const auto folder = FreshFolder("suite_episodes");
+  const auto file = (folder / "suite.episodes").string();
+  const Said checked = Prehend({"check", "reach/*", "--no-pictures", "--jobs", "3", "--record",
+                                file, "--report", (folder / "report").string()});
+  ASSERT_EQ(checked.exit_code, 0) << checked.out << checked.err;
+  const Said compared = Prehend({"resegment", file, "--compare", "recorded", "--jobs", "3"});
+  EXPECT_EQ(compared.exit_code, 0) << compared.err;
+  EXPECT_TRUE(compared.out.ends_with("episodes, 0 with differences\n")) << compared.out;
+}
+
+TEST(Episodes, BadUseIsExplained) {
+  const auto folder = FreshFolder("bad_episodes");
+  const auto text = (folder / "text.episodes").string();
+  WriteFile(text, "name: x\n");
+  const std::string cause = ": is no episode file: it does not begin as an SQLite database\n";
+  const Said run = Prehend({"run", kShort, "--record", text});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.err, "prehend: --record: " + text + cause);
+  const Said check = Prehend({"check", kShort, "--record", text});
+  EXPECT_EQ(check.exit_code, 2);
+  EXPECT_EQ(check.err, "prehend: --record: " + text + cause);
+  const Said other = Prehend({"check", kShort, "--record", (folder / "a.jsonl").string()});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("wanted a file NAME.episodes"), std::string::npos) << other.err;
+  const Said read = Prehend({"resegment", text});
+  EXPECT_EQ(read.exit_code, 2);
+  EXPECT_NE(read.err.find("is no episode file"), std::string::npos) << read.err;
+  const Said lines = Prehend({"resegment", (folder / "a.jsonl").string(), "--jobs", "2"});
+  EXPECT_EQ(lines.exit_code, 2);
+  EXPECT_NE(lines.err.find("--jobs needs episode files"), std::string::npos) << lines.err;
+}
+
+TEST(Episodes, AFullDiskLeavesTheVerdict) {
+  // A small limit for the size of files stands for a full disk; its signal is ignored.
+  const auto file = (FreshFolder("full_episodes") / "a.episodes").string();
+  const Said said =
+      Prehend({"run", "milk_carton_wrap", "--record", file}, {}, "trap '' XFSZ && ulimit -f 1000");
+  EXPECT_EQ(said.exit_code, 3);
+  EXPECT_NE(said.out.find("completed: 5.1500 s"), std::string::npos) << said.out;
+  EXPECT_NE(said.err.find("--record: " + file + ": "), std::string::npos) << said.err;
+}
+
+}  // namespace
+}  // namespace prehend::house
