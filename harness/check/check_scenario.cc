@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "grammar/base/check.h"
 #include "harness/base/shell_quote.h"
 #include "harness/check/blame.h"
 #include "harness/check/last_pass.h"
 #include "harness/check/state_trace.h"
+#include "harness/episodes/load_episode.h"
 #include "harness/episodes/record_episode.h"
 #include "harness/golden/golden_files.h"
 #include "harness/judge/accept_golden.h"
@@ -71,6 +73,20 @@ RunResult Play(const CheckRequest& request, const LoadedRun& loaded,
   RunResult run = playing.Finish();
   if (recorder) recorder->Finish(run);
   return run;
+}
+
+/// The run that was recorded, with its scenario and the grammar that is asked for.
+Result<std::pair<LoadedRun, RunResult>> ReadPlayed(const CheckRequest& request) {
+  const auto file = episodes::EpisodeFile::Open(request.run.scenario_file);
+  if (!file) return tl::unexpected(file.error());
+  const auto row = std::ranges::find(file->episodes(), request.episode, &episodes::EpisodeRow::id);
+  PREHEND_CHECK(row != file->episodes().end());
+  Result<LoadedRun> loaded = episodes::EpisodeLoader(request.root)
+                                 .Load(*file, *row, {request.run.grammar, request.run.settings});
+  if (!loaded) return tl::unexpected(std::move(loaded.error()));
+  Result<RunResult> run = episodes::Replay(*file, *row, *loaded);
+  if (!run) return tl::unexpected(std::move(run.error()));
+  return std::pair(std::move(*loaded), std::move(*run));
 }
 
 /// Draws into the folder of the report.
@@ -195,7 +211,16 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.command = RepeatCommand(request.id, request.run);
   verdict.explain = ExplainCommand(request.id, request.run);
   std::vector<std::string> files;
-  Result<LoadedRun> loaded = LoadRun(request.run, request.root, &files);
+  std::optional<RunResult> played;
+  Result<LoadedRun> loaded;
+  if (request.episode == 0) {
+    loaded = LoadRun(request.run, request.root, &files);
+  } else if (auto recorded = ReadPlayed(request)) {
+    loaded = std::move(recorded->first);
+    played = std::move(recorded->second);
+  } else {
+    loaded = tl::unexpected(std::move(recorded.error()));
+  }
   const std::vector<std::string> read = files;
   std::ranges::move(FilesOfGolden(request, loaded ? &loaded->scenario : nullptr),
                     std::back_inserter(files));
@@ -216,7 +241,8 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
     recorder.emplace(episodes::RecordRequest{request.record_file, request.root, request.run, read,
                                              request.today, request.program},
                      checked.loaded.scenario);
-  checked.result = Play(request, checked.loaded, recorder ? &*recorder : nullptr);
+  checked.result =
+      played ? std::move(*played) : Play(request, checked.loaded, recorder ? &*recorder : nullptr);
   if (recorder) verdict.not_recorded = recorder->problem();
   verdict.shows = checked.loaded.scenario.shows;
   verdict.state_hash = HashText(checked.result.state_hash);
@@ -235,7 +261,8 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.claims = JudgeClaims(checked.loaded, checked.result.timeline);
   Append(judgement.findings, ClaimFindings(verdict.claims));
   JudgeAgainstGolden(request, checked, verdict.inputs, judgement);
-  Append(judgement.findings, JudgeOtherEngine(checked, judgement.engine_difference));
+  if (request.episode == 0)
+    Append(judgement.findings, JudgeOtherEngine(checked, judgement.engine_difference));
   JudgePictures(request, checked, verdict.pictures, judgement);
   if (judgement.golden)
     Append(judgement.findings,

@@ -15,6 +15,7 @@ namespace prehend::harness {
 
 struct CheckRequest {
   RunRequest run;
+  std::int64_t episode = 0;   ///< not 0: this one of the episode file `run.scenario_file`
   std::string id;             ///< skill/name, or the path of a scenario outside the project
   std::string root;           ///< the project's
   std::string report_folder;  ///< pictures go to its folder `pictures`

@@ -55,13 +55,17 @@ class Suite {
   /// Only these have goldens, and are remembered from one check to the next.
   bool InProject(std::size_t scenario) const { return scenarios_[scenario].in_project; }
 
+  bool IsRemembered(std::size_t scenario) const {
+    return InProject(scenario) && scenarios_[scenario].episode == 0;
+  }
+
   bool Changed() const {
     return !request_.changes.grammar.empty() || !request_.changes.settings.empty();
   }
 
   /// The last pass, when nothing that it depended on changed since.
   std::optional<ScenarioVerdict> Unchanged(std::size_t scenario) const {
-    if (!InProject(scenario)) return std::nullopt;
+    if (!IsRemembered(scenario)) return std::nullopt;
     const auto record = records_.Read(Id(scenario));
     const bool holds = record && record->passed && record->program == program_ &&
                        record->pictures >= request_.pictures && ChangedInputs(*record).empty();
@@ -103,11 +107,12 @@ class Suite {
     run.scenario_file = scenarios_[turn.scenario].path;
     const CheckRequest check{
         .run = std::move(run),
+        .episode = scenarios_[turn.scenario].episode,
         .id = Id(turn.scenario),
         .root = request_.root,
         .report_folder = request_.report_folder,
         .pictures = request_.pictures && turn.repetition == 0,
-        .leave_nothing_behind = Changed() || turn.repetition > 0 || !InProject(turn.scenario),
+        .leave_nothing_behind = Changed() || turn.repetition > 0 || !IsRemembered(turn.scenario),
         .in_project = InProject(turn.scenario),
         .transforms = request_.transforms,
         .record_file = turn.repetition == 0 ? request_.record_file : "",
@@ -155,7 +160,7 @@ class Suite {
     for (std::size_t i = 0; i < runs_.size(); ++i) {
       verdicts.push_back(MergeRepeats(runs_[i]));
       const ScenarioVerdict& merged = verdicts.back();
-      if (merged.verdict == Verdict::kUnchanged || Changed() || !InProject(i)) continue;
+      if (merged.verdict == Verdict::kUnchanged || Changed() || !IsRemembered(i)) continue;
       costs_[merged.scenario] = merged.seconds;
       // Without its record the next check takes longer; if build/ cannot be written, the report,
       // which is in it, too, is an error.

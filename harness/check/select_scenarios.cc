@@ -10,6 +10,8 @@
 #include <iterator>
 #include <tuple>
 
+#include "harness/episodes/episode_file.h"
+#include "harness/episodes/schema.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
 
@@ -80,6 +82,27 @@ std::string WhyNoMatch(const std::string& typed, const std::vector<ScenarioFile>
          " ('prehend list' shows all)";
 }
 
+/// The episodes of a file, each as the scenario that it was.
+std::vector<ScenarioFile> EpisodesOf(const std::string& path, const std::vector<ScenarioFile>& all,
+                                     std::string& problem) {
+  std::vector<ScenarioFile> found;
+  const auto file = episodes::EpisodeFile::Open(path);
+  if (!file) problem = path + ": " + file.error().front().message;
+  if (!file) return found;
+  if (file->episodes().empty()) problem = path + " has no episodes";
+  for (const episodes::EpisodeRow& row : file->episodes()) {
+    const std::size_t slash = std::min(row.scenario.rfind('/'), row.scenario.size());
+    const bool has_skill = slash < row.scenario.size();
+    const bool known = std::ranges::find(all, row.scenario, IdOf) != all.end();
+    found.push_back({.skill = has_skill ? row.scenario.substr(0, slash) : "",
+                     .name = has_skill ? row.scenario.substr(slash + 1) : row.scenario,
+                     .path = path,
+                     .in_project = known,
+                     .episode = row.id});
+  }
+  return found;
+}
+
 }  // namespace
 
 std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
@@ -96,12 +119,18 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
       problem = WhyNoMatch(pattern, all);
       return std::nullopt;
     }
-    named.push_back(ScenarioAt(all, pattern));
+    if (!episodes::IsEpisodeFile(pattern)) {
+      named.push_back(ScenarioAt(all, pattern));
+      continue;
+    }
+    std::ranges::move(EpisodesOf(pattern, all, problem), std::back_inserter(named));
+    if (!problem.empty()) return std::nullopt;
   }
   std::ranges::sort(named, {}, [](const ScenarioFile& file) {
-    return std::tuple(!file.in_project, file.skill, file.name, file.path);
+    return std::tuple(!file.in_project, file.skill, file.name, file.path, file.episode);
   });
-  const auto repeated = std::ranges::unique(named, {}, &ScenarioFile::path);
+  const auto repeated = std::ranges::unique(
+      named, {}, [](const ScenarioFile& file) { return std::pair(file.path, file.episode); });
   named.erase(repeated.begin(), repeated.end());
   const ScenarioLibrary library = ProjectLibrary(root);
   ScenarioSelection selection;

@@ -81,7 +81,7 @@ std::vector<Option> SelectionOptions() {
       "Which scenarios",
       {
           {.name = "names",
-           .help = "names, skill/name, globs or files; default: all scenarios",
+           .help = "names, skill/name, globs or files, also episode files; default: all scenarios",
            .repeatable = true},
           {.name = "--filter",
            .help = "keep those that match this glob or have the tag; with a leading '!' drop\n"
@@ -287,6 +287,13 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   auto selection =
       SelectScenarios(options.All("names"), options.All("--filter"), context.root, problem);
   if (!selection) return Complain(context, ExitCode::kNothing, problem);
+  const bool is_played = std::ranges::any_of(
+      selection->scenarios, [](const ScenarioFile& file) { return file.episode != 0; });
+  for (const char* of_play : {"--record", "--transform", "--ensemble", "--repeat"}) {
+    if (is_played && options.Has(of_play))
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("{} plays scenarios; an episode file was named", of_play));
+  }
   if (options.Has("--shard")) {
     KeepShard(*ParseShard(options.Text("--shard")), *selection);
     if (selection->scenarios.empty() && selection->orphans.empty())

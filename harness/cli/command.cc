@@ -18,7 +18,7 @@ Option ScenarioArgument() {
 
 Option EpisodeArgument() {
   return {.name = "scenario",
-          .help = "a scenario (name, skill/name or file), or a recording",
+          .help = "a scenario (name, skill/name or file), an episode file or a recording",
           .required = true};
 }
 
@@ -66,23 +66,6 @@ tl::expected<ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& t
     std::ranges::replace(corrected, typed, near);
   }
   return tl::unexpected(ComplainWithCorrection(context, ExitCode::kNothing, message, corrected));
-}
-
-tl::expected<EpisodeSource, ExitCode> OpenEpisodeOrComplain(const ParsedOptions& options,
-                                                            const CommandContext& context) {
-  const std::string typed = options.Text("scenario");
-  const RunRequest request = RequestOf(options, typed);
-  const auto reported = [&](const grammar::Diagnostics& diagnostics) {
-    return Complain(context, diagnostics);
-  };
-  if (IsRecording(typed)) {
-    return OpenRecording(typed, request.grammar, request.settings, context.root)
-        .map_error(reported);
-  }
-  const auto file = FindScenarioOrComplain(typed, context);
-  if (!file) return tl::unexpected(file.error());
-  return OpenScenario(file->path, request.grammar, request.settings, context.root)
-      .map_error(reported);
 }
 
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message) {

@@ -54,6 +54,8 @@ Command BenchCommand();
 Command ScoreCommand();
 Command ExplainCommand();
 Command TracksCommand();
+Command EpisodesCommand();
+Command ReplayCommand();
 
 constexpr int kMaxJobs = 256;
 /// The number of processes that keep this machine busy.
@@ -61,7 +63,7 @@ int CoreCount();
 
 // Options that several commands have.
 Option ScenarioArgument();
-Option EpisodeArgument();  ///< a scenario or a recording
+Option EpisodeArgument();  ///< a scenario, an episode file or a recording
 Option GrammarOption();
 Option SettingsOption();
 RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_file);
@@ -72,11 +74,6 @@ std::optional<ExitCode> RefuseRecording(const std::string& typed, const CommandC
 /// The scenario that was typed, by name or path; otherwise, after reporting the nearest name, the
 /// exit code.
 tl::expected<ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& typed,
-                                                            const CommandContext& context);
-
-/// The episode that was typed for `scenario`, a scenario or a recording, with the run options;
-/// otherwise, after reporting why there is none, the exit code.
-tl::expected<EpisodeSource, ExitCode> OpenEpisodeOrComplain(const ParsedOptions& options,
                                                             const CommandContext& context);
 
 /// Prints "prehend: MESSAGE" to `err`, of a failure also the command that shows it again, and

@@ -20,9 +20,10 @@ namespace prehend::harness {
 namespace {
 
 std::vector<Command> Commands() {
-  return {ListCommand(),      ValidateCommand(), RunCommand(),     CheckCommand(),  AcceptCommand(),
-          ReviewCommand(),    RenderCommand(),   NewCommand(),     SchemaCommand(), BenchCommand(),
-          ResegmentCommand(), ScoreCommand(),    ExplainCommand(), TracksCommand()};
+  return {ListCommand(),    ValidateCommand(), RunCommand(),       CheckCommand(),
+          AcceptCommand(),  ReviewCommand(),   RenderCommand(),    NewCommand(),
+          SchemaCommand(),  BenchCommand(),    ResegmentCommand(), ScoreCommand(),
+          ExplainCommand(), TracksCommand(),   EpisodesCommand(),  ReplayCommand()};
 }
 
 bool IsSet(const char* variable) {

@@ -8,6 +8,7 @@
 #include "harness/base/shell_quote.h"
 #include "harness/check/check_scenario.h"
 #include "harness/cli/command.h"
+#include "harness/cli/recorded_episode.h"
 #include "harness/explain/explain.h"
 #include "harness/explain/replay.h"
 #include "harness/run/run_text.h"
@@ -128,6 +129,7 @@ Command ExplainCommand() {
                        "explain milk_carton_wrap --set lift_rise=40cm --expected picking_up --json",
                        "explain milk.jsonl --event 'grasping(right_hand, milk)'"},
           .options = {EpisodeArgument(),
+                      EpisodeOption(),
                       {.name = "--event",
                        .help = "an event that happened: reaching@1.24s, 'sliding right_hand milk "
                                "@2.0s'",

@@ -5,6 +5,8 @@
 
 #include "harness/base/atomic_file.h"
 #include "harness/cli/command.h"
+#include "harness/cli/recorded_episode.h"
+#include "harness/episodes/schema.h"
 #include "harness/pictures/pictures.h"
 #include "harness/run/event_time.h"
 #include "harness/run/run_text.h"
@@ -26,21 +28,31 @@ std::optional<PictureYaml> AskedPicture(const ParsedOptions& options, const Scen
   return entry;
 }
 
-PictureResult Draw(const ParsedOptions& options, const ScenarioFile& file, const LoadedRun& loaded,
-                   const RunResult& run, const std::string& root) {
+PictureResult Draw(const ParsedOptions& options, const LoadedRun& loaded, const RunResult& run,
+                   const std::string& root) {
   const std::string output = options.Text("--output");
   if (!output.empty())
     return DrawPicture(loaded.scenario, run, loaded.scenario.pictures.front(), output);
-  const fs::path folder = fs::path(root) / "build" / "pictures" / file.skill;
+  const fs::path folder = fs::path(root) / "build" / "pictures" / loaded.scenario.skill;
   std::error_code error;
   fs::create_directories(folder, error);
   return DrawPictures(loaded.scenario, run, folder.string());
 }
 
 ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) {
-  const auto file = FindScenarioOrComplain(options.Text("scenario"), context);
-  if (!file) return file.error();
-  Result<LoadedRun> loaded = LoadRun(RequestOf(options, file->path), context.root);
+  const std::string typed = options.Text("scenario");
+  std::optional<RecordedEpisode> recorded;
+  Result<LoadedRun> loaded;
+  if (episodes::IsEpisodeFile(typed)) {
+    auto opened = OpenRecordedOrComplain(typed, options, context);
+    if (!opened) return opened.error();
+    recorded.emplace(std::move(*opened));
+    loaded = recorded->loaded;
+  } else {
+    const auto file = FindScenarioOrComplain(typed, context);
+    if (!file) return file.error();
+    loaded = LoadRun(RequestOf(options, file->path), context.root);
+  }
   if (!loaded) return Complain(context, loaded.error());
   if (auto asked = AskedPicture(options, loaded->scenario)) {
     const auto problem = WhyNoEventTime(asked->at.value, *loaded->program);
@@ -64,8 +76,12 @@ ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) 
     if (!why.empty()) return Complain(context, ExitCode::kBadInput, "--output: " + why);
   }
 
-  const RunResult run = RunScenario(loaded->scenario, loaded->program, {.record = true});
-  const PictureResult drawn = Draw(options, *file, *loaded, run, context.root);
+  const Result<RunResult> played =
+      recorded ? episodes::Replay(recorded->file, recorded->row, *loaded)
+               : RunScenario(loaded->scenario, loaded->program, {.record = true});
+  if (!played) return Complain(context, played.error());
+  const RunResult& run = *played;
+  const PictureResult drawn = Draw(options, *loaded, run, context.root);
   for (const WrittenPicture& picture : drawn.pictures) {
     if (!picture.missed.empty())
       context.err << "prehend: warning: " << picture.file << ": " << picture.missed
@@ -94,8 +110,10 @@ Command RenderCommand() {
       .name = "render",
       .summary = "Draw a scenario's pictures, or one of your own",
       .examples = {"render milk_carton_wrap", "render milk_carton_wrap -o milk.png",
+                   "render suite.episodes --episode slide/hop_divides_a_slide -o hop.png",
                    "render milk_carton_wrap --at transporting.begin --camera left -o left.png"},
-      .options = {ScenarioArgument(),
+      .options = {EpisodeArgument(),
+                  EpisodeOption(),
                   {.name = "--output",
                    .help = "the PNG file; default: build/pictures/SKILL/NAME.png",
                    .placeholder = "FILE",

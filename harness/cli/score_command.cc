@@ -59,7 +59,7 @@ std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selec
   std::vector<std::string> ids;
   for (const ScenarioFile& file : selection.scenarios) {
     ids.push_back(IdOf(file));
-    const ScoreRequest request{file.path, ids.back(), context.root, grammars, events};
+    const ScoreRequest request{file.path, file.episode, ids.back(), context.root, grammars, events};
     jobs.push_back([request] { return Judged(request); });
   }
   const WorkerLimits limits{.jobs = CoreCount(), .time_limit_s = kTimeLimit_s};

@@ -9,6 +9,7 @@
 #include "grammar/contents.h"
 #include "harness/base/atomic_file.h"
 #include "harness/cli/command.h"
+#include "harness/cli/recorded_episode.h"
 #include "harness/explain/replay.h"
 #include "harness/explain/tracks.h"
 
@@ -84,6 +85,7 @@ Command TracksCommand() {
                        "tracks milk_carton_wrap --only grasping --only speed_along",
                        "tracks milk.jsonl --grammar my/rules.grammar -o milk.json"},
           .options = {EpisodeArgument(),
+                      EpisodeOption(),
                       {.name = "--output",
                        .help = "the file to write, .csv or .json; - or nothing: print CSV",
                        .placeholder = "FILE",

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "harness/episodes/record_episode.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/run_text.h"
 
@@ -79,13 +80,15 @@ class Worker {
     if (row == file_->episodes().end()) return {{"problem", "the episode is gone\n"}};
     const Result<LoadedRun> loaded = loader_.Load(*file_, *row, request_.choice);
     if (!loaded) return {{"problem", grammar::Format(loaded.error())}};
-    const Result<RunResult> run = Resegment(*file_, *row, *loaded);
+    const Result<RunResult> run =
+        request_.replay ? Replay(*file_, *row, *loaded) : Resegment(*file_, *row, *loaded);
     if (!run) return {{"problem", grammar::Format(run.error())}};
     Json said = {{"table", RunTable(*run)},
                  {"json", RunJson(loaded->scenario, *run).dump()},
                  {"completed", run->status.kind == physics::RunStatus::Kind::kCompleted},
+                 {"finished", row->status != kRecording},
                  {"warnings", grammar::Format(loaded->warnings)}};
-    if (!request_.compare) return said;
+    if (!request_.compare || row->status == kRecording) return said;
     const Result<grammar::Timeline> recorded = file_->TimelineOf(*row);
     if (!recorded) return {{"problem", grammar::Format(recorded.error())}};
     said["differences"] = Differences(*recorded, *run);
@@ -154,7 +157,8 @@ std::vector<Resegmented> ResegmentAll(const std::vector<EpisodeName>& episodes,
                     .differences = one.value("differences", ""),
                     .warnings = one.value("warnings", ""),
                     .problem = one.value("problem", ""),
-                    .completed = one.value("completed", false)};
+                    .completed = one.value("completed", false),
+                    .finished = one.value("finished", false)};
     }
   }
   return results;

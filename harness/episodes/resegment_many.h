@@ -28,6 +28,7 @@ struct ResegmentRequest {
   std::string root;
   GrammarChoice choice;
   bool compare = false;  ///< with what was recognised when it was recorded
+  bool replay = false;   ///< read every tick, and check the state hash
   int jobs = 1;
 };
 
@@ -39,6 +40,7 @@ struct Resegmented {
   std::string warnings;
   std::string problem;  ///< empty, or why it could not be read or segmented
   bool completed = false;
+  bool finished = false;  ///< its recording was not cut off
 };
 
 /// One result per episode, in their order.

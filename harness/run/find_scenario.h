@@ -2,6 +2,7 @@
 // Finds scenarios by name. Tested by tests/harness/run/find_scenario_test.cc
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,7 +17,8 @@ struct ScenarioFile {
   std::string skill;  ///< its folder below scenarios/, or ""
   std::string name;   ///< without ".yaml"
   std::string path;
-  bool in_project = true;  ///< below root/scenarios, so that it has a golden
+  bool in_project = true;    ///< below root/scenarios, so that it has a golden
+  std::int64_t episode = 0;  ///< not 0: this one of the episode file at `path`, already played
 };
 
 /// All below root/scenarios, sorted by skill and name, without the folder `invalid`.

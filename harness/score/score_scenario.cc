@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "grammar/base/check.h"
 #include "harness/claims/judge_claims.h"
+#include "harness/episodes/load_episode.h"
 #include "harness/oracle/oracle.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/load_run.h"
@@ -34,15 +36,41 @@ std::map<std::string, int> Ignored(const grammar::Timeline& found) {
   return counts;
 }
 
+struct Played {
+  LoadedRun loaded;
+  RunResult run;
+};
+
+/// The scenario, simulated; or the episode, read.
+Result<Played> PlayOrRead(const ScoreRequest& request) {
+  if (request.episode == 0) {
+    Result<LoadedRun> loaded =
+        LoadRun({.scenario_file = request.scenario_file, .grammar = request.grammars.front()},
+                request.root);
+    if (!loaded) return tl::unexpected(std::move(loaded.error()));
+    RunResult run = RunScenario(loaded->scenario, loaded->program, {.record = true});
+    return Played{std::move(*loaded), std::move(run)};
+  }
+  const auto file = episodes::EpisodeFile::Open(request.scenario_file);
+  if (!file) return tl::unexpected(file.error());
+  const auto row = std::ranges::find(file->episodes(), request.episode, &episodes::EpisodeRow::id);
+  PREHEND_CHECK(row != file->episodes().end());
+  Result<LoadedRun> loaded =
+      episodes::EpisodeLoader(request.root).Load(*file, *row, {request.grammars.front(), {}});
+  if (!loaded) return tl::unexpected(std::move(loaded.error()));
+  Result<RunResult> run = episodes::Replay(*file, *row, *loaded);
+  if (!run) return tl::unexpected(std::move(run.error()));
+  return Played{std::move(*loaded), std::move(*run)};
+}
+
 }  // namespace
 
 tl::expected<std::vector<score::EpisodeToScore>, ScoreFailure> EpisodesToScore(
     const ScoreRequest& request) {
-  const Result<LoadedRun> loaded = LoadRun(
-      {.scenario_file = request.scenario_file, .grammar = request.grammars.front()}, request.root);
-  if (!loaded) return tl::unexpected(ScoreFailure{loaded.error()});
-  const Scenario& scenario = loaded->scenario;
-  const RunResult run = RunScenario(scenario, loaded->program, {.record = true});
+  const Result<Played> played = PlayOrRead(request);
+  if (!played) return tl::unexpected(ScoreFailure{played.error()});
+  const Scenario& scenario = played->loaded.scenario;
+  const RunResult& run = played->run;
   if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
     const grammar::Diagnostic failed{
         .file = request.scenario_file, .place = {}, .message = StatusText(run)};

@@ -14,6 +14,7 @@ namespace prehend::harness {
 
 struct ScoreRequest {
   std::string scenario_file;
+  std::int64_t episode = 0;  ///< not 0: this one of the episode file `scenario_file`
   std::string id;
   std::string root;
   std::vector<std::string> grammars;  ///< names or paths

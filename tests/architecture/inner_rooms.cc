@@ -69,7 +69,7 @@ const Arrows& ProjectArrows() {
       {"harness/pictures", {"harness/run", "harness/scenario", "harness/timeline", "render"}},
       {"harness/score",
        {"grammar", "grammar/base", "harness/base", "harness/claims", "harness/closed_form",
-        "harness/oracle", "harness/run", "harness/timeline"}},
+        "harness/episodes", "harness/oracle", "harness/run", "harness/timeline"}},
       {"harness/speed",
        {"grammar", "grammar/base", "harness/base", "harness/run", "harness/scenario",
         "harness/sense"}},

@@ -41,6 +41,60 @@ TEST(Episodes, ARunAndItsEpisodeSayTheSame) {
   EXPECT_EQ(none.err, "prehend: --episode: no episode matches 'slide/*'\n");
 }
 
+TEST(Episodes, EveryCommandTakesThem) {
+  const auto folder = FreshFolder("all_commands");
+  const auto file = (folder / "two.episodes").string();
+  const std::string slide = "slide/hop_divides_a_slide";
+  ASSERT_EQ(Prehend({"run", kShort, "--record", file}).exit_code, 0);
+  ASSERT_EQ(Prehend({"run", slide, "--record", file}).exit_code, 0);
+  const Said listed = Prehend({"episodes", file});
+  EXPECT_NE(listed.out.find("completed  "), std::string::npos) << listed.out;
+  EXPECT_NE(listed.out.find(slide), std::string::npos) << listed.out;
+  EXPECT_EQ(Prehend({"replay", file}).out,
+            "2 of 2 episodes have the frames and events that were recorded\n");
+
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"explain"},
+                                             {"explain", "--expected", "sliding@2s", "--json"},
+                                             {"tracks", "--only", "grasping"}}) {
+    std::vector<std::string> from_file = words, from_scenario = words;
+    from_file.insert(from_file.begin() + 1, {file, "--episode", "slide/*"});
+    from_scenario.insert(from_scenario.begin() + 1, slide);
+    const Said one = Prehend(from_file), other = Prehend(from_scenario);
+    EXPECT_EQ(one.exit_code, 0) << one.err;
+    EXPECT_EQ(one.out, other.out);
+  }
+  const auto report = (folder / "report").string();
+  const Said checked = Prehend({"check", file, "--no-pictures", "--report", report});
+  EXPECT_EQ(checked.exit_code, 0) << checked.out;
+  EXPECT_NE(checked.out.find("passed  " + slide), std::string::npos) << checked.out;
+  const Said scored = Prehend({"score", file, "--grammar", "pick_and_place"}),
+             played = Prehend({"score", kShort, slide, "--grammar", "pick_and_place"});
+  EXPECT_EQ(scored.exit_code, 0) << scored.err;
+  EXPECT_EQ(scored.out, played.out);
+
+  const Said which = Prehend({"explain", file});
+  EXPECT_EQ(which.exit_code, 4);
+  EXPECT_NE(which.err.find("has 2 such episodes; --episode selects one"), std::string::npos);
+  const Said again = Prehend({"check", file, "--ensemble"});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_EQ(again.err, "prehend: --ensemble plays scenarios; an episode file was named\n");
+}
+
+TEST(Episodes, ThePictureOfAnEpisodeIsThatOfItsScenario) {
+  const auto folder = FreshFolder("episode_pictures");
+  const auto file = (folder / "a.episodes").string(), one = (folder / "one.png").string(),
+             other = (folder / "other.png").string();
+  ASSERT_EQ(Prehend({"run", kShort, "--record", file}).exit_code, 0);
+  const Said drawn = Prehend({"render", file, "--at", "1.5", "-o", one});
+  if (drawn.exit_code == 3 && drawn.err.find("no picture") != std::string::npos)
+    GTEST_SKIP() << "this build draws no pictures";
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  ASSERT_EQ(Prehend({"render", kShort, "--at", "1.5", "-o", other}).exit_code, 0);
+  EXPECT_EQ(ReadFile(one), ReadFile(other));
+  EXPECT_FALSE(ReadFile(one).empty());
+}
+
 TEST(Episodes, AGrammarOfOnesOwnIsKeptWithTheEpisode) {
   const auto folder = FreshFolder("own_grammar");
   const auto file = (folder / "a.episodes").string(), own = (folder / "own.grammar").string();
