@@ -4,6 +4,8 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "tests/program/program.h"
 
@@ -39,6 +41,82 @@ TEST(Recording, WhatBadSensorsSawIsSegmentedAgainAsItWas) {
   const auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
   EXPECT_EQ(first["events"], second["events"]);
   EXPECT_FALSE(first["events"].empty());
+}
+
+/// The events of this name in what `--json` printed.
+std::vector<nlohmann::json> EventsNamed(const std::string& name, const Said& said) {
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  std::vector<nlohmann::json> found;
+  const auto printed = nlohmann::json::parse(said.out, nullptr, false);
+  if (printed.is_discarded()) return found;
+  for (const auto& event : printed["events"]) {
+    if (event["event"] == name) found.push_back(event);
+  }
+  return found;
+}
+
+TEST(Recording, ClassesAreSegmentedAgainAsTheScenarioNamesThem) {
+  const auto folder = FreshFolder("classes");
+  const auto file = (folder / "ball.jsonl").string();
+  const Said played =
+      Prehend({"run", "ball_in_a_carried_cup_is_supported_by_it", "--json", "--record", file});
+  const Said again = Prehend({"resegment", file, "--json"});
+  EXPECT_EQ(EventsNamed("contained_in", played).size(), 1u);
+  EXPECT_EQ(EventsNamed("contained_in", again), EventsNamed("contained_in", played));
+
+  // A grammar of one's own can name the class and its superclass; both mean the cup.
+  WriteFile(
+      folder / "mine.grammar",
+      "grammar mine\nuse contact\n"
+      "event by_class(ball: Ball, cup: Cup) while supported_by(ball, cup)\n"
+      "event by_superclass(ball: Movable, vessel: Container) while supported_by(ball, vessel)\n");
+  const Said mine =
+      Prehend({"resegment", file, "--grammar", (folder / "mine.grammar").string(), "--json"});
+  ASSERT_EQ(EventsNamed("by_class", mine).size(), 1u);
+  ASSERT_EQ(EventsNamed("by_superclass", mine).size(), 1u);
+  EXPECT_EQ(EventsNamed("by_class", mine)[0]["begin_tick"],
+            EventsNamed("by_superclass", mine)[0]["begin_tick"]);
+
+  // Without its superclass the cup is no container, and a warning says that there is none.
+  const auto poorer = folder / "poorer.jsonl";
+  WriteFile(poorer, Replaced(ReadFile(file), R"("kinds":["Container"],)", ""));
+  const Said none = Prehend({"resegment", poorer.string(), "--json"});
+  EXPECT_TRUE(EventsNamed("contained_in", none).empty()) << none.out;
+  EXPECT_NE(none.err.find("no entity of this episode is a 'Container'"), std::string::npos)
+      << none.err;
+}
+
+TEST(Recording, AHandIsPartOfItsPerson) {
+  const auto folder = FreshFolder("part_of");
+  const auto file = (folder / "milk.jsonl").string(), rules = (folder / "hers.grammar").string();
+  WriteFile(rules,
+            "grammar hers\nuse grasp\n"
+            "event she_holds(person: Person, object: Movable, hand: Hand)\n"
+            "  while grasping(hand, object) and part_of(hand, person)\n"
+            "event nobody_holds(person: Person, object: Movable, hand: Hand)\n"
+            "  while grasping(hand, object) and not part_of(hand, person)\n");
+  const Said played =
+      Prehend({"run", "arm_follows_the_hand", "--grammar", rules, "--json", "--record", file});
+  const auto hers = EventsNamed("she_holds", played), grasps = EventsNamed("grasping", played);
+  ASSERT_EQ(hers.size(), 1u) << played.out;
+  ASSERT_EQ(grasps.size(), 1u) << played.out;
+  EXPECT_EQ(hers[0]["begin_tick"], grasps[0]["begin_tick"]);
+  EXPECT_EQ(hers[0]["end_tick"], grasps[0]["end_tick"]);
+  EXPECT_TRUE(EventsNamed("nobody_holds", played).empty()) << played.out;
+  EXPECT_EQ(EventsNamed("she_holds", Prehend({"resegment", file, "--grammar", rules, "--json"})),
+            hers);
+
+  // The same motion of a hand that belongs to nobody.
+  const std::string alone = ReadFile(file);
+  const std::size_t hand = alone.find(R"("right_hand":{)"),
+                    part = alone.find(R"("part_of":"anna",)", hand);
+  ASSERT_LT(part, alone.find('\n'));
+  const auto nobodys = folder / "nobodys.jsonl";
+  WriteFile(nobodys, alone.substr(0, part) +
+                         alone.substr(part + std::string(R"("part_of":"anna",)").size()));
+  const Said said = Prehend({"resegment", nobodys.string(), "--grammar", rules, "--json"});
+  EXPECT_TRUE(EventsNamed("she_holds", said).empty()) << said.out;
+  EXPECT_EQ(EventsNamed("nobody_holds", said).size(), 1u) << said.out;
 }
 
 TEST(Recording, ADashPrintsIt) {

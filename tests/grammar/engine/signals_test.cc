@@ -295,6 +295,30 @@ TEST(Signals, APartOfAPartIsAPartOfTheWhole) {
   EXPECT_EQ(pairs(), 6u);
 }
 
+TEST(Signals, AHandIsAPartOfItsPersonOnly) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent e(hand: Hand, person: Person) while part_of(hand, person)");
+  Scene scene;
+  auto& entities = scene.entity_table.entities;
+  entities[Scene::kTray].classes = {"Person", "Entity"};
+  entities[Scene::kCup].classes = {"Person", "Entity"};
+  entities[Scene::kCup].part_of = kNoEntity;
+  const auto owners = [&] {
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    monitor.Advance(scene.At(0), events);
+    monitor.Finish(10, events);
+    std::vector<int> found;
+    for (const Event& event : events) found.push_back(event.roles[1]);
+    return found;
+  };
+  EXPECT_EQ(owners(), std::vector<int>{});
+  entities[Scene::kHand].part_of = Scene::kTray;
+  EXPECT_EQ(owners(), std::vector<int>{Scene::kTray});
+  entities[Scene::kHand].part_of = Scene::kCup;
+  EXPECT_EQ(owners(), std::vector<int>{Scene::kCup});
+}
+
 TEST(Signals, InsideAsksTheCentreOfTheBox) {
   const auto program =
       testing::CompileText("grammar t\nevent e(cup: Cup, tray: Movable) while inside(cup, tray)");

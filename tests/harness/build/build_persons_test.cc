@@ -44,6 +44,19 @@ TEST(PersonsTest, ABodyIsAnEntityWithParts) {
   EXPECT_EQ(entity_table.entities.back().name, "right_hand");
 }
 
+TEST(PersonsTest, HerHandIsAPartOfHer) {
+  const auto part_of = [](const std::string& actor) {
+    const auto read = Read(WithActor(actor));
+    EXPECT_TRUE(read) << Brief(ErrorsOf(read));
+    const grammar::EntityTable table = MakeEntityTable(*read);
+    EXPECT_EQ(table.entities.back().name, "right_hand");
+    const int whole = table.entities.back().part_of;
+    return whole == grammar::kNoEntity ? "" : table.entities[static_cast<std::size_t>(whole)].name;
+  };
+  EXPECT_EQ(part_of("{person: body, at_m: [-0.9, 0, 0], right_hand: right_hand}"), "anna");
+  EXPECT_EQ(part_of("{person: body, at_m: [-0.9, 0, 0]}"), "");
+}
+
 TEST(PersonsTest, StepsAreUnderstood) {
   const auto read = Read(WithActor("{person: body, at_m: [-0.9, 0, 0]}",
                                    "anna: {look_at: milk}\n  - anna: {look_at_m: [1, 0, 1]}\n  - "

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "tests/harness/scenario_fixture.h"
@@ -81,6 +82,41 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
   EXPECT_EQ(b.touches[0].p_W_m, Eigen::Vector3d(0.1, 0.2, 0.25));
   EXPECT_EQ(b.touches[0].nhat_BA_W, Eigen::Vector3d(0, 0, -1)) << "on the first of the two";
   EXPECT_EQ(b.touches[0].normal_force_n, 2);
+}
+
+TEST(EpisodeFile, ClassesAndPartsOfAreReadAsTheyWereWritten) {
+  const auto read = ReadText(
+      R"({"recording": 1, "episode": "cup", "ticks_per_second": 100, "entities": {)"
+      R"("mug": {"class": "Mug", "kinds": ["Cup", "Container"], "size_m": [0.1, 0.1, 0.1]}, )"
+      R"("drawer": {"class": "Drawer", "kinds": ["Container"], "jointed": true, "part_of": "chest", "size_m": [0.4, 0.4, 0.1]}, )"
+      R"("chest": {"fixed": true, "size_m": [0.5, 0.5, 1]}, )"
+      R"("anna": {"class": "Person", "person": true, "size_m": [0.2, 0.2, 0.2]}, )"
+      R"("hand": {"hand": true, "part_of": "anna", "size_m": [0.1, 0.1, 0.03]}}})"
+      "\n{\"tick\": 0, \"hands\": {\"hand\": {}}}\n");
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  std::ostringstream written;
+  EpisodeWriter writer(written, read->header);
+  Episode episode = *read;
+  writer.Write(episode.frames[0].View());
+  const auto again = ReadText(written.str());
+  ASSERT_TRUE(again) << Brief(ErrorsOf(again)) << written.str();
+  using Classes = std::vector<std::string>;
+  for (const auto& one : {read, again}) {
+    const auto& entities = one->header.entity_table.entities;
+    ASSERT_EQ(entities.size(), 5u);
+    std::map<std::string, const grammar::EntityInfo*> named;
+    for (const auto& entity : entities) named[entity.name] = &entity;
+    EXPECT_EQ(named["mug"]->classes,
+              (Classes{"Mug", "Cup", "Container", "Movable", "Thing", "Entity"}));
+    EXPECT_EQ(named["drawer"]->classes,
+              (Classes{"Drawer", "Container", "Jointed", "Thing", "Entity"}));
+    EXPECT_EQ(named["chest"]->classes, (Classes{"Object", "Fixed", "Thing", "Entity"}));
+    EXPECT_EQ(named["anna"]->classes, (Classes{"Person", "Entity"}));
+    EXPECT_EQ(named["hand"]->classes, (Classes{"Hand", "Entity"}));
+    EXPECT_EQ(&entities[static_cast<std::size_t>(named["drawer"]->part_of)], named["chest"]);
+    EXPECT_EQ(&entities[static_cast<std::size_t>(named["hand"]->part_of)], named["anna"]);
+    EXPECT_EQ(named["mug"]->part_of, grammar::kNoEntity);
+  }
 }
 
 /// A recording of a cup with these parts, and one frame.
