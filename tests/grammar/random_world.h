@@ -140,6 +140,10 @@ condition apart_any(object: Movable) while apart(object, any)
 event tilted(object: Movable) while tilt(object) < 1 rad and not left_any(object) and rises(object)
 condition left_any(object: Movable) while left(any, object)
 condition rises(object: Movable) while vertical_speed(object) > 1 cm/s bridging 40 ms requires rise(object) > 5 mm
+event hoisted(hand: Hand, object: Movable)
+  from touching(hand, object) begins to rate(height(object), 150 ms) >= rate(height(object), 150 ms)@begin + 5 cm/s begins
+  during gripping(hand)
+event unhoisted(hand: Hand, object: Movable) while touching(hand, object) and not hoisted(hand, object)
 event story(hand: Hand, object: Movable)
   compose first: near(hand, object), then: grasping(hand, object) where first overlaps|before|meets|contains then
 )";
