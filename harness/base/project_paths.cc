@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "harness/base/text_file.h"
+
 namespace prehend::harness {
 namespace {
 
@@ -39,14 +41,22 @@ std::optional<std::string> FindProjectRoot() {
   return RootAbove(fs::current_path(error));
 }
 
-std::vector<std::string> NamesIn(const std::string& folder, std::string_view ending) {
-  std::vector<std::string> names;
+std::vector<std::string> FilesIn(const std::string& folder, std::string_view ending) {
+  std::vector<std::string> files;
   std::error_code error;
   for (const fs::directory_entry& file : fs::directory_iterator(folder, error)) {
     const std::string name = file.path().filename().string();
-    if (name.ends_with(ending)) names.push_back(name.substr(0, name.size() - ending.size()));
+    if (name.ends_with(ending)) files.push_back(name);
   }
-  std::sort(names.begin(), names.end());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<std::string> NamesIn(const std::string& folder, std::string_view ending) {
+  std::vector<std::string> names;
+  for (const std::string& file : FilesIn(folder, ending)) {
+    if (ReadableName(file) == file) names.push_back(file.substr(0, file.size() - ending.size()));
+  }
   return names;
 }
 

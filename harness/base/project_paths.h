@@ -21,7 +21,11 @@ std::optional<std::string> FindProjectRoot();
 std::string GrammarFolder(const std::string& root);
 std::string HandFolder(const std::string& root);
 
-/// What the files in `folder` with this ending are called without it, sorted.
+/// The files in `folder` with this ending, sorted.
+std::vector<std::string> FilesIn(const std::string& folder, std::string_view ending);
+
+/// What they are called without the ending; only those with a ReadableName(), as no other can be
+/// asked for.
 std::vector<std::string> NamesIn(const std::string& folder, std::string_view ending);
 
 /// root/grammar/library/NAME.grammar and root/physics/library/NAME.hand.yaml.

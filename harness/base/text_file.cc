@@ -72,6 +72,19 @@ bool IsFit(std::string_view text, std::size_t length) {
   return length > 0 && NameOfStrange(CodePoint(text.substr(0, length))).empty();
 }
 
+/// Each sequence that is not fit, or that is one of `others`, becomes U+FFFD.
+std::string Readable(std::string_view bytes, std::string_view others) {
+  std::string text;
+  text.reserve(bytes.size());
+  while (!bytes.empty()) {
+    const std::size_t length = Utf8Length(bytes);
+    const bool fits = IsFit(bytes, length) && others.find(bytes.front()) == std::string_view::npos;
+    text += fits ? bytes.substr(0, length) : std::string_view("\uFFFD");
+    bytes.remove_prefix(std::max<std::size_t>(1, length));
+  }
+  return text;
+}
+
 /// Without the line itself: printing it could garble a terminal.
 Diagnostic NotText(const std::string& file, std::string_view text, std::size_t offset,
                    std::string message) {
@@ -117,15 +130,21 @@ std::string WhyNotReadable(const std::string& path) {
 
 }  // namespace
 
-std::string ReadableText(std::string_view bytes) {
-  std::string text;
-  text.reserve(bytes.size());
-  while (!bytes.empty()) {
-    const std::size_t length = Utf8Length(bytes);
-    text += IsFit(bytes, length) ? bytes.substr(0, length) : std::string_view("\uFFFD");
-    bytes.remove_prefix(std::max<std::size_t>(1, length));
+std::string ReadableText(std::string_view bytes) { return Readable(bytes, ""); }
+
+std::string ReadableName(std::string_view bytes) { return Readable(bytes, "\t\n"); }
+
+std::string StrangeIn(std::string_view value) {
+  for (std::size_t i = 0; i < value.size();) {
+    const std::size_t length = Utf8Length(value.substr(i));
+    if (length == 0)
+      return fmt::format("byte 0x{:02x} that is not UTF-8", static_cast<unsigned char>(value[i]));
+    const char32_t code = CodePoint(value.substr(i, length));
+    const std::string_view name = code == '\t' ? "control character" : NameOfStrange(code);
+    if (!name.empty()) return fmt::format("{} U+{:04X}", name, static_cast<unsigned>(code));
+    i += length;
   }
-  return text;
+  return "";
 }
 
 Diagnostics CheckText(const std::string& file, std::string_view text) {
@@ -160,10 +179,12 @@ Diagnostics CheckText(const std::string& file, std::string_view text) {
 Result<std::string> ReadTextFile(const std::string& path) {
   const auto refuse = [&](std::string why) {
     Diagnostic diagnostic;
-    diagnostic.file = path;
+    diagnostic.file = ReadableName(path);
     diagnostic.message = std::move(why);
     return tl::unexpected(grammar::Diagnostics{diagnostic});
   };
+  if (ReadableName(path) != path)
+    return refuse("the name of this file holds what is no printable text; rename it");
   if (auto why = WhyNotReadable(path); !why.empty()) return refuse(std::move(why));
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));

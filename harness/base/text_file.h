@@ -14,9 +14,9 @@ namespace prehend::harness {
 /// Enough for 10,000 entities on a line each; a larger file is a mistake and would only cost time.
 inline constexpr std::uintmax_t kMaxTextFileBytes = 4u << 20;
 
-/// The text, without a byte order mark and with CR LF turned into LF. Reports a file that is
-/// missing, unreadable or too large (by its size, without reading it), a directory or device, and
-/// what CheckText() reports.
+/// The text, without a byte order mark and with CR LF turned into LF. Reports a file whose name is
+/// not a ReadableName() (and names it so), that is missing, unreadable or too large (by its size,
+/// without reading it), a directory or device, and what CheckText() reports.
 Result<std::string> ReadTextFile(const std::string& path);
 
 /// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file): those
@@ -28,5 +28,12 @@ grammar::Diagnostics CheckText(const std::string& file, std::string_view text);
 /// Bytes from elsewhere (the output of a process) as text: each byte that CheckText() would report
 /// becomes U+FFFD. XML 1.0 and JSON can carry the result.
 std::string ReadableText(std::string_view bytes);
+/// Likewise of a name of a file or folder, which stands in one line and one cell: tabs and line
+/// ends become U+FFFD, too.
+std::string ReadableName(std::string_view bytes);
+
+/// The first thing in a value of one file that CheckText() would report, or a tab: "control
+/// character U+009B"; "" if there is none.
+std::string StrangeIn(std::string_view value);
 
 }  // namespace prehend::harness

@@ -13,11 +13,19 @@ namespace {
 
 using RecordJson = nlohmann::json;
 
-/// Discarded when the file does not exist or is not JSON.
+/// Discarded when the file does not exist, is none (a pipe would be waited for) or is not JSON.
 RecordJson ReadJson(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) return RecordJson(RecordJson::value_t::discarded);
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(path, error);
+  std::ifstream file;
+  if (is_file) file.open(path);
+  if (!file.is_open()) return RecordJson(RecordJson::value_t::discarded);
   return RecordJson::parse(file, nullptr, /*allow_exceptions=*/false);
+}
+
+/// A name that is not UTF-8 is written with U+FFFD; no such file is unchanged next time.
+std::string AsText(const RecordJson& json) {
+  return json.dump(1, ' ', false, RecordJson::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -50,7 +58,7 @@ std::string LastPasses::Write(const LastPass& record) const {
                            {"passed", record.passed},
                            {"pictures", record.pictures},
                            {"verdict", Packed(record.verdict)}};
-  return WriteTextFile(folder_ / (record.verdict.scenario + ".json"), json.dump(1) + "\n");
+  return WriteTextFile(folder_ / (record.verdict.scenario + ".json"), AsText(json));
 }
 
 LastPasses::Costs LastPasses::ReadCosts() const {
@@ -64,7 +72,7 @@ LastPasses::Costs LastPasses::ReadCosts() const {
 }
 
 std::string LastPasses::WriteCosts(const Costs& costs) const {
-  return WriteTextFile(folder_ / "costs.json", RecordJson(costs).dump(1) + "\n");
+  return WriteTextFile(folder_ / "costs.json", AsText(costs));
 }
 
 }  // namespace prehend::harness

@@ -4,6 +4,7 @@
 // tests/harness/check/verdict_test.cc
 #include <nlohmann/json.hpp>
 
+#include "harness/base/text_file.h"
 #include "harness/check/verdict.h"
 #include "harness/timeline/event_text.h"
 
@@ -78,6 +79,12 @@ Json ClaimsJson(const std::vector<ClaimVerdict>& verdicts) {
   return claims;
 }
 
+Json InputsJson(const FileHashes& inputs) {
+  Json hashes = Json::object();
+  for (const auto& [path, hash] : inputs) hashes[ReadableName(path)] = hash;
+  return hashes;
+}
+
 }  // namespace
 
 Json VerdictJson(const ScenarioVerdict& verdict) {
@@ -104,7 +111,7 @@ Json VerdictJson(const ScenarioVerdict& verdict) {
           {"ticks", verdict.ticks},
           {"seconds", verdict.seconds},
           {"peak_memory_kib", verdict.peak_memory_kib},
-          {"inputs", verdict.inputs},
+          {"inputs", InputsJson(verdict.inputs)},
           {"pictures", std::move(pictures)}};
 }
 

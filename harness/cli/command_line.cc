@@ -74,11 +74,15 @@ ExitCode Run(const ChosenCommand& chosen, const std::vector<std::string>& words)
   if (!root) {
     const char* const home = std::getenv("PREHEND_HOME");
     return Complain(context, ExitCode::kBadInput,
-                    home && *home
-                        ? "PREHEND_HOME is " + ShellQuoted(home) + ", which has no grammar/library"
-                        : std::string("the project's folder was not found (it has a "
-                                      "grammar/library); go there or set PREHEND_HOME"));
+                    home && *home ? "PREHEND_HOME is " + ShellQuoted(ReadableName(home)) +
+                                        ", which has no grammar/library"
+                                  : std::string("the project's folder was not found (it has a "
+                                                "grammar/library); go there or set PREHEND_HOME"));
   }
+  if (ReadableName(*root) != *root)
+    return Complain(context, ExitCode::kBadInput,
+                    "the name of the project's folder, " + ReadableName(*root) +
+                        ", holds what is no printable text; rename it");
   context.root = *root;
   return chosen.command->run(chosen.options, context);
 }

@@ -63,7 +63,7 @@ void AddGolden(const ScenarioFile& file, const ParsedOptions& options,
   if (!loaded || !as_it_is) return;
   const std::size_t asked = loaded->scenario.pictures.size();
   for (const fs::path& picture : UnrequestedPictures(IdOf(file), asked, root))
-    validated.diagnostics.push_back(grammar::Diagnostic{.file = file.path,
+    validated.diagnostics.push_back(grammar::Diagnostic{.file = ReadableName(file.path),
                                                         .place = {},
                                                         .message = UnrequestedText(picture, asked),
                                                         .source_line = {},
@@ -72,10 +72,10 @@ void AddGolden(const ScenarioFile& file, const ParsedOptions& options,
 
 /// A golden whose scenario no longer exists.
 Validated ValidateOrphan(const UnreferencedGolden& orphan) {
-  Validated validated{.file = orphan.files.front().string(), .diagnostics = {}};
+  Validated validated{.file = ReadableName(orphan.files.front().string()), .diagnostics = {}};
   for (const fs::path& file : orphan.files)
     validated.diagnostics.push_back(grammar::Diagnostic{
-        .file = file.string(),
+        .file = ReadableName(file.string()),
         .place = {},
         .message = "belongs to no scenario",
         .source_line = {},
@@ -94,7 +94,7 @@ tl::expected<Validated, ExitCode> Validate(const std::string& typed, const Parse
   }
   const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return tl::unexpected(file.error());
-  Validated validated{.file = file->path};
+  Validated validated{.file = ReadableName(file->path)};
   Result<LoadedRun> loaded =
       LoadRun(RequestOf(options, file->path), context.root, &validated.inputs);
   validated.diagnostics = ErrorsOf(loaded);

@@ -36,7 +36,8 @@ std::vector<std::string> IdsBelow(const fs::path& folder) {
   std::error_code ignored;
   for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
     if (entry.path().extension() != kExtension) continue;
-    scenarios.push_back(fs::relative(entry.path(), folder).replace_extension().generic_string());
+    scenarios.push_back(
+        ReadableName(entry.path().lexically_relative(folder).replace_extension().generic_string()));
   }
   std::sort(scenarios.begin(), scenarios.end());
   return scenarios;
@@ -65,7 +66,7 @@ std::vector<KeptPicture> PicturesIn(const fs::path& folder, const fs::path& abov
     const int number = PictureNumber(entry.path().stem().string(), name);
     if (number == 0) continue;
     const std::string id = (folder / name).lexically_relative(above).generic_string();
-    pictures.push_back({id, number, entry.path()});
+    pictures.push_back({ReadableName(id), number, entry.path()});
   }
   std::ranges::sort(pictures, {}, [](const KeptPicture& picture) {
     return std::tuple(picture.scenario, picture.number, picture.path);

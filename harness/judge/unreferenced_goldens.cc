@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "harness/base/text_file.h"
 #include "harness/golden/golden_files.h"
 
 namespace prehend::harness {
@@ -34,7 +35,7 @@ std::string Text(const UnreferencedGolden& orphan) {
   std::string text;
   for (const fs::path& file : orphan.files) {
     text += fmt::format("{} belongs to no scenario: remove it, or bring scenarios/{}.yaml back\n",
-                        file.string(), orphan.scenario);
+                        ReadableName(file.string()), orphan.scenario);
   }
   return text;
 }
@@ -49,7 +50,8 @@ std::vector<fs::path> UnrequestedPictures(const std::string& scenario, std::size
 }
 
 std::string UnrequestedText(const fs::path& picture, std::size_t asked) {
-  return fmt::format("{} belongs to no picture: the scenario asks for {}", picture.string(),
+  return fmt::format("{} belongs to no picture: the scenario asks for {}",
+                     ReadableName(picture.string()),
                      asked == 0 ? std::string("none") : std::to_string(asked));
 }
 

@@ -11,6 +11,7 @@
 
 #include "grammar/base/diagnostic.h"
 #include "harness/base/project_paths.h"
+#include "harness/base/text_file.h"
 
 namespace prehend::harness {
 namespace {
@@ -48,18 +49,18 @@ std::vector<ScenarioFile> ListScenarios(const std::string& root) {
   const fs::path folder = fs::path(root) / "scenarios";
   std::vector<ScenarioFile> scenarios;
   const auto add = [&](const fs::path& in, const std::string& skill) {
-    for (const std::string& name : NamesIn(in, kScenarioEnding)) {
-      const std::string file = name + kScenarioEnding;
+    for (const std::string& file : FilesIn(in.string(), kScenarioEnding)) {
       if (file.ends_with(kHandEnding) || file.ends_with(kGraspsEnding))
         continue;  // what scenarios use
-      scenarios.push_back({skill, name, (in / file).string()});
+      const std::string name = fs::path(file).stem().string();
+      scenarios.push_back({skill, ReadableName(name), (in / file).string()});
     }
   };
   add(folder, "");
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     const std::string skill = entry.path().filename().string();
-    if (entry.is_directory(error) && skill != kShowsErrors) add(entry.path(), skill);
+    if (entry.is_directory(error) && skill != kShowsErrors) add(entry.path(), ReadableName(skill));
   }
   std::sort(scenarios.begin(), scenarios.end(), [](const ScenarioFile& a, const ScenarioFile& b) {
     return std::tie(a.skill, a.name) < std::tie(b.skill, b.name);

@@ -14,8 +14,8 @@ namespace prehend::harness {
 inline constexpr std::string_view kShowsErrors = "invalid";
 
 struct ScenarioFile {
-  std::string skill;  ///< its folder below scenarios/, or ""
-  std::string name;   ///< without ".yaml"
+  std::string skill;  ///< its folder below scenarios/, as a ReadableName(), or ""
+  std::string name;   ///< without ".yaml", likewise
   std::string path;
   bool in_project = true;    ///< below root/scenarios, so that it has a golden
   std::int64_t episode = 0;  ///< not 0: this one of the episode file at `path`, already played

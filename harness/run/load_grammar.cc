@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <set>
 
 #include "grammar/compile/compile.h"
@@ -47,6 +48,7 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
     }
     return {nullptr, std::move(text.error())};
   }
+  grammar::Diagnostics unreadable;
   const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
     const std::string name(used);
     const std::string beside = (fs::path(file).parent_path() / (name + ".grammar")).string();
@@ -57,10 +59,18 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
       note(candidate);
       Result<std::string> found = ReadTextFile(candidate);
       if (found) return grammar::GrammarText{candidate, std::move(*found)};
+      std::error_code error;
+      if (fs::symlink_status(candidate, error).type() == fs::file_type::not_found) continue;
+      // It is there: neither is another one meant, nor is there none.
+      std::ranges::move(found.error(), std::back_inserter(unreadable));
+      break;
     }
     return std::nullopt;
   };
-  return grammar::Compile({file, std::move(*text)}, include, overrides, known);
+  grammar::CompileResult compiled =
+      grammar::Compile({file, std::move(*text)}, include, overrides, known);
+  if (unreadable.empty()) return compiled;
+  return {nullptr, std::move(unreadable)};
 }
 
 namespace {

@@ -37,23 +37,11 @@ bool Matches(const regex_t* pattern, const std::string& text) {
          regexec(pattern, text.c_str(), 0, nullptr, 0) == 0;
 }
 
-/// From escapes like "\x1b" in quotes; they would garble a terminal.
-bool HasControlCharacters(const std::string& text) {
-  return std::any_of(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7F;
-  });
-}
-
 /// The node's text if it is unmistakably a string; nothing after an error.
 std::optional<std::string> StringOf(const YamlNode& node, DiagnosticList& errors,
                                     const std::string& wanted) {
   if (node.kind == YamlNode::Kind::kScalar) {
     ScalarMeaning meaning = MeaningOf(node);
-    if (meaning.string && HasControlCharacters(*meaning.string)) {
-      errors.Add(node.where,
-                 fmt::format("{}expected {}, found control characters", LabelOf(node), wanted));
-      return std::nullopt;
-    }
     if (meaning.string) return std::move(meaning.string);
     if (meaning.number || meaning.flag) {
       errors.Add(node.where,

@@ -107,5 +107,24 @@ TEST(ReadableText, KeepsTextAndReplacesWhatIsNone) {
             "\uFFFD tail of a cut \u00e9, head of one: \uFFFD");
 }
 
+TEST_F(TextFile, NamesStandInOneLine) {
+  EXPECT_EQ(ReadableName("Milch tüte"), "Milch tüte");
+  EXPECT_EQ(ReadableName("a\nb\tc\x1b[1m\xff"), "a\uFFFDb\uFFFDc\uFFFD[1m\uFFFD");
+  const auto read = ReadTextFile(Write("a\xff", "a: 1\n"));
+  ASSERT_FALSE(read.has_value());
+  EXPECT_TRUE(ErrorsOf(read)[0].file.ends_with("a\uFFFD"));
+  EXPECT_EQ(ErrorsOf(read)[0].message,
+            "the name of this file holds what is no printable text; rename it");
+}
+
+TEST_F(TextFile, SaysWhatIsStrangeInAValue) {
+  EXPECT_EQ(StrangeIn("two\nlines, Milchtüte"), "");
+  EXPECT_EQ(StrangeIn("a\tb"), "control character U+0009");
+  EXPECT_EQ(StrangeIn("\u009b31m"), "control character U+009B");
+  EXPECT_EQ(StrangeIn("a\u202eb"), "character that turns the direction of writing U+202E");
+  EXPECT_EQ(StrangeIn("\ufffe"), "code point that is no character U+FFFE");
+  EXPECT_EQ(StrangeIn("\xff"), "byte 0xff that is not UTF-8");
+}
+
 }  // namespace
 }  // namespace prehend::harness

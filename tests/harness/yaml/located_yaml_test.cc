@@ -74,6 +74,15 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
        "2:1: duplicate key 'a' | first given in line 1\n3:1: duplicate key 'a' | first given in "
        "line 1\n"},
       {"a: 1\n'a': 2\n", "2:1: duplicate key 'a' | first given in line 1\n"},
+      {"a: 1\nb: \"a\\x1b[31m\"\n",
+       "2:4: expected text, found the control character U+001B | an escape in quotes stands for a "
+       "character; leave this one out\n"},
+      {"{\"a\\0\": 1}\n",
+       "1:2: expected text, found the control character U+0000 | an escape in quotes stands for a "
+       "character; leave this one out\n"},
+      {"a: \"\\u202eb\"\n",
+       "1:4: expected text, found the character that turns the direction of writing U+202E | an "
+       "escape in quotes stands for a character; leave this one out\n"},
       {"<<: {a: 1}\n", "1:1: merge keys ('<<') are not supported | write the keys out\n"},
       {"a: &x 1\nb: *x\n",
        "1:4: anchors ('&name') are not supported | write the value out where it is used\n"

@@ -96,13 +96,6 @@ TEST(FieldTable, AMisspeltRequiredKeyIsOneComplaint) {
             "1:1: unknown key 'radius_mm' in a wheel | did you mean 'radius_m'?\n");
 }
 
-TEST(FieldTable, ControlCharactersFromEscapesAreRefused) {
-  EXPECT_EQ(Brief(ErrorsOf(ReadWheel("radius_m: 1\nlabel: \"a\\x1b[31m\"\n"))),
-            "2:8: label: expected text of 1 to 500 bytes, found control characters\n");
-  EXPECT_EQ(Brief(ErrorsOf(ReadWheel("radius_m: 1\nloads_kg: {\"a\\0\": 1}\n"))),
-            "2:12: expected a name like 'milk_carton', found control characters\n");
-}
-
 TEST(FieldTable, ExclusiveKeys) {
   EXPECT_EQ(Brief(ErrorsOf(ReadWheel("radius_m: 1\nspokes: 3\nlabel: x\n"))),
             "3:1: a wheel cannot have both 'spokes' and 'label'\n");

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A project folder in which something strange lies about: names that are no text, links, pipes. It
+// costs the verdict of what is strange, never that of the rest.
+#include <nlohmann/json.hpp>
+
+#include "tests/program/small_project.h"
+
+namespace prehend::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Hostile : public SmallProject {};
+
+bool IsPlain(const std::string& text) {
+  return text.find('\x1b') == std::string::npos && text.find('\xff') == std::string::npos &&
+         text.find("\xe2\x80\xa8") == std::string::npos &&
+         text.find("\xe2\x80\xae") == std::string::npos;
+}
+
+// Not UTF-8, an escape sequence, a line end in the name, U+2028, U+202E.
+TEST_F(Hostile, NamesThatAreNoTextCostOneVerdict) {
+  Accept();
+  for (const char* name : {"a\xff", "b\x1b[31mb", "c\nfailed", "d\xe2\x80\xa8", "e\xe2\x80\xae"}) {
+    fs::copy(Scenario(), root_ / "scenarios/rest" / (std::string(name) + ".yaml"));
+    fs::create_directories(root_ / "scenarios" / name);
+  }
+  fs::copy(Scenario(), root_ / "scenarios/a\xff/carton_rests.yaml");
+  fs::copy(Golden(), root_ / "golden/rest/orphan\x1b[31m.timeline");
+  const fs::path junit = root_ / "junit.xml";
+  for (const std::string& command :
+       {std::string("list"), std::string("list --json"), std::string("validate"),
+        std::string("validate --json"), std::string("check --no-pictures --changed"),
+        std::string("check --no-pictures --json"),
+        "check --no-pictures --junit " + junit.string()}) {
+    const Said said = Do(command);
+    EXPECT_EQ(said.exit_code, 2) << command << "\n" << said.err;
+    EXPECT_TRUE(IsPlain(said.out) && IsPlain(said.err)) << command;
+    EXPECT_NE((said.out + said.err).find("the name of this file holds what is no printable text"),
+              std::string::npos)
+        << command;
+    const bool is_json = command.ends_with("--json");
+    EXPECT_TRUE(!is_json || nlohmann::json::accept(said.out)) << command;
+    const bool passed = said.out.find("passed") != std::string::npos;
+    EXPECT_EQ(passed, command.starts_with("check")) << command;
+  }
+  EXPECT_TRUE(IsPlain(ReadFile(junit)));
+}
+
+// Annexes, stores and sandboxes link each file.
+TEST_F(Hostile, ALinkedGoldenIsNoOrphan) {
+  Accept();
+  fs::create_directories(root_ / "store");
+  fs::rename(Golden(), root_ / "store/0123abcd");
+  fs::create_symlink("../../store/0123abcd", Golden());
+  EXPECT_EQ(Do("check --no-pictures").exit_code, 0) << Do("check --no-pictures").out;
+  EXPECT_EQ(Do("validate").exit_code, 0) << Do("validate").err;
+}
+
+// A library's grammar of the same name is not what was meant.
+TEST_F(Hostile, AnUnreadableGrammarIsNotPassedOver) {
+  WriteFile(root_ / "mine.grammar", "grammar mine\nuse contact\n");
+  EXPECT_EQ(Do("validate " + (root_ / "mine.grammar").string()).exit_code, 0);
+  WriteFile(root_ / "contact.grammar", "grammar contact # \xff\n");
+  const Said said = Do("validate " + (root_ / "mine.grammar").string());
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find("contact.grammar:1:19: error: byte 0xff is not UTF-8"), std::string::npos)
+      << said.err;
+}
+
+}  // namespace
+}  // namespace prehend::house
