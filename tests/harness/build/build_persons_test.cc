@@ -22,13 +22,14 @@ std::string WithActor(const std::string& actor, const std::string& stage = "") {
   return text;
 }
 
-Result<Scenario> Read(const std::string& text) {
+Result<Scenario> ReadPersons(const std::string& text) {
   return ReadScenarioText("probe.yaml", text, {}, ProbeLibrary());
 }
-std::string ErrorsAbout(const std::string& text) { return Brief(ErrorsOf(Read(text))); }
+std::string ErrorsAbout(const std::string& text) { return Brief(ErrorsOf(ReadPersons(text))); }
 
 TEST(PersonsTest, ABodyIsAnEntityWithParts) {
-  const auto read = Read(WithActor("{person: body, at_m: [-0.9, 0, 0], right_hand: right_hand}"));
+  const auto read =
+      ReadPersons(WithActor("{person: body, at_m: [-0.9, 0, 0], right_hand: right_hand}"));
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   const Scenario& scenario = *read;
   ASSERT_EQ(scenario.scene.persons.size(), 1u);
@@ -58,13 +59,14 @@ TEST(PersonsTest, HerHandIsAPartOfHer) {
 }
 
 TEST(PersonsTest, StepsAreUnderstood) {
-  const auto read = Read(WithActor("{person: body, at_m: [-0.9, 0, 0]}",
-                                   "anna: {look_at: milk}\n  - anna: {look_at_m: [1, 0, 1]}\n  - "
-                                   "anna: {eyes: lead}\n  - anna: {walk_to_m: [-0.8, 0]}\n"
-                                   "  - anna: {turn_to_deg: 90}\n  - anna: {lean_deg: 20}\n  - "
-                                   "anna: {move_limb: left_foot, to_m: [-0.5, 0.1, 0.3]}\n"
-                                   "  - anna: {move_limb: left_foot, max_force_n: 30}\n  - anna: "
-                                   "{sway_by_m: [0.1, -0.2]}\n  - anna: {wait_s: 0.1}"));
+  const auto read =
+      ReadPersons(WithActor("{person: body, at_m: [-0.9, 0, 0]}",
+                            "anna: {look_at: milk}\n  - anna: {look_at_m: [1, 0, 1]}\n  - "
+                            "anna: {eyes: lead}\n  - anna: {walk_to_m: [-0.8, 0]}\n"
+                            "  - anna: {turn_to_deg: 90}\n  - anna: {lean_deg: 20}\n  - "
+                            "anna: {move_limb: left_foot, to_m: [-0.5, 0.1, 0.3]}\n"
+                            "  - anna: {move_limb: left_foot, max_force_n: 30}\n  - anna: "
+                            "{sway_by_m: [0.1, -0.2]}\n  - anna: {wait_s: 0.1}"));
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   EXPECT_EQ(read->script.stages[0].person_steps.size(), 1u);
   EXPECT_TRUE(read->script.stages[0].steps.empty());
@@ -119,14 +121,15 @@ std::string WithTracking(const std::string& tracking) {
 }
 
 TEST(TrackingOfAHandTest, IsReadWithItsDefaults) {
-  const auto read = Read(WithTracking("{jitter_mm: 1.5, dropped_share: 0.2, dropped_run_s: 0.1}"));
+  const auto read =
+      ReadPersons(WithTracking("{jitter_mm: 1.5, dropped_share: 0.2, dropped_run_s: 0.1}"));
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   const auto& tracking = read->scene.hands[0].tracking;
   ASSERT_TRUE(tracking);
   EXPECT_EQ(tracking->tracker_hz, 90);
   EXPECT_EQ(tracking->jitter_mm, 1.5);
   EXPECT_EQ(tracking->dropped_run_s, 0.1);
-  EXPECT_FALSE(Read(kProbe)->scene.hands[0].tracking);
+  EXPECT_FALSE(ReadPersons(kProbe)->scene.hands[0].tracking);
 }
 
 TEST(TrackingOfAHandTest, IsSetFromTheCommandLine) {

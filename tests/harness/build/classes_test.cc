@@ -10,7 +10,7 @@ namespace prehend::harness {
 namespace {
 
 /// A mug on a table, and the base classes in line 6.
-Result<Scenario> Read(const std::string& classes) {
+Result<Scenario> ReadClasses(const std::string& classes) {
   return ReadScenarioText(
       "probe.yaml",
       "scenario: probe\nshows: probe\nentities:\n"
@@ -22,7 +22,7 @@ Result<Scenario> Read(const std::string& classes) {
 }
 
 TEST(Kinds, AMugIsACupIsAContainer) {
-  const auto read = Read("{Mug: Cup, Cup: Container}");
+  const auto read = ReadClasses("{Mug: Cup, Cup: Container}");
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   const grammar::EntityTable entity_table = MakeEntityTable(*read);
   EXPECT_EQ(entity_table.entities[0].classes,
@@ -32,15 +32,15 @@ TEST(Kinds, AMugIsACupIsAContainer) {
 }
 
 TEST(Kinds, MistakesHaveTheirPlace) {
-  EXPECT_EQ(Brief(ErrorsOf(Read("{Mag: Cup}"))),
+  EXPECT_EQ(Brief(ErrorsOf(ReadClasses("{Mag: Cup}"))),
             "6:11: classes: no entity has the class 'Mag' | did you mean 'Mug'?\n");
-  EXPECT_EQ(Brief(ErrorsOf(Read("{Mug: Cup, Cup: Mug}"))),
+  EXPECT_EQ(Brief(ErrorsOf(ReadClasses("{Mug: Cup, Cup: Mug}"))),
             "6:16: classes: 'Mug' is, directly or not, its own base class\n6:26: classes: 'Cup' "
             "is, directly or not, its own base class\n");
-  EXPECT_EQ(Brief(ErrorsOf(Read("{Mug: Movable}"))),
+  EXPECT_EQ(Brief(ErrorsOf(ReadClasses("{Mug: Movable}"))),
             "6:16: classes: 'Movable' is a built-in class | declare your own classes, for example "
             "'Cup: Container'\n");
-  EXPECT_EQ(Brief(ErrorsOf(Read("{Mug: cup}"))),
+  EXPECT_EQ(Brief(ErrorsOf(ReadClasses("{Mug: cup}"))),
             "6:16: Mug: expected a class name like 'MilkCarton', found 'cup'\n");
 }
 

@@ -18,7 +18,7 @@ PlacedSolid At(physics::Shape shape, Eigen::Vector3d p_m, double yaw_deg = 0) {
                                                      Eigen::Vector3d::UnitZ()))}};
 }
 
-struct Case {
+struct Overlap {
   const char* what;
   PlacedSolid a, b;
   double depth_m;
@@ -27,7 +27,7 @@ struct Case {
 TEST(Penetration, IsKnownForSimpleCases) {
   const Box cube{{2, 2, 2}};
   const double s = std::sqrt(0.5);
-  const Case table[] = {
+  const Overlap table[] = {
       {"boxes overlap", At(cube, {0, 0, 0}), At(cube, {1.9, 0.5, 0}), 0.1},
       {"boxes touch", At(cube, {0, 0, 0}), At(cube, {2, 0, 0}), 0},
       {"boxes apart", At(cube, {0, 0, 0}), At(cube, {2.5, 0, 0}), -0.5},
@@ -43,7 +43,7 @@ TEST(Penetration, IsKnownForSimpleCases) {
       {"cylinder on a box", At(cube, {0, 0, 0}), At(Cylinder{0.1, 1}, {0.3, 0.2, 1.5}), 0},
       {"the same place", At(cube, {0, 0, 0}), At(cube, {0, 0, 0}), 2},
   };
-  for (const Case& c : table) {
+  for (const Overlap& c : table) {
     EXPECT_NEAR(Penetration(c.a, c.b), c.depth_m, 1e-9) << c.what;
     EXPECT_NEAR(Penetration(c.b, c.a), c.depth_m, 1e-9) << c.what << ", the other way round";
   }

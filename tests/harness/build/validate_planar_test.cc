@@ -36,18 +36,18 @@ std::string With(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-Result<Scenario> Read(const std::string& text) {
+Result<Scenario> ReadPlanar(const std::string& text) {
   return ReadScenarioText("probe.yaml", text, {}, ProjectLibrary(PREHEND_SOURCE_DIR));
 }
 
 TEST(CheckPlanarTest, AGoodOneIsReadForBothEngines) {
   for (const char* world :
        {"{engine: box2d}", "{engine: box2d, planar: true}", "{engine: bullet, planar: true}"}) {
-    const auto read = Read(With("{engine: box2d}", world));
+    const auto read = ReadPlanar(With("{engine: box2d}", world));
     ASSERT_TRUE(read) << grammar::Format(ErrorsOf(read));
     EXPECT_TRUE(read->scene.world.planar);
   }
-  const auto spatial = Read(With("{engine: box2d}", "{engine: bullet}"));
+  const auto spatial = ReadPlanar(With("{engine: box2d}", "{engine: bullet}"));
   ASSERT_TRUE(spatial) << grammar::Format(ErrorsOf(spatial));
   EXPECT_FALSE(spatial->scene.world.planar) << "the default";
   EXPECT_EQ(spatial->scene.world.engine, physics::Engine::kBullet);
@@ -94,7 +94,7 @@ TEST(CheckPlanarTest, WhatDoesNotFitIsRefused) {
        "rpy_deg: [0, pitch, 0]"},
   };
   for (const Probe& probe : probes) {
-    const auto read = Read(With(probe.from, probe.to));
+    const auto read = ReadPlanar(With(probe.from, probe.to));
     const std::string wanted = std::string(probe.complaint) + "\n";
     EXPECT_EQ(Brief(ErrorsOf(read)).substr(0, wanted.size()), wanted) << probe.to;
   }
@@ -103,7 +103,7 @@ TEST(CheckPlanarTest, WhatDoesNotFitIsRefused) {
 TEST(CheckPlanarTest, APlaneOfBulletRefusesTheSame) {
   std::string text = With("{engine: box2d}", "{engine: bullet, planar: true}");
   text.replace(text.find("at_m: [0.2, 0]"), 14, "at_m: [0.2, 0.1]");
-  EXPECT_EQ(Brief(ErrorsOf(Read(text))),
+  EXPECT_EQ(Brief(ErrorsOf(ReadPlanar(text))),
             "6:75: 'box' does not fit a planar world: its centre is off the plane y = 0 | y must "
             "be 0 in a planar world\n");
 }

@@ -108,7 +108,7 @@ TEST_P(GoldenMistake, IsFoundWhereItIs) {
   EXPECT_EQ(diagnostic.source_line, GetParam().line);
 }
 
-std::string NameOf(const testing::TestParamInfo<Mistake>& row) { return row.param.name; }
+std::string NameOfMistake(const testing::TestParamInfo<Mistake>& row) { return row.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(
     Table, GoldenMistake,
@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "4:13: expected the date of the acceptance, YYYY-MM-DD"},
         Mistake{"accepted_tail", "# accepted: 2026-01-31 \"ok\" yes",
                 "4:29: unexpected text at the end of the line"}),
-    NameOf);
+    NameOfMistake);
 
 TEST(Golden, AnEventListedTwiceIsAMistake) {
   const auto result = ReadGolden(

@@ -52,14 +52,14 @@ std::string Rows(const std::string& a, const std::string& b) {
 }
 const std::string kStill = " 0  0 0 0 0 0 0  0 0 0 0 0 0";
 
-Result<BodyTrack> Read(const std::string& text) {
+Result<BodyTrack> ReadBody(const std::string& text) {
   const std::string path = testing::TempDir() + "body_track_" + std::to_string(getpid()) + ".bvh";
   std::ofstream(path, std::ios::binary) << text;
   return ReadBodyTrack(path);
 }
 
 TEST(BodyTrackTest, AxesBecomeOurs) {
-  const auto read = Read(Person({}) + Rows("1 90 3 0" + kStill, "1 90 3 90" + kStill));
+  const auto read = ReadBody(Person({}) + Rows("1 90 3 0" + kStill, "1 90 3 90" + kStill));
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   const BodySample &a = read->samples[0], &b = read->samples[1];
   EXPECT_DOUBLE_EQ(read->leg_units, 80);
@@ -76,7 +76,7 @@ TEST(BodyTrackTest, AxesBecomeOurs) {
 
 TEST(BodyTrackTest, ALegThatIsBentForwards) {
   const auto read =
-      Read(Person({}) + Rows("0 90 0 0" + kStill, "0 90 0 0 0  0 0 0 -90 90 0  0 0 0 0 0 0"));
+      ReadBody(Person({}) + Rows("0 90 0 0" + kStill, "0 90 0 0 0  0 0 0 -90 90 0  0 0 0 0 0 0"));
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   const auto& directions = read->samples[1].posture.directions_W;
   EXPECT_LT((directions[Posture::kThigh] - Vector3d::UnitX()).norm(), 1e-9);
@@ -98,7 +98,7 @@ TEST(BodyTrackTest, NamesOfManyConventions) {
       "foot",    [](bool right, const std::string& name) { return name + (right ? ".R" : ".L"); }};
   Names biovision{"Head", "Shoulder", "Elbow", "Wrist", "Hip", "Knee", "Ankle", Names{}.sided};
   for (const Names& names : {mixamo, blender, biovision}) {
-    const auto read = Read(Person(names) + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill));
+    const auto read = ReadBody(Person(names) + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill));
     EXPECT_TRUE(read) << Brief(ErrorsOf(read));
   }
 }
@@ -107,7 +107,7 @@ TEST(BodyTrackTest, SaysWhichJointIsMissing) {
   Names names;
   names.shin = "Tail";
   const std::string said =
-      Brief(ErrorsOf(Read(Person(names) + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill))));
+      Brief(ErrorsOf(ReadBody(Person(names) + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill))));
   EXPECT_NE(said.find(":2:6: no joint is a person's right knee: expected 'right' with one of leg, "
                       "lowerleg, lowleg, shin, calf, knee | like "),
             std::string::npos)
@@ -120,7 +120,7 @@ TEST(BodyTrackTest, BonesWithoutLength) {
   std::string flat = Person({});
   for (std::size_t at; (at = flat.find("-40")) != std::string::npos;) flat.replace(at, 3, "0");
   const std::string said =
-      Brief(ErrorsOf(Read(flat + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill))));
+      Brief(ErrorsOf(ReadBody(flat + Rows("0 90 0 0" + kStill, "0 90 0 0" + kStill))));
   EXPECT_NE(said.find("the offsets put both hips, or hips and ankles, at the same point"),
             std::string::npos)
       << said;

@@ -35,7 +35,7 @@ const std::string kArm =
     "\n"
     "4 5 -6e-1\n";
 
-Result<BvhFile> Read(const std::string& text) {
+Result<BvhFile> ReadArm(const std::string& text) {
   const std::string path = testing::TempDir() + "motion_bvh_" + std::to_string(getpid()) + ".bvh";
   std::ofstream(path, std::ios::binary) << text;
   return ReadBvh(path);
@@ -45,14 +45,14 @@ Result<BvhFile> Read(const std::string& text) {
 std::string ErrorsWith(const std::string& what, const std::string& by) {
   std::string text = kArm;
   text.replace(text.find(what), what.size(), by);
-  std::string said = Brief(ErrorsOf(Read(text)));
+  std::string said = Brief(ErrorsOf(ReadArm(text)));
   const std::string path = testing::TempDir() + "motion_bvh_" + std::to_string(getpid()) + ".bvh:";
   for (std::size_t at; (at = said.find(path)) != std::string::npos;) said.erase(at, path.size());
   return said;
 }
 
 TEST(MotionBvhTest, ReadsHierarchyAndRows) {
-  const auto read = Read(kArm);
+  const auto read = ReadArm(kArm);
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   const BvhFile& bvh = *read;
   ASSERT_EQ(bvh.joints.size(), 3u);
@@ -102,10 +102,10 @@ TEST(MotionBvhTest, SaysWhatIsWrongAndWhere) {
 }
 
 TEST(MotionBvhTest, TheEndComesTooEarly) {
-  EXPECT_NE(Brief(ErrorsOf(Read("HIERARCHY\nROOT Hips\n{\n")))
+  EXPECT_NE(Brief(ErrorsOf(ReadArm("HIERARCHY\nROOT Hips\n{\n")))
                 .find("expected '}', found the end of the file"),
             std::string::npos);
-  EXPECT_NE(Brief(ErrorsOf(Read("HIERARCHY\n")))
+  EXPECT_NE(Brief(ErrorsOf(ReadArm("HIERARCHY\n")))
                 .find("expected 'ROOT' and a name, found the end of the file"),
             std::string::npos);
 }
@@ -113,7 +113,7 @@ TEST(MotionBvhTest, TheEndComesTooEarly) {
 TEST(MotionBvhTest, DepthAndSizeAreLimited) {
   std::string deep = "HIERARCHY\nROOT j\n{\n";
   for (int i = 0; i < 70; ++i) deep += "JOINT j" + std::to_string(i) + "\n{\n";
-  EXPECT_NE(Brief(ErrorsOf(Read(deep))).find("more than 256 joints, or deeper than 64"),
+  EXPECT_NE(Brief(ErrorsOf(ReadArm(deep))).find("more than 256 joints, or deeper than 64"),
             std::string::npos);
 }
 

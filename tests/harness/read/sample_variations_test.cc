@@ -11,12 +11,12 @@
 namespace prehend::harness {
 namespace {
 
-Result<Scenario> Read(const std::string& vary) {
+Result<Scenario> ReadVarying(const std::string& vary) {
   return ReadScenarioText("probe.yaml", kProbe + vary, {}, ProbeLibrary());
 }
 
 std::vector<std::string> Draw(const std::string& vary, std::uint64_t seed, int trial) {
-  const auto read = Read(vary);
+  const auto read = ReadVarying(vary);
   EXPECT_TRUE(read) << Brief(ErrorsOf(read));
   if (!read) return {};
   const auto document = ParseYaml("probe.yaml", kProbe + vary);
@@ -36,7 +36,7 @@ TEST(Vary, ChoosesAmongNumbersAndFlagsToo) {
       << drawn;
   EXPECT_EQ(Draw("vary:\n  - {fields: [world.planar], choose: [false]}\n", 1, 1)[0],
             "world.planar=false");
-  EXPECT_FALSE(Read("vary:\n  - {fields: [world.planar], choose: [no]}\n"));
+  EXPECT_FALSE(ReadVarying("vary:\n  - {fields: [world.planar], choose: [no]}\n"));
 }
 
 TEST(Vary, TheSameTrialIsTheSameDraw) {

@@ -11,8 +11,8 @@
 namespace prehend::harness {
 namespace {
 
-std::string ErrorsAbout(const std::string& variations,
-                        const std::vector<std::string>& settings = {}) {
+std::string ErrorsOfVariations(const std::string& variations,
+                               const std::vector<std::string>& settings = {}) {
   return Brief(ErrorsOf(
       ReadScenarioText("probe.yaml", kProbe + ("vary:\n" + variations), settings, ProbeLibrary())));
 }
@@ -38,18 +38,18 @@ TEST(CheckDraws, FieldsHaveToBeThere) {
       {"- {fields: [entities.milk.mass_kg]}",
        "16:5: a variation needs one of the keys uniform, normal, plus, times, choose\n"}};
   for (const auto& [line, complaint] : cases)
-    EXPECT_EQ(ErrorsAbout("  " + std::string(line) + "\n"), complaint);
+    EXPECT_EQ(ErrorsOfVariations("  " + std::string(line) + "\n"), complaint);
 }
 
 TEST(CheckDraws, NoFieldIsVariedTwice) {
-  EXPECT_EQ(
-      ErrorsAbout("  - {fields: [entities.milk.mass_kg], uniform: [0.1, 1]}\n"
-                  "  - {fields: [entities.milk.at_m.0, entities.milk.mass_kg], times: [1, 2]}\n"),
-      "17:37: fields: 'entities.milk.mass_kg' is varied twice | give it one distribution\n");
-  EXPECT_EQ(
-      ErrorsAbout("  - {fields: [entities.milk.at_m.0, entities.milk.at_m.00], plus: [0, 0.01]}\n"),
-      "16:37: fields: 'entities.milk.at_m.00' is varied twice | give it one distribution\n");
-  EXPECT_EQ(ErrorsAbout("  - {fields: [settle_s, settle_s], uniform: [0, 0.01]}\n"),
+  EXPECT_EQ(ErrorsOfVariations(
+                "  - {fields: [entities.milk.mass_kg], uniform: [0.1, 1]}\n"
+                "  - {fields: [entities.milk.at_m.0, entities.milk.mass_kg], times: [1, 2]}\n"),
+            "17:37: fields: 'entities.milk.mass_kg' is varied twice | give it one distribution\n");
+  EXPECT_EQ(ErrorsOfVariations(
+                "  - {fields: [entities.milk.at_m.0, entities.milk.at_m.00], plus: [0, 0.01]}\n"),
+            "16:37: fields: 'entities.milk.at_m.00' is varied twice | give it one distribution\n");
+  EXPECT_EQ(ErrorsOfVariations("  - {fields: [settle_s, settle_s], uniform: [0, 0.01]}\n"),
             "16:25: fields: 'settle_s' is varied twice | give it one distribution\n");
 }
 
@@ -84,18 +84,18 @@ TEST(CheckDraws, BoundsHaveToBeReadable) {
        "| at_m is in world "
        "coordinates, also with 'on'\n"}};
   for (const auto& [line, complaint] : cases)
-    EXPECT_EQ(ErrorsAbout("  " + std::string(line) + "\n"), complaint);
+    EXPECT_EQ(ErrorsOfVariations("  " + std::string(line) + "\n"), complaint);
 }
 
 TEST(CheckDraws, WhatTheFileLeavesOutCanBeVaried) {
-  EXPECT_EQ(ErrorsAbout("  - {fields: [world.seed], uniform: [1, 100]}\n"), "");
-  EXPECT_EQ(ErrorsAbout("  - {fields: [settle_s], uniform: [0.1, 0.2]}\n"), "");
-  EXPECT_EQ(ErrorsAbout("  - {fields: [entities.milk.friction], normal: [0.8, 0.1]}\n"), "");
+  EXPECT_EQ(ErrorsOfVariations("  - {fields: [world.seed], uniform: [1, 100]}\n"), "");
+  EXPECT_EQ(ErrorsOfVariations("  - {fields: [settle_s], uniform: [0.1, 0.2]}\n"), "");
+  EXPECT_EQ(ErrorsOfVariations("  - {fields: [entities.milk.friction], normal: [0.8, 0.1]}\n"), "");
 }
 
 TEST(CheckDraws, WhatTheCommandLineSetsIsNotVaried) {
-  EXPECT_EQ(ErrorsAbout("  - {fields: [entities.milk.mass_kg], uniform: [-1, 0.5]}\n",
-                        {"entities.milk.mass_kg=1"}),
+  EXPECT_EQ(ErrorsOfVariations("  - {fields: [entities.milk.mass_kg], uniform: [-1, 0.5]}\n",
+                               {"entities.milk.mass_kg=1"}),
             "");
 }
 

@@ -18,7 +18,7 @@ YamlDocument Parse(const std::string& text) {
   return document.value_or(YamlDocument{});
 }
 
-std::string DiagnosticList(const std::string& text) {
+std::string ErrorsInText(const std::string& text) {
   return Brief(ErrorsOf(ParseYaml("probe.yaml", text)));
 }
 
@@ -119,7 +119,7 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
        "text with ': ' goes in quotes\n"},
   };
   for (const Refused& refused : table)
-    EXPECT_EQ(DiagnosticList(refused.text), refused.errors) << refused.text;
+    EXPECT_EQ(ErrorsInText(refused.text), refused.errors) << refused.text;
 }
 
 TEST(LocatedYaml, QuotedMergeKeyIsAKey) { EXPECT_TRUE(Parse("'<<': 1\n").root.Find("<<")); }
@@ -131,11 +131,11 @@ TEST(LocatedYaml, DeepNestingIsRefusedBeforeTheStackIsGone) {
     return text;
   };
   for (const char* piece : {"[", "{", "- ", "{a: ", "[[{a: ", "? "}) {
-    const std::string errors = DiagnosticList(repeated(piece, 10'000));
+    const std::string errors = ErrorsInText(repeated(piece, 10'000));
     EXPECT_NE(errors.find("nested deeper than 64 levels"), std::string::npos) << piece << errors;
   }
-  EXPECT_EQ(DiagnosticList(repeated("[", 64) + repeated("]", 64)), "");
-  EXPECT_NE(DiagnosticList(repeated("[", 65) + repeated("]", 65)), "");
+  EXPECT_EQ(ErrorsInText(repeated("[", 64) + repeated("]", 64)), "");
+  EXPECT_NE(ErrorsInText(repeated("[", 65) + repeated("]", 65)), "");
 }
 
 const nlohmann::ordered_json kSchema = {
@@ -144,11 +144,11 @@ const nlohmann::ordered_json kSchema = {
       {"settle_s", {{"type", "number"}}}}}};
 
 TEST(LocatedYaml, QuotationsMustEnd) {
-  EXPECT_EQ(DiagnosticList("a: 'it''s\n"),
+  EXPECT_EQ(ErrorsInText("a: 'it''s\n"),
             "1:4: this quote is not closed | close it with the same quote\n");
-  EXPECT_EQ(DiagnosticList("a: \"b\\\"\n"),
+  EXPECT_EQ(ErrorsInText("a: \"b\\\"\n"),
             "1:4: this quote is not closed | close it with the same quote\n");
-  EXPECT_EQ(DiagnosticList("a: 'it''s'\nb: \"c\\\\\"\nd: |\n  'e\n"), "");
+  EXPECT_EQ(ErrorsInText("a: 'it''s'\nb: \"c\\\\\"\nd: |\n  'e\n"), "");
 }
 
 std::string Overridden(const std::string& assignment) {
