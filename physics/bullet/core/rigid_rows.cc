@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Method and rows: btSequentialImpulseConstraintSolver of Bullet 3.24 (zlib licence). The results
-// are the same, bit by bit. Tested by tests/physics/bullet/solver_test.cc
+// Method and rows: btSequentialImpulseConstraintSolver of Bullet 3.24 (zlib licence). Without
+// friction the results are the same, bit by bit. Tested by tests/physics/bullet/solver_test.cc
 #include "physics/bullet/core/rigid_rows.h"
 
 #include <algorithm>
 #include <limits>
 
+#include "physics/bullet/core/friction_circle.h"
+
 namespace prehend::physics {
 namespace {
 
 constexpr btScalar kNoLimit = std::numeric_limits<btScalar>::infinity();
+
+/// Rows of one contact, in Bullet's order.
+constexpr std::size_t kFrictionRows = 2;  // two directions
+constexpr std::size_t kRollingRows = 3;   // spinning, then two directions of rolling
 
 std::size_t At(int index) { return static_cast<std::size_t>(index); }
 
@@ -26,29 +32,32 @@ void RigidRows::Setup(const Pools& pools) {
     pushes_[At(i)] = SixOf(body.internalGetPushVelocity(), body.internalGetTurnVelocity());
   }
   others_.clear();
-  Flatten(pools, pools.joints, joints_);
-  Flatten(pools, pools.contacts, contacts_);
+  Flatten(pools, pools.joints, 1, joints_);
+  Flatten(pools, pools.contacts, 1, contacts_);
   for (Row& row : contacts_) row.most = kNoLimit;
   pressures_.resize(contacts_.size());
   for (std::size_t i = 0; i < contacts_.size(); ++i)
     pressures_[At(order_[i])] = &contacts_[i].impulse;
   TakePenetrations(pools);
-  for (auto [sources, rows] :
-       {std::pair(&pools.frictions, &frictions_), std::pair(&pools.rolling, &rolling_)}) {
-    Flatten(pools, *sources, *rows);
+  Flatten(pools, pools.frictions, kFrictionRows, frictions_);
+  Flatten(pools, pools.rolling, kRollingRows, rolling_);
+  for (Rows* rows : {&frictions_, &rolling_})
     for (Row& row : *rows) row.pressure = pressures_[At(row.source->m_frictionIndex)];
-  }
+  for (std::size_t i = 0; i + 1 < frictions_.size(); i += kFrictionRows)
+    frictions_[i].coupling = Coupling(frictions_[i], frictions_[i + 1]);
+  for (std::size_t i = 0; i + 2 < rolling_.size(); i += kRollingRows)
+    rolling_[i + 1].coupling = Coupling(rolling_[i + 1], rolling_[i + 2]);
 }
 
-void RigidRows::Arrange(const btConstraintArray& sources,
+void RigidRows::Arrange(const btConstraintArray& sources, std::size_t group,
                         const btAlignedObjectArray<btSolverBody>& bodies) {
-  const std::size_t count = At(sources.size());
-  // The level of a row is one above the highest earlier row that shares a moving body with it.
+  const std::size_t count = At(sources.size()) / group;
+  // The level of a group is one above the highest earlier group that shares a moving body with it.
   bodys_level_.assign(At(bodies.size()), -1);
   level_.resize(count);
   next_.assign(count + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
-    const btSolverConstraint& source = sources[static_cast<int>(i)];
+    const btSolverConstraint& source = sources[static_cast<int>(i * group)];
     int level = 0;
     for (const int body : {source.m_solverBodyIdA, source.m_solverBodyIdB})
       if (Moves(bodies[body])) level = std::max(level, bodys_level_[At(body)] + 1);
@@ -57,12 +66,17 @@ void RigidRows::Arrange(const btConstraintArray& sources,
     ++next_[At(level) + 1];
   }
   for (std::size_t level = 1; level <= count; ++level) next_[level] += next_[level - 1];
-  order_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) order_[At(next_[At(level_[i])]++)] = static_cast<int>(i);
+  order_.resize(count * group);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t place = At(next_[At(level_[i])]++);
+    for (std::size_t k = 0; k < group; ++k)
+      order_[place * group + k] = static_cast<int>(i * group + k);
+  }
 }
 
-void RigidRows::Flatten(const Pools& pools, const btConstraintArray& sources, Rows& rows) {
-  Arrange(sources, pools.bodies);
+void RigidRows::Flatten(const Pools& pools, const btConstraintArray& sources, std::size_t group,
+                        Rows& rows) {
+  Arrange(sources, group, pools.bodies);
   rows.clear();
   for (const int i : order_) rows.push_back(MakeRow(sources[i], pools, speeds_));
 }
@@ -84,6 +98,7 @@ RigidRows::Row RigidRows::MakeRow(const btSolverConstraint& source, const Pools&
           .friction = source.m_friction,
           .impulse = source.m_appliedImpulse,
           .pressure = nullptr,
+          .coupling = 0,
           .iterations = source.m_overrideNumSolverIterations,
           .source = &source};
   if (side_a.speeds && side_b.speeds) {
@@ -105,11 +120,24 @@ void RigidRows::TakePenetrations(const Pools& pools) {
   }
 }
 
-btScalar RigidRows::Solve(Row& row) {
-  const RigidSide* other = row.other < 0 ? nullptr : &others_[At(row.other)];
+const RigidSide* RigidRows::OtherOf(const Row& row) const {
+  return row.other < 0 ? nullptr : &others_[At(row.other)];
+}
+
+btScalar RigidRows::WantedChange(const Row& row) const {
   btScalar change = row.wanted - row.impulse * row.softness;
   change -= row.side.SpeedAlong() * row.inverse_mass;
-  if (other) change -= other->SpeedAlong() * row.inverse_mass;
+  if (const RigidSide* other = OtherOf(row)) change -= other->SpeedAlong() * row.inverse_mass;
+  return change;
+}
+
+void RigidRows::Push(Row& row, btScalar change) {
+  row.side.Push(change);
+  if (const RigidSide* other = OtherOf(row)) other->Push(change);
+}
+
+btScalar RigidRows::Solve(Row& row) {
+  btScalar change = WantedChange(row);
   btScalar sum = row.impulse + change;
   if (sum < row.least) {
     change = row.least - row.impulse;
@@ -119,10 +147,27 @@ btScalar RigidRows::Solve(Row& row) {
     sum = row.most;
   }
   row.impulse = sum;
-  row.side.Push(change);
-  if (other) other->Push(change);
+  Push(row, change);
   const btScalar speed = change * row.mass;
   return speed * speed;
+}
+
+btScalar RigidRows::Coupling(const Row& first, const Row& second) const {
+  const RigidSide *other = OtherOf(first), *seconds_other = OtherOf(second);
+  return first.side.SpeedBy(second.side) + (other ? other->SpeedBy(*seconds_other) : 0);
+}
+
+btScalar RigidRows::SolvePair(Row& first, Row& second, btScalar limit) {
+  const RowPair change = FrictionChange(
+      {first.impulse, second.impulse}, limit, {first.mass, first.coupling, second.mass},
+      {WantedChange(first) * first.mass, WantedChange(second) * second.mass});
+  first.impulse += change.first;
+  second.impulse += change.second;
+  Push(first, change.first);
+  Push(second, change.second);
+  const btScalar first_speed = change.first * first.mass;
+  const btScalar second_speed = change.second * second.mass;
+  return std::max(first_speed * first_speed, second_speed * second_speed);
 }
 
 btScalar RigidRows::Solve(int iteration, int contact_iterations) {
@@ -131,15 +176,23 @@ btScalar RigidRows::Solve(int iteration, int contact_iterations) {
     if (iteration < row.iterations) largest = std::max(largest, Solve(row));
   if (iteration >= contact_iterations) return largest;
   for (Row& row : contacts_) largest = std::max(largest, Solve(row));
-  const auto solve_pressed = [&](Row& row, btScalar limit) {
-    row.least = -limit;
-    row.most = limit;
-    largest = std::max(largest, Solve(row));
-  };
-  for (Row& row : frictions_)
-    if (*row.pressure > 0) solve_pressed(row, row.friction * *row.pressure);
-  for (Row& row : rolling_)
-    if (*row.pressure > 0) solve_pressed(row, std::min(row.friction * *row.pressure, row.friction));
+  for (std::size_t i = 0; i + 1 < frictions_.size(); i += kFrictionRows) {
+    Row& row = frictions_[i];
+    if (*row.pressure > 0)
+      largest = std::max(largest, SolvePair(row, frictions_[i + 1], row.friction * *row.pressure));
+  }
+  for (std::size_t i = 0; i + 2 < rolling_.size(); i += kRollingRows) {
+    Row& spin = rolling_[i];
+    if (*spin.pressure <= 0) continue;
+    const auto limit = [&](const Row& row) {
+      return std::min(row.friction * *row.pressure, row.friction);
+    };
+    spin.most = limit(spin);
+    spin.least = -spin.most;
+    largest = std::max(largest, Solve(spin));
+    Row& roll = rolling_[i + 1];
+    largest = std::max(largest, SolvePair(roll, rolling_[i + 2], limit(roll)));
+  }
   return largest;
 }
 

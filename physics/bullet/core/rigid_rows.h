@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows between rigid bodies of btSequentialImpulseConstraintSolver, made faster. Same rows,
-// same arithmetic, hence the same bits. But every row is first written out flat, a side that does
+// same arithmetic, except that friction and rolling friction are limited by circles
+// (physics/bullet/core/friction_circle.h). Every row is first written out flat, a side that does
 // not move costs nothing, and rows without a common body are adjacent, so that none waits for its
 // neighbour's result. Tested by tests/physics/bullet/solver_test.cc
 #pragma once
@@ -33,6 +34,14 @@ struct RigidSide {
     return (j[0] * v[0] + j[1] * v[1] + j[2] * v[2]) + (j[3] * v[3] + j[4] * v[4] + j[5] * v[5]);
   }
 
+  /// Change of this side's speed along its row by a unit impulse of `other`, a side on the same
+  /// body.
+  btScalar SpeedBy(const RigidSide& other) const {
+    if (!speeds) return 0;
+    const Six &j = jacobian, &v = other.response;
+    return (j[0] * v[0] + j[1] * v[1] + j[2] * v[2]) + (j[3] * v[3] + j[4] * v[4] + j[5] * v[5]);
+  }
+
   void Push(btScalar impulse) const {
     if (!speeds) return;
     for (std::size_t i = 0; i < 6; ++i) (*speeds)[i] += response[i] * impulse;
@@ -53,7 +62,8 @@ inline RigidSide MakeRigidSide(const btSolverBody& body, Six& speeds, const btVe
                             angular_response * body.m_angularFactor)};
 }
 
-/// Requires rows in a fixed order, and friction rows after all contact rows (Bullet's defaults).
+/// Requires rows in a fixed order, friction rows after all contact rows (Bullet's defaults), and
+/// two friction directions.
 class RigidRows {
  public:
   /// Bullet's rows of one group of islands; they must outlive the other calls.
@@ -82,17 +92,27 @@ class RigidRows {
     btScalar wanted, softness, inverse_mass, mass, least, most, friction;
     btScalar impulse;
     const btScalar* pressure;  ///< of a friction row: impulse of its contact
-    int iterations;            ///< of a joint: number of iterations
+    btScalar coupling;  ///< of the first row of a pair, with the second: PairResponse::coupling
+    int iterations;     ///< of a joint: number of iterations
     const btSolverConstraint* source;
   };
   using Rows = std::vector<Row>;
 
-  /// Computes the order of rows; rows with a common body keep their order.
-  void Arrange(const btConstraintArray& sources, const btAlignedObjectArray<btSolverBody>& bodies);
-  void Flatten(const Pools& pools, const btConstraintArray& sources, Rows& rows);
+  /// Computes the order of groups of `group` rows, which have the same bodies. Groups with a common
+  /// body keep their order, and so do the rows of a group.
+  void Arrange(const btConstraintArray& sources, std::size_t group,
+               const btAlignedObjectArray<btSolverBody>& bodies);
+  void Flatten(const Pools& pools, const btConstraintArray& sources, std::size_t group, Rows& rows);
   Row MakeRow(const btSolverConstraint& source, const Pools& pools, std::vector<Six>& speeds);
   void TakePenetrations(const Pools& pools);
+  const RigidSide* OtherOf(const Row& row) const;
+  /// Change of the impulse that gives the wanted speed, without limits.
+  btScalar WantedChange(const Row& row) const;
+  void Push(Row& row, btScalar change);
   btScalar Solve(Row& row);
+  btScalar Coupling(const Row& first, const Row& second) const;
+  /// Two rows of friction of one contact, whose impulses together are at most `limit`.
+  btScalar SolvePair(Row& first, Row& second, btScalar limit);
 
   std::vector<Six> speeds_, pushes_;  ///< by body
   Rows joints_, contacts_, frictions_, rolling_, penetrations_;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Method and order of rows: btMultiBodyConstraintSolver of Bullet 3.24 (zlib licence). The results
-// are the same, bit by bit. Tested by tests/physics/bullet/solver_test.cc
+// Method and order of rows: btMultiBodyConstraintSolver of Bullet 3.24 (zlib licence). Without
+// friction the results are the same, bit by bit. Tested by tests/physics/bullet/solver_test.cc
 #include "physics/bullet/core/solver.h"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 
 #include <algorithm>
-#include <cmath>
+#include <tuple>
 
+#include "physics/bullet/core/friction_circle.h"
 #include "physics/bullet/core/restitution.h"
 
 namespace prehend::physics {
@@ -29,7 +30,24 @@ void Clamp(btScalar least, btScalar most, btScalar old, btScalar& sum, btScalar&
   }
 }
 
+/// What the place of a manifold among the others follows from: its bodies in the order in which the
+/// scene was built, then the parts of their shapes that touch.
+std::tuple<int, int, int, int> PlaceOf(const btPersistentManifold& manifold) {
+  const int a = manifold.getBody0()->getBroadphaseHandle()->getUid();
+  const int b = manifold.getBody1()->getBroadphaseHandle()->getUid();
+  if (manifold.getNumContacts() == 0) return {a, b, -1, -1};
+  const btManifoldPoint& point = manifold.getContactPoint(0);
+  return {a, b, point.m_index0, point.m_index1};
+}
+
 }  // namespace
+
+void PlaceInOrder(btPersistentManifold** manifolds, int count) {
+  std::stable_sort(manifolds, manifolds + count,
+                   [](const btPersistentManifold* a, const btPersistentManifold* b) {
+                     return PlaceOf(*a) < PlaceOf(*b);
+                   });
+}
 
 btScalar BulletSolver::solveGroupCacheFriendlySetup(
     btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
@@ -47,11 +65,14 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   Flatten(m_multiBodyFrictionContactConstraints, frictions_);
   Flatten(m_multiBodyTorsionalFrictionContactConstraints, rolling_);
   Flatten(m_multiBodySpinningFrictionContactConstraints, spinning_);
+  ComputeCouplings(frictions_, friction_couplings_);
+  ComputeCouplings(rolling_, rolling_couplings_);
   return result;
 }
 
 void BulletSolver::convertContacts(btPersistentManifold** manifolds, int count,
                                    const btContactSolverInfo& info) {
+  PlaceInOrder(manifolds, count);
   const TimelyBounces bounces(manifolds, count, info.m_timeStep,
                               info.m_restitutionVelocityThreshold);
   btMultiBodyConstraintSolver::convertContacts(manifolds, count, info);
@@ -99,6 +120,23 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody* multibody, int solver_bod
                                linear, angular, angular_response);
   }
   return side;
+}
+
+btScalar BulletSolver::Coupling(const Side& first, const Side& second) const {
+  btScalar coupling = first.rigid.SpeedBy(second.rigid);
+  for (int i = first.first_term; i < first.end_term; ++i) {
+    const Term& term = terms_[static_cast<std::size_t>(i)];
+    coupling += term.factor *
+                m_data.m_deltaVelocitiesUnitImpulse[second.response + term.speed - first.speeds];
+  }
+  return coupling;
+}
+
+void BulletSolver::ComputeCouplings(const Rows& pairs, std::vector<btScalar>& couplings) const {
+  couplings.clear();
+  for (std::size_t i = 0; i + 1 < pairs.size(); i += 2)
+    couplings.push_back(Coupling(pairs[i].a, pairs[i + 1].a) +
+                        Coupling(pairs[i].b, pairs[i + 1].b));
 }
 
 void BulletSolver::RegisterMultibody(btMultiBody& multibody, int speeds) {
@@ -150,33 +188,26 @@ btScalar BulletSolver::Solve(Row& row) {
   return change * change;
 }
 
-btScalar BulletSolver::SolveCone(Row& first, Row& second) {
+btScalar BulletSolver::SolvePair(Row& first, Row& second, btScalar coupling) {
   const btScalar limit = first.friction * Pressure(first);
-  const btScalar second_limit = second.friction * Pressure(second);
-  if (limit == 0 && first.impulse == 0 && second.impulse == 0) return 0;
-  btScalar second_change = WantedChange(second);
-  btScalar second_sum = second.impulse + second_change;
-  btScalar first_change = WantedChange(first);
-  btScalar first_sum = first.impulse + first_change;
-  if (first_sum * first_sum + second_sum * second_sum >= limit * second_limit) {
-    const btScalar angle = std::atan2(first_sum, second_sum);
-    const btScalar first_most = std::fabs(limit * std::sin(angle));
-    const btScalar second_most = std::fabs(second_limit * std::cos(angle));
-    Clamp(-first_most, first_most, first.impulse, first_sum, first_change);
-    Clamp(-second_most, second_most, second.impulse, second_sum, second_change);
-  }
-  first.impulse = first_sum;
-  second.impulse = second_sum;
-  Push(first, first_change);
-  Push(second, second_change);
-  return std::max(first_change * first_change, second_change * second_change);
+  if (limit <= 0 && first.impulse == 0 && second.impulse == 0) return 0;
+  const PairResponse response{1 / first.inverse_mass, coupling, 1 / second.inverse_mass};
+  const RowPair errors{WantedChange(first) * response.first,
+                       WantedChange(second) * response.second};
+  const RowPair change = FrictionChange({first.impulse, second.impulse}, limit, response, errors);
+  first.impulse += change.first;
+  second.impulse += change.second;
+  Push(first, change.first);
+  Push(second, change.second);
+  return std::max(change.first * change.first, change.second * change.second);
 }
 
-btScalar BulletSolver::SolvePairs(Rows& rows, bool only_pressed) {
+btScalar BulletSolver::SolvePairs(Rows& rows, const std::vector<btScalar>& couplings,
+                                  bool only_pressed) {
   btScalar largest = 0;
   for (std::size_t i = 0; i + 1 < rows.size(); i += 2)
     if (!only_pressed || Pressure(rows[i]) > 0)
-      largest = std::max(largest, SolveCone(rows[i], rows[i + 1]));
+      largest = std::max(largest, SolvePair(rows[i], rows[i + 1], couplings[i / 2]));
   return largest;
 }
 
@@ -214,8 +245,8 @@ btScalar BulletSolver::solveSingleIteration(int iteration, btCollisionObject**, 
     row.least = -row.most;
     largest = std::max(largest, Solve(row));
   }
-  largest = std::max(largest, SolvePairs(rolling_, /*only_pressed=*/true));
-  return std::max(largest, SolvePairs(frictions_, /*only_pressed=*/false));
+  largest = std::max(largest, SolvePairs(rolling_, rolling_couplings_, /*only_pressed=*/true));
+  return std::max(largest, SolvePairs(frictions_, friction_couplings_, /*only_pressed=*/false));
 }
 
 btScalar BulletSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bullet's solver of multibodies, made faster for hands (physics/bullet/core/rigid_rows.h does the
-// same for rigid bodies). Same rows, same order, same arithmetic, hence the same bits unless a body
-// bounces. But every row is first written out flat, with the few non-zero elements of its Jacobian
-// (a joint motor has one, a finger's contact 10 of 22); rows whose impulse does not change write
-// nothing; and velocities are written to the multibody once per step. Tested by
-// tests/physics/bullet/solver_test.cc
+// same for rigid bodies). Same rows and same arithmetic, except for friction, which is limited by a
+// circle (physics/bullet/core/friction_circle.h), and for bodies that bounce. Every row is first
+// written out flat, with the few non-zero elements of its Jacobian (a joint motor has one, a
+// finger's contact 10 of 22); rows whose impulse does not change write nothing; and velocities are
+// written to the multibody once per step. Tested by tests/physics/bullet/solver_test.cc
 #pragma once
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
@@ -15,9 +15,13 @@
 
 namespace prehend::physics {
 
-/// Projected Gauss-Seidel over the rows of btMultiBodyConstraintSolver. Requires two friction
-/// directions, an implicit friction cone (Bullet's default for multibodies), and `m_numIterations`
-/// iterations for every row.
+/// Sorts manifolds by the numbers of their bodies, which follow the order in which the scene was
+/// built. Bullet sorts them by island only, with a sort that is not stable.
+void PlaceInOrder(btPersistentManifold** manifolds, int count);
+
+/// Projected Gauss-Seidel over the rows of btMultiBodyConstraintSolver; the two friction rows of a
+/// contact are solved together. Requires two friction directions, and `m_numIterations` iterations
+/// for every row.
 class BulletSolver final : public btMultiBodyConstraintSolver {
  public:
   btScalar solveGroupCacheFriendlySetup(btCollisionObject** bodies, int body_count,
@@ -29,7 +33,8 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
       btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
       int manifold_count, btTypedConstraint** constraints, int constraint_count,
       const btContactSolverInfo& info, btIDebugDraw* drawer) override;
-  /// Bullet's version within TimelyBounces (physics/bullet/core/restitution.h).
+  /// Bullet's version of PlaceInOrder()'s order, within TimelyBounces
+  /// (physics/bullet/core/restitution.h).
   void convertContacts(btPersistentManifold** manifolds, int count,
                        const btContactSolverInfo& info) override;
   /// Largest squared change of an impulse of all rows; zero if nothing changed.
@@ -75,8 +80,11 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   void Push(const Side& side, btScalar impulse);
   void Push(const Row& row, btScalar impulse);
   btScalar Solve(Row& row);
-  btScalar SolveCone(Row& first, Row& second);
-  btScalar SolvePairs(Rows& rows, bool only_pressed);
+  /// Change of speed along the row of `first` by a unit impulse along the row of `second`.
+  btScalar Coupling(const Side& first, const Side& second) const;
+  void ComputeCouplings(const Rows& pairs, std::vector<btScalar>& couplings) const;
+  btScalar SolvePair(Row& first, Row& second, btScalar coupling);
+  btScalar SolvePairs(Rows& rows, const std::vector<btScalar>& couplings, bool only_pressed);
   /// Remembers where this multibody's speeds are.
   void RegisterMultibody(btMultiBody& multibody, int speeds);
 
@@ -86,6 +94,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   };
   RigidRows rigid_;
   Rows joints_, normals_, frictions_, rolling_, spinning_;
+  std::vector<btScalar> friction_couplings_, rolling_couplings_;  ///< by pair of rows
   std::vector<Term> terms_;
   std::vector<MultibodyUse> multibodies_;
 };

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Friction of one contact is limited by a circle in the contact plane, not by a square along two
+// axes: it opposes sliding in any direction equally. Source of the law: maximum dissipation, D.
+// Stewart, "Rigid-Body Dynamics with Friction and Impact", SIAM Review 42(1), 2000, section 2.1.
+// Tested by tests/physics/bullet/friction_circle_test.cc
+#pragma once
+
+#include <LinearMath/btScalar.h>
+
+namespace prehend::physics {
+
+/// Values of the two friction rows of a contact, along perpendicular directions.
+struct RowPair {
+  btScalar first = 0, second = 0;
+};
+
+/// Change of speed along each row by a unit impulse along each row: symmetric, positive definite.
+/// Unit: 1/kg (of rows that act on rotations: 1/(kg m^2)).
+struct PairResponse {
+  btScalar first, coupling, second;
+};
+
+/// The impulse x with |x| <= limit that minimises (x - wanted)' K (x - wanted) / 2, with K =
+/// `response`: `wanted` if it is within the limit, else the impulse on the circle that is opposite
+/// to the remaining sliding velocity. Relative error of |x| at most 1e-9. Zero if limit <= 0.
+RowPair FrictionWithin(btScalar limit, const PairResponse& response, const RowPair& wanted);
+
+/// Change of the impulse of a contact's friction rows: afterwards its length is at most `limit`,
+/// and it removes as much of `speed_errors` (wanted minus present speed along each row) as that
+/// allows. Zero if a row cannot move (its response is not finite or not positive).
+RowPair FrictionChange(const RowPair& impulse, btScalar limit, const PairResponse& response,
+                       const RowPair& speed_errors);
+
+}  // namespace prehend::physics
