@@ -49,15 +49,14 @@ TEST(Explain, ASlideBeginsAndEndsWithTheMotionAlongTheTable) {
   const WhyEvent why = Why(Played(kSlide), "sliding@2s");
   ExpectReason(why.began, "grasping(right_hand, milk)", Mark::kHeld);
   ExpectReason(why.began, "moving_along(right_hand, milk, table)", Mark::kTurned);
-  ExpectReason(why.began, "drift_along(milk, table, slide_window) >= slide_speed", Mark::kTurned,
+  ExpectReason(why.began, "speed_along(milk, table) >= slide_speed", Mark::kTurned, true);
+  ExpectReason(why.began, "drift_along(milk, table, slide_window) >= slide_speed", Mark::kHeld,
                true);
   ExpectReason(why.ended, "speed_along(milk, table) >= slide_speed", Mark::kTurned, false);
-  EXPECT_EQ(Find(why.began, "drift_along(milk, table, slide_window) >= slide_speed")->tick,
-            why.interval.begin);
+  EXPECT_EQ(Find(why.began, "speed_along(milk, table) >= slide_speed")->tick, why.interval.begin);
   EXPECT_EQ(Find(why.ended, "speed_along(milk, table) >= slide_speed")->tick, why.interval.end);
-  // moving_along bridges gaps of 150 ms, two rules down; and of a frame near the end of the gap
-  // only its window tells whether it moves.
-  EXPECT_EQ(why.decided - why.interval.end, 84);
+  // moving_along bridges gaps of 150 ms, two rules down.
+  EXPECT_EQ(why.decided - why.interval.end, 72);
   EXPECT_EQ(Find(why.waited, "moving_along(right_hand, milk, table)")->because.front().how,
             "a gap of up to 150 ms would have been bridged");
 }
