@@ -64,8 +64,29 @@ class Order {
   std::size_t rows_;
 };
 
+/// Words from the planes of their bytes, plane after plane.
+template <int planes>
+void JoinPlanesOf(const char* bytes, std::span<Word> words) {
+  const std::size_t count = words.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    Word word = 0;
+    for (int plane = 0; plane < planes; ++plane)
+      word |= Word{static_cast<std::uint8_t>(bytes[static_cast<std::size_t>(plane) * count + i])}
+              << (8 * plane);
+    words[i] = word;
+  }
+}
+
+void JoinPlanes(const char* bytes, int planes, std::span<Word> words) {
+  using Join = void (*)(const char*, std::span<Word>);
+  constexpr Join kJoins[] = {JoinPlanesOf<0>, JoinPlanesOf<1>, JoinPlanesOf<2>,
+                             JoinPlanesOf<3>, JoinPlanesOf<4>, JoinPlanesOf<5>,
+                             JoinPlanesOf<6>, JoinPlanesOf<7>, JoinPlanesOf<8>};
+  kJoins[planes](bytes, words);
+}
+
 /// The next value of the polynomial through `known` values, the latest first.
-double Polynomial(const double* x, std::size_t known) {
+inline double Polynomial(const double* x, std::size_t known) {
   switch (known) {
     case 1:
       return x[0];
@@ -206,11 +227,12 @@ class Encoder {
     for (std::size_t row = 0; row < words.size(); ++row) {
       if (order_.Before(row) < 0) AppendWord(words[row], bytes);
     }
-    for (int plane = 0; plane < planes; ++plane) {
-      const std::size_t begin = bytes.size();
-      bytes.resize(begin + distances_.size());
-      for (std::size_t i = 0; i < distances_.size(); ++i)
-        bytes[begin + i] = static_cast<char>(distances_[i] >> (8 * plane));
+    const std::size_t begin = bytes.size(), count = distances_.size();
+    bytes.resize(begin + static_cast<std::size_t>(planes) * count);
+    char* out = bytes.data() + begin;
+    for (int plane = 0; plane < planes; ++plane, out += count) {
+      for (std::size_t i = 0; i < count; ++i)
+        out[i] = static_cast<char>(distances_[i] >> (8 * plane));
     }
   }
 
@@ -283,22 +305,18 @@ class Decoder {
     for (std::size_t row = 0; row < words.size(); ++row) {
       if (order_.Before(row) < 0) words[row] = *TakeWord();
     }
-    JoinPlanes(bytes_.data(), planes, continued);
-    std::size_t next = 0;
-    for (std::size_t row = 0; row < words.size(); ++row) {
-      if (order_.Before(row) >= 0) words[row] = joined_[next++];
+    if (order_.IsGiven()) {
+      joined_.resize(continued);
+      JoinPlanes(bytes_.data(), planes, joined_);
+      std::size_t next = 0;
+      for (std::size_t row = 0; row < words.size(); ++row) {
+        if (order_.Before(row) >= 0) words[row] = joined_[next++];
+      }
+    } else {
+      JoinPlanes(bytes_.data(), planes, words.subspan(1));
     }
     bytes_.remove_prefix(static_cast<std::size_t>(planes) * continued);
     return true;
-  }
-
-  /// Words from the planes of their bytes.
-  void JoinPlanes(const char* bytes, int planes, std::size_t count) {
-    joined_.assign(count, 0);
-    for (int plane = 0; plane < planes; ++plane, bytes += count) {
-      for (std::size_t i = 0; i < count; ++i)
-        joined_[i] |= Word{static_cast<std::uint8_t>(bytes[i])} << (8 * plane);
-    }
   }
 
   void Continue(std::size_t column) {
@@ -320,14 +338,21 @@ class Decoder {
   static void ContinuePolynomial(std::span<Word> words, Guess guess) {
     const std::size_t values = guess == Guess::kLinear ? 2 : guess == Guess::kSquare ? 3 : 4;
     double x[4] = {AsDouble(words[0])};  // the last values, the latest first
-    for (std::size_t row = 1; row < words.size(); ++row) {
-      const double next = Polynomial(x, std::min(row, values));
-      words[row] = AtDistance(std::isfinite(next) ? AsWord(next) : words[row - 1], words[row]);
-      x[3] = x[2];
-      x[2] = x[1];
-      x[1] = x[0];
-      x[0] = AsDouble(words[row]);
-    }
+    const auto go_on = [&](std::size_t begin, std::size_t end, const auto& next_of) {
+      for (std::size_t row = begin; row < end; ++row) {
+        const double next = next_of(row);
+        words[row] = AtDistance(std::isfinite(next) ? AsWord(next) : words[row - 1], words[row]);
+        x[3] = x[2];
+        x[2] = x[1];
+        x[1] = x[0];
+        x[0] = AsDouble(words[row]);
+      }
+    };
+    const std::size_t rows = words.size(), few = std::min(values, rows);
+    go_on(1, few, [&](std::size_t row) { return Polynomial(x, row); });
+    if (values == 2) go_on(few, rows, [&](std::size_t) { return Polynomial(x, 2); });
+    if (values == 3) go_on(few, rows, [&](std::size_t) { return Polynomial(x, 3); });
+    if (values == 4) go_on(few, rows, [&](std::size_t) { return Polynomial(x, 4); });
   }
 
   void Move(std::size_t axis) {

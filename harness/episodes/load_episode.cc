@@ -7,6 +7,7 @@
 #include "grammar/contents.h"
 #include "grammar/name_events.h"
 #include "harness/run/load_grammar.h"
+#include "harness/run/project_library.h"
 #include "harness/run/run_text.h"
 #include "harness/sense/entity_table.h"
 #include "harness/sense/sensing.h"
@@ -78,7 +79,10 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
   if (!task) return tl::unexpected(task.error());
   if (const std::string problem = tasks_.Unpack(*task); !problem.empty())
     return Failure(file, episode, problem);
-  Result<LoadedRun> loaded = LoadRun(tasks_.RequestOf(*task), tasks_.root());
+  if (!library_.read_hand || library_writes_ != tasks_.writes())
+    library_ = ProjectLibrary(tasks_.root());
+  library_writes_ = tasks_.writes();
+  Result<LoadedRun> loaded = LoadRun(tasks_.RequestOf(*task), tasks_.root(), library_, nullptr);
   if (!loaded) {
     grammar::Diagnostics diagnostics = std::move(loaded.error());
     for (grammar::Diagnostic& diagnostic : diagnostics)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/episodes/episode_file.h"
+#include "harness/read/scenario_library.h"
 #include "harness/run/run_scenario.h"
 
 namespace prehend::harness::episodes {
@@ -31,6 +32,8 @@ class EpisodeLoader {
  private:
   std::string root_;
   UnpackedTasks tasks_;
+  ScenarioLibrary library_;  ///< what was read of the tasks' hands
+  std::size_t library_writes_ = 0;
 };
 
 /// What the grammar recognises in the episode; its frames are not kept. An episode that is not

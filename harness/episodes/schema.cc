@@ -169,6 +169,18 @@ Database OpenToWrite(const std::string& path) {
 
 Database OpenToRead(const std::string& path) {
   if (const std::string why = WhyNotEpisodes(path); !why.empty()) throw DatabaseError(why);
+  std::error_code error;
+  if (fs::exists(path + "-journal", error)) {
+    // A program that wrote to it is at it, or was killed: then SQLite undoes what was half written.
+    try {
+      const Database mended(path, Database::Mode::kWrite);
+      (void)mended.Number("SELECT count(*) FROM sqlite_master");
+    } catch (const DatabaseError&) {
+      throw DatabaseError(
+          "was being written when its program was killed, and cannot be mended "
+          "where it cannot be written: copy it with its -journal file");
+    }
+  }
   Database database(path, Database::Mode::kRead);
   RefuseOthers(database);
   return database;

@@ -39,6 +39,9 @@ class UnpackedTasks {
   /// After Unpack(): what LoadRun() needs.
   RunRequest RequestOf(const TaskFiles& task) const;
   const std::string& root() const { return root_; }
+  /// How often a file that is no scenario was written: as long as it is the same, what was read
+  /// from them holds.
+  std::size_t writes() const { return writes_; }
   /// A path in the folder as it was in the project.
   std::string Original(const std::string& path) const;
 
@@ -47,6 +50,7 @@ class UnpackedTasks {
 
   std::string folder_, root_;
   std::string problem_;
+  std::size_t writes_ = 0;
   std::map<std::string, std::string> written_;  ///< path -> content hash
 };
 

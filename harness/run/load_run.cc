@@ -87,11 +87,15 @@ bool IsFieldOfScenario(const std::string& name) {
 
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
                           std::vector<std::string>* files) {
+  return LoadRun(request, root, ProjectLibrary(root, files), files);
+}
+
+Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                          const ScenarioLibrary& library, std::vector<std::string>* files) {
   Settings settings = Split(request.settings, IsFieldOfScenario);
   if (!settings.diagnostics.empty()) return tl::unexpected(std::move(settings.diagnostics));
   if (files) files->push_back(request.scenario_file);
-  Result<Scenario> scenario =
-      ReadScenario(request.scenario_file, settings.of_scenario, ProjectLibrary(root, files));
+  Result<Scenario> scenario = ReadScenario(request.scenario_file, settings.of_scenario, library);
   const std::string grammar = !request.grammar.empty() ? request.grammar
                               : scenario               ? scenario->grammar
                                                        : GrammarNamedIn(request, root);

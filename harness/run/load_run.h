@@ -9,6 +9,7 @@
 
 #include "grammar/monitor.h"
 #include "harness/base/result.h"
+#include "harness/read/scenario_library.h"
 #include "harness/scenario/scenario.h"
 
 namespace prehend::harness {
@@ -30,6 +31,10 @@ struct LoadedRun {
 /// `files` receives every path that was tried, also if there is no result.
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
                           std::vector<std::string>* files = nullptr);
+
+/// The same with a library that has been used before, so that what it has read is not read again.
+Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                          const ScenarioLibrary& library, std::vector<std::string>* files);
 
 /// Whether this name in a setting is a field of the scenario; otherwise it is a parameter of its
 /// grammar.

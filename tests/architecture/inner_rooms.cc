@@ -61,7 +61,7 @@ const Arrows& ProjectArrows() {
         "harness/format", "harness/process", "harness/read", "harness/scenario", "harness/sense",
         "harness/timeline", "physics", "physics/scene"}},
       {"harness/episodes",
-       {"grammar", "grammar/base", "harness/base", "harness/process", "harness/run",
+       {"grammar", "grammar/base", "harness/base", "harness/process", "harness/read", "harness/run",
         "harness/sense", "physics", "physics/scene"}},
       {"harness/explain",
        {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/run",

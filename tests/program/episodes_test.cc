@@ -2,6 +2,9 @@
 // Episode files, as a person uses them.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/program/program.h"
@@ -139,6 +142,37 @@ TEST(Episodes, BadUseIsExplained) {
   const Said lines = Prehend({"resegment", (folder / "a.jsonl").string(), "--jobs", "2"});
   EXPECT_EQ(lines.exit_code, 2);
   EXPECT_NE(lines.err.find("--jobs needs episode files"), std::string::npos) << lines.err;
+}
+
+TEST(Episodes, AreWholeAfterTheProgramWasKilledAtAnyMoment) {
+  const auto folder = FreshFolder("killed_episodes");
+  const auto file = (folder / "a.episodes").string();
+  const char* count = std::getenv("PREHEND_KILLS");  // more of them, by hand
+  const int kills = count ? std::atoi(count) : 6;
+  std::size_t cut_off = 0, whole = 0;
+  for (int i = 0; i < kills; ++i) {
+    const double seconds = 0.02 + 1.3 * std::fmod(0.618034 * i, 1.0);
+    const std::string command =
+        "cd '" PREHEND_SOURCE_DIR "' && { setsid '" PREHEND_BINARY_DIR
+        "/prehend' check 'reach/*' 'slide/*' --no-pictures --jobs 3 --record " +
+        file + " --report " + (folder / "report").string() + " >/dev/null 2>&1 & p=$!; sleep " +
+        std::to_string(seconds) + "; kill -s KILL -- -$p; wait $p; } >/dev/null 2>&1";
+    (void)std::system(command.c_str());
+    if (!std::filesystem::exists(file) || std::filesystem::file_size(file) == 0) continue;
+    const Said listed = Prehend({"episodes", file, "--json"});
+    ASSERT_TRUE(listed.exit_code == 0 || listed.exit_code == 4) << listed.err;
+    std::size_t finished = 0;
+    cut_off = 0;
+    for (const auto& row : nlohmann::json::parse(listed.out))
+      ++(row["status"] == "recording" ? cut_off : finished);
+    EXPECT_GE(finished, whole) << "no finished episode is lost";
+    whole = finished;
+    if (i % 20 != 5 && i + 1 < kills) continue;
+    const Said replayed = Prehend({"replay", file, "--jobs", "2"});
+    EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+    EXPECT_NE(replayed.out.find(std::to_string(whole) + " of "), std::string::npos);
+  }
+  EXPECT_GT(cut_off, 0u);
 }
 
 TEST(Episodes, AFullDiskLeavesTheVerdict) {
