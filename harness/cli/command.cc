@@ -2,13 +2,79 @@
 // What commands share. Tested by tests/program/command_line_test.cc
 #include "harness/cli/command.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <thread>
+#include <utility>
 
 #include "harness/base/shell_quote.h"
+#include "harness/process/worker_pool.h"
 
 namespace prehend::harness {
+namespace {
+
+constexpr std::uint64_t kMemoryLimit_mb = 4000;
+// What has no end by itself, or does as much as it is told to: no limit of time unless one is
+// given.
+constexpr const char* kEndless[] = {"--watch", "--trials"};
+
+bool HasOption(const Command& command, const std::string& name) {
+  return std::ranges::any_of(command.options,
+                             [&](const Option& option) { return option.name == name; });
+}
+
+WorkerLimits LimitsOf(const ParsedOptions& options, const std::vector<std::string>& endless,
+                      double time_limit_s) {
+  if (std::ranges::any_of(endless, [&](const std::string& name) { return options.Has(name); }))
+    time_limit_s = 0;
+#ifdef __SANITIZE_ADDRESS__
+  time_limit_s = 0;  // several times slower; shadow memory exceeds any limit
+  constexpr std::uint64_t memory_limit_mb = 0;
+#else
+  const std::uint64_t memory_limit_mb = options.UnsignedOr("--memory-limit-mb", kMemoryLimit_mb);
+#endif
+  return {.jobs = 1,
+          .time_limit_s = options.NumberOr("--time-limit-s", time_limit_s),
+          .memory_limit_bytes = memory_limit_mb * kMegabyte};
+}
+
+}  // namespace
+
+Command Limited(Command command, double time_limit_s) {
+  std::vector<std::string> endless;
+  for (const char* name : kEndless) {
+    if (HasOption(command, name)) endless.emplace_back(name);
+  }
+  command.options = Joined(
+      std::move(command.options),
+      InGroup("Limits",
+              {{.name = "--time-limit-s",
+                .help = fmt::format(
+                    "seconds that it may take; 0: no limit; default: {:g}{}", time_limit_s,
+                    endless.empty() ? std::string()
+                                    : fmt::format(", none with {}", fmt::join(endless, ", "))),
+                .placeholder = "S",
+                .rule = NumbersFrom(0, 86400)},
+               {.name = "--memory-limit-mb",
+                .help = fmt::format("memory that it may take; 0: no limit; default: {}",
+                                    kMemoryLimit_mb),
+                .placeholder = "MB",
+                .rule = IntegersFrom(0, 1'000'000)}}));
+  command.run = [run = std::move(command.run), endless, time_limit_s](
+                    const ParsedOptions& options, const CommandContext& context) {
+    const LimitedEnd end = RunWithinLimits([&] { return static_cast<int>(run(options, context)); },
+                                           LimitsOf(options, endless, time_limit_s));
+    if (end.reason.empty()) return static_cast<ExitCode>(end.status);
+    const bool by_limit =
+        end.reason.starts_with("no end after") || end.reason.starts_with("it needs more memory");
+    return Complain(context, ExitCode::kFailure,
+                    end.reason + (by_limit ? "; see --time-limit-s and --memory-limit-mb" : ""));
+  };
+  return command;
+}
 
 int CoreCount() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 

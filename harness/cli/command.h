@@ -4,6 +4,7 @@
 // by tests/program/command_line_test.cc
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -37,7 +38,7 @@ struct Command {
   std::string summary;
   std::vector<std::string> examples;  ///< without the program's name
   std::vector<Option> options;
-  ExitCode (*run)(const ParsedOptions& options, const CommandContext& context) = nullptr;
+  std::function<ExitCode(const ParsedOptions& options, const CommandContext& context)> run = {};
 };
 
 Command ListCommand();
@@ -56,6 +57,11 @@ Command ExplainCommand();
 Command TracksCommand();
 Command EpisodesCommand();
 Command ReplayCommand();
+
+/// The same command, in a process of its own, with the options --time-limit-s (`time_limit_s` where
+/// it is not given) and --memory-limit-mb. A run beyond a limit, or one that crashes, ends with
+/// exit code 3 and a message.
+Command Limited(Command command, double time_limit_s);
 
 constexpr int kMaxJobs = 256;
 /// The number of processes that keep this machine busy.

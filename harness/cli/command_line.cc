@@ -20,10 +20,24 @@ namespace prehend::harness {
 namespace {
 
 std::vector<Command> Commands() {
-  return {ListCommand(),    ValidateCommand(), RunCommand(),       CheckCommand(),
-          AcceptCommand(),  ReviewCommand(),   RenderCommand(),    NewCommand(),
-          SchemaCommand(),  BenchCommand(),    ResegmentCommand(), ScoreCommand(),
-          ExplainCommand(), TracksCommand(),   EpisodesCommand(),  ReplayCommand()};
+  // Ten times what the longest scenario takes on a slow machine; there may be many episodes.
+  constexpr double kOne_s = 600, kMany_s = 3600;
+  return {Limited(ListCommand(), kOne_s),
+          Limited(ValidateCommand(), kOne_s),
+          Limited(RunCommand(), kOne_s),
+          CheckCommand(),
+          AcceptCommand(),
+          ReviewCommand(),
+          Limited(RenderCommand(), kOne_s),
+          NewCommand(),
+          SchemaCommand(),
+          BenchCommand(),
+          Limited(ResegmentCommand(), kMany_s),
+          ScoreCommand(),
+          Limited(ExplainCommand(), kOne_s),
+          Limited(TracksCommand(), kOne_s),
+          Limited(EpisodesCommand(), kMany_s),
+          ReplayCommand()};
 }
 
 bool IsSet(const char* variable) {

@@ -3,6 +3,7 @@
 // has ended when its pipe has. Tested by tests/harness/process/worker_pool_test.cc
 #include "harness/process/worker_pool.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/mman.h>
@@ -20,6 +21,7 @@
 #include <fstream>
 #include <iostream>
 #include <new>
+#include <stdexcept>
 #include <system_error>
 
 namespace prehend::harness {
@@ -31,6 +33,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kExceptionExit = 70;
 constexpr int kOutOfMemoryExit = 71;
 constexpr int kTooLittleMemoryExit = 72;
+constexpr int kOutputExit = 73;
 
 /// Of the standard error of a failed worker, at most this much is kept.
 constexpr off_t kMaxStderrTail_bytes = 4000;
@@ -91,8 +94,8 @@ std::string SignalText(int signal) {
   }
 }
 
-/// What the child does. It leaves by _exit, because the buffers and destructors are the parent's.
-[[noreturn]] void Work(const WorkerJob& job, const WorkerLimits& limits, int pipe) {
+/// In the child, first of all.
+void EnterLimits(const WorkerLimits& limits) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would read the result of an orphan
   // Also where an exception could not pass: in a destructor, or through a library in C.
   std::set_new_handler([] { _exit(kOutOfMemoryExit); });
@@ -103,8 +106,15 @@ std::string SignalText(int signal) {
   }
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
+}
+
+/// What the child does. It leaves by _exit, because the buffers and destructors are the parent's.
+template <typename Job>
+[[noreturn]] void Work(const Job& job, const WorkerLimits& limits, int pipe) {
+  EnterLimits(limits);
+  int status = 0;
   try {
-    WriteAll(pipe, job());
+    status = job();
   } catch (const std::bad_alloc&) {
     _exit(kOutOfMemoryExit);
   } catch (const std::system_error& problem) {
@@ -115,7 +125,30 @@ std::string SignalText(int signal) {
     WriteAll(pipe, problem.what());
     _exit(kExceptionExit);
   }
-  _exit(0);
+  _exit(status);
+}
+
+std::string ReasonOf(int status, const WorkerLimits& limits, bool late, const std::string& said,
+                     std::int64_t peak_memory_kib) {
+  if (late) return fmt::format("no end after {:g} s", limits.time_limit_s);
+  const std::uint64_t limit_mb = limits.memory_limit_bytes / kMegabyte;
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+  if (code == kOutOfMemoryExit) {
+    return limit_mb == 0 ? "no memory is left"
+                         : fmt::format("it needs more memory than {} MB", limit_mb);
+  }
+  if (code == kTooLittleMemoryExit) {
+    return fmt::format("{} MB of memory are too little for it to start, which takes {:.0f} MB",
+                       limit_mb, std::ceil(static_cast<double>(PrivateMemory_bytes()) / kMegabyte));
+  }
+  if (code == kExceptionExit) return "exception: " + said;
+  if (code == kOutputExit) return "the output could not be written";
+  // A library in C that gets no memory aborts, exits or uses a null pointer: the peak shows it.
+  const std::string end =
+      WIFSIGNALED(status) ? SignalText(WTERMSIG(status)) : fmt::format("exit status {}", code);
+  if (limit_mb == 0) return end;
+  return fmt::format("{} at {} MB of memory, limit {} MB", end,
+                     peak_memory_kib * 1024 / std::int64_t{kMegabyte}, limit_mb);
 }
 
 struct Worker {
@@ -157,7 +190,11 @@ class Pool {
     if (process == 0) {
       close(ends[0]);
       dup2(standard_error, STDERR_FILENO);
-      Work(jobs_[job], limits_, ends[1]);
+      const auto send = [&] {
+        WriteAll(ends[1], jobs_[job]());
+        return 0;
+      };
+      Work(send, limits_, ends[1]);
     }
     close(ends[1]);
     if (process < 0) {
@@ -220,7 +257,8 @@ class Pool {
       result.output = std::move(worker.output);
       std::cerr << stderr_tail;
     } else {
-      result.reason = EndReason(worker, status, result.peak_memory_kib);
+      result.reason =
+          ReasonOf(status, limits_, worker.killed, worker.output, result.peak_memory_kib);
       // Once memory has run out, messages of libraries are only consequences.
       const bool out_of_memory = WIFEXITED(status) && WEXITSTATUS(status) == kOutOfMemoryExit;
       if (!out_of_memory) result.stderr_tail = std::move(stderr_tail);
@@ -240,28 +278,6 @@ class Pool {
     return tail;
   }
 
-  std::string EndReason(const Worker& worker, int status, std::int64_t peak_memory_kib) const {
-    if (worker.killed) return fmt::format("no end after {:g} s", limits_.time_limit_s);
-    const std::uint64_t limit_mb = limits_.memory_limit_bytes / kMegabyte;
-    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
-    if (code == kOutOfMemoryExit) {
-      return limit_mb == 0 ? "no memory is left"
-                           : fmt::format("it needs more memory than {} MB", limit_mb);
-    }
-    if (code == kTooLittleMemoryExit) {
-      return fmt::format("{} MB of memory are too little for it to start, which takes {:.0f} MB",
-                         limit_mb,
-                         std::ceil(static_cast<double>(PrivateMemory_bytes()) / kMegabyte));
-    }
-    if (code == kExceptionExit) return "exception: " + worker.output;
-    // A library in C that gets no memory aborts, exits or uses a null pointer: the peak shows it.
-    const std::string end =
-        WIFSIGNALED(status) ? SignalText(WTERMSIG(status)) : fmt::format("exit status {}", code);
-    if (limit_mb == 0) return end;
-    return fmt::format("{} at {} MB of memory, limit {} MB", end,
-                       peak_memory_kib * 1024 / std::int64_t{kMegabyte}, limit_mb);
-  }
-
   void Report(std::size_t job, WorkerResult result, const Done& done) {
     results_[job] = std::move(result);
     if (done) done(job, results_[job]);
@@ -275,6 +291,52 @@ class Pool {
 };
 
 }  // namespace
+
+LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& limits) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    return {.status = 0, .reason = "no pipe: " + std::string(std::strerror(errno))};
+  std::cout.flush();
+  const pid_t process = fork();
+  if (process == 0) {
+    close(ends[0]);
+    const auto work = [&] {
+      const int status = job();
+      return std::cout.flush() ? status : kOutputExit;
+    };
+    Work(work, limits, ends[1]);
+  }
+  const std::string no_process = process < 0 ? std::strerror(errno) : "";
+  close(ends[1]);
+  const Clock::time_point start = Clock::now();
+  bool late = false;
+  std::string said;
+  for (bool open = process > 0; open;) {
+    const double left_s = limits.time_limit_s - SecondsSince(start);
+    pollfd end{.fd = ends[0], .events = POLLIN, .revents = 0};
+    const bool has_limit = limits.time_limit_s > 0 && !late;
+    poll(&end, 1, has_limit ? std::max(0, static_cast<int>(1000 * left_s) + 1) : -1);
+    if (end.revents != 0) {
+      char buffer[4096];
+      const ssize_t count = read(ends[0], buffer, sizeof buffer);
+      if (count > 0) said.append(buffer, static_cast<std::size_t>(count));
+      open = count > 0 || (count < 0 && errno == EINTR);
+    } else if (has_limit && SecondsSince(start) > limits.time_limit_s) {
+      kill(process, SIGKILL);
+      late = true;
+    }
+  }
+  close(ends[0]);
+  if (process < 0) return {.status = 0, .reason = "no process: " + no_process};
+  int status = 0;
+  rusage usage{};
+  while (wait4(process, &status, 0, &usage) < 0 && errno == EINTR) {
+  }
+  const bool returned = WIFEXITED(status) && WEXITSTATUS(status) < kExceptionExit;
+  if (returned) return {.status = WEXITSTATUS(status), .reason = ""};
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kExceptionExit) throw std::runtime_error(said);
+  return {.status = 0, .reason = ReasonOf(status, limits, late, said, usage.ru_maxrss)};
+}
 
 std::vector<WorkerResult> RunInWorkers(
     const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,

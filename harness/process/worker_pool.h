@@ -43,4 +43,15 @@ std::vector<WorkerResult> RunInWorkers(
     const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
     const std::function<void(std::size_t job, const WorkerResult&)>& done = {});
 
+/// How a process ended that RunWithinLimits() started.
+struct LimitedEnd {
+  int status = 0;      ///< what the job returned
+  std::string reason;  ///< "" if it did, else why not, as in WorkerResult
+};
+
+/// Runs one job in a process of its own that writes to this one's standard output and error. What
+/// it throws is thrown again, as std::runtime_error. `time_limit_s` 0: none; `jobs` does not
+/// matter. It dies with this process.
+LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& limits);
+
 }  // namespace prehend::harness

@@ -88,6 +88,23 @@ TEST(WorkerPool, WhatAJobSaysBeforeItCrashesIsKept) {
 
 std::string NameOf(const testing::TestParamInfo<Misbehaviour>& row) { return row.param.name; }
 
+TEST(WithinLimits, AJobReturnsOrSaysWhyNot) {
+  const WorkerLimits limits{.jobs = 1, .time_limit_s = 0.2};
+  EXPECT_EQ(RunWithinLimits([] { return 5; }, limits).status, 5);
+  EXPECT_EQ(RunWithinLimits(
+                []() -> int {
+                  for (;;) pause();
+                },
+                limits)
+                .reason,
+            "no end after 0.2 s");
+  EXPECT_EQ(RunWithinLimits([]() -> int { _exit(9); }, {.time_limit_s = 0}).status, 9);
+  EXPECT_EQ(RunWithinLimits([]() -> int { return raise(SIGFPE); }, {.time_limit_s = 0}).reason,
+            "crashed (arithmetic error, signal 8)");
+  EXPECT_THROW(RunWithinLimits([]() -> int { throw std::runtime_error("no"); }, limits),
+               std::runtime_error);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Table, WorkerPoolMisbehaviour,
     testing::Values(

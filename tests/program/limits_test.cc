@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands that read what anybody may have written end within limits, by an exit code of their own.
+#include "tests/program/small_project.h"
+
+namespace prehend::house {
+namespace {
+
+class Limits : public SmallProject {
+ protected:
+  /// A settled carton.
+  std::string Long() const {
+    WriteVariant("rest/long", "wait_s: 0.2", "wait_s: 290");
+    return "long";
+  }
+};
+
+TEST_F(Limits, OfTimeEndARun) {
+  const Said said = Do("run " + Long() + " --time-limit-s 0.2");
+  EXPECT_EQ(said.exit_code, 3);
+  EXPECT_EQ(said.out, "");
+  EXPECT_NE(said.err.find("no end after 0.2 s"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("again: prehend run long"), std::string::npos) << said.err;
+}
+
+TEST_F(Limits, OfMemoryEndARun) {
+  const Said said = Do("run carton_rests --memory-limit-mb 1");
+  EXPECT_EQ(said.exit_code, 3);
+  EXPECT_NE(said.err.find("MB"), std::string::npos) << said.err;
+  EXPECT_EQ(Do("run carton_rests --memory-limit-mb 0 --time-limit-s 0").exit_code, 0);
+}
+
+// Two hundred rules that are looked at in every frame.
+TEST_F(Limits, OfTimeEndARecordingsSegmentation) {
+  const std::string path = (root_ / "some.jsonl").string();
+  ASSERT_EQ(Do("run " + Long() + " --set script.0.right_hand.wait_s=20 --record " + path).exit_code,
+            0);
+  std::string grammar = "grammar slow\n";
+  for (int i = 0; i < 200; ++i)
+    grammar += "event e" + std::to_string(i) +
+               "(a: Entity, b: Entity) while distance(a, b) < 1 m and rate(height(a), " +
+               std::to_string(i + 1) + " ms) > 1 m/s\n";
+  WriteFile(root_ / "slow.grammar", grammar);
+  const Said said = Do("resegment " + path + " --grammar " + (root_ / "slow.grammar").string() +
+                       " --time-limit-s 0.1");
+  EXPECT_EQ(said.exit_code, 3) << said.err;
+  EXPECT_NE(said.err.find("no end after 0.1 s"), std::string::npos) << said.err;
+}
+
+TEST_F(Limits, AreExplained) {
+  EXPECT_NE(Do("run --help").out.find("default: 600, none with --trials"), std::string::npos);
+  EXPECT_NE(Do("resegment --help").out.find("default: 3600"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace prehend::house
