@@ -33,6 +33,7 @@ std::vector<Command> Commands() {
           SchemaCommand(),
           BenchCommand(),
           Limited(ResegmentCommand(), kMany_s),
+          Limited(QueryCommand(), kMany_s),
           ScoreCommand(),
           Limited(ExplainCommand(), kOne_s),
           Limited(TracksCommand(), kOne_s),

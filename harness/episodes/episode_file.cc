@@ -141,6 +141,29 @@ Result<grammar::Timeline> EpisodeFile::TimelineOf(const EpisodeRow& episode) con
   }
 }
 
+Result<std::vector<KeptEntity>> EpisodeFile::EntitiesOf(const EpisodeRow& episode) const {
+  try {
+    std::vector<KeptEntity> entities;
+    Statement find = state_->database.Prepare(
+        "SELECT entity.number, name, coalesce(part_of, -1), entity_class.class"
+        " FROM episode JOIN entity USING(task) JOIN entity_class ON"
+        " entity_class.task = entity.task AND entity_class.number = entity.number"
+        " WHERE episode.id = ? ORDER BY entity.number, depth");
+    find.Bind(episode.id);
+    while (find.Step()) {
+      const std::int64_t number = find.Integer(0);
+      if (number == static_cast<std::int64_t>(entities.size()))
+        entities.push_back({find.Text(1), {}, static_cast<int>(find.Integer(2))});
+      if (number + 1 != static_cast<std::int64_t>(entities.size()))
+        return tl::unexpected(Damage(path_, "the file is damaged: an entity is missing"));
+      entities.back().classes.push_back(find.Text(3));
+    }
+    return entities;
+  } catch (const DatabaseError& error) {
+    return tl::unexpected(Damage(path_, error.what()));
+  }
+}
+
 Result<std::vector<physics::ScriptNote>> EpisodeFile::NotesOf(const EpisodeRow& episode) const {
   try {
     std::vector<physics::ScriptNote> notes;

@@ -32,6 +32,13 @@ struct EpisodeRow {
   physics::RunStatus end;  ///< how the run ended; one that is not finished has failed
 };
 
+/// An entity as a file keeps it.
+struct KeptEntity {
+  std::string name;
+  std::vector<std::string> classes;  ///< the most specific first
+  int part_of = -1;                  ///< index of an entity of the same episode, or -1
+};
+
 /// A file that is open for reading. Functions that return a Result report damage with the file.
 class EpisodeFile {
  public:
@@ -46,6 +53,8 @@ class EpisodeFile {
   Result<TaskFiles> TaskOf(const EpisodeRow& episode) const;
   /// What was recognised when it was recorded.
   Result<grammar::Timeline> TimelineOf(const EpisodeRow& episode) const;
+  /// In the order of their numbers.
+  Result<std::vector<KeptEntity>> EntitiesOf(const EpisodeRow& episode) const;
   Result<std::vector<physics::ScriptNote>> NotesOf(const EpisodeRow& episode) const;
 
  private:

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend query: questions to recorded episodes. Tested by tests/program/query_test.cc
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/cli/command.h"
+#include "harness/episodes/query_events.h"
+#include "harness/timeline/event_text.h"
+
+namespace prehend::harness {
+namespace {
+
+using episodes::EventAnswer;
+using episodes::EventQuestion;
+using Json = nlohmann::ordered_json;
+
+double SecondsAt(const EventAnswer& answer, grammar::Tick tick) {
+  return static_cast<double>(tick) / static_cast<double>(answer.ticks_per_second);
+}
+
+std::string RolesText(const grammar::NamedEvent& event) {
+  std::string text;
+  for (const grammar::Role& role : event.roles)
+    text += (text.empty() ? "" : " ") + role.name + "=" + role.value;
+  return text;
+}
+
+Json EventJson(const EventAnswer& answer, const grammar::NamedEvent& event) {
+  Json roles = Json::object();
+  for (const grammar::Role& role : event.roles) roles[role.name] = role.value;
+  return {{"event", event.event},
+          {"roles", std::move(roles)},
+          {"begin_s", SecondsAt(answer, event.interval.begin)},
+          {"end_s", SecondsAt(answer, event.interval.end)}};
+}
+
+void PrintQueryJson(const std::vector<EventAnswer>& answers, bool parts, std::ostream& out) {
+  Json all = Json::array();
+  for (const EventAnswer& answer : answers) {
+    Json one = {{"file", answer.file}, {"episode", answer.episode}, {"scenario", answer.scenario}};
+    one.update(EventJson(answer, answer.event));
+    for (const grammar::NamedEvent& part : answer.parts) {
+      if (parts) one["parts"].push_back(EventJson(answer, part));
+    }
+    all.push_back(std::move(one));
+  }
+  out << all.dump(2) << "\n";
+}
+
+std::string Csv(const std::string& cell) {
+  if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
+  std::string quoted = "\"";
+  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+void PrintQueryTable(const std::vector<EventAnswer>& answers, bool parts, bool csv,
+                     std::ostream& out) {
+  std::vector<std::vector<std::string>> rows = {
+      {"file", "episode", "scenario", "event", "begin_s", "end_s", "roles"}};
+  const auto add = [&](const EventAnswer& answer, const grammar::NamedEvent& event, bool is_part) {
+    rows.push_back({answer.file, std::to_string(answer.episode), answer.scenario,
+                    (is_part && !csv ? "  " : "") + event.event,
+                    SecondsText(event.interval.begin, answer.ticks_per_second),
+                    SecondsText(event.interval.end, answer.ticks_per_second), RolesText(event)});
+  };
+  for (const EventAnswer& answer : answers) {
+    add(answer, answer.event, false);
+    for (const grammar::NamedEvent& part : answer.parts) {
+      if (parts) add(answer, part, true);
+    }
+  }
+  if (csv) {
+    for (const std::vector<std::string>& row : rows) {
+      for (std::size_t i = 0; i < row.size(); ++i) out << (i ? "," : "") << Csv(row[i]);
+      out << "\n";
+    }
+    return;
+  }
+  for (const std::string& line : AlignColumns(rows)) out << line << "\n";
+  out << answers.size() << (answers.size() == 1 ? " answer\n" : " answers\n");
+}
+
+std::string RoleProblem(const std::string& text) {
+  return episodes::ParseRoleCondition(text)
+             ? ""
+             : "found '" + text + "', wanted ROLE=VALUE, like object=milk or any=milk";
+}
+
+std::string RelationProblem(const std::string& text) {
+  std::string problem;
+  (void)episodes::ParseRelation(text, problem);
+  return problem;
+}
+
+EventQuestion EventQuestionOf(const ParsedOptions& options) {
+  EventQuestion question{.scenario = options.Text("--scenario"), .event = options.Text("--event")};
+  for (const auto& [option, conditions] :
+       {std::pair{"--role", &question.roles}, std::pair{"--class", &question.classes},
+        std::pair{"--part-of", &question.parts_of}}) {
+    for (const std::string& text : options.All(option))
+      conditions->push_back(*episodes::ParseRoleCondition(text));
+  }
+  for (const auto& [option, bound] :
+       {std::pair{"--at-least-s", &question.at_least_s},
+        std::pair{"--at-most-s", &question.at_most_s}, std::pair{"--from-s", &question.from_s},
+        std::pair{"--until-s", &question.until_s}}) {
+    if (options.Has(option)) *bound = options.NumberOr(option, 0);
+  }
+  std::string problem;
+  for (const std::string& text : options.All("--relation"))
+    question.relations.push_back(*episodes::ParseRelation(text, problem));
+  return question;
+}
+
+ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--json") && options.Has("--csv"))
+    return Complain(context, ExitCode::kBadInput, "--json contradicts --csv; give one of them");
+  const EventQuestion question = EventQuestionOf(options);
+  std::vector<EventAnswer> answers;
+  for (const std::string& path : options.All("files")) {
+    auto found = episodes::Ask(path, question);
+    if (!found) return Complain(context, found.error());
+    answers.insert(answers.end(), found->begin(), found->end());
+  }
+  if (options.Has("--json"))
+    PrintQueryJson(answers, options.Has("--parts"), context.out);
+  else
+    PrintQueryTable(answers, options.Has("--parts"), options.Has("--csv"), context.out);
+  return answers.empty() ? ExitCode::kNothing : ExitCode::kAgrees;
+}
+
+Option RoleOption(const std::string& name, const std::string& help,
+                  const std::string& placeholder) {
+  return {.name = name,
+          .help = help + "; may be repeated",
+          .placeholder = placeholder,
+          .rule = {.range = {}, .problem = RoleProblem},
+          .repeatable = true};
+}
+
+Option SecondsOption(const std::string& name, const std::string& help) {
+  return {.name = name, .help = help, .placeholder = "S", .rule = NumbersFrom(0, 1e6)};
+}
+
+}  // namespace
+
+Command QueryCommand() {
+  return {.name = "query",
+          .summary = "Find events in recorded episodes",
+          .examples = {"query suite.episodes --event sliding --class object=CerealBox",
+                       "query suite.episodes --event grasping --class object=Handle --part-of "
+                       "object=FridgeDoor",
+                       "query suite.episodes --event pick_and_place --parts --json",
+                       "query *.episodes --event sliding --relation 'meets transporting' --csv"},
+          .options = {{.name = "files",
+                       .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
+                       .required = true,
+                       .repeatable = true},
+                      {.name = "--event", .help = "its name, or a glob", .placeholder = "NAME"},
+                      RoleOption("--role", "who or what has a role (of any role: any=NAME)",
+                                 "ROLE=NAME"),
+                      RoleOption("--class", "of which class it is, directly or not", "ROLE=CLASS"),
+                      RoleOption("--part-of",
+                                 "of what it is a part, directly or not: an entity or a class",
+                                 "ROLE=NAME"),
+                      SecondsOption("--at-least-s", "the event lasts at least so long"),
+                      SecondsOption("--at-most-s", "the event lasts at most so long"),
+                      SecondsOption("--from-s", "it begins at this time of its episode or later"),
+                      SecondsOption("--until-s", "it ends at this time of its episode or earlier"),
+                      {.name = "--relation",
+                       .help = "how it lies to another event of its episode, in Allen's words\n"
+                               "(before, meets, overlaps, starts, inside, finishes, equals, ..);\n"
+                               "may be repeated",
+                       .placeholder = "'RELATION EVENT'",
+                       .rule = {.range = {}, .problem = RelationProblem},
+                       .repeatable = true},
+                      {.name = "--scenario",
+                       .help = "only episodes of this scenario (a name, skill/name or a glob)",
+                       .placeholder = "NAME"},
+                      {.name = "--parts",
+                       .help = "below each event also those within it that are of the same\n"
+                               "participants"},
+                      {.name = "--json", .help = "print a JSON array instead of a table"},
+                      {.name = "--csv", .help = "print CSV instead of a table"}},
+          .run = RunQuery};
+}
+
+}  // namespace prehend::harness

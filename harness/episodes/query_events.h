@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Questions to the events of many episodes, without code: by name, roles, class, part-of, time,
+// duration, and Allen's relation to another event. Tested by tests/program/query_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/episodes/episode_file.h"
+
+namespace prehend::harness::episodes {
+
+/// ROLE=VALUE; the role may be `any`.
+struct RoleCondition {
+  std::string role, value;
+};
+
+/// What must hold of an event. Names of events, entities and classes may be globs.
+struct EventQuestion {
+  std::string scenario, event;                  ///< empty: any
+  std::vector<RoleCondition> roles;             ///< its value, or the entity's name
+  std::vector<RoleCondition> classes;           ///< the entity's class, or a base class
+  std::vector<RoleCondition> parts_of;          ///< an entity, or its class, of which it is a part
+  std::optional<double> at_least_s, at_most_s;  ///< duration
+  std::optional<double> from_s, until_s;        ///< the event lies between them
+  /// "inside transporting": this relation to some event of this name in the same episode.
+  struct Relation {
+    std::string relation, event;
+  };
+  std::vector<Relation> relations;
+};
+
+/// "ROLE=VALUE"; nothing if it is not of that form.
+std::optional<RoleCondition> ParseRoleCondition(std::string_view text);
+/// "inside transporting"; otherwise `problem` says why not.
+std::optional<EventQuestion::Relation> ParseRelation(std::string_view text, std::string& problem);
+
+struct EventAnswer {
+  std::string file;
+  std::int64_t episode = 0;
+  std::string scenario;
+  grammar::Tick ticks_per_second = 480;
+  grammar::NamedEvent event;
+  /// The events of the episode within this one whose roles are all roles of this one.
+  std::vector<grammar::NamedEvent> parts;
+};
+
+/// The answers in one file, in the order of episodes and time.
+Result<std::vector<EventAnswer>> Ask(const std::string& file, const EventQuestion& question);
+
+}  // namespace prehend::harness::episodes

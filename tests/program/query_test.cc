@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Questions to recorded episodes, as a person asks them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+/// A carton that is carried, one that is slid, and a drawer whose handle is grasped.
+std::string ThreeEpisodes(const std::string& name) {
+  const auto file = (FreshFolder(name) / "three.episodes").string();
+  for (const char* scenario : {"pick_and_place/milk_carton_wrap", "slide/hop_divides_a_slide",
+                               "furniture/drawer_is_opened_with_hook"})
+    EXPECT_EQ(Prehend({"run", scenario, "--record", file}).exit_code, 0) << scenario;
+  return file;
+}
+
+nlohmann::json Asked(const std::string& file, std::vector<std::string> words) {
+  words.insert(words.begin(), {"query", file, "--json"});
+  const Said said = Prehend(words);
+  EXPECT_TRUE(said.exit_code == 0 || said.exit_code == 4) << said.err;
+  return nlohmann::json::parse(said.out);
+}
+
+TEST(Query, TheThreeQuestionsOfThePaperAreAnswered) {
+  const std::string file = ThreeEpisodes("paper_questions");
+  // 1. When was an object of this class slid?
+  const auto slid = Asked(file, {"--event", "sliding", "--class", "object=MilkCarton"});
+  ASSERT_FALSE(slid.empty());
+  for (const auto& answer : slid) {
+    EXPECT_EQ(answer["scenario"], "slide/hop_divides_a_slide");
+    EXPECT_EQ(answer["roles"]["object"], "milk");
+  }
+  EXPECT_TRUE(Asked(file, {"--event", "sliding", "--class", "object=Cup"}).empty());
+  // 2. When was a handle grasped that is a part of a drawer?
+  const auto grasped = Asked(
+      file, {"--event", "grasping", "--class", "object=Handle", "--part-of", "object=drawer"});
+  ASSERT_EQ(grasped.size(), 1u);
+  EXPECT_EQ(grasped[0]["scenario"], "furniture/drawer_is_opened_with_hook");
+  EXPECT_TRUE(Asked(file, {"--event", "grasping", "--part-of", "object=table"}).empty());
+  // 3. Of what is a pick-and-place composed?
+  const auto whole =
+      Asked(file, {"--event", "pick_and_place", "--parts", "--scenario", "milk_carton_wrap"});
+  ASSERT_EQ(whole.size(), 1u);
+  std::vector<std::string> parts;
+  for (const auto& part : whole[0]["parts"]) parts.push_back(part["event"]);
+  for (const char* wanted : {"reaching", "picking_up", "transporting", "putting_down"})
+    EXPECT_NE(std::find(parts.begin(), parts.end(), wanted), parts.end()) << wanted;
+}
+
+TEST(Query, TimesRelationsAndFormsAreChosen) {
+  const std::string file = ThreeEpisodes("query_forms");
+  const auto all = Asked(file, {"--event", "transporting"});
+  ASSERT_FALSE(all.empty());
+  const double begin_s = all[0]["begin_s"], end_s = all[0]["end_s"];
+  EXPECT_EQ(Asked(file, {"--event", "transporting", "--at-least-s", "100"}).size(), 0u);
+  EXPECT_EQ(Asked(file, {"--event", "transporting", "--at-most-s", "100"}).size(), all.size());
+  EXPECT_EQ(
+      Asked(file, {"--event", "transporting", "--from-s", std::to_string(begin_s - 0.001),
+                   "--until-s", std::to_string(end_s + 0.001), "--scenario", "milk_carton_wrap"})
+          .size(),
+      1u);
+  EXPECT_EQ(Asked(file, {"--event", "picking_up", "--relation", "meets transporting", "--scenario",
+                         "milk_carton_wrap"})
+                .size(),
+            1u);
+  EXPECT_EQ(Asked(file, {"--event", "picking_up", "--relation", "after transporting", "--scenario",
+                         "milk_carton_wrap"})
+                .size(),
+            0u);
+  const Said csv = Prehend({"query", file, "--event", "picking_up", "--csv"});
+  EXPECT_TRUE(csv.out.starts_with("file,episode,scenario,event,begin_s,end_s,roles\n")) << csv.out;
+  const Said none = Prehend({"query", file, "--event", "flying"});
+  EXPECT_EQ(none.exit_code, 4);
+  EXPECT_TRUE(none.out.ends_with("0 answers\n")) << none.out;
+}
+
+TEST(Query, AWrongQuestionIsExplained) {
+  const Said relation = Prehend({"query", "a.episodes", "--relation", "meet x"});
+  EXPECT_EQ(relation.exit_code, 2);
+  EXPECT_NE(relation.err.find("did you mean 'meets'?"), std::string::npos) << relation.err;
+  const Said role = Prehend({"query", "a.episodes", "--role", "milk"});
+  EXPECT_EQ(role.exit_code, 2);
+  EXPECT_NE(role.err.find("found 'milk', wanted ROLE=VALUE"), std::string::npos) << role.err;
+  const Said file = Prehend({"query", "no.episodes"});
+  EXPECT_EQ(file.exit_code, 2);
+  EXPECT_NE(file.err.find("no such file"), std::string::npos) << file.err;
+}
+
+TEST(Query, Sqlite3AnswersTheDocumentedQuestions) {
+  if (std::system("command -v sqlite3 >/dev/null") != 0) GTEST_SKIP() << "there is no sqlite3";
+  const std::string file = ThreeEpisodes("sqlite_questions");
+  const std::string page = ReadFile(PREHEND_SOURCE_DIR "/docs/episodes.md");
+  int asked = 0;
+  const std::string begin = "\nsqlite3 suite.episodes ";
+  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at + 1)) {
+    const std::size_t question = at + begin.size();
+    const std::string text = page.substr(question, page.find('\n', question) - question);
+    EXPECT_EQ(std::system(("sqlite3 -bail " + file + " " + text + " >/dev/null").c_str()), 0)
+        << text;
+    ++asked;
+  }
+  EXPECT_EQ(asked, 3);
+}
+
+}  // namespace
+}  // namespace prehend::house
