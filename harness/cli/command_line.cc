@@ -38,7 +38,8 @@ std::vector<Command> Commands() {
           Limited(ExplainCommand(), kOne_s),
           Limited(TracksCommand(), kOne_s),
           Limited(EpisodesCommand(), kMany_s),
-          ReplayCommand()};
+          ReplayCommand(),
+          SweepCommand()};
 }
 
 bool IsSet(const char* variable) {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend episodes: what episode files hold. Tested by tests/program/episodes_test.cc
+// prehend episodes: what episode files hold. prehend replay: their frames, checked against their
+// state hashes. Tested by tests/program/episodes_test.cc
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/command.h"
 #include "harness/episodes/episode_file.h"
+#include "harness/episodes/resegment_many.h"
 #include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
@@ -61,6 +64,77 @@ Command EpisodesCommand() {
                    .repeatable = true},
                   {.name = "--json", .help = "print a JSON array instead of a table"}},
       .run = RunEpisodes};
+}
+
+namespace {
+
+ExitCode RunReplay(const ParsedOptions& options, const CommandContext& context) {
+  const auto selected = episodes::SelectEpisodes(options.All("files"), options.Text("--episode"));
+  if (!selected) return Complain(context, selected.error());
+  if (selected->empty())
+    return Complain(context, ExitCode::kNothing,
+                    fmt::format("--episode: no episode matches '{}'", options.Text("--episode")));
+  const std::vector<episodes::Resegmented> results =
+      episodes::ResegmentAll(*selected, {.root = context.root,
+                                         .choice = {},
+                                         .compare = true,
+                                         .replay = true,
+                                         .jobs = options.IntOr("--jobs", CoreCount())});
+  ExitCode worst = ExitCode::kAgrees;
+  std::size_t same = 0, unfinished = 0;
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const episodes::Resegmented& result : results) {
+    const std::string heading = fmt::format("episode {} of {}: {}\n", result.episode.id,
+                                            result.episode.file, result.episode.scenario);
+    if (!result.problem.empty()) {
+      context.err << result.problem;
+      worst = ExitCode::kBadInput;
+    } else if (!result.differences.empty()) {
+      context.err << heading << result.differences;
+      if (worst == ExitCode::kAgrees) worst = ExitCode::kDiffers;
+    } else if (result.finished) {
+      ++same;
+    } else {
+      ++unfinished;
+    }
+    json.push_back({{"file", result.episode.file},
+                    {"episode", result.episode.id},
+                    {"scenario", result.episode.scenario},
+                    {"finished", result.finished},
+                    {"same", result.problem.empty() && result.differences.empty()}});
+  }
+  if (options.Has("--json")) {
+    context.out << json.dump(2) << "\n";
+  } else {
+    context.out << fmt::format("{} of {} episodes have the frames and events that were recorded\n",
+                               same, results.size());
+    if (unfinished > 0)
+      context.out << fmt::format(
+          "{} were cut off while they were recorded: nothing to compare with\n", unfinished);
+  }
+  return worst;
+}
+
+}  // namespace
+
+Command ReplayCommand() {
+  return {.name = "replay",
+          .summary = "Read every frame of recorded episodes again and check them by their hashes",
+          .examples = {"replay suite.episodes", "replay suite.episodes --episode 'slide/*'"},
+          .options = {{.name = "files",
+                       .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
+                       .required = true,
+                       .repeatable = true},
+                      {.name = "--episode",
+                       .help = "only this one: its number, or its scenario (a name, skill/name or "
+                               "a glob)",
+                       .placeholder = "WHICH"},
+                      {.name = "--jobs",
+                       .help = "episodes at a time; default: one per core",
+                       .placeholder = "N",
+                       .rule = IntegersFrom(1, kMaxJobs)},
+                      {.name = "--json", .help = "print a JSON array instead of text"}},
+          .run = RunReplay};
 }
 
 }  // namespace prehend::harness

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/sweep/plateau.h. Tested by tests/harness/sweep/plateau_test.cc
+#include "harness/sweep/plateau.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "harness/base/markup.h"
+
+namespace prehend::harness::sweep {
+namespace {
+
+/// The points one step away along an axis; fewer at the border.
+std::vector<std::size_t> Neighbours(const std::vector<Axis>& axes, std::size_t point,
+                                    bool& at_border) {
+  std::vector<std::size_t> found;
+  at_border = false;
+  std::size_t stride = 1;
+  for (std::size_t i = axes.size(); i-- > 0;) {
+    const std::size_t count = axes[i].values.size(), at = point / stride % count;
+    if (at > 0) found.push_back(point - stride);
+    if (at + 1 < count) found.push_back(point + stride);
+    at_border |= at == 0 || at + 1 == count;
+    stride *= count;
+  }
+  return found;
+}
+
+constexpr std::size_t kUnknown = std::numeric_limits<std::size_t>::max();
+
+/// Of each good point the number of steps to the nearest one that is not, or out of the grid.
+std::vector<std::size_t> StepsToWorse(const std::vector<Axis>& axes,
+                                      const std::vector<bool>& good) {
+  std::vector<std::size_t> steps(good.size(), kUnknown), front;
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    bool at_border = false;
+    const std::vector<std::size_t> near = Neighbours(axes, i, at_border);
+    const bool beside =
+        at_border || std::ranges::any_of(near, [&](std::size_t n) { return !good[n]; });
+    if (!good[i]) steps[i] = 0;
+    if (good[i] && beside) {
+      steps[i] = 1;
+      front.push_back(i);
+    }
+  }
+  while (!front.empty()) {
+    std::vector<std::size_t> next;
+    for (const std::size_t i : front) {
+      bool ignored = false;
+      for (const std::size_t n : Neighbours(axes, i, ignored)) {
+        if (steps[n] != kUnknown) continue;
+        steps[n] = steps[i] + 1;
+        next.push_back(n);
+      }
+    }
+    front = std::move(next);
+  }
+  return steps;
+}
+
+std::string ColorOf(double share) {  // from dark blue over green to yellow
+  const auto mix = [&](double low, double middle, double high) {
+    return static_cast<int>(share < 0.5 ? low + (middle - low) * 2 * share
+                                        : middle + (high - middle) * (2 * share - 1));
+  };
+  return fmt::format("#{:02x}{:02x}{:02x}", mix(68, 33, 253), mix(1, 145, 231), mix(84, 140, 37));
+}
+
+}  // namespace
+
+Plateau FindPlateau(const std::vector<Axis>& axes, const std::vector<SweepPoint>& points,
+                    double within) {
+  Plateau plateau;
+  for (const SweepPoint& point : points) plateau.best = std::max(plateau.best, point.f1);
+  std::vector<bool> good;
+  for (const SweepPoint& point : points) good.push_back(point.f1 >= plateau.best - within);
+  const std::vector<std::size_t> steps = StepsToWorse(axes, good);
+  bool chosen = false;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!good[i]) continue;
+    const auto rank = [&](std::size_t p) { return std::pair(steps[p], points[p].f1); };
+    if (!chosen || rank(i) > rank(plateau.chosen)) plateau.chosen = i;
+    chosen = true;
+  }
+  plateau.steps = steps[plateau.chosen];
+  std::vector<std::size_t> open = {plateau.chosen};
+  std::vector<bool> seen(points.size(), false);
+  seen[plateau.chosen] = true;
+  while (!open.empty()) {
+    const std::size_t point = open.back();
+    open.pop_back();
+    plateau.members.push_back(point);
+    bool ignored = false;
+    for (const std::size_t n : Neighbours(axes, point, ignored)) {
+      if (!good[n] || seen[n]) continue;
+      seen[n] = true;
+      open.push_back(n);
+    }
+  }
+  std::ranges::sort(plateau.members);
+  return plateau;
+}
+
+std::string CsvText(const std::vector<Axis>& axes, const std::vector<SweepPoint>& points) {
+  std::string text;
+  for (const Axis& axis : axes) text += axis.parameter + ",";
+  text += "f1,correct,extra,missed,begin_error_ms,end_error_ms,latency_ms\n";
+  for (const SweepPoint& point : points) {
+    for (std::size_t i = 0; i < axes.size(); ++i) text += axes[i].ValueText(point.at[i]) + ",";
+    text += fmt::format("{:.6f},{},{},{},{:.3f},{:.3f},{:.3f}\n", point.f1, point.correct,
+                        point.extra, point.missed, point.begin_ms, point.end_ms, point.latency_ms);
+  }
+  return text;
+}
+
+std::string PlateauText(const std::vector<Axis>& axes, const SweepResult& result, double within) {
+  const Plateau plateau = FindPlateau(axes, result.points, within);
+  const SweepPoint& chosen = result.points[plateau.chosen];
+  std::string text = fmt::format("{} settings on {} episodes; the best F1 is {:.2f} %\n",
+                                 result.points.size(), result.episodes, 100 * plateau.best);
+  text += fmt::format("within {:g} % of it, around the setting named last: {} settings\n",
+                      100 * within, plateau.members.size());
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    std::size_t least = chosen.at[i], most = chosen.at[i];
+    for (const std::size_t member : plateau.members) {
+      least = std::min(least, result.points[member].at[i]);
+      most = std::max(most, result.points[member].at[i]);
+    }
+    text += fmt::format("  {}: {} to {}\n", axes[i].parameter, axes[i].ValueText(least),
+                        axes[i].ValueText(most));
+  }
+  text += fmt::format("farthest from its edge, {} step{}:", plateau.steps,
+                      plateau.steps == 1 ? "" : "s");
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    text += fmt::format(" {} = {}", axes[i].parameter, axes[i].ValueText(chosen.at[i]));
+  return text + fmt::format(" (F1 {:.2f} %, begin {:.1f} ms, end {:.1f} ms, latency {:.1f} ms)\n",
+                            100 * chosen.f1, chosen.begin_ms, chosen.end_ms, chosen.latency_ms);
+}
+
+std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoint>& points,
+                       const Plateau& plateau) {
+  constexpr double kLeft = 90, kTop = 34, kCell = 56, kHeight = 30;
+  // The last axis to the right, the one before it downwards.
+  const Axis& across = axes.back();
+  const std::size_t columns = across.values.size();
+  const std::size_t rows = axes.size() > 1 ? axes[axes.size() - 2].values.size() : 1;
+  const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  const double width = kLeft + kCell * count(columns) + 10,
+               height = kTop + kHeight * count(rows) + 44;
+  double least = 1, most = 0;
+  for (const SweepPoint& point : points) {
+    least = std::min(least, point.f1);
+    most = std::max(most, point.f1);
+  }
+  pugi::xml_document document;
+  pugi::xml_node svg = AddElement(document, "svg",
+                                  {{"xmlns", "http://www.w3.org/2000/svg"},
+                                   {"viewBox", fmt::format("0 0 {:g} {:g}", width, height)},
+                                   {"font-family", "sans-serif"},
+                                   {"font-size", "11"}});
+  const auto write = [&](double x, double y, const std::string& text, const char* anchor,
+                         const char* color) {
+    AddElement(svg, "text",
+               {{"x", fmt::format("{:g}", x)},
+                {"y", fmt::format("{:g}", y)},
+                {"text-anchor", anchor},
+                {"fill", color}},
+               text);
+  };
+  write(10, 16,
+        axes.size() > 1 ? "F1 in %, " + axes[axes.size() - 2].parameter + " downwards" : "F1 in %",
+        "start", "#222");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SweepPoint& point = points[i];
+    bool is_shown = true;
+    for (std::size_t k = 0; k + 2 < axes.size(); ++k)
+      is_shown &= point.at[k] == points[plateau.chosen].at[k];
+    if (!is_shown) continue;
+    const std::size_t column = point.at.back(),
+                      row = axes.size() > 1 ? point.at[axes.size() - 2] : 0;
+    const double x = kLeft + kCell * count(column), y = kTop + kHeight * count(row);
+    const double share = most > least ? (point.f1 - least) / (most - least) : 1;
+    const bool member = std::ranges::binary_search(plateau.members, i);
+    AddElement(svg, "rect",
+               {{"x", fmt::format("{:g}", x + 1)},
+                {"y", fmt::format("{:g}", y + 1)},
+                {"width", fmt::format("{:g}", kCell - 2)},
+                {"height", fmt::format("{:g}", kHeight - 2)},
+                {"fill", ColorOf(share)},
+                {"stroke", i == plateau.chosen ? "#d00"
+                           : member            ? "#000"
+                                               : "none"},
+                {"stroke-width", i == plateau.chosen ? "3" : "1"}});
+    write(x + kCell / 2, y + kHeight / 2 + 4, fmt::format("{:.1f}", 100 * point.f1), "middle",
+          share > 0.6 ? "#000" : "#fff");
+  }
+  for (std::size_t column = 0; column < columns; ++column)
+    write(kLeft + kCell * (count(column) + 0.5), kTop + kHeight * count(rows) + 14,
+          across.ValueText(column), "middle", "#222");
+  for (std::size_t row = 0; axes.size() > 1 && row < rows; ++row)
+    write(kLeft - 6, kTop + kHeight * (count(row) + 0.5) + 4, axes[axes.size() - 2].ValueText(row),
+          "end", "#222");
+  write(kLeft, height - 10, across.parameter + "; framed: the plateau; red: farthest from its edge",
+        "start", "#222");
+  return ToText(document, Layout::kIndented);
+}
+
+}  // namespace prehend::harness::sweep

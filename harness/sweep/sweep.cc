@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/sweep/sweep.h. Tested by tests/program/sweep_test.cc
+#include "harness/sweep/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "grammar/contents.h"
+#include "harness/golden/golden_files.h"
+#include "harness/oracle/oracle.h"
+#include "harness/process/worker_pool.h"
+#include "harness/run/load_grammar.h"
+#include "harness/score/labelled.h"
+#include "harness/score/overlap_metrics.h"
+#include "harness/sense/sensing.h"
+#include "harness/timeline/match_events.h"
+
+namespace prehend::harness::sweep {
+namespace {
+
+using Json = nlohmann::json;
+using Programs = std::vector<std::shared_ptr<const grammar::Program>>;
+
+constexpr double kTimeLimit_s = 3600;
+constexpr std::size_t kSlicesPerJob = 4;
+
+/// Number and unit off a text: "10cm".
+std::optional<std::pair<double, std::string>> Quantity(std::string_view text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || !std::isfinite(number)) return std::nullopt;
+  std::string unit(end, text.data() + text.size());
+  if (unit.starts_with(' ')) unit.erase(0, 1);
+  return std::pair(number, std::move(unit));
+}
+
+std::vector<std::size_t> IndicesOf(std::size_t point, const std::vector<Axis>& axes) {
+  std::vector<std::size_t> at(axes.size());
+  for (std::size_t i = axes.size(); i-- > 0;) {
+    at[i] = point % axes[i].values.size();
+    point /= axes[i].values.size();
+  }
+  return at;
+}
+
+Result<Programs> CompileAll(const SweepRequest& request) {
+  const Result<grammar::Overrides> fixed = ParameterSettings(request.settings);
+  if (!fixed) return tl::unexpected(fixed.error());
+  std::size_t count = 1;
+  for (const Axis& axis : request.axes) count *= axis.values.size();
+  Programs programs;
+  for (std::size_t point = 0; point < count; ++point) {
+    grammar::Overrides overrides = *fixed;
+    const std::vector<std::size_t> at = IndicesOf(point, request.axes);
+    for (std::size_t i = 0; i < at.size(); ++i)
+      overrides[request.axes[i].parameter] = request.axes[i].ValueText(at[i]);
+    grammar::CompileResult compiled = LoadGrammar(request.root, request.grammar, overrides);
+    if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
+    programs.push_back(std::move(compiled.program));
+  }
+  return programs;
+}
+
+/// The true events, only those that the grammar prints; or why there are none.
+tl::expected<grammar::Timeline, std::string> TruthOf(const SweepRequest& request,
+                                                     const episodes::EpisodeFile& file,
+                                                     const episodes::EpisodeRow& row,
+                                                     const LoadedRun& loaded, const RunResult& run,
+                                                     const grammar::Program& program) {
+  grammar::Timeline truth;
+  if (request.truth == Truth::kOracle) {
+    truth = TrueTimeline(loaded.scenario.scene, run.recording, run.ticks + 1);
+  } else if (row.grammar != GrammarName(program)) {
+    return tl::unexpected("its events are those of the grammar " + row.grammar);
+  } else if (request.truth == Truth::kRecorded) {
+    Result<grammar::Timeline> recorded = file.TimelineOf(row);
+    if (!recorded) return tl::unexpected(recorded.error().front().message);
+    truth = std::move(*recorded);
+  } else {
+    const auto golden = GoldenFiles(request.root).ReadGoldenOf(row.scenario);
+    if (!golden || !*golden) return tl::unexpected(std::string("it has no golden"));
+    truth = ToTimeline(**golden);
+  }
+  std::erase_if(truth.events,
+                [&](const grammar::NamedEvent& event) { return !HasEvent(program, event.event); });
+  return truth;
+}
+
+/// {"c", "e", "m": counts; "b", "f", "l": magnitudes of boundary errors and latencies in
+/// microseconds} of one setting.
+Json Judged(const grammar::Timeline& truth, grammar::Timeline found, const SweepRequest& request,
+            grammar::Tick ticks) {
+  if (request.truth == Truth::kOracle)
+    std::erase_if(found.events,
+                  [](const grammar::NamedEvent& event) { return !OracleDefines(event.event); });
+  const auto per_s = static_cast<double>(truth.ticks_per_second);
+  const auto micro = [&](grammar::Tick offset) {
+    return static_cast<std::int64_t>(
+        std::llround(1e6 * static_cast<double>(std::abs(offset)) / per_s));
+  };
+  const score::LabelledEpisode episode = score::Labelled(truth, found, ticks);
+  const score::Hits hits = score::MatchWithCollar(episode.whole.truth, episode.whole.prediction,
+                                                  request.collar_s * per_s, 0)
+                               .AsHits();
+  Json begins = Json::array(), ends = Json::array(), latencies = Json::array();
+  for (const LabelAgreement& label :
+       Agree(truth, found, static_cast<grammar::Tick>(request.collar_s * per_s)).labels) {
+    for (const Match& match : label.matches) {
+      begins.push_back(micro(match.begin_offset()));
+      ends.push_back(micro(match.end_offset()));
+    }
+  }
+  for (const grammar::NamedEvent& event : found.events)
+    latencies.push_back(micro(event.decided - event.interval.end));
+  return {{"c", hits.correct}, {"e", hits.extra}, {"m", hits.missed},
+          {"b", begins},       {"f", ends},       {"l", latencies}};
+}
+
+/// One episode under all settings.
+Json JudgedEpisode(const episodes::EpisodeName& name, const SweepRequest& request,
+                   const Programs& programs, episodes::EpisodeLoader& loader) {
+  const auto file = episodes::EpisodeFile::Open(name.file);
+  if (!file) return {{"out", file.error().front().message}};
+  const auto row = std::ranges::find(file->episodes(), name.id, &episodes::EpisodeRow::id);
+  if (row == file->episodes().end()) return {{"out", "it is gone"}};
+  if (row->end.kind != physics::RunStatus::Kind::kCompleted)
+    return {{"out", "it did not come to a good end"}};
+  const Result<LoadedRun> loaded = loader.Load(*file, *row);
+  if (!loaded) return {{"out", loaded.error().front().message}};
+  RunResult run;
+  run.ticks = row->ticks;
+  const bool all = request.truth == Truth::kOracle;
+  const Scenario& scenario = loaded->scenario;
+  Sensing sensing(scenario.scene, scenario.sensing);
+  episodes::EpisodeFrames frames(*file, *row, episodes::LayoutOf(scenario.scene));
+  const std::string problem =
+      frames.Play([&](const physics::Snapshot& snapshot) { run.recording.push_back(snapshot); },
+                  [&](std::int64_t tick) { return all || sensing.Due(tick); });
+  if (!problem.empty()) return {{"out", problem}};
+  const auto truth = TruthOf(request, *file, *row, *loaded, run, *programs.front());
+  if (!truth) return {{"out", truth.error()}};
+  if (all)
+    std::erase_if(run.recording,
+                  [&](const physics::Snapshot& snapshot) { return !sensing.Due(snapshot.tick); });
+  Json points = Json::array();
+  for (const auto& program : programs)
+    points.push_back(Judged(*truth, Resegment(scenario, run.recording, program, run.ticks + 1),
+                            request, run.ticks + 1));
+  return {{"points", std::move(points)}};
+}
+
+double MedianMs(std::vector<std::int64_t>& microseconds) {
+  if (microseconds.empty()) return 0;
+  const auto middle =
+      microseconds.begin() + static_cast<std::ptrdiff_t>((microseconds.size() - 1) / 2);
+  std::ranges::nth_element(microseconds, middle);
+  return static_cast<double>(*middle) / 1000;
+}
+
+}  // namespace
+
+std::string Axis::ValueText(std::size_t i) const {
+  return fmt::format("{:.9g}{}{}", values[i], unit.empty() ? "" : " ", unit);
+}
+
+std::optional<Axis> ParseAxis(const std::string& text, std::string& problem) {
+  const std::size_t equals = text.find('='), dots = text.find(".."), colon = text.rfind(':');
+  const bool is_formed = equals != std::string::npos && equals > 0 && dots != std::string::npos &&
+                         colon != std::string::npos && equals < dots && dots + 2 < colon;
+  problem =
+      fmt::format("found '{}', wanted NAME=FROM..TO:COUNT, like reach_radius=10cm..50cm:9", text);
+  if (!is_formed) return std::nullopt;
+  const auto from = Quantity(std::string_view(text).substr(equals + 1, dots - equals - 1)),
+             to = Quantity(std::string_view(text).substr(dots + 2, colon - dots - 2));
+  int count = 0;
+  const auto [end, error] =
+      std::from_chars(text.data() + colon + 1, text.data() + text.size(), count);
+  if (!from || !to || error != std::errc() || end != text.data() + text.size() || count < 2)
+    return std::nullopt;
+  if (from->second != to->second) {
+    problem = fmt::format("'{}' goes from '{}' to '{}': both ends need the same unit", text,
+                          from->second, to->second);
+    return std::nullopt;
+  }
+  problem.clear();
+  Axis axis{.parameter = text.substr(0, equals), .unit = from->second, .values = {}};
+  for (int i = 0; i < count; ++i)
+    axis.values.push_back(from->first + (to->first - from->first) * i / (count - 1));
+  return axis;
+}
+
+Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
+                          const SweepRequest& request) {
+  const Result<Programs> programs = CompileAll(request);
+  if (!programs) return tl::unexpected(programs.error());
+  const std::size_t slices =
+      std::min(episodes.size(), kSlicesPerJob * static_cast<std::size_t>(request.jobs));
+  std::vector<WorkerJob> jobs;
+  for (std::size_t slice = 0; slice < slices; ++slice) {
+    jobs.push_back([&, slice] {
+      episodes::EpisodeLoader loader(request.root);
+      Json all = Json::array();
+      for (std::size_t i = slice; i < episodes.size(); i += slices)
+        all.push_back(JudgedEpisode(episodes[i], request, *programs, loader));
+      const std::vector<std::uint8_t> bytes = Json::to_cbor(all);
+      return std::string(bytes.begin(), bytes.end());
+    });
+  }
+  const auto said = RunInWorkers(jobs, {.jobs = request.jobs, .time_limit_s = kTimeLimit_s});
+
+  SweepResult result;
+  result.points.resize(programs->size());
+  std::vector<std::vector<std::int64_t>> begins(programs->size()), ends(begins), latencies(begins);
+  for (std::size_t slice = 0; slice < slices; ++slice) {
+    const Json all = said[slice].finished ? Json::from_cbor(said[slice].output) : Json::array();
+    for (std::size_t i = slice, k = 0; i < episodes.size(); i += slices, ++k) {
+      const Json one = k < all.size() ? all[k] : Json{{"out", said[slice].reason}};
+      if (one.contains("out")) {
+        result.left_out.push_back(episodes[i].scenario + ": " + one["out"].get<std::string>());
+        continue;
+      }
+      ++result.episodes;
+      for (std::size_t p = 0; p < programs->size(); ++p) {
+        const Json& judged = one["points"][p];
+        SweepPoint& point = result.points[p];
+        point.correct += judged["c"].get<int>();
+        point.extra += judged["e"].get<int>();
+        point.missed += judged["m"].get<int>();
+        for (const auto& [key, values] : {std::pair{"b", &begins[p]}, std::pair{"f", &ends[p]},
+                                          std::pair{"l", &latencies[p]}}) {
+          for (const auto& value : judged[key]) values->push_back(value.get<std::int64_t>());
+        }
+      }
+    }
+  }
+  for (std::size_t p = 0; p < result.points.size(); ++p) {
+    SweepPoint& point = result.points[p];
+    point.at = IndicesOf(p, request.axes);
+    point.f1 = score::Hits{point.correct, point.extra, point.missed}.F1();
+    point.begin_ms = MedianMs(begins[p]);
+    point.end_ms = MedianMs(ends[p]);
+    point.latency_ms = MedianMs(latencies[p]);
+  }
+  std::ranges::sort(result.left_out);
+  return result;
+}
+
+}  // namespace prehend::harness::sweep

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// A grammar on recorded episodes, once for each setting of its parameters. Tested by
+// tests/program/sweep_test.cc
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grammar/monitor.h"
+#include "harness/base/result.h"
+#include "harness/episodes/resegment_many.h"
+
+namespace prehend::harness::sweep {
+
+inline constexpr std::size_t kMostSettings = 10'000;
+
+/// "reach_radius=10cm..50cm:9": so many values, evenly from the first to the last.
+struct Axis {
+  std::string parameter, unit;
+  std::vector<double> values;
+
+  /// "15cm".
+  std::string ValueText(std::size_t i) const;
+};
+/// Nothing, and `problem`, if the text is not of that form.
+std::optional<Axis> ParseAxis(const std::string& text, std::string& problem);
+
+/// What the events are compared with.
+enum class Truth {
+  kGolden,   ///< the project's golden of the scenario, if it is one of the same grammar
+  kOracle,   ///< the physical oracle with the numbers of docs/events.md
+  kRecorded  ///< what was recognised when the episode was recorded
+};
+
+struct SweepRequest {
+  std::string root, grammar;
+  std::vector<std::string> settings;  ///< of parameters that stay as they are
+  std::vector<Axis> axes;
+  Truth truth = Truth::kGolden;
+  double collar_s = 0.05;
+  int jobs = 1;
+};
+
+/// How one setting did, over all episodes.
+struct SweepPoint {
+  std::vector<std::size_t> at;  ///< per axis, the index of its value
+  int correct = 0, extra = 0,
+      missed = 0;  ///< events, right if both boundaries are within the collar
+  double f1 = 1;   ///< of these; 1 if there is nothing
+  double begin_ms = 0, end_ms = 0, latency_ms = 0;  ///< medians of magnitudes; of the latency
+};
+
+struct SweepResult {
+  std::vector<SweepPoint> points;  ///< the last axis is the fastest
+  int episodes = 0;
+  std::vector<std::string> left_out;  ///< "SCENARIO: why"
+};
+
+/// One point per setting, or why the grammar cannot be compiled with one.
+Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
+                          const SweepRequest& request);
+
+}  // namespace prehend::harness::sweep
