@@ -87,6 +87,18 @@ bool Touches(int hand, int body, const Snapshot& now) {
   });
 }
 
+/// Whether the body touches others than hands.
+bool TouchesAnything(int body, const Snapshot& now) {
+  for (const auto& points : now.AllContacts()) {
+    for (const ContactPoint& contact : points) {
+      if (contact.a.hand < 0 && contact.b.hand < 0 &&
+          (contact.a.body == body || contact.b.body == body))
+        return true;
+    }
+  }
+  return false;
+}
+
 std::string Millimetres(double length_m) {
   return std::to_string(std::lround(1000 * length_m)) + " mm";
 }
@@ -313,7 +325,8 @@ std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& scr
 void ScriptPlayer::StartStage(const Snapshot& now) {
   const double rate_hz = scene_.world.rate_hz;
   for (HandState& hand : hands_) {
-    if (hand.placing) hand.target.X_WH.p_m.z() -= hand.placing->lowered_m;
+    double& height_m = hand.target.X_WH.p_m.z();
+    if (hand.placing) height_m = hand.placing->HeightOf(height_m);
     hand.placing.reset();
     hand.motion = Trajectory(hand.target);
   }
@@ -345,14 +358,18 @@ bool ScriptPlayer::Placing::Stands() const { return touches && borne_n >= kBorne
 /// Looks whether what is put down stands, and lowers it if not.
 void ScriptPlayer::Watch(const Snapshot& now) {
   const double rate_hz = scene_.world.rate_hz;
-  for (HandState& hand : hands_) {
-    if (!hand.placing) continue;
-    Placing& placing = *hand.placing;
+  for (std::size_t h = 0; h < hands_.size(); ++h) {
+    if (!hands_[h].placing) continue;
+    Placing& placing = *hands_[h].placing;
     const double share = std::min(1 / (kBearing_s * rate_hz), 1.0);
     // A blow counts as no more than standing.
     const double borne_n = std::min(BorneBy(placing.body, now, rate_hz), placing.weight_n);
     placing.borne_n += share * (borne_n - placing.borne_n);
     placing.touches = borne_n > 0;
+    if (placing.touches)
+      placing.lowest_m = std::min(placing.lowest_m, now.hands[h].palm.X_WB.p_m.z());
+    else
+      placing.lifted_off |= placing.lowest_m < HUGE_VAL && !TouchesAnything(placing.body, now);
     if (tick_in_stage_ >= planned_ticks_ && !placing.Stands())
       placing.lowered_m += kSeek_m_per_s / rate_hz;
   }
@@ -405,7 +422,8 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   const double t_s = static_cast<double>(tick_in_stage_) / scene_.world.rate_hz;
   for (const HandState& hand : hands_) {
     HandCommand& command = commands_.emplace_back(HandCommand{hand.motion.At(t_s), hand.style});
-    if (hand.placing) command.target.X_WH.p_m.z() -= hand.placing->lowered_m;
+    double& height_m = command.target.X_WH.p_m.z();
+    if (hand.placing) height_m = hand.placing->HeightOf(height_m);
   }
   return &commands_;
 }

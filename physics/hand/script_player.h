@@ -6,6 +6,8 @@
 // tests/physics/hand/script_player_test.cc
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,7 +59,14 @@ class ScriptPlayer {
     double borne_n = 0;    ///< what others than hands bear of it: a mean over some 20 ms
     bool touches = false;  ///< it is borne at this moment
     double lowered_m = 0;  ///< how far the target has gone beyond its motion
+    /// Height that the palm got down to while the thing touched its support.
+    double lowest_m = std::numeric_limits<double>::infinity();
+    bool lifted_off = false;  ///< the hand sprang back with it
     bool Stands() const;
+    /// The target's height that a motion asks for, and what became of it.
+    double HeightOf(double motion_m) const {
+      return lifted_off ? std::min(motion_m - lowered_m, lowest_m) : motion_m - lowered_m;
+    }
   };
   struct HandState {
     TargetState target;  ///< present target, or the one at the end of the motion

@@ -165,6 +165,39 @@ TEST(ScriptPlayerTest, WhatIsPutDownInHasteStandsBeforeTheHandOpens) {
   EXPECT_GT(static_cast<double>(run.snapshot().tick), planned_s * 480 + 1);  // it waited
 }
 
+TEST(ScriptPlayerTest, AHandThatSpringsBackWithItsThingGoesDownAgain) {
+  const Scene scene = MakeScene({});
+  Snapshot held = Simulation(scene, {}).snapshot();
+  held.bodies[kObject].X_WB.p_m.z() += 0.2;
+  held.contacts = {{.a = {.body = kObject}, .b = {.hand = 0}}};
+  const Script script = {.stages = {One(ReachStep{"object"}, 0.01), One(PlaceStep{"table"}, 0.5)}};
+  // The same, but touching the table, with the palm lower than its target by a centimetre.
+  const auto touching = [&](double target_m) {
+    Snapshot now = held;
+    now.hands[0].palm.X_WB.p_m.z() = target_m - 0.01;
+    now.contacts.insert(now.contacts.begin(), {.a = {.body = kTable},
+                                               .b = {.body = kObject},
+                                               .nhat_BA_W = -Eigen::Vector3d::UnitZ(),
+                                               .normal_impulse_n_s = 1});
+    return now;
+  };
+  ScriptPlayer undisturbed(scene, script), stays(scene, script), springs_back(scene, script);
+  double target_m = 0;
+  for (int i = 0; i < 5 + 120; ++i) {
+    target_m = undisturbed.Advance(held)->front().target.X_WH.p_m.z();
+    stays.Advance(held);
+    springs_back.Advance(held);
+  }
+  const Snapshot landed = touching(target_m);
+  const double next_m = undisturbed.Advance(held)->front().target.X_WH.p_m.z();
+  EXPECT_EQ(stays.Advance(landed)->front().target.X_WH.p_m.z(), next_m);
+  EXPECT_EQ(springs_back.Advance(landed)->front().target.X_WH.p_m.z(), next_m);
+  const double after_m = undisturbed.Advance(held)->front().target.X_WH.p_m.z();
+  ASSERT_GT(after_m, target_m - 0.01);
+  EXPECT_EQ(stays.Advance(landed)->front().target.X_WH.p_m.z(), after_m);
+  EXPECT_EQ(springs_back.Advance(held)->front().target.X_WH.p_m.z(), target_m - 0.01);
+}
+
 TEST(ScriptPlayerTest, WhatCannotBePutDownNamesTheStep) {
   // The world does not move: the hand is stuck with the object.
   const Scene scene = MakeScene({});
