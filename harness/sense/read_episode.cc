@@ -109,6 +109,8 @@ class EpisodeReader {
     now_.entities.resize(names_.size());
     for (const int hand : hands_) now_.hands.push_back({.entity = hand, .collision_spheres = {}});
     now_.collision_spheres.resize(hands_.size());
+    has_ahead_.resize(hands_.size());
+    has_spheres_.resize(hands_.size());
   }
 
   static grammar::Solid SolidOf(const std::vector<PartEntry>& entries) {
@@ -187,6 +189,7 @@ class EpisodeReader {
       }
     }
     for (const Named<HandEntry>& hand : entry.hands) TakeHand(hand, errors);
+    FollowTheirSamples();
     now_.touches.clear();
     for (const TouchEntry& touch : entry.touches) TakeTouch(touch, errors);
     std::sort(now_.touches.begin(), now_.touches.end(), [](const auto& a, const auto& b) {
@@ -227,11 +230,10 @@ class EpisodeReader {
                         "its entity has no 'hand: true'");
     const auto slot = static_cast<std::size_t>(found - hands_.begin());
     const HandEntry& entry = named.value;
-    const grammar::EntitySample& look = now_.entities[static_cast<std::size_t>(entity)];
     grammar::HandSample& hand = now_.hands[slot];
     hand.trigger = entry.trigger;
-    hand.ahead_W = entry.ahead && !entry.ahead->isZero() ? entry.ahead->normalized()
-                                                         : look.q_WB * Eigen::Vector3d::UnitX();
+    has_ahead_[slot] = entry.ahead && !entry.ahead->isZero();
+    if (has_ahead_[slot]) hand.ahead_W = entry.ahead->normalized();
     if (entry.style) {
       const std::vector<std::string>& styles = episode.header.entity_table.styles;
       const auto style = std::find(styles.begin(), styles.end(), entry.style->value);
@@ -245,7 +247,16 @@ class EpisodeReader {
     collision_spheres.clear();
     for (const Eigen::Vector4d& f : entry.collision_spheres_m)
       collision_spheres.push_back({f.head<3>(), std::max(f[3], 0.0)});
-    if (collision_spheres.empty()) collision_spheres.push_back({look.p_WB_m, 0});
+    has_spheres_[slot] = !collision_spheres.empty();
+  }
+
+  /// What was not given of a hand is where its sample is, also in frames that do not mention it.
+  void FollowTheirSamples() {
+    for (std::size_t slot = 0; slot < hands_.size(); ++slot) {
+      const grammar::EntitySample& look = now_.entities[static_cast<std::size_t>(hands_[slot])];
+      if (!has_ahead_[slot]) now_.hands[slot].ahead_W = look.q_WB * Eigen::Vector3d::UnitX();
+      if (!has_spheres_[slot]) now_.collision_spheres[slot].assign(1, {look.p_WB_m, 0});
+    }
   }
 
   void TakeTouch(const TouchEntry& entry, DiagnosticList& errors) {
@@ -305,6 +316,7 @@ class EpisodeReader {
   bool header_ = false, ended_ = false;
   std::vector<std::string> names_;
   std::vector<int> hands_;
+  std::vector<bool> has_ahead_, has_spheres_;  ///< of each hand: its last mention gave them
   EpisodeFrame now_;
 };
 

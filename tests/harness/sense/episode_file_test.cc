@@ -54,6 +54,31 @@ TEST(EpisodeFile, WhatIsLeftOutHasADefault) {
   EXPECT_EQ(episode->header.grammar, "pick_and_place");
 }
 
+TEST(EpisodeFile, AHandWithoutSurfaceIsWhereItsSampleIs) {
+  const auto episode = ReadText(
+      std::string(kHeader) +
+      R"({"tick": 0, "samples": {"hand": {"at_m": [0, 0, 1]}}})"
+      "\n"
+      R"({"tick": 10, "samples": {"hand": {"at_m": [0, 0, 2], "quat_wxyz": [0, 0, 0, 1]}}})"
+      "\n"
+      R"({"tick": 20, "hands": {"hand": {"ahead": [0, 1, 0], "collision_spheres_m": [[0, 0, 3, 0.1]]}}})"
+      "\n"
+      R"({"tick": 30, "samples": {"hand": {"at_m": [0, 0, 4]}}})");
+  ASSERT_TRUE(episode) << Brief(ErrorsOf(episode));
+  const auto sphere = [&](std::size_t frame) {
+    const auto& spheres = episode->frames[frame].collision_spheres[0];
+    EXPECT_EQ(spheres.size(), 1u);
+    return spheres.empty() ? -1 : spheres[0].p_W_m.z();
+  };
+  EXPECT_EQ(sphere(0), 1) << "never mentioned among the hands";
+  EXPECT_EQ(sphere(1), 2);
+  EXPECT_EQ(sphere(2), 3);
+  EXPECT_EQ(sphere(3), 3) << "what was given stays";
+  EXPECT_EQ(episode->frames[0].hands[0].ahead_W, Eigen::Vector3d::UnitX());
+  EXPECT_TRUE(episode->frames[1].hands[0].ahead_W.isApprox(-Eigen::Vector3d::UnitX()));
+  EXPECT_EQ(episode->frames[3].hands[0].ahead_W, Eigen::Vector3d::UnitY());
+}
+
 TEST(EpisodeFile, IsReadAsItWasWritten) {
   const auto read = ReadText(
       std::string(kHeader) +
@@ -92,7 +117,7 @@ TEST(EpisodeFile, ClassesAndPartsOfAreReadAsTheyWereWritten) {
       R"("chest": {"fixed": true, "size_m": [0.5, 0.5, 1]}, )"
       R"("anna": {"class": "Person", "person": true, "size_m": [0.2, 0.2, 0.2]}, )"
       R"("hand": {"hand": true, "part_of": "anna", "size_m": [0.1, 0.1, 0.03]}}})"
-      "\n{\"tick\": 0, \"hands\": {\"hand\": {}}}\n");
+      "\n{\"tick\": 0}\n");
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   std::ostringstream written;
   EpisodeWriter writer(written, read->header);
