@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <variant>
 
@@ -42,7 +43,7 @@ class EpisodeReader {
     ++line_;
     if (text.find_first_not_of(" \r") == std::string::npos) return;
     auto document = ParseYaml(file_, text);
-    if (!document) return Report(std::move(document.error()));
+    if (!document) return Report(WhyNotJson(text, std::move(document.error())));
     DiagnosticList errors(*document);
     if (!header_) {
       HeaderEntry header;
@@ -75,6 +76,23 @@ class EpisodeReader {
   }
 
  private:
+  /// What is wrong with a line that is no JSON; `otherwise` if it is.
+  grammar::Diagnostics WhyNotJson(const std::string& text, grammar::Diagnostics otherwise) const {
+    try {
+      [[maybe_unused]] const auto parsed = nlohmann::json::parse(text);
+      return otherwise;
+    } catch (const nlohmann::json::parse_error& error) {
+      if (error.byte > text.size()) {
+        return {grammar::DiagnosticAt(file_, text, {1, static_cast<int>(text.size())},
+                                      "the line ends within a value",
+                                      "if it is the last line, the file was cut off")};
+      }
+      return {grammar::DiagnosticAt(file_, text, {1, static_cast<int>(error.byte)},
+                                    "not valid JSON: unexpected text here",
+                                    "each line is one JSON object")};
+    }
+  }
+
   void Report(grammar::Diagnostics found) {
     for (grammar::Diagnostic& diagnostic : found) diagnostic.place.line = line_;
     diagnostics = std::move(found);

@@ -204,6 +204,13 @@ TEST(EpisodeFile, BadPartsHaveTheirPlace) {
   EXPECT_EQ(complaint("[" + many + "]"), "1:112: parts: expected at most 256, found 257\n");
 }
 
+TEST(EpisodeFile, WhatIsNoJsonHasItsRealCause) {
+  EXPECT_EQ(Complaint("{\"tick\": 0, \"samples\": {\"cup\": {\"at_m\": [0, 0,"),
+            "2:46: the line ends within a value | if it is the last line, the file was cut off\n");
+  EXPECT_EQ(Complaint("{\"tick\": 0, \"samples\": [}"),
+            "2:25: not valid JSON: unexpected text here | each line is one JSON object\n");
+}
+
 TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
   EXPECT_EQ(
       Complaint(""),
