@@ -2,6 +2,8 @@
 // prehend accept: the only thing that writes goldens. It runs the scenario itself, so that what is
 // accepted is what this build recognises now, and refuses when that is not what was shown.
 // Tested by tests/program/golden_workflow_test.cc
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "harness/base/content_hash.h"
@@ -17,6 +19,7 @@
 #include "harness/judge/compare_engines.h"
 #include "harness/judge/compare_with_oracle.h"
 #include "harness/judge/judge_claims.h"
+#include "harness/judge/judge_transforms.h"
 #include "harness/run/run_text.h"
 
 namespace prehend::harness {
@@ -39,11 +42,11 @@ std::string Refusal(const ParsedOptions& options, const CommandContext& context)
   if (options.Text("--reason").find_first_not_of(" \t") == std::string::npos) {
     return "accept needs a reason: --reason \"why this is right\"";
   }
-  for (const char* name : {"--derived", "--reviewed"}) {
+  for (const char* name : {"--derived", "--reviewed", "--unsteady"}) {
     if (options.Has("--pictures") && options.Has(name))
       return std::string(name) + " concerns events; --pictures accepts pictures only";
   }
-  for (const char* name : {"--reason", "--derived"}) {
+  for (const char* name : {"--reason", "--derived", "--unsteady"}) {
     for (const std::string& text : options.All(name)) {
       if (text.find_first_of("\n\r") != std::string::npos)
         return std::string(name) + " must be a single line";
@@ -112,8 +115,40 @@ ExitCode Refuse(const CommandContext& context, const Played& played, const Golde
                       AcceptCommandLine(played.id, Fingerprint(pending)));
 }
 
+/// Events that are others a millimetre away prove nothing, unless a person says why they may be.
+/// Otherwise keeps how far the boundaries of `golden` moved.
+std::optional<ExitCode> RefuseUnlessSteady(const CommandContext& context, const Played& played,
+                                           Golden& golden) {
+  const Ensemble ensemble = PlayEnsemble(played.loaded, played.run.timeline, golden);
+  KeepSpreads(ensemble, golden);
+  if (ensemble.differences.empty() && !golden.unsteady.empty()) {
+    context.out << fmt::format("steady in {} plays: 'unsteady' is left out\n", ensemble.plays);
+    golden.unsteady.clear();
+  }
+  if (ensemble.differences.empty() || !golden.unsteady.empty()) return std::nullopt;
+  for (const Finding& difference : ensemble.differences) context.out << difference.details;
+  return Complain(
+      context, ExitCode::kDiffers,
+      fmt::format("the events are others in {} of {} plays elsewhere (printed above); nothing was "
+                  "accepted\n  give the scenario a margin, or its line a tolerance with a reason, "
+                  "or say why that may be: --unsteady \"...\"",
+                  ensemble.differences.size(), ensemble.plays - 1));
+}
+
+/// Of a golden that stays as it is otherwise. The code if that fails.
+std::optional<ExitCode> MeasureSpreadsAnew(const CommandContext& context, const Played& played) {
+  Golden golden = *played.old;
+  if (const auto refused = RefuseUnlessSteady(context, played, golden)) return refused;
+  if (WriteGolden(golden) == WriteGolden(*played.old)) return std::nullopt;
+  const std::string problem = GoldenFiles(context.root).WriteAccepted(golden);
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  context.out << "how far boundaries move elsewhere was measured anew\n";
+  return std::nullopt;
+}
+
 ExitCode NothingToAccept(const CommandContext& context, const Played& played) {
   GoldenFiles(context.root).RemovePending(played.id);
+  if (const auto refused = MeasureSpreadsAnew(context, played)) return *refused;
   LeaveBaseline(context, played);
   const std::string margin = MarginText(
       Compare(*played.old, played.run.timeline, DefaultTolerance(played.loaded.scenario)));
@@ -169,12 +204,16 @@ ExitCode AcceptEvents(const ParsedOptions& options, const CommandContext& contex
   proposal.derived = RenewedDerivation(proposal.derived, OracleLine(truth));
   const bool has_new_derivation = from_people && (!old || old->derived != proposal.derived);
   const Golden pending = PendingGolden(old, run.timeline, id, loaded.scenario.grammar, truth);
-  if (old && *old == pending && !has_new_derivation) return NothingToAccept(context, played);
+  if (old && *old == pending && !has_new_derivation && !options.Has("--unsteady"))
+    return NothingToAccept(context, played);
   const std::string why_not = NotWhatWasShown(options, context, pending);
   if (!why_not.empty()) return Refuse(context, played, pending, truth, why_not);
+  Golden golden = ProposeGolden(old, run.timeline, proposal);
+  if (options.Has("--unsteady")) golden.unsteady = options.Text("--unsteady");
+  if (const auto refused = RefuseUnlessSteady(context, played, golden)) return *refused;
   ShowDifference(played, truth, context);
   context.out << OracleLine(truth) << "\n";
-  const std::string problem = files.WriteAccepted(ProposeGolden(old, run.timeline, proposal));
+  const std::string problem = files.WriteAccepted(golden);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   LeaveBaseline(context, played);
   context.out << "accepted: " << files.GoldenPath(id).string() << "\n";
@@ -252,6 +291,11 @@ Command AcceptCommand() {
                    .help = "accept only what 'review' printed with this fingerprint",
                    .placeholder = "FINGERPRINT",
                    .rule = {.problem = FingerprintProblem}},
+                  {.name = "--unsteady",
+                   .help =
+                       "why the events may differ when the scenario is played elsewhere (check\n"
+                       "--ensemble); is written into the golden; without it they may not",
+                   .placeholder = "TEXT"},
                   {.name = "--pictures",
                    .help =
                        "accept the pictures, not the events; they are kept beside the timeline"}},

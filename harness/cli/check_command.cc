@@ -60,9 +60,7 @@ std::string TransformHelp() {
 
 std::vector<Transform> TransformsOf(const ParsedOptions& options) {
   std::vector<Transform> transforms;
-  if (options.Has("--ensemble"))
-    transforms = {Transform::kNudge, Transform::kShift, Transform::kFar, Transform::kReorder,
-                  Transform::kBystander};
+  if (options.Has("--ensemble")) transforms = EnsembleTransforms();
   for (const std::string& name : options.All("--transform"))
     transforms.push_back(
         std::ranges::find(TransformNames(), name, &TransformName::name)->transform);

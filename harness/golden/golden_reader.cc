@@ -21,6 +21,8 @@ using grammar::Tick;
 
 constexpr Tick kMaxTicksPerSecond = 1'000'000;
 constexpr std::size_t kMaxRolesInText = 8;
+constexpr int kMaxPlays = 1000;
+constexpr double kMaxSpread_ms = 1e7;
 
 bool IsNameCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -111,6 +113,10 @@ class GoldenReader {
       ReadAcceptance(golden_.accepted);
     } else if (key == "pictures") {
       ReadAcceptance(golden_.pictures);
+    } else if (key == "ensemble") {
+      ReadEnsemble(value);
+    } else if (key == "unsteady") {
+      ReadUnsteady();
     } else if (key == "ticks_per_second") {
       ReadTicksPerSecond(value);
     } else {
@@ -135,6 +141,24 @@ class GoldenReader {
     if (!ReadQuoted(acceptance.reason)) return;
     ExpectEnd();
     acceptances.push_back(std::move(acceptance));
+  }
+
+  void ReadEnsemble(std::string_view value) {
+    if (golden_.ensemble_plays > 0) return Complain("second 'ensemble' line");
+    std::optional<int> plays;
+    if (value.ends_with(" plays")) plays = ParseNumber<int>(value.substr(0, value.size() - 6));
+    if (!plays || *plays < 1 || *plays > kMaxPlays)
+      return Complain(
+          fmt::format("expected the number of plays, from 1 to {}, like '6 plays'", kMaxPlays));
+    golden_.ensemble_plays = *plays;
+  }
+
+  void ReadUnsteady() {
+    if (!golden_.unsteady.empty()) return Complain("second 'unsteady' line");
+    const std::size_t reason_column = column_;
+    if (!ReadQuoted(golden_.unsteady)) return;
+    if (golden_.unsteady.empty()) FailAt(reason_column, "the reason is empty");
+    ExpectEnd();
   }
 
   void ReadTicksPerSecond(const std::string& value) {
@@ -211,6 +235,8 @@ class GoldenReader {
                       "from the definitions");
       } else if (key == "accepted") {
         if (!ReadAcceptedBy(line)) return false;
+      } else if (key == "spread") {
+        if (!ReadSpread(line)) return false;
       } else if (!ReadRole(line, key, word_column)) {
         return false;
       }
@@ -254,6 +280,25 @@ class GoldenReader {
                     fmt::format("expected which of the {} 'accepted' lines it is from", next - 1));
     }
     line.accepted = *number;
+    return true;
+  }
+
+  bool ReadSpread(GoldenEvent& line) {
+    const std::size_t value_column = column_;
+    std::string_view value = Word();
+    const std::size_t slash = value.find('/');
+    std::optional<double> begin_ms, end_ms;
+    if (value.ends_with("ms") && slash != std::string_view::npos) {
+      begin_ms = ParseNumber<double>(value.substr(0, slash));
+      end_ms = ParseNumber<double>(value.substr(slash + 1, value.size() - slash - 3));
+    }
+    const auto is_spread = [](const std::optional<double>& ms) {
+      return ms && *ms >= 0 && *ms <= kMaxSpread_ms;
+    };
+    if (!is_spread(begin_ms) || !is_spread(end_ms))
+      return FailAt(value_column,
+                    "a spread is how far begin and end moved, in milliseconds, like 0.0/12.5ms");
+    line.spread = {*begin_ms, *end_ms};
     return true;
   }
 

@@ -39,6 +39,8 @@ std::vector<std::string> TableLines(const Golden& golden) {
     for (const grammar::NamedValue& value : line.event.values)
       add(fmt::format("{}~{:.4g}{}", value.name, value.value, value.unit));
     if (line.accepted > 1) add(fmt::format("accepted={}", line.accepted));
+    if (line.spread != Spread{})
+      add(fmt::format("spread={:.1f}/{:.1f}ms", line.spread.begin_ms, line.spread.end_ms));
     if (line.tolerance_ms)
       add(fmt::format("tolerance={}ms because {}", *line.tolerance_ms, Quoted(line.because)));
     rows.push_back(std::move(cells));
@@ -59,6 +61,13 @@ bool operator==(const GoldenEvent& a, const GoldenEvent& b) {
          a.because == b.because && a.comments == b.comments && a.accepted == b.accepted;
 }
 
+bool operator==(const Golden& a, const Golden& b) {
+  return a.scenario == b.scenario && a.grammar == b.grammar && a.derived == b.derived &&
+         a.accepted == b.accepted && a.pictures == b.pictures && a.unsteady == b.unsteady &&
+         a.ticks_per_second == b.ticks_per_second && a.comments == b.comments &&
+         a.events == b.events && a.closing_comments == b.closing_comments;
+}
+
 std::string WriteGolden(const Golden& golden) {
   std::string out = fmt::format("# scenario: {}\n# grammar: {}\n", golden.scenario, golden.grammar);
   for (const std::string& line : golden.derived) out += fmt::format("# derived: {}\n", line);
@@ -66,6 +75,9 @@ std::string WriteGolden(const Golden& golden) {
     out += fmt::format("# accepted: {} {}\n", acceptance.date, Quoted(acceptance.reason));
   for (const Acceptance& acceptance : golden.pictures)
     out += fmt::format("# pictures: {} {}\n", acceptance.date, Quoted(acceptance.reason));
+  if (golden.ensemble_plays > 0)
+    out += fmt::format("# ensemble: {} plays\n", golden.ensemble_plays);
+  if (!golden.unsteady.empty()) out += fmt::format("# unsteady: {}\n", Quoted(golden.unsteady));
   out += fmt::format("# ticks_per_second: {}\n", golden.ticks_per_second);
   AppendComments(golden.comments, out);
 

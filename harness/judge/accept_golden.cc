@@ -75,6 +75,7 @@ class MergeIntoGolden {
     if (partner && agrees && same_ticks_) return *partner;
     GoldenEvent line = partner ? *partner : GoldenEvent();
     line.as_written.clear();
+    line.spread = {};
     line.event = AsWritten(*pairing.actual);
     if (!agrees) line.accepted = next_;
     return line;
@@ -102,6 +103,8 @@ Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& 
     golden.derived = old->derived;
     golden.accepted = old->accepted;
     golden.pictures = old->pictures;
+    golden.unsteady = old->unsteady;
+    golden.ensemble_plays = old->ensemble_plays;
     golden.comments = old->comments;
     golden.closing_comments = old->closing_comments;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scenario elsewhere, turned, mirrored, or in another order: the same events, boundaries within
-// two frames. Tested by tests/harness/transform/transform_test.cc
+// the tolerances of its golden. Tested by tests/harness/transform/transform_test.cc
 #pragma once
 
 #include <vector>
@@ -11,8 +11,21 @@
 
 namespace prehend::harness {
 
+/// What an ensemble found: the scenario as its file says, and once after each of
+/// EnsembleTransforms() that leaves its story the same. `here` is what the first play recognised.
+struct Ensemble {
+  int plays = 1;
+  std::vector<Spread> spreads;  ///< by index in Golden::events; of events that all plays have
+  Findings differences;         ///< one per play whose events differ by more than the tolerances
+};
+Ensemble PlayEnsemble(const LoadedRun& loaded, const grammar::Timeline& here, const Golden& golden);
+
+/// Writes how far the boundaries moved into the lines of `golden`, for which it was played.
+void KeepSpreads(const Ensemble& ensemble, Golden& golden);
+
 /// Plays the scenario once per transform that leaves its story the same. `here` is the
-/// untransformed run, with the tolerances of its golden.
+/// untransformed run, with the tolerances of its golden. What may differ in an ensemble because the
+/// golden is marked as unsteady is no finding.
 Findings JudgeTransforms(const CheckedRun& checked, const Golden& here,
                          const std::vector<Transform>& transforms);
 

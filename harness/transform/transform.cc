@@ -201,6 +201,13 @@ const std::vector<TransformName>& TransformNames() {
   return names;
 }
 
+const std::vector<Transform>& EnsembleTransforms() {
+  static const std::vector<Transform> transforms = {Transform::kNudge, Transform::kShift,
+                                                    Transform::kFar, Transform::kReorder,
+                                                    Transform::kBystander};
+  return transforms;
+}
+
 std::string_view NameOf(Transform transform) {
   return std::ranges::find(TransformNames(), transform, &TransformName::transform)->name;
 }

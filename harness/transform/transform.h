@@ -32,6 +32,10 @@ struct TransformName {
 const std::vector<TransformName>& TransformNames();
 std::string_view NameOf(Transform transform);
 
+/// Those that move only rounding and the order of computations: a verdict that depends on them
+/// rests on chaos.
+const std::vector<Transform>& EnsembleTransforms();
+
 /// The scenario so transformed. Its events, by the names of entities, are those of the original.
 /// Otherwise why the two are not the same story.
 tl::expected<Scenario, std::string> Transformed(const Scenario& scenario, Transform transform);

@@ -223,12 +223,12 @@ TEST_F(GoldenWorkflow, WhatAGoldenNamesMustExist) {
     }
   };
   const std::string file = Golden().string();
-  says("contact  ", "contakt  ", file + ":7:1: error: the grammar has no event 'contakt'\n");
+  says("contact  ", "contakt  ", file + ":8:1: error: the grammar has no event 'contakt'\n");
   says("support=table", "suport=table",
-       file + ":8:47: error: 'supported_by' has no role 'suport'\n");
-  says("a=carton", "a=karton", file + ":7:32: error: the scenario has no 'karton'\n");
+       file + ":9:47: error: 'supported_by' has no role 'suport'\n");
+  says("a=carton", "a=karton", file + ":8:32: error: the scenario has no 'karton'\n");
   says("b=table", "style=wrap", "error: 'contact' has no style\n");
-  says("b=table", "", file + ":7:1: error: 'contact' has a role 'b', which is missing here\n");
+  says("b=table", "", file + ":8:1: error: 'contact' has a role 'b', which is missing here\n");
   says("# grammar: pick_and_place", "# grammar: contact",
        file +
            ":2:12: error: this golden is of the grammar 'contact', but the scenario uses "
@@ -406,6 +406,50 @@ TEST_F(GoldenWorkflow, WhatContradictsAClaimIsNotAccepted) {
   EXPECT_EQ(json[0]["verdict"], "holds");
   EXPECT_EQ(json[1]["verdict"], "contradicted");
   EXPECT_EQ(json[1]["claim"], "grasping");
+}
+
+TEST_F(GoldenWorkflow, WhatRestsOnChaosIsAcceptedOnlyWithAReason) {
+  // Four balls bounce in a pit: a micrometre decides which of them meet.
+  WriteFile(Scenario("rest/balls"), R"(scenario: balls
+shows: four balls bounce in a pit
+entities:
+  floor: {fixed: true, box: {size_m: [2, 2, 0.1]}, at_m: [0, 0, -0.05], restitution: 1}
+  east: {fixed: true, box: {size_m: [0.1, 0.3, 0.6]}, at_m: [0.2, 0, 0.3], restitution: 1}
+  west: {fixed: true, box: {size_m: [0.1, 0.3, 0.6]}, at_m: [-0.2, 0, 0.3], restitution: 1}
+  north: {fixed: true, box: {size_m: [0.5, 0.1, 0.6]}, at_m: [0, 0.2, 0.3], restitution: 1}
+  south: {fixed: true, box: {size_m: [0.5, 0.1, 0.6]}, at_m: [0, -0.2, 0.3], restitution: 1}
+  a: {sphere: {radius_m: 0.04}, mass_kg: 0.2, restitution: 0.95, friction: 0, at_m: [0.05, 0.03, 0.2]}
+  b: {sphere: {radius_m: 0.04}, mass_kg: 0.2, restitution: 0.95, friction: 0, at_m: [-0.06, 0.02, 0.3]}
+  c: {sphere: {radius_m: 0.04}, mass_kg: 0.2, restitution: 0.95, friction: 0, at_m: [0.01, -0.07, 0.4]}
+  d: {sphere: {radius_m: 0.04}, mass_kg: 0.2, restitution: 0.95, friction: 0, at_m: [0.02, 0.05, 0.5]}
+actors:
+  hand: {hand: gripper, at_m: [1.5, 0, 1.1]}
+script:
+  - hand: {wait_s: 0.1}
+settle_s: 4
+)");
+  const Said refused = Do("accept balls --reason why");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("plays elsewhere (printed above); nothing was accepted"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_FALSE(fs::exists(Golden("rest/balls")));
+  const Said accepted = Do("accept balls --reason why --unsteady chaotic_balls");
+  EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
+  const std::string golden = ReadFile(Golden("rest/balls"));
+  EXPECT_NE(golden.find("# ensemble: 6 plays\n# unsteady: \"chaotic_balls\"\n"), std::string::npos)
+      << golden;
+  EXPECT_NE(golden.find("spread="), std::string::npos);
+  EXPECT_EQ(Do("check balls --no-pictures --ensemble").exit_code, 0);
+  EXPECT_EQ(Do("check balls --no-pictures --transform turn").exit_code, 1)
+      << "the reason is for the plays of the ensemble only";
+}
+
+TEST_F(GoldenWorkflow, WhatIsSteadyAgainLosesTheReason) {
+  ASSERT_EQ(Do("accept carton_rests --reason why --unsteady shaky").exit_code, 0);
+  const std::string golden = ReadFile(Golden());
+  EXPECT_NE(golden.find("# ensemble: 6 plays\n"), std::string::npos) << golden;
+  EXPECT_EQ(golden.find("unsteady"), std::string::npos) << golden;
 }
 
 TEST_F(GoldenWorkflow, AClaimThatAnotherGrammarCannotDecideIsSaidToBeOpen) {

@@ -18,6 +18,8 @@ constexpr const char* kCanonical =
 # accepted: 2026-01-31 "first golden, \"by eye\""
 # accepted: 2026-02-01 "the contact gap became 100 ms"
 # pictures: 2026-02-02 "the carton is seen in the hand"
+# ensemble: 6 plays
+# unsteady: "the \"last\" touch"
 # ticks_per_second: 480
 # anything else that somebody wrote
 #
@@ -25,7 +27,7 @@ constexpr const char* kCanonical =
 supported_by  0.0000   2.0125  object=milk      support=table
 # the hand starts to move after half a second
 reaching      0.5000   1.2000  hand=right_hand  object=milk                tolerance=20ms because "soft start"
-grasping      1.2021   4.3000  hand=right_hand  object=milk    style=wrap  force~12.5N  share~0.25  accepted=2
+grasping      1.2021   4.3000  hand=right_hand  object=milk    style=wrap  force~12.5N  share~0.25  accepted=2  spread=0.0/12.5ms
 contact       2.0000   5.0000  a=milk           b=table                    open_end  tolerance=0ms because "exact"
 # the end
 )";
@@ -55,6 +57,10 @@ TEST(Golden, IsReadAsWritten) {
             (std::vector<grammar::NamedValue>{{"force", 12.5, "N"}, {"share", 0.25, ""}}));
   EXPECT_EQ(golden.events[1].accepted, 1);
   EXPECT_EQ(golden.events[2].accepted, 2);
+  EXPECT_EQ(golden.ensemble_plays, 6);
+  EXPECT_EQ(golden.unsteady, "the \"last\" touch");
+  EXPECT_EQ(golden.events[1].spread, Spread());
+  EXPECT_EQ(golden.events[2].spread, (Spread{0, 12.5}));
   EXPECT_TRUE(golden.events[3].event.open_end);
   EXPECT_EQ(golden.events[3].because, "exact");
   EXPECT_EQ(golden.pictures,
@@ -130,6 +136,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"value_twice", "contact 1 2 a=cup force~1N force~2N", "4:28: second 'force'"},
         Mistake{"accepted_by_nobody", "contact 1 2 a=cup accepted=2",
                 "4:28: expected which of the 0 'accepted' lines it is from"},
+        Mistake{"spread_of_one", "contact 1 2 a=cup spread=3ms",
+                "4:26: a spread is how far begin and end moved, in milliseconds, like 0.0/12.5ms"},
+        Mistake{"spread_negative", "contact 1 2 a=cup spread=-1/3ms",
+                "4:26: a spread is how far begin and end moved, in milliseconds, like 0.0/12.5ms"},
         Mistake{"role_twice", "contact 1 2 a=cup a=cup", "4:19: second 'a'"},
         Mistake{"tolerance_twice",
                 "contact 1 2 a=cup tolerance=20ms because \"x\" tolerance=90ms because \"y\"",
