@@ -129,9 +129,13 @@ std::string GoldenFiles::WriteGoldenFile(const Golden& golden) const {
   const std::string path = GoldenPath(golden.scenario), text = WriteGolden(golden);
   // A golden that does not read back would lose every reason that the old one held.
   grammar::Diagnostics wrong = CheckText(path, text);
-  if (wrong.empty()) wrong = ErrorsOf(ReadGolden(path, text));
   if (!wrong.empty())
     return "the golden would not be readable, and was not written:\n" + Format(wrong);
+  const Result<Golden> read = ReadGolden(path, text);
+  if (!read)
+    return "the golden would not be readable, and was not written:\n" + Format(read.error());
+  if (!(*read == golden))
+    return "the golden would read back otherwise, and was not written; use plain words in reasons";
   return WriteTextFile(path, text);
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <random>
 
 #include "harness/judge/unreferenced_goldens.h"
 
@@ -71,6 +72,79 @@ TEST_F(GoldenFilesTest, PicturesBelongToAScenarioAndAPictureOfIt) {
                 " belongs to no scenario: remove it, or bring scenarios/y.yaml back\n");
   files_.RemovePendingPicture("slide/x", "x.png");
   EXPECT_TRUE(fs::is_empty(root_ / "build/pending/slide"));
+}
+
+// A golden holds every reason that was ever given, so nothing that is typed may cost it.
+TEST_F(GoldenFilesTest, HostileReasonsAndNamesLeaveItReadable) {
+  const std::vector<std::string> pieces = {"why",
+                                           " ",
+                                           "  ",
+                                           "#",
+                                           "# accepted: 2020-01-01: x",
+                                           "accepted",
+                                           ":",
+                                           ": ",
+                                           "2026-01-01",
+                                           "# scenario: y",
+                                           "scenario: ",
+                                           "# ",
+                                           "\n",
+                                           "\n# scenario: z\n",
+                                           "\r",
+                                           "\t",
+                                           std::string(1, '\0'),
+                                           "\x1b[31m",
+                                           "\xe9t\xe9",
+                                           "\xff",
+                                           "\u009b",
+                                           "\u202e",
+                                           "\u2028",
+                                           "\ufffe",
+                                           "\\",
+                                           "\"",
+                                           "'",
+                                           "=",
+                                           "a=b",
+                                           "tolerance=5ms because",
+                                           "because",
+                                           "@2",
+                                           "~",
+                                           "0.1 0.2 contact(a, b)",
+                                           "%s",
+                                           "Milchtüte",
+                                           std::string(3000, 'x'),
+                                           "---",
+                                           "...",
+                                           "pictures",
+                                           "derived",
+                                           "# derived: ",
+                                           "ticks_per_second"};
+  std::mt19937 random(7);
+  const auto hostile = [&] {
+    std::string text;
+    for (unsigned i = 1 + random() % 4; i > 0; --i) text += pieces[random() % pieces.size()];
+    return text;
+  };
+  const Golden first{.scenario = "slide/x",
+                     .grammar = "g",
+                     .derived = {"it follows"},
+                     .accepted = {{"2026-01-01", "the first reason"}}};
+  int written = 0;
+  for (int round = 0; round < 200; ++round) {
+    ASSERT_EQ(files_.WriteAccepted(first), "");
+    Golden next = first;
+    next.accepted.push_back({"2026-01-02", round % 4 == 1 ? "plain" : hostile()});
+    if (round % 4 == 1) next.derived = {hostile()};
+    if (round % 4 == 2) next.grammar = hostile();
+    if (round % 4 == 3) next.pictures = {{"2026-01-03", hostile()}};
+    const std::string problem = files_.WriteAccepted(next);
+    written += problem.empty() ? 1 : 0;
+    const auto read = files_.ReadGoldenOf("slide/x");
+    ASSERT_TRUE(read && *read) << "round " << round << ": " << Format(ErrorsOf(read));
+    EXPECT_EQ(**read, problem.empty() ? next : first) << "round " << round << ": " << problem;
+  }
+  EXPECT_GT(written, 20);
+  EXPECT_LT(written, 180);
 }
 
 TEST_F(GoldenFilesTest, WhatCannotBeWrittenIsSaid) {
