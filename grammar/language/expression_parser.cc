@@ -38,6 +38,12 @@ void ExpressionParser::FailDeep() {
        "name a part of it with `condition`");
 }
 
+// Flat as it is written, but each step takes in what stands before it.
+void ExpressionParser::FailLong() {
+  Fail("this has more than " + std::to_string(kMaxDepth) + " steps in a row",
+       "name a part of it with `define`");
+}
+
 Expr ExpressionParser::Make(Expr::Kind kind, Place place, std::string text,
                             std::vector<Expr> args) {
   int depth = 1;
@@ -94,6 +100,7 @@ Expr ExpressionParser::ParseSum() {
   Expr left = ParseProduct();
   while (At("+") || At("-")) {
     const Token op = Take();
+    if (left.depth >= kMaxDepth) FailLong();
     left = Make(Expr::Kind::kBinary, op.place, op.text, Args(std::move(left), ParseProduct()));
   }
   return left;
@@ -103,6 +110,7 @@ Expr ExpressionParser::ParseProduct() {
   Expr left = ParseNegation();
   while (At("*") || At("/")) {
     const Token op = Take();
+    if (left.depth >= kMaxDepth) FailLong();
     left = Make(Expr::Kind::kBinary, op.place, op.text, Args(std::move(left), ParseNegation()));
   }
   return left;
@@ -204,7 +212,10 @@ Dimension ExpressionParser::ParseDimension(double& si) {
     si = unit->si;
     dimension = unit->dimension;
   }
-  while (At("/") && AtUnit(1)) {
+  constexpr int kMostDivisors = 8;
+  for (int divisors = 0; At("/") && AtUnit(1); ++divisors) {
+    if (divisors == kMostDivisors)
+      Fail("a unit with more than " + std::to_string(kMostDivisors) + " divisors");
     SkipOne();
     const Unit* divisor = FindUnit(Take().text);
     si /= divisor->si;

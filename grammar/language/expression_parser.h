@@ -44,6 +44,7 @@ class ExpressionParser : public TokenReader {
 
   ast::Expr Make(ast::Expr::Kind kind, Place place, std::string text, std::vector<ast::Expr> args);
   [[noreturn]] void FailDeep();
+  [[noreturn]] void FailLong();
 
   /// Guards the stack against `((((((..`.
   struct Nested {

@@ -2,6 +2,8 @@
 // See harness/base/atomic_file.h. Tested by tests/harness/base/atomic_file_test.cc
 #include "harness/base/atomic_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -72,6 +74,16 @@ std::string AtomicFile::Commit() {
   std::error_code error;
   fs::rename(unfinished_, target_, error);
   return error ? cannot + error.message() : "";
+}
+
+FolderLock::FolderLock(const fs::path& folder)
+    : folder_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  while (folder_ >= 0 && flock(folder_, LOCK_EX) != 0 && errno == EINTR) {
+  }
+}
+
+FolderLock::~FolderLock() {
+  if (folder_ >= 0) close(folder_);
 }
 
 std::string WhyNotWritable(const fs::path& path) {

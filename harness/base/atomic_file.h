@@ -38,6 +38,18 @@ class AtomicFile {
   std::string problem_;
 };
 
+/// While it lives, another one for the same folder waits. Without the folder it locks nothing.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int folder_ = -1;
+};
+
 /// Empty, or why an AtomicFile cannot be written there; creates the folders above it. For asking
 /// before long work.
 std::string WhyNotWritable(const std::filesystem::path& path);

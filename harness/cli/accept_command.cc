@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "harness/base/atomic_file.h"
 #include "harness/base/content_hash.h"
 #include "harness/base/shell_quote.h"
 #include "harness/check/check_scenario.h"
@@ -236,6 +237,8 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
                     "only scenarios in scenarios/ have goldens; move the file there and accept it "
                     "by name");
   }
+  // Another one must not lose the reason that this one adds.
+  const FolderLock one_at_a_time(context.root);
   Played played;
   played.id = ScenarioId(file->skill, file->name);
   played.files = {GoldenFiles(context.root).GoldenPath(played.id).string()};

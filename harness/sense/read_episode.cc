@@ -123,12 +123,50 @@ class EpisodeReader {
       } else {
         member.classes = ClassesOf(m);
       }
+      CheckMember(entry, errors);
     }
+    CheckParts(header, errors);
     now_.entities.resize(names_.size());
     for (const int hand : hands_) now_.hands.push_back({.entity = hand, .collision_spheres = {}});
     now_.collision_spheres.resize(hands_.size());
     has_ahead_.resize(hands_.size());
     has_spheres_.resize(hands_.size());
+  }
+
+  static void CheckMember(const Named<MemberEntry>& entry, DiagnosticList& errors) {
+    const MemberEntry& m = entry.value;
+    const auto add = [&](const std::string& what) {
+      errors.Add(entry.name_where, fmt::format("'{}': {}", entry.name, what));
+    };
+    if (!m.hand && m.class_name == "Hand") add("only a hand has the class 'Hand': 'hand: true'");
+    if (const std::string twice = Repeated(m.kinds); !twice.empty())
+      add("the kind '" + twice + "' is given twice");
+    if (const std::string twice = Repeated(m.sensor_sets); !twice.empty())
+      add("the sensor set '" + twice + "' is given twice");
+  }
+
+  /// The first name that is there before; "" if there is none.
+  static std::string Repeated(const std::vector<std::string>& names) {
+    for (auto name = names.begin(); name != names.end(); ++name) {
+      if (std::find(names.begin(), name, *name) != name) return *name;
+    }
+    return "";
+  }
+
+  /// Nothing is a part of itself, however many parts lie between.
+  void CheckParts(const HeaderEntry& header, DiagnosticList& errors) const {
+    const std::vector<grammar::EntityInfo>& members = episode.header.entity_table.entities;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      int whole = members[i].part_of;
+      for (std::size_t steps = 0; whole != grammar::kNoEntity && steps < members.size(); ++steps) {
+        if (whole == static_cast<int>(i)) {
+          errors.Add(header.entities[i].value.part_of->where,
+                     fmt::format("'{}' is a part of itself", members[i].name));
+          return;
+        }
+        whole = members[static_cast<std::size_t>(whole)].part_of;
+      }
+    }
   }
 
   static grammar::Solid SolidOf(const std::vector<PartEntry>& entries) {
@@ -175,6 +213,7 @@ class EpisodeReader {
   }
 
   void Take(const EndEntry& entry, DiagnosticList& errors) {
+    if (ended_) return errors.Add(entry.end_tick.where, "a second line with 'end_tick'");
     ended_ = true;
     episode.end_tick = entry.end_tick.value;
     if (!episode.frames.empty() && episode.end_tick <= episode.frames.back().tick) {
@@ -250,6 +289,9 @@ class EpisodeReader {
     const HandEntry& entry = named.value;
     grammar::HandSample& hand = now_.hands[slot];
     hand.trigger = entry.trigger;
+    if (entry.ahead && entry.ahead->isZero())
+      errors.Add(named.name_where,
+                 fmt::format("'{}': ahead: expected a direction, found [0, 0, 0]", named.name));
     has_ahead_[slot] = entry.ahead && !entry.ahead->isZero();
     if (has_ahead_[slot]) hand.ahead_W = entry.ahead->normalized();
     if (entry.style) {
@@ -263,8 +305,12 @@ class EpisodeReader {
     }
     std::vector<grammar::CollisionSphere>& collision_spheres = now_.collision_spheres[slot];
     collision_spheres.clear();
-    for (const Eigen::Vector4d& f : entry.collision_spheres_m)
+    for (const Eigen::Vector4d& f : entry.collision_spheres_m) {
+      if (f[3] < 0)
+        errors.Add(named.name_where,
+                   fmt::format("'{}': a collision sphere of radius {:g}", named.name, f[3]));
       collision_spheres.push_back({f.head<3>(), std::max(f[3], 0.0)});
+    }
     has_spheres_[slot] = !collision_spheres.empty();
   }
 

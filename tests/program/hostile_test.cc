@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A project folder in which something strange lies about: names that are no text, links, pipes. It
 // costs the verdict of what is strange, never that of the rest.
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "tests/program/small_project.h"
@@ -66,6 +67,20 @@ TEST_F(Hostile, AnUnreadableGrammarIsNotPassedOver) {
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_NE(said.err.find("contact.grammar:1:19: error: byte 0xff is not UTF-8"), std::string::npos)
       << said.err;
+}
+
+// Both are asked for by a person; neither reason is lost.
+TEST_F(Hostile, TwoAcceptsAtOnceKeepBothReasons) {
+  const std::string accept = "PREHEND_HOME='" + root_.string() +
+                             "' CI= '" PREHEND_BINARY_DIR
+                             "/prehend' accept carton_rests >/dev/null 2>&1 --reason ";
+  Accept();
+  const std::string both =
+      "( " + accept + "first --derived one & " + accept + "second --derived two & wait )";
+  ASSERT_EQ(std::system(both.c_str()), 0);
+  const std::string golden = ReadFile(Golden());
+  EXPECT_NE(golden.find("first"), std::string::npos) << golden;
+  EXPECT_NE(golden.find("second"), std::string::npos) << golden;
 }
 
 }  // namespace

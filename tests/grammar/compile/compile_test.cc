@@ -113,6 +113,12 @@ TEST(Compile, WarnsOfWhatSaysNothingButMayBeMeant) {
                 "  hint: use 'or', or change one of the bounds\n");
 }
 
+std::string Times(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
 TEST(Compile, RefusesWhatIsNoGrammar) {
   const std::pair<std::string, std::string> cases[] = {
       {"", "the file is empty"},
@@ -120,6 +126,11 @@ TEST(Compile, RefusesWhatIsNoGrammar) {
       {"grammar \xff\xfe", "g: error: the file is not valid UTF-8 text"},
       {std::string(50 << 20, ' '), "g: error: the file is larger than 1 MiB"},
       {"grammar g event a(x: T) while " + std::string(10000, '('), "nested more than 64 deep"},
+      {"grammar g event a(x: T) while 1" + Times(" + 1", 64) + " > 0",
+       "more than 64 steps in a row"},
+      {"grammar g event a(x: T) while 1" + Times(" * 1", 64) + " > 0",
+       "more than 64 steps in a row"},
+      {"grammar g param p = 1 m" + Times("/s", 9), "a unit with more than 8 divisors"},
   };
   for (const auto& [text, message] : cases) {
     const CompileResult result = CompileText(text);

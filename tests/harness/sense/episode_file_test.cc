@@ -211,6 +211,37 @@ TEST(EpisodeFile, WhatIsNoJsonHasItsRealCause) {
             "2:25: not valid JSON: unexpected text here | each line is one JSON object\n");
 }
 
+// A recording is refused what a scenario or a hand file is refused.
+TEST(EpisodeFile, WhatCannotBeIsRefused) {
+  const auto complaint = [](const std::string& entities) {
+    const std::string header =
+        R"({"recording": 1, "episode": "x", "ticks_per_second": 100, "entities": {)" + entities +
+        "}}\n{\"tick\": 1}\n";
+    const std::string all = Brief(ErrorsOf(ReadText(header)));
+    return all.substr(std::min(all.find(": "), all.size() - 2) + 2);
+  };
+  EXPECT_EQ(complaint(R"("a": {"class": "A", "size_m": [1, 1, 1], "part_of": "b"}, )"
+                      R"("b": {"class": "B", "size_m": [1, 1, 1], "part_of": "a"})"),
+            "'a' is a part of itself\n");
+  EXPECT_EQ(complaint(R"("a": {"class": "Hand", "size_m": [1, 1, 1]})"),
+            "'a': only a hand has the class 'Hand': 'hand: true'\n");
+  EXPECT_EQ(complaint(R"("a": {"class": "A", "size_m": [1, 1, 1], "kinds": ["B", "B"]})"),
+            "'a': the kind 'B' is given twice\n");
+  EXPECT_EQ(complaint(R"("h": {"hand": true, "size_m": [1, 1, 1], "sensor_sets": ["t", "t"]})"),
+            "'h': the sensor set 't' is given twice\n");
+  EXPECT_NE(Complaint("{\"tick\": 1}\n{\"end_tick\": 5}\n{\"end_tick\": 6}\n")
+                .find("a second line with 'end_tick'"),
+            std::string::npos);
+  EXPECT_NE(Complaint("{\"tick\": 1, \"hands\": {\"hand\": {\"ahead\": [0, 0, 0]}}}\n")
+                .find("'hand': ahead: expected a direction, found [0, 0, 0]"),
+            std::string::npos);
+  EXPECT_NE(
+      Complaint(
+          "{\"tick\": 1, \"hands\": {\"hand\": {\"collision_spheres_m\": [[0, 0, 0, -1]]}}}\n")
+          .find("'hand': a collision sphere of radius -1"),
+      std::string::npos);
+}
+
 TEST(EpisodeFile, ComplaintsHaveTheirPlace) {
   EXPECT_EQ(
       Complaint(""),
