@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Needs: Bullet 3.24 built with double precision. The order of creation matters for determinism:
-// bodies first, then hands, in scene order. One step of dt per tick, never Bullet's own
+// bodies from below to above, then hands in scene order. One step of dt per tick, never Bullet's own
 // sub-stepping, whose remainder can drop time. Tested by tests/physics/world/world_test.cc
 #include "physics/bullet/world.h"
 
 #include <btBulletDynamicsCommon.h>
 
+#include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "physics/bullet/body.h"
 #include "physics/bullet/contacts.h"
@@ -132,7 +134,14 @@ void BulletWorld::Configure() {
 
 void BulletWorld::AddBodies() {
   places_.resize(scene_.bodies.size());
-  for (const auto& group : RigidGroups(scene_)) AddRigid(group);
+  // Contacts are solved in the order of bodies (PlaceInOrder()), which must not follow from the
+  // order in which a file lists them: from below to above, light before heavy.
+  auto groups = RigidGroups(scene_);
+  std::ranges::stable_sort(groups, {}, [&](const std::vector<std::size_t>& group) {
+    const Body& root = scene_.bodies[group.front()];
+    return std::tuple(!root.fixed, root.X_WB.p_m.z(), root.mass_kg);
+  });
+  for (const auto& group : groups) AddRigid(group);
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
     if (scene_.bodies[i].grains) AddGrains(i);
 }
