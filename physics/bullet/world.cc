@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Needs: Bullet 3.24 built with double precision. The order of creation matters for determinism:
-// bodies from below to above, then hands in scene order. One step of dt per tick, never Bullet's own
-// sub-stepping, whose remainder can drop time. Tested by tests/physics/world/world_test.cc
+// bodies from below to above, then hands in scene order. One step of dt per tick, never Bullet's
+// own sub-stepping, whose remainder can drop time. Tested by tests/physics/world/world_test.cc
 #include "physics/bullet/world.h"
 
 #include <btBulletDynamicsCommon.h>
