@@ -13,7 +13,7 @@
 #include "harness/check/last_pass.h"
 #include "harness/check/state_trace.h"
 #include "harness/cli/accept_pictures.h"
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/golden/compare.h"
 #include "harness/golden/golden_files.h"
 #include "harness/judge/accept_golden.h"

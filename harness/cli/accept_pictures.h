@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/golden/golden.h"
 #include "harness/run/run_scenario.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/run/run_text.h"
 #include "harness/speed/measure.h"
 #include "harness/timeline/event_text.h"

@@ -14,7 +14,7 @@
 #include "harness/base/project_paths.h"
 #include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
-#include "harness/cli/parse_arguments.h"
+#include "harness/command/parse_arguments.h"
 
 namespace prehend::harness {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/episodes/episode_file.h"
 #include "harness/episodes/resegment_many.h"
 #include "harness/timeline/event_text.h"

@@ -7,8 +7,8 @@
 
 #include "harness/base/shell_quote.h"
 #include "harness/check/check_scenario.h"
-#include "harness/cli/command.h"
-#include "harness/cli/recorded_episode.h"
+#include "harness/command/command.h"
+#include "harness/command/recorded_episode.h"
 #include "harness/explain/explain.h"
 #include "harness/explain/replay.h"
 #include "harness/run/run_text.h"

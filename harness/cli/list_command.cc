@@ -7,7 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
 #include "harness/timeline/event_text.h"

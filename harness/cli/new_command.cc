@@ -6,7 +6,7 @@
 #include "harness/base/default_grammar.h"
 #include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/format/scenario_copy.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/episodes/query_events.h"
 #include "harness/timeline/event_text.h"
 

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/atomic_file.h"
-#include "harness/cli/command.h"
-#include "harness/cli/recorded_episode.h"
+#include "harness/command/command.h"
+#include "harness/command/recorded_episode.h"
 #include "harness/episodes/schema.h"
 #include "harness/pictures/pictures.h"
 #include "harness/run/event_time.h"

@@ -8,7 +8,7 @@
 
 #include "grammar/contents.h"
 #include "grammar/name_events.h"
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/episodes/resegment_many.h"
 #include "harness/episodes/schema.h"
 #include "harness/run/load_grammar.h"

@@ -11,7 +11,7 @@
 #include "harness/base/shell_quote.h"
 #include "harness/check/check_scenario.h"
 #include "harness/check/select_scenarios.h"
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/golden/compare.h"
 #include "harness/golden/golden_files.h"
 #include "harness/judge/accept_golden.h"

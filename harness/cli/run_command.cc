@@ -7,7 +7,7 @@
 #include "harness/base/atomic_file.h"
 #include "harness/base/content_hash.h"
 #include "harness/base/shell_quote.h"
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/episodes/record_episode.h"
 #include "harness/episodes/schema.h"
 #include "harness/run/outcome.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend schema. Tested by tests/program/command_line_test.cc
 
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/format/scenario_fields.h"
 
 namespace prehend::harness {

@@ -5,7 +5,7 @@
 
 #include "harness/base/atomic_file.h"
 #include "harness/base/default_grammar.h"
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/sweep/plateau.h"
 #include "harness/sweep/sweep.h"
 

@@ -8,8 +8,8 @@
 
 #include "grammar/contents.h"
 #include "harness/base/atomic_file.h"
-#include "harness/cli/command.h"
-#include "harness/cli/recorded_episode.h"
+#include "harness/command/command.h"
+#include "harness/command/recorded_episode.h"
 #include "harness/explain/replay.h"
 #include "harness/explain/tracks.h"
 

@@ -12,7 +12,7 @@
 #include "harness/base/content_hash.h"
 #include "harness/base/text_file.h"
 #include "harness/check/validate_golden.h"
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/golden/golden_files.h"
 #include "harness/judge/unreferenced_goldens.h"
 #include "harness/run/load_grammar.h"

@@ -51,7 +51,7 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"yaml-cpp", std::regex("yaml-cpp/.*"), std::regex("harness/.*")},
       {"JSON", std::regex("nlohmann/.*"), std::regex("(harness|tests|bench)/.*")},
       {"fmt", std::regex("fmt/.*"), std::regex("(harness|tests|bench)/.*")},
-      {"CLI11", std::regex("CLI/.*"), std::regex("harness/cli/parse_arguments\\.cc")},
+      {"CLI11", std::regex("CLI/.*"), std::regex("harness/command/parse_arguments\\.cc")},
       {"pugixml", std::regex("pugixml\\.hpp"), std::regex("(harness|tests)/.*")},
       {"muParser", std::regex("muParser.*"), std::regex("harness/closed_form/formula\\.cc")},
       {"tl::expected", std::regex("tl/.*"), std::regex("harness/.*")},
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"physics/bullet/world.cc", "<btBulletDynamicsCommon.h>", ""},
         Case{"harness/a.cc", "<GL/osmesa.h>", "OpenGL and OSMesa does not belong here"},
         Case{"harness/cli/a.cc", "<CLI/CLI.hpp>", "CLI11 does not belong here"},
-        Case{"harness/cli/parse_arguments.cc", "<CLI/CLI.hpp>", ""},
+        Case{"harness/command/parse_arguments.cc", "<CLI/CLI.hpp>", ""},
         Case{"grammar/a.cc", "<fstream>", "the grammar room has no files"},
         Case{"bench/a.cc", "<gtest/gtest.h>", "GoogleTest does not belong here"}));
 

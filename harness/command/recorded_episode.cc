@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/recorded_episode.h. Tested by tests/program/episodes_test.cc
-#include "harness/cli/recorded_episode.h"
+// See harness/command/recorded_episode.h. Tested by tests/program/episodes_test.cc
+#include "harness/command/recorded_episode.h"
 
 #include <fmt/format.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Words of a command line -> the command that is meant and what was typed for its options, or a
 // help text, or what is wrong. The only unit that knows CLI11. Tested by
-// tests/harness/cli/parse_arguments_test.cc
+// tests/harness/command/parse_arguments_test.cc
 #pragma once
 
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 
 namespace prehend::harness {
 

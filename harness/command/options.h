@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What can be typed after a command's name, described as data, and what was typed for it. Knows no
-// parser: harness/cli/parse_arguments.cc turns the description into one. Tested by
-// tests/harness/cli/parse_arguments_test.cc
+// parser: harness/command/parse_arguments.cc turns the description into one. Tested by
+// tests/harness/command/parse_arguments_test.cc
 #pragma once
 
 #include <cstdint>

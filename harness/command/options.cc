@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/options.h. Tested by tests/harness/cli/parse_arguments_test.cc
-#include "harness/cli/options.h"
+// See harness/command/options.h. Tested by tests/harness/command/parse_arguments_test.cc
+#include "harness/command/options.h"
 
 #include <fmt/format.h>
 

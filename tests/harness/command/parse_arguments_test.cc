@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Options as data: what is typed, what becomes of it, and what is said of what is wrong.
-#include "harness/cli/parse_arguments.h"
+#include "harness/command/parse_arguments.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/parse_arguments.h. CLI11 splits the words and prints the help; what is wrong with
-// them is worded here. Tested by tests/harness/cli/parse_arguments_test.cc
-#include "harness/cli/parse_arguments.h"
+// See harness/command/parse_arguments.h. CLI11 splits the words and prints the help; what is wrong
+// with them is worded here. Tested by tests/harness/command/parse_arguments_test.cc
+#include "harness/command/parse_arguments.h"
 
 #include <fmt/format.h>
 

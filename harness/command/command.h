@@ -14,7 +14,7 @@
 
 #include "grammar/base/diagnostic.h"
 #include "harness/base/exit_code.h"
-#include "harness/cli/options.h"
+#include "harness/command/options.h"
 #include "harness/run/find_scenario.h"
 #include "harness/run/load_run.h"
 #include "harness/run/open_episode.h"

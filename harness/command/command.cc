@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What commands share. Tested by tests/program/command_line_test.cc
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,7 +3,7 @@
 // tests/program/episodes_test.cc
 #pragma once
 
-#include "harness/cli/command.h"
+#include "harness/command/command.h"
 #include "harness/episodes/load_episode.h"
 
 namespace prehend::harness {
