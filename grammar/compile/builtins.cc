@@ -82,6 +82,17 @@ std::span<const Builtin> Builtins() {
       {"speed",                   Op::kSpeed,                 T::kNumber,   kMetresPerSecond,  {A::kEntity},
        "of the entity's origin",
        S::kPoses, kNotNegative},
+      {"speed",                   Op::kSpeedOver,             T::kNumber,   kMetresPerSecond,  {A::kEntity, A::kWindow},
+       "(a, window): how far the entity's origin gets from half the window before to half of it "
+       "after, per time",
+       S::kPoses, kNotNegative},
+      {"relative_speed",          Op::kRelativeSpeed,         T::kNumber,   kMetresPerSecond,  {A::kEntity, A::kEntity},
+       "of the first's origin against the point of the second where the first is",
+       S::kPoses, kNotNegative},
+      {"relative_speed",          Op::kRelativeSpeedOver,     T::kNumber,   kMetresPerSecond,  {A::kEntity, A::kEntity, A::kWindow},
+       "(a, b, window): how far a's origin gets, as seen from b, from half the window before to "
+       "half of it after, per time",
+       S::kPoses, kNotNegative},
       {"vertical_speed",          Op::kVerticalSpeed,         T::kNumber,   kMetresPerSecond,  {A::kEntity},
        "upwards",
        S::kPoses, kAnyNumber},
@@ -120,6 +131,18 @@ std::span<const Builtin> Builtins() {
       {"rate",                    Op::kRate,                  T::kNumber,   kPlain,            {A::kNumber, A::kWindow},
        "(value, window): how fast a value grows, from half the window before to half of it after",
        S::kPoses, kAnyNumber},
+      {"mean",                    Op::kMean,                  T::kNumber,   kPlain,            {A::kNumber, A::kWindow},
+       "(value, window): of the frames at most half the window before or after",
+       S::kPoses, kAnyNumber},
+      {"min",                     Op::kMinimum,               T::kNumber,   kPlain,            {A::kNumber, A::kWindow},
+       "(value, window): the smallest of the frames at most half the window before or after",
+       S::kPoses, kAnyNumber},
+      {"max",                     Op::kMaximum,               T::kNumber,   kPlain,            {A::kNumber, A::kWindow},
+       "(value, window): the largest of the frames at most half the window before or after",
+       S::kPoses, kAnyNumber},
+      {"median",                  Op::kMedian,                T::kNumber,   kPlain,            {A::kNumber, A::kWindow},
+       "(value, window): of the frames at most half the window before or after",
+       S::kPoses, kAnyNumber},
       {"position",                Op::kPosition,              T::kPosition, kMetres,           {A::kEntity},
        "of the entity's origin",
        S::kPoses, kAnyNumber},
@@ -144,6 +167,13 @@ const Builtin* FindBuiltin(std::string_view name) {
   return nullptr;
 }
 
+const Builtin* FindBuiltin(std::string_view name, std::size_t arguments) {
+  for (const Builtin& builtin : Builtins()) {
+    if (builtin.name == name && builtin.arguments.size() == arguments) return &builtin;
+  }
+  return FindBuiltin(name);
+}
+
 const Builtin* FindBuiltin(Op op) {
   for (const Builtin& builtin : Builtins()) {
     if (builtin.op == op) return &builtin;
@@ -166,6 +196,11 @@ bool AsksTouchValues(Op op) {
 bool AsksPoses(Op op) {
   const Asks asks = AskedBy(op);
   return asks == Asks::kPoses || asks == Asks::kPosesAndTouchValues;
+}
+
+bool IsOverWindow(Op op) {
+  const Builtin* const signal = FindBuiltin(op);
+  return HasWindow(op) && std::ranges::count(signal->arguments, Argument::kNumber) > 0;
 }
 
 bool HasWindow(Op op) {

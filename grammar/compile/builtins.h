@@ -72,8 +72,11 @@ struct Builtin {
 
 std::span<const Builtin> Builtins();
 
-/// Null when there is none.
+/// Null when there is none. Some names stand for several signals with more or fewer arguments: the
+/// first of them.
 const Builtin* FindBuiltin(std::string_view name);
+/// Likewise, the one with so many arguments, if there is one.
+const Builtin* FindBuiltin(std::string_view name, std::size_t arguments);
 /// Null for what is written otherwise.
 const Builtin* FindBuiltin(Op op);
 
@@ -84,5 +87,7 @@ bool AsksTouchValues(Op op);
 bool AsksPoses(Op op);
 /// Whether its value at a frame is made of a window of time around it: Node::number.
 bool HasWindow(Op op);
+/// Likewise, of a value that is its argument: a rate, a mean.
+bool IsOverWindow(Op op);
 
 }  // namespace prehend::grammar

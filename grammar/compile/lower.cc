@@ -190,7 +190,7 @@ NodeId Lowering::Add(Node node) {
 // A value observed of an entity; an attribute takes it where the interval begins.
 NodeId Lowering::AddSignal(Node node) {
   const NodeId here = Add(node);
-  const bool observes = node.roles[0] != kNone || node.op == Op::kRate;
+  const bool observes = node.roles[0] != kNone || IsOverWindow(node.op);
   return attribute_ && observes ? AnchorAtBegin(here) : here;
 }
 

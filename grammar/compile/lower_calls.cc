@@ -4,6 +4,7 @@
 // entity in two roles, definitions that refer to themselves.
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "grammar/compile/lower.h"
@@ -29,6 +30,20 @@ std::string_view ClassOf(Argument argument) {
     default:
       return "Entity";
   }
+}
+
+// "2 or 3 arguments", of all signals of this name.
+std::string ArgumentCounts(std::string_view name) {
+  std::set<std::size_t> counts;
+  for (const Builtin& builtin : Builtins()) {
+    if (builtin.name != name) continue;
+    counts.insert(builtin.arguments.size());
+    if (builtin.left_out_m > 0) counts.insert(builtin.arguments.size() - 1);
+  }
+  std::string text;
+  for (const std::size_t count : counts)
+    text += (text.empty() ? "" : " or ") + std::to_string(count);
+  return text + (counts == std::set<std::size_t>{1} ? " argument" : " arguments");
 }
 
 }  // namespace
@@ -74,7 +89,8 @@ Lowering::Typed Lowering::LowerCall(const Expr& expr) {
   if (const auto found = symbols_.defines.find(expr.text); found != symbols_.defines.end()) {
     return LowerDefine(found->second, expr);
   }
-  if (const Builtin* builtin = FindBuiltin(expr.text)) return LowerBuiltin(*builtin, expr);
+  if (const Builtin* builtin = FindBuiltin(expr.text, expr.args.size()))
+    return LowerBuiltin(*builtin, expr);
   return Bad(expr.place, "unknown event, condition or signal " + Quoted(expr.text),
              Suggest(expr.text, KnownNames(true)));
 }
@@ -373,9 +389,8 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
   const std::size_t least = builtin.left_out_m > 0 ? most - 1 : most;
   if (expr.args.size() < least || expr.args.size() > most) {
     return Bad(expr.place,
-               Quoted(builtin.name) + " takes " +
-                   (least < most ? std::to_string(least) + " or " : std::string()) +
-                   std::to_string(most) + " arguments, found " + std::to_string(expr.args.size()),
+               Quoted(builtin.name) + " takes " + ArgumentCounts(builtin.name) + ", found " +
+                   std::to_string(expr.args.size()),
                std::string(builtin.name) + ": " + std::string(builtin.meaning));
   }
   Typed result{.type = builtin.type, .dimension = builtin.dimension};
@@ -383,7 +398,7 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
   int next_node = 0;
   int next_role = 0;
   const bool in_attribute = attribute_;
-  if (node.op == Op::kRate) attribute_ = false;  // the rate itself is what is taken at the begin
+  if (IsOverWindow(node.op)) attribute_ = false;  // itself is what is taken at the begin
   for (std::size_t i = 0; i < expr.args.size(); ++i) {
     if (!LowerArgument(expr.args[i], builtin.arguments[i], builtin, node, next_node, next_role,
                        result)) {

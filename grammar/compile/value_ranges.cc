@@ -76,7 +76,14 @@ Range RangeOf(const Program& program, const Rule& rule, NodeId index) {
     case Op::kAtBegin:
       return RangeOf(program, rule, rule.anchors[node.slot]);
     case Op::kAtEnd:
+    case Op::kMinimum:
+    case Op::kMaximum:
+    case Op::kMedian:
       return arg(0);
+    case Op::kMean: {
+      const Range a = arg(0);
+      return {.low = a.low, .high = a.high};
+    }
     default:
       return OfSignal(node);
   }

@@ -258,6 +258,14 @@ std::optional<double> Evaluator::Number(NodeId index, const View& view) const {
       return TurnRate(node, view);
     case Op::kRate:
       return Rate(node, view);
+    case Op::kSpeedOver:
+    case Op::kRelativeSpeedOver:
+      return SpeedOver(node, view);
+    case Op::kMean:
+    case Op::kMinimum:
+    case Op::kMaximum:
+    case Op::kMedian:
+      return OfWindow(node, view);
     default:
       return SignalOf(node, view);
   }
@@ -320,6 +328,8 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
       return history_.Look(a, frame).v_WB_m_per_s.z();
     case Op::kRelativeVerticalSpeed:
       return RelativeVelocity(a, b, history_.Look(a, frame).p_WB_m, frame).z();
+    case Op::kRelativeSpeed:
+      return RelativeVelocity(a, b, history_.Look(a, frame).p_WB_m, frame).norm();
     case Op::kSpeedAlong:
       return SpeedAlong(node, view);
     case Op::kTilt: {

@@ -89,6 +89,8 @@ class Evaluator {
   Eigen::Vector2d WayOn(const Node& node, const View& view, FrameNumber early,
                         FrameNumber late) const;
   std::optional<double> Rate(const Node& node, const View& view) const;
+  std::optional<double> SpeedOver(const Node& node, const View& view) const;
+  std::optional<double> OfWindow(const Node& node, const View& view) const;
   std::optional<double> DriftAlong(const Node& node, const View& view) const;
   std::optional<double> TurnRate(const Node& node, const View& view) const;
   Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;

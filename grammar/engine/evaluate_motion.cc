@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Signals of motion against another entity, and over a window of time.
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "grammar/engine/evaluate.h"
 
@@ -44,6 +46,50 @@ std::optional<double> Evaluator::Rate(const Node& node, const View& view) const 
   const std::optional<double> after = Number(node.args[0], view.At(window->late));
   if (!before || !after) return std::nullopt;
   return (*after - *before) / SecondsBetween(window->early, window->late);
+}
+
+// In the world, or as seen from a second entity.
+std::optional<double> Evaluator::SpeedOver(const Node& node, const View& view) const {
+  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  if (!window) return std::nullopt;
+  if (window->early == window->late) return 0;
+  const int a = Entity(node, view, 0);
+  const auto place = [&](FrameNumber frame) -> Vector3d {
+    return node.op == Op::kSpeedOver ? history_.Look(a, frame).p_WB_m
+                                     : PositionOn(a, Entity(node, view, 1), frame);
+  };
+  return (place(window->late) - place(window->early)).norm() /
+         SecondsBetween(window->early, window->late);
+}
+
+// Of the values at the frames at most half the window before or after. Nothing while one of them
+// may still come.
+std::optional<double> Evaluator::OfWindow(const Node& node, const View& view) const {
+  depends_on_time_ = true;
+  const Tick now = history_.At(view.frame).tick;
+  const Tick half = history_.AtMostTicks(node.number / 2);
+  if (history_.At(history_.now()).tick < now + half && !history_.complete()) return std::nullopt;
+  std::vector<double> values;
+  for (FrameNumber frame = history_.FirstNotBefore(now - half);
+       frame <= std::min(history_.LastNotAfter(now + half), history_.now()); ++frame) {
+    const std::optional<double> value = Number(node.args[0], view.At(frame));
+    if (!value) return value;
+    values.push_back(*value);
+  }
+  switch (node.op) {
+    case Op::kMean:
+      return std::accumulate(values.begin(), values.end(), 0.0) /
+             static_cast<double>(values.size());
+    case Op::kMinimum:
+      return *std::ranges::min_element(values);
+    case Op::kMaximum:
+      return *std::ranges::max_element(values);
+    default: {
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      return *middle;
+    }
+  }
 }
 
 // The way of a as seen from b between two frames, turned to where b is now, without its upright

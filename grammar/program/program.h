@@ -78,6 +78,13 @@ enum class Op : std::uint8_t {
   kStrength,
   kTurnRate,  ///< over `number` seconds around the frame
   kRate,      ///< of args[0], over `number` seconds around the frame
+  kRelativeSpeed,
+  kSpeedOver,  ///< over `number` seconds around the frame, like all below
+  kRelativeSpeedOver,
+  kMean,  ///< of args[0]
+  kMinimum,
+  kMaximum,
+  kMedian,
   // Positions in metres.
   kPosition,
   kPositionOn,
@@ -105,7 +112,7 @@ struct Node {
   int slot = kNone;                           ///< reference, anchor or class name
   int name = kNone;                           ///< kSensorSet: index into Program::sensor_sets
   double number = 0;  ///< kNumber, kSensorSet, kTouchIn, kNormalIn, and the windows of kDriftAlong,
-                      ///< kTurnRate, kRate
+                      ///< kTurnRate, kRate .. kMedian
   ByThreshold by_threshold = {};
 };
 

@@ -74,7 +74,7 @@ int RunExamples(const std::string& page) {
 
 TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
   EXPECT_EQ(RunExamples("grammar-tutorial.md"), 26);
-  EXPECT_EQ(RunExamples("grammar-language.md"), 4);
+  EXPECT_EQ(RunExamples("grammar-language.md"), 5);
 }
 
 }  // namespace

@@ -124,6 +124,8 @@ event apart(object: Movable, support: Thing)
   while not contact(object, support) and speed(object) < 1 cm/s bridging 30 ms
 event closing(hand: Hand, object: Movable) while closing_speed(hand, object) > 5 cm/s
 event drifting(object: Movable, support: Thing) while touching(object, support) and drift_along(object, support, 200 ms) > 3 cm/s
+event steady(hand: Hand, object: Movable)
+  while relative_speed(hand, object, 150 ms) < 5 cm/s and median(distance(hand, object), 100 ms) < 20 cm
 event gripping(hand: Hand) while trigger(hand) > 0.25 and surface_speed_ok(hand)
 condition surface_speed_ok(hand: Hand) while vertical_speed(hand) < 10 cm/s
 event nudged(object: Movable, other: Movable)

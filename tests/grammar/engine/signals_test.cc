@@ -88,6 +88,11 @@ TEST(Signals, HaveTheirDocumentedValues) {
       {"speed(cup)", 0.06, "m/s"},
       {"vertical_speed(cup)", 0.06, "m/s"},
       {"relative_vertical_speed(cup, tray)", 0.01, "m/s"},
+      {"relative_speed(cup, tray)", std::hypot(0.4, 0.01), "m/s"},
+      {"mean(gap(hand, cup), 100 ms)", 0.485, "m"},
+      {"min(gap(hand, cup), 100 ms)", 0.48, "m"},
+      {"max(gap(hand, cup), 100 ms)", 0.49, "m"},
+      {"median(gap(hand, cup), 19 ms)", 0.48, "m"},
       {"speed_along(cup, tray)", 0.4, "m/s"},
       {"tilt(cup)", std::numbers::pi / 6, "rad"},
       {"height(position_on(cup, tray))", 0.2, "m"},
@@ -200,6 +205,63 @@ TEST(Signals, AlongIsInThePlaneInWhichTheTwoTouch) {
   EXPECT_EQ(MovedAlong(up, {0.01, 0, 0}, tip).size(), 3u) << "over one that moves";
   EXPECT_EQ(MovedAlong(up, still, twist, {0.05, 0, 0}).size(), 0u) << "turned on the spot";
   EXPECT_EQ(MovedAlong(still, still, tip).size(), 3u) << "at its middle, if nobody knows";
+}
+
+// The cup goes 2 mm to the left and 1 mm up at 0.5 s, on a tray that is carried and turned.
+TEST(Signals, SpeedsOverAWindowAreWaysPerTime) {
+  const auto program = testing::CompileText(
+      "grammar t\n"
+      "event moves(cup: Cup) while speed(cup, 100 ms) > 2 cm/s\n"
+      "event slips(cup: Cup, tray: Movable) while relative_speed(cup, tray, 100 ms) > 2.2 cm/s\n"
+      "event leaps(cup: Cup, tray: Movable) while relative_speed(cup, tray, 100 ms) > 2.3 cm/s");
+  const auto events_of = [&](double tray_m_per_s) {
+    Scene scene;
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    for (Tick t = 0; t < 1000; t += 10) {
+      const double seconds = static_cast<double>(t) / 1000;
+      EntitySample& tray = scene.looks[Scene::kTray];
+      tray.p_WB_m.y() = tray_m_per_s * seconds;
+      tray.q_WB = Eigen::AngleAxisd(tray_m_per_s * seconds, Eigen::Vector3d::UnitZ());
+      const Eigen::Vector3d on_tray_m(0.1, t < 500 ? 0 : 0.002, t < 500 ? 0 : 0.001);
+      scene.looks[Scene::kCup].p_WB_m = tray.p_WB_m + tray.q_WB * on_tray_m;
+      monitor.Advance(scene.At(t), events);
+    }
+    monitor.Finish(1000, events);
+    std::vector<std::pair<int, Interval>> found;
+    for (const Event& event : events) found.push_back({event.rule.number(), event.interval});
+    return found;
+  };
+  using Found = std::vector<std::pair<int, Interval>>;
+  EXPECT_EQ(events_of(0), (Found{{1, {450, 550}}, {2, {450, 550}}}));
+  EXPECT_EQ(events_of(0.5), (Found{{2, {450, 550}}, {1, {0, 1000}}}));
+}
+
+// Frames at uneven times; the window of 40 ms has those at most 20 ms before or after.
+TEST(Signals, WindowsHaveTheFramesAtMostHalfOfThemAway) {
+  const auto intervals = [](const std::string& condition) {
+    const auto program =
+        testing::CompileText("grammar t\nevent e(cup: Cup) while " + condition + " > 2.9 m");
+    Scene scene;
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    const std::pair<Tick, double> heights[] = {{0, 1},  {10, 1}, {20, 6}, {40, 1},
+                                               {60, 3}, {61, 3}, {80, 3}, {100, 1}};
+    for (const auto& [tick, height_m] : heights) {
+      scene.looks[Scene::kCup].p_WB_m.z() = height_m;
+      monitor.Advance(scene.At(tick), events);
+    }
+    monitor.Finish(120, events);
+    std::string text;
+    for (const Event& event : events)
+      text += "[" + std::to_string(event.interval.begin) + "," +
+              std::to_string(event.interval.end) + ") at " + std::to_string(event.decided) + " ";
+    return text;
+  };
+  EXPECT_EQ(intervals("max(height(cup), 40 ms)"), "[0,120) at 120 ");
+  EXPECT_EQ(intervals("min(height(cup), 40 ms)"), "[61,80) at 100 ");
+  EXPECT_EQ(intervals("mean(height(cup), 40 ms)"), "[40,60) at 80 [61,80) at 100 ");
+  EXPECT_EQ(intervals("median(height(cup), 40 ms)"), "[40,120) at 120 ");
 }
 
 TEST(Signals, DriftIsKnownWhenItsWindowIsComplete) {

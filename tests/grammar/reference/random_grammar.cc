@@ -5,18 +5,15 @@
 #include <bit>
 
 #include "grammar/base/allen.h"
+#include "tests/grammar/reference/random_meaning.h"
 
 namespace prehend::grammar::testing {
 namespace {
 
-using reference::Anchored;
-using reference::Runs;
-using reference::Stream;
 using Kind = Term::Kind;
 using Form = RandomRule::Form;
 
 constexpr int kRoles = 3;  // p, q, r; x has a part in everything
-constexpr unsigned kP = 1;
 constexpr std::array<const char*, kRoles> kNames = {"p", "q", "r"};
 constexpr std::array<const char*, kRoles> kClasses = {"P", "Q", "R"};
 
@@ -190,8 +187,17 @@ class Maker {
 
   // Known only when the window is over.
   Term Rising(const std::string& anchor) {
+    if (Below(2) == 0) return OfWindow(anchor);
     return {.kind = Kind::kRising,
             .value = static_cast<int>(Below(5)) - 2,
+            .anchor = Below(2) == 0 ? anchor : "",
+            .window = 1 + static_cast<Tick>(Below(9))};
+  }
+
+  Term OfWindow(const std::string& anchor) {
+    return {.kind = Kind::kOfWindow,
+            .which = static_cast<int>(Below(kOverWindow.size())),
+            .value = static_cast<int>(Below(4)),
             .anchor = Below(2) == 0 ? anchor : "",
             .window = 1 + static_cast<Tick>(Below(9))};
   }
@@ -236,6 +242,14 @@ class Writer {
         const std::string rate = "rate(height(x), " + std::to_string(term.window) + " ms)";
         return rate + " >= " + (term.anchor.empty() ? "" : rate + "@" + term.anchor + " + ") +
                std::to_string(250 * term.value) + " m/s";
+      }
+      case Kind::kOfWindow: {
+        const bool speed = term.which == kSpeed;
+        const std::string value = std::string(kOverWindow[term.which]) +
+                                  (speed ? "(x, " : "(height(x), ") + std::to_string(term.window) +
+                                  " ms)";
+        return value + " > " + (term.anchor.empty() ? "" : value + "@" + term.anchor + " + ") +
+               std::to_string(speed ? 250 * term.value : term.value) + (speed ? " m/s" : ".5 m");
       }
       case Kind::kRule:
         return Head(term.which, rules_[term.which].roles, term.named, false);
@@ -329,166 +343,6 @@ class Writer {
   const std::vector<RandomRule>& rules_;
 };
 
-// Says what the rules mean for one episode, for both bindings of p.
-class Meaning {
- public:
-  Meaning(const std::vector<RandomRule>& rules, const RandomEpisode& episode)
-      : rules_(rules), e_(episode), n_(episode.frames()) {
-    for (std::size_t i = 0; i < rules.size(); ++i) {
-      found_.emplace_back();
-      for (int p = 0; p < 2; ++p) found_.back()[p] = Find(rules[i], p);
-    }
-  }
-
-  using Found = std::vector<reference::Timed>;
-  const Found& Of(std::size_t rule, int p) const { return found_[rule][p]; }
-
- private:
-  Found InTicks(const Runs& runs) const { return reference::InTicks(runs, e_.ticks); }
-
-  // The intervals that a call stands for.
-  Found Intervals(const Term& term, int p) const {
-    const bool own = term.kind == Kind::kRule && term.named == rules_[term.which].roles;
-    if (own) return found_[term.which][p];
-    return InTicks(
-        While(Truth(term, p, 0)));  // of somebody: where one goes on when another ends, it is one
-  }
-  Runs CallRuns(const Term& term, int p) const { return reference::RunsOf(Intervals(term, p)); }
-  Runs While(const Stream& stream) const { return reference::While(stream, e_.ticks, 0); }
-
-  Stream Truth(const Term& term, int p, int anchor) const {
-    switch (term.kind) {
-      case Kind::kTouch:
-        return e_.touches[term.which == 0 ? p : term.which + 1];
-      case Kind::kHigh: {
-        const int base = term.anchor.empty() ? 0 : e_.height_m[std::min(anchor, n_ - 1)];
-        Stream high(n_);
-        for (int i = 0; i < n_; ++i) high[i] = e_.height_m[i] >= base + term.value;
-        return high;
-      }
-      case Kind::kRising: {
-        Stream rising(n_);
-        for (int i = 0; i < n_; ++i) {
-          const double base = term.anchor.empty() ? 0 : Rate(std::min(anchor, n_ - 1), term.window);
-          rising[i] = Rate(i, term.window) >= base + 250 * term.value;
-        }
-        return rising;
-      }
-      case Kind::kRule: {
-        const bool anybody = (rules_[term.which].roles & kP & ~term.named) != 0;
-        const Stream own =
-            reference::Truth(reference::RunsOf(found_[term.which][anybody ? 0 : p]), n_);
-        return anybody ? reference::Or(
-                             own, reference::Truth(reference::RunsOf(found_[term.which][1]), n_))
-                       : own;
-      }
-      case Kind::kAnd:
-        return reference::And(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
-      case Kind::kOr:
-        return reference::Or(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
-      case Kind::kNot:
-        return reference::Not(Truth(term.args[0], p, anchor));
-      case Kind::kEdge: {
-        const Term& arg = term.args[0];
-        const bool has_intervals = arg.kind == Kind::kRule || arg.kind == Kind::kTouch;
-        const Runs runs = has_intervals ? CallRuns(arg, p) : While(Truth(arg, p, anchor));
-        return term.begins ? reference::Begins(runs, n_) : reference::Ends(runs, n_);
-      }
-    }
-    return {};
-  }
-
-  // From the last frame at least half the window earlier to the first one so much later, in m/s.
-  double Rate(int frame, Tick window) const {
-    const Tick half = (window + 1) / 2;
-    int early = frame, late = frame;
-    while (early > 0 && e_.ticks[early] > e_.ticks[frame] - half) --early;
-    while (late + 1 < n_ && e_.ticks[late] < e_.ticks[frame] + half) ++late;
-    if (early == late) return 0;
-    return (e_.height_m[late] - e_.height_m[early]) /
-           (static_cast<double>(e_.ticks[late] - e_.ticks[early]) / 1000);
-  }
-
-  Anchored AnchoredTruth(const Term& term, int p) const {
-    return Anchored(
-        std::function<Stream(int)>([this, &term, p](int frame) { return Truth(term, p, frame); }));
-  }
-
-  Found FindForm(const RandomRule& rule, int p) const {
-    const Anchored during =
-        rule.has_during ? AnchoredTruth(rule.during, p) : Anchored(Stream(n_, true));
-    switch (rule.form) {
-      case Form::kWhile: {
-        const Stream on = Truth(rule.first, p, 0);
-        return InTicks(
-            reference::While(rule.has_second ? reference::Hold(on, Truth(rule.second, p, 0)) : on,
-                             e_.ticks, rule.bridging));
-      }
-      case Form::kFromTo:
-        return InTicks(reference::FromTo(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
-                                         during, rule.or_drop, e_.ticks, rule.within));
-      case Form::kWithout:
-        return reference::FromWithout(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
-                                      during, e_.ticks,
-                                      static_cast<double>(rule.within) - (rule.halves ? 0.5 : 0));
-      case Form::kUntil: {
-        reference::Approach approach{.signal = {e_.height_m.begin(), e_.height_m.end()},
-                                     .slack = rule.slack_m + 0.5,
-                                     .over = static_cast<double>(rule.over),
-                                     .still = rule.still_over > 0 ? 1.5 : -1,
-                                     .still_over = static_cast<double>(rule.still_over),
-                                     .speed = rule.speed_m_per_s,
-                                     .onset = rule.onset_m_per_s,
-                                     .idle = rule.idles ? rule.idle : -1};
-        return InTicks(reference::UntilSince(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
-                                             e_.ticks, rule.back,
-                                             rule.approaches ? &approach : nullptr));
-      }
-      case Form::kRest: {
-        std::vector<Stream> outside;
-        for (std::size_t i = 1; i < rule.calls.size(); ++i)
-          outside.push_back(Truth(rule.calls[i], p, 0));
-        return InTicks(reference::RestOf(CallRuns(rule.calls[0], p), outside));
-      }
-      case Form::kCompose: {
-        std::vector<Found> parts;
-        for (const Term& call : rule.calls) parts.push_back(Intervals(call, p));
-        return reference::Compose(parts, [&](const std::vector<Interval>& chosen) {
-          return std::ranges::all_of(rule.clauses, [&](const RandomRule::Clause& clause) {
-            return (Bit(Relate(chosen[clause.left], chosen[clause.right])) & clause.relations) != 0;
-          });
-        });
-      }
-    }
-    return {};
-  }
-
-  Found Find(const RandomRule& rule, int p) const {
-    Found kept;
-    for (const reference::Timed& one : FindForm(rule, p)) {
-      if (one.ticks.end - one.ticks.begin < rule.lasting) continue;
-      if (Meets(rule, one.run, p) && IsConfirmed(rule, one.run, p)) kept.push_back(one);
-    }
-    return kept;
-  }
-
-  bool Meets(const RandomRule& rule, const reference::Run& run, int p) const {
-    if (!rule.has_requirement) return true;
-    return Truth(rule.requirement, p,
-                 rule.requires_at_end ? run.end : run.begin)[std::min(run.end, n_ - 1)];
-  }
-
-  bool IsConfirmed(const RandomRule& rule, const reference::Run& run, int p) const {
-    if (!rule.is_confirmed) return true;
-    return !reference::ConfirmedBy({run}, CallRuns(rule.by, p), Truth(rule.episode, p, 0)).empty();
-  }
-
-  const std::vector<RandomRule>& rules_;
-  const RandomEpisode& e_;
-  int n_;
-  std::vector<std::array<Found, 2>> found_;
-};
-
 }  // namespace
 
 RandomEpisode MakeEpisode(std::mt19937_64& random, int frames, unsigned calm) {
@@ -573,13 +427,13 @@ RandomGrammar::RandomGrammar(std::mt19937_64& random, int rules) {
 
 std::map<std::string, std::vector<Interval>> RandomGrammar::Expected(
     const RandomEpisode& episode) const {
-  const Meaning meaning(rules_, episode);
+  const std::vector<std::array<MeantIntervals, 2>> meaning = MeaningOf(rules_, episode);
   std::map<std::string, std::vector<Interval>> expected;
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     const bool two = (rules_[i].roles & kP) != 0;
     for (int p = 0; p < (two ? 2 : 1); ++p) {
       std::vector<Interval> intervals;
-      for (const reference::Timed& one : meaning.Of(i, p)) intervals.push_back(one.ticks);
+      for (const reference::Timed& one : meaning[i][p]) intervals.push_back(one.ticks);
       if (intervals.empty()) continue;
       std::sort(intervals.begin(), intervals.end(),
                 [](const Interval& a, const Interval& b) { return a.begin < b.begin; });

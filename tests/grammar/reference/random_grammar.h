@@ -49,9 +49,16 @@ class EpisodeFeed {
   int next_ = 0;
 };
 
+/// Values over a window. A speed is in units of 250 m/s, like a rate.
+inline constexpr std::array<const char*, 5> kOverWindow = {"mean", "min", "max", "median", "speed"};
+inline constexpr int kSpeed = 4;
+
+/// A role that two entities can play.
+inline constexpr unsigned kP = 1;
+
 /// A truth value made of facts and rules.
 struct Term {
-  enum class Kind { kTouch, kHigh, kRising, kRule, kAnd, kOr, kNot, kEdge };
+  enum class Kind { kTouch, kHigh, kRising, kOfWindow, kRule, kAnd, kOr, kNot, kEdge };
   Kind kind = Kind::kHigh;
   int which = 0;       ///< kTouch: role; kRule: rule
   unsigned named = 0;  ///< kRule: roles that are named; the others are `any`
