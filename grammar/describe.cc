@@ -71,7 +71,9 @@ class Waits {
                      (from_to != nullptr ? std::max(from_to->within_s, 0.0) : 0);
     const bool decided_at_its_end = (from_to != nullptr && from_to->or_drop) ||
                                     (rule.requirement != kNone && looks_back == nullptr);
-    if (decided_at_its_end) truth.until_end_of.insert(rule.name);
+    const auto* holds = rule.If<WhileRule>();
+    if (decided_at_its_end || rule.lasting_most_s >= 0 || (holds != nullptr && holds->at_least > 1))
+      truth.until_end_of.insert(rule.name);
   }
 
   // `until A since F` is not known before an A comes, or the time to look back is over; where an A

@@ -55,6 +55,12 @@ constexpr Allen Relate(const Interval& a, const Interval& b) {
   return a.end < b.end ? Allen::kDuring : Allen::kOverlappedBy;
 }
 
+/// From the end of the one to the begin of the other; 0 if they meet or overlap.
+constexpr Tick GapBetween(const Interval& a, const Interval& b) {
+  const Tick gap = a.begin < b.begin ? b.begin - a.end : a.begin - b.end;
+  return gap > 0 ? gap : 0;
+}
+
 constexpr std::optional<Allen> AllenNamed(std::string_view name) {
   for (std::size_t i = 0; i < kAllenNames.size(); ++i) {
     if (kAllenNames[i] == name) return static_cast<Allen>(i);

@@ -31,6 +31,8 @@ struct CandidateOutcome {
   enum class Kind {
     kInterval,  ///< it is an interval; `cause` is the frame of its confirmation, if it needed one
     kTooShort,  ///< `lasting`
+    kTooLong,   ///< `lasting .. to`
+    kTooFew,    ///< `repeat .. at least`; there were `cause`
     kRefused,   ///< `requires` was false at its end
     kUnconfirmed,  ///< `within` ended at `cause`, or the episode did, before `by` began
     kDropped,      ///< `during` was false at `cause`, which came before the end

@@ -274,7 +274,8 @@ bool IsKnownAtOnce(const Rule& rule) {
 bool IsInstant(const Rule& rule) {
   const auto* part = rule.If<WhileRule>();
   return IsKnownAtOnce(rule) && rule.measured.touch != kNone && part != nullptr &&
-         part->bridging_s == 0 && (rule.lasting_s == 0 || !rule.referenced);
+         part->bridging_s == 0 &&
+         ((rule.lasting_s == 0 && rule.lasting_most_s < 0) || !rule.referenced);
 }
 
 // A value where the interval begins or ends is not asked for at every frame.
@@ -321,7 +322,8 @@ void FindMeasured(const Program& program, Rule& rule) {
   const auto* from_to = rule.If<FromToRule>();
   if (holds == nullptr && from_to == nullptr) return;
   FindMeasured(program, rule, rule.measured, holds != nullptr ? holds->condition : from_to->from);
-  rule.measured.whole = rule.measured.whole && holds != nullptr && holds->until == kNone;
+  rule.measured.whole =
+      rule.measured.whole && holds != nullptr && holds->until == kNone && holds->at_least == 0;
   rule.measured.instant = IsInstant(rule);
 }
 

@@ -202,6 +202,7 @@ class Compiler {
     rule.printed = definition.is_event;
     rule.symmetric = definition.symmetric;
     rule.of_form = FormOf(definition.form);  // others must know before it is lowered
+    if (definition.form == Definition::Form::kRepeat) rule.As<WhileRule>().at_least = 1;
     CheckRoles(source, definition.roles);
     CheckSymmetry(source, definition);
     for (const ast::Role& role : definition.roles)
@@ -213,6 +214,7 @@ class Compiler {
   static RuleForm FormOf(Definition::Form form) {
     switch (form) {
       case Definition::Form::kWhile:
+      case Definition::Form::kRepeat:
         return WhileRule();
       case Definition::Form::kFromTo:
         return FromToRule();

@@ -338,6 +338,14 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
   if (const auto define = symbols_.defines.find(expr.text); define != symbols_.defines.end()) {
     return LowerDefine(define->second, expr);
   }
+  const WhileRule* const repeat = rule().If<WhileRule>();
+  if (expr.text == "count" && repeat != nullptr && repeat->at_least > 0) {
+    if (anchors_.begin && anchors_.end)
+      return {.node = Add({.op = Op::kCount, .number = 1.0 * repeat->at_least}),
+              .type = Type::kNumber};
+    return Bad(expr.place, "how often something was repeated is known where it ends",
+               "'count' can be used after 'requires' and 'with'");
+  }
   if (expr.text == "any") {
     return Bad(expr.place, "'any' stands only for a role of an event or condition",
                "for example: supported_by(object, any)");

@@ -5,6 +5,7 @@
 #include "grammar/compile/lower_definition.h"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 
 #include "grammar/compile/allen_network.h"
@@ -17,6 +18,8 @@ using ast::Definition;
 
 /// Where a grammar does not say `onset`: a tenth of the speed below which something pauses.
 constexpr double kPausePerOnset = 10;
+
+constexpr int kMostRepetitions = 1'000'000;
 
 class DefinitionLowering {
  public:
@@ -63,6 +66,36 @@ class DefinitionLowering {
       }
       case Form_::kCompose:
         return LowerCompose();
+      case Form_::kRepeat:
+        return LowerRepeat();
+    }
+  }
+
+  static ast::Expr AnyOf(const std::vector<ast::Expr>& calls) {
+    if (calls.size() == 1) return calls.front();
+    return {.kind = ast::Expr::Kind::kChain,
+            .place = calls.front().place,
+            .text = "or",
+            .quantity = {},
+            .args = calls};
+  }
+
+  void LowerRepeat() {
+    std::vector<int> counted;
+    for (const ast::Expr& call : d_.repeated) counted.push_back(lowering_.RuleCall(call));
+    const bool all_calls = std::ranges::find(counted, kNone) == counted.end();
+    const NodeId condition = all_calls ? lowering_.Truth(AnyOf(d_.repeated), {}) : NodeId();
+    const double at_least = lowering_.Constant(d_.at_least, kPlain, "'at least'");
+    const double gap_s = lowering_.Constant(d_.gap, kSeconds, "'gap at most'");
+    As<WhileRule>() = {
+        .condition = condition, .bridging_s = gap_s, .at_least = 1, .counted = std::move(counted)};
+    if (at_least >= 1 && at_least <= kMostRepetitions && at_least == std::floor(at_least)) {
+      As<WhileRule>().at_least = static_cast<int>(at_least);
+    } else {
+      lowering_.Complain(
+          d_.at_least.place,
+          "'at least' takes a whole number from 1 to " + std::to_string(kMostRepetitions),
+          "for example: at least 3");
     }
   }
 
@@ -272,9 +305,17 @@ class DefinitionLowering {
         }
         clause.relations |= Bit(*allen);
       }
+      if (relation.within) LowerGap(*relation.within, clause);
       As<ComposeRule>().clauses.push_back(clause);
     }
     if (lowering_.complaints() == before) CheckRelations();
+  }
+
+  void LowerGap(const ast::Expr& within, ComposeRule::Clause& clause) {
+    clause.within_s = lowering_.Constant(within, kSeconds, "'within'");
+    if ((clause.relations & (Bit(Allen::kBefore) | Bit(Allen::kAfter))) != 0) return;
+    lowering_.Complain(within.place, "'within' limits a gap, and these relations leave none",
+                       "only what is before or after leaves a gap: a before within 0.3 s b");
   }
 
   void CheckRelations() {
@@ -318,6 +359,14 @@ class DefinitionLowering {
       const double lasting_s = lowering_.Constant(*d_.lasting, kSeconds, "'lasting'");
       Here().lasting_s = lasting_s;
       CheckLasting(*d_.lasting);
+    }
+    if (d_.lasting_to) {
+      const double most_s = lowering_.Span(*d_.lasting_to, "'lasting .. to'");
+      Here().lasting_most_s = most_s;
+      if (most_s < Here().lasting_s)
+        lowering_.ComplainOrWarn(d_.lasting_to->place,
+                                 "no interval lasts that long and no longer than this",
+                                 "the shorter time stands first: lasting 1 s to 2 s");
     }
     if (d_.form == Definition::Form::kCompose &&
         (d_.requirement || d_.confirmed || d_.style || !d_.attributes.empty())) {

@@ -53,6 +53,8 @@ Range RangeOf(const Program& program, const Rule& rule, NodeId index) {
   const Node& node = program.nodes[index];
   const auto arg = [&](std::size_t i) { return RangeOf(program, rule, node.args[i]); };
   switch (node.op) {
+    case Op::kCount:
+      return {.low = node.number, .whole = true};
     case Op::kNumber:
       return {.low = node.number, .high = node.number};
     case Op::kAdd: {

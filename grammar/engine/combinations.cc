@@ -20,7 +20,7 @@ void ForEachBit(std::uint64_t bits, Visit visit) {
 }  // namespace
 
 Combinations::Combinations(const ComposeRule& composition, const ComposeState& state,
-                           FrameNumber settled)
+                           const std::vector<Tick>& gaps, FrameNumber settled)
     : state_(state), count_(state.parts.size()) {
   for (std::size_t part = 0; part < count_; ++part) {
     for (std::size_t i = 0; i < state.parts[part].size(); ++i)
@@ -32,10 +32,14 @@ Combinations::Combinations(const ComposeRule& composition, const ComposeState& s
     if (firsts[i].begin.frame < state.last_end) choices_.front() &= ~(Choices{1} << i);
   Relate(0, count_ - 1,
          [](const Span& first, const Span& last) { return first.begin.frame < last.end.frame; });
-  for (const ComposeRule::Clause& clause : composition.clauses) {
+  for (std::size_t i = 0; i < composition.clauses.size(); ++i) {
+    const ComposeRule::Clause& clause = composition.clauses[i];
     Relate(static_cast<std::size_t>(clause.left), static_cast<std::size_t>(clause.right),
            [&](const Span& left, const Span& right) {
-             return (Bit(grammar::Relate(TicksOf(left), TicksOf(right))) & clause.relations) != 0;
+             const bool is_near =
+                 gaps[i] < 0 || GapBetween(TicksOf(left), TicksOf(right)) <= gaps[i];
+             return is_near &&
+                    (Bit(grammar::Relate(TicksOf(left), TicksOf(right))) & clause.relations) != 0;
            });
   }
 }

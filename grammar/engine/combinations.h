@@ -26,7 +26,9 @@ class Combinations {
  public:
   /// Intervals that are complete after the frame `settled` do not count yet. The arguments outlive
   /// this object.
-  Combinations(const ComposeRule& composition, const ComposeState& state, FrameNumber settled);
+  /// `gaps`: in ticks, by clause; negative: any gap.
+  Combinations(const ComposeRule& composition, const ComposeState& state,
+               const std::vector<Tick>& gaps, FrameNumber settled);
 
   /// From the begin of the first part to the end of the last; nullopt: no combination fits.
   std::optional<Span> Best() const;

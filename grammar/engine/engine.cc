@@ -35,7 +35,9 @@ void Engine::Wake(InstanceId index) {
   instance.awake = true;
   instance.next = std::max<FrameNumber>(history_.now(), 0);
   if (auto* looks_back = instance.If<UntilSinceState>()) looks_back->approach_from = instance.next;
-  if (!instance.open || (instance.certain && !instance.in_gap)) instance.known = instance.next;
+  const bool rested = instance.known == kNever;
+  if (!instance.open || (instance.certain && !instance.in_gap) || rested)
+    instance.known = instance.next;
   awake_[instance.rule].push_back(index);
 }
 
@@ -163,7 +165,11 @@ bool Engine::MayRest(const RuleInstance& instance) {
     default:
       return !instance.open && instances_.GuardRests(instance);
   }
-  const bool time_makes_certain = rule.referenced && !MayComeToNothing(rule);
+  const bool time_makes_certain = rule.referenced && !MayComeToNothing(instance);
+  const RuleTicks& ticks = TicksOf(instance);
+  if (instance.open && rule.referenced && rule.lasting_most_s >= 0 &&
+      !ticks.IsTooLong(AtLeastLasts(instance)))
+    alarms_.Set(instance.begin.tick + ticks.lasting_most, instance.index);
   if (instance.in_gap) {
     alarms_.Set(instance.gap.tick + TicksOf(instance).bridging, instance.index);
   } else if (instance.open && !instance.certain && time_makes_certain) {
@@ -175,7 +181,9 @@ bool Engine::MayRest(const RuleInstance& instance) {
 void Engine::Rest(RuleInstance& instance) {
   instance.awake = false;
   instance.resting_since = history_.now();
-  if (!instance.open || (instance.certain && !instance.in_gap)) instance.known = kNever;
+  // What lasts too long is known to be no interval.
+  const bool is_known = instance.known > history_.now();
+  if (!instance.open || (instance.certain && !instance.in_gap) || is_known) instance.known = kNever;
   if (!instance.open) idle_.Queue(instance);
 }
 

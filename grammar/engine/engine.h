@@ -114,6 +114,7 @@ class Engine {
   bool StepFrame(RuleInstance& instance);
   bool LooksTheSame(RuleInstance& instance);
   bool StepWhile(RuleInstance& instance, FrameNumber frame);
+  bool StepRepeat(RuleInstance& instance, FrameNumber frame);
   bool StepAny(RuleInstance& instance, FrameNumber frame);
   bool StepRun(RuleInstance& instance, FrameNumber frame, Kleene truth);
   bool StepRest(RuleInstance& instance, FrameNumber frame);
@@ -145,7 +146,8 @@ class Engine {
   Tick DeadlineOf(const Span& span) const;
   void UpdateKnown(RuleInstance& instance);
   bool RunIsCertain(const RuleInstance& instance) const;
-  static bool MayComeToNothing(const Rule& rule);
+  bool MayComeToNothing(const RuleInstance& instance) const;
+  Tick AtLeastLasts(const RuleInstance& instance) const;
   void NoteUndecidedEnds();
   void FinishInstance(RuleInstance& instance, Moment end);
   void Note(const RuleInstance& instance, CandidateOutcome::Kind kind, const Span& span,

@@ -108,7 +108,8 @@ void Engine::StepCompose(RuleInstance& instance) {
   auto& state = instance.As<ComposeState>();
   const FrameNumber settled = PartsSettled(instance);
   for (;;) {
-    const std::optional<Span> whole = Combinations(rule.As<ComposeRule>(), state, settled).Best();
+    const std::optional<Span> whole =
+        Combinations(rule.As<ComposeRule>(), state, TicksOf(instance).gaps, settled).Best();
     if (!whole) break;
     state.last_end = whole->end.frame;
     // The next one begins with a first part that begins, and ends with a last part that ends, later

@@ -19,6 +19,7 @@ void Engine::Begin(RuleInstance& instance, FrameNumber frame) {
   instance.open = true;
   instance.in_gap = false;
   instance.begin = history_.At(frame);
+  instance.count = 0;
   instance.style = StyleAt(instance, frame);
 }
 
@@ -39,6 +40,15 @@ bool Engine::Conclude(RuleInstance& instance, const Span& span) {
   const Rule& rule = RuleOf(instance);
   if (span.end.tick - span.begin.tick < TicksOf(instance).lasting) {
     Note(instance, CandidateOutcome::Kind::kTooShort, span);
+    return true;
+  }
+  if (TicksOf(instance).IsTooLong(span.end.tick - span.begin.tick)) {
+    Note(instance, CandidateOutcome::Kind::kTooLong, span);
+    return true;
+  }
+  if (const auto* holds = rule.If<WhileRule>();
+      holds != nullptr && instance.count < holds->at_least) {
+    Note(instance, CandidateOutcome::Kind::kTooFew, span, instance.count);
     return true;
   }
   if (rule.requirement != kNone) {
@@ -120,17 +130,24 @@ Tick Engine::DeadlineOf(const Span& span) const {
 }
 
 // An open run that lasts long enough may still be given up for what comes or does not come.
-bool Engine::MayComeToNothing(const Rule& rule) {
+bool Engine::MayComeToNothing(const RuleInstance& instance) const {
+  const Rule& rule = RuleOf(instance);
   const auto* from_to = rule.If<FromToRule>();
-  return rule.requirement != kNone || rule.confirmed_by != kNone ||
+  const auto* holds = rule.If<WhileRule>();
+  return rule.requirement != kNone || rule.confirmed_by != kNone || rule.lasting_most_s >= 0 ||
+         (holds != nullptr && instance.count < holds->at_least) ||
          (from_to != nullptr && (from_to->or_drop || from_to->within_s >= 0));
 }
 
 bool Engine::RunIsCertain(const RuleInstance& instance) const {
-  if (MayComeToNothing(RuleOf(instance))) return false;
+  return !MayComeToNothing(instance) && AtLeastLasts(instance) >= TicksOf(instance).lasting;
+}
+
+// How long the open run lasts, if it ends as soon as it can.
+Tick Engine::AtLeastLasts(const RuleInstance& instance) const {
   const Tick earliest_end =
       instance.in_gap ? instance.gap.tick : history_.At(instance.next - 1).tick + 1;
-  return earliest_end - instance.begin.tick >= TicksOf(instance).lasting;
+  return earliest_end - instance.begin.tick;
 }
 
 void Engine::UpdateKnown(RuleInstance& instance) {
@@ -140,6 +157,7 @@ void Engine::UpdateKnown(RuleInstance& instance) {
     instance.certain = RunIsCertain(instance);
     const FrameNumber certain_end = instance.in_gap ? instance.gap.frame : instance.next;
     instance.known = instance.certain ? certain_end : instance.begin.frame;
+    if (TicksOf(instance).IsTooLong(AtLeastLasts(instance))) instance.known = instance.next;
   }
   if (rule.form() == Form::kUntilSince && rule.referenced && instance.next > history_.first()) {
     // A later interval ends after the last frame seen and reaches back no further than its rule

@@ -77,12 +77,29 @@ bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
   if (rule.measured.whole && frame == history_.now() && CanMeasure(instance)) {
     return StepRun(instance, frame, Known(IsMeasured(instance)));
   }
-  const auto& [condition, until, bridging_s] = rule.As<WhileRule>();
+  const auto& [condition, until, bridging_s, at_least, counted] = rule.As<WhileRule>();
+  if (at_least > 0) return StepRepeat(instance, frame);
   if (until == kNone) return StepRun(instance, frame, evaluator_.Truth(condition, view));
   // Two thresholds: what has begun goes on until the second says so.
   const bool on = instance.open && !instance.in_gap;
   const Kleene goes_on = Not(evaluator_.Truth(until, view));
   return StepRun(instance, frame, on ? goes_on : And(goes_on, evaluator_.Truth(condition, view)));
+}
+
+// Intervals that follow each other at once are two.
+bool Engine::StepRepeat(RuleInstance& instance, FrameNumber frame) {
+  const Evaluator::View view{instance, frame};
+  Kleene truth = Kleene::kFalse;
+  int begun = 0;
+  for (const int slot : RuleOf(instance).As<WhileRule>().counted) {
+    const Kleene holds = evaluator_.Holds(slot, view);
+    if (holds == Kleene::kUnknown) return false;
+    truth = Or(truth, holds);
+    if (holds == Kleene::kTrue && evaluator_.Begins(slot, view) == Kleene::kTrue) ++begun;
+  }
+  if (!StepRun(instance, frame, truth)) return false;
+  instance.count += begun;
+  return true;
 }
 
 bool Engine::StepAny(RuleInstance& instance, FrameNumber frame) {

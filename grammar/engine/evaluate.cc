@@ -226,6 +226,8 @@ std::optional<double> Evaluator::Number(NodeId index, const View& view) const {
   switch (node.op) {
     case Op::kNumber:
       return node.number;
+    case Op::kCount:
+      return view.instance.count;
     case Op::kAtBegin:
       if (!view.begin_known) return std::nullopt;
       return view.instance.anchors[3 * node.slot];

@@ -143,6 +143,7 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
   Moment gap;
   std::vector<double> anchors;  ///< three numbers per Rule::anchors
   int style = kNoEntity;
+  int count = 0;  ///< `repeat`: intervals in the open run
   std::array<int, kMaxRoles> watch_places =
       kUnbound;  ///< by role: where in the list of the entity's watchers
 

@@ -6,6 +6,11 @@ namespace prehend::grammar {
 
 RuleTicks TicksOf(const Rule& rule, const History& history) {
   RuleTicks ticks{.lasting = history.AtLeastTicks(rule.lasting_s)};
+  if (rule.lasting_most_s >= 0) ticks.lasting_most = history.AtMostTicks(rule.lasting_most_s);
+  if (const auto* composition = rule.If<ComposeRule>()) {
+    for (const ComposeRule::Clause& clause : composition->clauses)
+      ticks.gaps.push_back(clause.within_s < 0 ? -1 : history.AtMostTicks(clause.within_s));
+  }
   if (const auto* holds = rule.If<WhileRule>())
     ticks.bridging = history.AtMostTicks(holds->bridging_s);
   if (const auto* from_to = rule.If<FromToRule>(); from_to != nullptr && from_to->within_s >= 0) {

@@ -2,6 +2,8 @@
 // The times of a rule in ticks of the episode. Tested by tests/grammar/engine/forms_test.cc
 #pragma once
 
+#include <vector>
+
 #include "grammar/engine/history.h"
 #include "grammar/program/program.h"
 
@@ -10,12 +12,16 @@ namespace prehend::grammar {
 struct RuleTicks {
   Tick bridging = 0;
   Tick lasting = 0;
+  Tick lasting_most = -1;  ///< negative: as long as it likes
   Tick idle = 0;
   Tick over = 0;   ///< half of Approach::over_s
   Tick still = 0;  ///< half of Approach::still_s
   Tick back = 0;
-  Tick within = -1;  ///< the deadline; negative: there is none
-  Tick in_time = 0;  ///< what comes at most so late is still in time
+  Tick within = -1;        ///< the deadline; negative: there is none
+  Tick in_time = 0;        ///< what comes at most so late is still in time
+  std::vector<Tick> gaps;  ///< of the clauses of a composition; negative: any
+
+  bool IsTooLong(Tick ticks) const { return lasting_most >= 0 && ticks > lasting_most; }
 };
 
 RuleTicks TicksOf(const Rule& rule, const History& history);

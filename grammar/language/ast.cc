@@ -39,6 +39,7 @@ std::string DumpCompose(const Definition& d) {
     text += (&relation == &d.relations.front() ? "" : ", ") + relation.left + " ";
     for (const std::string& name : relation.relations)
       text += (&name == &relation.relations.front() ? "" : "|") + name;
+    if (relation.within) text += " within " + Dump(*relation.within);
     text += " " + relation.right;
   }
   return text;
@@ -61,6 +62,9 @@ std::string DumpForm(const Definition& d) {
       return "rest of " + Dump(d.first) + " outside " + Joined(d.outside, ", ");
     case Definition::Form::kCompose:
       return DumpCompose(d);
+    case Definition::Form::kRepeat:
+      return "repeat " + Joined(d.repeated, " or ") + " at least " + Dump(d.at_least) +
+             ", gap at most " + Dump(d.gap);
   }
   return {};
 }
@@ -94,6 +98,7 @@ std::string DumpDefinition(const Definition& d) {
   text += DumpHead(d.name, d.roles) + DumpForm(d);
   if (d.bridging) text += " bridging " + Dump(*d.bridging);
   if (d.lasting) text += " lasting " + Dump(*d.lasting);
+  if (d.lasting_to) text += " to " + Dump(*d.lasting_to);
   if (d.requirement) text += " requires " + Dump(*d.requirement);
   if (d.confirmed)
     text += " confirmed by " + Dump(d.confirmed->by) + " within " + Dump(d.confirmed->within);

@@ -78,16 +78,17 @@ struct Part {
   Expr call;
 };
 
-/// `left relation|relation right` between two labels of a composition.
+/// `left relation|relation [within t] right` between two labels of a composition.
 struct Relation {
   std::string left;
   std::vector<std::string> relations;
+  std::optional<Expr> within;
   std::string right;
   Place place;
 };
 
 struct Definition {
-  enum class Form { kWhile, kFromTo, kUntilSince, kRestOf, kCompose };
+  enum class Form { kWhile, kFromTo, kUntilSince, kRestOf, kCompose, kRepeat };
   bool is_event = true;
   bool symmetric = false;
   std::string name;
@@ -104,12 +105,16 @@ struct Definition {
   bool or_drop = false;  ///< `during G or drop`
   std::optional<Approach> approach;
   Expr at_most_back;
+  std::vector<Expr> repeated;  ///< repeat E or F
+  Expr at_least;               ///< repeat E at least n
+  Expr gap;                    ///< repeat E .. gap at most t
   std::vector<Expr> outside;
   std::vector<Part> parts;
   std::vector<Relation> relations;
 
   std::optional<Expr> bridging;
   std::optional<Expr> lasting;
+  std::optional<Expr> lasting_to;  ///< lasting t1 to t2
   std::optional<Expr> requirement;
   std::optional<Confirmation> confirmed;
   std::optional<Expr> style;  ///< with style = style(hand)

@@ -153,8 +153,11 @@ class Parser : public LawParser {
       } while (Accept(","));
     } else if (Accept("compose")) {
       ParseCompose(definition);
+    } else if (Accept("repeat")) {
+      ParseRepeat(definition);
     } else {
-      Fail("expected 'while', 'from', 'until', 'rest' or 'compose', found " + Found(), WordHint());
+      Fail("expected 'while', 'from', 'until', 'rest', 'compose' or 'repeat', found " + Found(),
+           WordHint());
     }
   }
 
@@ -249,9 +252,26 @@ class Parser : public LawParser {
                "'during' is called 'inside' here, for it begins a clause of 'from .. to'");
         relation.relations.push_back(ExpectName("one of Allen's relations"));
       } while (Accept("|"));
+      if (Accept("within")) relation.within = ParseSum();
       relation.right = ExpectName("a label");
       definition.relations.push_back(std::move(relation));
     } while (Accept(","));
+  }
+
+  // repeat stroke(hand, object) at least 3, gap at most 0.3 s
+  void ParseRepeat(Definition& definition) {
+    constexpr const char* kExample = "repeat stroke(hand, object) at least 3, gap at most 0.3 s";
+    definition.form = Definition::Form::kRepeat;
+    do {
+      definition.repeated.push_back(ParsePostfix());
+    } while (Accept("or"));
+    Expect("at", kExample);
+    Expect("least", kExample);
+    definition.at_least = ParseSum();
+    Expect(",", kExample);
+    Expect("gap", kExample);
+    ExpectAtMost();
+    definition.gap = ParseSum();
   }
 
   template <typename T>
@@ -267,6 +287,7 @@ class Parser : public LawParser {
       Once(definition.bridging, ParseSum(), word);
     } else if (Accept("lasting")) {
       Once(definition.lasting, ParseSum(), word);
+      if (Accept("to")) definition.lasting_to = ParseSum();
     } else if (Accept("requires")) {
       Once(definition.requirement, ParseExpr(), word);
     } else if (Accept("confirmed")) {

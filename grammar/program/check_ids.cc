@@ -58,6 +58,9 @@ class RuleCheck {
 
   void RunForm() const {
     if (rule_.form() == Form::kAny) IsReference(0);
+    if (const auto* holds = rule_.If<WhileRule>()) {
+      for (const int counted : holds->counted) IsReference(counted);
+    }
     if (const auto* rest = rule_.If<RestOfRule>()) {
       IsReference(rest->whole);
       for (const int slot : rest->outside) IsReference(slot);

@@ -94,6 +94,7 @@ enum class Op : std::uint8_t {
   // Numbers or positions.
   kAtBegin,  ///< the value that anchor `slot` had where the interval begins
   kAtEnd,    ///< args[0] where the interval ends
+  kCount,    ///< how many intervals `repeat` has found
 };
 
 /// A comparison that is answered by thresholds, when its value is measured.
@@ -173,11 +174,13 @@ struct TouchingRule {};
 /// Made for an `any`: some binding of the rule of references[0] holds.
 struct AnyRule {};
 
-/// `while condition until until`
+/// `while condition until until`; or `repeat`, whose condition is that one of `counted` holds.
 struct WhileRule {
   NodeId condition;
-  NodeId until;           ///< kNone: until `condition` is false
-  double bridging_s = 0;  ///< gaps up to this length do not end an interval
+  NodeId until;                   ///< kNone: until `condition` is false
+  double bridging_s = 0;          ///< gaps up to this length do not end an interval
+  int at_least = 0;               ///< intervals of `counted` in each of this; 0: nobody counts
+  std::vector<int> counted = {};  ///< references
 };
 
 /// `from from to to during during`, or `without` in place of `to`.
@@ -229,6 +232,7 @@ struct ComposeRule {
     int left = 0;
     int right = 0;
     AllenSet relations = 0;
+    double within_s = -1;  ///< the longest gap between the two; negative: any
   };
   std::vector<int> parts;  ///< references
   std::vector<Clause> clauses;
@@ -280,6 +284,7 @@ struct Rule {
   }
 
   double lasting_s = 0;
+  double lasting_most_s = -1;  ///< negative: as long as it likes
   NodeId requirement;
   int confirmed_by = kNone;      ///< reference
   int confirmed_within = kNone;  ///< reference

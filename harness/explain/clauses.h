@@ -52,6 +52,9 @@ class Clauses {
   Reason Told(const Clause& clause, const Moment& at);
 
   std::string Time(grammar::FrameNumber frame);
+  double Seconds(grammar::Tick ticks) const {
+    return static_cast<double>(ticks) / static_cast<double>(past_.entity_table().ticks_per_second);
+  }
 
  private:
   struct Measured {

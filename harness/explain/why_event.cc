@@ -252,6 +252,8 @@ bool EventReasons::ChooseParts(InstanceId instance, const CandidateOutcome& whol
       const auto ticks = [&](int i) {
         return grammar::Interval{chosen[i]->span.begin.tick, chosen[i]->span.end.tick};
       };
+      const grammar::Tick gap = grammar::GapBetween(ticks(clause.left), ticks(clause.right));
+      if (clause.within_s >= 0 && clauses_.Seconds(gap) > clause.within_s) return false;
       return (grammar::Bit(grammar::Relate(ticks(clause.left), ticks(clause.right))) &
               clause.relations) != 0;
     };

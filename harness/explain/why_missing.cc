@@ -140,6 +140,8 @@ double MissingReasons::RunCloseness(const CandidateOutcome& outcome) {
   switch (outcome.kind) {
     case CandidateOutcome::Kind::kTooShort:
       return 1 + 0.5 * lasted_s / rule.lasting_s;
+    case CandidateOutcome::Kind::kTooFew:
+      return 1 + 0.9 * static_cast<double>(outcome.cause) / rule.As<grammar::WhileRule>().at_least;
     case CandidateOutcome::Kind::kRefused: {
       const Moment at{.instance = outcome.instance,
                       .frame = last,
@@ -257,6 +259,17 @@ MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int
       fail("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds),
            "it lasted only " + lasted);
       break;
+    case CandidateOutcome::Kind::kTooLong:
+      run.how += "too long";
+      fail("lasting .. to " + QuantityText(rule.lasting_most_s, grammar::kSeconds),
+           "it lasted " + lasted);
+      break;
+    case CandidateOutcome::Kind::kTooFew:
+      run.how += "too few";
+      fail("at least " + std::to_string(rule.As<grammar::WhileRule>().at_least),
+           "there " + std::string(outcome.cause == 1 ? "was " : "were ") +
+               std::to_string(outcome.cause));
+      break;
     case CandidateOutcome::Kind::kRefused:
       run.how += "not what is required";
       run.because = Requirement(outcome, depth);
@@ -315,6 +328,8 @@ MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int
       break;
   }
   const bool has_end = outcome.kind == CandidateOutcome::Kind::kTooShort ||
+                       outcome.kind == CandidateOutcome::Kind::kTooLong ||
+                       outcome.kind == CandidateOutcome::Kind::kTooFew ||
                        outcome.kind == CandidateOutcome::Kind::kRefused;
   if (has_end) {
     Reason ended{.mark = Mark::kNote,

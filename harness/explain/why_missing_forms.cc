@@ -396,8 +396,13 @@ MissingReasons::Blame MissingReasons::OfCompose(InstanceId instance, const Windo
             right.kind != CandidateOutcome::Kind::kInterval)
           continue;
         const grammar::Allen is = grammar::Relate(ticks(left), ticks(right));
-        holds |= (grammar::Bit(is) & clause.relations) != 0;
+        const grammar::Tick gap = grammar::GapBetween(ticks(left), ticks(right));
+        const bool fits = (grammar::Bit(is) & clause.relations) != 0;
+        const bool is_near = clause.within_s < 0 || clauses_.Seconds(gap) <= clause.within_s;
+        holds |= fits && is_near;
         relation = grammar::kAllenNames[static_cast<std::size_t>(is)];
+        if (fits && !is_near)
+          relation += ", " + QuantityText(clauses_.Seconds(gap), grammar::kSeconds) + " apart";
       }
     }
     if (holds) continue;
@@ -406,6 +411,8 @@ MissingReasons::Blame MissingReasons::OfCompose(InstanceId instance, const Windo
       if ((clause.relations >> i & 1U) != 0)
         wanted += (wanted.empty() ? "" : "|") + std::string(grammar::kAllenNames[i]);
     }
+    if (clause.within_s >= 0)
+      wanted += " within " + QuantityText(clause.within_s, grammar::kSeconds);
     reason.because.push_back(Failed(
         Label(past_, parts[clause.left]) + " " + wanted + " " + Label(past_, parts[clause.right]),
         "it is " + relation));

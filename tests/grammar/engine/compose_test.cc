@@ -68,6 +68,38 @@ TEST(Compose, WaitsUntilNoBetterPartCanCome) {
   EXPECT_EQ(Served("#....####.......", ".........#......"), "[5,10)@11 ");
 }
 
+TEST(Compose, AGapMayBeLimited) {
+  const auto found = [](const std::string& relation) {
+    const auto program = testing::CompileText(
+        "grammar t\nevent a(h: Hand, c: Cup) while touching(h, c)\n"
+        "event b(h: Hand, t: Movable) while touching(h, t)\n"
+        "event e(h: Hand, c: Cup, t: Movable) compose a: a(h, c), b: b(h, t) where " +
+        relation);
+    Scene scene;
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    const std::string first = "##....##......##....", second = "......##..##....##..";
+    for (std::size_t t = 0; t < first.size(); ++t) {
+      scene.touches.clear();
+      if (first[t] == '#') scene.touches.push_back({.a = 0, .b = 1});
+      if (second[t] == '#') scene.touches.push_back({.a = 0, .b = 2});
+      monitor.Advance(scene.At(static_cast<Tick>(t)), events);
+    }
+    monitor.Finish(static_cast<Tick>(first.size()), events);
+    std::string text;
+    for (const Event& event : events) {
+      if (program->rules[event.rule].name == "e")
+        text += "[" + std::to_string(event.interval.begin) + "," +
+                std::to_string(event.interval.end) + ") ";
+    }
+    return text;
+  };
+  EXPECT_EQ(found("a before b"), "[0,8) ") << "meets is not before";
+  EXPECT_EQ(found("a before within 4 ms b"), "[0,8) ");
+  EXPECT_EQ(found("a before within 3.9 ms b"), "[6,12) ");
+  EXPECT_EQ(found("a meets|before within 1 ms b"), "[14,18) ");
+}
+
 // Seven parts with 64 intervals each have 4e12 combinations; choosing part by part finds the first
 // at once, and knows that there is no other.
 TEST(Compose, OfManyPartsIsFoundWithoutTryingAllCombinations) {

@@ -50,6 +50,65 @@ TEST(Forms, WhatComesAtTheDeadlineIsInTime) {
   EXPECT_EQ(WatchTouch(kMissed, {0, 10, 26}, 26).size(), 1u);
 }
 
+// A drum is touched in these stretches of ticks; a frame each tick. Each event as "[0,5)@7 x3".
+std::string Drummed(const std::string& text, const std::vector<Interval>& touches) {
+  Scene scene;
+  const auto program = testing::CompileText("grammar t\n" + text);
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  for (Tick tick = 0; tick < 100; ++tick) {
+    scene.touches.clear();
+    for (const Interval& touch : touches) {
+      if (touch.begin <= tick && tick < touch.end)
+        scene.touches = {{.a = Scene::kHand, .b = Scene::kCup}};
+    }
+    monitor.Advance(scene.At(tick), events);
+  }
+  monitor.Finish(100, events);
+  std::string found;
+  for (const Event& event : events) {
+    if (program->rules[event.rule].name != "e") continue;
+    found += "[" + std::to_string(event.interval.begin) + "," + std::to_string(event.interval.end) +
+             ")@" + std::to_string(event.decided) + " x" +
+             std::to_string(static_cast<int>(event.attributes[0])) + " ";
+  }
+  return found;
+}
+
+TEST(Forms, RepeatCountsWhatFollowsInTime) {
+  const std::string thrice =
+      "event e(h: Hand, c: Cup) repeat touching(h, c) at least 3, gap at most 5 ms with n = count";
+  EXPECT_EQ(Drummed(thrice, {{2, 4}, {9, 10}, {15, 16}}), "[2,16)@21 x3 ");
+  EXPECT_EQ(Drummed(thrice, {{2, 4}, {9, 10}, {16, 17}}), "") << "the second gap is too long";
+  EXPECT_EQ(Drummed(thrice, {{2, 4}, {10, 11}, {12, 13}, {14, 15}, {16, 99}}), "[10,99)@100 x4 ");
+  EXPECT_EQ(Drummed(thrice + " requires count <= 3", {{2, 3}, {4, 5}, {6, 7}, {8, 9}}), "");
+  EXPECT_EQ(Drummed(thrice, {{2, 3}, {4, 5}, {96, 97}, {98, 100}}), "");
+}
+
+// Who asks for what is repeated knows of it as soon as there are enough, not where the last one
+// ends.
+TEST(Forms, RepeatIsKnownWhenThereAreEnough) {
+  const std::string text =
+      "condition thrice(h: Hand, c: Cup) repeat touching(h, c) at least 3, gap at most 5 ms\n"
+      "event e(h: Hand, c: Cup) from touching(h, c) ends to thrice(h, c) ends\n"
+      "  during thrice(h, c) with n = 0\n"
+      "condition brief(h: Hand, c: Cup) while touching(h, c) lasting 1 ms to 9 ms\n"
+      "event f(h: Hand, c: Cup) while brief(h, c)";
+  EXPECT_EQ(Drummed(text, {{2, 4}, {6, 8}, {10, 30}}), "[4,30)@35 x0 ");
+}
+
+TEST(Forms, WhatLastsTooLongIsDropped) {
+  const std::string text = "event e(h: Hand, c: Cup) while touching(h, c) lasting 3 ms to 5.5 ms\n";
+  EXPECT_EQ(Drummed(text, {{2, 4}, {10, 13}, {20, 25}, {30, 36}, {90, 100}}),
+            "[10,13)@13 x0 [20,25)@25 x0 ");
+  // That it is none is known before it ends.
+  EXPECT_EQ(Drummed("condition tap(h: Hand, c: Cup) while touching(h, c) lasting 3 ms to 5.5 ms\n"
+                    "event e(h: Hand, c: Cup) while touching(h, c) and not tap(h, c) lasting 8 ms "
+                    "to 8 ms",
+                    {{2, 5}, {10, 18}, {20, 30}}),
+            "[10,18)@18 x0 ");
+}
+
 // "From A to t later" is not over before t is, and what comes later than t is not in time.
 TEST(Forms, ADeadlineBetweenTwoTicksIsTheLaterOne) {
   const std::string missed =

@@ -42,12 +42,15 @@ class Maker {
 
   void Add() {
     RandomRule rule;
-    const unsigned form = Below(rules_.size() < 2 ? 4 : 6);
+    const unsigned form = Below(rules_.size() < 2 ? 4 : 7);
     rule.form = static_cast<Form>(form);
     if (rule.form == Form::kRest) MakeRest(rule);
     if (rule.form == Form::kCompose) MakeCompose(rule);
+    if (rule.form == Form::kRepeat) MakeRepeat(rule);
     if (form < 4) MakeConditions(rule);
     if (Below(3) == 0) rule.lasting = static_cast<Tick>(Below(6));
+    if (rule.lasting > 0 && Below(3) == 0)
+      rule.lasting_most = rule.lasting + 1 + static_cast<Tick>(Below(6));
     if (rule.within >= 0) rule.lasting = std::min(rule.lasting, rule.within);
     if (rule.form == Form::kUntil) rule.lasting = std::min(rule.lasting, rule.back);
     rule.halves = Sometimes();
@@ -107,6 +110,13 @@ class Maker {
     for (unsigned i = 0; i <= others; ++i) rule.calls.push_back(Call());
   }
 
+  void MakeRepeat(RandomRule& rule) {
+    rule.calls.push_back(Below(4) == 0 ? Touch() : Call());
+    if (Sometimes()) rule.calls.push_back(Call());
+    rule.at_least = 1 + static_cast<int>(Below(4));
+    rule.bridging = static_cast<Tick>(Below(6));
+  }
+
   int AnyRule() { return static_cast<int>(Below(rules_.size())); }
 
   void MakeCompose(RandomRule& rule) {
@@ -131,6 +141,9 @@ class Maker {
       rule.clauses.push_back({.left = Below(parts),
                               .right = Below(parts),
                               .relations = 1 + Below((1U << kAllenNames.size()) - 1)});
+      const bool has_gap =
+          (rule.clauses.back().relations & (Bit(Allen::kBefore) | Bit(Allen::kAfter))) != 0;
+      if (has_gap && Sometimes()) rule.clauses.back().within = static_cast<Tick>(Below(9));
     }
   }
 
@@ -298,9 +311,16 @@ class Writer {
       case Form::kCompose:
         text += ComposeText(rule);
         break;
+      case Form::kRepeat:
+        text += " repeat " + TermText(rule.calls[0]) +
+                (rule.calls.size() > 1 ? " or " + TermText(rule.calls[1]) : "") + " at least " +
+                std::to_string(rule.at_least) + ", gap at most " + at_most(rule.bridging);
+        break;
     }
-    if (rule.bridging > 0) text += " bridging " + at_most(rule.bridging);
+    if (rule.bridging > 0 && rule.form != Form::kRepeat)
+      text += " bridging " + at_most(rule.bridging);
     if (rule.lasting > 0) text += " lasting " + at_least(rule.lasting);
+    if (rule.lasting_most > 0) text += " to " + at_most(rule.lasting_most);
     if (rule.has_requirement) text += " requires " + TermText(rule.requirement);
     if (rule.is_confirmed)
       text += " confirmed by " + TermText(rule.by) + " within " + TermText(rule.episode);
@@ -335,6 +355,7 @@ class Writer {
         if (clause.relations >> i & 1)
           names += (names.empty() ? "" : "|") + std::string(kAllenNames[i]);
       }
+      if (clause.within >= 0) names += " within " + std::to_string(clause.within) + ".5 ms";
       text += names + " a" + std::to_string(clause.right);
     }
     return text;

@@ -71,10 +71,11 @@ struct Term {
 
 /// One rule; which members count depends on the form.
 struct RandomRule {
-  enum class Form { kWhile, kFromTo, kWithout, kUntil, kRest, kCompose };
+  enum class Form { kWhile, kFromTo, kWithout, kUntil, kRest, kCompose, kRepeat };
   struct Clause {
     std::size_t left = 0, right = 0;
     unsigned relations = 0;
+    Tick within = -1;  ///< half a tick more in the text
   };
   Form form = Form::kWhile;
   unsigned roles = 0;  ///< of p, q, r; x has a part in all
@@ -85,9 +86,10 @@ struct RandomRule {
   Tick still_over = 0;  ///< for how long x stays within 1.5 m; 0: that does not count
   double speed_m_per_s = 0;
   double onset_m_per_s = 0;  ///< 120 where the text says it, a tenth of the speed where it does not
-  Tick bridging = 0, lasting = 0, within = -1, back = 0, idle = 0;
+  int at_least = 0;          ///< kRepeat, whose gap is `bridging`
+  Tick bridging = 0, lasting = 0, lasting_most = 0, within = -1, back = 0, idle = 0;
   bool halves = false;      ///< its durations are half a tick off what they are in whole ticks
-  std::vector<Term> calls;  ///< kRest: the whole and the others; kCompose: the parts
+  std::vector<Term> calls;  ///< kRest: the whole and the others; kCompose: the parts; kRepeat: whom
   std::vector<Clause> clauses;
   bool has_requirement = false, requires_at_end = false, is_confirmed = false;
   Term requirement, by, episode;

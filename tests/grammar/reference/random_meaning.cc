@@ -163,11 +163,20 @@ class Meaning {
           outside.push_back(Truth(rule.calls[i], p, 0));
         return InTicks(reference::RestOf(CallRuns(rule.calls[0], p), outside));
       }
+      case Form::kRepeat: {
+        Runs runs;
+        for (const Term& call : rule.calls) {
+          for (const reference::Run& run : CallRuns(call, p)) runs.push_back(run);
+        }
+        return InTicks(reference::Repeat(runs, e_.ticks, rule.at_least, rule.bridging));
+      }
       case Form::kCompose: {
         std::vector<Found> parts;
         for (const Term& call : rule.calls) parts.push_back(Intervals(call, p));
         return reference::Compose(parts, [&](const std::vector<Interval>& chosen) {
           return std::ranges::all_of(rule.clauses, [&](const RandomRule::Clause& clause) {
+            const Tick gap = GapBetween(chosen[clause.left], chosen[clause.right]);
+            if (clause.within >= 0 && gap > clause.within) return false;
             return (Bit(Relate(chosen[clause.left], chosen[clause.right])) & clause.relations) != 0;
           });
         });
@@ -179,7 +188,8 @@ class Meaning {
   Found Find(const RandomRule& rule, int p) const {
     Found kept;
     for (const reference::Timed& one : FindForm(rule, p)) {
-      if (one.ticks.end - one.ticks.begin < rule.lasting) continue;
+      const Tick lasted = one.ticks.end - one.ticks.begin;
+      if (lasted < rule.lasting || (rule.lasting_most > 0 && lasted > rule.lasting_most)) continue;
       if (Meets(rule, one.run, p) && IsConfirmed(rule, one.run, p)) kept.push_back(one);
     }
     return kept;

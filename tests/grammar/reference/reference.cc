@@ -221,6 +221,20 @@ Runs RestOf(const Runs& whole, const std::vector<Stream>& outside) {
   return runs;
 }
 
+Runs Repeat(Runs runs, const Ticks& ticks, int at_least, Tick gap) {
+  std::ranges::sort(runs, {}, &Run::begin);
+  Runs series;
+  for (std::size_t i = 0; i < runs.size();) {
+    Run whole = runs[i];
+    std::size_t next = i + 1;
+    for (; next < runs.size() && ticks[runs[next].begin] - ticks[whole.end] <= gap; ++next)
+      whole.end = std::max(whole.end, runs[next].end);
+    if (static_cast<int>(next - i) >= at_least) series.push_back(whole);
+    i = next;
+  }
+  return series;
+}
+
 std::vector<Timed> InTicks(const Runs& runs, const Ticks& ticks) {
   std::vector<Timed> timed;
   for (const Run& run : runs) timed.push_back({run, {ticks[run.begin], ticks[run.end]}});

@@ -89,6 +89,10 @@ std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
                            const std::function<bool(const std::vector<Interval>&)>& fits);
 Runs RestOf(const Runs& whole, const std::vector<Stream>& outside);
 
+/// `repeat`: the longest series of at least so many runs with gaps of at most `gap` ticks; runs of
+/// several events, in any order.
+Runs Repeat(Runs runs, const Ticks& ticks, int at_least, Tick gap);
+
 Runs Lasting(const Runs& runs, const Ticks& ticks, Tick lasting);
 Runs ConfirmedBy(const Runs& runs, const Runs& by, const Stream& within);
 
