@@ -209,12 +209,14 @@ class Compiler {
       rule.roles.push_back({role.name, role.class_name});
     program_.rules.push_back(std::move(rule));
     definitions_.push_back({&source, &definition});
+    if (definition.form == Definition::Form::kOtherwise) symbols_.otherwise.insert(index);
   }
 
   static RuleForm FormOf(Definition::Form form) {
     switch (form) {
       case Definition::Form::kWhile:
       case Definition::Form::kRepeat:
+      case Definition::Form::kOtherwise:
         return WhileRule();
       case Definition::Form::kFromTo:
         return FromToRule();
@@ -308,9 +310,16 @@ class Compiler {
   void CheckDefines() {
     Program scratch = program_;
     for (const auto& [name, source] : symbols_.defines) {
-      Symbols symbols{
-          scratch, symbols_.rules, symbols_.params, symbols_.files, symbols_.defines, {}, {}, {},
-          {}};
+      Symbols symbols{scratch,
+                      symbols_.rules,
+                      symbols_.params,
+                      symbols_.files,
+                      symbols_.defines,
+                      {},
+                      {},
+                      {},
+                      {},
+                      {}};
       scratch.rules.resize(program_.rules.size());
       scratch.nodes.clear();
       const RuleId body = scratch.rules.push_back({});
@@ -485,7 +494,7 @@ class Compiler {
   };
   std::vector<Located> definitions_;  // definition i is rule i + 1
   Program program_;
-  Symbols symbols_{program_, {}, {}, {}, {}, {}, {}, {}, {}};
+  Symbols symbols_{program_, {}, {}, {}, {}, {}, {}, {}, {}, {}};
 };
 
 }  // namespace

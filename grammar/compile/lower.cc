@@ -445,9 +445,11 @@ Lowering::Typed Lowering::LowerEdge(const Expr& expr) {
 Lowering::Typed Lowering::LowerAnchor(const Expr& expr) {
   const bool at_begin = expr.text == "begin";
   if (at_begin ? !anchors_.begin : !anchors_.end) {
-    return Bad(expr.place, "the interval's " + expr.text + " is not known here",
-               at_begin ? "'@begin' can be used after 'to', 'during', 'requires' and 'with'"
-                        : "'@end' can be used after 'since', 'requires' and 'with'");
+    return Bad(
+        expr.place, "the interval's " + expr.text + " is not known here",
+        at_begin
+            ? "'@begin' can be used after 'to', 'during', 'requires', 'with' and 'while .. until'"
+            : "'@end' can be used after 'since', 'requires' and 'with'");
   }
   if (expr.args[0].kind == Expr::Kind::kCall && IsOverInterval(expr.args[0].text)) {
     return Bad(expr.place,

@@ -36,7 +36,8 @@ struct Symbols {
   std::map<std::string, DefineSource, std::less<>> defines;
   std::map<std::pair<RuleId, std::vector<int>>, RuleId> any_rules;  ///< (rule, kept roles) -> rule
   std::map<std::pair<RuleId, std::vector<std::string>>, RuleId>
-      narrowed_rules;  ///< (rule, classes of its roles) -> rule
+      narrowed_rules;          ///< (rule, classes of its roles) -> rule
+  std::set<RuleId> otherwise;  ///< rules of that form
   std::set<int> used_params;
   std::set<std::string, std::less<>> used_defines;
   Diagnostics warnings = {};
@@ -99,6 +100,7 @@ class Lowering {
   /// The body of a definition for itself: only for its mistakes.
   void Check(const DefineSource& define);
 
+  bool IsOtherwise(RuleId rule) const { return symbols_.otherwise.contains(rule); }
   bool RoleUsed(std::size_t role) const { return role_used_[role]; }
   void Complain(Place place, std::string message, std::string hint = {});
   /// Likewise; only a warning, if a parameter was set from outside. Nothing where a condition is

@@ -352,7 +352,7 @@ NodeId Lowering::DistanceAlong(std::array<int, 2> roles) {
 Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
   if (!anchors_.begin) {
     return Bad(expr.place, Quoted(expr.text) + " is measured over an interval; there is none here",
-               "it can be used after 'to', 'during' and 'requires'");
+               "it can be used after 'to', 'during', 'requires' and 'while .. until'");
   }
   const bool is_along = expr.text == "displacement_along";
   const bool is_displacement = is_along || expr.text == "displacement";

@@ -45,7 +45,7 @@ class DefinitionLowering {
     switch (d_.form) {
       case Form_::kWhile: {
         const NodeId condition = lowering_.Truth(d_.first, {});
-        const NodeId until = d_.until ? lowering_.Truth(*d_.until, {}) : kNone;
+        const NodeId until = d_.until ? lowering_.Truth(*d_.until, {.begin = true}) : kNone;
         As<WhileRule>() = {.condition = condition, .until = until};
         CheckUntil();
         break;
@@ -68,6 +68,63 @@ class DefinitionLowering {
         return LowerCompose();
       case Form_::kRepeat:
         return LowerRepeat();
+      case Form_::kOtherwise:
+        return LowerOtherwise();
+    }
+  }
+
+  // While none of the other events of this file holds, in any role of the same class.
+  void LowerOtherwise() {
+    std::vector<ast::Expr> calls;
+    const std::vector<RuleRole> roles = Here().roles;
+    for (const RuleId other : IdsOf(program_.rules)) {
+      const Rule& rule = program_.rules[other];
+      const bool counts = rule.printed && rule.file == Here().file && other != index_ &&
+                          rule.form() != Form::kCompose && !lowering_.IsOtherwise(other);
+      if (counts) AddCalls(rule, std::vector<int>(rule.roles.size(), kNone), roles, 0, calls);
+    }
+    if (calls.empty()) {
+      return lowering_.Complain(
+          d_.place,
+          "'otherwise' is when no other event holds, and no other event of this file is "
+          "about a " +
+              roles.front().class_name,
+          "define such events, or say what must not hold: while not X");
+    }
+    const NodeId none = lowering_.Truth({.kind = ast::Expr::Kind::kUnary,
+                                         .place = d_.place,
+                                         .text = "not",
+                                         .quantity = {},
+                                         .args = {AnyOf(calls)}},
+                                        {});
+    As<WhileRule>() = {.condition = none};
+  }
+
+  // One call for each way in which roles of the event can be those of this one.
+  void AddCalls(const Rule& event, std::vector<int> plays, const std::vector<RuleRole>& roles,
+                std::size_t role, std::vector<ast::Expr>& calls) {
+    if (role == roles.size()) {
+      ast::Expr call{.kind = ast::Expr::Kind::kCall,
+                     .place = d_.place,
+                     .text = event.name,
+                     .quantity = {},
+                     .args = {}};
+      for (const int who : plays) {
+        call.args.push_back({.kind = ast::Expr::Kind::kName,
+                             .place = d_.place,
+                             .text = who == kNone ? "any" : roles[who].name,
+                             .quantity = {},
+                             .args = {}});
+      }
+      return calls.push_back(std::move(call));
+    }
+    for (std::size_t i = 0; i < plays.size(); ++i) {
+      const bool fits = plays[i] == kNone && event.roles[i].class_name == roles[role].class_name;
+      if (!fits) continue;
+      plays[i] = static_cast<int>(role);
+      AddCalls(event, plays, roles, role + 1, calls);
+      plays[i] = kNone;
+      if (event.symmetric && i == 0) return;  // the second of a pair says the same
     }
   }
 

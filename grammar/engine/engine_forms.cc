@@ -80,10 +80,23 @@ bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
   const auto& [condition, until, bridging_s, at_least, counted] = rule.As<WhileRule>();
   if (at_least > 0) return StepRepeat(instance, frame);
   if (until == kNone) return StepRun(instance, frame, evaluator_.Truth(condition, view));
-  // Two thresholds: what has begun goes on until the second says so.
+  // Two thresholds: what has begun goes on until the second says so, which may speak of the begin.
+  const bool is_anchored = !rule.anchors.empty();
+  if (is_anchored && instance.open && instance.in_gap &&
+      history_.At(frame).tick - instance.gap.tick > TicksOf(instance).bridging &&
+      !Close(instance, instance.gap))
+    return false;
   const bool on = instance.open && !instance.in_gap;
-  const Kleene goes_on = Not(evaluator_.Truth(until, view));
-  return StepRun(instance, frame, on ? goes_on : And(goes_on, evaluator_.Truth(condition, view)));
+  Kleene truth = on ? Kleene::kTrue : evaluator_.Truth(condition, view);
+  if (truth == Kleene::kFalse) return StepRun(instance, frame, truth);
+  const bool knows_begin =
+      !is_anchored || instance.open || evaluator_.CaptureAnchors(instance, frame);
+  const Evaluator::View since_begin{
+      .instance = instance, .frame = frame, .begin_known = knows_begin};
+  truth = And(truth, Not(evaluator_.Truth(until, since_begin)));
+  // Where nothing changes any more it may begin anew, as it speaks of another begin then.
+  if (is_anchored && instance.open && truth != Kleene::kTrue) evaluator_.MarkTimeDependent();
+  return StepRun(instance, frame, truth);
 }
 
 // Intervals that follow each other at once are two.

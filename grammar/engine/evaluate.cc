@@ -74,6 +74,8 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
     }
     case Op::kInside:
       return Known(IsInside(node, view));
+    case Op::kNearest:
+      return Known(IsNearest(node, view));
     case Op::kPartOf:
       return Known(IsPartOf(entity_table_, Entity(node, view, 0), Entity(node, view, 1)));
     case Op::kGazed:
@@ -98,6 +100,28 @@ bool Evaluator::IsInside(const Node& node, const View& view) const {
   const Vector3d away_m = at.q_WB.conjugate() * (centre_W - at.p_WB_m) - of.p_BC_m;
   if (of.round) return away_m.norm() <= of.half_size_m.x();
   return (away_m.cwiseAbs().array() <= of.half_size_m.array()).all();
+}
+
+// Others of the class move, too, and nobody watches them. Of two that are equally near, the first
+// in the cast is.
+bool Evaluator::IsNearest(const Node& node, const View& view) const {
+  depends_on_time_ = true;
+  const int who = Entity(node, view, 0);
+  const int whom = Entity(node, view, 1);
+  const std::string& of_class =
+      program_.rules[view.instance.rule].roles[static_cast<std::size_t>(node.roles[0])].class_name;
+  const Vector3d& place_W_m = history_.Look(whom, view.frame).p_WB_m;
+  const auto away_m = [&](int entity, double most_m) {
+    return DistanceToSurface(place_W_m, entity_table_.entities[static_cast<std::size_t>(entity)],
+                             history_.Look(entity, view.frame), most_m);
+  };
+  const double here_m = away_m(who, kBoundless);
+  for (int other = 0; other < static_cast<int>(entity_table_.entities.size()); ++other) {
+    if (other == who || other == whom || !instances_.IsA(other, of_class)) continue;
+    const double there_m = away_m(other, here_m);
+    if (there_m < here_m || (there_m == here_m && other < who)) return false;
+  }
+  return true;
 }
 
 Kleene Evaluator::Holds(int slot, const View& view) const {

@@ -79,6 +79,7 @@ class Evaluator {
   double SurfaceSpeed(int hand, FrameNumber frame) const;
   bool SensorSet(const Node& node, const View& view) const;
   bool IsInside(const Node& node, const View& view) const;
+  bool IsNearest(const Node& node, const View& view) const;
   double Weight(int entity) const;
   struct Window {
     FrameNumber early = 0;

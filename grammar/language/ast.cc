@@ -62,6 +62,8 @@ std::string DumpForm(const Definition& d) {
       return "rest of " + Dump(d.first) + " outside " + Joined(d.outside, ", ");
     case Definition::Form::kCompose:
       return DumpCompose(d);
+    case Definition::Form::kOtherwise:
+      return "otherwise";
     case Definition::Form::kRepeat:
       return "repeat " + Joined(d.repeated, " or ") + " at least " + Dump(d.at_least) +
              ", gap at most " + Dump(d.gap);

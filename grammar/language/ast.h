@@ -88,7 +88,7 @@ struct Relation {
 };
 
 struct Definition {
-  enum class Form { kWhile, kFromTo, kUntilSince, kRestOf, kCompose, kRepeat };
+  enum class Form { kWhile, kFromTo, kUntilSince, kRestOf, kCompose, kRepeat, kOtherwise };
   bool is_event = true;
   bool symmetric = false;
   std::string name;

@@ -155,8 +155,11 @@ class Parser : public LawParser {
       ParseCompose(definition);
     } else if (Accept("repeat")) {
       ParseRepeat(definition);
+    } else if (Accept("otherwise")) {
+      definition.form = Definition::Form::kOtherwise;
     } else {
-      Fail("expected 'while', 'from', 'until', 'rest', 'compose' or 'repeat', found " + Found(),
+      Fail("expected 'while', 'from', 'until', 'rest', 'compose', 'repeat' or 'otherwise', found " +
+               Found(),
            WordHint());
     }
   }

@@ -41,6 +41,7 @@ enum class Op : std::uint8_t {
   kSolidInSphere,
   kInCylinder,
   kInside,
+  kNearest,
   kPartOf,
   kIsA,
   kGazed,

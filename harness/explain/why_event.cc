@@ -73,7 +73,7 @@ Reasons EventReasons::Begin(InstanceId instance, const CandidateOutcome& outcome
     case Form::kAny:
       return BeginOrEndOfAny(instance, begin, false, depth);
     case Form::kWhile: {
-      const Moment at{.instance = instance, .frame = begin};
+      const Moment at{.instance = instance, .frame = begin, .begin = begin};
       Reasons reasons = Change(rule.As<WhileRule>().condition, at, true, depth);
       AddNew(Change(rule.As<WhileRule>().until, at, false, depth), reasons);
       return reasons;
@@ -111,8 +111,8 @@ Reasons EventReasons::End(InstanceId instance, const CandidateOutcome& outcome, 
     case Form::kWhile: {
       const WhileRule& part = rule.As<WhileRule>();
       const bool hysteresis = part.until != kNone;
-      return Change(hysteresis ? part.until : part.condition, {.instance = instance, .frame = end},
-                    hysteresis, depth);
+      return Change(hysteresis ? part.until : part.condition,
+                    {.instance = instance, .frame = end, .begin = begin}, hysteresis, depth);
     }
     case Form::kFromTo: {
       const Moment at{.instance = instance, .frame = end, .begin = begin};

@@ -73,7 +73,7 @@ int RunExamples(const std::string& page) {
 }
 
 TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
-  EXPECT_EQ(RunExamples("grammar-tutorial.md"), 28);
+  EXPECT_EQ(RunExamples("grammar-tutorial.md"), 30);
   EXPECT_EQ(RunExamples("grammar-language.md"), 5);
 }
 

@@ -126,6 +126,9 @@ event closing(hand: Hand, object: Movable) while closing_speed(hand, object) > 5
 event drifting(object: Movable, support: Thing) while touching(object, support) and drift_along(object, support, 200 ms) > 3 cm/s
 event steady(hand: Hand, object: Movable)
   while relative_speed(hand, object, 150 ms) < 5 cm/s and median(distance(hand, object), 100 ms) < 20 cm
+event alone(hand: Hand, object: Movable) while nearest(hand, object) and distance(hand, object) < 30 cm
+event stays(hand: Hand, object: Movable)
+  while near(hand, object) until distance(hand, object) > distance(hand, object)@begin + 1 cm bridging 20 ms
 event gripping(hand: Hand) while trigger(hand) > 0.25 and surface_speed_ok(hand)
 condition surface_speed_ok(hand: Hand) while vertical_speed(hand) < 10 cm/s
 event nudged(object: Movable, other: Movable)

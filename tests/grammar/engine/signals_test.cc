@@ -291,6 +291,10 @@ TEST(Signals, TestsHoldAsDocumented) {
       {"touching(hand, tray)", false},
       {"is(cup, Cup)", true},
       {"is(tray, Cup)", false},
+      {"nearest(tray, cup)", true},
+      {"nearest(tray, hand)", false},  // the cup is a Movable, too, and its box is nearer
+      {"nearest(hand, cup)", true},
+      {"nearest(cup, hand)", true},
       {"part_of(cup, tray)", true},
       {"part_of(tray, cup)", false},
       {"in_sphere(position(cup), tray, 0.45 m)", true},

@@ -69,7 +69,7 @@ class Maker {
     if (rule.form == Form::kWhile) {
       rule.first = Condition(3);
       rule.has_second = Sometimes();
-      if (rule.has_second) rule.second = Condition(2);
+      if (rule.has_second) rule.second = Condition(2, Sometimes() ? "begin" : "");
       if (Sometimes()) rule.bridging = 1 + static_cast<Tick>(Below(4));
       return;
     }

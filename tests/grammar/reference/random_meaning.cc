@@ -133,9 +133,9 @@ class Meaning {
     switch (rule.form) {
       case Form::kWhile: {
         const Stream on = Truth(rule.first, p, 0);
-        return InTicks(
-            reference::While(rule.has_second ? reference::Hold(on, Truth(rule.second, p, 0)) : on,
-                             e_.ticks, rule.bridging));
+        return InTicks(rule.has_second ? reference::Hold(on, AnchoredTruth(rule.second, p),
+                                                         e_.ticks, rule.bridging)
+                                       : reference::While(on, e_.ticks, rule.bridging));
       }
       case Form::kFromTo:
         return InTicks(reference::FromTo(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),

@@ -59,11 +59,18 @@ Runs While(const Stream& f, const Ticks& ticks, Tick bridging) {
   return runs;
 }
 
-Stream Hold(const Stream& on, const Stream& off) {
-  Stream holds(on.size());
-  for (std::size_t i = 0; i < on.size(); ++i)
-    holds[i] = !off[i] && (on[i] || (i > 0 && holds[i - 1]));
-  return holds;
+Runs Hold(const Stream& on, const Anchored& off, const Ticks& ticks, Tick bridging) {
+  Runs runs;
+  bool holds = false;
+  for (int i = 0; i < static_cast<int>(on.size()); ++i) {
+    const bool goes_on = !runs.empty() && (holds || ticks[i] - ticks[runs.back().end] <= bridging);
+    const int begin = goes_on ? runs.back().begin : i;
+    holds = (holds || on[i]) && !off.at(begin)[i];
+    if (!holds) continue;
+    if (!goes_on) runs.push_back({i, i});
+    runs.back().end = i + 1;
+  }
+  return runs;
 }
 
 Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool or_drop,

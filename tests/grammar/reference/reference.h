@@ -37,9 +37,6 @@ Stream Ends(const Runs& runs, int frames);
 
 /// Maximal runs; gaps of at most `bridging` ticks are closed.
 Runs While(const Stream& f, const Ticks& ticks, Tick bridging);
-/// True from where `on` holds, without `off`, until `off` holds.
-Stream Hold(const Stream& on, const Stream& off);
-
 /// Truth per frame, as it is for an interval that begins (of `until`: ends) at a frame.
 struct Anchored {
   Anchored(Stream fixed)
@@ -47,6 +44,10 @@ struct Anchored {
   explicit Anchored(std::function<Stream(int frame)> from) : at(std::move(from)) {}
   std::function<Stream(int frame)> at;
 };
+
+/// From where `on` holds, without `off`, until `off` holds; gaps of at most `bridging` ticks are
+/// closed.
+Runs Hold(const Stream& on, const Anchored& off, const Ticks& ticks, Tick bridging);
 
 /// `from .. to [within] [during]`; `within` < 0: no deadline. What has not ended in time is
 /// dropped.

@@ -102,7 +102,7 @@ std::vector<std::pair<std::string, std::vector<Interval>>> ExpectedDeadlines(con
                     {reference::InTicks(run(e.p), e.ticks), reference::InTicks(run(e.q), e.ticks)},
                     related))},
       {"ends_in_r", TicksOf(ends_in_r, e.ticks)},
-      {"held", TicksOf(While(Hold(e.p, e.q), e.ticks, 1), e.ticks)},
+      {"held", TicksOf(Hold(e.p, e.q, e.ticks, 1), e.ticks)},
       {"in_time", TicksOf(in_time, e.ticks)},
       {"timely", TicksOf(FromTo(Ends(bridged, n), q_begins, Not(e.r), true, e.ticks, 5), e.ticks)},
       {"missed", TicksOf(missed)},
