@@ -129,9 +129,10 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
   std::ranges::sort(named, {}, [](const ScenarioFile& file) {
     return std::tuple(!file.in_project, file.skill, file.name, file.path, file.episode);
   });
-  const auto repeated = std::ranges::unique(
-      named, {}, [](const ScenarioFile& file) { return std::pair(file.path, file.episode); });
-  named.erase(repeated.begin(), repeated.end());
+  const auto same = [](const ScenarioFile& a, const ScenarioFile& b) {
+    return a.path == b.path && a.episode == b.episode;
+  };
+  named.erase(std::unique(named.begin(), named.end(), same), named.end());
   const ScenarioLibrary library = ProjectLibrary(root);
   ScenarioSelection selection;
   std::ranges::copy_if(named, std::back_inserter(selection.scenarios),

@@ -203,7 +203,7 @@ MissingReasons::Blame MissingReasons::OfFromTo(InstanceId instance, const Window
   // The last moment that should have begun it.
   const FrameNumber until = window.at.value_or(window.last);
   FrameNumber from = until;
-  const auto begins = [&](FrameNumber frame) {
+  const auto begins = [&, opens = opens](FrameNumber frame) {
     return past_.Truth(opens, {.instance = instance, .frame = frame, .begin = frame});
   };
   while (from >= 0 && !begins(from)) --from;

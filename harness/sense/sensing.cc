@@ -115,7 +115,7 @@ grammar::FrameChanges Sensing::SenseChanges(const physics::Snapshot& snapshot) {
   if (noise_) return noise_->Show(WithoutNoise());
 
   std::ranges::sort(shown_);
-  shown_.erase(std::ranges::unique(shown_).begin(), shown_.end());
+  shown_.erase(std::unique(shown_.begin(), shown_.end()), shown_.end());
   entity_changes_.clear();
   for (const int entity : shown_)
     entity_changes_.push_back({entity, entities_[static_cast<std::size_t>(entity)]});
