@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads an episode line by line, with the field tables and error messages of scenario files: JSON
-// is valid YAML. Tested by tests/harness/sense/episode_file_test.cc
+// Reads an episode line by line, with the field tables and error messages of scenario files. Tested
+// by tests/harness/sense/episode_file_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <variant>
 
@@ -16,6 +15,7 @@
 #include "harness/scenario/classes.h"
 #include "harness/sense/episode_file.h"
 #include "harness/sense/episode_format.h"
+#include "harness/yaml/located_json.h"
 
 namespace prehend::harness {
 namespace {
@@ -42,8 +42,8 @@ class EpisodeReader {
   void TakeLine(const std::string& text) {
     ++line_;
     if (text.find_first_not_of(" \r") == std::string::npos) return;
-    auto document = ParseYaml(file_, text);
-    if (!document) return Report(WhyNotJson(text, std::move(document.error())));
+    auto document = ParseJson(file_, text);
+    if (!document) return Report(std::move(document.error()));
     DiagnosticList errors(*document);
     if (!header_) {
       HeaderEntry header;
@@ -76,23 +76,6 @@ class EpisodeReader {
   }
 
  private:
-  /// What is wrong with a line that is no JSON; `otherwise` if it is.
-  grammar::Diagnostics WhyNotJson(const std::string& text, grammar::Diagnostics otherwise) const {
-    try {
-      [[maybe_unused]] const auto parsed = nlohmann::json::parse(text);
-      return otherwise;
-    } catch (const nlohmann::json::parse_error& error) {
-      if (error.byte > text.size()) {
-        return {grammar::DiagnosticAt(file_, text, {1, static_cast<int>(text.size())},
-                                      "the line ends within a value",
-                                      "if it is the last line, the file was cut off")};
-      }
-      return {grammar::DiagnosticAt(file_, text, {1, static_cast<int>(error.byte)},
-                                    "not valid JSON: unexpected text here",
-                                    "each line is one JSON object")};
-    }
-  }
-
   void Report(grammar::Diagnostics found) {
     for (grammar::Diagnostic& diagnostic : found) diagnostic.place.line = line_;
     diagnostics = std::move(found);
