@@ -70,6 +70,10 @@ std::span<const Builtin> Builtins() {
       {"gap",                     Op::kGap,                   T::kNumber,   kMetres,           {A::kHand, A::kThing},
        "smallest distance from the hand's surface to the object's",
        S::kPoses, kNotNegative},
+      {"clearance",               Op::kClearance,             T::kNumber,   kMetres,           {A::kEntity, A::kEntity},
+       "how far the lowest point of the first is above the top of the second, or of the part of "
+       "it that is nearest below or above; endless where the first is beside it",
+       S::kPoses, kAnyNumber},
       {"closing_speed",           Op::kClosingSpeed,          T::kNumber,   kMetresPerSecond,  {A::kHand, A::kThing},
        "how fast the gap shrinks, from one frame to the next",
        S::kPoses, kAnyNumber},

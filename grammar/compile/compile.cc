@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <set>
 
 #include "grammar/compile/analyze_dependencies.h"
@@ -38,6 +39,7 @@ class Compiler {
 
   CompileResult Run() {
     CollectParams();
+    ApplySettings();
     ApplyOverrides();
     CollectHeads();
     CollectDefines();
@@ -76,7 +78,19 @@ class Compiler {
     seen.insert({source.file.name, grammar.file});
     for (const ast::Use& use : source.file.uses) {
       if (use.is_path && !CheckPath(source, use)) continue;
-      const std::string name = use.is_path ? Beside(grammar.file, use.name) : use.name;
+      std::string name = use.is_path ? Beside(grammar.file, use.name) : use.name;
+      if (!use.variant.empty()) {
+        name += "_from_" + use.variant;
+        const auto [stands_for, is_new] = variants_.try_emplace(use.name, name);
+        if (seen.contains(use.name) && (is_new || stands_for->second != name)) {
+          Complain(source, use.place,
+                   "'" + use.name + "' was used before, and '" + use.name + " from " + use.variant +
+                       "' is to take its place",
+                   "write this line above all others that use " + use.name);
+          continue;
+        }
+        seen.insert(use.name);
+      }
       if (!seen.insert(name).second) continue;
       if (seen.size() > kMaxFiles) {
         Complain(source, use.place,
@@ -85,8 +99,9 @@ class Compiler {
       }
       const std::optional<GrammarText> used = includer_ ? includer_(name) : std::nullopt;
       if (!used) {
-        Complain(source, use.place, "there is no grammar '" + use.name + "' to use",
-                 use.is_path ? "looked for " + name : Suggest(use.name, known_));
+        Complain(source, use.place,
+                 "there is no grammar '" + (use.variant.empty() ? use.name : name) + "' to use",
+                 use.is_path ? "looked for " + name : Suggest(name, known_));
       } else {
         ReadFile(*used, seen);
       }
@@ -129,6 +144,39 @@ class Compiler {
                                    .place = param.place});
       }
     }
+  }
+
+  // What a file says of the parameters of those that it uses. The file that uses others is read
+  // after them, so its word is the last.
+  void ApplySettings() {
+    for (const Source& source : sources_) {
+      for (const ast::Use& use : source.file.uses) {
+        for (const ast::Param& setting : use.settings) ApplySetting(source, setting);
+      }
+    }
+  }
+
+  void ApplySetting(const Source& source, const ast::Param& setting) {
+    const auto found = symbols_.params.find(setting.name);
+    const bool is_own =
+        found != symbols_.params.end() && program_.params[found->second].file == source.text.file;
+    if (found == symbols_.params.end() || is_own) {
+      std::vector<std::string> names;
+      for (const auto& [name, index] : symbols_.params) {
+        if (program_.params[index].file != source.text.file) names.push_back(name);
+      }
+      return Complain(source, setting.place,
+                      "no grammar that is used has a parameter '" + setting.name + "'",
+                      Suggest(setting.name, names));
+    }
+    ProgramParam& param = program_.params[found->second];
+    if (!(setting.value.dimension == param.value.dimension)) {
+      return Complain(source, setting.place,
+                      "'" + setting.name + "' is in " + DimensionText(param.value.dimension) +
+                          ", this is " + DimensionText(setting.value.dimension),
+                      "its value in " + param.file + " is " + QuantityText(param.value));
+    }
+    param.value = setting.value;
   }
 
   static std::string FirstAt(const std::string& file, Place place) {
@@ -488,6 +536,7 @@ class Compiler {
   Diagnostics diagnostics_;
   Diagnostics warnings_;
   std::deque<Source> sources_;
+  std::map<std::string, std::string> variants_;  // `use name from ..`: what stands for the name
   struct Located {
     const Source* source;
     const Definition* definition;

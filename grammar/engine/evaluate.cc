@@ -13,15 +13,6 @@ using Eigen::Vector3d;
 
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
 
-// From a point in the world to the surface of an entity, at most `most_m`; 0 inside.
-double DistanceToSurface(const Vector3d& p_W, const EntityInfo& member, const EntitySample& look,
-                         double most_m = kBoundless) {
-  const Vector3d p_B = look.q_WB.conjugate() * (p_W - look.p_WB_m);
-  if (!member.solid.IsEmpty()) return member.solid.DistanceTo(p_B, most_m);
-  const Vector3d outside = ((p_B - member.p_BC_m).cwiseAbs() - member.half_size_m).cwiseMax(0);
-  return outside.norm();
-}
-
 bool IsPosition(const Program& program, NodeId node) {
   switch (program.nodes[node].op) {
     case Op::kPosition:
@@ -88,40 +79,6 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
     default:
       return Compare(node, view);
   }
-}
-
-bool Evaluator::IsInside(const Node& node, const View& view) const {
-  const auto who = static_cast<std::size_t>(Entity(node, view, 0)),
-             room = static_cast<std::size_t>(Entity(node, view, 1));
-  const EntityInfo& of = entity_table_.entities[room];
-  const EntitySample& look = history_.Look(static_cast<int>(who), view.frame);
-  const EntitySample& at = history_.Look(static_cast<int>(room), view.frame);
-  const Vector3d centre_W = look.p_WB_m + look.q_WB * entity_table_.entities[who].p_BC_m;
-  const Vector3d away_m = at.q_WB.conjugate() * (centre_W - at.p_WB_m) - of.p_BC_m;
-  if (of.round) return away_m.norm() <= of.half_size_m.x();
-  return (away_m.cwiseAbs().array() <= of.half_size_m.array()).all();
-}
-
-// Others of the class move, too, and nobody watches them. Of two that are equally near, the first
-// in the cast is.
-bool Evaluator::IsNearest(const Node& node, const View& view) const {
-  depends_on_time_ = true;
-  const int who = Entity(node, view, 0);
-  const int whom = Entity(node, view, 1);
-  const std::string& of_class =
-      program_.rules[view.instance.rule].roles[static_cast<std::size_t>(node.roles[0])].class_name;
-  const Vector3d& place_W_m = history_.Look(whom, view.frame).p_WB_m;
-  const auto away_m = [&](int entity, double most_m) {
-    return DistanceToSurface(place_W_m, entity_table_.entities[static_cast<std::size_t>(entity)],
-                             history_.Look(entity, view.frame), most_m);
-  };
-  const double here_m = away_m(who, kBoundless);
-  for (int other = 0; other < static_cast<int>(entity_table_.entities.size()); ++other) {
-    if (other == who || other == whom || !instances_.IsA(other, of_class)) continue;
-    const double there_m = away_m(other, here_m);
-    if (there_m < here_m || (there_m == here_m && other < who)) return false;
-  }
-  return true;
 }
 
 Kleene Evaluator::Holds(int slot, const View& view) const {
@@ -208,8 +165,8 @@ std::optional<Reach> Evaluator::ReachOf(const Node& node, const View& view) cons
   if (!centre || !radius) return std::nullopt;
   if (solid) {
     const int entity = Entity(node, view, 0);
-    const double distance = DistanceToSurface(*centre, entity_table_.entities[entity],
-                                              history_.Look(entity, view.frame));
+    const double distance = DistanceToSurface_m(*centre, entity_table_.entities[entity],
+                                                history_.Look(entity, view.frame));
     return Reach{.distance_m = distance, .radius_m = *radius};
   }
   const std::optional<Vector3d> point = Position(node.args[0], view);
@@ -344,6 +301,8 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
     }
     case Op::kGap:
       return Gap(a, b, frame);
+    case Op::kClearance:
+      return Clearance_m(a, b, frame);
     case Op::kClosingSpeed:
       return ClosingSpeed(a, b, frame);
     case Op::kSurfaceSpeed:
@@ -404,8 +363,8 @@ double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
   const EntitySample& look = history_.Look(object, frame);
   double gap = kBoundless;
   for (const CollisionSphere& sphere : sample->collision_spheres) {
-    const double distance = DistanceToSurface(sphere.p_W_m, entity_table_.entities[object], look,
-                                              gap + sphere.radius_m);
+    const double distance = DistanceToSurface_m(sphere.p_W_m, entity_table_.entities[object], look,
+                                                gap + sphere.radius_m);
     gap = std::min(gap, distance - sphere.radius_m);
   }
   return std::max(gap, 0.0);

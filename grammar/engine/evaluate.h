@@ -3,12 +3,18 @@
 // Tested by tests/grammar/engine/signals_test.cc
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "grammar/base/reach.h"
 #include "grammar/engine/instances.h"
 
 namespace prehend::grammar {
+
+/// From a point in the world to the surface of an entity, at most `most_m`; 0 inside.
+double DistanceToSurface_m(const Eigen::Vector3d& p_W, const EntityInfo& member,
+                           const EntitySample& look,
+                           double most_m = std::numeric_limits<double>::infinity());
 
 class Evaluator {
  public:
@@ -74,6 +80,7 @@ class Evaluator {
   Kleene CompareMeasured(const ByThreshold& by, const View& view) const;
   std::optional<double> Arithmetic(const Node& node, const View& view) const;
   double SignalOf(const Node& node, const View& view) const;
+  double Clearance_m(int a, int b, FrameNumber frame) const;
   double Gap(int hand, int object, FrameNumber frame) const;
   double ClosingSpeed(int hand, int object, FrameNumber frame) const;
   double SurfaceSpeed(int hand, FrameNumber frame) const;

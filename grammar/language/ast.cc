@@ -160,10 +160,18 @@ std::string Dump(const Law& law) {
   return subjects + " " + relations + " " + Joined(law.others, " or ");
 }
 
+static std::string DumpSettings(const Use& use) {
+  std::string text;
+  for (const Param& setting : use.settings)
+    text += (text.empty() ? " with " : ", ") + setting.name + " = " + QuantityText(setting.value);
+  return text;
+}
+
 std::string Dump(const File& file) {
   std::string text = "grammar " + file.name + "\n";
   for (const Use& use : file.uses)
-    text += "use " + (use.is_path ? '"' + use.name + '"' : use.name) + "\n";
+    text += "use " + (use.is_path ? '"' + use.name + '"' : use.name) +
+            (use.variant.empty() ? "" : " from " + use.variant) + DumpSettings(use) + "\n";
   for (const Param& param : file.params)
     text += "param " + param.name + " = " + QuantityText(param.value) + "\n";
   for (const Define& define : file.defines) text += DumpDefine(define);

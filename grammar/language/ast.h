@@ -156,9 +156,11 @@ struct Param {
 };
 
 struct Use {
-  std::string name;  ///< of the library, or a path as seen from this file
+  std::string name;     ///< of the library, or a path as seen from this file
+  std::string variant;  ///< `use name from variant`: `name_from_variant` takes its place
   bool is_path = false;
   Place place;
+  std::vector<Param> settings = {};  ///< `use name with param = value`
 };
 
 struct File {

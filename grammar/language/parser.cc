@@ -77,12 +77,30 @@ class Parser : public LawParser {
   }
 
   void ParseUse(ast::File& file, Place place) {
-    if (Peek().kind != Token::Kind::kText) {
-      file.uses.push_back({ExpectName("a grammar's name, or its file in quotes"), false, place});
-      return;
+    ast::Use use{.is_path = Peek().kind == Token::Kind::kText, .place = place};
+    if (use.is_path) {
+      if (Peek().text.empty()) Fail("an empty file name");
+      use.name = Take().text;
+    } else {
+      use.name = ExpectName("a grammar's name, or its file in quotes");
+      if (Accept("from")) use.variant = ExpectName("what it is made from: use contact from motion");
     }
-    if (Peek().text.empty()) Fail("an empty file name");
-    file.uses.push_back({Take().text, true, place});
+    if (Accept("with")) {
+      do {
+        use.settings.push_back(ParseSetting());
+      } while (Accept(","));
+    }
+    file.uses.push_back(std::move(use));
+  }
+
+  // reach_radius = 25 cm
+  ast::Param ParseSetting() {
+    ast::Param setting;
+    setting.place = Peek().place;
+    setting.name = ExpectName("a parameter's name");
+    Expect("=");
+    setting.value = ParseSignedQuantity();
+    return setting;
   }
 
   // define above(a, b: Thing, gap: cm) = height(a) > height(b) + gap

@@ -62,6 +62,7 @@ enum class Op : std::uint8_t {
   kDistanceAlong,  ///< along roles[1], of the piece of roles[0] that was at args[0] in it and at
                    ///< args[1] in roles[1], where args[2] is the normal
   kGap,
+  kClearance,
   kClosingSpeed,
   kSurfaceSpeed,
   kDistance,

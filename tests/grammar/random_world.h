@@ -129,6 +129,7 @@ event steady(hand: Hand, object: Movable)
 event alone(hand: Hand, object: Movable) while nearest(hand, object) and distance(hand, object) < 30 cm
 event stays(hand: Hand, object: Movable)
   while near(hand, object) until distance(hand, object) > distance(hand, object)@begin + 1 cm bridging 20 ms
+event above(object: Movable, support: Thing) while clearance(object, support) < 5 cm and clearance(object, support) > -5 cm
 event gripping(hand: Hand) while trigger(hand) > 0.25 and surface_speed_ok(hand)
 condition surface_speed_ok(hand: Hand) while vertical_speed(hand) < 10 cm/s
 event nudged(object: Movable, other: Movable)

@@ -385,6 +385,39 @@ TEST(Signals, AHandIsAPartOfItsPersonOnly) {
   EXPECT_EQ(owners(), std::vector<int>{Scene::kCup});
 }
 
+TEST(Signals, ClearanceIsFromTheLowestPointToTheTop) {
+  Scene scene;
+  EntityInfo& cup = scene.entity_table.entities[Scene::kCup];
+  EntityInfo& tray = scene.entity_table.entities[Scene::kTray];
+  cup.half_size_m = {0.03, 0.03, 0.05};
+  tray.half_size_m = {0.3, 0.2, 0.01};
+  scene.looks[Scene::kCup].p_WB_m = {0.1, 0, 0.08};
+  const auto is = [&](double from_m, double to_m) {
+    const auto program = testing::CompileText(
+        "grammar t\nevent e(cup: Cup, tray: Movable) while clearance(cup, tray) >= " +
+        std::to_string(from_m) + " m and clearance(cup, tray) <= " + std::to_string(to_m) + " m");
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    monitor.Advance(scene.At(0), events);
+    monitor.Finish(10, events);
+    return !events.empty();
+  };
+  EXPECT_TRUE(is(0.0199, 0.0201));
+  scene.looks[Scene::kCup].q_WB = Eigen::AngleAxisd(std::numbers::pi / 4, Eigen::Vector3d::UnitX());
+  EXPECT_TRUE(is(0.0134, 0.0135)) << "it stands on an edge";
+  scene.looks[Scene::kTray].q_WB = Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX());
+  EXPECT_TRUE(is(0.0134, 0.0135)) << "the tray lies upside down";
+  scene.looks[Scene::kCup].p_WB_m.x() = 0.34;
+  EXPECT_FALSE(is(-100, 100)) << "it is beside the tray";
+  scene.looks[Scene::kCup].p_WB_m.x() = 0.32;
+  EXPECT_TRUE(is(0.0134, 0.0135)) << "a part of it is above";
+  cup.solid = Solid({{Ball{0.03}}});
+  EXPECT_TRUE(is(0.0399, 0.0401)) << "a ball has no corners";
+  // A shelf has two boards; the cup is between them.
+  tray.solid = Solid({{Box{{0.3, 0.2, 0.01}}}, {Box{{0.3, 0.2, 0.01}}, {0, 0, -0.3}}});
+  EXPECT_TRUE(is(0.0399, 0.0401));
+}
+
 TEST(Signals, InsideAsksTheCentreOfTheBox) {
   const auto program =
       testing::CompileText("grammar t\nevent e(cup: Cup, tray: Movable) while inside(cup, tray)");
