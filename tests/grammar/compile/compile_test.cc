@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <sstream>
 
 #include "grammar/program/program.h"
@@ -53,6 +54,23 @@ CompileResult CompileText(const std::string& text, const Overrides& overrides = 
 
 constexpr const char* kSmall =
     "grammar g\nparam limit = 2 cm\nevent high(x: Thing) while height(x) > limit\n";
+
+TEST(Compile, AVariantTakesThePlaceOfAGrammarThatOthersUse) {
+  const CompileResult result =
+      CompileText("grammar g\nuse contact from motion\nuse pick_and_place with lift_rise = 5 cm\n");
+  ASSERT_TRUE(result.program) << Format(result.diagnostics);
+  std::set<std::string> files;
+  for (const Rule& rule : result.program->rules) files.insert(rule.file);
+  EXPECT_TRUE(files.contains("grammar/library/contact_from_motion.grammar"));
+  EXPECT_TRUE(files.contains("grammar/library/grasp_from_motion.grammar"));
+  EXPECT_FALSE(files.contains("grammar/library/contact.grammar"));
+  EXPECT_FALSE(files.contains("grammar/library/grasp.grammar"));
+  for (const ProgramParam& param : result.program->params) {
+    if (param.name != "lift_rise") continue;
+    EXPECT_DOUBLE_EQ(param.value.value, 0.05);
+    EXPECT_FALSE(param.overridden);
+  }
+}
 
 TEST(Compile, TakesParametersFromOutside) {
   const CompileResult result = CompileText(kSmall, {{"limit", "30 mm"}});
