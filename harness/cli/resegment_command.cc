@@ -41,6 +41,7 @@ ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
   RunResult run;
   run.status.kind = physics::RunStatus::Kind::kCompleted;
   run.ticks = episode->end_tick - 1;
+  run.is_open = !episode->says_its_end;
   run.timeline = grammar::NameEvents(*compiled.program, entity_table, events);
   if (!options.Has("--json")) {
     context.out << RunTable(run);

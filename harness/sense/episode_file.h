@@ -42,6 +42,7 @@ struct Episode {
   EpisodeHeader header;
   std::vector<EpisodeFrame> frames;
   grammar::Tick end_tick = 0;  ///< the first tick after the episode
+  bool says_its_end = false;   ///< it has a line with 'end_tick'; otherwise it may be cut off
 };
 
 /// Reports errors with file, line and column. The limits are those above.

@@ -64,7 +64,7 @@ class EpisodeReader {
     if (episode.frames.empty())
       return Report("the recording has no frames",
                     "each line after the first is one: {\"tick\": 0, ...}");
-    if (!ended_) episode.end_tick = episode.frames.back().tick + 1;
+    if (!episode.says_its_end) episode.end_tick = episode.frames.back().tick + 1;
   }
 
   void Report(std::string message, std::string hint) {
@@ -196,8 +196,9 @@ class EpisodeReader {
   }
 
   void Take(const EndEntry& entry, DiagnosticList& errors) {
-    if (ended_) return errors.Add(entry.end_tick.where, "a second line with 'end_tick'");
-    ended_ = true;
+    if (episode.says_its_end)
+      return errors.Add(entry.end_tick.where, "a second line with 'end_tick'");
+    episode.says_its_end = true;
     episode.end_tick = entry.end_tick.value;
     if (!episode.frames.empty() && episode.end_tick <= episode.frames.back().tick) {
       errors.Add(
@@ -210,7 +211,8 @@ class EpisodeReader {
   void Take(const FrameEntry& entry, DiagnosticList& errors) {
     const grammar::Tick before = now_.tick, tick = entry.tick.value;
     const bool first = episode.frames.empty();
-    if (ended_) return errors.Add(entry.tick.where, "a frame after the line with 'end_tick'");
+    if (episode.says_its_end)
+      return errors.Add(entry.tick.where, "a frame after the line with 'end_tick'");
     if (!first && tick <= before) {
       return errors.Add(entry.tick.where,
                         fmt::format("the ticks must increase: {} comes after {}", tick, before));
@@ -360,7 +362,7 @@ class EpisodeReader {
   std::string file_;
   ValueFormat<LineEntry> line_format_;
   int line_ = 0;
-  bool header_ = false, ended_ = false;
+  bool header_ = false;
   std::vector<std::string> names_;
   std::vector<int> hands_;
   std::vector<bool> has_ahead_, has_spheres_;  ///< of each hand: its last mention gave them

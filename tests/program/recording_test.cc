@@ -119,6 +119,29 @@ TEST(Recording, AHandIsPartOfItsPerson) {
   EXPECT_EQ(EventsNamed("nobody_holds", said).size(), 1u) << said.out;
 }
 
+TEST(Recording, WithoutItsLastLineItIsOpenAndNotCompleted) {
+  const auto folder = FreshFolder("open_recording");
+  const auto file = (folder / "whole.jsonl").string();
+  ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", file}).exit_code, 0);
+  const std::string whole = ReadFile(file);
+  const auto cut = folder / "cut.jsonl";
+  WriteFile(cut, whole.substr(0, whole.rfind("{\"end_tick\"")));
+  EXPECT_NE(Prehend({"resegment", file}).out.find("\ncompleted: 5.1500 s, 2472 ticks\n"),
+            std::string::npos);
+  const Said open = Prehend({"resegment", cut.string()});
+  EXPECT_NE(open.out.find("\nopen: 5.1500 s, 2472 ticks; the recording does not say that it ended "
+                          "here\n"),
+            std::string::npos)
+      << open.out;
+  EXPECT_NE(Prehend({"resegment", cut.string(), "--json"}).out.find("\"status\": \"open\""),
+            std::string::npos);
+  // Cut within a line it has no end either, and is refused at the place of the cut.
+  WriteFile(cut, whole.substr(0, whole.size() / 2));
+  const Said refused = Prehend({"resegment", cut.string()});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("the line ends within a value"), std::string::npos) << refused.err;
+}
+
 TEST(Recording, ADashPrintsIt) {
   const auto file = (FreshFolder("printed_recording") / "rests.jsonl").string();
   ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", file}).exit_code, 0);
