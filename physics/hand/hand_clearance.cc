@@ -22,9 +22,26 @@ constexpr int kLooks = 120;
 /// Distances are cut off here; larger ones do not matter.
 constexpr double kFar_m = 0.1;
 
+/// Whether a body is a part of the person whose hand this is. Parts stand together in a scene, from
+/// the head on.
+bool IsPartOfOwner(const Scene& scene, int hand, int body) {
+  if (!scene.bodies[static_cast<std::size_t>(body)].kinematic) return false;
+  const Person* person = nullptr;
+  for (const Person& other : scene.persons) {
+    if (other.head <= body && (!person || other.head > person->head)) person = &other;
+  }
+  return person && (person->right_hand == hand || person->left_hand == hand);
+}
+
 }  // namespace
 
-HandClearance::HandClearance(const HandModel& model, const std::vector<double>& joints) {
+HandClearance::HandClearance(const Scene& scene, int hand, const std::vector<double>& joints)
+    : scene_(scene) {
+  const HandModel& model = scene.hands[static_cast<std::size_t>(hand)].model;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (scene.bodies[b].abstract != Abstract::kNot) continue;
+    if (!IsPartOfOwner(scene, hand, static_cast<int>(b))) obstacles_.push_back(b);
+  }
   const Eigen::Vector3d half = model.palm_size_m / 2;
   const double palm_radius = half.z();
   for (int i = 0; i < kBallsPerPalmEdge; ++i) {
@@ -56,11 +73,10 @@ HandClearance::HandClearance(const HandModel& model, const std::vector<double>& 
   for (const Ball& ball : balls_) reach_m_ = std::max(reach_m_, ball.p_H_m.norm() + ball.radius_m);
 }
 
-double HandClearance::At(const Pose& X_WH, const Scene& scene, const Snapshot& now) const {
+double HandClearance::At(const Pose& X_WH, const Snapshot& now) const {
   double least = kFar_m;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (scene.bodies[b].abstract != Abstract::kNot) continue;
-    for (const PlacedShape& placed : scene.bodies[b].shapes) {
+  for (const std::size_t b : obstacles_) {
+    for (const PlacedShape& placed : scene_.bodies[b].shapes) {
       const Pose X_SH = (now.bodies[b].X_WB * placed.X_BS).inverse() * X_WH;
       if (SignedDistance(placed.shape, X_SH.p_m) > reach_m_ + least) continue;
       for (const Ball& ball : balls_)
@@ -70,13 +86,13 @@ double HandClearance::At(const Pose& X_WH, const Scene& scene, const Snapshot& n
   return least;
 }
 
-double HandClearance::Along(const Segment& segment, const Scene& scene, const Snapshot& now) const {
+double HandClearance::Along(const Segment& segment, const Snapshot& now) const {
   Trajectory trajectory({});
   trajectory.Append(segment);
   double least = kFar_m;
   for (int i = 1; i <= kLooks; ++i) {
     const Pose X_WH = trajectory.At(segment.duration_s * i / kLooks).X_WH;
-    least = std::min(least, At(X_WH, scene, now));
+    least = std::min(least, At(X_WH, now));
   }
   return least;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distance between a hand in a given joint posture and the bodies of a scene; the hand is covered
-// by small spheres. Tested by tests/physics/hand/reach_planner_test.cc
+// Distance between a hand in a given joint posture and the bodies that may obstruct it; the hand is
+// covered by small spheres. Tested by tests/physics/hand/reach_planner_test.cc
 #pragma once
 
 #include <vector>
@@ -13,18 +13,23 @@ namespace prehend::physics {
 
 class HandClearance {
  public:
-  HandClearance(const HandModel& model, const std::vector<double>& joints);
+  /// `hand` is an index into Scene::hands; the scene must outlive the clearance. The person whose
+  /// hand it is does not obstruct it: her arm comes along, and hands pass through persons.
+  HandClearance(const Scene& scene, int hand, const std::vector<double>& joints);
 
-  /// Smallest distance of a hand at X_WH to any body, metres; negative: penetration.
-  double At(const Pose& X_WH, const Scene& scene, const Snapshot& now) const;
+  /// Smallest distance of a hand at X_WH to any body that may obstruct it, metres; negative:
+  /// penetration.
+  double At(const Pose& X_WH, const Snapshot& now) const;
   /// The smallest distance along a motion, sampled at even time steps.
-  double Along(const Segment& segment, const Scene& scene, const Snapshot& now) const;
+  double Along(const Segment& segment, const Snapshot& now) const;
 
  private:
   struct Ball {
     Eigen::Vector3d p_H_m;
     double radius_m;
   };
+  const Scene& scene_;
+  std::vector<std::size_t> obstacles_;  ///< indices into Scene::bodies
   std::vector<Ball> balls_;
   double reach_m_ = 0;  ///< radius of a sphere around H's origin that encloses all
 };

@@ -316,12 +316,12 @@ Segment Way(const ReachQuery& query, const Candidate& to, const Bend& bend) {
 ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& query) {
   const HandModel& model = scene.hands[static_cast<std::size_t>(query.hand)].model;
   const GraspStyle& style = model.styles[static_cast<std::size_t>(query.style)];
-  const HandClearance clearance(model, JointTargets(style, query.from.trigger));
+  const HandClearance clearance(scene, query.hand, JointTargets(style, query.from.trigger));
   ReachPlan best;
   bool have_one = false;
   for (const Candidate& candidate : Candidates(scene, now, query)) {
     // A requested offset may lead into the object: it may reduce the clearance by its length.
-    const double at_end_m = clearance.At(candidate.X_WH, scene, now);
+    const double at_end_m = clearance.At(candidate.X_WH, now);
     const bool fits =
         at_end_m >= kClearEnough_m - query.offset_m.norm() && candidate.too_wide_m == 0;
     const double clear_enough_m = std::min(kClearEnough_m, at_end_m);
@@ -330,7 +330,7 @@ ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& q
                      .toward_W = candidate.toward_W,
                      .beside_m = query.point_m ? candidate.beside_m : 0,
                      .too_wide_m = candidate.too_wide_m};
-      plan.clearance_m = clearance.Along(plan.segment, scene, now);
+      plan.clearance_m = clearance.Along(plan.segment, now);
       plan.found = fits && plan.clearance_m >= clear_enough_m;
       if (plan.found) return plan;
       if (!have_one || plan.clearance_m > best.clearance_m) best = plan;

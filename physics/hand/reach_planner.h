@@ -3,8 +3,9 @@
 // touches nothing. Algorithm: list the orientations that suit the object (its faces, or all
 // directions if it is round); keep those whose grip is at the requested point, or else nearest to
 // it; order them by how far the hand has to turn and to go round; take the first for which one of a
-// few Bezier curves keeps the open hand clear of every body. If there is none, take the curve with
-// the largest clearance. Tested by tests/physics/hand/reach_planner_test.cc
+// few Bezier curves keeps the open hand clear of every body; the person whose hand it is does not
+// count. If there is none, take the curve with the largest clearance. Tested by
+// tests/physics/hand/reach_planner_test.cc
 #pragma once
 
 #include "physics/motion/script.h"

@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "physics/person/skeleton.h"
 #include "tests/physics/tabletop.h"
 
 namespace prehend::physics {
@@ -116,6 +117,58 @@ TEST(ReachPlannerTest, AnOffsetMovesTheEnd) {
   const Vector3d difference = Plan(scene, "wrap", Approach::kAbove, offset).segment.curve_m[3] -
                               Plan(scene, "wrap", Approach::kAbove).segment.curve_m[3];
   EXPECT_LT((difference - offset).norm(), 1e-9);
+}
+
+/// The same scene with a person who stands before the table and whose hand it is.
+Scene WithOwner(Scene scene) {
+  Person anna{.name = "anna",
+              .head = static_cast<int>(scene.bodies.size()),
+              .has_body = true,
+              .X_WS = {{-0.42, 0, 0}},
+              .eyes = Eyes::kAhead};
+  (scene.hands[0].model.left ? anna.left_hand : anna.right_hand) = 0;
+  const std::vector<Pose> places = PlacesOf(anna, Standing(scene, anna), {});
+  for (std::size_t i = 0; Body part : PartsOf(anna)) {
+    part.X_WB = places[i++];
+    scene.bodies.push_back(part);
+  }
+  scene.persons.push_back(anna);
+  return scene;
+}
+
+/// Where hand and object are 0.4 s after the hand has closed; metres and quaternions.
+std::vector<Pose> GripOf(const Scene& scene, const std::string& style) {
+  Simulation simulation(scene, MakeScript(PickAndPlace{.style = style}));
+  for (int tick = 0; tick < 2 * scene.world.rate_hz && simulation.Step(); ++tick) {
+  }
+  return {simulation.snapshot().hands[0].palm.X_WB, simulation.snapshot().bodies[kObject].X_WB};
+}
+
+TEST(ReachPlannerTest, APersonsOwnBodyIsNotInTheWayOfHerHand) {
+  for (const std::string hand : {"human_right", "human_left"}) {
+    for (const GraspStyle& style : LibraryHand(hand).styles) {
+      const double side_m = hand == "human_right" ? -0.2 : 0.2;
+      const double width_m = std::min(0.06, 0.8 * style.opening_m);
+      const Scene alone = MakeScene({.shape = Box{{width_m, width_m, 0.12}},
+                                     .at_m = {0.15, side_m},
+                                     .hand_at_m = {-0.1, side_m, 1.0},
+                                     .hand = hand});
+      const Scene with_body = WithOwner(alone);
+      const std::vector<Pose> without = GripOf(alone, style.name),
+                              with = GripOf(with_body, style.name);
+      for (std::size_t i = 0; i < with.size(); ++i) {
+        EXPECT_EQ((with[i].p_m - without[i].p_m).norm(), 0) << hand << ' ' << style.name;
+        EXPECT_EQ(with[i].q.angularDistance(without[i].q), 0) << hand << ' ' << style.name;
+      }
+    }
+  }
+}
+
+TEST(ReachPlannerTest, SomebodyElsesBodyIsInTheWay) {
+  Scene scene = WithOwner(MakeScene({.at_m = {0.15, -0.2}, .hand_at_m = {-0.1, -0.2, 1.0}}));
+  const double with_hers_m = Plan(scene, "wrap", Approach::kSide).clearance_m;
+  scene.persons[0].right_hand = -1;
+  EXPECT_NE(Plan(scene, "wrap", Approach::kSide).clearance_m, with_hers_m);
 }
 
 }  // namespace
