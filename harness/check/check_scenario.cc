@@ -264,12 +264,15 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   if (request.episode == 0)
     Append(judgement.findings, JudgeOtherEngine(checked, judgement.engine_difference));
   JudgePictures(request, checked, verdict.pictures, judgement);
-  if (judgement.golden)
-    Append(judgement.findings,
-           JudgeTransforms(checked, judgement.golden->pending, request.transforms));
+  if (judgement.golden) {
+    TransformJudgement elsewhere =
+        JudgeTransforms(checked, judgement.golden->pending, request.transforms);
+    Append(judgement.findings, std::move(elsewhere.findings));
+    verdict.transforms = std::move(elsewhere.verdicts);
+  }
 
   Conclude(judgement.findings, verdict);
-  verdict.details += TextOfUndecided(verdict.claims);
+  verdict.details += TextOfUndecided(verdict.claims) + TextOfNotCompared(verdict.transforms);
   Store(request, checked, judgement, verdict.verdict == Verdict::kPassed);
   if (judgement.golden) {
     verdict.comparison = std::move(judgement.golden->comparison);

@@ -13,6 +13,7 @@
 #include "harness/base/exit_code.h"
 #include "harness/claims/judge_claims.h"
 #include "harness/golden/compare.h"
+#include "harness/judge/judge_transforms.h"
 #include "harness/timeline/event_drawings.h"
 
 namespace prehend::harness {
@@ -40,11 +41,12 @@ struct ScenarioVerdict {
   ExitCode exit_code = ExitCode::kAgrees;  ///< what a check of this scenario alone ends with
   std::string reason;                      ///< one line; empty when passed
   std::string details;  ///< differences, violations, diagnostics; several lines or empty
-  std::vector<ClaimVerdict> claims;      ///< of a run that completed
-  std::optional<Comparison> comparison;  ///< with the golden; without one every event is extra
-  bool has_golden = false;               ///< there is one, and it could be read
-  EventDrawings drawings;                ///< how the grammar wants the comparison drawn
-  std::string explain;                   ///< the command that asks about the scenario's events
+  std::vector<ClaimVerdict> claims;          ///< of a run that completed
+  std::vector<TransformVerdict> transforms;  ///< that were asked for
+  std::optional<Comparison> comparison;      ///< with the golden; without one every event is extra
+  bool has_golden = false;                   ///< there is one, and it could be read
+  EventDrawings drawings;                    ///< how the grammar wants the comparison drawn
+  std::string explain;                       ///< the command that asks about the scenario's events
   std::string cause;    ///< CauseText(): what the differences are attributed to; or empty
   std::string command;  ///< repeats the check; of what is pending, shows what to accept
   std::string state_hash;
@@ -87,6 +89,10 @@ Tally Count(const std::vector<ScenarioVerdict>& verdicts);
 /// The smallest margin of all boundaries that are not exact:
 /// "smallest margin: 4.2 of 8.3 ms left at .. of SCENARIO"; "" when all are exact.
 std::string SmallestMarginText(const std::vector<ScenarioVerdict>& verdicts);
+
+/// "mirror: 250 of 262 scenarios tell the same story; 25 would be another story", a line for each
+/// transform that was asked for; or "".
+std::string TransformsText(const std::vector<ScenarioVerdict>& verdicts);
 
 /// How the whole check ends: the worst of its scenarios.
 ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts);

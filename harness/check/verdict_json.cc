@@ -49,10 +49,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Margin, label, at_end, offset, tolerance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, ticks_per_second, pairings, relations, margins)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, claim, place, says, found, times)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TransformVerdict, transform, says, why)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
-                                   details, claims, comparison, has_golden, drawings, explain,
-                                   cause, command, state_hash, ticks, seconds, peak_memory_kib,
-                                   inputs, pictures, not_recorded, picture_differences)
+                                   details, claims, transforms, comparison, has_golden, drawings,
+                                   explain, cause, command, state_hash, ticks, seconds,
+                                   peak_memory_kib, inputs, pictures, not_recorded,
+                                   picture_differences)
 
 namespace {
 
@@ -79,6 +81,14 @@ Json ClaimsJson(const std::vector<ClaimVerdict>& verdicts) {
   return claims;
 }
 
+Json TransformsJson(const std::vector<TransformVerdict>& verdicts) {
+  Json transforms = Json::array();
+  for (const TransformVerdict& verdict : verdicts)
+    transforms.push_back(
+        {{"transform", verdict.transform}, {"verdict", verdict.says}, {"why", verdict.why}});
+  return transforms;
+}
+
 Json InputsJson(const FileHashes& inputs) {
   Json hashes = Json::object();
   for (const auto& [path, hash] : inputs) hashes[ReadableName(path)] = hash;
@@ -100,6 +110,7 @@ Json VerdictJson(const ScenarioVerdict& verdict) {
           {"reason", verdict.reason},
           {"details", verdict.details},
           {"claims", ClaimsJson(verdict.claims)},
+          {"transforms", TransformsJson(verdict.transforms)},
           {"differences", DifferencesJson(compared, verdict.explain)},
           {"relations", RelationsJson(compared)},
           {"blame", verdict.cause},

@@ -121,6 +121,15 @@ ExitCode Refuse(const CommandContext& context, const Played& played, const Golde
 std::optional<ExitCode> RefuseUnlessSteady(const CommandContext& context, const Played& played,
                                            Golden& golden) {
   const Ensemble ensemble = PlayEnsemble(played.loaded, played.run.timeline, golden);
+  if (!ensemble.broken.empty()) {
+    for (const Finding& broken : ensemble.broken) context.out << broken.details;
+    return Complain(
+        context, ExitCode::kDiffers,
+        fmt::format("what the scenario expects does not hold in {} of {} plays elsewhere (printed "
+                    "above); nothing was accepted\n  ",
+                    ensemble.plays_broken, ensemble.plays - 1) +
+            kUntilClaimsHold);
+  }
   KeepSpreads(ensemble, golden);
   if (ensemble.differences.empty() && !golden.unsteady.empty()) {
     context.out << fmt::format("steady in {} plays: 'unsteady' is left out\n", ensemble.plays);

@@ -225,6 +225,7 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
   const Tally tally = Count(verdicts);
   const std::string smallest = SmallestMarginText(verdicts);
   if (!smallest.empty()) context.out << smallest << "\n";
+  context.out << TransformsText(verdicts);
   context.out << "report: " << page << "\n";
   if (as_files_say && std::ranges::any_of(verdicts, &ScenarioVerdict::DiffersFromGolden))
     context.out << "If the new behaviour is intended: " << CommandText({"review"}) << "\n";

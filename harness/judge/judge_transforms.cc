@@ -6,47 +6,95 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
+#include <string>
+#include <utility>
 
+#include "grammar/contents.h"
 #include "harness/golden/compare.h"
+#include "harness/judge/judge_claims.h"
 #include "harness/run/run_scenario.h"
 #include "harness/run/run_text.h"
+#include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
 namespace {
 
-/// Without the events of what the transform added: the last bodies of `there`.
-void DropEventsOfAdded(const Scenario& here, const Scenario& there, grammar::Timeline& timeline) {
-  std::set<std::string> added;
-  for (std::size_t i = here.scene.bodies.size(); i < there.scene.bodies.size(); ++i)
-    added.insert(there.scene.bodies[i].name);
-  std::erase_if(timeline.events, [&](const grammar::NamedEvent& event) {
-    return std::ranges::any_of(
-        event.roles, [&](const grammar::Role& role) { return added.contains(role.value); });
+/// The names of an original, by those of what was made of it.
+using Names = std::map<std::string, std::string>;
+
+/// Without the events of those who were added, and with the names of the original.
+grammar::Timeline AsInOriginal(const Names& names, const grammar::Program& program,
+                               grammar::Timeline timeline) {
+  std::set<std::string> symmetric;
+  for (const grammar::EventSignature& signature : grammar::EventSignatures(program))
+    if (signature.symmetric) symmetric.insert(signature.name);
+  std::erase_if(timeline.events, [&](grammar::NamedEvent& event) {
+    for (grammar::Role& role : event.roles) {
+      if (IsAttribute(role)) continue;
+      const auto original = names.find(role.value);
+      if (original == names.end()) return true;
+      role.value = original->second;
+    }
+    // The alphabet decides which of the two is named first.
+    if (symmetric.contains(event.event) && event.roles[1].value < event.roles[0].value)
+      std::swap(event.roles[0].value, event.roles[1].value);
+    return false;
   });
+  Sort(timeline);
+  return timeline;
 }
 
 struct Play {
-  Findings findings;
+  Findings broken;                       ///< what is wrong whatever a golden says
+  Findings differs;                      ///< from the golden
   std::optional<Comparison> comparison;  ///< of a play that came to its end
 };
 
-/// Empty if the transform makes another story of the scenario.
-std::optional<Play> PlayAfter(Transform transform, const LoadedRun& loaded, const Golden& here) {
+/// What the events contradict of what the scenario expects, here as there.
+Findings ClaimsBroken(const std::string& name, const LoadedRun& loaded,
+                      const grammar::Timeline& timeline) {
+  Findings findings = ClaimFindings(JudgeClaims(loaded, timeline));
+  for (Finding& finding : findings) {
+    finding.reason = name + ": " + finding.reason;
+    finding.details = name + ": " + finding.details;
+  }
+  return findings;
+}
+
+/// In other steps, physics is another approximation of the same motion.
+constexpr double kToleranceAtOtherRate_s = 0.05;
+
+/// In the ticks of what the transform made of the scenario.
+grammar::Tick ToleranceAfter(Transform transform, const Scenario& here, const Scenario& there) {
+  const int rate_hz = there.scene.world.rate_hz;
+  return transform == Transform::kRate
+             ? TickAt(kToleranceAtOtherRate_s, rate_hz)
+             : DefaultTolerance(here) * rate_hz / here.scene.world.rate_hz;
+}
+
+/// Otherwise why the transform makes another story of the scenario.
+tl::expected<Play, std::string> PlayAfter(Transform transform, const LoadedRun& loaded,
+                                          const Golden& here) {
   const auto there = Transformed(loaded.scenario, transform);
-  if (!there) return std::nullopt;
+  if (!there) return tl::unexpected(there.error());
   const std::string name(NameOf(transform));
-  RunResult run = RunScenario(*there, loaded.program);
+  const RunResult run = RunScenario(there->scenario, loaded.program);
   if (run.status.kind != physics::RunStatus::Kind::kCompleted)
-    return Play{.findings = {{.reason = name + ": the simulation failed",
-                              .details = name + ": " + StatusText(run) + "\n"}},
+    return Play{.broken = {{.reason = name + ": the simulation failed",
+                            .details = name + ": " + StatusText(run) + "\n"}},
+                .differs = {},
                 .comparison = {}};
-  DropEventsOfAdded(loaded.scenario, *there, run.timeline);
-  Play play{.findings = {}, .comparison = Compare(here, run.timeline, DefaultTolerance(*there))};
+  const grammar::Timeline timeline = AsInOriginal(there->names, *loaded.program, run.timeline);
+  Play play{.broken = ClaimsBroken(name, loaded, timeline),
+            .differs = {},
+            .comparison = Compare(here, timeline,
+                                  ToleranceAfter(transform, loaded.scenario, there->scenario))};
   const Comparison& comparison = *play.comparison;
   if (!comparison.Agrees())
-    play.findings = {
+    play.differs = {
         {.reason = fmt::format("{}: {} of {} events differ", name, comparison.Differing().size(),
                                comparison.pairings.size()),
          .details = "recognised after '" + name + "', expected as without it:\n" +
@@ -85,7 +133,9 @@ Ensemble PlayEnsemble(const LoadedRun& loaded, const grammar::Timeline& here,
     auto play = PlayAfter(transform, loaded, golden);
     if (!play) continue;
     ++ensemble.plays;
-    Append(ensemble.differences, std::move(play->findings));
+    if (!play->broken.empty()) ++ensemble.plays_broken;
+    Append(ensemble.broken, std::move(play->broken));
+    Append(ensemble.differences, std::move(play->differs));
     if (!play->comparison) continue;
     const auto offsets = OffsetsOf(*play->comparison, golden);
     for (std::size_t i = 0; i < offsets.size(); ++i) {
@@ -109,16 +159,38 @@ void KeepSpreads(const Ensemble& ensemble, Golden& golden) {
   }
 }
 
-Findings JudgeTransforms(const CheckedRun& checked, const Golden& here,
-                         const std::vector<Transform>& transforms) {
-  Findings findings;
+std::string TextOfNotCompared(const std::vector<TransformVerdict>& verdicts) {
+  std::string text;
+  for (const TransformVerdict& verdict : verdicts) {
+    if (verdict.says == kNotApplied || verdict.says == kMayDiffer)
+      text += fmt::format("{}: {}: {}\n", verdict.transform, verdict.says, verdict.why);
+  }
+  return text;
+}
+
+TransformJudgement JudgeTransforms(const CheckedRun& checked, const Golden& here,
+                                   const std::vector<Transform>& transforms) {
+  TransformJudgement judgement;
   for (const Transform transform : transforms) {
+    TransformVerdict& verdict =
+        judgement.verdicts.emplace_back(std::string(NameOf(transform)), kSameStory, "");
+    auto play = PlayAfter(transform, checked.loaded, here);
+    if (!play) {
+      verdict = {verdict.transform, kNotApplied, play.error()};
+      continue;
+    }
     const bool may_differ =
         !here.unsteady.empty() && std::ranges::count(EnsembleTransforms(), transform) > 0;
-    auto play = PlayAfter(transform, checked.loaded, here);
-    if (play && !may_differ) Append(findings, std::move(play->findings));
+    Findings& findings = play->broken;
+    if (!may_differ) Append(findings, std::move(play->differs));
+    if (!findings.empty()) {
+      verdict = {verdict.transform, kOtherStory, findings.front().reason};
+    } else if (!play->differs.empty()) {
+      verdict = {verdict.transform, kMayDiffer, here.unsteady};
+    }
+    Append(judgement.findings, std::move(findings));
   }
-  return findings;
+  return judgement;
 }
 
 }  // namespace prehend::harness

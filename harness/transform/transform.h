@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same story elsewhere: shifted, turned, mirrored, in another order. A verdict must not depend
-// on it (metamorphic testing: T. Y. Chen et al., "Metamorphic testing: a review of challenges and
-// opportunities", ACM Computing Surveys 51(1), 2018). Tested by
+// The same story elsewhere: shifted, turned, mirrored, in another order, under other names. A
+// verdict must not depend on it (metamorphic testing: T. Y. Chen et al., "Metamorphic testing: a
+// review of challenges and opportunities", ACM Computing Surveys 51(1), 2018). Tested by
 // tests/harness/transform/transform_test.cc
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -22,6 +23,10 @@ enum class Transform {
   kMirror,     ///< in the plane y = 0; right hands become left ones
   kReorder,    ///< entities are listed the other way round
   kBystander,  ///< a box lies asleep on a slab, 14 m away
+  kRename,     ///< other names, which the alphabet has the other way round
+  kCopies,     ///< a second copy of everything, 13 m away, does the same at the same time
+  kRate,       ///< physics in steps half as long; what is watched, and when, stays
+  kWatch,      ///< the grammar sees twice as many frames; physics stays
 };
 
 struct TransformName {
@@ -36,8 +41,16 @@ std::string_view NameOf(Transform transform);
 /// rests on chaos.
 const std::vector<Transform>& EnsembleTransforms();
 
-/// The scenario so transformed. Its events, by the names of entities, are those of the original.
-/// Otherwise why the two are not the same story.
-tl::expected<Scenario, std::string> Transformed(const Scenario& scenario, Transform transform);
+/// A scenario elsewhere, and what its entities are called in the original.
+struct TransformedScenario {
+  Scenario scenario;
+  std::map<std::string, std::string> names;  ///< of the original, by the new one; who is not in it
+                                             ///< was added
+};
+
+/// The scenario so transformed, whose events are those of the original. Otherwise why the two are
+/// not the same story.
+tl::expected<TransformedScenario, std::string> Transformed(const Scenario& scenario,
+                                                           Transform transform);
 
 }  // namespace prehend::harness

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Differences as a person meets them: what differs and why, what waits for acceptance, and what
 // acceptance keeps.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <thread>
@@ -408,9 +409,8 @@ TEST_F(GoldenWorkflow, WhatContradictsAClaimIsNotAccepted) {
   EXPECT_EQ(json[1]["claim"], "grasping");
 }
 
-TEST_F(GoldenWorkflow, WhatRestsOnChaosIsAcceptedOnlyWithAReason) {
-  // Four balls bounce in a pit: a micrometre decides which of them meet.
-  WriteFile(Scenario("rest/balls"), R"(scenario: balls
+/// Four balls bounce in a pit: a micrometre decides which of them meet.
+constexpr const char* kBalls = R"(scenario: balls
 shows: four balls bounce in a pit
 entities:
   floor: {fixed: true, box: {size_m: [2, 2, 0.1]}, at_m: [0, 0, -0.05], restitution: 1}
@@ -427,7 +427,10 @@ actors:
 script:
   - hand: {wait_s: 0.1}
 settle_s: 4
-)");
+)";
+
+TEST_F(GoldenWorkflow, WhatRestsOnChaosIsAcceptedOnlyWithAReason) {
+  WriteFile(Scenario("rest/balls"), kBalls);
   const Said refused = Do("accept balls --reason why");
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_NE(refused.err.find("plays elsewhere (printed above); nothing was accepted"),
@@ -443,6 +446,53 @@ settle_s: 4
   EXPECT_EQ(Do("check balls --no-pictures --ensemble").exit_code, 0);
   EXPECT_EQ(Do("check balls --no-pictures --transform turn").exit_code, 1)
       << "the reason is for the plays of the ensemble only";
+}
+
+// A reason for other events is none for a claim that does not hold.
+TEST_F(GoldenWorkflow, AClaimMustHoldInEachPlay) {
+  WriteFile(Scenario("rest/balls"), kBalls);
+  ASSERT_EQ(Do("accept balls --reason why --unsteady chaotic_balls").exit_code, 0);
+  const std::string golden = ReadFile(Golden("rest/balls"));
+  const Json events = Json::parse(Do("run balls --json").out)["events"];
+  const auto contacts =
+      std::ranges::count_if(events, [](const Json& event) { return event["event"] == "contact"; });
+  WriteFile(Scenario("rest/balls"),
+            Replaced(kBalls, "settle_s: 4",
+                     "settle_s: 4\nexpects: [" + std::to_string(contacts) + " contact]"));
+  EXPECT_EQ(Do("check balls --no-pictures").exit_code, 0);
+  const Said checked = Do("check balls --no-pictures --ensemble");
+  EXPECT_EQ(checked.exit_code, 1);
+  EXPECT_NE(checked.out.find("nudge: expects: '" + std::to_string(contacts) + " contact'"),
+            std::string::npos)
+      << checked.out;
+  const Said refused = Do("accept balls --reason why --unsteady chaotic_balls");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("what the scenario expects does not hold in "), std::string::npos)
+      << refused.err;
+  EXPECT_NE(refused.out.find("nudge: expects: '"), std::string::npos) << refused.out;
+  EXPECT_EQ(ReadFile(Golden("rest/balls")), golden);
+}
+
+TEST_F(GoldenWorkflow, EachTransformHasAVerdict) {
+  Accept();
+  const std::string check =
+      "check carton_rests --no-pictures --transform rename --transform mirror "
+      "--transform watch --set world.sensing_hz=480";
+  const Json verdicts = Json::parse(Do(check + " --json").out)["scenarios"][0]["transforms"];
+  ASSERT_EQ(verdicts.size(), 3u);
+  EXPECT_EQ(verdicts[0], Json({{"transform", "rename"}, {"verdict", "same"}, {"why", ""}}));
+  EXPECT_EQ(verdicts[1]["verdict"], "same");
+  EXPECT_EQ(verdicts[2]["verdict"], "not applied");
+  EXPECT_EQ(verdicts[2]["why"], "the grammar sees every tick already");
+  const std::string text = Do(check).out;
+  EXPECT_NE(text.find("    watch: not applied: the grammar sees every tick already\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("rename: 1 of 1 scenarios tell the same story\n"
+                      "mirror: 1 of 1 scenarios tell the same story\n"
+                      "watch: 0 of 0 scenarios tell the same story; 1 would be another story\n"),
+            std::string::npos)
+      << text;
 }
 
 TEST_F(GoldenWorkflow, WhatIsSteadyAgainLosesTheReason) {

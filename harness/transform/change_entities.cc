@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/transform/change_entities.h. Tested by tests/harness/transform/transform_test.cc
+#include "harness/transform/change_entities.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "harness/transform/move_scenario.h"
+
+namespace prehend::harness {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kToCopy_m = 13;
+
+/// `order[i]` is what becomes the i-th of `items`.
+template <typename T>
+std::vector<T> InOrder(const std::vector<T>& items, const std::vector<int>& order) {
+  std::vector<T> ordered;
+  for (const int index : order) ordered.push_back(items[static_cast<std::size_t>(index)]);
+  return ordered;
+}
+
+template <typename T>
+void Append(const std::vector<T>& more, std::vector<T>& items) {
+  items.insert(items.end(), more.begin(), more.end());
+}
+
+/// Names in a scene and in the steps of its script.
+struct RenameIn {
+  const std::map<std::string, std::string>& names;
+  void operator()(std::string& name) const {
+    if (const auto found = names.find(name); found != names.end()) name = found->second;
+  }
+  void operator()(physics::ReachStep& step) const { (*this)(step.object); }
+  void operator()(physics::PlaceStep& step) const { (*this)(step.support); }
+  void operator()(physics::FollowJointStep& step) const { (*this)(step.entity); }
+  void operator()(physics::LookAtStep& step) const {
+    if (auto* const name = std::get_if<std::string>(&step.target)) (*this)(*name);
+  }
+  template <typename Other>  // names nobody
+  void operator()(Other&) const {}
+};
+
+}  // namespace
+
+Scenario Reordered(Scenario scenario) {
+  physics::Scene& scene = scenario.scene;
+  std::vector<int> others;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (!scene.bodies[i].kinematic) others.push_back(static_cast<int>(i));
+  std::vector<int> order(scene.bodies.size());
+  std::iota(order.begin(), order.end(), 0);
+  for (std::size_t i = 0; i < others.size(); ++i)
+    order[static_cast<std::size_t>(others[i])] = others[others.size() - 1 - i];
+  std::vector<int> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    place[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
+  const auto replace = [&](int& body) {
+    if (body >= 0) body = place[static_cast<std::size_t>(body)];
+  };
+  scene.bodies = InOrder(scene.bodies, order);
+  scenario.body_classes = InOrder(scenario.body_classes, order);
+  scenario.body_part_of = InOrder(scenario.body_part_of, order);
+  for (int& whole : scenario.body_part_of) replace(whole);
+  for (physics::Joint& joint : scene.joints) replace(joint.body), replace(joint.base);
+  for (Outcome& outcome : scenario.outcomes)
+    for (Outcome::Condition& condition : outcome.conditions)
+      replace(condition.body), replace(condition.vessel);
+  return scenario;
+}
+
+std::map<std::string, std::string> NamesTurnedRound(const Scenario& scenario) {
+  std::set<std::string> written;
+  for (const physics::Body& body : scenario.scene.bodies) written.insert(body.name);
+  for (const physics::Hand& hand : scenario.scene.hands) written.insert(hand.name);
+  for (const physics::Person& person : scenario.scene.persons) written.insert(person.name);
+  std::map<std::string, std::string> names;
+  for (const std::string& name : written)
+    names[name] = fmt::format("e{:05}_{}", written.size() - names.size(), name);
+  return names;
+}
+
+Scenario Renamed(Scenario scenario, const std::map<std::string, std::string>& names) {
+  const RenameIn rename{names};
+  for (physics::Body& body : scenario.scene.bodies) rename(body.name);
+  for (physics::Hand& hand : scenario.scene.hands) rename(hand.name);
+  for (physics::Person& person : scenario.scene.persons) rename(person.name);
+  for (physics::ScriptStage& stage : scenario.script.stages) {
+    for (physics::Step& step : stage.steps) std::visit(rename, step.action);
+    for (physics::PersonStep& step : stage.person_steps) std::visit(rename, step.action);
+  }
+  return scenario;
+}
+
+Scenario WithBystander(Scenario scenario) {
+  const auto add = [&](std::string name, const Vector3d& size_m, const Vector3d& p_m,
+                       double mass_kg) {
+    physics::Body body;
+    body.name = std::move(name);
+    body.shapes = {{.shape = physics::Box{size_m}, .X_BS = {}}};
+    body.fixed = mass_kg == 0;
+    body.mass_kg = mass_kg;
+    body.X_WB.p_m = p_m;
+    scenario.scene.bodies.push_back(std::move(body));
+    scenario.body_classes.emplace_back();
+    scenario.body_part_of.push_back(grammar::kNoEntity);
+  };
+  add("bystanders_slab", {1, 1, 0.1}, {-14, 0, -0.05}, 0);
+  add("bystander", {0.2, 0.2, 0.2}, {-14, 0, 0.1}, 1);
+  return scenario;
+}
+
+Scenario WithCopy(Scenario scenario) {
+  std::map<std::string, std::string> names = NamesTurnedRound(scenario);
+  for (auto& [written, name] : names) name = written + "_of_the_copy";
+  const Scenario copy = Renamed(Moved(scenario, {.X = {.p_m = {kToCopy_m, 0, 0}}}), names);
+  physics::Scene& scene = scenario.scene;
+  const int bodies = static_cast<int>(scene.bodies.size());
+  const int hands = static_cast<int>(scene.hands.size());
+  const int persons = static_cast<int>(scene.persons.size());
+  Append(copy.scene.bodies, scene.bodies);
+  Append(copy.scene.hands, scene.hands);
+  Append(copy.body_classes, scenario.body_classes);
+  for (int whole : copy.body_part_of)
+    scenario.body_part_of.push_back(whole < 0 ? whole : whole + bodies);
+  for (physics::Joint joint : copy.scene.joints) {
+    joint.body += bodies;
+    joint.base += bodies;
+    scene.joints.push_back(joint);
+  }
+  for (physics::Person person : copy.scene.persons) {
+    person.head += bodies;
+    if (person.right_hand >= 0) person.right_hand += hands;
+    if (person.left_hand >= 0) person.left_hand += hands;
+    scene.persons.push_back(std::move(person));
+  }
+  for (std::size_t i = 0; i < scenario.script.stages.size(); ++i) {
+    physics::ScriptStage& stage = scenario.script.stages[i];
+    for (physics::Step step : copy.script.stages[i].steps) {
+      step.hand += hands;
+      stage.steps.push_back(std::move(step));
+    }
+    for (physics::PersonStep step : copy.script.stages[i].person_steps) {
+      step.person += persons;
+      stage.person_steps.push_back(std::move(step));
+    }
+  }
+  return scenario;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scenario as a whole elsewhere: each place and direction in it, those of its script included.
+// Tested by tests/harness/transform/transform_test.cc
+#pragma once
+
+#include "harness/scenario/scenario.h"
+
+namespace prehend::harness {
+
+/// A motion of the whole world: first a mirror image in the plane y = 0, if any, then `X`, which
+/// turns about the vertical only.
+struct WorldMotion {
+  bool mirrors = false;
+  physics::Pose X;
+};
+
+/// In a mirror image right hands are left ones.
+Scenario Moved(Scenario scenario, const WorldMotion& motion);
+
+}  // namespace prehend::harness
