@@ -2,6 +2,7 @@
 // prehend run. Tested by tests/program/command_line_test.cc
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "harness/base/atomic_file.h"
@@ -35,24 +36,6 @@ std::string TrialCommand(const ParsedOptions& options) {
   return CommandText(words);
 }
 
-ExitCode CountTrials(const ParsedOptions& options, const RunRequest& request,
-                     const CommandContext& context) {
-  const TrialSettings settings{.count = options.IntOr("--trials", 1),
-                               .jobs = options.IntOr("--jobs", CoreCount())};
-  const auto report = RunTrials(request, context.root, settings, [&](int done) {
-    if (context.progress)
-      context.err << "\r\033[K[" << done << "/" << settings.count << "]" << std::flush;
-  });
-  if (context.progress) context.err << "\r\033[K" << std::flush;
-  if (!report) return Complain(context, report.error());
-  if (options.Has("--json")) {
-    context.out << TrialJson(*report).dump(2) << "\n";
-  } else {
-    context.out << TrialTable(*report, TrialCommand(options));
-  }
-  return ExitCode::kAgrees;
-}
-
 /// Where an episode is written while it is played, if anywhere.
 struct Recorders {
   EpisodeWriter* lines = nullptr;
@@ -75,11 +58,62 @@ RunResult Play(const LoadedRun& loaded, bool measure, const Recorders& recorders
   return run;
 }
 
+/// Plays one trial and adds it to an episode file.
+TrialResult RecordTrial(int trial, const RunRequest& varied, const std::string& file,
+                        const CommandContext& context) {
+  std::vector<std::string> files;
+  const Result<LoadedRun> loaded = LoadRun(varied, context.root, &files);
+  if (!loaded) return {trial, "failed", grammar::Format(loaded.error()), {}};
+  episodes::EpisodeRecorder episode(
+      {file, context.root, varied, files, context.today, ProgramHash()}, loaded->scenario);
+  const RunResult run = Play(*loaded, false, {.lines = nullptr, .episode = &episode});
+  episode.Finish(run);
+  const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
+  return {trial, completed ? run.outcome : "failed",
+          completed ? "" : run.status.entity + ": " + run.status.reason, episode.problem()};
+}
+
+ExitCode CountTrials(const ParsedOptions& options, const RunRequest& request,
+                     const CommandContext& context) {
+  TrialSettings settings{.count = options.IntOr("--trials", 1),
+                         .jobs = options.IntOr("--jobs", CoreCount())};
+  const std::string file = options.Text("--record");
+  if (options.Has("--record")) {
+    if (!episodes::IsEpisodeFile(file))
+      return Complain(context, ExitCode::kBadInput,
+                      "--record: many trials need an episode file, NAME.episodes");
+    if (const std::string problem = episodes::WhyNotRecordable(file); !problem.empty())
+      return Complain(context, ExitCode::kBadInput, "--record: " + problem);
+    settings.play = [&](int trial, const RunRequest& varied) {
+      return RecordTrial(trial, varied, file, context);
+    };
+  }
+  const auto report = RunTrials(request, context.root, settings, [&](int done) {
+    if (context.progress)
+      context.err << "\r\033[K[" << done << "/" << settings.count << "]" << std::flush;
+  });
+  if (context.progress) context.err << "\r\033[K" << std::flush;
+  if (!report) return Complain(context, report.error());
+  if (options.Has("--json")) {
+    context.out << TrialJson(*report).dump(2) << "\n";
+  } else {
+    context.out << TrialTable(*report, TrialCommand(options));
+  }
+  const auto lost = std::ranges::count_if(
+      report->results, [](const TrialResult& result) { return !result.not_recorded.empty(); });
+  if (lost == 0) return ExitCode::kAgrees;
+  const auto first = std::ranges::find_if(
+      report->results, [](const TrialResult& result) { return !result.not_recorded.empty(); });
+  return Complain(context, ExitCode::kFailure,
+                  fmt::format("--record: {} of {} trials are not in the file: {}", lost,
+                              report->results.size(), first->not_recorded));
+}
+
 ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   const auto file = FindScenarioOrComplain(options.Text("scenario"), context);
   if (!file) return file.error();
   RunRequest request = RequestOf(options, file->path);
-  for (const char* of_one_run : {"--trial", "--record", "--measure"}) {
+  for (const char* of_one_run : {"--trial", "--measure"}) {
     if (options.Has("--trials") && options.Has(of_one_run))
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("{} needs a single run; --trials makes many", of_one_run));
@@ -181,7 +215,7 @@ Command RunCommand() {
             .help =
                 "write the episode to FILE: NAME.episodes holds many episodes and all of each;\n"
                 "any other ending: what the grammar sees, as JSON Lines; -: print these\n"
-                "instead of the table",
+                "instead of the table. With --trials: NAME.episodes, an episode per trial",
             .placeholder = "FILE"},
            {.name = "--measure", .help = "print where the time went, and the peak memory"}},
       .run = RunOne};

@@ -60,18 +60,20 @@ TrialResult RunTrial(const Scenario& scenario, int trial) {
   while (simulation.Step()) watch.Look(simulation.snapshot());
   const physics::RunStatus& status = simulation.status();
   if (status.kind == physics::RunStatus::Kind::kFailed)
-    return {trial, kFailed, status.entity + ": " + status.reason};
-  return {trial, watch.Judge(simulation.snapshot()), {}};
+    return {trial, kFailed, status.entity + ": " + status.reason, {}};
+  return {trial, watch.Judge(simulation.snapshot()), {}, {}};
 }
 
 std::string ToJson(const TrialResult& result) {
-  return nlohmann::json{{"outcome", result.outcome}, {"reason", result.reason}}.dump();
+  return nlohmann::json{
+      {"outcome", result.outcome}, {"reason", result.reason}, {"not_recorded", result.not_recorded}}
+      .dump();
 }
 
 TrialResult FromWorker(int trial, const WorkerResult& worker) {
-  if (!worker.finished) return {trial, kFailed, worker.reason};
+  if (!worker.finished) return {trial, kFailed, worker.reason, {}};
   const auto json = nlohmann::json::parse(worker.output);
-  return {trial, json["outcome"], json["reason"]};
+  return {trial, json["outcome"], json["reason"], json["not_recorded"]};
 }
 
 std::string TableLine(const std::string& outcome, std::size_t count, std::size_t of) {
@@ -113,9 +115,12 @@ Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root
   std::vector<WorkerJob> jobs;
   for (int trial = 1; trial <= settings.count; ++trial) {
     jobs.push_back([&, trial]() -> std::string {
-      const auto loaded = LoadRun(WithDraws(request, *nominal, trial), root);
+      const RunRequest varied = WithDraws(request, *nominal, trial);
+      const auto loaded = LoadRun(varied, root);
       if (!loaded)
-        return ToJson({trial, kFailed, "it cannot be read:\n" + grammar::Format(loaded.error())});
+        return ToJson(
+            {trial, kFailed, "it cannot be read:\n" + grammar::Format(loaded.error()), {}});
+      if (settings.play) return ToJson(settings.play(trial, varied));
       return ToJson(RunTrial(loaded->scenario, trial));
     });
   }

@@ -12,15 +12,18 @@
 
 namespace prehend::harness {
 
+struct TrialResult {
+  int trial = 1;
+  std::string outcome;       ///< one of the scenario's, "other" or "failed"
+  std::string reason;        ///< why it failed, if it did
+  std::string not_recorded;  ///< why it is not in the episode file, if it should be
+};
+
 struct TrialSettings {
   int count = 1;
   int jobs = 1;  ///< processes at a time
-};
-
-struct TrialResult {
-  int trial = 1;
-  std::string outcome;  ///< one of the scenario's, "other" or "failed"
-  std::string reason;   ///< why it failed, if it did
+  /// Plays a trial in a process of its own, to do more than to classify it. Empty: physics only.
+  std::function<TrialResult(int trial, const RunRequest& varied)> play = {};
 };
 
 struct TrialReport {

@@ -108,7 +108,7 @@ TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
        "prehend: --filter: found '!tag:', wanted a tag after it, like !tag:smoke\n[^]*"},
       {"check --filter nothing*", 4, "prehend: --filter: no scenario matches 'nothing\\*' [^]*"},
       {"run carton_rests --trials 2 --record x", 2,
-       "prehend: --record needs a single run; --trials makes many\n"},
+       "prehend: --record: many trials need an episode file, NAME.episodes\n"},
       {"run carton_rests --grammar xyz", 2,
        "[^]*no such file\n  hint: there are: [^]*pick_and_place[^]*"},
       {"run missing.yaml", 2, "missing.yaml: error: no such file\n"},

@@ -122,6 +122,22 @@ TEST(Episodes, ASuiteIsRecordedByWorkersIntoOneFile) {
   EXPECT_TRUE(compared.out.ends_with("episodes, 0 with differences\n")) << compared.out;
 }
 
+TEST(Episodes, TrialsAreRecordedEachByItself) {
+  const auto file = (FreshFolder("recorded_trials") / "trials.episodes").string();
+  const std::string scenario = "trials/gripper_places_a_box";
+  const Said alone = Prehend({"run", scenario, "--trials", "3", "--json"});
+  const Said recorded =
+      Prehend({"run", scenario, "--trials", "3", "--json", "--jobs", "2", "--record", file});
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  EXPECT_EQ(recorded.out, alone.out) << "recording changes nothing";
+  EXPECT_EQ(Prehend({"resegment", file, "--compare", "recorded"}).out,
+            "3 episodes, 0 with differences\n");
+  const auto trial =
+      nlohmann::json::parse(Prehend({"run", scenario, "--trial", "2", "--json"}).out);
+  EXPECT_NE(Prehend({"episodes", file}).out.find(trial["state_hash"].get<std::string>()),
+            std::string::npos);
+}
+
 TEST(Episodes, BadUseIsExplained) {
   const auto folder = FreshFolder("bad_episodes");
   const auto text = (folder / "text.episodes").string();
