@@ -39,7 +39,8 @@ std::vector<Command> Commands() {
           Limited(TracksCommand(), kOne_s),
           Limited(EpisodesCommand(), kMany_s),
           ReplayCommand(),
-          SweepCommand()};
+          SweepCommand(),
+          Limited(TryCommand(), kOne_s)};
 }
 
 bool IsSet(const char* variable) {

@@ -11,10 +11,12 @@ const Arrows& ProjectArrows() {
   static const Arrows arrows = {
       {"grammar/base", {}},
       {"grammar/language", {"grammar/base"}},
+      {"grammar/drawing", {"grammar/base"}},
       {"grammar/program", {"grammar/base"}},
       {"grammar/compile", {"grammar/base", "grammar/language", "grammar/program"}},
       {"grammar/engine", {"grammar/base", "grammar/program"}},
-      {"grammar", {"grammar/base", "grammar/compile", "grammar/engine", "grammar/program"}},
+      {"grammar",
+       {"grammar/base", "grammar/compile", "grammar/drawing", "grammar/engine", "grammar/program"}},
 
       {"physics/scene", {}},
       {"physics/motion", {"physics/scene"}},

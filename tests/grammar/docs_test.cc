@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <sstream>
 
-#include "grammar/check_laws.h"
 #include "tests/grammar/corpus.h"
 
 namespace prehend::grammar::testing {
@@ -33,20 +32,6 @@ std::vector<Row> Sorted(std::vector<Row> rows) {
   return rows;
 }
 
-// A row "violated NAME" per law that is broken, drawn where it is.
-std::vector<Row> DrawViolations(const CorpusCase& drawn, const Program& program,
-                                const Timeline& timeline) {
-  const EntityTable entity_table{.ticks_per_second = kCorpusTicksPerSecond,
-                                 .entities = drawn.entity_table};
-  Timeline violations{.ticks_per_second = kCorpusTicksPerSecond};
-  for (const LawViolation& violation : CheckLaws(program, entity_table, timeline))
-    violations.events.push_back(
-        {.event = "violated " + violation.law->name, .interval = violation.when});
-  std::vector<Row> rows = DrawEvents(drawn, violations);
-  for (Row& row : rows) row.name.resize(row.name.size() - 2);  // it has no roles: "()"
-  return rows;
-}
-
 /// Runs the examples of a page; returns how many there are.
 int RunExamples(const std::string& page) {
   const std::vector<std::string> blocks = Blocks(ReadFile(PREHEND_SOURCE_DIR "/docs/" + page));
@@ -64,16 +49,15 @@ int RunExamples(const std::string& page) {
     const CorpusRun run = RunCase(drawn, compiled.program);
     EXPECT_EQ(run.error, "");
     EXPECT_FALSE(run.timeline.events.empty());
-    std::vector<Row> rows = DrawEvents(drawn, run.timeline);
-    for (Row& row : DrawViolations(drawn, *compiled.program, run.timeline))
-      rows.push_back(std::move(row));
+    std::vector<Row> rows = DrawWatched(*compiled.program, drawn, run.timeline);
     EXPECT_EQ(Text(Sorted(drawn.expected)), Text(Sorted(std::move(rows)))) << blocks[i];
   }
   return examples;
 }
 
 TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
-  EXPECT_EQ(RunExamples("grammar-tutorial.md"), 30);
+  EXPECT_EQ(RunExamples("grammar-tutorial.md"), 23);
+  EXPECT_EQ(RunExamples("cookbook.md"), 8);
   EXPECT_EQ(RunExamples("grammar-language.md"), 5);
 }
 

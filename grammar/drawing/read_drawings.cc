@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+// Line by line; what is wrong with a line does not stop the reading of the others.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <sstream>
+
+#include "grammar/drawing/drawn_episode.h"
+
+namespace prehend::grammar {
+namespace {
+
+constexpr std::size_t kMostEpisodes = 1000, kMostColumns = 10'000, kMostEntities = 64;
+constexpr std::array kAlone = {"x", "y", "z", "shakes", "grip", "joint", "percent", "tilt"};
+constexpr std::array kOfTwo = {"on", "beside", "holds", "presses", "looks", "circles"};
+
+std::string Trim(const std::string& text) {
+  const auto begin = text.find_first_not_of(" \t");
+  if (begin == std::string::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+std::vector<std::string> Words(const std::string& text) {
+  std::vector<std::string> words;
+  std::istringstream stream(text);
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+std::optional<double> NumberBefore(std::string_view text, std::string_view unit) {
+  if (!text.ends_with(unit)) return std::nullopt;
+  text.remove_suffix(unit.size());
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && number >= 0 ? std::optional(number) : std::nullopt;
+}
+
+EntityInfo Member(const std::string& name, const std::string& class_name) {
+  EntityInfo member{.name = name, .classes = {class_name}};
+  if (class_name == "Movable" || class_name == "Fixed" || class_name == "Jointed" ||
+      class_name == "Attached")
+    member.classes.emplace_back("Thing");
+  if (class_name == "Hand") member.sensor_sets = {"fingers", "thumb", "palm"};
+  member.classes.emplace_back("Entity");
+  return member;
+}
+
+std::string Quoted(const std::string& text) { return "'" + text + "'"; }
+
+std::string DidYouMean(const std::string& word, const std::vector<std::string>& known,
+                       const std::string& otherwise) {
+  const std::string near = NearestName(word, known);
+  return near.empty() ? otherwise : "did you mean " + Quoted(near) + "?";
+}
+
+class Reader {
+ public:
+  Reader(const GrammarText& file, Diagnostics& diagnostics)
+      : file_(file), diagnostics_(diagnostics) {}
+
+  std::vector<DrawnEpisode> Read() {
+    const std::size_t before = diagnostics_.size();
+    std::istringstream lines(file_.text);
+    for (line_ = 1; std::getline(lines, text_); ++line_) {
+      if (diagnostics_.size() >= before + kMostDiagnostics) break;
+      if (!text_.empty() && text_.back() == '\r') text_.pop_back();
+      if (Trim(text_).empty() || text_[0] == '#') continue;
+      ReadLine();
+    }
+    FinishEpisode();
+    if (episodes_.empty() && diagnostics_.size() == before)
+      Complain(0, "nothing is drawn in this file", "entities hand:Hand cup:Movable, then rows");
+    if (diagnostics_.size() != before) episodes_.clear();
+    return std::move(episodes_);
+  }
+
+ private:
+  void Complain(std::size_t column, std::string message, std::string hint = {}) {
+    const Place place{line_, static_cast<int>(column) + 1};
+    diagnostics_.push_back(
+        DiagnosticAt(file_.file, file_.text, place, std::move(message), std::move(hint)));
+  }
+
+  DrawnEpisode& Now() { return episodes_.back(); }
+
+  void Start(std::string title) {
+    FinishEpisode();
+    if (episodes_.size() == kMostEpisodes)
+      Complain(0, "more than " + std::to_string(kMostEpisodes) + " drawings in one file");
+    episodes_.push_back({.title = std::move(title), .line = line_});
+    for (const auto& [name, of_class] :
+         {std::pair("hand", "Hand"), std::pair("cup", "Movable"), std::pair("table", "Fixed")})
+      Now().entity_table.push_back(Member(name, of_class));
+  }
+
+  void FinishEpisode() {
+    if (!episodes_.empty() && Now().facts.empty()) {
+      diagnostics_.push_back(DiagnosticAt(file_.file, file_.text, {Now().line, 1},
+                                          "this drawing has no row of facts",
+                                          "for example: cup on table |####....|"));
+    }
+  }
+
+  void ReadLine() {
+    const std::size_t bar = text_.find('|');
+    if (text_.starts_with("== ")) return Start(Trim(text_.substr(3)));
+    const bool is_head = bar == std::string::npos && text_ != "--";
+    if (episodes_.empty() || (Now().has_expected && is_head)) Start({});
+    if (text_ == "--") {
+      if (Now().has_expected) Complain(0, "a second '--' in one drawing");
+      Now().has_expected = true;
+    } else if (text_ == "rates") {
+      Now().rates = {30, 60, 90, 100, 240};
+    } else if (text_ == "jittered") {
+      Now().jittered = true;
+    } else if (text_.starts_with("grammar ")) {
+      Now().grammar = Trim(text_.substr(8));
+    } else if (text_.starts_with("entities ")) {
+      ReadEntities();
+    } else if (bar != std::string::npos) {
+      ReadRow(bar);
+    } else {
+      Complain(0, "expected a row, found " + Quoted(Trim(text_)),
+               "a row has its columns between bars: cup on table |####....|");
+    }
+  }
+
+  void ReadEntities() {
+    if (!Now().facts.empty()) return Complain(0, "'entities' stands above all rows");
+    Now().entity_table.clear();
+    for (const std::string& word : Words(text_.substr(9))) ReadEntity(word, text_.find(word, 9));
+  }
+
+  void ReadEntity(const std::string& word, std::size_t column) {
+    std::istringstream parts(word);
+    std::string name, class_name;
+    if (!std::getline(parts, name, ':') || !std::getline(parts, class_name, ':') || name.empty() ||
+        class_name.empty())
+      return Complain(column, "expected NAME:CLASS, found " + Quoted(word),
+                      "for example: cup:Movable");
+    if (Find(name) != kNoEntity) return Complain(column, Quoted(name) + " is named twice");
+    if (Now().entity_table.size() == kMostEntities)
+      return Complain(column, "more than " + std::to_string(kMostEntities) + " entities");
+    EntityInfo member = Member(name, class_name);
+    for (std::string detail; std::getline(parts, detail, ':');)
+      ReadDetail(member, detail, column + word.find(detail));
+    Now().entity_table.push_back(std::move(member));
+  }
+
+  // "8kg", "50N", "of=drawer" or "thumb+index+middle".
+  void ReadDetail(EntityInfo& member, const std::string& detail, std::size_t column) {
+    if (detail.starts_with("of=")) {
+      member.part_of = Find(detail.substr(3));
+      if (member.part_of == kNoEntity)
+        Complain(column + 3, "no entity before this one is called " + Quoted(detail.substr(3)));
+    } else if (const auto kg = NumberBefore(detail, "kg")) {
+      member.mass_kg = *kg;
+    } else if (const auto newtons = NumberBefore(detail, "N")) {
+      member.strength_n = *newtons;
+    } else if (member.classes.front() == "Hand") {
+      std::istringstream sets(detail);
+      member.sensor_sets.clear();
+      for (std::string set; std::getline(sets, set, '+');) member.sensor_sets.push_back(set);
+    } else {
+      Complain(column, "what is " + Quoted(detail) + " of " + Quoted(member.name) + "?",
+               "a mass (8kg), a strength (50N), what it is a part of (of=drawer), or the sensor "
+               "sets of a hand (thumb+index)");
+    }
+  }
+
+  int Find(const std::string& name) const {
+    const std::vector<EntityInfo>& all = episodes_.back().entity_table;
+    const auto found = std::ranges::find(all, name, &EntityInfo::name);
+    return found == all.end() ? kNoEntity : static_cast<int>(found - all.begin());
+  }
+
+  void ReadRow(std::size_t bar) {
+    const std::size_t end = text_.find('|', bar + 1);
+    if (end == std::string::npos)
+      return Complain(text_.size(), "expected '|' at the end of the row");
+    DrawnRow row{Trim(text_.substr(0, bar)), text_.substr(bar + 1, end - bar - 1), line_};
+    if (row.cells.empty()) return Complain(bar + 1, "this row has no columns");
+    if (row.cells.size() > kMostColumns)
+      return Complain(bar + 1, "more than " + std::to_string(kMostColumns) + " columns");
+    const std::vector<DrawnRow>& facts = Now().facts;
+    if (!facts.empty() && facts.front().cells.size() != row.cells.size()) {
+      return Complain(bar + 1,
+                      "this row has " + std::to_string(row.cells.size()) +
+                          " columns, the first one has " +
+                          std::to_string(facts.front().cells.size()),
+                      "all rows of a drawing are equally long");
+    }
+    if (Now().has_expected) {
+      if (facts.empty()) return Complain(0, "events are drawn below facts, and there are none");
+      CheckEvents(row, bar);
+      Now().expected.push_back(std::move(row));
+    } else {
+      CheckFact(row, bar);
+      Now().facts.push_back(std::move(row));
+    }
+  }
+
+  void CheckEvents(const DrawnRow& row, std::size_t bar) {
+    for (std::size_t i = 0; i < row.cells.size(); ++i) {
+      const char cell = row.cells[i];
+      const bool goes_on = cell == '=' && i > 0 && row.cells[i - 1] != '.';
+      if (cell == '.' || cell == '[' || goes_on) continue;
+      return Complain(bar + 1 + i,
+                      cell == '=' ? "an event goes on here that has not begun"
+                                  : "expected '.', '[' or '=' in a row of events",
+                      "'[' begins an event, '=' goes on");
+    }
+  }
+
+  void CheckFact(const DrawnRow& row, std::size_t bar) {
+    const std::vector<std::string> words = Words(row.name);
+    if (words.size() < 2)
+      return Complain(0, "a fact is about somebody: who, what and perhaps whom",
+                      "for example: cup on table |####....|, hand x |012345..|");
+    const int who = CheckEntity(words[0]);
+    if (who == kNoEntity || !CheckVerb(words, who)) return;
+    for (std::size_t i = 0; i < row.cells.size(); ++i) {
+      const char cell = row.cells[i];
+      const bool known = (cell >= '0' && cell <= '9') || (cell >= 'a' && cell <= 'z') ||
+                         cell == '.' || cell == '#';
+      if (!known) return Complain(bar + 1 + i, "expected 0..9, a..z, '#' or '.' in a row of facts");
+    }
+  }
+
+  int CheckEntity(const std::string& name) {
+    const int entity = Find(name);
+    if (entity != kNoEntity) return entity;
+    std::vector<std::string> names;
+    for (const EntityInfo& one : Now().entity_table) names.push_back(one.name);
+    Complain(text_.find(name), "nobody is called " + Quoted(name),
+             DidYouMean(name, names, "the line 'entities' names all"));
+    return kNoEntity;
+  }
+
+  bool CheckVerb(const std::vector<std::string>& words, int who) {
+    const std::string& what = words[1];
+    const EntityInfo& one = Now().entity_table[static_cast<std::size_t>(who)];
+    const bool alone = std::ranges::find(kAlone, what) != kAlone.end();
+    const bool of_two = std::ranges::find(kOfTwo, what) != kOfTwo.end() ||
+                        std::ranges::find(one.sensor_sets, what) != one.sensor_sets.end();
+    const std::size_t column = text_.find(what, text_.find(words[0]) + words[0].size());
+    const bool is_hand = one.classes.front() == "Hand";
+    if (!alone && !of_two) {
+      std::vector<std::string> known(kAlone.begin(), kAlone.end());
+      known.insert(known.end(), kOfTwo.begin(), kOfTwo.end());
+      known.insert(known.end(), one.sensor_sets.begin(), one.sensor_sets.end());
+      Complain(column, "unknown fact " + Quoted(what),
+               DidYouMean(what, known, "docs/drawings.md lists them"));
+    } else if ((what == "grip" || what == "holds") && !is_hand) {
+      Complain(column, "only a hand has a grip and holds, and " + Quoted(one.name) + " is a " +
+                           one.classes.front());
+    } else if (words.size() != (alone ? 2 : 3)) {
+      Complain(column, Quoted(what) + (alone ? " is said of one" : " is said of two"),
+               alone ? "for example: " + one.name + " " + what + " |...|"
+                     : "for example: " + one.name + " " + what + " table |...|");
+    } else if (of_two && words[2] == words[0]) {
+      Complain(column, Quoted(what) + " is said of two, and both are " + Quoted(words[0]));
+    } else {
+      return alone || CheckEntity(words[2]) != kNoEntity;
+    }
+    return false;
+  }
+
+  const GrammarText& file_;
+  Diagnostics& diagnostics_;
+  std::vector<DrawnEpisode> episodes_;
+  std::string text_;
+  int line_ = 0;
+};
+
+}  // namespace
+
+std::vector<DrawnEpisode> ReadDrawings(const GrammarText& file, Diagnostics& diagnostics) {
+  return Reader(file, diagnostics).Read();
+}
+
+}  // namespace prehend::grammar
