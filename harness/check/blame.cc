@@ -12,6 +12,12 @@
 namespace prehend::harness {
 namespace {
 
+/// A program that differs: by its source, or by who compiled it, and how.
+std::string ProgramText(const LastPass& last_pass, const DifferingRun& now) {
+  if (last_pass.build.empty() || last_pass.build == now.build) return "the program";
+  return fmt::format("the program (now {}; then {})", now.build, last_pass.build);
+}
+
 /// "scenarios/slide/NAME.yaml" and the like, "the program", and the options of the command line. A
 /// grammar that the command line chose did not change, nor did the one that it replaces.
 std::vector<std::string> WhatChanged(const LastPass& last_pass, const DifferingRun& now,
@@ -36,7 +42,7 @@ std::vector<std::string> WhatChanged(const LastPass& last_pass, const DifferingR
   for (const auto& [path, hash] : last_pass.verdict.inputs) {
     if (!now.inputs.contains(path)) add_unless_replaced(path);
   }
-  if (last_pass.program != now.program) changed.push_back("the program");
+  if (last_pass.program != now.program) changed.push_back(ProgramText(last_pass, now));
   changed.insert(changed.end(), now.options.begin(), now.options.end());
   return changed;
 }
@@ -68,7 +74,9 @@ std::string FirstCause(const StateTrace& before, const DifferingRun& now) {
 std::string CauseText(const std::optional<LastPass>& last_pass,
                       const std::optional<StateTrace>& its_trace, const DifferingRun& now,
                       const std::string& root) {
-  if (!last_pass || !its_trace) return "cause: unknown. This scenario has not passed here yet.\n";
+  if (!last_pass || !its_trace)
+    return fmt::format("cause: unknown. This scenario has not passed here yet. This program: {}.\n",
+                       now.build);
   const std::vector<std::string> changed = WhatChanged(*last_pass, now, root);
   return fmt::format(
       "cause: {}. Changed since: {}\n", FirstCause(*its_trace, now),

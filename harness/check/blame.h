@@ -15,6 +15,7 @@ namespace prehend::harness {
 /// How a run that differs moved, and what decided it.
 struct DifferingRun {
   std::string program;  ///< ProgramHash()
+  std::string build;    ///< BuildText()
   FileHashes inputs;
   std::vector<std::string> options;  ///< of its command line: "--grammar original_2020"
   bool other_grammar = false;        ///< the command line chose the grammar
@@ -23,8 +24,9 @@ struct DifferingRun {
 };
 
 /// One line with its line feed: "cause: physics. `cup` moves differently from the last passing run,
-/// first at 0.0042 s (tick 2). Changed since: ..". Paths are relative to `root`. The cause is
-/// unknown without a run that passed, or was accepted.
+/// first at 0.0042 s (tick 2). Changed since: ..". Paths are relative to `root`. Of another
+/// build it says compiler and flags, now and then. The cause is unknown without a run that passed,
+/// or was accepted.
 std::string CauseText(const std::optional<LastPass>& last_pass,
                       const std::optional<StateTrace>& its_trace, const DifferingRun& now,
                       const std::string& root);

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "grammar/base/check.h"
+#include "harness/base/build_text.h"
 #include "harness/base/shell_quote.h"
 #include "harness/check/blame.h"
 #include "harness/check/last_pass.h"
@@ -115,6 +116,7 @@ std::string CauseOf(const CheckRequest& request, const CheckedRun& checked,
   const RunResult& run = checked.result;
   return CauseText(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
                    {.program = request.program,
+                    .build = BuildText(),
                     .inputs = inputs,
                     .options = OptionsOf(request.run),
                     .other_grammar = !request.run.grammar.empty(),

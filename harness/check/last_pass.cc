@@ -43,6 +43,7 @@ std::optional<LastPass> LastPasses::Read(const std::string& scenario) const {
   if (json.is_discarded()) return std::nullopt;
   try {
     LastPass record{.program = json.at("program"),
+                    .build = json.value("build", ""),
                     .passed = json.at("passed"),
                     .pictures = json.at("pictures"),
                     .verdict = UnpackedVerdict(json.at("verdict"))};
@@ -55,6 +56,7 @@ std::optional<LastPass> LastPasses::Read(const std::string& scenario) const {
 
 std::string LastPasses::Write(const LastPass& record) const {
   const RecordJson json = {{"program", record.program},
+                           {"build", record.build},
                            {"passed", record.passed},
                            {"pictures", record.pictures},
                            {"verdict", Packed(record.verdict)}};

@@ -16,6 +16,7 @@ namespace prehend::harness {
 /// The last time that a scenario agreed with its golden: it passed, or its timeline was accepted.
 struct LastPass {
   std::string program;      ///< ProgramHash() of then
+  std::string build;        ///< BuildText() of then; empty: not known
   bool passed = true;       ///< false: accepted, but not checked since
   bool pictures = false;    ///< its pictures were drawn, too
   ScenarioVerdict verdict;  ///< its `inputs` are the files that decided it

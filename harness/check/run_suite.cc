@@ -10,6 +10,7 @@
 #include <numeric>
 #include <random>
 
+#include "harness/base/build_text.h"
 #include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
 #include "harness/check/check_scenario.h"
@@ -165,8 +166,10 @@ class Suite {
       // Without its record the next check takes longer; if build/ cannot be written, the report,
       // which is in it, too, is an error.
       if (merged.verdict == Verdict::kPassed) {
-        (void)records_.Write(
-            {.program = program_, .pictures = request_.pictures, .verdict = merged});
+        (void)records_.Write({.program = program_,
+                              .build = BuildText(),
+                              .pictures = request_.pictures,
+                              .verdict = merged});
       }
     }
     (void)records_.WriteCosts(costs_);

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "harness/base/atomic_file.h"
+#include "harness/base/build_text.h"
 #include "harness/base/content_hash.h"
 #include "harness/base/shell_quote.h"
 #include "harness/check/check_scenario.h"
@@ -81,7 +82,11 @@ void ShowDifference(const Played& played, const OracleComparison& truth,
 /// The next difference is traced back to the run that is accepted now.
 void LeaveBaseline(const CommandContext& context, const Played& played) {
   const LastPasses records(context.root);
-  LastPass record{.program = ProgramHash(), .passed = false, .pictures = false, .verdict = {}};
+  LastPass record{.program = ProgramHash(),
+                  .build = BuildText(),
+                  .passed = false,
+                  .pictures = false,
+                  .verdict = {}};
   record.verdict.scenario = played.id;
   record.verdict.inputs = HashFiles(played.files);
   // Without it, only the cause of the next difference stays unknown.

@@ -110,7 +110,28 @@ TEST_F(GoldenWorkflow, WithoutARunThatPassedTheCauseIsUnknown) {
   fs::remove_all(root_ / "build/check");
   WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.1 0.2 hand=right_hand object=carton\n");
   EXPECT_TRUE(SaysIn(Do("check --no-pictures"),
-                     "cause: unknown\\. This scenario has not passed here yet\\.\n"));
+                     "cause: unknown\\. This scenario has not passed here yet\\. "
+                     "This program: [A-Za-z]+ [0-9.]+, [a-z0-9_]+, -.+\\.\n"));
+}
+
+TEST_F(GoldenWorkflow, AnotherBuildIsNamedAsAPossibleCause) {
+  Accept();
+  const fs::path record = root_ / "build/check/rest/carton_rests.json";
+  std::string text = ReadFile(record);
+  const std::size_t program = text.find("\"program\":"), build = text.find("\"build\":");
+  ASSERT_NE(program, std::string::npos) << text;
+  ASSERT_NE(build, std::string::npos) << text;
+  const auto replace_value = [&](const std::string& key, const std::string& value) {
+    const std::size_t begin = text.find('"', text.find("\"" + key + "\":") + key.size() + 3) + 1;
+    text.replace(begin, text.find('"', begin) - begin, value);
+  };
+  replace_value("program", "0000000000000000");
+  replace_value("build", "Clang 14.0.6, aarch64, -O3");
+  WriteFile(record, text);
+  WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.1 0.2 hand=right_hand object=carton\n");
+  EXPECT_TRUE(SaysIn(Do("check --no-pictures"),
+                     "the program \\(now [A-Za-z]+ [0-9.]+, [a-z0-9_]+, -.+; "
+                     "then Clang 14\\.0\\.6, aarch64, -O3\\)"));
 }
 
 TEST_F(GoldenWorkflow, OnlyWhatWasShownIsAccepted) {

@@ -9,9 +9,16 @@ namespace prehend::harness {
 namespace {
 
 struct Runs {
-  LastPass last_pass{.program = "p", .pictures = false, .verdict = {.scenario = "slide/x"}};
+  LastPass last_pass{.program = "p",
+                     .build = "GNU 12.2.0, x86_64, -O2",
+                     .pictures = false,
+                     .verdict = {.scenario = "slide/x"}};
   StateTrace trace{.entities = {"cup"}, .ticks = {0, 2}, .hashes = {1, 2}};
-  DifferingRun now{.program = "p", .inputs = {}, .trace = trace, .ticks_per_second = 480};
+  DifferingRun now{.program = "p",
+                   .build = "GNU 12.2.0, x86_64, -O2",
+                   .inputs = {},
+                   .trace = trace,
+                   .ticks_per_second = 480};
   Runs() {
     last_pass.verdict.inputs = {{"/root/a.grammar", "1"}, {"/root/x.yaml", "2"}};
     now.inputs = last_pass.verdict.inputs;
@@ -41,6 +48,18 @@ TEST(Cause, IsThePhysicsFromTheFirstDivergence) {
   EXPECT_TRUE(runs.Text().starts_with(
       "cause: physics. The entities are not those of the last passing run. Changed since: "))
       << runs.Text();
+}
+
+TEST(Cause, SaysHowAnotherProgramWasCompiled) {
+  Runs runs;
+  runs.now.program = "q";
+  runs.now.build = "Clang 14.0.6, aarch64, -O3";
+  EXPECT_TRUE(
+      runs.Text().ends_with(" Changed since: the program (now Clang 14.0.6, aarch64, -O3; "
+                            "then GNU 12.2.0, x86_64, -O2)\n"))
+      << runs.Text();
+  runs.last_pass.build = "";  // a record of before builds were kept
+  EXPECT_TRUE(runs.Text().ends_with(" Changed since: the program\n")) << runs.Text();
 }
 
 TEST(Cause, WithoutAnyChangedFileNothingIsKnown) {
@@ -87,7 +106,9 @@ TEST(Cause, AGrammarThatTheCommandLineChoseDidNotChange) {
 
 TEST(Cause, IsUnknownWithoutARunThatPassed) {
   const Runs runs;
-  const std::string unknown = "cause: unknown. This scenario has not passed here yet.\n";
+  const std::string unknown =
+      "cause: unknown. This scenario has not passed here yet. This program: GNU 12.2.0, x86_64, "
+      "-O2.\n";
   EXPECT_EQ(CauseText(std::nullopt, runs.trace, runs.now, "/root"), unknown);
   EXPECT_EQ(CauseText(runs.last_pass, std::nullopt, runs.now, "/root"), unknown);
 }
