@@ -94,6 +94,14 @@ struct MoveStep {
   void operator()(Other&) const {}
 };
 
+/// The place that an outcome asks for.
+void Move(const Mover& motion, Outcome::Condition& condition) {
+  if (!condition.wanted.near_m) return;
+  std::vector<double>& near_m = *condition.wanted.near_m;
+  const Vector3d there = motion.Point({near_m[0], near_m[1], near_m.size() > 2 ? near_m[2] : 0});
+  std::copy_n(there.begin(), near_m.size(), near_m.begin());
+}
+
 }  // namespace
 
 Scenario Moved(Scenario scenario, const WorldMotion& world_motion) {
@@ -109,6 +117,8 @@ Scenario Moved(Scenario scenario, const WorldMotion& world_motion) {
     for (physics::Step& step : stage.steps) std::visit(MoveStep{motion}, step.action);
     for (physics::PersonStep& step : stage.person_steps) std::visit(MoveStep{motion}, step.action);
   }
+  for (Outcome& outcome : scenario.outcomes)
+    for (Outcome::Condition& condition : outcome.conditions) Move(motion, condition);
   return scenario;
 }
 

@@ -7,6 +7,7 @@
 #include "harness/judge/judge_transforms.h"
 #include "harness/run/load_run.h"
 #include "harness/run/run_scenario.h"
+#include "harness/transform/move_scenario.h"
 
 namespace prehend::harness {
 namespace {
@@ -126,6 +127,19 @@ TEST(Transform, ReorderingKeepsWhatBelongsTogether) {
   };
   EXPECT_EQ(joints_of(reordered), joints_of(original));
   EXPECT_EQ(reordered.scene.bodies.front().name, original.scene.bodies.back().name);
+}
+
+TEST(Transform, PlacesThatOutcomesAskForMoveAlong) {
+  const auto ends_near_m = [](const Scenario& scenario) {
+    return scenario.outcomes.at(0).conditions.at(1).wanted.near_m.value();
+  };
+  const Scenario original = Load("trials/wrap_places_a_carton").scenario;
+  ASSERT_EQ(ends_near_m(original), (std::vector<double>{0.15, -0.25}));
+  EXPECT_EQ(ends_near_m(After(original, Transform::kMirror)), (std::vector<double>{0.15, 0.25}));
+  EXPECT_EQ(ends_near_m(After(original, Transform::kFar)), (std::vector<double>{4.15, 1.75}));
+  const Scenario turned = Moved(original, {.X = {.q = physics::FromRollPitchYaw({0, 0, 90})}});
+  EXPECT_NEAR(ends_near_m(turned)[0], 0.25, 1e-12);
+  EXPECT_NEAR(ends_near_m(turned)[1], 0.15, 1e-12);
 }
 
 /// What was recognised, and the same as a golden.
